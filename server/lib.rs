@@ -1,0 +1,1 @@
+//! equipoise: the server that says whether a bouncing object can be balanced.
