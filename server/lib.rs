@@ -1,1 +1,16 @@
 //! equipoise: the server that says whether a bouncing object can be balanced.
+//!
+//! The library is the server without its command line, so that tests can put requests to its router. The physics is
+//! the crate `equipoise-physics`.
+
+pub mod compute;
+pub mod config;
+pub mod http;
+pub mod limits;
+pub mod middleware;
+pub mod router;
+pub mod routes;
+pub mod transport;
+
+/// The version and a hash of everything that can change an answer: equal builds give equal answers.
+pub const BUILD: &str = env!("EQUIPOISE_BUILD");

@@ -1,3 +1,58 @@
-//! The `equipoise` program.
+//! The `equipoise` program: reads its command line, listens, and serves until it is told to stop.
 
-fn main() {}
+use std::io;
+use std::process::ExitCode;
+
+use clap::Parser;
+use equipoise::config::Config;
+use equipoise::routes::App;
+use equipoise::{BUILD, router, transport};
+use tokio::net::TcpListener;
+use tokio::signal::unix::{SignalKind, signal};
+
+#[tokio::main]
+async fn main() -> ExitCode {
+    match run(Config::parse()).await {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("equipoise: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+async fn run(config: Config) -> Result<(), String> {
+    let listener = TcpListener::bind(&config.listen).await.map_err(|error| cannot_listen(&config.listen, &error))?;
+    let address = listener.local_addr().map_err(|error| error.to_string())?;
+    let stop = stop_signal().map_err(|error| format!("cannot listen for signals: {error}"))?;
+    println!("equipoise {BUILD} serves http://{address}/");
+
+    let app = App::new(&config);
+    let stop = async {
+        stop.await;
+        app.close();
+    };
+    transport::serve(listener, router::router(app.clone()), stop).await;
+    Ok(())
+}
+
+fn cannot_listen(listen: &str, error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::AddrInUse => {
+            format!("{listen} is taken by another program; choose another with --listen ADDRESS:PORT")
+        }
+        _ => format!("cannot listen on {listen}: {error}"),
+    }
+}
+
+/// Waits for SIGINT (Ctrl-C) or SIGTERM (service managers).
+fn stop_signal() -> io::Result<impl Future<Output = ()>> {
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    let mut terminate = signal(SignalKind::terminate())?;
+    Ok(async move {
+        tokio::select! {
+            _ = interrupt.recv() => {}
+            _ = terminate.recv() => {}
+        }
+    })
+}

@@ -1,0 +1,218 @@
+//! Runs work beside the async threads, as much at a time as there are cores, with a short queue and a no beyond it.
+
+use std::fmt;
+use std::sync::Arc;
+
+use prometheus_client::metrics::gauge::Gauge;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::task::spawn_blocking;
+use tokio::time::timeout;
+
+use super::cancel::{Cancel, OnDrop};
+use super::price::Price;
+use crate::limits;
+
+/// Admits work and runs it. Cheap to clone; clones share their permits.
+#[derive(Debug, Clone)]
+pub struct Pool {
+    /// Places to run or to wait in.
+    places: Arc<Semaphore>,
+    /// Permits to run.
+    permits: Arc<Semaphore>,
+    count: usize,
+    running: Gauge,
+    queued: Gauge,
+}
+
+/// Work that was not done because there is too much of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Refused {
+    /// No place to wait in.
+    Full {
+        /// Pieces of work that run at a time.
+        permits: usize,
+        /// Pieces of work that may wait.
+        places: usize,
+    },
+    /// A place, but no turn in good time.
+    Late {
+        /// Seconds it waited.
+        waited_s: u64,
+    },
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Refused::Full { permits, places } => {
+                write!(formatter, "{permits} requests are being computed and {places} are waiting, which is the limit")
+            }
+            Refused::Late { waited_s } => write!(formatter, "the request waited {waited_s} s for its turn, the limit"),
+        }
+    }
+}
+
+impl std::error::Error for Refused {}
+
+impl Pool {
+    /// A pool that does `permits` pieces of work at a time.
+    pub fn new(permits: usize) -> Self {
+        Self {
+            places: Arc::new(Semaphore::new(permits * (1 + limits::QUEUE_PER_PERMIT))),
+            permits: Arc::new(Semaphore::new(permits)),
+            count: permits,
+            running: Gauge::default(),
+            queued: Gauge::default(),
+        }
+    }
+
+    /// How much runs at the moment.
+    pub fn running(&self) -> &Gauge {
+        &self.running
+    }
+
+    /// How much waits at the moment.
+    pub fn queued(&self) -> &Gauge {
+        &self.queued
+    }
+
+    /// Does `work`: at once if it is cheap, else on another thread when it is its turn. If the future is dropped, the
+    /// flag that `work` is given is set, and work that waits is never begun. A panic in `work` goes on here.
+    pub async fn run<T, E>(
+        &self,
+        price: Price,
+        work: impl FnOnce(&Cancel) -> Result<T, E> + Send + 'static,
+    ) -> Result<T, E>
+    where
+        T: Send + 'static,
+        E: From<Refused> + Send + 'static,
+    {
+        if price.as_bounces() <= limits::INLINE_BOUNCES {
+            let _running = Counted::one(&self.running);
+            return work(&Cancel::never());
+        }
+        let permit = self.turn().await?;
+        let waiting = OnDrop(Cancel::default());
+        let cancel = waiting.0.clone();
+        let running = Counted::one(&self.running);
+        // The permit goes along: it is free again when the work has ended, not when its result is no longer wanted.
+        let task = spawn_blocking(move || {
+            let _held = (permit, running);
+            work(&cancel)
+        });
+        let done = task.await;
+        done.unwrap_or_else(|error| match error.try_into_panic() {
+            Ok(panic) => std::panic::resume_unwind(panic),
+            Err(_) => unreachable!("only a shutdown of the runtime aborts work, and then nobody is here"),
+        })
+    }
+
+    async fn turn(&self) -> Result<(OwnedSemaphorePermit, OwnedSemaphorePermit), Refused> {
+        let full = Refused::Full { permits: self.count, places: self.count * limits::QUEUE_PER_PERMIT };
+        let place = self.places.clone().try_acquire_owned().map_err(|_| full)?;
+        if let Ok(permit) = self.permits.clone().try_acquire_owned() {
+            return Ok((place, permit));
+        }
+        let _queued = Counted::one(&self.queued);
+        match timeout(limits::QUEUE_TIME, self.permits.clone().acquire_owned()).await {
+            Ok(permit) => Ok((place, permit.expect("the semaphore is never closed"))),
+            Err(_) => Err(Refused::Late { waited_s: limits::QUEUE_TIME.as_secs() }),
+        }
+    }
+}
+
+/// Counts one in a gauge for as long as it lives.
+#[derive(Debug)]
+pub struct Counted(Gauge);
+
+impl Counted {
+    /// One more.
+    pub fn one(gauge: &Gauge) -> Self {
+        gauge.inc();
+        Self(gauge.clone())
+    }
+}
+
+impl Drop for Counted {
+    fn drop(&mut self) {
+        self.0.dec();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc;
+    use std::time::{Duration, Instant};
+
+    fn dear() -> Price {
+        Price::bounces(limits::INLINE_BOUNCES + 1)
+    }
+
+    #[tokio::test]
+    async fn cheap_work_stays_on_its_thread_and_dear_work_leaves_it() {
+        let pool = Pool::new(1);
+        let here = std::thread::current().id();
+        let thread = |_: &Cancel| Ok::<_, Refused>(std::thread::current().id());
+        assert_eq!(pool.run(Price::bounces(1), thread).await, Ok(here));
+        assert_ne!(pool.run(dear(), thread).await, Ok(here));
+    }
+
+    #[tokio::test]
+    async fn dropping_the_future_cancels_the_work_and_frees_the_permit() {
+        let pool = Pool::new(1);
+        let (ended, end) = mpsc::channel();
+        let work = pool.run(dear(), move |cancel| {
+            while !cancel.is_set() {
+                std::thread::yield_now();
+            }
+            ended.send(Instant::now()).unwrap();
+            Ok::<_, Refused>(())
+        });
+        assert!(timeout(Duration::from_millis(20), work).await.is_err());
+        let dropped = Instant::now();
+        let ended = end.recv_timeout(Duration::from_secs(5)).expect("the work should have been cancelled");
+        assert!(ended.saturating_duration_since(dropped) < Duration::from_millis(50));
+        assert_eq!(pool.run(dear(), |_| Ok::<_, Refused>(7)).await, Ok(7));
+    }
+
+    #[tokio::test]
+    async fn beyond_the_queue_is_a_refusal() {
+        let pool = Pool::new(1);
+        let (release, gate) = mpsc::channel::<()>();
+        let busy = tokio::spawn({
+            let pool = pool.clone();
+            async move { pool.run(dear(), move |_| Ok::<_, Refused>(gate.recv().is_err())).await }
+        });
+        let waiting: Vec<_> = (0..limits::QUEUE_PER_PERMIT)
+            .map(|_| {
+                let pool = pool.clone();
+                tokio::spawn(async move { pool.run(dear(), |_| Ok::<_, Refused>(())).await })
+            })
+            .collect();
+        while pool.queued().get() < limits::QUEUE_PER_PERMIT as i64 {
+            tokio::task::yield_now().await;
+        }
+        assert_eq!(pool.running().get(), 1);
+        let refused = pool.run(dear(), |_| Ok::<_, Refused>(())).await;
+        assert_eq!(refused, Err(Refused::Full { permits: 1, places: limits::QUEUE_PER_PERMIT }));
+        drop(release);
+        assert_eq!(busy.await.unwrap(), Ok(true));
+        for waiting in waiting {
+            assert_eq!(waiting.await.unwrap(), Ok(()));
+        }
+        assert_eq!((pool.running().get(), pool.queued().get()), (0, 0));
+    }
+
+    #[tokio::test]
+    async fn a_panic_comes_through_and_costs_no_permit() {
+        let pool = Pool::new(1);
+        let panicking = tokio::spawn({
+            let pool = pool.clone();
+            async move { pool.run(dear(), |_| -> Result<(), Refused> { panic!("on purpose") }).await }
+        });
+        assert!(panicking.await.unwrap_err().is_panic());
+        assert_eq!(pool.run(dear(), |_| Ok::<_, Refused>(1)).await, Ok(1));
+        assert_eq!(pool.running().get(), 0);
+    }
+}

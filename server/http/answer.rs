@@ -1,0 +1,165 @@
+//! Answers to an `Ask`: negotiated, tagged, computed only if the client does not have them, compressed if it likes.
+//!
+//! What a resource computes, and what it costs, is the route's to say.
+
+use axum::body::Body;
+use axum::http::{HeaderValue, Response, StatusCode, header};
+
+use super::encode;
+use super::etag::EntityTag;
+use super::leaf::Source;
+use super::negotiate::{self, Encoding, Format};
+use super::problem::Problem;
+use super::request::Ask;
+use crate::BUILD;
+use crate::compute::{Cancel, Cancelled, Pool, Price};
+
+/// A resource as far as negotiation and entity tags go.
+#[derive(Debug, Clone, Copy)]
+pub struct Resource {
+    /// Its name in the URL: `trajectories`.
+    pub name: &'static str,
+    /// What it can be written as; the first is the default.
+    pub formats: &'static [Format],
+}
+
+/// Clients and proxies may keep it, and ask each time whether it is still right, which costs no work.
+pub(super) const REVALIDATED: HeaderValue = HeaderValue::from_static("public, max-age=0, must-revalidate");
+
+impl Ask {
+    /// The answer of a pure resource: 304 if the client has it, else what `compute` writes, done by `pool` at `price`.
+    ///
+    /// `canonical` is the request with all defaults filled in and in a fixed order: together with the build, the format
+    /// and the encoding it has to determine every byte of the answer.
+    pub async fn respond(
+        &self,
+        pool: &Pool,
+        resource: &Resource,
+        canonical: &[u8],
+        price: Price,
+        compute: impl FnOnce(Format, &Cancel) -> Result<Vec<u8>, Problem> + Send + 'static,
+    ) -> Result<Response<Body>, Problem> {
+        let (format, encoding) = self.negotiate(resource)?;
+        let parts = [resource.name, BUILD, format.name(), encoding.name()].map(str::as_bytes);
+        let tag = EntityTag::of(&[parts[0], parts[1], parts[2], parts[3], canonical]);
+        // A query is a GET or a HEAD; on POST the precondition has no such meaning.
+        let mut response = if self.source == Source::Query && tag.is_held_by(&self.headers) {
+            status_only(StatusCode::NOT_MODIFIED)
+        } else {
+            computed(pool, format, encoding, price, compute).await?
+        };
+        response.headers_mut().insert(header::ETAG, tag.header());
+        response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);
+        Ok(response)
+    }
+
+    /// The answer of a resource that measures something: never kept, no entity tag, because the next one is different.
+    pub async fn respond_afresh(
+        &self,
+        pool: &Pool,
+        resource: &Resource,
+        price: Price,
+        compute: impl FnOnce(Format, &Cancel) -> Result<Vec<u8>, Problem> + Send + 'static,
+    ) -> Result<Response<Body>, Problem> {
+        let (format, encoding) = self.negotiate(resource)?;
+        let mut response = computed(pool, format, encoding, price, compute).await?;
+        response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+        Ok(response)
+    }
+
+    fn negotiate(&self, resource: &Resource) -> Result<(Format, Encoding), Problem> {
+        let format = negotiate::format(self.format.as_deref(), &self.headers, resource.formats)?;
+        Ok((format, negotiate::encoding(&self.headers)?))
+    }
+}
+
+async fn computed(
+    pool: &Pool,
+    format: Format,
+    encoding: Encoding,
+    price: Price,
+    compute: impl FnOnce(Format, &Cancel) -> Result<Vec<u8>, Problem> + Send + 'static,
+) -> Result<Response<Body>, Problem> {
+    let encoding = if format.is_compressible() { encoding } else { Encoding::Identity };
+    // Compression is part of the work: it takes as long as computing, and ends with it when the client goes away.
+    let work = move |cancel: &Cancel| {
+        let bytes = compute(format, cancel)?;
+        Ok::<_, Problem>(if encoding == Encoding::Gzip { encode::gzip(&bytes, cancel)? } else { bytes })
+    };
+    let bytes = pool.run(price, work).await?;
+    Ok(ok(format.media_type(), encoding, bytes))
+}
+
+/// 200 with its body and the headers that describe it.
+pub(super) fn ok(media_type: &'static str, encoding: Encoding, bytes: impl Into<Body>) -> Response<Body> {
+    let mut response = Response::new(bytes.into());
+    let headers = response.headers_mut();
+    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(media_type));
+    headers.insert(header::VARY, HeaderValue::from_static("Accept, Accept-Encoding"));
+    if encoding == Encoding::Gzip {
+        headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
+    }
+    response
+}
+
+/// No body. `Vary` as it would be with one.
+pub(super) fn status_only(status: StatusCode) -> Response<Body> {
+    let mut response = Response::new(Body::empty());
+    *response.status_mut() = status;
+    response.headers_mut().insert(header::VARY, HeaderValue::from_static("Accept, Accept-Encoding"));
+    response
+}
+
+/// Work is given up only when nobody is left to read this, so it says no more than that.
+impl From<Cancelled> for Problem {
+    fn from(cancelled: Cancelled) -> Self {
+        Problem::overloaded(cancelled.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use axum::extract::{FromRequest, Request};
+    use http_body_util::BodyExt;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    static RESOURCE: Resource = Resource { name: "test", formats: &[Format::Json, Format::Csv] };
+
+    async fn get(query: &str, headers: &[(&str, &str)], work: &'static AtomicUsize) -> Response<Body> {
+        let request = headers.iter().fold(Request::get(query), |request, (name, value)| request.header(*name, *value));
+        let ask = Ask::from_request(request.body(Body::empty()).unwrap(), &()).await.unwrap();
+        let compute = |format: Format, _: &Cancel| {
+            work.fetch_add(1, Ordering::Relaxed);
+            Ok(format.name().repeat(1000).into_bytes())
+        };
+        ask.respond(&Pool::new(1), &RESOURCE, b"canonical", Price::bounces(1), compute).await.unwrap()
+    }
+
+    #[tokio::test]
+    async fn what_the_client_has_is_not_computed() {
+        static WORK: AtomicUsize = AtomicUsize::new(0);
+        let first = get("/", &[], &WORK).await;
+        let tag = first.headers()[header::ETAG].to_str().unwrap().to_owned();
+        assert_eq!((first.status().as_u16(), WORK.load(Ordering::Relaxed)), (200, 1));
+        let second = get("/", &[("if-none-match", &tag)], &WORK).await;
+        assert_eq!((second.status().as_u16(), WORK.load(Ordering::Relaxed)), (304, 1));
+        for name in [header::ETAG, header::VARY, header::CACHE_CONTROL] {
+            assert_eq!(first.headers()[&name], second.headers()[&name]);
+        }
+        assert_eq!(get("/?format=csv", &[("if-none-match", &tag)], &WORK).await.status(), 200);
+        assert_eq!(get("/", &[("if-none-match", &tag), ("accept-encoding", "gzip")], &WORK).await.status(), 200);
+    }
+
+    #[tokio::test]
+    async fn the_body_is_as_negotiated() {
+        static WORK: AtomicUsize = AtomicUsize::new(0);
+        let plain = get("/", &[("accept", "text/csv")], &WORK).await;
+        assert_eq!(plain.headers()[header::CONTENT_TYPE], "text/csv; charset=utf-8; header=present");
+        assert!(plain.headers().get(header::CONTENT_ENCODING).is_none());
+        assert_eq!(plain.into_body().collect().await.unwrap().to_bytes().len(), 3000);
+        let packed = get("/", &[("accept-encoding", "gzip")], &WORK).await;
+        assert_eq!(packed.headers()[header::CONTENT_ENCODING], "gzip");
+        assert!(packed.into_body().collect().await.unwrap().to_bytes().len() < 300);
+    }
+}

@@ -1,0 +1,23 @@
+//! What the server knows of HTTP: problems, reading requests, negotiation, entity tags and answers.
+//!
+//! No physics and no routes here: everything is told in JSON values, bytes and formats.
+
+pub mod answer;
+pub mod encode;
+pub mod etag;
+pub mod fixed;
+pub mod json;
+pub mod leaf;
+pub mod merge;
+pub mod negotiate;
+pub mod problem;
+pub mod query;
+pub mod reader;
+pub mod request;
+
+pub use answer::Resource;
+pub use leaf::Source;
+pub use negotiate::Format;
+pub use problem::{FieldError, Problem};
+pub use reader::{Errors, Reader};
+pub use request::Ask;

@@ -1,0 +1,267 @@
+//! Problems (RFC 9457): the one shape in which every 4xx and 5xx leaves the server.
+//!
+//! What a client sees is only what stands in the fields here; causes inside the server go to its log, never into a body.
+
+use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use crate::compute::{OverBudget, Refused};
+use crate::limits;
+
+/// One thing wrong with one field.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct FieldError {
+    /// JSON pointer (RFC 6901) into the request body, or into the body that a query is equivalent to. Empty: the whole.
+    pub pointer: String,
+    /// A sentence with the field's name, its value, its limits and its unit.
+    pub detail: String,
+}
+
+/// An error as a client sees it. Small to return: its parts are on the heap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem(Box<Parts>);
+
+#[derive(Debug, Clone, PartialEq)]
+struct Parts {
+    status: StatusCode,
+    /// Anchor in `/docs` for problems with a meaning of their own; none is `about:blank`, a plain status.
+    slug: Option<&'static str>,
+    title: &'static str,
+    detail: String,
+    errors: Vec<FieldError>,
+    headers: Vec<(HeaderName, HeaderValue)>,
+}
+
+impl Problem {
+    fn plain(status: StatusCode, detail: impl Into<String>) -> Self {
+        let title = status.canonical_reason().unwrap_or("Error");
+        Self(Box::new(Parts { status, slug: None, title, detail: detail.into(), errors: vec![], headers: vec![] }))
+    }
+
+    fn named(mut self, slug: &'static str, title: &'static str) -> Self {
+        (self.0.slug, self.0.title) = (Some(slug), title);
+        self
+    }
+
+    fn header(mut self, name: HeaderName, value: HeaderValue) -> Self {
+        self.0.headers.push((name, value));
+        self
+    }
+
+    /// 400: the body is not JSON, or the URL is not properly encoded.
+    pub fn not_readable(detail: impl Into<String>) -> Self {
+        Self::plain(StatusCode::BAD_REQUEST, detail).named("not-readable", "The request cannot be read")
+    }
+
+    /// 404: nothing by this name.
+    pub fn not_found(detail: impl Into<String>) -> Self {
+        Self::plain(StatusCode::NOT_FOUND, detail)
+    }
+
+    /// 405: `allow` lists the methods there are, as in the header of that name.
+    pub fn method_not_allowed(method: &str, path: &str, allow: &str) -> Self {
+        let spaced = allow.replace(',', ", ").replace(",  ", ", ");
+        let problem = Self::plain(
+            StatusCode::METHOD_NOT_ALLOWED,
+            format!("{path} does not take {}; it takes {spaced}", shortened(method)),
+        );
+        match HeaderValue::from_str(&spaced) {
+            Ok(value) => problem.header(header::ALLOW, value),
+            Err(_) => problem,
+        }
+    }
+
+    /// 406: no format, or no encoding, that the client accepts.
+    pub fn not_acceptable(detail: impl Into<String>) -> Self {
+        Self::plain(StatusCode::NOT_ACCEPTABLE, detail)
+    }
+
+    /// 408: the client took too long to send its request.
+    pub fn too_slow(detail: impl Into<String>) -> Self {
+        Self::plain(StatusCode::REQUEST_TIMEOUT, detail).header(header::CONNECTION, HeaderValue::from_static("close"))
+    }
+
+    /// 413: the body is larger than the limit.
+    pub fn too_large(limit_bytes: usize) -> Self {
+        Self::plain(
+            StatusCode::PAYLOAD_TOO_LARGE,
+            format!("the request body is larger than the limit of {limit_bytes} bytes"),
+        )
+    }
+
+    /// 414: path and query are longer than the limit.
+    pub fn url_too_long(bytes: usize) -> Self {
+        Self::plain(
+            StatusCode::URI_TOO_LONG,
+            format!("the URL has {bytes} bytes of path and query; the limit is {} bytes. POST the request instead", {
+                limits::URL_BYTES
+            }),
+        )
+    }
+
+    /// 415: the body is in a format or an encoding that is not read here.
+    pub fn unsupported_media_type(detail: impl Into<String>) -> Self {
+        Self::plain(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
+            .header(header::ACCEPT, HeaderValue::from_static("application/json"))
+            .header(header::ACCEPT_ENCODING, HeaderValue::from_static("identity"))
+    }
+
+    /// 422: readable, but not a valid request. `errors` holds all that is wrong with it.
+    pub fn invalid(errors: Vec<FieldError>) -> Self {
+        let detail = match errors.as_slice() {
+            [] => "the request is not valid".to_owned(),
+            [one] => one.detail.clone(),
+            [first, rest @ ..] => format!("{}; and {} more", first.detail, rest.len()),
+        };
+        let mut problem =
+            Self::plain(StatusCode::UNPROCESSABLE_ENTITY, detail).named("invalid-request", "The request is not valid");
+        problem.0.errors = errors;
+        problem
+    }
+
+    /// 422 with one error at one pointer.
+    pub fn invalid_at(pointer: impl Into<String>, detail: impl Into<String>) -> Self {
+        Self::invalid(vec![FieldError { pointer: pointer.into(), detail: detail.into() }])
+    }
+
+    /// 500: a fault of the server's, about which the client can do nothing.
+    pub fn internal() -> Self {
+        Self::plain(
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "the server failed on this request, which is a defect in it; its log has the cause",
+        )
+    }
+
+    /// 503: too much to do at the moment.
+    pub fn overloaded(detail: impl Into<String>) -> Self {
+        Self::plain(StatusCode::SERVICE_UNAVAILABLE, detail)
+            .named("overloaded", "The server is busy")
+            .header(header::RETRY_AFTER, HeaderValue::from(limits::RETRY_AFTER_S))
+    }
+
+    /// Any other status, for errors that libraries answer with on their own.
+    pub fn other(status: StatusCode, detail: impl Into<String>) -> Self {
+        Self::plain(status, detail)
+    }
+
+    /// The status it is answered with.
+    pub fn status(&self) -> StatusCode {
+        self.0.status
+    }
+
+    /// What kind of problem it is, in a few words.
+    pub fn title(&self) -> &'static str {
+        self.0.title
+    }
+
+    /// What is wrong this time, in a sentence.
+    pub fn detail(&self) -> &str {
+        &self.0.detail
+    }
+
+    /// What is wrong with which field.
+    pub fn errors(&self) -> &[FieldError] {
+        &self.0.errors
+    }
+
+    /// Consumes it for its field errors.
+    pub fn into_errors(self) -> Vec<FieldError> {
+        self.0.errors
+    }
+
+    /// Its JSON, as in the body of an answer.
+    pub fn to_json(&self) -> Vec<u8> {
+        serde_json::to_vec(self).expect("a problem is text and numbers under text keys")
+    }
+}
+
+impl Serialize for Problem {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let parts = &*self.0;
+        let mut map = serializer.serialize_map(None)?;
+        match parts.slug {
+            Some(slug) => map.serialize_entry("type", &format_args!("/docs#problem-{slug}"))?,
+            None => map.serialize_entry("type", "about:blank")?,
+        }
+        map.serialize_entry("title", parts.title)?;
+        map.serialize_entry("status", &parts.status.as_u16())?;
+        map.serialize_entry("detail", &parts.detail)?;
+        if !parts.errors.is_empty() {
+            map.serialize_entry("errors", &parts.errors)?;
+        }
+        map.end()
+    }
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        let mut response = (self.0.status, self.to_json()).into_response();
+        let headers = response.headers_mut();
+        headers.insert(header::CONTENT_TYPE, MEDIA_TYPE);
+        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+        for (name, value) in self.0.headers {
+            headers.insert(name, value);
+        }
+        response
+    }
+}
+
+/// The media type of a problem.
+pub const MEDIA_TYPE: HeaderValue = HeaderValue::from_static("application/problem+json");
+
+impl From<OverBudget> for Problem {
+    fn from(over: OverBudget) -> Self {
+        let mut problem = Self::invalid_at("", over.to_string());
+        problem = problem.named("over-budget", "The request costs too much");
+        problem
+    }
+}
+
+impl From<Refused> for Problem {
+    fn from(refused: Refused) -> Self {
+        Self::overloaded(refused.to_string())
+    }
+}
+
+/// A client's own text, quoted in an error: cut to a length that keeps the error readable.
+pub fn shortened(text: &str) -> String {
+    const CHARACTERS: usize = 60;
+    match text.char_indices().nth(CHARACTERS) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_problem_says_everything_once() {
+        let problem = Problem::invalid(vec![
+            FieldError { pointer: "/a".into(), detail: "a is wrong".into() },
+            FieldError { pointer: "/b".into(), detail: "b is wrong".into() },
+        ]);
+        let json: serde_json::Value = serde_json::from_slice(&problem.to_json()).unwrap();
+        assert_eq!(json["type"], "/docs#problem-invalid-request");
+        assert_eq!(json["status"], 422);
+        assert_eq!(json["detail"], "a is wrong; and 1 more");
+        assert_eq!(json["errors"][1]["pointer"], "/b");
+    }
+
+    #[test]
+    fn a_405_names_the_methods_there_are() {
+        let response = Problem::method_not_allowed("PUT", "/v1/scenes", "GET,HEAD").into_response();
+        assert_eq!(response.status(), 405);
+        assert_eq!(response.headers()[header::ALLOW], "GET, HEAD");
+        assert_eq!(response.headers()[header::CONTENT_TYPE], "application/problem+json");
+    }
+
+    #[test]
+    fn long_text_is_cut_between_characters() {
+        assert_eq!(shortened("short"), "short");
+        assert_eq!(shortened(&"é".repeat(100)), format!("{}…", "é".repeat(60)));
+    }
+}

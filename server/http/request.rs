@@ -1,0 +1,198 @@
+//! What a client asks: the fields of a request, from the query of a GET or the JSON body of a POST, and how it wants
+//! the answer. Both kinds give the same tree, so nothing behind this tells one from the other.
+
+use axum::body::{Body, to_bytes};
+use axum::extract::{FromRequest, Request};
+use axum::http::{HeaderMap, Method, header};
+use http_body_util::LengthLimitError;
+use serde_json::{Map, Value};
+use tokio::time::timeout;
+
+use super::leaf::Source;
+use super::problem::{FieldError, Problem, shortened};
+use super::reader::{Errors, Reader, join};
+use super::{json, query};
+use crate::limits;
+
+/// A request for something computed. As an extractor it takes the body, so it stands last.
+#[derive(Debug, Clone)]
+pub struct Ask {
+    /// The fields of the JSON body, or of the body that the query is equivalent to. `format` is not among them.
+    pub fields: Map<String, Value>,
+    /// Whether leaves are JSON or text.
+    pub source: Source,
+    /// The request's headers.
+    pub headers: HeaderMap,
+    /// What `?format=` says.
+    pub(super) format: Option<String>,
+}
+
+impl Ask {
+    /// A reader of all fields, which gathers what is wrong in `errors`.
+    pub fn reader<'v, 'e>(&'v self, errors: &'e mut Errors) -> Reader<'v, 'e> {
+        Reader::new(&self.fields, String::new(), self.source, errors)
+    }
+
+    fn from_query(query: &str, headers: HeaderMap) -> Result<Self, Problem> {
+        let (format, parameters) = split_format(query)?;
+        Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, format })
+    }
+
+    fn from_body(query: &str, body: &[u8], headers: HeaderMap) -> Result<Self, Problem> {
+        let (format, parameters) = split_format(query)?;
+        if !parameters.is_empty() {
+            let error = |(name, _): (String, String)| FieldError {
+                pointer: name.split('.').fold(String::new(), |pointer, part| join(&pointer, part)),
+                detail: format!(
+                    "on POST only `format` is read from the query; `{}` belongs in the body",
+                    shortened(&name)
+                ),
+            };
+            return Err(Problem::invalid(parameters.into_iter().map(error).take(limits::ERRORS).collect()));
+        }
+        Ok(Self { fields: json::object(body)?, source: Source::Json, headers, format })
+    }
+}
+
+impl<S: Send + Sync> FromRequest<S> for Ask {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, _: &S) -> Result<Self, Problem> {
+        let (parts, body) = request.into_parts();
+        let query = parts.uri.query().unwrap_or_default();
+        if parts.method == Method::GET || parts.method == Method::HEAD {
+            return Self::from_query(query, parts.headers);
+        }
+        check_media_type(&parts.headers)?;
+        let body = read(body, &parts.headers).await?;
+        Self::from_body(query, &body, parts.headers)
+    }
+}
+
+/// The one parameter that is about the answer and not part of the request, and all others.
+#[expect(clippy::type_complexity, reason = "named parts, used twice, right above")]
+fn split_format(query: &str) -> Result<(Option<String>, Vec<(String, String)>), Problem> {
+    let (formats, others): (Vec<_>, Vec<_>) =
+        query::parameters(query)?.into_iter().partition(|(name, _)| name == "format");
+    if formats.len() > 1 {
+        return Err(Problem::invalid_at("/format", "the parameter `format` is there twice"));
+    }
+    Ok((formats.into_iter().next().map(|(_, format)| format), others))
+}
+
+fn check_media_type(headers: &HeaderMap) -> Result<(), Problem> {
+    let text = |name| headers.get(name).map(|value| value.to_str().unwrap_or("not text"));
+    let Some(media_type) = text(header::CONTENT_TYPE) else {
+        return Err(Problem::unsupported_media_type(
+            "the request has no Content-Type; send JSON with Content-Type: application/json",
+        ));
+    };
+    let mut parameters = media_type.split(';').map(str::trim);
+    let is_json = parameters.next().is_some_and(|essence| {
+        let essence = essence.to_ascii_lowercase();
+        essence == "application/json" || (essence.starts_with("application/") && essence.ends_with("+json"))
+    });
+    if !is_json {
+        let shown = shortened(media_type);
+        return Err(Problem::unsupported_media_type(format!(
+            "the request has Content-Type: {shown}; send JSON with Content-Type: application/json"
+        )));
+    }
+    let charset =
+        parameters.find_map(|parameter| parameter.to_ascii_lowercase().strip_prefix("charset=").map(str::to_owned));
+    if let Some(charset) = charset.filter(|charset| !matches!(charset.trim_matches('"'), "utf-8" | "utf8" | "us-ascii"))
+    {
+        let charset = shortened(&charset);
+        return Err(Problem::unsupported_media_type(format!("the request is in {charset}; JSON is read as UTF-8")));
+    }
+    match text(header::CONTENT_ENCODING) {
+        Some(coding) if !coding.trim().eq_ignore_ascii_case("identity") => {
+            let coding = shortened(coding);
+            Err(Problem::unsupported_media_type(format!(
+                "the request has Content-Encoding: {coding}; bodies are read uncompressed"
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+async fn read(body: Body, headers: &HeaderMap) -> Result<axum::body::Bytes, Problem> {
+    let announced = headers.get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
+    if announced.is_some_and(|length| length > limits::BODY_BYTES as u64) {
+        return Err(Problem::too_large(limits::BODY_BYTES));
+    }
+    let reading = timeout(limits::BODY_TIME, to_bytes(body, limits::BODY_BYTES)).await;
+    let Ok(read) = reading else {
+        let limit_s = limits::BODY_TIME.as_secs();
+        return Err(Problem::too_slow(format!("the request body took longer than the limit of {limit_s} s to arrive")));
+    };
+    read.map_err(|error| {
+        use std::error::Error;
+        match error.source().is_some_and(|source| source.is::<LengthLimitError>()) {
+            true => Problem::too_large(limits::BODY_BYTES),
+            false => Problem::not_readable("the connection ended, or broke the protocol, within the request body"),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    async fn ask(request: axum::http::request::Builder, body: impl Into<Body>) -> Result<Ask, Problem> {
+        Ask::from_request(request.body(body.into()).unwrap(), &()).await
+    }
+
+    fn post(media_type: &str) -> axum::http::request::Builder {
+        Request::post("/v1/x").header(header::CONTENT_TYPE, media_type)
+    }
+
+    #[tokio::test]
+    async fn a_query_and_a_body_are_the_same_tree() {
+        let get = ask(Request::get("/v1/x?a.b=1&format=csv"), "").await.unwrap();
+        assert_eq!((Value::Object(get.fields), get.source), (json!({"a": {"b": "1"}}), Source::Query));
+        assert_eq!(get.format.as_deref(), Some("csv"));
+        let post = Request::post("/v1/x?format=csv").header(header::CONTENT_TYPE, "application/json; charset=UTF-8");
+        let post = ask(post, r#"{"a": {"b": 1}}"#).await.unwrap();
+        assert_eq!((Value::Object(post.fields), post.source), (json!({"a": {"b": 1}}), Source::Json));
+        assert_eq!(post.format.as_deref(), Some("csv"));
+    }
+
+    #[tokio::test]
+    async fn format_is_asked_for_in_the_query_only() {
+        let query = Request::post("/v1/x?impacts=3&a.b=1").header(header::CONTENT_TYPE, "application/json");
+        let problem = ask(query, "{}").await.unwrap_err();
+        let pointers: Vec<&str> = problem.errors().iter().map(|error| error.pointer.as_str()).collect();
+        assert_eq!((problem.status().as_u16(), pointers), (422, vec!["/impacts", "/a/b"]));
+        assert_eq!(ask(Request::get("/v1/x?format=csv&format=json"), "").await.unwrap_err().status(), 422);
+    }
+
+    #[tokio::test]
+    async fn only_json_is_read() {
+        for media_type in
+            ["text/plain", "application/x-www-form-urlencoded", "application/json; charset=utf-16", "json"]
+        {
+            let problem = ask(post(media_type), "{}").await.unwrap_err();
+            assert_eq!(problem.status(), 415, "{media_type}");
+        }
+        assert_eq!(ask(Request::post("/v1/x"), "{}").await.unwrap_err().status(), 415);
+        let packed = post("application/json").header(header::CONTENT_ENCODING, "gzip");
+        assert_eq!(ask(packed, "{}").await.unwrap_err().status(), 415);
+        assert!(ask(post("application/merge-patch+json"), "{}").await.is_ok());
+    }
+
+    #[tokio::test]
+    async fn bodies_are_bounded_announced_or_not() {
+        let large = format!("{{\"a\": \"{}\"}}", "x".repeat(limits::BODY_BYTES));
+        assert_eq!(ask(post("application/json"), large.clone()).await.unwrap_err().status(), 413);
+        let announced = post("application/json").header(header::CONTENT_LENGTH, large.len());
+        assert_eq!(ask(announced, large).await.unwrap_err().status(), 413);
+    }
+
+    #[tokio::test]
+    async fn what_is_not_json_is_400() {
+        assert_eq!(ask(post("application/json"), "{,}").await.unwrap_err().status(), 400);
+        assert_eq!(ask(Request::get("/v1/x?a=%ff"), "").await.unwrap_err().status(), 400);
+    }
+}

@@ -1,0 +1,96 @@
+//! Every limit the server keeps, in one place: its unit, what it means and why it has this value.
+//!
+//! Not here: the ranges of a scene's fields, which are physics and stand in the table of fields.
+
+use std::time::Duration;
+
+// --- What a request may be ---
+
+/// Bytes of a request body. A scene of a polygon with hundreds of corners is about 20 KiB.
+pub const BODY_BYTES: usize = 256 * 1024;
+
+/// Time a client has to send its whole body. Longer is a stuck or hostile client that holds memory.
+pub const BODY_TIME: Duration = Duration::from_secs(10);
+
+/// Bytes of path and query together. Common proxies pass 8 KiB at most, so a longer URL would not arrive anyway.
+pub const URL_BYTES: usize = 8 * 1024;
+
+/// Bytes of a whole request head (request line and headers), one connection's read buffer while waiting for it.
+pub const HEAD_BYTES: usize = 64 * 1024;
+
+/// Headers of one request.
+pub const HEADERS: usize = 100;
+
+/// Time a client has to send a request head, and an idle connection to send its next one.
+pub const HEAD_TIME: Duration = Duration::from_secs(30);
+
+/// Parameters of one query. All fields of a scene together are under a hundred.
+pub const QUERY_PARAMETERS: usize = 512;
+
+/// Levels of objects and arrays in a request. The deepest valid one has five; reading recurses once per level.
+pub const DEPTH: usize = 16;
+
+/// Errors reported in one problem. A client mends a few at a time; more would only be bytes.
+pub const ERRORS: usize = 64;
+
+// --- What a request may cost ---
+
+/// Work of one request, in bounces of the plain rod (some 70 ns each). Two seconds of one core.
+pub const BOUNCES: u64 = 30_000_000;
+
+/// Numbers in one answer (columns times rows). JSON takes some 20 bytes for each, so 80 MB, held in memory until sent.
+pub const ANSWER_NUMBERS: u64 = 4_000_000;
+
+/// Work up to this price, in bounces, is done on the async thread at once: with its JSON some 0.2 ms, hardly more than
+/// the way to another thread and back is worth.
+pub const INLINE_BOUNCES: u64 = 256;
+
+/// Requests that may wait for a permit, for each permit there is. More would wait longer than `QUEUE_TIME` anyway.
+pub const QUEUE_PER_PERMIT: usize = 8;
+
+/// Time a request waits for a permit before it is told to come back.
+pub const QUEUE_TIME: Duration = Duration::from_secs(5);
+
+/// What `Retry-After` says on a 503, seconds: about the time of one request at its dearest.
+pub const RETRY_AFTER_S: u32 = 2;
+
+/// Bytes of answer that are compressed or copied between two looks at whether the client is still there: under 10 ms.
+pub const GZIP_STEP_BYTES: usize = 128 * 1024;
+
+/// Answers below this many bytes are not compressed: they fit in a packet either way.
+pub const GZIP_FROM_BYTES: usize = 1024;
+
+// --- Connections ---
+
+/// Open connections; live runs are counted by `LIVE_SESSIONS` instead. Each buffers `HEAD_BYTES` at most while it waits
+/// for a request. Beyond it new ones wait in the kernel's queue.
+pub const CONNECTIONS: usize = 2048;
+
+/// Time a shutdown waits for answers under way before it cuts them off. Longer than the dearest request takes.
+pub const SHUTDOWN_TIME: Duration = Duration::from_secs(8);
+
+// --- Live runs ---
+
+/// Live runs at a time. Each computes at most its own bounces, `speed` times real time.
+pub const LIVE_SESSIONS: usize = 512;
+
+/// Bytes of one message from a live client. The longest valid one sets a few fields.
+pub const LIVE_MESSAGE_BYTES: usize = 8 * 1024;
+
+/// Messages a second that a live client may send, averaged over a few seconds. A dragged slider sends up to 60.
+pub const LIVE_MESSAGES_PER_S: u32 = 120;
+
+/// Messages waiting for a slow live client before impacts are skipped over with a `gap`.
+pub const LIVE_QUEUE: usize = 256;
+
+/// Interventions in one live run. They all stand in its URL, which has to stay under `URL_BYTES`.
+pub const LIVE_INTERVENTIONS: usize = 100;
+
+/// Time between pings to a live client; a client that answers none for `LIVE_SILENCE_TIME` is gone.
+pub const LIVE_PING_TIME: Duration = Duration::from_secs(20);
+
+/// Silence of a live client, its pongs included, after which its run ends.
+pub const LIVE_SILENCE_TIME: Duration = Duration::from_secs(60);
+
+/// Work of catching up with an old `epoch` or `from`, in bounces: 0.1 s of one core.
+pub const LIVE_CATCH_UP_BOUNCES: u64 = 1_000_000;

@@ -1,0 +1,119 @@
+//! `/metrics`: what the server counts, as Prometheus text.
+
+use std::time::Duration;
+
+use axum::Router;
+use axum::extract::State;
+use axum::http::{HeaderValue, header};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use prometheus_client::encoding::EncodeLabelSet;
+use prometheus_client::encoding::text::encode;
+use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::family::Family;
+use prometheus_client::metrics::gauge::Gauge;
+use prometheus_client::metrics::histogram::{Histogram, exponential_buckets};
+use prometheus_client::metrics::info::Info;
+use prometheus_client::registry::Registry;
+
+use super::App;
+use crate::BUILD;
+use crate::compute::Pool;
+use crate::http::Problem;
+
+/// The resource.
+pub fn routes() -> Router<App> {
+    Router::new().route("/metrics", get(scrape))
+}
+
+/// Everything that is counted.
+#[derive(Debug)]
+pub struct Metrics {
+    registry: Registry,
+    requests: Family<Request, Counter>,
+    durations: Family<Place, Histogram, fn() -> Histogram>,
+    /// Bounces computed for answers and live runs. Whoever computes them counts them.
+    pub bounces: Counter,
+    /// Live runs at the moment (`compute::Counted` keeps it).
+    pub live_sessions: Gauge,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct Request {
+    method: String,
+    route: String,
+    status: u16,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct Place {
+    method: String,
+    route: String,
+}
+
+impl Metrics {
+    /// Nothing counted yet. The load of `pool` is among what is shown.
+    pub fn new(pool: &Pool) -> Self {
+        // From 0.1 ms, what a small request takes, by factors of 3 up to 20 s, what none should.
+        let durations: Family<Place, Histogram, fn() -> Histogram> =
+            Family::new_with_constructor(|| Histogram::new(exponential_buckets(1e-4, 3.0, 12)));
+        let (requests, bounces, live_sessions) = (Family::default(), Counter::default(), Gauge::default());
+        let mut registry = Registry::with_prefix("equipoise");
+        registry.register("build", "The build that answers", Info::new([("build", BUILD)]));
+        registry.register("requests", "Requests answered", requests.clone());
+        registry.register("request_duration_seconds", "Time from request head to answer head", durations.clone());
+        registry.register("jobs_running", "Pieces of work being computed", pool.running().clone());
+        registry.register("jobs_queued", "Pieces of work waiting for their turn", pool.queued().clone());
+        registry.register("live_sessions", "Live runs", live_sessions.clone());
+        registry.register("bounces", "Bounces computed", bounces.clone());
+        Self { registry, requests, durations, bounces, live_sessions }
+    }
+
+    /// Counts one answered request. `route` is the template, not the path: clients do not choose how many there are.
+    pub fn answered(&self, method: &str, route: &str, status: u16, duration: Duration) {
+        let method = match method {
+            "GET" | "HEAD" | "POST" | "PUT" | "PATCH" | "DELETE" | "OPTIONS" => method,
+            _ => "other",
+        };
+        let place = Place { method: method.to_owned(), route: route.to_owned() };
+        self.durations.get_or_create(&place).observe(duration.as_secs_f64());
+        self.requests.get_or_create(&Request { method: place.method, route: place.route, status }).inc();
+    }
+}
+
+async fn scrape(State(app): State<App>) -> Result<Response, Problem> {
+    let mut text = String::new();
+    encode(&mut text, &app.metrics.registry).map_err(|error| {
+        eprintln!("equipoise: cannot write metrics: {error}");
+        Problem::internal()
+    })?;
+    let media_type = "application/openmetrics-text; version=1.0.0; charset=utf-8";
+    let headers = [
+        (header::CONTENT_TYPE, HeaderValue::from_static(media_type)),
+        (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
+    ];
+    Ok((headers, text).into_response())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_counted_is_shown() {
+        let metrics = Metrics::new(&Pool::new(1));
+        metrics.answered("GET", "/v1/scenes", 200, Duration::from_millis(1));
+        metrics.answered("BREW", "none", 405, Duration::from_millis(1));
+        metrics.bounces.inc_by(7);
+        let mut text = String::new();
+        encode(&mut text, &metrics.registry).unwrap();
+        for line in [
+            "equipoise_requests_total{method=\"GET\",route=\"/v1/scenes\",status=\"200\"} 1",
+            "equipoise_requests_total{method=\"other\",route=\"none\",status=\"405\"} 1",
+            "equipoise_bounces_total 7",
+            "equipoise_jobs_running 0",
+        ] {
+            assert!(text.lines().any(|found| found == line), "{line} is not in\n{text}");
+        }
+    }
+}
