@@ -66,8 +66,14 @@ pub const GZIP_FROM_BYTES: usize = 1024;
 /// for a request. Beyond it new ones wait in the kernel's queue.
 pub const CONNECTIONS: usize = 2048;
 
+/// Time a client may take no bytes of its answer, which is held in memory for it, before it is cut off.
+pub const STALL_TIME: Duration = Duration::from_secs(30);
+
 /// Time a shutdown waits for answers under way before it cuts them off. Longer than the dearest request takes.
 pub const SHUTDOWN_TIME: Duration = Duration::from_secs(8);
+
+/// Time that live runs have, after that, to say goodbye.
+pub const GOODBYE_TIME: Duration = Duration::from_secs(1);
 
 // --- Live runs ---
 

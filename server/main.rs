@@ -2,13 +2,15 @@
 
 use std::io;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Parser;
 use equipoise::config::Config;
 use equipoise::routes::App;
-use equipoise::{BUILD, router, transport};
+use equipoise::{BUILD, limits, router, transport};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
+use tokio::time::{sleep, timeout};
 
 #[tokio::main]
 async fn main() -> ExitCode {
@@ -33,6 +35,13 @@ async fn run(config: Config) -> Result<(), String> {
         app.close();
     };
     transport::serve(listener, router::router(app.clone()), stop).await;
+    // Live runs have left their connections' tasks; they know that the server closes, and say so to their clients.
+    let gone = async {
+        while app.metrics.live_sessions.get() > 0 {
+            sleep(Duration::from_millis(10)).await;
+        }
+    };
+    let _ = timeout(limits::GOODBYE_TIME, gone).await;
     Ok(())
 }
 

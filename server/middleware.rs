@@ -6,7 +6,7 @@ use std::time::Instant;
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::extract::{MatchedPath, Request, State};
-use axum::http::{HeaderName, HeaderValue, StatusCode, Uri, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, Uri, header};
 use axum::middleware::{Next, from_fn, from_fn_with_state, map_response};
 use axum::response::{IntoResponse, Response};
 use tower::ServiceBuilder;
@@ -40,6 +40,12 @@ pub fn surround(router: Router<App>, app: App) -> Router {
 const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; base-uri 'none'; frame-ancestors 'self'; object-src 'none'";
 
 async fn sealed(mut response: Response) -> Response {
+    seal(response.headers_mut());
+    response
+}
+
+/// Adds the headers that every answer has.
+pub fn seal(headers: &mut HeaderMap) {
     const BUILD_HEADER: HeaderName = HeaderName::from_static("equipoise-build");
     for (name, value) in [
         (BUILD_HEADER, BUILD),
@@ -47,9 +53,8 @@ async fn sealed(mut response: Response) -> Response {
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
         (header::REFERRER_POLICY, "no-referrer"),
     ] {
-        response.headers_mut().insert(name, HeaderValue::from_static(value));
+        headers.insert(name, HeaderValue::from_static(value));
     }
-    response
 }
 
 async fn measured(State(app): State<App>, route: Option<MatchedPath>, request: Request, next: Next) -> Response {

@@ -2,6 +2,8 @@
 //!
 //! What a client sees is only what stands in the fields here; causes inside the server go to its log, never into a body.
 
+use std::fmt::Display;
+
 use axum::http::{HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::ser::SerializeMap;
@@ -91,14 +93,12 @@ impl Problem {
         )
     }
 
-    /// 414: path and query are longer than the limit.
-    pub fn url_too_long(bytes: usize) -> Self {
-        Self::plain(
-            StatusCode::URI_TOO_LONG,
-            format!("the URL has {bytes} bytes of path and query; the limit is {} bytes. POST the request instead", {
-                limits::URL_BYTES
-            }),
-        )
+    /// 414: path and query are longer than the limit. `bytes` says how long.
+    pub fn url_too_long(bytes: impl Display) -> Self {
+        let limit = limits::URL_BYTES;
+        let detail =
+            format!("the URL has {bytes} bytes of path and query; the limit is {limit}. POST the request instead");
+        Self::plain(StatusCode::URI_TOO_LONG, detail)
     }
 
     /// 415: the body is in a format or an encoding that is not read here.

@@ -12,7 +12,7 @@ use prometheus_client::encoding::text::encode;
 use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::family::Family;
 use prometheus_client::metrics::gauge::Gauge;
-use prometheus_client::metrics::histogram::{Histogram, exponential_buckets};
+use prometheus_client::metrics::histogram::Histogram;
 use prometheus_client::metrics::info::Info;
 use prometheus_client::registry::Registry;
 
@@ -38,6 +38,9 @@ pub struct Metrics {
     pub live_sessions: Gauge,
 }
 
+/// From 0.1 ms, what a small request takes, to 10 s, what none should.
+const BUCKETS_S: [f64; 11] = [1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
+
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
 struct Request {
     method: String,
@@ -54,9 +57,8 @@ struct Place {
 impl Metrics {
     /// Nothing counted yet. The load of `pool` is among what is shown.
     pub fn new(pool: &Pool) -> Self {
-        // From 0.1 ms, what a small request takes, by factors of 3 up to 20 s, what none should.
         let durations: Family<Place, Histogram, fn() -> Histogram> =
-            Family::new_with_constructor(|| Histogram::new(exponential_buckets(1e-4, 3.0, 12)));
+            Family::new_with_constructor(|| Histogram::new(BUCKETS_S));
         let (requests, bounces, live_sessions) = (Family::default(), Counter::default(), Gauge::default());
         let mut registry = Registry::with_prefix("equipoise");
         registry.register("build", "The build that answers", Info::new([("build", BUILD)]));

@@ -2,6 +2,8 @@
 //!
 //! Not here: what is answered on them.
 
+mod stream;
+
 use std::io;
 use std::pin::pin;
 use std::sync::Arc;
@@ -16,6 +18,7 @@ use tokio::sync::{Semaphore, watch};
 use tokio::time::{sleep, timeout};
 
 use crate::limits;
+use stream::Stream;
 
 /// Serves until `stop`, then waits for the answers under way, but not for ever.
 pub async fn serve(listener: TcpListener, router: Router, stop: impl Future<Output = ()>) {
@@ -32,12 +35,12 @@ pub async fn serve(listener: TcpListener, router: Router, stop: impl Future<Outp
             let place = places.clone().acquire_owned().await.expect("the semaphore is never closed");
             (place, accept(&listener).await)
         };
-        let (place, stream) = tokio::select! {
+        let (place, socket) = tokio::select! {
             next = next => next,
             () = &mut stop => break,
         };
         let service = TowerToHyperService::new(router.clone());
-        let connection = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
+        let connection = http.serve_connection(TokioIo::new(Stream::new(socket)), service).with_upgrades();
         let mut closing = closing.subscribe();
         tokio::spawn(async move {
             let _place = place;
@@ -59,10 +62,10 @@ pub async fn serve(listener: TcpListener, router: Router, stop: impl Future<Outp
 async fn accept(listener: &TcpListener) -> TcpStream {
     loop {
         match listener.accept().await {
-            Ok((stream, _)) => {
+            Ok((socket, _)) => {
                 // Small messages of live runs go out at once. It fails only on a connection that is gone already.
-                let _ = stream.set_nodelay(true);
-                return stream;
+                let _ = socket.set_nodelay(true);
+                return socket;
             }
             Err(error) if is_of_one_connection(&error) => {}
             Err(error) => {
@@ -77,4 +80,62 @@ async fn accept(listener: &TcpListener) -> TcpStream {
 fn is_of_one_connection(error: &io::Error) -> bool {
     use io::ErrorKind::{ConnectionAborted, ConnectionRefused, ConnectionReset};
     matches!(error.kind(), ConnectionAborted | ConnectionRefused | ConnectionReset)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Config;
+    use crate::router::router;
+    use crate::routes::App;
+    use tokio::io::{AsyncReadExt, AsyncWriteExt};
+    use tokio::sync::oneshot;
+
+    async fn start() -> (std::net::SocketAddr, oneshot::Sender<()>, tokio::task::JoinHandle<()>) {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let (stop, stopped) = oneshot::channel();
+        let stop_signal = async { drop(stopped.await) };
+        let serving = tokio::spawn(serve(listener, router(App::new(&Config::default())), stop_signal));
+        (address, stop, serving)
+    }
+
+    #[tokio::test]
+    async fn what_is_not_http_is_told_in_a_problem_too() {
+        let (address, _stop, _serving) = start().await;
+        let long = format!("GET /{} HTTP/1.1\r\n\r\n", "x".repeat(65_600));
+        let many = format!("GET / HTTP/1.1\r\n{}\r\n", "a: b\r\n".repeat(limits::HEADERS + 1));
+        for (request, status) in [
+            ("nonsense\r\n\r\n", 400),
+            ("GET / HTTP/1.1\r\nno colon\r\n\r\n", 400),
+            ("HEAD / HTTP/9.9\r\n\r\n", 400),
+            (long.as_str(), 414),
+            (many.as_str(), 431),
+        ] {
+            let mut socket = TcpStream::connect(address).await.unwrap();
+            socket.write_all(request.as_bytes()).await.unwrap();
+            let mut answer = String::new();
+            // A server that closes with bytes unread resets the connection; what it said before has arrived.
+            let _ = socket.read_to_string(&mut answer).await;
+            let (head, body) = answer.split_once("\r\n\r\n").unwrap();
+            assert!(head.starts_with(&format!("HTTP/1.1 {status} ")), "{head}");
+            assert!(head.contains("content-type: application/problem+json") && head.contains("equipoise-build: "));
+            assert!(head.contains(&format!("content-length: {}", body.len())));
+            let problem: serde_json::Value = serde_json::from_str(body).unwrap();
+            assert_eq!(problem["status"], status);
+        }
+    }
+
+    #[tokio::test]
+    async fn a_stop_ends_idle_connections_and_accepts_no_more() {
+        let (address, stop, serving) = start().await;
+        let mut idle = TcpStream::connect(address).await.unwrap();
+        idle.write_all(b"GET /health/live HTTP/1.1\r\nhost: x\r\n\r\n").await.unwrap();
+        let mut answer = [0; 15];
+        idle.read_exact(&mut answer).await.unwrap();
+        assert_eq!(&answer, b"HTTP/1.1 200 OK");
+        stop.send(()).unwrap();
+        timeout(Duration::from_secs(2), serving).await.expect("nothing is under way").unwrap();
+        assert!(TcpStream::connect(address).await.is_err());
+    }
 }
