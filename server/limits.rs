@@ -4,6 +4,8 @@
 
 use std::time::Duration;
 
+use crate::compute::Limit;
+
 // --- What a request may be ---
 
 /// Bytes of a request body. A scene of a polygon with hundreds of corners is about 20 KiB.
@@ -35,11 +37,11 @@ pub const ERRORS: usize = 64;
 
 // --- What a request may cost ---
 
-/// Work of one request, in bounces of the plain rod (some 70 ns each). Two seconds of one core.
-pub const BOUNCES: u64 = 30_000_000;
+/// Work of one request, in bounces of the plain rod (some 70 ns each): two seconds of one core.
+pub const WORK: Limit = Limit { name: "work of this request", most: 30_000_000, unit: "bounces" };
 
 /// Numbers in one answer (columns times rows). JSON takes some 20 bytes for each, so 80 MB, held in memory until sent.
-pub const ANSWER_NUMBERS: u64 = 4_000_000;
+pub const ANSWER: Limit = Limit { name: "size of the answer", most: 4_000_000, unit: "numbers" };
 
 /// Work up to this price, in bounces, is done on the async thread at once: with its JSON some 0.2 ms, hardly more than
 /// the way to another thread and back is worth.
@@ -56,9 +58,6 @@ pub const RETRY_AFTER_S: u32 = 2;
 
 /// Bytes of answer that are compressed or copied between two looks at whether the client is still there: under 10 ms.
 pub const GZIP_STEP_BYTES: usize = 128 * 1024;
-
-/// Answers below this many bytes are not compressed: they fit in a packet either way.
-pub const GZIP_FROM_BYTES: usize = 1024;
 
 // --- Connections ---
 
@@ -98,5 +97,5 @@ pub const LIVE_PING_TIME: Duration = Duration::from_secs(20);
 /// Silence of a live client, its pongs included, after which its run ends.
 pub const LIVE_SILENCE_TIME: Duration = Duration::from_secs(60);
 
-/// Work of catching up with an old `epoch` or `from`, in bounces: 0.1 s of one core.
-pub const LIVE_CATCH_UP_BOUNCES: u64 = 1_000_000;
+/// Work of catching up with an old `epoch` or `from`: 0.1 s of one core.
+pub const LIVE_CATCH_UP: Limit = Limit { name: "work of catching up with this run", most: 1_000_000, unit: "bounces" };

@@ -14,14 +14,17 @@ pub fn router(app: App) -> Router {
 mod tests {
     use super::*;
     use axum::body::Body;
-    use axum::http::{Request, Response, header};
+    use axum::extract::State;
+    use axum::http::{self, Request, Response, header};
     use axum::routing::get;
     use http_body_util::BodyExt;
     use serde_json::Value;
     use tower::ServiceExt;
 
     use crate::BUILD;
+    use crate::compute::{Cancel, Price};
     use crate::config::Config;
+    use crate::http::{Ask, Errors, Format, Problem, Resource};
     use crate::limits;
 
     async fn send(request: Request<Body>) -> Response<Body> {
@@ -115,5 +118,70 @@ mod tests {
         app.close();
         assert_eq!((ask("/health/live").await, ask("/health/ready").await), (200, 503));
         app.closing().await;
+    }
+
+    /// A resource as they all are: read, price, answer.
+    async fn squares(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+        const RESOURCE: Resource = Resource { name: "squares", formats: &[Format::Json, Format::Csv] };
+        let mut errors = Errors::default();
+        let mut reader = ask.reader(&mut errors);
+        let count = reader.integer("count", 1..=1_000_000).unwrap_or(3);
+        let factor =
+            reader.within("scale", |scale| scale.number("factor", 0.0..=10.0, "m").unwrap_or(1.0)).unwrap_or(1.0);
+        reader.finish();
+        errors.into_result()?;
+        let price = Price::bounces(count).times(100).within(&limits::WORK)?;
+        let canonical = serde_json::to_vec(&(count, factor)).expect("numbers");
+        let metrics = app.metrics.clone();
+        let compute = move |format: Format, cancel: &Cancel| {
+            let squares: Vec<f64> = (0..count).map(|n| (n * n) as f64 * factor).collect();
+            cancel.check()?;
+            metrics.bounces.inc_by(count);
+            Ok(match format {
+                Format::Csv => {
+                    squares.iter().fold("square_m\r\n".to_owned(), |csv, n| csv + &format!("{n}\r\n")).into()
+                }
+                _ => serde_json::to_vec(&squares).expect("numbers"),
+            })
+        };
+        ask.respond(&app.pool, &RESOURCE, &canonical, price, compute).await
+    }
+
+    async fn text_of(response: Response<Body>) -> String {
+        String::from_utf8(response.into_body().collect().await.unwrap().to_bytes().to_vec()).unwrap()
+    }
+
+    #[tokio::test]
+    async fn a_resource_follows_the_rules_of_all() {
+        let app = App::new(&Config::default());
+        let router = surround(Router::new().route("/v1/squares", get(squares).post(squares)), app);
+        let send = async |request: http::request::Builder, body: &'static str| {
+            router.clone().oneshot(request.body(Body::from(body)).unwrap()).await.unwrap()
+        };
+        let get = send(Request::get("/v1/squares?count=4&scale.factor=0.5"), "").await;
+        let json = || Request::post("/v1/squares").header(header::CONTENT_TYPE, "application/json");
+        let post = send(json(), r#"{"scale": {"factor": 5e-1}, "count": 4}"#).await;
+        assert_eq!(get.headers()[header::ETAG], post.headers()[header::ETAG]);
+        let head = send(Request::head("/v1/squares?count=4&scale.factor=0.5"), "").await;
+        assert_eq!(head.headers(), get.headers());
+        assert_eq!(text_of(head).await, "");
+        let tag = get.headers()[header::ETAG].clone();
+        assert_eq!((text_of(get).await, text_of(post).await), ("[0.0,0.5,2.0,4.5]".into(), "[0.0,0.5,2.0,4.5]".into()));
+        let again = Request::get("/v1/squares?scale.factor=.50&count=4").header(header::IF_NONE_MATCH, tag);
+        assert_eq!(send(again, "").await.status(), 304);
+        assert_eq!(
+            text_of(send(Request::get("/v1/squares?format=csv&count=2"), "").await).await,
+            "square_m\r\n0\r\n1\r\n"
+        );
+
+        let dear = problem_of(send(Request::get("/v1/squares?count=1000000"), "").await).await;
+        assert_eq!(
+            dear["errors"][0]["detail"],
+            "the work of this request would be 100000000 bounces; the limit is 30000000 bounces"
+        );
+        let wrong = problem_of(send(json(), r#"{"count": "4", "scale": {"factor": 11, "x": 1}}"#).await).await;
+        let pointers: Vec<&Value> = wrong["errors"].as_array().unwrap().iter().map(|error| &error["pointer"]).collect();
+        assert_eq!(pointers, ["/count", "/scale/factor", "/scale/x"]);
+        assert_eq!(problem_of(send(Request::get("/v1/squares?format=svg"), "").await).await["status"], 406);
     }
 }

@@ -11,7 +11,7 @@ pub struct Price {
 /// A budget, with the name and the unit that its error gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limit {
-    /// What is limited: `work of one request`.
+    /// What is limited: `work of this request`.
     pub name: &'static str,
     /// How much there may be.
     pub most: u64,
@@ -75,13 +75,13 @@ impl std::error::Error for OverBudget {}
 mod tests {
     use super::*;
 
-    const WORK: Limit = Limit { name: "work of one request", most: 100, unit: "bounces" };
+    const WORK: Limit = Limit { name: "work of this request", most: 100, unit: "bounces" };
 
     #[test]
     fn the_error_names_price_and_limit() {
         assert_eq!(Price::bounces(50).times(2).within(&WORK), Ok(Price::bounces(100)));
         let over = Price::bounces(50).times(2).and(Price::bounces(1)).within(&WORK).unwrap_err();
-        assert_eq!(over.to_string(), "the work of one request would be 101 bounces; the limit is 100 bounces");
+        assert_eq!(over.to_string(), "the work of this request would be 101 bounces; the limit is 100 bounces");
     }
 
     #[test]

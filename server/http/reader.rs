@@ -166,6 +166,14 @@ impl<'v, 'e> Reader<'v, 'e> {
         Some(Reader::new(fields, self.pointer_to(name), self.source, self.errors))
     }
 
+    /// Like `object`, for what can be read at one go: calls `read` and finishes the reader.
+    pub fn within<T>(&mut self, name: &'v str, read: impl FnOnce(&mut Reader<'v, '_>) -> T) -> Option<T> {
+        let mut reader = self.object(name)?;
+        let value = read(&mut reader);
+        reader.finish();
+        Some(value)
+    }
+
     /// An array of at most `limit` values.
     pub fn array(&mut self, name: &'v str, limit: usize) -> Option<&'v [Value]> {
         self.read(name, |value, _| match value.as_array() {
@@ -229,9 +237,7 @@ mod tests {
         let errors = errors_of(&body, Source::Json, |reader| {
             assert_eq!(reader.integer("impacts", 1..=10).unwrap_or(5), 5);
             assert_eq!(reader.choice("method", &[("map", ())]), None);
-            let mut table = reader.object("table").unwrap();
-            assert_eq!(table.number("gain", 0.0..=1.0, "m"), None);
-            table.finish();
+            assert_eq!(reader.within("table", |table| table.number("gain", 0.0..=1.0, "m")), Some(None));
         });
         let expected = [
             ("/impacts", "impacts is \"ten\"; it must be a whole number from 1 to 10"),

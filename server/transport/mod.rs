@@ -85,18 +85,25 @@ fn is_of_one_connection(error: &io::Error) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compute::{Cancel, Cancelled, Pool, Price};
     use crate::config::Config;
+    use crate::http::Problem;
     use crate::router::router;
     use crate::routes::App;
+    use axum::routing::get;
     use tokio::io::{AsyncReadExt, AsyncWriteExt};
     use tokio::sync::oneshot;
 
     async fn start() -> (std::net::SocketAddr, oneshot::Sender<()>, tokio::task::JoinHandle<()>) {
+        start_with(router(App::new(&Config::default()))).await
+    }
+
+    async fn start_with(router: Router) -> (std::net::SocketAddr, oneshot::Sender<()>, tokio::task::JoinHandle<()>) {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();
         let (stop, stopped) = oneshot::channel();
         let stop_signal = async { drop(stopped.await) };
-        let serving = tokio::spawn(serve(listener, router(App::new(&Config::default())), stop_signal));
+        let serving = tokio::spawn(serve(listener, router, stop_signal));
         (address, stop, serving)
     }
 
@@ -137,5 +144,30 @@ mod tests {
         stop.send(()).unwrap();
         timeout(Duration::from_secs(2), serving).await.expect("nothing is under way").unwrap();
         assert!(TcpStream::connect(address).await.is_err());
+    }
+
+    #[tokio::test]
+    async fn a_client_that_goes_away_frees_its_core() {
+        let (begun, mut begin) = tokio::sync::mpsc::unbounded_channel();
+        let (ended, mut end) = tokio::sync::mpsc::unbounded_channel();
+        let pool = Pool::new(1);
+        let work = get(async move || {
+            let dear = Price::bounces(limits::INLINE_BOUNCES + 1);
+            let endless = move |cancel: &Cancel| -> Result<String, Problem> {
+                begun.send(()).unwrap();
+                while !cancel.is_set() {
+                    std::thread::yield_now();
+                }
+                ended.send(()).unwrap();
+                Err(Cancelled.into())
+            };
+            pool.run(dear, endless).await
+        });
+        let (address, _stop, _serving) = start_with(Router::new().route("/", work)).await;
+        let mut socket = TcpStream::connect(address).await.unwrap();
+        socket.write_all(b"GET / HTTP/1.1\r\nhost: x\r\n\r\n").await.unwrap();
+        begin.recv().await.unwrap();
+        drop(socket);
+        timeout(Duration::from_millis(50), end.recv()).await.expect("the work goes on for nobody");
     }
 }
