@@ -1,3 +1,21 @@
 //! The bounce of a planar rigid body on a tilting table: map, contact times, Jacobians and stability.
 //!
-//! Not here: requests, JSON, clocks and threads; those live in the server.
+//! It starts from Zumel and Erdmann, "Balancing of a Planar Bouncing Object"; "eq. (n)" in these pages is an equation
+//! of that paper. Not here: requests, JSON, clocks and threads; those live in the server.
+//!
+//! Where to look: [`scene`] is what a user may say; [`model`] chooses the smallest model that is exact for it;
+//! [`impact`], [`flight`] and [`contact_time`] are the three parts of one bounce; [`map`] puts them together and ends
+//! a run; [`jacobian`] differentiates it and [`stability`] judges it.
+
+pub mod contact_time;
+pub mod dual;
+pub mod flight;
+pub mod impact;
+pub mod jacobian;
+pub mod map;
+pub mod model;
+pub mod number;
+pub mod point;
+pub mod scene;
+pub mod stability;
+pub mod trig;

@@ -1,0 +1,207 @@
+//! When a flight ends: the first time at which the contact point comes down to y = 0, found with a certificate and
+//! without sampling.
+//!
+//! Where l θ̇² ≤ G the gap is concave and Newton falls onto its one root from the right. A faster spin is cut at the
+//! inflections of the gap into convex and concave pieces, on each of which a down-crossing is found or excluded.
+
+use crate::flight::{Flight, Gap};
+use crate::impact::State;
+use std::f64::consts::TAU;
+
+/// Most pieces that one flight may be cut into. The ranges of a scene allow 25,000; a run whose energy feedback drives it
+/// beyond that ends as `diverged`.
+pub const MAX_PIECES: u32 = 1 << 17;
+
+/// Most Newton steps for one root: a double root (grazing) halves its error a step, all others square it.
+const MAX_STEPS: u32 = 128;
+
+/// A flight was cut into more than [`MAX_PIECES`] pieces without a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooManyPieces;
+
+/// Time from the start of a flight to its end, s.
+///
+/// The flight must start at or above y = 0; where it starts on it (h₀ = 0) it must leave upwards: t = 0 is not a contact.
+///
+/// # Errors
+/// [`TooManyPieces`] where the work limit is passed.
+#[inline(always)]
+pub fn first_contact(flight: &Flight) -> Result<f64, TooManyPieces> {
+    let State { y_dot, theta_dot, .. } = flight.start;
+    let speed = flight.contact_distance * theta_dot;
+    let bulge = speed * theta_dot;
+    if bulge > flight.gravity {
+        return first_contact_spinning(*flight);
+    }
+    let (sin, cos) = flight.sin_cos_theta;
+    // g to fourth order: h₀ + v t − a t²/2 − b t³/6 − c t⁴/24. With h₀ = 0 and t = 2v/a · s the root solves
+    // s = 1 − P s² − Q s³, inverted as a series; it is a start, and Newton's first slope decides whether a good one.
+    let v = y_dot + speed * sin;
+    let a = flight.gravity - bulge * cos;
+    let per_a = 1.0 / a;
+    let start = if flight.clearance == 0.0 {
+        let rough = 2.0 * v * per_a;
+        let turn = theta_dot * rough;
+        let curl = bulge * per_a;
+        let p = curl * turn * sin * (1.0 / 3.0);
+        let q = curl * turn * turn * cos * (1.0 / 12.0);
+        rough * (((1.0 - q) - p) + 2.0 * p * p)
+    } else {
+        (v + (v * v + 2.0 * a * flight.clearance).max(0.0).sqrt()) * per_a
+    };
+    let gap = flight.gap(start);
+    if gap.slope < 0.0 && start > 0.0 {
+        return Ok(newton(flight, start, gap));
+    }
+    let end = latest_contact(flight);
+    Ok(newton(flight, end, flight.gap(end)))
+}
+
+/// The time by which the centre of gravity has fallen to y = −l, so that the contact came before or is there.
+fn latest_contact(flight: &Flight) -> f64 {
+    let room = flight.clearance + flight.contact_distance * (1.0 + flight.sin_cos_theta.1);
+    let y_dot = flight.start.y_dot;
+    (y_dot + (y_dot * y_dot + 2.0 * flight.gravity * room).max(0.0).sqrt()) / flight.gravity
+}
+
+/// Newton's iteration on a concave gap from `t`, where the gap is `gap` and falls.
+///
+/// Every iterate after the first is right of the root and they decrease; so one that turns back has met rounding and is
+/// the root. The last step uses the second derivative too, as soon as what it leaves out is below half a unit in the
+/// last place.
+#[inline(always)]
+fn newton(flight: &Flight, mut t: f64, mut gap: Gap) -> f64 {
+    let spin = flight.start.theta_dot.abs();
+    let stiffness = flight.gravity + flight.contact_distance * spin * spin;
+    for steps in 0..MAX_STEPS {
+        let step = -gap.value / gap.slope;
+        let size = step.abs();
+        let bent = size * stiffness / gap.slope.abs();
+        if size * bent * (bent + size * spin) <= f64::EPSILON * 0.25 * t {
+            return t + step * (1.0 - 0.5 * (gap.bend / gap.slope) * step);
+        }
+        if steps > 0 && step >= 0.0 {
+            return t;
+        }
+        t += step;
+        gap = flight.gap(t);
+    }
+    t
+}
+
+/// [`first_contact`] where l θ̇² > G.
+#[cold]
+#[inline(never)]
+fn first_contact_spinning(flight: Flight) -> Result<f64, TooManyPieces> {
+    let pieces = Pieces::new(&flight);
+    let end = latest_contact(&flight);
+    // While the centre of gravity is higher than l, the rod cannot reach the table.
+    let State { y_dot, .. } = flight.start;
+    let above = flight.clearance + flight.contact_distance * (flight.sin_cos_theta.1 - 1.0);
+    let reach = y_dot * y_dot + 2.0 * flight.gravity * above;
+    let (leaves, returns) = if reach > 0.0 {
+        let root = reach.sqrt();
+        ((y_dot - root) / flight.gravity, (y_dot + root) / flight.gravity)
+    } else {
+        (end, end)
+    };
+    let mut budget = MAX_PIECES;
+    for (from, to) in [(0.0, leaves.min(end)), (returns.max(0.0), end)] {
+        if from < to
+            && let Some(t) = pieces.first_down_crossing(from, to, &mut budget)?
+        {
+            return Ok(t);
+        }
+    }
+    Ok(end)
+}
+
+/// The pieces between the inflections of the gap, at cos(θ + θ̇t) = G/(l θ̇²).
+struct Pieces<'a> {
+    flight: &'a Flight,
+    /// |θ̇|, and θ seen so that it grows.
+    spin: f64,
+    angle: f64,
+    /// The gap is convex where the angle is within this of a whole turn.
+    half_width: f64,
+}
+
+impl<'a> Pieces<'a> {
+    fn new(flight: &'a Flight) -> Self {
+        let State { theta, theta_dot, .. } = flight.start;
+        let bulge = flight.contact_distance * theta_dot * theta_dot;
+        Self {
+            flight,
+            spin: theta_dot.abs(),
+            angle: theta * theta_dot.signum(),
+            half_width: crate::trig::acos(flight.gravity / bulge),
+        }
+    }
+
+    fn time_of(&self, angle: f64) -> f64 {
+        (angle - self.angle) / self.spin
+    }
+
+    fn first_down_crossing(&self, from: f64, to: f64, budget: &mut u32) -> Result<Option<f64>, TooManyPieces> {
+        let angle = self.angle + self.spin * from;
+        let mut turn = ((angle + self.half_width) / TAU).floor();
+        let mut convex = angle - TAU * turn < self.half_width;
+        let (mut a, mut at_a) = (from, self.flight.gap(from));
+        loop {
+            *budget = budget.checked_sub(1).ok_or(TooManyPieces)?;
+            let boundary = if convex {
+                TAU * turn + self.half_width
+            } else {
+                turn += 1.0;
+                TAU * turn - self.half_width
+            };
+            let b = self.time_of(boundary).clamp(a, to);
+            let at_b = self.flight.gap(b);
+            let crossing = if convex { self.in_convex(a, at_a, b, at_b) } else { self.in_concave(a, at_a, b, at_b) };
+            if crossing.is_some() || b >= to {
+                return Ok(crossing);
+            }
+            (a, at_a, convex) = (b, at_b, !convex);
+        }
+    }
+
+    /// A concave gap that starts positive, or at zero going up, crosses once if it ends at or below zero.
+    fn in_concave(&self, a: f64, at_a: Gap, b: f64, at_b: Gap) -> Option<f64> {
+        if a > 0.0 && at_a.value <= 0.0 && at_a.slope < 0.0 {
+            return Some(a);
+        }
+        if at_b.value > 0.0 || b <= a {
+            return None;
+        }
+        Some(if at_b.slope < 0.0 { newton(self.flight, b, at_b) } else { b })
+    }
+
+    /// A convex gap falls towards its first zero, if it has one, and Newton from the left never passes it; past the lowest
+    /// point there is none.
+    fn in_convex(&self, a: f64, at_a: Gap, b: f64, at_b: Gap) -> Option<f64> {
+        if at_a.slope >= 0.0 || b <= a {
+            return None;
+        }
+        if at_a.value <= 0.0 {
+            return Some(a);
+        }
+        if at_b.value > 0.0 && at_b.slope <= 0.0 {
+            return None;
+        }
+        let (mut t, mut gap) = (a, at_a);
+        for _ in 0..MAX_STEPS {
+            let next = t - gap.value / gap.slope;
+            if next > b {
+                return if at_b.value > 0.0 { None } else { Some(b) };
+            }
+            if next <= t {
+                break;
+            }
+            (t, gap) = (next, self.flight.gap(next));
+            if gap.slope >= 0.0 {
+                return if gap.value > 0.0 { None } else { Some(t) };
+            }
+        }
+        Some(t)
+    }
+}

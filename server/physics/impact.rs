@@ -1,0 +1,155 @@
+//! The strike: what the velocities, the table and the impulse are at one contact of the rod.
+//!
+//! Not here: when contacts happen ([`crate::contact_time`]) and whether a run goes on after one ([`crate::map`]).
+
+use crate::number::Number;
+
+/// Angle and velocities of the rod just before a contact; the horizontal place is carried beside it, since nothing
+/// depends on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<N = f64> {
+    /// Angle from upright, counter-clockwise, rad.
+    pub theta: N,
+    /// Horizontal velocity of the centre of gravity, m/s.
+    pub x_dot: N,
+    /// Vertical velocity of the centre of gravity, m/s.
+    pub y_dot: N,
+    /// Angular velocity, rad/s.
+    pub theta_dot: N,
+}
+
+/// A rod without friction on a table that tilts by α = κθ, with every way of striking it in one formula.
+///
+/// The table's velocity along its normal is that of eq. (28), or zero. Either way the impulse is
+/// P = −γ v_nc / B with the *strike gain* γ = γ₀ + γ_E (η* − η): γ₀ = 2 where the table makes up the loss (then e
+/// drops out), γ₀ = 1 + e where it stands still, and γ_E = (1 + e) κ_E.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rod<N = f64> {
+    /// l, centre of gravity to contact point, m.
+    pub contact_distance: N,
+    /// ρ, radius of gyration about the centre of gravity, m.
+    pub radius_of_gyration: N,
+    /// G, gravity in the plane, m/s².
+    pub gravity: N,
+    /// e, coefficient of restitution.
+    pub restitution: N,
+    /// κ, table tilt per angle.
+    pub tilt_gain: N,
+    /// γ₀, the strike gain at the wanted energy.
+    pub strike_gain: N,
+    /// γ_E, how much the strike gain grows per missing energy, s²/m².
+    pub strike_gain_per_energy: N,
+    /// η* = G y*, the wanted energy per unit mass, m²/s².
+    pub target_energy: N,
+}
+
+/// All there is to know about one strike. Velocities are of the centre of gravity, impulses per unit mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strike<N = f64> {
+    /// Angle and velocities just after it (the angle does not change).
+    pub after: State<N>,
+    /// α, table tilt, rad.
+    pub alpha: N,
+    /// sin θ, cos θ of the rod: the flight that follows starts from them.
+    pub sin_cos_theta: (N, N),
+    /// v_nc, velocity of the contact point along the table's normal just before, m/s.
+    pub normal_velocity: N,
+    /// Velocity of the contact point relative to the table, along its normal, just before, m/s; a table cannot pull,
+    /// so there is a strike only where this is negative.
+    pub approach: N,
+    /// The table's velocity in x and y, m/s.
+    pub table_velocity: (N, N),
+    /// P_n, m/s.
+    pub impulse_normal: N,
+    /// ẏ_c⁺, vertical velocity of the contact point just after, m/s.
+    pub contact_rise: N,
+    /// |v|² = ẋ² + ẏ² + ρ²θ̇² just before, m²/s².
+    pub speed_squared: N,
+    /// Energy per unit mass just before, above that of the rod at rest upright on the table: ½|v|² − G l (1 − cos θ), m²/s².
+    /// Without the constant G l, slow bounces keep their digits.
+    pub energy: N,
+    /// What the strike adds to it, ½γ(γ − 2) v_nc²/B: nothing where the strike gain is 2.
+    pub energy_gain: N,
+}
+
+impl<N: Number> Rod<N> {
+    /// The frictionless strike, eq. (24) with (27) and (28).
+    #[inline(always)]
+    pub fn strike(&self, before: &State<N>) -> Strike<N> {
+        let one = N::from_f64(1.0);
+        let half = N::from_f64(0.5);
+        let State { theta, x_dot, y_dot, theta_dot } = *before;
+        let alpha = self.tilt_gain * theta;
+        let (sin_theta, versine_theta) = theta.sin_versine();
+        let cos_theta = one - versine_theta;
+        let (sin_alpha, cos_alpha) = alpha.sincos();
+        // β = θ − α, the rod's angle from the table's normal, without the rounding of α: the strike turns the rod by sin β,
+        // which is small beside θ. Then eq. (32) in the plane's axes.
+        let (sin_beta, _) = ((one - self.tilt_gain) * theta).sincos();
+        let arm = self.contact_distance * sin_beta;
+        let normal_velocity = cos_alpha * y_dot - sin_alpha * x_dot + arm * theta_dot;
+        // η of eq. (28).
+        let weight = self.gravity * self.contact_distance;
+        let bounce_energy = weight * cos_theta + half * y_dot * y_dot;
+        let gain = self.strike_gain + self.strike_gain_per_energy * (self.target_energy - bounce_energy);
+        // B = 1 + l² sin²β / ρ², what the contact point weighs along the normal, eq. (33). Near upright it rounds to 1 and
+        // the strike loses no digit, which a common factor ρ² would cost.
+        let turn = arm * (one / (self.radius_of_gyration * self.radius_of_gyration));
+        let impulse = -(gain * normal_velocity) / (one + arm * turn);
+        let share = gain / (one + self.restitution);
+        let table = normal_velocity * (one - share);
+        let after = State {
+            theta,
+            x_dot: x_dot - impulse * sin_alpha,
+            y_dot: y_dot + impulse * cos_alpha,
+            theta_dot: theta_dot + impulse * turn,
+        };
+        let spin = self.radius_of_gyration * theta_dot;
+        let speed_squared = x_dot * x_dot + y_dot * y_dot + spin * spin;
+        Strike {
+            after,
+            alpha,
+            sin_cos_theta: (sin_theta, cos_theta),
+            normal_velocity,
+            approach: share * normal_velocity,
+            table_velocity: (-(table * sin_alpha), table * cos_alpha),
+            impulse_normal: impulse,
+            contact_rise: after.y_dot + self.contact_distance * after.theta_dot * sin_theta,
+            speed_squared,
+            energy: half * speed_squared - weight * versine_theta,
+            energy_gain: half * (N::from_f64(2.0) - gain) * impulse * normal_velocity,
+        }
+    }
+}
+
+impl Rod<f64> {
+    /// The same rod in another kind of number.
+    #[inline(always)]
+    pub fn lift<N: Number>(&self) -> Rod<N> {
+        Rod {
+            contact_distance: N::from_f64(self.contact_distance),
+            radius_of_gyration: N::from_f64(self.radius_of_gyration),
+            gravity: N::from_f64(self.gravity),
+            restitution: N::from_f64(self.restitution),
+            tilt_gain: N::from_f64(self.tilt_gain),
+            strike_gain: N::from_f64(self.strike_gain),
+            strike_gain_per_energy: N::from_f64(self.strike_gain_per_energy),
+            target_energy: N::from_f64(self.target_energy),
+        }
+    }
+
+    /// Energy per unit mass ½|v|² + G l cos θ at a contact, |v|² = ẋ² + ẏ² + ρ²θ̇², m²/s².
+    pub fn energy(&self, state: &State) -> f64 {
+        let spin = self.radius_of_gyration * state.theta_dot;
+        let (_, cos) = crate::trig::sin_cos(state.theta);
+        0.5 * (state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin)
+            + self.gravity * self.contact_distance * cos
+    }
+
+    /// ẏ_c = ẏ + l θ̇ sin θ, vertical velocity of the contact point, m/s.
+    #[inline(always)]
+    pub fn contact_speed(&self, state: &State) -> f64 {
+        let (sin, _) = crate::trig::sin_cos(state.theta);
+        state.y_dot + self.contact_distance * state.theta_dot * sin
+    }
+}

@@ -1,0 +1,163 @@
+//! The derivative of the map from contact to contact, at any state, by differentiating its formulas with the contact
+//! time implicit; and the same by finite differences, only to compare.
+//!
+//! States here are (ρθ, ẋ, ẏ, ρθ̇) just before a contact, in this order; (ẋ, ẏ) for a point mass.
+
+use crate::dual::Dual;
+use crate::flight::Flight;
+use crate::impact::{Rod, State};
+use crate::map::{Body, Contact, Orbit, Rules};
+use crate::model::Model;
+use crate::number::Number;
+use crate::point::Point;
+use nalgebra::{Complex, DMatrix, Schur};
+
+/// The map linearized about one orbit segment.
+#[derive(Clone, Debug)]
+pub struct Linearization {
+    /// Derivative of the state at the end by the state at the start, 4 × 4 (2 × 2 for a point mass), m/s by m/s except for
+    /// ρθ in m.
+    pub matrix: DMatrix<f64>,
+    /// The state at the end.
+    pub end: State,
+    /// Length of the flights passed, s.
+    pub flight_time: f64,
+    /// ẏ_c just before the contact nearest to grazing, m/s: derivatives grow without bound as it goes to 0.
+    pub contact_speed: f64,
+}
+
+/// Names of the components of a state, in the order of a matrix's rows and columns.
+pub fn state_order(model: &Model) -> &'static [&'static str] {
+    match model {
+        Model::Rod(_) => &["rho_theta", "x_dot", "y_dot", "rho_theta_dot"],
+        Model::Point(_) => &["x_dot", "y_dot"],
+    }
+}
+
+/// Derivative of the map over `period` contacts from a state, exact but for rounding.
+///
+/// # Errors
+/// The contact at which the run ends before that, which has no derivative.
+pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
+    along(model, start, period, |state| match model {
+        Model::Rod(rod) => rod_jacobian(rod, state),
+        Model::Point(point) => point_jacobian(point, state),
+    })
+}
+
+/// The same by central differences with a step of `step` m/s (m for ρθ) in each component.
+///
+/// # Errors
+/// As [`jacobian`]; also where a run that starts one step aside ends.
+pub fn finite_difference(model: &Model, start: &State, period: u64, step: f64) -> Result<Linearization, Box<Contact>> {
+    let mut linearization = along(model, start, period, |_| None)?;
+    let size = state_order(model).len();
+    let mut matrix = DMatrix::zeros(size, size);
+    for column in 0..size {
+        let mut ends = [DMatrix::zeros(size, 1), DMatrix::zeros(size, 1)];
+        for (end, sign) in ends.iter_mut().zip([1.0, -1.0]) {
+            let mut vector = to_vector(model, start);
+            vector[column] += sign * step;
+            *end = to_vector(model, &along(model, &from_vector(model, &vector), period, |_| None)?.end);
+        }
+        matrix.set_column(column, &((&ends[0] - &ends[1]) / (2.0 * step)).column(0));
+    }
+    linearization.matrix = matrix;
+    Ok(linearization)
+}
+
+/// Eigenvalues, largest modulus first.
+///
+/// A defective pair comes out wrong by the square root of rounding: do not decide stability by them. None if the
+/// iteration does not converge.
+pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
+    let schur = Schur::try_new(matrix.clone(), f64::EPSILON, 10_000)?;
+    let mut values: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
+    sort_eigenvalues(&mut values);
+    Some(values)
+}
+
+/// Modulus of a complex number, with the same bits everywhere.
+pub fn modulus(value: Complex<f64>) -> f64 {
+    libm::hypot(value.re, value.im)
+}
+
+pub(crate) fn sort_eigenvalues(values: &mut [Complex<f64>]) {
+    values.sort_by(|a, b| modulus(*b).total_cmp(&modulus(*a)).then(b.re.total_cmp(&a.re)).then(b.im.total_cmp(&a.im)));
+}
+
+/// Follows the run, multiplying the derivatives that `derivative` gives at each of its contacts.
+fn along(
+    model: &Model,
+    start: &State,
+    period: u64,
+    derivative: impl Fn(&State) -> Option<DMatrix<f64>>,
+) -> Result<Linearization, Box<Contact>> {
+    let size = state_order(model).len();
+    let mut orbit = Orbit::at(*model, Rules::BARE_MAP, *start);
+    let mut matrix = DMatrix::identity(size, size);
+    let (mut flight_time, mut contact_speed) = (0.0, f64::NEG_INFINITY);
+    for _ in 0..period {
+        let contact = orbit.advance();
+        let Some(flight) = contact.flight_time else { return Err(Box::new(contact)) };
+        if let Some(factor) = derivative(&contact.state) {
+            matrix = factor * matrix;
+        }
+        flight_time += flight;
+        contact_speed = f64::max(contact_speed, model.contact_speed(orbit.state()));
+    }
+    Ok(Linearization { matrix, end: *orbit.state(), flight_time, contact_speed })
+}
+
+fn rod_jacobian(rod: &Rod, state: &State) -> Option<DMatrix<f64>> {
+    let strike = rod.strike(state);
+    let (root, _) = rod.fly(&strike).ok()?;
+    let per_length = 1.0 / rod.radius_of_gyration;
+    let lifted: Rod<Dual<4>> = rod.lift();
+    let flight: Flight<Dual<4>> = lifted.flight(&lifted.strike(&State {
+        theta: Dual::along(state.theta, 0, per_length),
+        x_dot: Dual::along(state.x_dot, 1, 1.0),
+        y_dot: Dual::along(state.y_dot, 2, 1.0),
+        theta_dot: Dual::along(state.theta_dot, 3, per_length),
+    }));
+    let end = flight.end(flight.lift_root(root));
+    let rho = lifted.radius_of_gyration;
+    Some(rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot]))
+}
+
+fn point_jacobian(point: &Point, state: &State) -> Option<DMatrix<f64>> {
+    let State { theta, x_dot, y_dot, .. } = *state;
+    let speed_squared = x_dot * x_dot + y_dot * y_dot;
+    let lifted: Rod<Dual<2>> = point.parameters().lift();
+    let strike = lifted.strike(&State {
+        theta: Dual { value: theta, partials: [-y_dot / speed_squared, x_dot / speed_squared] },
+        x_dot: Dual::along(x_dot, 0, 1.0),
+        y_dot: Dual::along(y_dot, 1, 1.0),
+        theta_dot: Dual::from_f64(0.0),
+    });
+    Some(rows(&[strike.after.x_dot, -strike.after.y_dot]))
+}
+
+fn rows<const K: usize>(components: &[Dual<K>; K]) -> DMatrix<f64> {
+    DMatrix::from_fn(K, K, |row, column| components[row].partials[column])
+}
+
+fn to_vector(model: &Model, state: &State) -> DMatrix<f64> {
+    match model {
+        Model::Rod(rod) => {
+            let rho = rod.radius_of_gyration;
+            DMatrix::from_column_slice(4, 1, &[rho * state.theta, state.x_dot, state.y_dot, rho * state.theta_dot])
+        }
+        Model::Point(_) => DMatrix::from_column_slice(2, 1, &[state.x_dot, state.y_dot]),
+    }
+}
+
+fn from_vector(model: &Model, vector: &DMatrix<f64>) -> State {
+    match model {
+        Model::Rod(rod) => {
+            let rho = rod.radius_of_gyration;
+            State { theta: vector[0] / rho, x_dot: vector[1], y_dot: vector[2], theta_dot: vector[3] / rho }
+        }
+        Model::Point(_) => Point::state(vector[0], vector[1]),
+    }
+}

@@ -1,0 +1,67 @@
+//! The point mass of the paper's opening example, eq. (3) to (5): a body without an angle, on a table that tilts by κ
+//! times the angle of its velocity.
+//!
+//! A body of its own, never a cheaper rung of a rod: a rod's table follows the rod's angle. Its arithmetic is that of a
+//! rod whose contact point is its centre of gravity.
+
+use crate::contact_time::TooManyPieces;
+use crate::impact::{Rod, State, Strike};
+use crate::map::{Body, Release};
+
+/// A point mass. In its states `theta` is the angle of the velocity from straight down, counter-clockwise, and
+/// `theta_dot` is 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    rod: Rod,
+}
+
+impl Point {
+    /// The point mass with the table, gravity and restitution of `rod`, whose own lengths drop out.
+    pub fn new(rod: Rod) -> Self {
+        Self { rod: Rod { contact_distance: 0.0, radius_of_gyration: 1.0, ..rod } }
+    }
+
+    /// Its parameters, as those of a rod of no length.
+    pub fn parameters(&self) -> &Rod {
+        &self.rod
+    }
+
+    /// The state with these velocities (m/s) just before a contact.
+    pub fn state(x_dot: f64, y_dot: f64) -> State {
+        State { theta: crate::trig::atan2(x_dot, -y_dot), x_dot, y_dot, theta_dot: 0.0 }
+    }
+
+    fn turned((t, arrival): (f64, State)) -> (f64, State) {
+        (t, Self::state(arrival.x_dot, arrival.y_dot))
+    }
+}
+
+impl Body for Point {
+    fn fall(&self, release: &Release) -> Result<(f64, State), TooManyPieces> {
+        self.rod.fall(release).map(Self::turned)
+    }
+
+    fn strike(&self, before: &State) -> Strike {
+        self.rod.strike(before)
+    }
+
+    fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
+        self.rod.fly(strike).map(Self::turned)
+    }
+
+    fn contact_distance(&self) -> f64 {
+        0.0
+    }
+
+    fn contact_height(&self, _: &State) -> f64 {
+        0.0
+    }
+
+    fn energy(&self, state: &State) -> f64 {
+        self.rod.energy(state)
+    }
+
+    fn contact_speed(&self, state: &State) -> f64 {
+        state.y_dot
+    }
+}

@@ -1,0 +1,84 @@
+//! What a user may say about a run: the table of fields, a draft that collects values, and the scene it becomes.
+//!
+//! Not here: how a scene is written down (JSON, query strings); which model runs it is [`crate::model`].
+
+mod draft;
+mod field;
+
+pub use draft::{Draft, FieldError};
+pub use field::{Availability, FIELDS, Field, Kind, Name, Value, field};
+
+use crate::impact::State;
+use crate::map::Release;
+
+/// Which body bounces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BodyShape {
+    /// A rod: any rigid body with one contact point below its centre of gravity.
+    Rod {
+        /// l, m.
+        contact_distance: f64,
+        /// ρ, m.
+        radius_of_gyration: f64,
+    },
+    /// A point mass.
+    Point,
+}
+
+/// How the table moves along its normal at a strike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Striking {
+    /// It makes up what the bounce loses, eq. (25) and (28).
+    Compensated,
+    /// It does not move.
+    Still,
+}
+
+/// A scene in which every value is in its range and nothing contradicts anything else. Made by [`Draft::build`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scene {
+    pub(crate) body: BodyShape,
+    /// G = g sin φ, m/s².
+    pub(crate) gravity: f64,
+    pub(crate) restitution: f64,
+    pub(crate) tilt_gain: f64,
+    pub(crate) energy_gain: f64,
+    /// Only with an energy gain.
+    pub(crate) target_height: Option<f64>,
+    pub(crate) strike: Striking,
+    pub(crate) release: Release,
+    pub(crate) topple_angle: f64,
+    draft: Draft,
+}
+
+impl Scene {
+    /// The value of a field, its default included; none where the field does not apply.
+    pub fn value(&self, name: Name) -> Option<Value> {
+        self.draft.get(name)
+    }
+
+    /// What the scene was made of, with its defaults, to change a field and build again.
+    pub fn draft(&self) -> Draft {
+        self.draft
+    }
+
+    /// Which body bounces.
+    pub fn body(&self) -> BodyShape {
+        self.body
+    }
+
+    /// G = g sin φ, gravity in the plane of motion, m/s².
+    pub fn gravity(&self) -> f64 {
+        self.gravity
+    }
+
+    /// What starts the run.
+    pub fn release(&self) -> &Release {
+        &self.release
+    }
+
+    /// Angle and velocities at release.
+    pub fn start(&self) -> &State {
+        &self.release.state
+    }
+}

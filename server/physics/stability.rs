@@ -1,0 +1,404 @@
+//! The fixed point of a scene, its linear verdict in closed form, and what a run of the scene says beside it.
+//!
+//! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
+//! off by the square root of rounding.
+
+use crate::jacobian::{modulus, sort_eigenvalues};
+use crate::map::{Ending, run};
+use crate::scene::{BodyShape, Scene};
+use crate::trig;
+use nalgebra::Complex;
+
+/// |R| or |R − 1| up to which the angle is called parabolic; likewise for the energy eigenvalue at ±1.
+pub const PARABOLIC: f64 = 1e-9;
+
+/// The upright bounce in place that a scene is to be balanced on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FixedPoint {
+    /// V = |ẏ*|, m/s.
+    pub speed: f64,
+    /// 2V/G, s.
+    pub flight_time: f64,
+    /// Height of the centre of gravity at the top of the bounce, m.
+    pub apex_height: f64,
+}
+
+/// How the angle moves near the fixed point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// It comes back (point mass).
+    Attracting,
+    /// It circles, 0 < R < 1.
+    Elliptic,
+    /// R = 0 or R = 1: a double eigenvalue ±1, on which the linear analysis is silent.
+    Parabolic,
+    /// It leaves.
+    Hyperbolic,
+}
+
+impl Class {
+    /// Its name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Attracting => "attracting",
+            Self::Elliptic => "elliptic",
+            Self::Parabolic => "parabolic",
+            Self::Hyperbolic => "hyperbolic",
+        }
+    }
+}
+
+/// The linear verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linear {
+    /// How the angle moves.
+    pub class: Class,
+    /// R = (κ − 1)V²l/(Gρ²); none for a point mass.
+    pub residue: Option<f64>,
+    /// σ, rad per bounce, cos σ = 1 − 2R; where it is elliptic or parabolic.
+    pub rotation: Option<f64>,
+    /// Eigenvalues of the whole map, largest modulus first.
+    pub eigenvalues: Vec<Complex<f64>>,
+    /// Least κ that balances.
+    pub lower_tilt_gain: f64,
+    /// κ_c, greatest κ that balances: 1 + Gρ²/(V²l), eq. (18), for every e and κ_E.
+    pub critical_tilt_gain: f64,
+    /// Greatest κ_E that holds the energy, 2/((1 + e)V²), s²/m².
+    pub upper_energy_gain: f64,
+    /// 1 − (1 + e)κ_E V².
+    pub energy_eigenvalue: f64,
+}
+
+impl Linear {
+    /// Largest modulus of an eigenvalue; exactly 1 where the angle circles, whatever rounding says.
+    pub fn spectral_radius(&self) -> f64 {
+        let angle = match self.class {
+            Class::Elliptic | Class::Parabolic => 1.0,
+            Class::Attracting | Class::Hyperbolic => self.eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max),
+        };
+        angle.max(self.energy_eigenvalue.abs())
+    }
+
+    /// Whether it says that a small deviation stays small.
+    pub fn says_bounded(&self) -> bool {
+        matches!(self.class, Class::Attracting | Class::Elliptic) && self.energy_eigenvalue.abs() <= 1.0 + PARABOLIC
+    }
+}
+
+/// What happens at κ_c, by the next order of the normal form: κ − κ_c ≈ a C θ² on the branch of period-2 orbits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Boundary {
+    /// C; positive is soft (runs stay bounded at and a little beyond κ_c), negative hard (they fall).
+    pub coefficient: f64,
+}
+
+impl Boundary {
+    /// `soft`, `hard` or, at C = 0, `degenerate`.
+    pub fn kind(&self) -> &'static str {
+        if self.coefficient > 0.0 {
+            "soft"
+        } else if self.coefficient < 0.0 {
+            "hard"
+        } else {
+            "degenerate"
+        }
+    }
+}
+
+/// What the run of the scene itself says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nonlinear {
+    /// How it ended.
+    pub ending: Ending,
+    /// Contacts until then.
+    pub impacts: u64,
+    /// When, s.
+    pub t: f64,
+    /// Largest |θ| at a contact, rad.
+    pub max_theta: f64,
+}
+
+/// The verdict on a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// A small deviation dies out.
+    StableInPlace,
+    /// The linear analysis says that the angle circles, and the run did for as long as it was watched; no theorem says more.
+    Elliptic,
+    /// At or beyond κ_c, yet bounded around the period-2 orbit.
+    BoundedBeyondBoundary,
+    /// It falls, or would from a start a little aside.
+    Unstable,
+}
+
+/// What a verdict rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DecidedBy {
+    /// Eigenvalues, by residue.
+    Linear,
+    /// The run of the scene.
+    Nonlinear,
+    /// The boundary coefficient.
+    Boundary,
+}
+
+impl DecidedBy {
+    /// Its name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Nonlinear => "nonlinear",
+            Self::Boundary => "boundary",
+        }
+    }
+}
+
+/// A verdict with what it rests on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// What decided.
+    pub decided_by: DecidedBy,
+    /// Whether linear analysis and run tell the same story.
+    pub agree: bool,
+    /// Why, in a sentence with numbers.
+    pub reason: String,
+}
+
+impl Scene {
+    /// c = ẋ − κρ²θ̇/((κ − 1)l): the mean horizontal speed of a balanced run, m/s. None where κ = 1, which drifts off in
+    /// angle instead, and for a point mass, whose drift dies out.
+    pub fn drift_speed(&self) -> Option<f64> {
+        let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
+        let start = self.start();
+        let excess = self.tilt_gain - 1.0;
+        (excess != 0.0).then(|| {
+            let lever = radius_of_gyration * radius_of_gyration / contact_distance;
+            start.x_dot - self.tilt_gain * lever * start.theta_dot / excess
+        })
+    }
+
+    /// The fixed point on the energy surface of the release, or that of the target height with energy feedback.
+    ///
+    /// V² = |v₀|² + 2G(y₀ − l) − c²: drift energy never comes back, and what counts is the height above l, not above
+    /// l cos θ as in eq. (10).
+    ///
+    /// # Errors
+    /// Why there is none, in a sentence.
+    pub fn fixed_point(&self) -> Result<FixedPoint, String> {
+        if self.is_lossy() {
+            return Err(format!(
+                "the table stands still and restitution is {}: every bounce loses energy, so no bounce repeats",
+                self.restitution
+            ));
+        }
+        let (contact_distance, radius_of_gyration) = match self.body {
+            BodyShape::Rod { contact_distance, radius_of_gyration } => (contact_distance, radius_of_gyration),
+            BodyShape::Point => (0.0, 0.0),
+        };
+        let speed_squared = if let Some(height) = self.target_height {
+            let room = height - contact_distance;
+            if room <= 0.0 {
+                return Err(format!("target_height {height} m is not above contact_distance {contact_distance} m"));
+            }
+            2.0 * self.gravity * room
+        } else {
+            let start = self.start();
+            let spin = radius_of_gyration * start.theta_dot;
+            let drift = self.drift_speed().unwrap_or(0.0);
+            let kinetic = start.x_dot * start.x_dot + start.y_dot * start.y_dot + spin * spin;
+            let available = kinetic + 2.0 * self.gravity * (self.release.height - contact_distance);
+            if available - drift * drift <= 0.0 {
+                return Err(format!(
+                    "the release has {available} m²/s² for bouncing upright and the drift at {drift} m/s takes {} m²/s²: no \
+                     upright bounce has that energy",
+                    drift * drift
+                ));
+            }
+            available - drift * drift
+        };
+        let speed = speed_squared.sqrt();
+        Ok(FixedPoint {
+            speed,
+            flight_time: 2.0 * speed / self.gravity,
+            apex_height: contact_distance + speed_squared / (2.0 * self.gravity),
+        })
+    }
+
+    /// The linear verdict about a fixed point, in closed form: eq. (14) with the energy term.
+    pub fn linear(&self, fixed_point: &FixedPoint) -> Linear {
+        let speed_squared = fixed_point.speed * fixed_point.speed;
+        let loop_gain = (1.0 + self.restitution) * speed_squared;
+        let energy_eigenvalue = 1.0 - self.energy_gain * loop_gain;
+        let upper_energy_gain = 2.0 / loop_gain;
+        let real = |value: f64| Complex::new(value, 0.0);
+        let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else {
+            // Eq. (4): the angle of the velocity is multiplied by 1 − 2κ.
+            let angle = 1.0 - 2.0 * self.tilt_gain;
+            let class = if angle.abs() < 1.0 { Class::Attracting } else { Class::Hyperbolic };
+            let mut eigenvalues = vec![real(angle), real(energy_eigenvalue)];
+            sort_eigenvalues(&mut eigenvalues);
+            return Linear {
+                class,
+                residue: None,
+                rotation: None,
+                eigenvalues,
+                lower_tilt_gain: 0.0,
+                critical_tilt_gain: 1.0,
+                upper_energy_gain,
+                energy_eigenvalue,
+            };
+        };
+        // a = κ_c − 1.
+        let width = self.gravity * radius_of_gyration * radius_of_gyration / (speed_squared * contact_distance);
+        let residue = (self.tilt_gain - 1.0) / width;
+        let class = class(residue);
+        let half_trace = 1.0 - 2.0 * residue;
+        let pair = match class {
+            Class::Parabolic => [real(half_trace.signum()); 2],
+            Class::Elliptic => {
+                // 1 − (1 − 2R)² without cancellation near R = 0 and R = 1.
+                let imaginary = 2.0 * (residue * (1.0 - residue)).sqrt();
+                [Complex::new(half_trace, imaginary), Complex::new(half_trace, -imaginary)]
+            }
+            Class::Attracting | Class::Hyperbolic => {
+                let large = half_trace + half_trace.signum() * 2.0 * (residue * (residue - 1.0)).sqrt();
+                [real(large), real(1.0 / large)]
+            }
+        };
+        let mut eigenvalues = vec![pair[0], pair[1], real(1.0), real(energy_eigenvalue)];
+        sort_eigenvalues(&mut eigenvalues);
+        Linear {
+            class,
+            residue: Some(residue),
+            rotation: matches!(class, Class::Elliptic | Class::Parabolic)
+                .then(|| trig::acos(half_trace.clamp(-1.0, 1.0))),
+            eigenvalues,
+            lower_tilt_gain: 1.0,
+            critical_tilt_gain: 1.0 + width,
+            upper_energy_gain,
+            energy_eigenvalue,
+        }
+    }
+
+    /// The boundary coefficient C at κ_c, with a = κ_c − 1 and γ = Gl/V²: (1+a)²/2 + a²/6 − (1−a)γ, and with a positive
+    /// energy gain, which holds η and not the energy, −(1+a)²/2 + a²/6 − γ. None for a point mass.
+    pub fn boundary(&self, fixed_point: &FixedPoint) -> Option<Boundary> {
+        let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
+        let gamma = self.gravity * contact_distance / (fixed_point.speed * fixed_point.speed);
+        let lever = radius_of_gyration / contact_distance;
+        let a = gamma * lever * lever;
+        let half_square = 0.5 * (1.0 + a) * (1.0 + a);
+        let sixth = a * a / 6.0;
+        let coefficient =
+            if self.energy_gain > 0.0 { sixth - half_square - gamma } else { half_square + sixth - (1.0 - a) * gamma };
+        Some(Boundary { coefficient })
+    }
+
+    /// Runs the scene for up to `impacts` contacts; `go_on` is asked now and then, and a `false` gives none.
+    pub fn nonlinear(&self, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<Nonlinear> {
+        let Ok(mut orbit) = self.orbit() else {
+            let ending = Ending::Diverged { speed: 0.0 };
+            return Some(Nonlinear { ending, impacts: 0, t: 0.0, max_theta: self.start().theta.abs() });
+        };
+        let mut max_theta: f64 = 0.0;
+        let mut t = 0.0;
+        let ending = run(&mut orbit, impacts, |contact| {
+            max_theta = max_theta.max(contact.state.theta.abs());
+            t = contact.t;
+            !contact.n.is_multiple_of(1024) || go_on()
+        })?;
+        Some(Nonlinear { ending, impacts: orbit.contacts(), t, max_theta })
+    }
+
+    /// Weighs the linear verdict, the boundary coefficient and the run against each other.
+    pub fn judge(&self, linear: &Linear, boundary: Option<Boundary>, run: &Nonlinear) -> Judgement {
+        let survived = run.ending == Ending::Completed;
+        let agree = linear.says_bounded() == survived;
+        let judgement = |verdict, decided_by, reason| Judgement { verdict, decided_by, agree, reason };
+        let start = self.start();
+        let undisturbed = start.theta == 0.0 && start.theta_dot == 0.0;
+        let kappa = self.tilt_gain;
+        let critical = linear.critical_tilt_gain;
+        if linear.energy_eigenvalue.abs() > 1.0 + PARABOLIC {
+            let reason = format!(
+                "energy_gain is {} s²/m² and must be between 0 and {}: deviations of the height grow by {} a bounce",
+                self.energy_gain, linear.upper_energy_gain, linear.energy_eigenvalue
+            );
+            return judgement(Verdict::Unstable, DecidedBy::Linear, reason);
+        }
+        let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
+        if !survived && linear.class != Class::Hyperbolic && linear.class != Class::Parabolic {
+            let reason = format!("{fell}, although the linear analysis is stable: the start is outside the basin");
+            return judgement(Verdict::Unstable, DecidedBy::Nonlinear, reason);
+        }
+        match linear.class {
+            Class::Attracting => {
+                let reason = format!("the angle of the velocity shrinks by {} a bounce (eq. 4)", 1.0 - 2.0 * kappa);
+                judgement(Verdict::StableInPlace, DecidedBy::Linear, reason)
+            }
+            Class::Elliptic => {
+                let reason = format!(
+                    "tilt_gain {kappa} is between {} and {critical}, so small deviations circle, and the run survived",
+                    linear.lower_tilt_gain
+                );
+                judgement(Verdict::Elliptic, DecidedBy::Linear, reason)
+            }
+            Class::Parabolic if kappa > 0.5 * (1.0 + critical) => match boundary {
+                Some(Boundary { coefficient }) if coefficient > 0.0 && survived => judgement(
+                    Verdict::BoundedBeyondBoundary,
+                    DecidedBy::Boundary,
+                    format!(
+                        "tilt_gain is κ_c, where eigenvalues are silent; C = {coefficient} > 0 is soft, and the run survived"
+                    ),
+                ),
+                Some(Boundary { coefficient }) if coefficient > 0.0 => judgement(
+                    Verdict::Unstable,
+                    DecidedBy::Nonlinear,
+                    format!("tilt_gain is κ_c and C = {coefficient} > 0 is soft for small starts, but {fell}"),
+                ),
+                _ => judgement(
+                    Verdict::Unstable,
+                    DecidedBy::Boundary,
+                    format!(
+                        "tilt_gain is κ_c, where eigenvalues are silent; C = {} is not positive: hard, every small start \
+                         falls in the end",
+                        boundary.map_or(0.0, |boundary| boundary.coefficient)
+                    ),
+                ),
+            },
+            Class::Parabolic => judgement(
+                Verdict::Unstable,
+                DecidedBy::Linear,
+                "tilt_gain is 1, where the angle drifts off at a constant rate".to_owned(),
+            ),
+            Class::Hyperbolic if survived && !undisturbed && kappa > critical => judgement(
+                Verdict::BoundedBeyondBoundary,
+                DecidedBy::Nonlinear,
+                format!(
+                    "tilt_gain {kappa} is beyond κ_c = {critical}, yet the run stayed within |θ| ≤ {} rad",
+                    run.max_theta
+                ),
+            ),
+            Class::Hyperbolic => {
+                let side = if kappa < linear.lower_tilt_gain { "below" } else { "beyond" };
+                let limit = if kappa < linear.lower_tilt_gain { linear.lower_tilt_gain } else { critical };
+                let shown = if survived { "this run has not left yet" } else { fell.as_str() };
+                let reason = format!("tilt_gain {kappa} is {side} {limit}, so small deviations grow; {shown}");
+                judgement(Verdict::Unstable, DecidedBy::Linear, reason)
+            }
+        }
+    }
+}
+
+/// The class of a residue.
+pub fn class(residue: f64) -> Class {
+    if residue.abs() <= PARABOLIC || (residue - 1.0).abs() <= PARABOLIC {
+        Class::Parabolic
+    } else if residue > 0.0 && residue < 1.0 {
+        Class::Elliptic
+    } else {
+        Class::Hyperbolic
+    }
+}
