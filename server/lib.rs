@@ -11,6 +11,7 @@ pub mod middleware;
 pub mod router;
 pub mod routes;
 pub mod transport;
+pub mod wire;
 
 /// The version and a hash of everything that can change an answer: equal builds give equal answers.
 pub const BUILD: &str = env!("EQUIPOISE_BUILD");

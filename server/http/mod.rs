@@ -8,7 +8,6 @@ pub mod etag;
 pub mod fixed;
 pub mod json;
 pub mod leaf;
-pub mod merge;
 pub mod negotiate;
 pub mod problem;
 pub mod query;

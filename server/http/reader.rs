@@ -23,9 +23,9 @@ impl Errors {
         }
     }
 
-    /// Adds those of another reading.
-    pub fn extend(&mut self, errors: impl IntoIterator<Item = FieldError>) {
-        errors.into_iter().for_each(|error| self.push(error.pointer, error.detail));
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.0.len()
     }
 
     /// Whether nothing is wrong.

@@ -36,18 +36,12 @@ impl Draft {
         let row = name.row();
         if let Some(value) = value {
             if !row.admits(value) {
-                return Err(FieldError::new(name, format!("{} must be {}", row.key(), row.limits())));
+                return Err(FieldError::new(name, format!("{} is {value}; it must be {}", row.key(), row.limits())));
             }
             match row.availability {
                 Availability::Full => {}
                 Availability::Only(only) if only == value => {}
                 Availability::Only(only) => {
-                    let only = match only {
-                        Value::Number(number) => number.to_string(),
-                        Value::Integer(number) => number.to_string(),
-                        Value::Choice(word) => word.to_owned(),
-                        Value::Flag(flag) => flag.to_string(),
-                    };
                     let detail = format!("{} other than {only} is not available in this version", row.key());
                     return Err(FieldError::new(name, detail));
                 }
@@ -81,7 +75,7 @@ impl Draft {
     fn required(&self, name: Name, errors: &mut Vec<FieldError>) -> f64 {
         self.number(name).unwrap_or_else(|| {
             let row = name.row();
-            errors.push(FieldError::new(name, format!("{} is missing: {}; {}", row.key(), row.about, row.limits())));
+            errors.push(FieldError::new(name, format!("{} is missing: {}, {}", row.key(), row.about, row.limits())));
             f64::NAN
         })
     }

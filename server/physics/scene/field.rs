@@ -4,6 +4,7 @@
 //! The ranges are generous for a lab and bound the work of one flight (at most 25,000 convex pieces).
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt;
 
 /// The name of a field; its number is its row in [`FIELDS`].
 #[allow(missing_docs)] // each is described in its row
@@ -51,6 +52,17 @@ pub enum Value {
     Choice(&'static str),
     /// Yes or no.
     Flag(bool),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(formatter),
+            Self::Integer(number) => number.fmt(formatter),
+            Self::Choice(word) => word.fmt(formatter),
+            Self::Flag(flag) => flag.fmt(formatter),
+        }
+    }
 }
 
 /// What values a field takes.
@@ -104,6 +116,8 @@ pub struct Field {
     pub kind: Kind,
     /// Value where a scene says nothing; none means that it must be said where it applies, or stays unsaid.
     pub default: Option<Value>,
+    /// Whether a scene has to say it, unless something else takes its place (a point mass, a polygon, a state feedback).
+    pub required: bool,
     /// Whether it may be changed while a run is live.
     pub live: bool,
     /// Whether this version computes with it.
@@ -121,12 +135,12 @@ impl Field {
         self.path.split('.').next().unwrap_or(self.path)
     }
 
-    /// The allowed values in words, with the unit.
+    /// The allowed values in words, with the unit: `from 0.001 to 10 m`.
     pub fn limits(&self) -> String {
-        let unit = if self.unit == "1" { String::new() } else { format!(" {}", self.unit) };
+        let unit = if self.unit == "1" { "(no unit)" } else { self.unit };
         match self.kind {
-            Kind::Number { minimum, maximum } => format!("a number from {minimum} to {maximum}{unit}"),
-            Kind::Integer { maximum } => format!("a whole number from 0 to {maximum}{unit}"),
+            Kind::Number { minimum, maximum } => format!("from {minimum} to {maximum} {unit}"),
+            Kind::Integer { maximum } => format!("a whole number from 0 to {maximum}"),
             Kind::Choice(words) => format!("one of {}", words.join(", ")),
             Kind::Flag => "true".to_owned(),
         }
@@ -173,6 +187,7 @@ const BLANK: Field = Field {
     unit: "1",
     kind: Kind::Flag,
     default: None,
+    required: false,
     live: false,
     availability: Availability::Full,
 };
@@ -181,9 +196,9 @@ const BLANK: Field = Field {
 #[rustfmt::skip]
 pub const FIELDS: [Field; 28] = [
     Field { name: Name::ContactDistance, path: "body.contact_distance", symbol: "l", title: "Contact distance",
-        about: "Centre of gravity to contact point", unit: "m", kind: number(1e-3, 10.0), ..BLANK },
+        about: "Centre of gravity to contact point", unit: "m", kind: number(1e-3, 10.0), required: true, ..BLANK },
     Field { name: Name::RadiusOfGyration, path: "body.radius_of_gyration", symbol: "ρ", title: "Radius of gyration",
-        about: "Radius of gyration about the centre of gravity", unit: "m", kind: number(1e-3, 10.0), ..BLANK },
+        about: "Radius of gyration about the centre of gravity", unit: "m", kind: number(1e-3, 10.0), required: true, ..BLANK },
     Field { name: Name::PointMass, path: "body.point", title: "Point mass",
         about: "A body without an angle; its table tilts by κ times the angle of its velocity", ..BLANK },
     Field { name: Name::Gravity, path: "gravity", symbol: "g", title: "Gravity", about: "Acceleration of gravity",
@@ -200,7 +215,7 @@ pub const FIELDS: [Field; 28] = [
         about: "Law of restitution; they differ only with friction",
         kind: Kind::Choice(&["poisson", "newton", "stronge"]), default: Some(Value::Choice("poisson")), ..BLANK },
     Field { name: Name::TiltGain, path: "table.tilt_gain", symbol: "κ", title: "Tilt gain",
-        about: "The table tilts by α = κθ", kind: number(-100.0, 100.0), live: true, ..BLANK },
+        about: "The table tilts by α = κθ", kind: number(-100.0, 100.0), live: true, required: true, ..BLANK },
     Field { name: Name::EnergyGain, path: "table.energy_gain", symbol: "κ_E", title: "Energy gain",
         about: "Feedback of the missing energy on the table's speed", unit: "s²/m²", kind: number(-100.0, 100.0),
         default: default(0.0), live: true, ..BLANK },
@@ -230,7 +245,7 @@ pub const FIELDS: [Field; 28] = [
         about: "What the table believes the restitution to be", kind: number(0.0, 1.0),
         availability: Availability::None, ..BLANK },
     Field { name: Name::Height, path: "release.height", symbol: "y₀", title: "Height",
-        about: "Height of the centre of gravity at release", unit: "m", kind: number(0.0, 100.0), ..BLANK },
+        about: "Height of the centre of gravity at release", unit: "m", kind: number(0.0, 100.0), required: true, ..BLANK },
     Field { name: Name::Theta, path: "release.theta", symbol: "θ₀", title: "Angle", about: "Angle from upright at release",
         unit: "rad", kind: number(-PI, PI), default: default(0.0), ..BLANK },
     Field { name: Name::ThetaDot, path: "release.theta_dot", symbol: "θ̇₀", title: "Spin",
@@ -248,12 +263,12 @@ pub const FIELDS: [Field; 28] = [
         default: default(FRAC_PI_2), live: true, ..BLANK },
     Field { name: Name::TimingSd, path: "noise.timing_sd", symbol: "σ_t", title: "Timing noise",
         about: "Standard deviation of the impact time on which the table acts", unit: "s", kind: number(0.0, 1.0),
-        default: default(0.0), availability: Availability::Only(Value::Number(0.0)), ..BLANK },
+        availability: Availability::Only(Value::Number(0.0)), ..BLANK },
     Field { name: Name::NoiseModel, path: "noise.model", title: "Noise model",
         about: "Whether the table meets the object early or late, or carries out a plan made for another time",
-        kind: Kind::Choice(&["strike", "plan"]), default: Some(Value::Choice("strike")), ..BLANK },
+        kind: Kind::Choice(&["strike", "plan"]), ..BLANK },
     Field { name: Name::Seed, path: "noise.seed", title: "Seed", about: "Seed of the noise",
-        kind: Kind::Integer { maximum: (1 << 53) - 1 }, default: Some(Value::Integer(0)), ..BLANK },
+        kind: Kind::Integer { maximum: (1 << 53) - 1 }, ..BLANK },
 ];
 
 #[cfg(test)]

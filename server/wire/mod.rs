@@ -1,0 +1,11 @@
+//! Requests and answers as clients see them: scenes, presets, tables of numbers, and the shape of every answer.
+//!
+//! Not the physics' own types, so that these can change without breaking a client; and no HTTP.
+
+pub mod fields;
+pub mod jacobian;
+pub mod presets;
+pub mod scene;
+pub mod stability;
+pub mod table;
+pub mod trajectory;

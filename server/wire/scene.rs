@@ -1,0 +1,284 @@
+//! Scenes as JSON or as dotted query parameters: read field by field from the table of fields, written back with all
+//! defaults filled in.
+
+use equipoise_physics::scene::{Draft, FIELDS, Field, Kind, Name, Scene, Value as FieldValue, field};
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
+
+use super::presets;
+use crate::http::leaf::{self, Source};
+use crate::http::reader::join;
+use crate::http::{Errors, Reader};
+
+/// Parts of the contract that are not in the table, since they are no single values, and not computed yet.
+const NOT_AVAILABLE: [&str; 2] = ["body.vertices", "body.contact_vertex"];
+
+/// The scene of a request: `preset`, with `scene` merged onto it (RFC 7396), or either of them alone.
+///
+/// None if something is wrong; then it is in the reader's errors.
+pub fn read(reader: &mut Reader<'_, '_>) -> Option<Scene> {
+    let (preset, changes) = (reader.text("preset"), reader.value("scene"));
+    let (source, pointer) = (reader.source(), reader.pointer_to("scene"));
+    if preset.is_none() && changes.is_none() {
+        if !reader.has("preset") {
+            reader.refuse_whole("give a scene, a preset, or a preset and what to change in its scene");
+        }
+        return None;
+    }
+    let mut draft = Draft::default();
+    if let Some(name) = preset {
+        let Some(preset) = presets::find(name) else {
+            reader.refuse("preset", format!("preset is {name:?}; it must be {}", leaf::one_of(&presets::names())));
+            return None;
+        };
+        draft = preset.draft();
+    }
+    apply(&mut draft, changes, &pointer, source, reader.errors())
+}
+
+/// Merges `changes`, which stand at `pointer`, onto a draft and builds the scene. Null takes a value back.
+pub fn apply(
+    draft: &mut Draft,
+    changes: Option<&Value>,
+    pointer: &str,
+    source: Source,
+    errors: &mut Errors,
+) -> Option<Scene> {
+    let before = errors.len();
+    if let Some(changes) = changes {
+        Walk { draft, source, errors }.object(changes, "", pointer);
+    }
+    if errors.len() > before {
+        return None;
+    }
+    match draft.build() {
+        Ok(scene) => Some(scene),
+        Err(found) => {
+            for error in found {
+                errors.push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
+            }
+            None
+        }
+    }
+}
+
+/// Goes down a JSON scene with the table of fields in hand.
+struct Walk<'a> {
+    draft: &'a mut Draft,
+    source: Source,
+    errors: &'a mut Errors,
+}
+
+impl Walk<'_> {
+    fn object(&mut self, value: &Value, path: &str, pointer: &str) {
+        let Some(fields) = value.as_object() else {
+            let name = path.rsplit('.').next().filter(|name| !name.is_empty()).unwrap_or("scene");
+            self.errors.push(pointer, format!("{name} is {}; it must be an object", leaf::shown(value)));
+            return;
+        };
+        if path == "body" {
+            self.replace_other_kind_of_body(fields);
+        }
+        for (key, value) in fields {
+            let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+            let pointer = join(pointer, key);
+            if let Some(row) = field(&path) {
+                self.leaf(row, value, &pointer);
+            } else if FIELDS.iter().any(|row| row.path.starts_with(&format!("{path}."))) {
+                if value.is_null() {
+                    self.forget(&path);
+                } else {
+                    self.object(value, &path, &pointer);
+                }
+            } else if NOT_AVAILABLE.contains(&path.as_str()) {
+                self.errors.push(pointer, format!("{path} is not available in this version"));
+            } else {
+                let known = known_beside(&path).join(", ");
+                self.errors.push(pointer, format!("unknown field `{path}`; known here: {known}"));
+            }
+        }
+    }
+
+    fn leaf(&mut self, row: &'static Field, value: &Value, pointer: &str) {
+        let read = match (row.kind, value) {
+            (_, Value::Null) => Ok(None),
+            (Kind::Number { minimum, maximum }, _) => {
+                leaf::number_within(value, self.source, &(minimum..=maximum), row.unit)
+                    .map(FieldValue::Number)
+                    .map(Some)
+            }
+            (Kind::Integer { maximum }, _) => {
+                leaf::integer(value, self.source, &(0..=maximum)).map(FieldValue::Integer).map(Some)
+            }
+            (Kind::Choice(words), _) => {
+                let known: Vec<_> = words.iter().map(|word| (*word, *word)).collect();
+                leaf::choice(value, &known).map(FieldValue::Choice).map(Some)
+            }
+            (Kind::Flag, _) => leaf::boolean(value, self.source).map(|flag| flag.then_some(FieldValue::Flag(true))),
+        };
+        match read {
+            Ok(value) => {
+                if let Err(error) = self.draft.set(row.name, value) {
+                    self.errors.push(pointer, error.detail);
+                }
+            }
+            Err(error) => self.errors.push(pointer, format!("{} {error}", row.key())),
+        }
+    }
+
+    /// A body of another kind replaces the preset's body whole; one of the same kind is merged onto it.
+    fn replace_other_kind_of_body(&mut self, fields: &Map<String, Value>) {
+        let says = |key: &str| fields.get(key).is_some_and(|value| !value.is_null());
+        let to_point = says("point") && !self.draft.is_point();
+        let to_rod =
+            self.draft.is_point() && !says("point") && (says("contact_distance") || says("radius_of_gyration"));
+        if to_point || to_rod {
+            self.forget("body");
+        }
+    }
+
+    fn forget(&mut self, group: &str) {
+        for row in FIELDS.iter().filter(|row| row.path.strip_prefix(group).is_some_and(|rest| rest.starts_with('.'))) {
+            // Taking a value back is always admitted.
+            let _ = self.draft.set(row.name, None);
+        }
+    }
+}
+
+/// The names that may stand where the last part of `path` stands.
+fn known_beside(path: &str) -> Vec<&'static str> {
+    let group = path.rsplit_once('.').map_or("", |(group, _)| group);
+    let mut names: Vec<_> = FIELDS
+        .iter()
+        .filter_map(|row| match group {
+            "" => Some(row.path),
+            group => row.path.strip_prefix(group)?.strip_prefix('.'),
+        })
+        .filter_map(|rest| rest.split('.').next())
+        .collect();
+    names.dedup();
+    names
+}
+
+/// A scene as it is written in answers: nested, all defaults filled in, ready to be asked again.
+#[derive(Debug, Clone, Copy)]
+pub struct Resolved<'a>(pub &'a Scene);
+
+impl Serialize for Resolved<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        to_json(self.0).serialize(serializer)
+    }
+}
+
+/// [`Resolved`] as a JSON value.
+pub fn to_json(scene: &Scene) -> Value {
+    let mut root = Map::new();
+    for row in &FIELDS {
+        let Some(value) = scene.value(row.name) else { continue };
+        let mut parts = row.path.split('.').peekable();
+        let mut at = &mut root;
+        while let Some(part) = parts.next() {
+            if parts.peek().is_none() {
+                at.insert(part.to_owned(), value_to_json(value));
+                break;
+            }
+            let group = at.entry(part).or_insert_with(|| Value::Object(Map::new()));
+            let Value::Object(group) = group else { break };
+            at = group;
+        }
+    }
+    Value::Object(root)
+}
+
+/// The value of a field as JSON.
+pub fn value_to_json(value: FieldValue) -> Value {
+    match value {
+        FieldValue::Number(number) => Value::from(number),
+        FieldValue::Integer(number) => Value::from(number),
+        FieldValue::Choice(word) => Value::from(word),
+        FieldValue::Flag(flag) => Value::from(flag),
+    }
+}
+
+/// The scene as dotted query parameters (`scene.table.tilt_gain`, `1.1`), which read back to the same scene.
+pub fn to_query(scene: &Scene) -> Vec<(String, String)> {
+    let written = |value| match value_to_json(value) {
+        Value::String(text) => text,
+        other => other.to_string(),
+    };
+    FIELDS.iter().filter_map(|row| Some((format!("scene.{}", row.path), written(scene.value(row.name)?)))).collect()
+}
+
+/// The angle fields of a body, which a point mass does not have.
+pub fn has_angle(scene: &Scene) -> bool {
+    scene.value(Name::PointMass).is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn read_json(body: &Value) -> Result<Scene, Vec<(String, String)>> {
+        let mut errors = Errors::default();
+        let mut reader = Reader::new(body.as_object().unwrap(), String::new(), Source::Json, &mut errors);
+        let scene = read(&mut reader);
+        reader.finish();
+        let found = errors.into_result().err().map(|problem| {
+            problem.errors().iter().map(|error| (error.pointer.clone(), error.detail.clone())).collect::<Vec<_>>()
+        });
+        found.map_or_else(|| Ok(scene.unwrap()), Err)
+    }
+
+    #[test]
+    fn changes_are_merged_onto_a_preset_and_null_takes_back() {
+        let body =
+            json!({"preset": "case-4", "scene": {"table": {"tilt_gain": 1.2, "energy_gain": null}, "gravity": null}});
+        let scene = to_json(&read_json(&body).unwrap());
+        assert_eq!(scene["table"]["tilt_gain"], 1.2);
+        assert_eq!(scene["table"]["energy_gain"], 0.0);
+        assert_eq!(scene["gravity"], 9.81);
+        assert_eq!(scene["contact"]["restitution"], 0.5);
+    }
+
+    #[test]
+    fn another_kind_of_body_replaces_the_presets() {
+        let scene =
+            read_json(&json!({"preset": "case-1", "scene": {"body": {"point": true}, "release": {"theta": null}}}));
+        assert_eq!(to_json(&scene.unwrap())["body"], json!({"point": true}));
+        let body =
+            json!({"preset": "point-mass", "scene": {"body": {"contact_distance": 0.1, "radius_of_gyration": 0.2}}});
+        assert_eq!(to_json(&read_json(&body).unwrap())["body"], body["scene"]["body"]);
+        let both = json!({"preset": "case-1", "scene": {"body": {"point": true, "contact_distance": 0.1}}});
+        assert!(read_json(&both).unwrap_err().iter().any(|(pointer, _)| pointer == "/scene/body/contact_distance"));
+    }
+
+    #[test]
+    fn every_scene_reads_back_as_itself() {
+        for preset in presets::all() {
+            let scene = preset.draft().build().unwrap();
+            assert_eq!(read_json(&json!({"scene": to_json(&scene)})).unwrap(), scene, "{}", preset.name);
+        }
+    }
+
+    #[test]
+    fn errors_point_to_the_field_and_name_limit_and_unit() {
+        let body = json!({"preset": "case-1", "scene": {
+            "table": {"tilt_gain": 5000, "tilt": 1}, "gravity": "9.81", "body": {"vertices": []}, "release": 3}});
+        let errors = read_json(&body).unwrap_err();
+        let expected = [
+            ("/scene/table/tilt_gain", "tilt_gain is 5000; it must be from -100 to 100 (no unit)"),
+            (
+                "/scene/table/tilt",
+                "unknown field `table.tilt`; known here: tilt_gain, energy_gain, target_height, strike, slide, feedback, \
+                 assumed_restitution",
+            ),
+            ("/scene/gravity", "gravity is \"9.81\"; it must be a number from 0.1 to 100 m/s², not text"),
+            ("/scene/body/vertices", "body.vertices is not available in this version"),
+            ("/scene/release", "release is 3; it must be an object"),
+        ];
+        for (pointer, detail) in expected {
+            assert!(errors.contains(&(pointer.to_owned(), detail.to_owned())), "{pointer}: {errors:?}");
+        }
+    }
+}
