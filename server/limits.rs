@@ -37,6 +37,16 @@ pub const ERRORS: usize = 64;
 
 // --- What a request may cost ---
 
+/// Contacts of one run. With its JSON that is 40 MB; a longer watch of a run is `stability`, which keeps no states.
+pub const IMPACTS: u64 = 100_000;
+
+/// Contacts that one derivative may pass. Beyond that a product of derivatives says nothing: it has overflowed, or its
+/// digits are gone.
+pub const PERIOD: u64 = 1000;
+
+/// Samples of one flight. A canvas is no wider.
+pub const SAMPLES_PER_FLIGHT: u64 = 256;
+
 /// Work of one request, in bounces of the plain rod (some 70 ns each): two seconds of one core.
 pub const WORK: Limit = Limit { name: "work of this request", most: 30_000_000, unit: "bounces" };
 

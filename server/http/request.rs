@@ -33,6 +33,19 @@ impl Ask {
         Reader::new(&self.fields, String::new(), self.source, errors)
     }
 
+    /// Reads all fields at once: what `read` makes of them, or a 422 with everything that is wrong.
+    ///
+    /// `read` has to ask for every field it knows before it gives up on one, or that one counts as unknown. Where it
+    /// gives nothing it has said why.
+    pub fn read<'v, T>(&'v self, read: impl FnOnce(&mut Reader<'v, '_>) -> Option<T>) -> Result<T, Problem> {
+        let mut errors = Errors::default();
+        let mut reader = self.reader(&mut errors);
+        let value = read(&mut reader);
+        reader.finish();
+        errors.into_result()?;
+        value.ok_or_else(Problem::internal)
+    }
+
     fn from_query(query: &str, headers: HeaderMap) -> Result<Self, Problem> {
         let (format, parameters) = split_format(query)?;
         Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, format })

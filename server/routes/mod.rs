@@ -6,16 +6,24 @@
 pub mod assets;
 pub mod contract;
 pub mod health;
+pub mod jacobians;
 pub mod metrics;
+pub mod scenes;
+pub mod stability;
+pub mod trajectories;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use axum::Router;
+use equipoise_physics::scene::Scene;
+use serde::Serialize;
 use tokio::sync::watch;
 
 use crate::compute::Pool;
 use crate::config::Config;
+use crate::http::Problem;
+use crate::wire::scene::Resolved;
 use metrics::Metrics;
 
 /// What routes share. Cheap to clone.
@@ -58,5 +66,24 @@ impl App {
 
 /// All resources. Each states its full path, so that a path is found by searching for it.
 pub fn all() -> Router<App> {
-    Router::new().merge(assets::routes()).merge(contract::routes()).merge(health::routes()).merge(metrics::routes())
+    Router::new()
+        .merge(assets::routes())
+        .merge(contract::routes())
+        .merge(health::routes())
+        .merge(metrics::routes())
+        .merge(scenes::routes())
+        .merge(trajectories::routes())
+        .merge(jacobians::routes())
+        .merge(stability::routes())
+}
+
+/// An answer as JSON.
+fn json(answer: &impl Serialize) -> Result<Vec<u8>, Problem> {
+    serde_json::to_vec(answer).map_err(|_| Problem::internal())
+}
+
+/// A request with all defaults filled in: the scene, and whatever else determines the answer.
+fn canonical(scene: &Scene, rest: &impl Serialize) -> Vec<u8> {
+    // Writing to memory does not fail.
+    serde_json::to_vec(&(Resolved(scene), rest)).unwrap_or_default()
 }

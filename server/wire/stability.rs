@@ -1,1 +1,248 @@
-//! The answer of `stability`.
+//! The answer of `stability`: the verdict, and everything it rests on.
+
+use equipoise_physics::scene::{Name, Scene, Value};
+use equipoise_physics::stability::{Judgement, Linear, Nonlinear, Verdict};
+use serde::Serialize;
+
+use super::jacobian::Eigenvalue;
+use super::scene::{Resolved, has_angle};
+use super::table::{Cells, Column, Table};
+use super::trajectory::{Choice, Outcome};
+
+#[derive(Debug, Clone, Serialize)]
+struct FixedPoint {
+    theta: f64,
+    x_dot: f64,
+    y_dot: f64,
+    theta_dot: f64,
+    flight_time: f64,
+    apex_height: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct TiltGain {
+    value: f64,
+    lower: f64,
+    critical: f64,
+    margin_below: f64,
+    margin_above: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct EnergyGain {
+    value: f64,
+    upper: f64,
+    eigenvalue: f64,
+    margin: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct LinearPart {
+    class: &'static str,
+    residue: Option<f64>,
+    rotation: Option<f64>,
+    spectral_radius: f64,
+    eigenvalues: Vec<Eigenvalue>,
+    tilt_gain: TiltGain,
+    energy_gain: EnergyGain,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct Boundary {
+    coefficient: f64,
+    kind: &'static str,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct NonlinearPart {
+    outcome: &'static str,
+    impacts: u64,
+    t: f64,
+    max_theta: f64,
+    detail: String,
+}
+
+/// The answer.
+#[derive(Debug, Clone, Serialize)]
+pub struct Stability<'a> {
+    scene: Resolved<'a>,
+    model: Choice,
+    verdict: Option<String>,
+    decided_by: Option<&'static str>,
+    reason: String,
+    fixed_point: Option<FixedPoint>,
+    linear: Option<LinearPart>,
+    boundary: Option<Boundary>,
+    nonlinear: NonlinearPart,
+    drift_speed: Option<f64>,
+    agree: Option<bool>,
+    notes: Vec<String>,
+}
+
+fn number(scene: &Scene, name: Name) -> f64 {
+    match scene.value(name) {
+        Some(Value::Number(number)) => number,
+        _ => 0.0,
+    }
+}
+
+/// The verdict in words; what a run showed stands in it with its length.
+fn words(verdict: Verdict, run: &Nonlinear) -> String {
+    match verdict {
+        Verdict::StableInPlace => "stable in place".to_owned(),
+        Verdict::Elliptic => format!("elliptic, {} bounces survived", run.impacts),
+        Verdict::BoundedBeyondBoundary => "bounded beyond the boundary".to_owned(),
+        Verdict::Unstable => "unstable".to_owned(),
+    }
+}
+
+impl LinearPart {
+    fn new(scene: &Scene, linear: &Linear) -> Self {
+        let kappa = number(scene, Name::TiltGain);
+        let energy_gain = number(scene, Name::EnergyGain);
+        Self {
+            class: linear.class.name(),
+            residue: linear.residue,
+            rotation: linear.rotation,
+            spectral_radius: linear.spectral_radius(),
+            eigenvalues: linear.eigenvalues.iter().map(|&value| value.into()).collect(),
+            tilt_gain: TiltGain {
+                value: kappa,
+                lower: linear.lower_tilt_gain,
+                critical: linear.critical_tilt_gain,
+                margin_below: kappa - linear.lower_tilt_gain,
+                margin_above: linear.critical_tilt_gain - kappa,
+            },
+            energy_gain: EnergyGain {
+                value: energy_gain,
+                upper: linear.upper_energy_gain,
+                eigenvalue: linear.energy_eigenvalue,
+                margin: energy_gain.min(linear.upper_energy_gain - energy_gain),
+            },
+        }
+    }
+}
+
+impl<'a> Stability<'a> {
+    /// Judges a scene by its linear verdict and a run of up to `impacts` contacts; `go_on` is asked now and then, and a
+    /// `false` gives none.
+    pub fn compute(scene: &'a Scene, impacts: u64, go_on: impl FnMut() -> bool) -> Option<Self> {
+        let run = scene.nonlinear(impacts, go_on)?;
+        let mut notes = Vec::new();
+        let mut answer = Self {
+            scene: Resolved(scene),
+            model: Choice::model(scene),
+            verdict: None,
+            decided_by: None,
+            reason: String::new(),
+            fixed_point: None,
+            linear: None,
+            boundary: None,
+            nonlinear: NonlinearPart {
+                outcome: run.ending.name(),
+                impacts: run.impacts,
+                t: run.t,
+                max_theta: run.max_theta,
+                detail: Outcome::new(run.ending, run.impacts, run.t).detail,
+            },
+            drift_speed: scene.drift_speed(),
+            agree: None,
+            notes: Vec::new(),
+        };
+        if !has_angle(scene) {
+            notes.push(
+                "max_theta is of the velocity's angle; residue, rotation, boundary and drift_speed are null: a point \
+                        mass has no angle of its own, and its drift dies out"
+                    .to_owned(),
+            );
+        } else if answer.drift_speed.is_none() {
+            notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
+        }
+        match scene.fixed_point() {
+            Err(why) => {
+                notes.push(format!("verdict, fixed_point, linear, boundary and agree are null: {why}"));
+                answer.reason = why;
+            }
+            Ok(fixed_point) => {
+                let linear = scene.linear(&fixed_point);
+                let boundary = scene.boundary(&fixed_point);
+                let Judgement { verdict, decided_by, agree, reason } = scene.judge(&linear, boundary, &run);
+                answer.verdict = Some(words(verdict, &run));
+                answer.decided_by = Some(decided_by.name());
+                answer.agree = Some(agree);
+                answer.reason = reason;
+                answer.boundary =
+                    boundary.map(|boundary| Boundary { coefficient: boundary.coefficient, kind: boundary.kind() });
+                if answer.boundary.is_some() && linear.rotation.is_none() {
+                    notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
+                }
+                answer.linear = Some(LinearPart::new(scene, &linear));
+                answer.fixed_point = Some(FixedPoint {
+                    theta: 0.0,
+                    x_dot: 0.0,
+                    y_dot: -fixed_point.speed,
+                    theta_dot: 0.0,
+                    flight_time: fixed_point.flight_time,
+                    apex_height: fixed_point.apex_height,
+                });
+            }
+        }
+        answer.notes = notes;
+        Some(answer)
+    }
+
+    /// How many bounces were computed for it.
+    pub fn bounces(&self) -> u64 {
+        self.nonlinear.impacts
+    }
+
+    /// What ends it as NDJSON: the reason and the notes, which are no scalars.
+    pub fn end(&self) -> impl Serialize {
+        #[derive(Serialize)]
+        struct End {
+            reason: String,
+            notes: Vec<String>,
+        }
+        End { reason: self.reason.clone(), notes: self.notes.clone() }
+    }
+
+    /// The scalars, in one row.
+    pub fn to_table(&self) -> Table {
+        let linear = self.linear.as_ref();
+        let fixed_point = self.fixed_point.as_ref();
+        let numbers = [
+            ("tilt_gain", "", linear.map(|it| it.tilt_gain.value)),
+            ("tilt_gain_lower", "", linear.map(|it| it.tilt_gain.lower)),
+            ("tilt_gain_critical", "", linear.map(|it| it.tilt_gain.critical)),
+            ("tilt_gain_margin_below", "", linear.map(|it| it.tilt_gain.margin_below)),
+            ("tilt_gain_margin_above", "", linear.map(|it| it.tilt_gain.margin_above)),
+            ("residue", "", linear.and_then(|it| it.residue)),
+            ("rotation", "rad", linear.and_then(|it| it.rotation)),
+            ("spectral_radius", "", linear.map(|it| it.spectral_radius)),
+            ("energy_gain", "s2_per_m2", linear.map(|it| it.energy_gain.value)),
+            ("energy_gain_upper", "s2_per_m2", linear.map(|it| it.energy_gain.upper)),
+            ("energy_gain_eigenvalue", "", linear.map(|it| it.energy_gain.eigenvalue)),
+            ("energy_gain_margin", "s2_per_m2", linear.map(|it| it.energy_gain.margin)),
+            ("boundary_coefficient", "", self.boundary.as_ref().map(|it| it.coefficient)),
+            ("fixed_point_y_dot", "m_per_s", fixed_point.map(|it| it.y_dot)),
+            ("fixed_point_flight_time", "s", fixed_point.map(|it| it.flight_time)),
+            ("drift_speed", "m_per_s", self.drift_speed),
+            ("nonlinear_t", "s", Some(self.nonlinear.t)),
+            ("nonlinear_max_theta", "rad", Some(self.nonlinear.max_theta)),
+        ];
+        let words = [
+            ("decided_by", self.decided_by),
+            ("class", linear.map(|it| it.class)),
+            ("boundary_kind", self.boundary.as_ref().map(|it| it.kind)),
+            ("nonlinear_outcome", Some(self.nonlinear.outcome)),
+            ("agree", self.agree.map(|agree| if agree { "true" } else { "false" })),
+        ];
+        let mut columns = vec![
+            Column { name: "verdict", unit: "", cells: Cells::Texts(vec![self.verdict.clone()]) },
+            Column { name: "nonlinear_impacts", unit: "", cells: Cells::Counts(vec![self.nonlinear.impacts]) },
+        ];
+        columns.extend(words.map(|(name, word)| Column { name, unit: "", cells: Cells::Words(vec![word]) }));
+        columns.extend(numbers.map(|(name, unit, value)| Column { name, unit, cells: Cells::Sparse(vec![value]) }));
+        Table(columns)
+    }
+}

@@ -26,6 +26,8 @@ pub enum Cells {
     Sparse(Vec<Option<f64>>),
     /// Words that need not exist.
     Words(Vec<Option<&'static str>>),
+    /// Sentences that need not exist.
+    Texts(Vec<Option<String>>),
 }
 
 impl Cells {
@@ -35,26 +37,41 @@ impl Cells {
             Self::Numbers(cells) => cells.len(),
             Self::Sparse(cells) => cells.len(),
             Self::Words(cells) => cells.len(),
+            Self::Texts(cells) => cells.len(),
         }
     }
 
-    /// Writes one value as JSON does, or calls `absent`.
-    fn write(&self, row: usize, out: &mut Vec<u8>, absent: impl FnOnce(&mut Vec<u8>)) {
-        let number = |out: &mut Vec<u8>, value: f64| {
-            // Writing to memory does not fail.
-            let _ = serde_json::to_writer(out, &value);
+    /// Writes one value as JSON, `null` included.
+    fn write_json(&self, row: usize, out: &mut Vec<u8>) {
+        // Writing to memory does not fail.
+        let _ = match self {
+            Self::Counts(cells) => serde_json::to_writer(out, &cells[row]),
+            Self::Numbers(cells) => serde_json::to_writer(out, &cells[row]),
+            Self::Sparse(cells) => serde_json::to_writer(out, &cells[row]),
+            Self::Words(cells) => serde_json::to_writer(out, &cells[row]),
+            Self::Texts(cells) => serde_json::to_writer(out, &cells[row]),
         };
-        match self {
-            Self::Counts(cells) => out.extend_from_slice(cells[row].to_string().as_bytes()),
-            Self::Numbers(cells) => number(out, cells[row]),
-            Self::Sparse(cells) => match cells[row] {
-                Some(value) if value.is_finite() => number(out, value),
-                _ => absent(out),
-            },
-            Self::Words(cells) => match cells[row] {
-                Some(word) => out.extend_from_slice(word.as_bytes()),
-                None => absent(out),
-            },
+    }
+
+    /// Writes one value as CSV: numbers as in JSON, texts quoted where they need it, nothing for what does not exist.
+    fn write_csv(&self, row: usize, out: &mut Vec<u8>) {
+        let text = match self {
+            Self::Words(cells) => cells[row],
+            Self::Texts(cells) => cells[row].as_deref(),
+            Self::Counts(_) | Self::Numbers(_) | Self::Sparse(_) => {
+                let start = out.len();
+                self.write_json(row, out);
+                if out[start..] == *b"null" {
+                    out.truncate(start);
+                }
+                return;
+            }
+        };
+        let text = text.unwrap_or_default();
+        if text.contains([',', '"', '\r', '\n']) {
+            out.extend_from_slice(format!("\"{}\"", text.replace('"', "\"\"")).as_bytes());
+        } else {
+            out.extend_from_slice(text.as_bytes());
         }
     }
 }
@@ -79,7 +96,7 @@ impl Table {
         self.0.first().map_or(0, |column| column.cells.len())
     }
 
-    /// RFC 4180, with a header; what does not exist is empty. No name or word needs quotes.
+    /// RFC 4180, with a header; what does not exist is empty.
     pub fn to_csv(&self) -> Vec<u8> {
         let header: Vec<String> = self
             .0
@@ -95,7 +112,7 @@ impl Table {
                 if index > 0 {
                     out.push(b',');
                 }
-                column.cells.write(row, &mut out, |_| ());
+                column.cells.write_csv(row, &mut out);
             }
             out.extend_from_slice(b"\r\n");
         }
@@ -110,13 +127,7 @@ impl Table {
                 out.extend_from_slice(if index == 0 { b"{\"" } else { b",\"" });
                 out.extend_from_slice(column.name.as_bytes());
                 out.extend_from_slice(b"\":");
-                let quote: &[u8] = match &column.cells {
-                    Cells::Words(cells) if cells[row].is_some() => b"\"",
-                    _ => b"",
-                };
-                out.extend_from_slice(quote);
-                column.cells.write(row, &mut out, |out| out.extend_from_slice(b"null"));
-                out.extend_from_slice(quote);
+                column.cells.write_json(row, &mut out);
             }
             out.extend_from_slice(b"}\n");
         }
@@ -138,19 +149,20 @@ mod tests {
             Column { name: "t", unit: "s", cells: Cells::Numbers(vec![0.1, 1e21]) },
             Column { name: "flight_time", unit: "s", cells: Cells::Sparse(vec![Some(0.5), None]) },
             Column { name: "contact_mode", unit: "", cells: Cells::Words(vec![Some("stick"), None]) },
+            Column { name: "why", unit: "", cells: Cells::Texts(vec![None, Some("a, \"b\"".to_owned())]) },
         ]);
         assert_eq!(
             serde_json::to_string(&table).unwrap(),
-            r#"{"n":[1,2],"t":[0.1,1e+21],"flight_time":[0.5,null],"contact_mode":["stick",null]}"#
+            r#"{"n":[1,2],"t":[0.1,1e+21],"flight_time":[0.5,null],"contact_mode":["stick",null],"why":[null,"a, \"b\""]}"#
         );
         assert_eq!(
             String::from_utf8(table.to_csv()).unwrap(),
-            "n,t_s,flight_time_s,contact_mode\r\n1,0.1,0.5,stick\r\n2,1e+21,,\r\n"
+            "n,t_s,flight_time_s,contact_mode,why\r\n1,0.1,0.5,stick,\r\n2,1e+21,,,\"a, \"\"b\"\"\"\r\n"
         );
         assert_eq!(
             String::from_utf8(table.to_ndjson(&"done")).unwrap(),
-            "{\"n\":1,\"t\":0.1,\"flight_time\":0.5,\"contact_mode\":\"stick\"}\n\
-             {\"n\":2,\"t\":1e+21,\"flight_time\":null,\"contact_mode\":null}\n{\"end\":\"done\"}\n"
+            "{\"n\":1,\"t\":0.1,\"flight_time\":0.5,\"contact_mode\":\"stick\",\"why\":null}\n\
+             {\"n\":2,\"t\":1e+21,\"flight_time\":null,\"contact_mode\":null,\"why\":\"a, \\\"b\\\"\"}\n{\"end\":\"done\"}\n"
         );
     }
 }

@@ -314,4 +314,14 @@ impl<'a> Trajectory<'a> {
             notes,
         })
     }
+
+    /// What ends it as NDJSON.
+    pub fn end(&self) -> impl Serialize {
+        #[derive(Serialize)]
+        struct End {
+            outcome: Outcome,
+            notes: Vec<String>,
+        }
+        End { outcome: self.outcome.clone(), notes: self.notes.clone() }
+    }
 }

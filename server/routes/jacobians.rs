@@ -1,0 +1,47 @@
+//! `jacobians`: the derivative of the map.
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::State;
+use axum::http::Response;
+use axum::routing::get;
+
+use super::App;
+use crate::compute::{Cancel, Price};
+use crate::http::{Ask, Format, Problem, Resource};
+use crate::limits;
+use crate::wire::jacobian::{At, Jacobian, Method, price};
+use crate::wire::scene;
+
+const RESOURCE: Resource = Resource { name: "jacobians", formats: &[Format::Json, Format::Csv, Format::Ndjson] };
+
+/// Its path.
+pub fn routes() -> Router<App> {
+    Router::new().route("/v1/jacobians", get(jacobians).post(jacobians))
+}
+
+async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+    let (scene, at, period, method) = ask.read(|reader| {
+        let scene = scene::read(reader);
+        let at = At::read(reader);
+        let period = reader.integer("period", 1..=limits::PERIOD).unwrap_or(1);
+        let method = reader
+            .choice("method", &[("exact", Method::Exact), ("finite_difference", Method::FiniteDifference)])
+            .unwrap_or(Method::Exact);
+        Some((scene?, at?, period, method))
+    })?;
+    let price = Price::bounces(price(&scene.model(), at, period, method)).within(&limits::WORK)?;
+    let canonical = super::canonical(&scene, &(at, period, method));
+    let metrics = app.metrics.clone();
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, _: &Cancel| {
+        let jacobian = Jacobian::compute(&scene, at, period, method)
+            .map_err(|(pointer, detail)| Problem::invalid_at(pointer, detail))?;
+        metrics.bounces.inc_by(period);
+        match format {
+            Format::Csv => Ok(jacobian.to_table().to_csv()),
+            Format::Ndjson => Ok(jacobian.to_table().to_ndjson(&jacobian)),
+            _ => super::json(&jacobian),
+        }
+    })
+    .await
+}
