@@ -1,0 +1,73 @@
+// Elements from script, without markup in strings. Not for anything that draws.
+
+/**
+ * An element with attributes and children; a property that is a function becomes a listener.
+ * @template {keyof HTMLElementTagNameMap} K
+ * @param {K} tag
+ * @param {Record<string, string | number | boolean | null | undefined | ((event: any) => void)>} [attributes]
+ * @param {...(Node | string | null | undefined | false)} children
+ * @returns {HTMLElementTagNameMap[K]}
+ */
+export function h(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (typeof value === 'function') element.addEventListener(name, value);
+    else if (value === true) element.setAttribute(name, '');
+    else if (value != null && value !== false) element.setAttribute(name, String(value));
+  }
+  element.append(...children.filter((child) => child != null && child !== false).map((child) => /** @type {Node | string} */ (child)));
+  return element;
+}
+
+/**
+ * The element of the page with this id; its absence is a mistake in the page itself.
+ * @template {typeof HTMLElement} C
+ * @param {string} id
+ * @param {C} [kind]
+ * @returns {InstanceType<C>}
+ */
+export function byId(id, kind) {
+  const element = document.getElementById(id);
+  if (!(element instanceof (kind ?? HTMLElement))) throw new Error(`the page has no #${id}`);
+  return /** @type {InstanceType<C>} */ (element);
+}
+
+/**
+ * A symbol in italics, `κ_c` with its subscript and `y*` with its star raised.
+ * @param {string} text
+ */
+export function symbol(text) {
+  const [base, low] = text.split('_');
+  const star = base.endsWith('*');
+  return h('i', { class: 'symbol' }, star ? base.slice(0, -1) : base, star && h('sup', {}, '*'), low && h('sub', {}, low));
+}
+
+/**
+ * Text to the clipboard, and the button says so for a moment.
+ * @param {HTMLElement} button
+ * @param {string} text
+ */
+export async function copy(button, text) {
+  const label = button.dataset.label ??= button.textContent ?? '';
+  try {
+    await navigator.clipboard.writeText(text);
+    button.textContent = 'Copied';
+  } catch {
+    button.textContent = 'Not allowed to copy';
+  }
+  setTimeout(() => { button.textContent = label; }, 1600);
+}
+
+/**
+ * Runs the last call only, once there was quiet for so long.
+ * @param {number} quiet_ms
+ * @param {() => void} run
+ */
+export function settled(quiet_ms, run) {
+  /** @type {number | undefined} */
+  let timer;
+  return () => {
+    clearTimeout(timer);
+    timer = setTimeout(run, quiet_ms);
+  };
+}

@@ -1,0 +1,263 @@
+// The form of a scene, made from the server's table of fields. Keeps what was typed, right or wrong; does not judge a scene: the server does.
+
+import { h, symbol } from './dom.js';
+import { number, parse, quantity, unitAfter } from './numbers.js';
+import { pathOf, setAt, valueAt } from './api.js';
+
+/** @typedef {import('./api.js').Field} Field */
+/** @typedef {import('./api.js').Scene} Scene */
+
+/**
+ * @typedef {object} Row
+ * @property {Field} field
+ * @property {HTMLElement} element
+ * @property {HTMLInputElement | HTMLSelectElement} input
+ * @property {HTMLInputElement | null} slider
+ * @property {HTMLElement} error
+ */
+
+/** @type {Record<string, string>} */
+const GROUPS = { body: 'Body', gravity: 'Gravity', contact: 'Contact', table: 'Table', release: 'Release', noise: 'Noise', '': 'Scene', scene: 'Scene' };
+
+// Where a slider moves at first: the ranges of the fields are a lab's, far too wide to aim in. A typed value widens it.
+/** @type {Record<string, [number, number]>} */
+const COMFORTABLE = {
+  'table.tilt_gain': [0.8, 2], 'table.energy_gain': [0, 1], 'table.target_height': [0.14, 0.5],
+  'body.contact_distance': [0.02, 0.4], 'body.radius_of_gyration': [0.02, 0.4],
+  'release.height': [0.1, 0.6], 'release.theta': [-0.6, 0.6], 'release.theta_dot': [-3, 3],
+  'release.x': [-1, 1], 'release.x_dot': [-1, 1], 'release.y_dot': [-2, 2], gravity: [1, 20], incline: [0.1, 1.5708],
+};
+
+/** A step of 1, 2 or 5 that parts the span into some two hundred. @param {number} span */
+function step(span) {
+  const raw = span / 200;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  return Number((power * ([1, 2, 5].find((m) => m * power >= raw * 0.999) ?? 10)).toPrecision(2));
+}
+
+/**
+ * @param {Field} field
+ * @param {number | null} value
+ * @returns {[number, number]}
+ */
+export function sliderRange(field, value) {
+  const size = Math.abs(value || Number(field.default) || 1);
+  const low = field.minimum ?? -Infinity;
+  const high = field.maximum ?? Infinity;
+  const [from, to] = COMFORTABLE[field.path] ?? [low >= 0 ? 0 : -2 * size, field.maximum === 1 ? 1 : 2 * size];
+  const reach = value == null ? [from, to] : [Math.min(from, value), Math.max(to, value)];
+  return [Math.max(low, reach[0]), Math.min(high, reach[1])];
+}
+
+/**
+ * Sets a slider to a value, its ends moved where the value needs it.
+ * @param {HTMLInputElement} slider
+ * @param {Field} field
+ * @param {number | null} value
+ */
+export function aim(slider, field, value) {
+  const [from, to] = sliderRange(field, value);
+  slider.min = String(from);
+  slider.max = String(to);
+  slider.step = field.kind === 'integer' ? '1' : String(step(to - from));
+  slider.value = String(value ?? field.default ?? (from + to) / 2);
+  slider.setAttribute('aria-valuetext', value == null ? 'not set' : quantity(value, field.unit));
+}
+
+export class Form {
+  /** @type {Map<string, Row>} */
+  #rows = new Map();
+  #onEdit;
+
+  /**
+   * @param {HTMLElement} root
+   * @param {Field[]} fields
+   * @param {(path: string, final: boolean) => void} onEdit final when a slider was let go or a text was left
+   */
+  constructor(root, fields, onEdit) {
+    this.#onEdit = onEdit;
+    const groups = [...new Set(fields.map((field) => field.group ?? ''))];
+    for (const group of groups) {
+      const members = fields.filter((field) => (field.group ?? '') === group);
+      const title = GROUPS[group] ?? group[0].toUpperCase() + group.slice(1);
+      const missing = members.filter((field) => !field.available);
+      const fieldset = h('fieldset', {}, h('legend', {}, title));
+      for (const field of members) if (field.available) fieldset.append(this.#row(field));
+      if (missing.length > 0) {
+        fieldset.append(h('p', { class: 'muted unavailable' }, 'Not in this version: ', missing.map((field) => field.title.toLowerCase()).join(', '), '.'));
+      }
+      root.append(fieldset);
+    }
+    root.addEventListener('submit', (event) => event.preventDefault());
+  }
+
+  /** @param {Field} field */
+  #row(field) {
+    const id = `field-${field.path.replaceAll('.', '-')}`;
+    const error = h('p', { class: 'error', id: `${id}-error` });
+    const about = h('span', { class: 'about', id: `${id}-about` }, field.about);
+    const name = h('label', { for: id }, field.title, field.symbol && ' ', field.symbol ? symbol(field.symbol) : null);
+    const described = `${id}-about ${id}-error`;
+    /** @type {HTMLInputElement | HTMLSelectElement} */
+    let input;
+    /** @type {HTMLInputElement | null} */
+    let slider = null;
+    if (field.kind === 'choice') {
+      input = h('select', { id, 'aria-describedby': described, change: () => this.#edited(field.path, true) },
+        ...(field.choices ?? []).map((choice) => h('option', { value: choice }, choice)));
+    } else if (field.kind === 'boolean') {
+      input = h('input', { id, type: 'checkbox', 'aria-describedby': described, change: () => this.#edited(field.path, true) });
+    } else {
+      const typed = h('input', {
+        id, type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false', 'aria-describedby': described,
+        placeholder: field.default == null ? 'not set' : number(Number(field.default)),
+        input: () => this.#edited(field.path, false), change: () => this.#edited(field.path, true),
+      });
+      const moved = h('input', { type: 'range', 'aria-label': `${field.title}, slider`, tabindex: 0 });
+      const take = (/** @type {boolean} */ final) => { typed.value = moved.value; this.#edited(field.path, final, true); };
+      moved.addEventListener('input', () => take(false));
+      moved.addEventListener('change', () => take(true));
+      input = typed;
+      slider = moved;
+    }
+    const unit = unitAfter(field.unit).trim();
+    const range = field.minimum != null && field.maximum != null
+      ? h('span', { class: 'range' }, `${number(field.minimum)} to ${quantity(field.maximum, field.unit)}`) : null;
+    const element = h('div', { class: `field ${field.kind}` },
+      h('div', { class: 'field-head' }, name, field.live && h('span', { class: 'live-tag' }, 'live')),
+      h('div', { class: 'field-row' }, slider, input, slider && h('span', { class: 'unit' }, unit)),
+      h('p', { class: 'field-foot' }, about, field.about && range ? ' · ' : '', range), error);
+    this.#rows.set(field.path, { field, element, input, slider, error });
+    return element;
+  }
+
+  /**
+   * @param {string} path
+   * @param {boolean} final
+   */
+  #edited(path, final, bySlider = false) {
+    const row = /** @type {Row} */ (this.#rows.get(path));
+    this.#say(row, null);
+    const { value, problem } = this.#read(row);
+    if (problem && final) this.#say(row, problem);
+    if (row.slider && !problem) {
+      if (bySlider) row.slider.setAttribute('aria-valuetext', quantity(Number(value), row.field.unit));
+      else aim(row.slider, row.field, typeof value === 'number' ? value : null);
+    }
+    this.#reach();
+    this.#onEdit(path, final);
+  }
+
+  /** A point has no extent: what belongs to a rod cannot be typed beside it, and stays for later. */
+  #reach() {
+    const point = this.#rows.get('body.point');
+    const isPoint = point?.input instanceof HTMLInputElement && point.input.checked;
+    for (const { field, input, slider, element } of this.#rows.values()) {
+      if (!field.path.startsWith('body.') || field.path === 'body.point') continue;
+      input.disabled = isPoint;
+      if (slider) slider.disabled = isPoint;
+      element.classList.toggle('off', isPoint);
+    }
+  }
+
+  /** @param {Row} row @returns {{value: unknown, problem: string | null}} */
+  #read({ field, input }) {
+    if (input.disabled) return { value: undefined, problem: null };
+    if (field.kind === 'boolean') return { value: /** @type {HTMLInputElement} */ (input).checked || undefined, problem: null };
+    if (field.kind === 'choice') return { value: input.value === field.default ? undefined : input.value, problem: null };
+    if (input.value.trim() === '') {
+      if (field.required && !field.path.startsWith('body.')) return { value: undefined, problem: `${field.title} is needed.` };
+      return { value: undefined, problem: null };
+    }
+    const value = parse(input.value, field.unit);
+    return value === null ? { value: undefined, problem: `“${input.value.trim()}” is not a number.` } : { value, problem: null };
+  }
+
+  /**
+   * @param {Row} row
+   * @param {string | null} problem
+   */
+  #say({ input, error }, problem) {
+    if (problem === null) input.removeAttribute('aria-invalid');
+    else input.setAttribute('aria-invalid', 'true');
+    error.textContent = problem ?? '';
+  }
+
+  /** Fills in a scene; what it leaves open shows its default. @param {Scene} scene */
+  fill(scene) {
+    for (const row of this.#rows.values()) {
+      this.#put(row, valueAt(scene, row.field.path));
+      this.#say(row, null);
+    }
+    this.#reach();
+  }
+
+  /**
+   * @param {Row} row
+   * @param {unknown} value
+   */
+  #put({ field, input, slider }, value) {
+    if (input instanceof HTMLInputElement && field.kind === 'boolean') input.checked = value === true;
+    else if (field.kind === 'choice') input.value = String(value ?? field.default ?? '');
+    else input.value = value == null ? '' : String(value);
+    if (slider) aim(slider, field, typeof value === 'number' ? value : null);
+  }
+
+  /**
+   * One value from elsewhere, such as the gain beside the scene.
+   * @param {string} path
+   * @param {unknown} value
+   */
+  put(path, value) {
+    const row = this.#rows.get(path);
+    if (!row || this.#read(row).value === value) return;
+    this.#put(row, value);
+    this.#say(row, null);
+  }
+
+  /** What is typed, as a scene without defaults; `complete` when every text is a value. */
+  read() {
+    /** @type {Scene} */
+    const scene = {};
+    let complete = true;
+    for (const row of this.#rows.values()) {
+      const { value, problem } = this.#read(row);
+      if (problem) complete = false;
+      else if (value !== undefined) setAt(scene, row.field.path, value);
+    }
+    return { scene, complete };
+  }
+
+  /** Shows beside every number that is none what is wrong with it. */
+  complain() {
+    for (const row of this.#rows.values()) {
+      const { problem } = this.#read(row);
+      if (problem) this.#say(row, problem);
+    }
+  }
+
+  /**
+   * The server's errors beside their fields.
+   * @param {import('./api.js').FieldError[]} errors
+   * @returns {string[]} those that belong to no field here
+   */
+  blame(errors) {
+    for (const row of this.#rows.values()) if (this.#read(row).problem === null) this.#say(row, null);
+    /** @type {string[]} */
+    const homeless = [];
+    for (const { pointer, detail } of errors) {
+      const path = pathOf(pointer);
+      const row = this.#rows.get(path) ?? [...this.#rows.values()].find(({ field }) => field.path.startsWith(`${path}.`));
+      if (row && path !== '') this.#say(row, detail);
+      else homeless.push(detail);
+    }
+    return homeless;
+  }
+
+  /** The first field with an error gets the focus. */
+  focusError() {
+    for (const { input } of this.#rows.values()) {
+      if (input.getAttribute('aria-invalid') === 'true') return input.focus();
+    }
+  }
+}

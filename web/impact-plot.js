@@ -1,0 +1,225 @@
+// A plot with one mark per impact, drawn on and on without starting over. What its axes mean is said by who makes it.
+
+import { Figure } from './figure.js';
+import { drawAxes, drawMark, line, roundRange, seriesColour, toX, toY } from './axes.js';
+import { SANS, theme, onThemeChange } from './theme.js';
+import { invalidate, surfaces } from './surface.js';
+
+/** @typedef {import('./impacts.js').Column} Column */
+
+/**
+ * @typedef {object} Axis
+ * @property {Column} column
+ * @property {string} name with its unit, for the axis
+ * @property {boolean} [symmetric] about zero
+ * @property {number} [span] least span, so that rounding does not look like motion
+ * @property {number} [from] a low end that stays
+ */
+
+/**
+ * @typedef {object} Meaning
+ * @property {string} id
+ * @property {string | Node} title
+ * @property {string | Node} about
+ * @property {Axis} x
+ * @property {Axis} y
+ * @property {string[]} head of the table of numbers
+ * @property {(impacts: import('./impacts.js').Impacts, place: number) => string[]} cells
+ * @property {(impacts: import('./impacts.js').Impacts, place: number) => string} readout
+ * @property {string} hint while there is nothing
+ * @property {string} spoken what it shows, for those who do not see it
+ * @property {() => {value: number, name: string}[]} [levels] horizontal lines worth comparing with
+ */
+
+const MARGIN = { left: 46, right: 10, top: 8, bottom: 24 };
+
+export class ImpactPlot {
+  figure;
+  /** The impact under the pointer, for all plots. @type {(place: number | null) => void} */
+  onPoint = () => {};
+  #meaning;
+  #impacts;
+  #drawn = 0;
+  /** @type {number | null} */
+  #pointed = null;
+  #stale = true;
+  /** @type {import('./axes.js').Frame} */
+  #frame = { left: 0, top: 0, width: 0, height: 0, x: { low: 0, high: 1 }, y: { low: 0, high: 1 } };
+  /** @type {{x: import('./axes.js').Range, y: import('./axes.js').Range}} */
+  #extent = ImpactPlot.#nothing();
+  #plot;
+  #mark;
+
+  static #nothing() {
+    return { x: { low: Infinity, high: -Infinity }, y: { low: Infinity, high: -Infinity } };
+  }
+
+  /**
+   * @param {import('./impacts.js').Impacts} impacts
+   * @param {Meaning} meaning
+   */
+  constructor(impacts, meaning) {
+    this.#impacts = impacts;
+    this.#meaning = meaning;
+    this.figure = new Figure(meaning.id, meaning.title, meaning.about, { head: meaning.head, rows: () => this.#rows() });
+    const { box } = this.figure;
+    [this.#plot, this.#mark] = surfaces(box, 2, () => this.redraw());
+    onThemeChange(() => this.redraw());
+    box.addEventListener('pointermove', (event) => this.onPoint(this.#nearest(event)));
+    box.addEventListener('pointerleave', () => this.onPoint(null));
+  }
+
+  #rows() {
+    const rows = [];
+    for (let place = this.#impacts.end - 1; place >= this.#impacts.begin && rows.length < 50; place -= 1) rows.push(this.#meaning.cells(this.#impacts, place));
+    return rows;
+  }
+
+  /** Everything anew in the next frame. */
+  redraw() {
+    this.#stale = true;
+    invalidate(this);
+  }
+
+  clear() {
+    this.#extent = ImpactPlot.#nothing();
+    this.#pointed = null;
+    this.#drawn = 0;
+    this.redraw();
+  }
+
+  /** @param {number | null} place */
+  point(place) {
+    if (place === this.#pointed) return;
+    this.#pointed = place;
+    invalidate(this);
+  }
+
+  /** @param {PointerEvent} event */
+  #nearest(event) {
+    const { left, top } = this.figure.box.getBoundingClientRect();
+    const px = event.clientX - left;
+    const py = event.clientY - top;
+    let best = null;
+    let distance = 24 ** 2;
+    for (let place = this.#impacts.begin; place < this.#impacts.end; place += 1) {
+      const [x, y] = this.#at(place);
+      const d = (x - px) ** 2 + (y - py) ** 2;
+      if (d <= distance) { distance = d; best = place; }
+    }
+    return best;
+  }
+
+  /** @param {number} place */
+  #at(place) {
+    const { x, y } = this.#meaning;
+    return [toX(this.#frame, this.#impacts.at(x.column, place)), toY(this.#frame, this.#impacts.at(y.column, place))];
+  }
+
+  /** @param {number} from @returns {boolean} whether all of it lies within the frame */
+  #extend(from) {
+    let inside = true;
+    for (const axis of /** @type {const} */ (['x', 'y'])) {
+      const extent = this.#extent[axis];
+      for (let place = from; place < this.#impacts.end; place += 1) {
+        const value = this.#impacts.at(this.#meaning[axis].column, place);
+        if (value < extent.low) extent.low = value;
+        if (value > extent.high) extent.high = value;
+      }
+      if (extent.low < this.#frame[axis].low || extent.high > this.#frame[axis].high) inside = false;
+    }
+    return inside;
+  }
+
+  /** @param {number} now_ms */
+  draw(now_ms) {
+    const { begin, end } = this.#impacts;
+    if (end < this.#drawn) this.#drawn = begin;
+    if (!this.#extend(Math.max(begin, this.#drawn))) this.#stale = true;
+    if (this.#stale) this.#paper();
+    const { context } = this.#plot;
+    for (let place = Math.max(begin, this.#drawn); place < end; place += 1) {
+      const [x, y] = this.#at(place);
+      if (Number.isNaN(x) || Number.isNaN(y)) continue;
+      const series = this.#impacts.at('series', place);
+      drawMark(context, series, x, y, 1.8);
+      context.fillStyle = seriesColour(series);
+      context.fill();
+    }
+    this.#drawn = end;
+    this.#highlight();
+    this.figure.name(now_ms, () => (end === 0 ? `${this.#meaning.spoken}: nothing yet` : `${this.#meaning.spoken}. ${end} impacts; the last: ${this.#meaning.readout(this.#impacts, end - 1)}`));
+    this.figure.list(now_ms);
+    return false;
+  }
+
+  /** The empty plot with scales that hold what there is. */
+  #paper() {
+    const { context, width, height } = this.#plot;
+    const { x, y, hint, levels } = this.#meaning;
+    const extent = structuredClone(this.#extent);
+    for (const { value } of levels?.() ?? []) {
+      extent.y.low = Math.min(extent.y.low, value);
+      extent.y.high = Math.max(extent.y.high, value);
+    }
+    const empty = !(extent.x.high >= extent.x.low) || !(extent.y.high >= extent.y.low);
+    this.#frame = {
+      left: MARGIN.left, top: MARGIN.top, width: Math.max(1, width - MARGIN.left - MARGIN.right), height: Math.max(1, height - MARGIN.top - MARGIN.bottom),
+      x: extent.x.high >= extent.x.low ? roundRange(extent.x, x) : roundRange({ low: 0, high: 0 }, { ...x, span: x.span || 1 }),
+      y: extent.y.high >= extent.y.low ? roundRange(extent.y, y) : roundRange({ low: 0, high: 0 }, { ...y, span: y.span || 1 }),
+    };
+    context.clearRect(0, 0, width, height);
+    drawAxes(context, this.#frame, x.name, y.name);
+    const colours = theme();
+    for (const { value, name } of levels?.() ?? []) {
+      const at = toY(this.#frame, value);
+      context.setLineDash([5, 4]);
+      line(context, colours.good, this.#frame.left, at, this.#frame.left + this.#frame.width, at);
+      context.setLineDash([]);
+      context.font = `11px ${SANS}`;
+      context.fillStyle = colours.good;
+      context.textAlign = 'right';
+      context.textBaseline = 'bottom';
+      context.fillText(name, this.#frame.left + this.#frame.width - 6, at - 3);
+    }
+    if (empty || this.#impacts.end === 0) {
+      context.font = `12px ${SANS}`;
+      context.fillStyle = colours.muted;
+      context.textAlign = 'center';
+      context.textBaseline = 'middle';
+      context.fillText(hint, this.#frame.left + this.#frame.width / 2, this.#frame.top + this.#frame.height / 2 - 14, this.#frame.width - 16);
+    }
+    this.#drawn = 0;
+    this.#stale = false;
+  }
+
+  #highlight() {
+    const { context, width, height } = this.#mark;
+    context.clearRect(0, 0, width, height);
+    const { begin, end } = this.#impacts;
+    const place = this.#pointed !== null && this.#pointed >= begin && this.#pointed < end ? this.#pointed : end - 1;
+    if (place < 0) return this.figure.read('');
+    const [x, y] = this.#at(place);
+    const { left, top, width: w, height: h } = this.#frame;
+    const colours = theme();
+    if (Number.isFinite(x) && Number.isFinite(y)) {
+      context.lineWidth = 1;
+      line(context, colours.muted, left, Math.round(y) + 0.5, left + 5, Math.round(y) + 0.5);
+      line(context, colours.muted, Math.round(x) + 0.5, top + h - 5, Math.round(x) + 0.5, top + h);
+      if (place === this.#pointed) {
+        context.setLineDash([2, 3]);
+        line(context, colours.muted, left, y, left + w, y);
+        line(context, colours.muted, x, top, x, top + h);
+        context.setLineDash([]);
+      }
+      context.beginPath();
+      context.arc(x, y, 5, 0, 2 * Math.PI);
+      context.fillStyle = colours.surface;
+      context.fill();
+      context.lineWidth = 2;
+      context.strokeStyle = colours.strike;
+      context.stroke();
+    }
+    this.figure.read(this.#meaning.readout(this.#impacts, place));
+  }
+}

@@ -1,0 +1,87 @@
+// The impacts of a run in columns, the newest of them kept. Not for drawing or for the connection.
+
+export const COLUMNS = /** @type {const} */ (['n', 't', 'x', 'theta', 'x_dot', 'y_dot', 'theta_dot', 'x_dot_after', 'y_dot_after',
+  'theta_dot_after', 'alpha', 'flight_time', 'energy', 'contact_speed', 'table_speed', 'series']);
+
+/** @typedef {(typeof COLUMNS)[number]} Column */
+/** @typedef {Record<Column, number>} Impact states just before the impact, `…_after` just after; what does not exist is NaN */
+
+// What stays in memory, 4 MB of it: a day's run must not grow the page.
+const KEPT = 1 << 15;
+
+export class Impacts {
+  /** Counts every impact taken in, forgotten ones included: the place of the next one. */
+  end = 0;
+  /** Impacts the server skipped over. */
+  missing = 0;
+  #room = 256;
+  /** @type {Record<Column, Float64Array>} */
+  #columns = Impacts.#allocate(256);
+
+  /** @param {number} room @returns {Record<Column, Float64Array>} */
+  static #allocate(room) {
+    return /** @type {Record<Column, Float64Array>} */ (Object.fromEntries(COLUMNS.map((name) => [name, new Float64Array(room)])));
+  }
+
+  /** The first place still in memory. */
+  get begin() { return Math.max(0, this.end - KEPT); }
+
+  /**
+   * @param {Column} column
+   * @param {number} place from `begin` to `end`
+   */
+  at(column, place) {
+    return this.#columns[column][place % this.#room];
+  }
+
+  /** @param {number} place @returns {Impact} */
+  row(place) {
+    return /** @type {Impact} */ (Object.fromEntries(COLUMNS.map((name) => [name, this.at(name, place)])));
+  }
+
+  /** @returns {Impact | null} */
+  get last() { return this.end ? this.row(this.end - 1) : null; }
+
+  /** @param {Impact} impact */
+  append(impact) {
+    if (this.end === this.#room && this.#room < KEPT) {
+      const wider = Impacts.#allocate(this.#room * 4);
+      for (const name of COLUMNS) wider[name].set(this.#columns[name]);
+      this.#columns = wider;
+      this.#room *= 4;
+    }
+    for (const name of COLUMNS) this.#columns[name][this.end % this.#room] = impact[name];
+    this.end += 1;
+  }
+
+  clear() {
+    this.end = 0;
+    this.missing = 0;
+  }
+}
+
+/** @param {unknown} value */
+const real = (value) => (typeof value === 'number' ? value : NaN);
+
+/**
+ * @param {any} message of type `impact`
+ * @returns {Impact}
+ */
+export function fromMessage(message) {
+  const { before, after, table_velocity: table, alpha } = message;
+  return {
+    n: message.n, t: message.t, x: real(before.x), theta: real(before.theta), x_dot: real(before.x_dot), y_dot: real(before.y_dot),
+    theta_dot: real(before.theta_dot), x_dot_after: real(after?.x_dot), y_dot_after: real(after?.y_dot), theta_dot_after: real(after?.theta_dot),
+    alpha: real(alpha), flight_time: real(message.flight_time), energy: real(message.energy), contact_speed: real(message.contact_speed),
+    table_speed: table ? table.y * Math.cos(alpha) - table.x * Math.sin(alpha) : NaN, series: 0,
+  };
+}
+
+/**
+ * @param {Record<string, (number | null)[]>} columns of a message of type `impacts`
+ * @returns {Impact[]}
+ */
+export function fromColumns(columns) {
+  return columns.n.map((_, row) =>
+    /** @type {Impact} */ (Object.fromEntries(COLUMNS.map((name) => [name, name === 'series' ? 0 : real(columns[name]?.[row])]))));
+}

@@ -1,0 +1,184 @@
+// The page's address: scene and run in the words of `/v1/live`, read with care, since links grow old. Not for sending anything.
+
+import { number, quantity } from './numbers.js';
+import { setAt, valueAt } from './api.js';
+
+/** @typedef {import('./api.js').Field} Field */
+/** @typedef {import('./api.js').Case} Case */
+/** @typedef {import('./api.js').Scene} Scene */
+/** @typedef {{impact: number, set: Record<string, number | string>, kick: Record<string, number>}} Intervention */
+
+export const SLOWEST = 0.05;
+export const FASTEST = 20;
+
+/**
+ * @typedef {object} Link
+ * @property {string | null} preset
+ * @property {Scene} changes to the preset, or the whole scene without one
+ * @property {number} speed
+ * @property {URLSearchParams | null} run epoch, interventions and clock of a run to join
+ * @property {string[]} dropped what could not be kept, in words
+ */
+
+/**
+ * @param {string} search
+ * @param {Field[]} fields
+ * @param {Case[]} cases
+ * @returns {Link}
+ */
+export function readLink(search, fields, cases) {
+  /** @type {Link} */
+  const link = { preset: null, changes: {}, speed: 1, run: null, dropped: [] };
+  const run = new URLSearchParams();
+  const query = new URLSearchParams(search);
+  let whole = true;
+  /** @param {string} what */
+  const dropScene = (what) => { whole = false; link.dropped.push(what); };
+  for (const [key, text] of query) {
+    const value = text.trim() === '' ? NaN : Number(text);
+    if (key === 'preset') {
+      if (cases.some((one) => one.name === text)) link.preset = text;
+      else dropScene(`the case “${shown(text)}”, which is not known here`);
+    } else if (key.startsWith('scene.')) {
+      const refused = readField(key.slice(6), text, fields, link.changes);
+      if (refused) dropScene(refused);
+    } else if (key === 'speed') {
+      if (value >= SLOWEST && value <= FASTEST) link.speed = value;
+      else link.dropped.push(`the speed “${shown(text)}”: it must be from ${SLOWEST} to ${FASTEST}`);
+    } else if (key === 'epoch') {
+      if (Number.isSafeInteger(value) && value >= 0) run.set(key, text);
+      else link.dropped.push(`the start “${shown(text)}”, which is not a time in ms`);
+    } else if (/^(interventions\.\d+\.(impact|(set|kick)\.[a-z_.]+)|clock\.\d+\.(wall|run|speed))$/.test(key)) {
+      if (Number.isFinite(value)) run.set(key, text);
+      else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
+    } else if (key !== 'from') {
+      link.dropped.push(`“${shown(key)}”, which has no meaning here`);
+    }
+  }
+  if (run.has('epoch') && !whole) link.dropped.push('the run itself, since its scene is not whole');
+  else if (run.has('epoch')) link.run = joined(run, fields, link.dropped);
+  else if ([...run.keys()].length > 0) link.dropped.push('the interventions, which belong to a run without a start');
+  return link;
+}
+
+/** Foreign text, short enough to print. @param {string} text */
+const shown = (text) => (text.length > 40 ? `${text.slice(0, 40)}…` : text);
+
+/**
+ * @param {string} path
+ * @param {string} text
+ * @param {Field[]} fields
+ * @param {Scene} changes where the value goes
+ * @returns {string | null} why it was not taken
+ */
+function readField(path, text, fields, changes) {
+  const field = fields.find((one) => one.path === path);
+  if (!field) return `“scene.${shown(path)}”, which is no field of a scene`;
+  if (!field.available) {
+    if (text === String(field.default)) return null;
+    return `${field.title.toLowerCase()} “${shown(text)}”, which this version does not have`;
+  }
+  /** @type {unknown} */
+  let value = text;
+  if (field.kind === 'number' || field.kind === 'integer') {
+    value = text.trim() === '' ? NaN : Number(text);
+    const { minimum, maximum } = field;
+    if (!Number.isFinite(value)) return `${field.title.toLowerCase()} “${shown(text)}”, which is not a number`;
+    if ((minimum != null && Number(value) < minimum) || (maximum != null && Number(value) > maximum)) {
+      return `${field.title.toLowerCase()} ${number(Number(value))}: it must be from ${number(minimum)} to ${quantity(maximum, field.unit)}`;
+    }
+  } else if (field.kind === 'boolean') {
+    if (text !== 'true' && text !== 'false') return `${field.title.toLowerCase()} “${shown(text)}”, which is neither true nor false`;
+    value = text === 'true';
+  } else if (field.choices && !field.choices.includes(text)) {
+    return `${field.title.toLowerCase()} “${shown(text)}”: it must be one of ${field.choices.join(', ')}`;
+  }
+  setAt(changes, path, value);
+  return null;
+}
+
+/**
+ * The run's part of a link with what is whole in it, numbered anew.
+ * @param {URLSearchParams} run
+ * @param {Field[]} fields
+ * @param {string[]} dropped
+ */
+function joined(run, fields, dropped) {
+  const kept = new URLSearchParams({ epoch: /** @type {string} */ (run.get('epoch')) });
+  const interventions = interventionsOf(run);
+  const whole = interventions.filter(({ impact, set, kick }) => impact >= 1 && Object.keys(set).every((path) => fields.some((field) => field.path === path && field.live))
+    && Object.keys(kick).every((name) => ['theta_dot', 'x_dot', 'y_dot'].includes(name)) && Object.keys(set).length + Object.keys(kick).length > 0);
+  if (whole.length < interventions.length) dropped.push(`${interventions.length - whole.length} of ${interventions.length} interventions, which are not whole`);
+  whole.forEach(({ impact, set, kick }, index) => {
+    kept.set(`interventions.${index}.impact`, String(impact));
+    for (const [path, value] of Object.entries(set)) kept.set(`interventions.${index}.set.${path}`, String(value));
+    for (const [name, value] of Object.entries(kick)) kept.set(`interventions.${index}.kick.${name}`, String(value));
+  });
+  const marks = [...new Set([...run.keys()].filter((key) => key.startsWith('clock.')).map((key) => Number(key.split('.')[1])))].sort((a, b) => a - b);
+  const complete = marks.filter((mark) => ['wall', 'run', 'speed'].every((part) => run.has(`clock.${mark}.${part}`)));
+  if (complete.length < marks.length) dropped.push('a pause or a change of speed, which is not whole');
+  complete.forEach((mark, index) => {
+    for (const part of ['wall', 'run', 'speed']) kept.set(`clock.${index}.${part}`, /** @type {string} */ (run.get(`clock.${mark}.${part}`)));
+  });
+  return kept;
+}
+
+/**
+ * @param {URLSearchParams} query
+ * @returns {Intervention[]} in their order
+ */
+export function interventionsOf(query) {
+  /** @type {Map<number, Intervention>} */
+  const found = new Map();
+  for (const [key, text] of query) {
+    const match = /^interventions\.(\d+)\.(impact$|set\.|kick\.)(.*)$/.exec(key);
+    if (!match) continue;
+    const index = Number(match[1]);
+    const one = found.get(index) ?? { impact: 0, set: {}, kick: {} };
+    found.set(index, one);
+    const value = Number.isFinite(Number(text)) ? Number(text) : text;
+    if (match[2] === 'impact') one.impact = Number(text);
+    else if (match[2] === 'set.') one.set[match[3]] = value;
+    else one.kick[match[3]] = Number(text);
+  }
+  return [...found.keys()].sort((a, b) => a - b).map((index) => /** @type {Intervention} */ (found.get(index)));
+}
+
+/**
+ * A preset with changes laid over it; a body of another kind replaces the preset's whole.
+ * @param {Scene} preset
+ * @param {Scene} changes
+ * @returns {Scene}
+ */
+export function merged(preset, changes) {
+  const base = structuredClone(preset);
+  if (changes.body && Boolean(changes.body.point) !== Boolean(base.body?.point)) delete base.body;
+  /** @param {Scene} into @param {Scene} from */
+  const lay = (into, from) => {
+    for (const [key, value] of Object.entries(from)) {
+      if (value !== null && typeof value === 'object') lay(into[key] ??= {}, value);
+      else into[key] = value;
+    }
+    return into;
+  };
+  return lay(base, changes);
+}
+
+/**
+ * A scene as the shortest query that means it: the preset and what differs, or all of it where something of the preset is unset.
+ * @param {Scene} scene with what was set only, defaults left out
+ * @param {Case | null} preset
+ * @param {Field[]} fields
+ */
+export function sceneQuery(scene, preset, fields) {
+  const query = new URLSearchParams();
+  const paths = fields.filter((field) => field.available).map((field) => field.path);
+  const covered = preset && paths.every((path) => valueAt(preset.scene, path) === undefined || valueAt(scene, path) !== undefined);
+  if (covered) query.set('preset', preset.name);
+  for (const path of paths) {
+    const value = valueAt(scene, path);
+    if (value === undefined || (covered && value === valueAt(preset.scene, path))) continue;
+    query.set(`scene.${path}`, String(value));
+  }
+  return query;
+}

@@ -1,0 +1,285 @@
+// The page: joins the form, the run and the panels. Not for what any of them does.
+
+import { Problem, get, pathOf, server, setAt, valueAt } from './api.js';
+import { Circle } from './circle.js';
+import { Controls } from './controls.js';
+import { Form } from './form.js';
+import { Run } from './run.js';
+import { SceneView } from './scene-view.js';
+import { Verdict } from './verdict.js';
+import { anglePlane, velocityPlane } from './plane.js';
+import { byId, copy, h, settled } from './dom.js';
+import { clearNotice, connectionNotice, notice } from './notices.js';
+import { energyPlot } from './energy.js';
+import { invalidate } from './surface.js';
+import { listenToKeys } from './keys.js';
+import { merged, readLink, sceneQuery } from './link.js';
+import { showCalls } from './calls.js';
+import { showPaper } from './paper.js';
+
+/** @typedef {import('./api.js').Field} Field */
+/** @typedef {import('./api.js').Case} Case */
+/** @typedef {import('./api.js').Scene} Scene */
+
+const GAIN = 'table.tilt_gain';
+const chooser = byId('case', HTMLSelectElement);
+
+/** @type {Field[]} */
+let fields = [];
+/** @type {Case[]} */
+let cases = [];
+/** @type {Case | null} */
+let chosen = null;
+/** @type {Form | null} */
+let form = null;
+/** The scene the run plays, as it was typed. @type {Scene | null} */
+let playing = null;
+let speed = 1;
+/** The last thing sent to the run, to know whose error comes back. @type {'kick' | 'set' | 'other'} */
+let lastSent = 'other';
+
+const run = new Run({
+  changed: showRun,
+  struck: () => { for (const plot of plots) invalidate(plot); view.redraw(); },
+  cleared: () => { for (const plot of plots) plot.clear(); view.reset(); },
+  lost: (seconds) => connectionNotice(seconds, () => run.retry()),
+  refused: (problem) => {
+    clearNotice('connection');
+    const homeless = form?.blame(problem.errors) ?? [];
+    notice('run', [h('strong', {}, 'The server did not take this run. '), problem.message, homeless.length > 0 ? ` ${homeless.join(' ')}` : '', ' Its scene is kept; Run releases it anew.'], { caution: true });
+    address();
+  },
+  problem: ({ title, detail, errors }) => {
+    const homeless = form?.blame(errors.filter(({ pointer }) => fields.some((field) => field.path === pathOf(pointer)))) ?? [];
+    const others = [...homeless, ...errors.filter(({ pointer }) => !fields.some((field) => field.path === pathOf(pointer))).map((error) => error.detail)];
+    const words = others.join(' ') || (errors.length > 0 ? '' : detail || title);
+    if (lastSent === 'kick') controls.blameKick(words || detail);
+    else if (words) notice('message', [words], { caution: true });
+  },
+});
+const view = new SceneView(byId('scene-frame'), byId('scene-readout'), run);
+const plots = [anglePlane(run.impacts), velocityPlane(run.impacts), energyPlot(run.impacts, () => run.scene ?? playing)];
+const circle = new Circle();
+const verdict = new Verdict(byId('verdict'));
+const controls = new Controls(byId('controls'), {
+  toggle,
+  step: () => { lastSent = 'other'; run.step(); },
+  restart,
+  speed: (value) => {
+    speed = value;
+    lastSent = 'other';
+    if (run.active) run.setSpeed(value);
+    else address();
+  },
+  gain: (value, final) => { form?.put(GAIN, value); edited(GAIN, final); },
+  kick: (velocities) => { lastSent = 'kick'; run.kick(velocities); },
+});
+byId('charts').append(plots[0].figure.element, plots[1].figure.element, circle.figure.element, plots[2].figure.element);
+for (const plot of plots) plot.onPoint = (place) => { for (const other of plots) other.point(place); };
+
+/** What is typed, as a query; null while some of it is no value. */
+function typedQuery() {
+  const read = form?.read();
+  return read?.complete ? sceneQuery(read.scene, chosen, fields) : null;
+}
+
+/** Fields whose typed value the run does not play. */
+function unplayed() {
+  const scene = form?.read().scene;
+  return scene && playing ? fields.filter(({ path }) => valueAt(scene, path) !== valueAt(/** @type {Scene} */ (playing), path)) : [];
+}
+
+/** The page's address says what is shown: the run while there is one, else what is typed. */
+const address = settled(150, () => {
+  const query = run.phase === 'idle' ? typedQuery() : new URLSearchParams(run.query);
+  if (!query) return;
+  if (run.phase === 'idle' && speed !== 1) query.set('speed', String(speed));
+  history.replaceState(null, '', `?${query}`);
+});
+
+/** @type {AbortController | null} */
+let asking = null;
+const ask = settled(120, async () => {
+  asking?.abort();
+  const query = typedQuery();
+  if (!query) return verdict.fail('A parameter is not a number; it is marked below.');
+  const mine = asking = new AbortController();
+  verdict.busy(true);
+  try {
+    const answer = await get(`v1/stability?${query}`, mine.signal);
+    form?.blame([]);
+    verdict.show(answer);
+    circle.show(answer);
+    showCalls(byId('calls'), query, run.interventions.length > 0);
+    byId('build').textContent = server.build;
+  } catch (error) {
+    if (mine.signal.aborted) return;
+    circle.show(null);
+    if (error instanceof Problem && error.errors.length > 0) {
+      const homeless = form?.blame(error.errors) ?? [];
+      verdict.fail(homeless.length > 0 ? homeless.join(' ') : 'The server does not take this scene; the parameter is marked below.');
+    } else {
+      verdict.fail(error instanceof Problem ? error.message : 'The server does not answer.', ask);
+    }
+  }
+});
+
+/** Live parameters that were changed and go to the run together. @type {Set<string>} */
+const unsent = new Set();
+const sendChanges = settled(100, () => {
+  const scene = form?.read().scene;
+  if (!scene || !playing || !run.active) return unsent.clear();
+  const changes = Object.fromEntries([...unsent].map((path) => [path, valueAt(scene, path)]).filter(([path, value]) => value !== undefined && value !== valueAt(/** @type {Scene} */ (playing), path)));
+  unsent.clear();
+  lastSent = 'set';
+  if (Object.keys(changes).length === 0 || !run.set(changes)) return;
+  for (const [path, value] of Object.entries(changes)) setAt(playing, path, value);
+  showRun();
+});
+
+/**
+ * @param {string} path
+ * @param {boolean} final
+ */
+function edited(path, final) {
+  const scene = form?.read().scene ?? {};
+  const value = valueAt(scene, path);
+  if (path === GAIN && typeof value === 'number') {
+    controls.setGain(value);
+    circle.preview(value);
+  }
+  if (final && run.active && fields.find((field) => field.path === path)?.live) {
+    unsent.add(path);
+    sendChanges();
+  }
+  view.draft(scene);
+  ask();
+  if (run.phase === 'idle') address();
+  else showRun();
+}
+
+function start() {
+  const query = typedQuery();
+  if (!query || !form) {
+    form?.complain();
+    return form?.focusError();
+  }
+  playing = structuredClone(form.read().scene);
+  query.set('speed', String(speed));
+  clearNotice('run');
+  lastSent = 'other';
+  run.start(query);
+}
+
+function toggle() {
+  lastSent = 'other';
+  if (run.phase === 'idle' || run.phase === 'ended') start();
+  else if (run.active) run.toggle();
+}
+
+/** From the release again, with what is typed now. */
+function restart() {
+  lastSent = 'other';
+  if (run.phase === 'idle') return;
+  if (!run.active || run.interventions.length > 0 || unplayed().length > 0) start();
+  else run.restart();
+}
+
+function showRun() {
+  const { phase, outcome } = run;
+  const words = { idle: 'Ready', connecting: 'Connecting…', running: 'Running', paused: 'Paused', lost: 'Connection lost', ended: `Ended: ${outcome?.kind.replaceAll('_', ' ')}` }[phase];
+  const state = byId('run-state');
+  if (state.textContent !== words) state.textContent = words;
+  state.dataset.phase = phase;
+  const told = byId('outcome');
+  told.hidden = phase !== 'ended';
+  told.textContent = phase === 'ended' ? outcome?.detail ?? '' : run.impacts.missing > 0 ? `${run.impacts.missing} impacts were skipped over` : '';
+  controls.show(phase, run.phase !== 'idle' && unplayed().length > 0, form !== null);
+  if (run.active) {
+    speed = run.clock.speed || speed;
+    controls.setSpeed(speed);
+    address();
+  }
+  view.redraw();
+}
+
+/** Shows a scene without running it. @param {Scene} scene */
+function present(scene) {
+  form?.fill(scene);
+  controls.setGain(valueAt(scene, GAIN) ?? null);
+  controls.setSpeed(speed);
+  chooser.value = chosen?.name ?? '';
+  byId('case-shows').textContent = chosen?.shows ?? 'A scene of your own.';
+  document.title = chosen ? `${chosen.title} · equipoise` : 'equipoise';
+  showPaper(byId('paper'), chosen);
+  view.draft(scene);
+  ask();
+}
+
+/** @param {string} search */
+function restore(search) {
+  const link = readLink(search, fields, cases);
+  const bare = link.preset === null && Object.keys(link.changes).length === 0;
+  chosen = cases.find((one) => one.name === (bare ? cases[0]?.name : link.preset)) ?? null;
+  speed = link.speed;
+  run.stop();
+  if (link.dropped.length > 0) {
+    notice('link', [h('strong', {}, 'This link was not whole. '), 'Dropped: ', h('ul', {}, ...link.dropped.map((what) => h('li', {}, what)))], { caution: true });
+  } else clearNotice('link');
+  const scene = merged(chosen?.scene ?? {}, link.changes);
+  if (!link.run) return present(scene);
+  const query = sceneQuery(scene, chosen, fields);
+  for (const [key, value] of link.run) query.set(key, value);
+  query.set('speed', String(speed));
+  for (const [key, value] of link.run) {
+    const match = /^interventions\.\d+\.set\.(.+)$/.exec(key);
+    if (match) setAt(scene, match[1], Number(value));
+  }
+  present(scene);
+  playing = form ? structuredClone(form.read().scene) : null;
+  run.start(query);
+}
+
+/** @param {Case} one */
+function choose(one) {
+  const going = run.phase !== 'idle';
+  chosen = one;
+  history.pushState(null, '', `?${new URLSearchParams({ preset: one.name })}`);
+  run.stop();
+  present(one.scene);
+  if (going) start();
+  else plots.forEach((plot) => plot.clear());
+}
+
+async function begin() {
+  try {
+    const [table, list] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
+    clearNotice('server');
+    fields = table.fields;
+    cases = list.scenes;
+  } catch {
+    verdict.fail('The server does not answer.');
+    return notice('server', ['The server does not answer. ', h('button', { type: 'button', click: begin }, 'Try again')], { dismissible: false, caution: true });
+  }
+  const root = byId('parameters');
+  root.replaceChildren();
+  form = new Form(root, fields, edited);
+  controls.knowGain(fields.find((field) => field.path === GAIN && field.available) ?? null);
+  chooser.replaceChildren(h('option', { value: '', hidden: true }, 'A scene of your own'), ...cases.map(({ name, title }) => h('option', { value: name }, title)));
+  chooser.disabled = false;
+  chooser.addEventListener('change', () => { const one = cases.find(({ name }) => name === chooser.value); if (one) choose(one); });
+  byId('build').textContent = server.build;
+  restore(location.search);
+  showRun();
+}
+
+byId('share').addEventListener('click', (event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), location.href));
+addEventListener('popstate', () => restore(location.search));
+listenToKeys([
+  { key: ' ', label: 'Space', name: 'Run, pause, resume', act: toggle },
+  { key: '.', label: '.', name: 'Step to the next impact', act: () => { if (run.active) run.step(); } },
+  { key: 'r', label: 'r', name: 'Restart from the release', act: restart },
+  { key: 'k', label: 'k', name: 'Kick', act: () => { if (run.active) controls.kick(); } },
+]);
+showRun();
+void begin();

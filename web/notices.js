@@ -1,0 +1,43 @@
+// What the page has to say beside its panels: a lost connection, a link that was not whole. Not for a field's own error.
+
+import { byId, h } from './dom.js';
+
+/** @type {Map<string, HTMLElement>} */
+const shown = new Map();
+
+/**
+ * One notice of each kind at a time.
+ * @param {string} kind
+ * @param {(string | Node)[]} content
+ * @param {{dismissible?: boolean, caution?: boolean}} [manner]
+ */
+export function notice(kind, content, { dismissible = true, caution = false } = {}) {
+  const element = shown.get(kind) ?? h('div', { class: 'notice' });
+  element.classList.toggle('caution', caution);
+  element.replaceChildren(h('div', { class: 'notice-words' }, ...content), dismissible ? h('button', { type: 'button', click: () => clearNotice(kind) }, 'Dismiss') : '');
+  if (!shown.has(kind)) byId('notices').append(element);
+  shown.set(kind, element);
+}
+
+/** @param {string} kind */
+export function clearNotice(kind) {
+  shown.get(kind)?.remove();
+  shown.delete(kind);
+}
+
+/**
+ * The connection is lost; its countdown is for the eye only, or a screen reader would speak every second.
+ * @param {number} seconds to the next try; 0 while trying, NaN when all is well
+ * @param {() => void} retry
+ */
+export function connectionNotice(seconds, retry) {
+  if (Number.isNaN(seconds)) return clearNotice('connection');
+  const existing = shown.get('connection')?.querySelector('.countdown');
+  const words = seconds === 0 ? 'Trying now…' : `Next try in ${seconds} s.`;
+  if (existing) {
+    existing.textContent = words;
+    return;
+  }
+  notice('connection', ['Connection lost. The run goes on at the server and is caught up with. ', h('span', { class: 'countdown', 'aria-hidden': 'true' }, words), ' ',
+    h('button', { type: 'button', click: retry }, 'Try now')], { dismissible: false, caution: true });
+}

@@ -1,0 +1,39 @@
+// The paper's printed values beside the computed ones. Not for computing either.
+
+import { h, symbol } from './dom.js';
+import { quantity } from './numbers.js';
+
+/** @typedef {import('./api.js').PaperValue} PaperValue */
+
+/** Whether the print is the computed value to its own digits. @param {number | null} printed @param {number | null} computed */
+function same(printed, computed) {
+  if (printed === null || computed === null) return true;
+  const decimals = (String(printed).split('.')[1] ?? '').length;
+  return Math.abs(printed - computed) <= 0.5000001 * 10 ** -decimals;
+}
+
+/**
+ * @param {HTMLElement} root
+ * @param {import('./api.js').Case | null} chosen
+ */
+export function showPaper(root, chosen) {
+  if (!chosen || chosen.computed.length === 0) {
+    root.replaceChildren(h('p', { class: 'muted' }, chosen ? 'The paper prints no number for this case.' : 'Choose a case to compare it with the paper.'));
+    return;
+  }
+  const rows = chosen.computed.flatMap((computed, index) => {
+    const printed = chosen.printed[index];
+    const differs = Boolean(computed.why) || !same(printed?.value ?? null, computed.value);
+    const name = h('th', { scope: 'row' }, computed.symbol ? symbol(computed.symbol) : computed.quantity, h('span', { class: 'muted name' }, computed.quantity));
+    const row = h('tr', { class: differs ? 'differs' : '' }, name, cell(printed), cell(computed), h('td', {}, differs ? '≠' : printed?.value == null ? '' : '='));
+    return computed.why ? [row, h('tr', { class: 'why' }, h('td', { colspan: 4 }, computed.why))] : [row];
+  });
+  root.replaceChildren(h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Printed and computed values' }, h('table', { class: 'paper' },
+    h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Quantity'), h('th', { scope: 'col' }, 'Printed'), h('th', { scope: 'col' }, 'Computed'), h('th', { scope: 'col' }, h('span', { class: 'unseen' }, 'Equal')))),
+    h('tbody', {}, ...rows))));
+}
+
+/** @param {PaperValue | undefined} value */
+function cell(value) {
+  return h('td', {}, quantity(value?.value, value?.unit ?? '', 5), h('span', { class: 'muted where' }, value?.where ?? ''));
+}

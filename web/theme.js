@@ -1,0 +1,28 @@
+// The style sheet's colours for canvases, read once per change of scheme. Not for elements: those have the style sheet.
+
+const NAMES = /** @type {const} */ (['ink', 'muted', 'line', 'faint', 'surface', 'accent', 'strike', 'good', 'series-0', 'series-1', 'series-2', 'series-3']);
+
+/** @typedef {Record<(typeof NAMES)[number], string>} Colours */
+
+/** @type {Colours | null} */
+let colours = null;
+/** @type {Set<() => void>} */
+const listeners = new Set();
+
+/** @returns {Colours} */
+export function theme() {
+  if (colours) return colours;
+  const style = getComputedStyle(document.documentElement);
+  return colours = /** @type {Colours} */ (Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])));
+}
+
+/** @param {() => void} listener */
+export const onThemeChange = (listener) => void listeners.add(listener);
+
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+  colours = null;
+  for (const listener of listeners) listener();
+});
+
+export const SANS = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", Arial, sans-serif';
+export const SERIF = '"STIX Two Text", "Cambria", "Georgia", "Times New Roman", "Liberation Serif", serif';

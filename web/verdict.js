@@ -1,0 +1,73 @@
+// The verdict in words with the numbers that carry it. Not for asking the server.
+
+import { h, symbol } from './dom.js';
+import { number, quantity } from './numbers.js';
+
+/** @typedef {import('./api.js').Stability} Stability */
+
+/** @type {Record<string, string>} */
+const DECIDERS = { linear: 'the linear map', nonlinear: 'the run', boundary: 'the boundary' };
+
+/** How sure, in a sign that does not need its colour. @param {string | null} verdict */
+function kind(verdict) {
+  if (verdict === null) return 'none';
+  if (verdict.startsWith('unstable')) return 'unstable';
+  return verdict.startsWith('bounded') ? 'beyond' : 'stable';
+}
+
+const SIGNS = { none: '–', unstable: '▲', beyond: '◆', stable: '●' };
+
+export class Verdict {
+  #root;
+
+  /** @param {HTMLElement} root */
+  constructor(root) {
+    this.#root = root;
+    this.#root.append(h('p', { class: 'muted' }, 'Waiting for the server…'));
+  }
+
+  /** What is shown is about to be replaced. @param {boolean} busy */
+  busy(busy) {
+    this.#root.setAttribute('aria-busy', String(busy));
+  }
+
+  /** @param {string} words @param {() => void} [retry] */
+  fail(words, retry) {
+    this.busy(false);
+    this.#root.replaceChildren(h('p', { class: 'verdict-words none' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, '–'), ' No verdict'),
+      h('p', { class: 'muted' }, words), retry ? h('button', { type: 'button', click: retry }, 'Try again') : '');
+  }
+
+  /** @param {Stability} answer */
+  show(answer) {
+    this.busy(false);
+    const { verdict, decided_by: decider, reason, agree, linear, boundary, nonlinear, drift_speed: drift, notes } = answer;
+    const manner = kind(verdict);
+    const words = verdict === null ? 'No verdict' : verdict[0].toUpperCase() + verdict.slice(1);
+    /** @type {[Node | string, string | Node, string?][]} */
+    const rows = [];
+    const gain = linear?.tilt_gain;
+    if (gain) {
+      rows.push([symbol('κ'), number(gain.value), 'tilt gain']);
+      if (gain.critical != null) rows.push([symbol('κ_c'), number(gain.critical, 5), 'critical gain']);
+      if (gain.margin_above != null) rows.push(['margin', `${number(gain.margin_below, 3)} below · ${number(gain.margin_above, 3)} above`, 'to the ends of the stable interval']);
+    }
+    if (linear?.residue != null) rows.push([symbol('R'), number(linear.residue), `residue: ${linear.class}`]);
+    if (linear?.rotation != null) rows.push([symbol('σ'), `${quantity(linear.rotation, 'rad')} (${quantity(linear.rotation * 180 / Math.PI, '°')})`, 'rotation a bounce']);
+    if (linear?.spectral_radius != null) rows.push(['max |λ|', number(linear.spectral_radius, 5), 'spectral radius']);
+    const energy = linear?.energy_gain;
+    if (energy && energy.value !== 0) rows.push([symbol('κ_E'), `${quantity(energy.value, 's²/m²')} of ${number(energy.upper)}`, `energy gain: eigenvalue ${number(energy.eigenvalue)}`]);
+    if (boundary?.coefficient != null) rows.push([symbol('C'), number(boundary.coefficient, 3), `boundary: ${boundary.kind}`]);
+    if (drift != null) rows.push([symbol('c'), quantity(drift, 'm/s', 3), 'drift of the whole']);
+    if (nonlinear) rows.push(['max |θ|', quantity(nonlinear.max_theta, 'rad'), `${number(nonlinear.impacts, 6)} impacts run: ${nonlinear.outcome}`]);
+    this.#root.replaceChildren(
+      h('p', { class: `verdict-words ${manner}` }, h('span', { class: 'sign', 'aria-hidden': 'true' }, SIGNS[manner]), ` ${words}`),
+      reason ? h('p', { class: 'reason' }, reason) : '',
+      h('p', { class: 'chips' },
+        decider ? h('span', { class: 'chip' }, `decided by ${DECIDERS[decider] ?? decider}`) : '',
+        agree === null ? '' : h('span', { class: `chip ${agree ? '' : 'caution'}` }, agree ? 'linear map and run agree' : 'linear map and run disagree')),
+      h('dl', { class: 'numbers' }, ...rows.map(([name, value, meaning]) => h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning ?? '')))),
+      h('details', { class: 'model' }, h('summary', {}, `Model: ${answer.model.name.replaceAll('_', ' ')}`), h('p', { class: 'muted' }, answer.model.reason),
+        ...notes.map((note) => h('p', { class: 'muted' }, note))));
+  }
+}
