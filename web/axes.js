@@ -53,6 +53,9 @@ export function roundRange({ low, high }, { symmetric = false, span = 0, from } 
  * @property {Range} y
  */
 
+/** Around every plot: room for the numbers and the names of the axes. */
+export const MARGIN = { left: 44, right: 8, top: 24, bottom: 36 };
+
 /** @param {Frame} frame @param {number} value */
 export const toX = ({ left, width, x }, value) => left + (value - x.low) / (x.high - x.low) * width;
 /** @param {Frame} frame @param {number} value */
@@ -88,12 +91,12 @@ export function drawAxes(context, frame, xName, yName) {
   context.strokeRect(left + 0.5, top + 0.5, width - 1, height - 1);
   context.font = `italic 13px ${SERIF}`;
   context.fillStyle = colours.ink;
-  context.textAlign = 'right';
-  context.textBaseline = 'bottom';
-  context.fillText(xName, left + width - 6, top + height - 5);
-  context.textAlign = 'left';
   context.textBaseline = 'top';
-  context.fillText(yName, left + 7, top + 6);
+  context.textAlign = 'right';
+  context.fillText(xName, left + width, top + height + 19);
+  context.textAlign = 'left';
+  context.textBaseline = 'bottom';
+  context.fillText(yName, Math.max(2, left - 40), top - 5);
 }
 
 /**

@@ -6,7 +6,7 @@ import { contactDistance } from './flight.js';
 import { fixed } from './numbers.js';
 
 /** @typedef {CanvasRenderingContext2D} Context */
-/** @typedef {{x: (x: number) => number, y: (y: number) => number, metre: number}} Scale metres to pixels */
+/** @typedef {{x: (x: number) => number, y: (y: number) => number, metre: number, right: number}} Scale metres to pixels, and where the picture ends */
 
 /**
  * The rod from its contact point through its centre of gravity, with marks at ±ρ: two half masses there would turn like it.
@@ -148,11 +148,14 @@ export function drawStrike(context, scale, impact, strike, strength) {
     arrow(context, x + offset, y, x + offset + dx / impulse * length, y - dy / impulse * length, colours.strike);
     context.font = `11px ${SANS}`;
     context.fillStyle = colours.strike;
-    context.textAlign = offset < 0 ? 'right' : 'left';
-    context.textBaseline = 'bottom';
-    context.fillText(`${fixed(impulse, 2)}\u202fm/s`, x + offset * 1.6, y - 10);
+    const words = [`impulse ${fixed(impulse, 2)}\u202fm/s`, `α ${fixed(strike.alpha, 3)}\u202frad`];
+    const widest = Math.max(...words.map((text) => context.measureText(text).width));
+    const left = offset > 0 ? x + offset * 1.6 : x + offset * 1.6 - widest;
+    const at = Math.max(34, Math.min(scale.right - widest - 6, left));
+    context.textAlign = 'left';
     context.textBaseline = 'top';
-    context.fillText(`α ${fixed(strike.alpha, 3)}\u202frad`, x + offset * 1.6, y + 26);
+    context.fillText(words[0], at, y + 20);
+    context.fillText(words[1], at, y + 34);
   }
   context.beginPath();
   context.arc(x, y, 4 + 10 * (1 - strength), 0, 2 * Math.PI);

@@ -1,9 +1,9 @@
 // The eigenvalues of one bounce on the unit circle, read as a dial of the tilt gain. Not for judging them.
 
 import { Figure } from './figure.js';
-import { drawAxes, line, toX, toY, ticks } from './axes.js';
+import { MARGIN, drawAxes, line, toX, toY, ticks } from './axes.js';
 import { SANS, SERIF, onThemeChange, theme } from './theme.js';
-import { fixed, number, quantity } from './numbers.js';
+import { fixed, number } from './numbers.js';
 import { invalidate, surfaces } from './surface.js';
 
 /** @typedef {import('./api.js').Stability} Stability */
@@ -32,7 +32,7 @@ export class Circle {
   #gain = null;
 
   constructor() {
-    this.figure = new Figure('circle', 'Eigenvalues', 'Of one bounce at the fixed point. Along the unit circle they are a dial of the tilt gain κ; off it, balance is lost.', {
+    this.figure = new Figure('circle', 'Eigenvalues', 'Of one bounce: on the circle a dial of the tilt gain, off it balance is lost.', {
       head: ['eigenvalue', 'real', 'imaginary', 'modulus'],
       rows: () => (this.#answer?.linear?.eigenvalues ?? []).map(({ re, im, modulus }, index) => [String(index + 1), fixed(re, 6), fixed(im, 6), fixed(modulus, 6)]),
     });
@@ -70,11 +70,11 @@ export class Circle {
     const pair = residue && this.#gain !== null ? anglePair(residue.at(this.#gain)) : [];
     const largest = Math.max(1, ...pair.map(({ re }) => Math.abs(re)), ...(linear?.eigenvalues ?? []).map(({ modulus }) => modulus));
     const half = Math.min(WIDEST, Math.max(1.55, largest * 1.2));
-    const left = 46;
-    const room = { width: Math.max(1, width - left - 10), height: Math.max(1, height - 32) };
+    const { left, top } = MARGIN;
+    const room = { width: Math.max(1, width - left - MARGIN.right), height: Math.max(1, height - top - MARGIN.bottom) };
     const unit = Math.min(room.width, room.height) / (2 * half);
     const frame = {
-      left, top: 8, ...room,
+      left, top, ...room,
       x: { low: -room.width / unit / 2, high: room.width / unit / 2 }, y: { low: -room.height / unit / 2, high: room.height / unit / 2 },
     };
     context.clearRect(0, 0, width, height);
@@ -115,8 +115,8 @@ export class Circle {
     if (!linear) return this.#answer?.notes[0] ?? '';
     if (!residue || this.#gain === null) return `spectral radius ${number(linear.spectral_radius)}`;
     const at = residue.at(this.#gain);
-    const turn = at > 0 && at < 1 ? `   turns ${quantity(Math.acos(1 - 2 * at) * 180 / Math.PI, '°', 4)} a bounce` : '   grows without turning';
-    return `κ ${fixed(this.#gain, 3)}   R ${fixed(at, 3)}${at === 0 || at === 1 ? '   on the boundary' : turn}`;
+    const turn = at > 0 && at < 1 ? `   σ ${fixed(Math.acos(1 - 2 * at) * 180 / Math.PI, 1)}°` : `   max |λ| ${fixed(Math.max(...anglePair(at).map(({ re }) => Math.abs(re))), 3)}`;
+    return `κ ${fixed(this.#gain, 3)}   R ${fixed(at, 3)}${turn}`;
   }
 
   /**
@@ -162,19 +162,17 @@ export class Circle {
     }
     context.font = `italic 13px ${SERIF}`;
     context.fillStyle = colours.ink;
+    // The ends of the dial are named inside the circle, where there is always room for them.
     context.textBaseline = 'bottom';
     context.textAlign = 'right';
-    const label = ` = ${number(critical)}`;
-    const end = cx - unit - 8;
-    context.fillText(label, end, cy - 5);
-    const from = end - context.measureText(label).width;
-    context.font = `italic 9px ${SERIF}`;
-    context.fillText('c', from, cy - 2);
-    const sub = context.measureText('c').width;
-    context.font = `italic 13px ${SERIF}`;
-    context.fillText('κ', from - sub, cy - 5);
+    context.fillText(`κ = ${number(lower)}`, cx + unit - 9, cy - 4);
     context.textAlign = 'left';
-    context.fillText(`κ = ${number(lower)}`, cx + unit + 8, cy - 5);
+    const from = cx - unit + 9;
+    context.fillText('κ', from, cy - 4);
+    const base = context.measureText('κ').width;
+    context.fillText(` = ${number(critical)}`, from + base + 4, cy - 4);
+    context.font = `italic 9px ${SERIF}`;
+    context.fillText('c', from + base, cy - 1);
   }
 
   /**

@@ -14,6 +14,7 @@ import { pathOf, setAt, valueAt } from './api.js';
  * @property {HTMLInputElement | HTMLSelectElement} input
  * @property {HTMLInputElement | null} slider
  * @property {HTMLElement} error
+ * @property {{text: string, value: number} | null} exact what a shortened text stands for, until it is edited
  */
 
 /** @type {Record<string, string>} */
@@ -127,7 +128,7 @@ export class Form {
       h('div', { class: 'field-head' }, name, field.live && h('span', { class: 'live-tag' }, 'live')),
       h('div', { class: 'field-row' }, slider, input, slider && h('span', { class: 'unit' }, unit)),
       h('p', { class: 'field-foot' }, about, field.about && range ? ' · ' : '', range), error);
-    this.#rows.set(field.path, { field, element, input, slider, error });
+    this.#rows.set(field.path, { field, element, input, slider, error, exact: null });
     return element;
   }
 
@@ -161,7 +162,7 @@ export class Form {
   }
 
   /** @param {Row} row @returns {{value: unknown, problem: string | null}} */
-  #read({ field, input }) {
+  #read({ field, input, exact }) {
     if (input.disabled) return { value: undefined, problem: null };
     if (field.kind === 'boolean') return { value: /** @type {HTMLInputElement} */ (input).checked || undefined, problem: null };
     if (field.kind === 'choice') return { value: input.value === field.default ? undefined : input.value, problem: null };
@@ -169,6 +170,7 @@ export class Form {
       if (field.required && !field.path.startsWith('body.')) return { value: undefined, problem: `${field.title} is needed.` };
       return { value: undefined, problem: null };
     }
+    if (input.value === exact?.text) return { value: exact.value, problem: null };
     const value = parse(input.value, field.unit);
     return value === null ? { value: undefined, problem: `“${input.value.trim()}” is not a number.` } : { value, problem: null };
   }
@@ -196,10 +198,18 @@ export class Form {
    * @param {Row} row
    * @param {unknown} value
    */
-  #put({ field, input, slider }, value) {
+  #put(row, value) {
+    const { field, input, slider } = row;
+    row.exact = null;
     if (input instanceof HTMLInputElement && field.kind === 'boolean') input.checked = value === true;
     else if (field.kind === 'choice') input.value = String(value ?? field.default ?? '');
-    else input.value = value == null ? '' : String(value);
+    else if (typeof value !== 'number') input.value = '';
+    else {
+      const text = String(value);
+      row.exact = text.length > 8 ? { text: String(Number(value.toPrecision(5))), value } : null;
+      input.value = row.exact?.text ?? text;
+      input.title = row.exact ? text : '';
+    }
     if (slider) aim(slider, field, typeof value === 'number' ? value : null);
   }
 

@@ -1,7 +1,7 @@
 // A plot with one mark per impact, drawn on and on without starting over. What its axes mean is said by who makes it.
 
 import { Figure } from './figure.js';
-import { drawAxes, drawMark, line, roundRange, seriesColour, toX, toY } from './axes.js';
+import { MARGIN, drawAxes, drawMark, line, roundRange, seriesColour, toX, toY } from './axes.js';
 import { SANS, theme, onThemeChange } from './theme.js';
 import { invalidate, surfaces } from './surface.js';
 
@@ -30,8 +30,6 @@ import { invalidate, surfaces } from './surface.js';
  * @property {string} spoken what it shows, for those who do not see it
  * @property {() => {value: number, name: string}[]} [levels] horizontal lines worth comparing with
  */
-
-const MARGIN = { left: 46, right: 10, top: 8, bottom: 24 };
 
 export class ImpactPlot {
   figure;

@@ -24,7 +24,7 @@ export function showPaper(root, chosen) {
   const rows = chosen.computed.flatMap((computed, index) => {
     const printed = chosen.printed[index];
     const differs = Boolean(computed.why) || !same(printed?.value ?? null, computed.value);
-    const name = h('th', { scope: 'row' }, computed.symbol ? symbol(computed.symbol) : computed.quantity, h('span', { class: 'muted name' }, computed.quantity));
+    const name = h('th', { scope: 'row' }, computed.symbol ? symbol(computed.symbol) : computed.quantity, h('span', { class: 'muted name' }, ...computed.quantity.split(/(?<=[._])/).flatMap((part) => [part, h('wbr')])));
     const row = h('tr', { class: differs ? 'differs' : '' }, name, cell(printed), cell(computed), h('td', {}, differs ? '≠' : printed?.value == null ? '' : '='));
     return computed.why ? [row, h('tr', { class: 'why' }, h('td', { colspan: 4 }, computed.why))] : [row];
   });

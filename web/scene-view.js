@@ -95,6 +95,7 @@ export class SceneView {
     this.#camera = x;
     this.#ground(this.#top);
     const scale = this.#scale();
+    this.#wanted(scale, scene);
     drawTable(this.#surface.context, scale, { x: x + l * Math.sin(theta), y: 0, alpha: 0 }, this.#plate(scene), this.#floor());
     drawRod(this.#surface.context, scale, scene, { x, y, theta });
     this.#rulers();
@@ -122,6 +123,7 @@ export class SceneView {
     const { context } = this.#surface;
     this.#ground(this.#top);
     const scale = this.#scale();
+    this.#wanted(scale, scene);
     this.#trail(scale, scene, place, t);
     const last = strikeOf(impact, scene) ?? { t: 0, x: arc.x + contactDistance(scene) * Math.sin(arc.theta), alpha: 0, speed: 0 };
     const next = arc.duration > 0 ? strikeAfter(arc, scene) : last;
@@ -170,7 +172,7 @@ export class SceneView {
     // Below the height of the contacts there is room for a tilted table and its foot.
     const depth = Math.max(58, (height - RULER) * 0.2);
     const metre = Math.max(1, (height - RULER - depth - 6) / (this.#top || 0.3));
-    return { x: (/** @type {number} */ x) => width / 2 + (x - this.#camera) * metre, y: (/** @type {number} */ y) => height - RULER - depth - y * metre, metre };
+    return { x: (/** @type {number} */ x) => width / 2 + (x - this.#camera) * metre, y: (/** @type {number} */ y) => height - RULER - depth - y * metre, metre, right: width };
   }
 
   /** Half the table's width, m. @param {Scene} scene */
@@ -210,15 +212,40 @@ export class SceneView {
     const step = roundStep(width / scale.metre, Math.max(3, width / 90));
     for (let k = Math.ceil((this.#camera - width / 2 / scale.metre) / step); scale.x(k * step) < width; k += 1) {
       const x = Math.round(scale.x(k * step)) + 0.5;
-      if (x < 16 || x > width - 16) continue;
+      if (x < 56 || x > width - 16) continue;
       line(context, colours.muted, x, floor, x, floor + 4);
       context.fillText(number(k * step), x, floor + 7);
     }
     context.textAlign = 'left';
+    context.fillText('x / m', 6, floor + 7);
     context.textBaseline = 'bottom';
     const rung = roundStep(this.#top, 4);
-    for (let k = 0; scale.y(k * rung) > 14; k += 1) context.fillText(k === 0 ? '0 m' : number(k * rung), 6, scale.y(k * rung) - 2);
+    for (let k = 0; scale.y(k * rung) > 14; k += 1) context.fillText(k === 0 ? '0\u202fm' : number(k * rung), 6, scale.y(k * rung) - 2);
     this.#scaleBar(scale.metre);
+  }
+
+  /** The height the table steers for, and the gravity of the plane. @param {import('./bodies.js').Scale} scale @param {Scene} scene */
+  #wanted(scale, scene) {
+    const { context, width } = this.#surface;
+    const colours = theme();
+    const { energy_gain: gain, target_height: height } = scene.table ?? {};
+    context.font = `11px ${SANS}`;
+    context.textAlign = 'left';
+    context.textBaseline = 'top';
+    context.fillStyle = colours.muted;
+    const incline = scene.incline ?? Math.PI / 2;
+    const tilted = Math.abs(incline - Math.PI / 2) > 1e-9;
+    context.fillText(`${tilted ? `plane at ${number(incline * 180 / Math.PI)}°, ` : ''}G = ${number(effectiveGravity(scene))}\u202fm/s²`, 44, 10);
+    if (!gain || !height) return;
+    const y = Math.round(scale.y(height)) + 0.5;
+    context.setLineDash([5, 4]);
+    context.lineWidth = 1;
+    line(context, colours.good, 0, y, width, y);
+    context.setLineDash([]);
+    context.fillStyle = colours.good;
+    context.textAlign = 'right';
+    context.textBaseline = 'bottom';
+    context.fillText(`target y* = ${number(height)}\u202fm`, width - 8, y - 2);
   }
 
   /** @param {number} metre px */

@@ -1,0 +1,134 @@
+// For everybody: keyboard alone, axe in both schemes, 320 px, colours that follow, motion that stops.
+
+import { createRequire } from 'node:module';
+import { readFileSync } from 'node:fs';
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, impacts, ink, reachImpact, reachPhase, verdict } from './stage.js';
+
+const stage = await Stage.open();
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+async function violations(page) {
+  await page.evaluate(axe);
+  const { violations: found } = await page.evaluate(() => globalThis.axe.run(document));
+  return found.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join('; ')}`);
+}
+
+for (const colorScheme of ['light', 'dark']) {
+  for (const width of [320, 800, 1280]) {
+    test(`axe finds nothing at ${width} px, ${colorScheme}`, async () => {
+      const { page } = await stage.page('?preset=case-4&colour=blue', { colorScheme, viewport: { width, height: 800 } });
+      await verdict(page);
+      assert.deepEqual(await violations(page), [], 'idle, with a notice');
+      await page.click('#run');
+      await reachImpact(page, 3);
+      for (const summary of await page.locator('summary').all()) await summary.click();
+      await page.locator('#field-release-theta').fill('?');
+      await page.locator('#field-release-theta').blur();
+      assert.deepEqual(await violations(page), [], 'running, with tables open and an error');
+      await page.click('#keys-open');
+      assert.deepEqual(await violations(page), [], 'with the dialog');
+    });
+  }
+}
+
+test('axe finds nothing while the connection is lost', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  await page.click('#run');
+  await reachImpact(page, 1);
+  await stage.stopServer();
+  await page.locator('.notice', { hasText: 'Connection lost' }).waitFor();
+  assert.deepEqual(await violations(page), []);
+  await stage.startServer();
+});
+
+test('nothing is wider than 320 px', async () => {
+  const { page, clean } = await stage.page('?preset=case-4&scene.table.wobble=3', { viewport: { width: 320, height: 640 } });
+  const excess = () => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  await verdict(page);
+  assert.equal(await excess(), 0);
+  await page.click('#run');
+  await reachImpact(page, 3);
+  for (const summary of await page.locator('summary').all()) await summary.click();
+  assert.equal(await excess(), 0);
+  clean();
+});
+
+test('a whole session needs no pointer', async () => {
+  const { page, clean } = await stage.page('');
+  await verdict(page);
+  const reached = new Set();
+  for (let k = 0; k < 120; k += 1) {
+    await page.keyboard.press('Tab');
+    reached.add(await page.evaluate(() => document.activeElement?.id ?? ''));
+  }
+  for (const id of ['share', 'keys-open', 'case', 'run', 'gain', 'speed', 'field-table-tilt_gain', 'field-release-theta']) assert.ok(reached.has(id), `Tab reaches ${id}`);
+  await page.locator('#case').focus();
+  await page.keyboard.press('ArrowDown');
+  await page.waitForFunction(() => document.querySelector('#case').selectedIndex === 2);
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press(' ');
+  await reachPhase(page, 'running');
+  await reachImpact(page, 2);
+  await page.keyboard.press(' ');
+  await reachPhase(page, 'paused');
+  await page.waitForTimeout(300);
+  const held = await impacts(page);
+  await page.keyboard.press('.');
+  await reachImpact(page, held + 1);
+  await page.keyboard.press('k');
+  await page.waitForFunction(() => /kick/.test(location.search));
+  await page.locator('#gain').focus();
+  await page.keyboard.press('ArrowRight');
+  await page.waitForFunction(() => /tilt_gain/.test(location.search));
+  await page.keyboard.press('r');
+  await page.waitForFunction(() => !/kick/.test(location.search));
+  await page.keyboard.press('?');
+  assert.ok(await page.locator('#keys').isVisible());
+  await page.locator('#keys-on').focus();
+  await page.keyboard.press(' ');
+  await page.keyboard.press('Escape');
+  await reachPhase(page, 'running');
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press(' ');
+  await page.waitForTimeout(300);
+  assert.equal(await page.locator('#run-state').getAttribute('data-phase'), 'running', 'the key is off');
+  clean();
+});
+
+test('the colours of the canvases follow the scheme while the page is open', async () => {
+  const { page, clean } = await stage.page('?preset=case-1', { colorScheme: 'light' });
+  await page.click('#run');
+  await reachImpact(page, 5);
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  const light = await page.evaluate(() => getComputedStyle(document.documentElement).getPropertyValue('--series-0'));
+  assert.ok(await ink(page, '#plane-angle', '--series-0') > 10);
+  await page.emulateMedia({ colorScheme: 'dark' });
+  await page.waitForFunction((before) => getComputedStyle(document.documentElement).getPropertyValue('--series-0') !== before, light);
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  assert.ok(await ink(page, '#plane-angle', '--series-0') > 10, 'the dots have the dark scheme’s colour');
+  clean();
+});
+
+test('with motion unwanted the scene stands still between impacts, unless asked to move', async () => {
+  const { page, clean } = await stage.page('?preset=case-1', { reducedMotion: 'reduce' });
+  await page.click('#run');
+  await reachImpact(page, 2);
+  // So slow that the next impact is seconds away.
+  await page.locator('#speed').evaluate((slider) => { slider.value = '0'; slider.dispatchEvent(new Event('change')); });
+  await page.waitForFunction(() => /clock\.\d+\.speed=0\.05/.test(location.search));
+  const n = await impacts(page);
+  await reachImpact(page, n + 1);
+  const picture = () => page.locator('#scene-frame canvas').evaluate((canvas) => canvas.toDataURL());
+  await page.waitForTimeout(100);
+  const before = await picture();
+  await page.waitForTimeout(300);
+  const still = await picture();
+  if (await impacts(page) === n + 1) assert.equal(still, before);
+  await page.locator('.motion input').check();
+  const moving = await picture();
+  await page.waitForFunction((old) => document.querySelector('#scene-frame canvas').toDataURL() !== old, moving);
+  clean();
+});

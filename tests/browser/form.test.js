@@ -1,0 +1,84 @@
+// The form: what is wrong is said beside its field, and what was typed stays.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+test('a value outside its range shows the server’s words beside the field', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const gain = page.locator('#field-table-tilt_gain');
+  await gain.fill('5000');
+  const error = page.locator('#field-table-tilt_gain-error');
+  await error.filter({ hasText: /-?100/ }).waitFor();
+  assert.match(await error.innerText(), /100/);
+  assert.equal(await gain.getAttribute('aria-invalid'), 'true');
+  assert.match(await gain.getAttribute('aria-describedby'), /field-table-tilt_gain-error/);
+  assert.equal(await gain.inputValue(), '5000');
+  await gain.fill('1.2');
+  await page.waitForFunction(() => document.querySelector('#field-table-tilt_gain-error').textContent === '');
+  assert.match(await verdict(page), /elliptic/i);
+});
+
+test('what is no number is said so, kept, and not sent', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  const theta = page.locator('#field-release-theta');
+  await theta.fill('a bit');
+  await theta.blur();
+  await page.locator('#field-release-theta-error').filter({ hasText: 'not a number' }).waitFor();
+  await page.click('#run');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'field-release-theta');
+  assert.equal(await theta.inputValue(), 'a bit');
+  clean();
+});
+
+test('a value that clashes with another is shown where the server points', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  await verdict(page);
+  await page.locator('#field-release-height').fill('0.01');
+  await page.locator('#field-release-height-error').filter({ hasText: /\d/ }).waitFor();
+});
+
+test('degrees, fractions of π and a decimal comma are understood', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  for (const [text, value] of [['pi/4', Math.PI / 4], ['45°', Math.PI / 4], ['1,2', 1.2]]) {
+    await page.locator('#field-incline').fill(text);
+    await page.waitForFunction((wanted) => Math.abs(Number(new URLSearchParams(location.search).get('scene.incline')) - wanted) < 1e-12, value);
+    assert.equal(await page.inputValue('#field-incline'), text);
+  }
+  clean();
+});
+
+test('every available field has a control with a name, and no unavailable one has', async () => {
+  const { page, clean } = await stage.page('');
+  const { fields } = await (await fetch(`${stage.url}v1/fields`)).json();
+  for (const { path, available, title } of fields) {
+    const control = page.locator(`#field-${path.replaceAll('.', '-')}`);
+    assert.equal(await control.count(), available ? 1 : 0, path);
+    if (available) assert.ok(await page.getByLabel(title).count() > 0, title);
+  }
+  clean();
+});
+
+test('the printed values stand beside the computed ones, with the reason where they differ', async () => {
+  const { page, clean } = await stage.page('?preset=case-4');
+  const { scenes } = await (await fetch(`${stage.url}v1/scenes`)).json();
+  const differing = scenes.find(({ name }) => name === 'case-4').computed.filter(({ why }) => why);
+  const text = await page.locator('#paper').innerText();
+  for (const { why } of differing) assert.ok(text.includes(why), why);
+  assert.ok(await page.locator('#paper tbody tr').count() > 0);
+  clean();
+});
+
+test('the copied curl gives the page’s verdict', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&scene.table.tilt_gain=1.3');
+  await verdict(page);
+  await page.locator('.call button').first().click();
+  const call = await page.evaluate(() => navigator.clipboard.readText());
+  const url = /^curl '(.+)'$/.exec(call)[1];
+  const answer = await (await fetch(url)).json();
+  assert.equal((await verdict(page)).replace(/^\W+/, '').toLowerCase(), answer.verdict.toLowerCase());
+  clean();
+});

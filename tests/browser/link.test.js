@@ -1,0 +1,104 @@
+// The address of the page: it restores what it can and says what it dropped.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, numbers, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+test('a link restores parameters, interventions and the same impacts in another browser', async () => {
+  const first = await stage.page('?preset=case-1&scene.release.theta=0.2');
+  await speedUp(first.page);
+  await first.page.click('#run');
+  await reachImpact(first.page, 4);
+  await slide(first.page, '#gain', 1.2);
+  await first.page.waitForFunction(() => /tilt_gain=1\.2/.test(location.search));
+  await first.page.click('#kick');
+  await first.page.waitForFunction(() => /kick\.theta_dot/.test(location.search));
+  await reachImpact(first.page, 16);
+  await first.page.click('#run');
+  await reachPhase(first.page, 'paused');
+  await first.page.waitForFunction(() => /clock\.\d+\.speed=0/.test(location.search));
+  await first.page.click('#share');
+  const link = await first.page.evaluate(() => navigator.clipboard.readText());
+  assert.equal(link, first.page.url());
+  const second = await stage.page(new URL(link).search);
+  await reachPhase(second.page, 'paused');
+  await reachImpact(second.page, 16);
+  for (const id of ['plane-angle', 'plane-velocity', 'energy']) assert.deepEqual(await numbers(second.page, id), await numbers(first.page, id));
+  assert.equal(await second.page.inputValue('#field-release-theta'), '0.2');
+  assert.equal(await second.page.inputValue('#field-table-tilt_gain'), '1.2');
+  assert.equal(await second.page.locator('#notices').innerText(), '');
+  first.clean();
+  second.clean();
+});
+
+test('going back restores the case before', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await page.selectOption('#case', 'case-3');
+  assert.match(page.url(), /preset=case-3/);
+  assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.55');
+  await page.goBack();
+  await page.waitForFunction(() => document.querySelector('#case').value === 'case-1');
+  assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.1');
+  clean();
+});
+
+const BROKEN = [
+  ['preset=case-99', /case “case-99”/],
+  ['preset=case-1&scene.table.tilt_gain=5000', /tilt gain.*5000.*−100 to 100/i],
+  ['preset=case-1&scene.table.tilt_gain=steep', /“steep”.*not a number/],
+  ['preset=case-1&scene.table.wobble=3', /“scene.table.wobble”/],
+  ['preset=case-1&colour=blue', /“colour”/],
+  ['preset=case-1&speed=900', /speed “900”/],
+  ['preset=case-1&epoch=yesterday', /“yesterday”/],
+  ['preset=case-1&interventions.0.impact=3', /interventions/],
+  ['preset=case-1&scene.body.point=perhaps', /“perhaps”/],
+  [`preset=${encodeURIComponent('<img src=x onerror=alert(1)>')}`, /<img src=x/],
+];
+for (const [query, words] of BROKEN) {
+  test(`a link with ${query} says what it dropped and goes on`, async () => {
+    const { page, clean } = await stage.page(`?${query}`);
+    assert.match(await page.locator('.notice').innerText(), words);
+    await page.locator('#run:enabled').waitFor();
+    clean();
+  });
+}
+
+test('interventions that are not whole are dropped from a run that is joined', async () => {
+  const { page, clean } = await stage.page(`?preset=case-1&epoch=${Date.now() - 2000}&interventions.0.set.table.tilt_gain=1.2&interventions.7.impact=2&interventions.7.kick.theta_dot=0.1&clock.3.wall=5`);
+  assert.match(await page.locator('.notice').innerText(), /1 of 2 interventions[\s\S]*pause/);
+  await reachImpact(page, 2);
+  assert.match(page.url(), /interventions\.0\.kick\.theta_dot=0\.1/);
+  clean();
+});
+
+test('a run too old to catch up with is told, and its scene kept', async () => {
+  const { page, wrongs } = await stage.page('?preset=case-2&scene.table.tilt_gain=1.15&epoch=1000');
+  await page.locator('.notice', { hasText: 'did not take this run' }).waitFor();
+  assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.15');
+  await page.click('#run');
+  await reachImpact(page, 2);
+  assert.ok(!wrongs.some((wrong) => wrong.startsWith('exception')), wrongs.join('\n'));
+});
+
+test('no mangled link throws', async () => {
+  const { page, wrongs } = await stage.page('');
+  // A fixed generator: the same links every time.
+  let seed = 7;
+  const random = (below) => { seed = (seed * 48271) % 2147483647; return seed % below; };
+  const whole = 'preset=case-1&scene.table.tilt_gain=1.2&scene.release.theta=0.1&speed=2';
+  const letters = '&=.-0eE%<>"[]{}';
+  for (let round = 0; round < 40; round += 1) {
+    let query = whole;
+    for (let k = 0; k <= random(4); k += 1) {
+      const at = random(query.length);
+      query = query.slice(0, at) + letters[random(letters.length)] + query.slice(at + random(3));
+    }
+    await page.goto(`${stage.url}?${query.replace(/%(?![0-9a-f]{2})/gi, '%25')}`);
+    await page.locator('#case:enabled').waitFor();
+    await page.waitForFunction(() => document.querySelector('.notice, .verdict-words'));
+  }
+  assert.deepEqual(wrongs.filter((wrong) => wrong.startsWith('exception')), []);
+  assert.ok(await verdict(page));
+});

@@ -1,0 +1,128 @@
+// A whole run in the page: from the case to a verdict that turns.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, impacts, ink, numbers, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+test('case 1 runs, its impacts arrive, and a gain beyond the critical one turns the verdict', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  assert.match(await verdict(page), /elliptic/i);
+  assert.equal(await ink(page, '#plane-angle', '--series-0'), 0);
+  await page.click('#run');
+  await speedUp(page);
+  await reachImpact(page, 10);
+  await reachPhase(page, 'running');
+  assert.ok(await ink(page, '#plane-angle', '--series-0') > 20, 'the angle plane has dots');
+  assert.ok(await ink(page, '#plane-velocity', '--series-0') > 20, 'the velocity plane has dots');
+  assert.ok(await ink(page, '#energy', '--series-0') > 20, 'the energy plot has dots');
+  assert.ok(await ink(page, '#circle', '--accent') > 20, 'the circle has its eigenvalues');
+  assert.ok(await ink(page, '#scene-frame', '--accent') > 200, 'the scene has its table');
+  await slide(page, '#gain', 1.55);
+  await page.waitForFunction(() => /unstable/i.test(document.querySelector('#verdict[aria-busy=false] .verdict-words')?.textContent ?? ''));
+  assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.55');
+  await page.waitForFunction(() => /interventions\.0\.set\.table\.tilt_gain=1\.55/.test(location.search));
+  await reachPhase(page, 'ended');
+  assert.match(await page.locator('#outcome').innerText(), /\d/);
+  assert.ok(await ink(page, '#plane-angle', '--series-1') > 5, 'impacts with the new gain have their own colour');
+  clean();
+});
+
+test('what is drawn is what the server computes', async () => {
+  const { page, clean } = await stage.page('?preset=case-4');
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 12);
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-4&impacts=200`)).json();
+  const rows = await numbers(page, 'plane-angle');
+  assert.ok(rows.length >= 12);
+  for (const [n, t, theta, spin, alpha] of rows) {
+    const at = answer.impacts.n.indexOf(Number(n));
+    const value = (text) => Number(text.replace('\u2212', '-'));
+    assert.ok(Math.abs(value(t) - answer.impacts.t[at]) <= 0.5001e-4, `t of impact ${n}`);
+    assert.ok(Math.abs(value(theta) - answer.impacts.theta[at]) <= 0.5001e-6, `theta of impact ${n}`);
+    assert.ok(Math.abs(value(spin) - answer.impacts.theta_dot[at]) <= 0.5001e-6, `theta_dot of impact ${n}`);
+    assert.ok(Math.abs(value(alpha) - answer.impacts.alpha[at]) <= 0.5001e-6, `alpha of impact ${n}`);
+  }
+  clean();
+});
+
+test('pause holds the run, step moves it by one impact, restart begins again', async () => {
+  const { page, clean } = await stage.page('?preset=case-2');
+  await page.click('#run');
+  await reachImpact(page, 3);
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  await page.waitForTimeout(300);
+  const held = await impacts(page);
+  await page.waitForTimeout(600);
+  assert.equal(await impacts(page), held);
+  await page.click('#step');
+  await reachImpact(page, held + 1);
+  await page.click('#step');
+  await reachImpact(page, held + 2);
+  assert.equal(await impacts(page), held + 2);
+  await page.click('#run');
+  await reachImpact(page, held + 4);
+  await page.click('#restart');
+  await page.waitForFunction((before) => Number(/^n (\d+)/.exec(document.querySelector('#plane-angle .readout').textContent)?.[1] ?? 0) < before, held);
+  await reachImpact(page, 1);
+  await reachPhase(page, 'running');
+  clean();
+});
+
+test('a kick acts and is kept in the address', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await page.click('#run');
+  await reachImpact(page, 1);
+  await page.click('#kick');
+  await page.waitForFunction(() => /kick\.theta_dot=0\.5/.test(location.search));
+  await page.locator('.kick input').fill('much');
+  await page.click('#kick');
+  assert.match(await page.locator('#kick-error').innerText(), /not a number/);
+  clean();
+});
+
+test('a parameter that is not live waits for the restart and then plays', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await page.click('#run');
+  await reachImpact(page, 2);
+  await page.locator('#field-release-theta').fill('0.05');
+  await page.locator('#field-release-theta').blur();
+  await page.locator('#restart.attention').waitFor();
+  await page.click('#restart');
+  await page.locator('#restart:not(.attention)').waitFor();
+  await page.waitForFunction(() => /scene\.release\.theta=0\.05/.test(location.search));
+  await reachImpact(page, 2);
+  const rows = await numbers(page, 'plane-angle');
+  assert.equal(Math.abs(Number(rows.at(-1)[2].replace('\u2212', '-'))), 0.05);
+  clean();
+});
+
+test('a server that goes away and comes back loses no impact', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  await page.click('#run');
+  await reachImpact(page, 3);
+  await stage.stopServer();
+  await page.locator('.notice', { hasText: 'Connection lost' }).waitFor();
+  await page.locator('.countdown', { hasText: /\d s/ }).waitFor();
+  const before = await impacts(page);
+  await stage.startServer();
+  await reachPhase(page, 'running');
+  await page.locator('.notice', { hasText: 'Connection lost' }).waitFor({ state: 'detached' });
+  await reachImpact(page, before + 6);
+  const rows = await numbers(page, 'plane-angle');
+  const seen = rows.map(([n]) => Number(n));
+  assert.deepEqual(seen, seen.map((_, index) => seen[0] - index), 'every number once');
+});
+
+test('the point mass runs with what it has', async () => {
+  const { page, clean } = await stage.page('?preset=point-mass');
+  await page.click('#run');
+  await page.waitForFunction(() => /impact [1-9]/.test(document.querySelector('#scene-readout').textContent));
+  assert.ok(await page.locator('#field-body-contact_distance').isDisabled());
+  clean();
+});

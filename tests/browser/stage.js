@@ -1,0 +1,132 @@
+// The stage of every browser test: the server on a free port, Chromium, and an eye on what a page must never do.
+
+import { spawn } from 'node:child_process';
+import { createServer } from 'node:net';
+import { after } from 'node:test';
+import assert from 'node:assert/strict';
+import { chromium } from 'playwright-core';
+
+const PROGRAM = process.env.EQUIPOISE ?? new URL('../../target/release/equipoise', import.meta.url).pathname;
+const FLAGS = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+/** How long a condition may take before a test gives up; no test measures speed by it. */
+export const PATIENCE_MS = 30_000;
+
+async function freePort() {
+  const probe = createServer().listen(0, '127.0.0.1');
+  await new Promise((resolve) => probe.once('listening', resolve));
+  const { port } = probe.address();
+  await new Promise((resolve) => probe.close(resolve));
+  return port;
+}
+
+export class Stage {
+  #server = null;
+  #browser = null;
+
+  static async open() {
+    const stage = new Stage();
+    stage.port = await freePort();
+    stage.url = `http://127.0.0.1:${stage.port}/`;
+    after(() => stage.close());
+    await stage.startServer();
+    stage.#browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: FLAGS });
+    return stage;
+  }
+
+  async startServer() {
+    const server = spawn(PROGRAM, ['--listen', `127.0.0.1:${this.port}`], { stdio: ['ignore', 'ignore', 'inherit'] });
+    this.#server = server;
+    let gone = null;
+    server.once('error', (error) => { gone = error; });
+    server.once('exit', (code) => { gone ??= new Error(`the server ended with ${code}`); });
+    for (;;) {
+      if (gone) throw gone;
+      const answer = await fetch(`${this.url}health/ready`).catch(() => null);
+      if (answer?.ok) return;
+      await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+  }
+
+  async stopServer() {
+    const server = this.#server;
+    this.#server = null;
+    if (!server || server.exitCode !== null) return;
+    const ended = new Promise((resolve) => server.once('exit', resolve));
+    server.kill('SIGKILL');
+    await ended;
+  }
+
+  async close() {
+    await this.#browser?.close();
+    await this.stopServer();
+  }
+
+  /**
+   * A page in a fresh browser profile, and what it did wrong so far.
+   * @param {string} query
+   */
+  async page(query = '', options = {}) {
+    const context = await this.#browser.newContext({ viewport: { width: 1280, height: 860 }, ...options });
+    await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+    const page = await context.newPage();
+    page.setDefaultTimeout(PATIENCE_MS);
+    const wrongs = [];
+    page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) wrongs.push(`console: ${message.text()}`); });
+    page.on('pageerror', (error) => wrongs.push(`exception: ${error.stack}`));
+    page.on('request', (request) => { if (!request.url().startsWith(this.url)) wrongs.push(`request elsewhere: ${request.url()}`); });
+    page.on('websocket', (socket) => { if (!socket.url().startsWith(this.url.replace('http', 'ws'))) wrongs.push(`socket elsewhere: ${socket.url()}`); });
+    await page.addInitScript(() => addEventListener('securitypolicyviolation', (event) => console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`)));
+    await page.goto(this.url + query);
+    await page.locator('#case:enabled').waitFor();
+    return { page, context, wrongs, clean: () => assert.deepEqual(wrongs, []) };
+  }
+}
+
+/** Waits until the verdict belongs to what is typed, and gives its words. */
+export async function verdict(page) {
+  await page.waitForFunction(() => document.querySelector('#verdict[aria-busy=false] .verdict-words'));
+  return page.locator('.verdict-words').innerText();
+}
+
+/** The number of the last impact on the page. */
+export async function impacts(page) {
+  const text = await page.locator('#plane-angle .readout').innerText();
+  return Number(/^n (\d+)/.exec(text)?.[1] ?? 0);
+}
+
+export const reachImpact = (page, n) => page.waitForFunction((wanted) => Number(/^n (\d+)/.exec(document.querySelector('#plane-angle .readout')?.textContent ?? '')?.[1] ?? 0) >= wanted, n);
+
+export const reachPhase = (page, phase) => page.locator(`#run-state[data-phase=${phase}]`).waitFor();
+
+/** How many pixels of a canvas have (nearly) the colour of the style sheet's property. */
+export function ink(page, selector, property) {
+  return page.locator(`${selector} canvas`).first().evaluate((canvas, name) => {
+    const probe = document.createElement('canvas').getContext('2d');
+    probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+    probe.fillRect(0, 0, 1, 1);
+    const [r, g, b] = probe.getImageData(0, 0, 1, 1).data;
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200 && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 40) count += 1;
+    return count;
+  }, property);
+}
+
+/** The numbers behind a chart, as its table shows them. */
+export async function numbers(page, id) {
+  const summary = page.locator(`#${id} summary`);
+  if (!(await page.locator(`#${id} details`).evaluate((details) => details.open))) await summary.click();
+  await page.waitForFunction((chart) => document.querySelectorAll(`#${chart} tbody tr`).length > 0, id);
+  return page.locator(`#${id} tbody tr`).evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
+}
+
+/** Moves a slider as a hand would, from its first value to its last. */
+export async function slide(page, selector, value) {
+  await page.locator(selector).evaluate((slider, to) => {
+    slider.value = String(to);
+    slider.dispatchEvent(new Event('input', { bubbles: true }));
+    slider.dispatchEvent(new Event('change', { bubbles: true }));
+  }, value);
+}
+
+export const speedUp = (page) => slide(page, '#speed', 75);
