@@ -23,7 +23,7 @@ export class Figure {
 
   /**
    * @param {string} id
-   * @param {string | Node} title
+   * @param {string} title
    * @param {string | Node} about one sentence
    * @param {Table} table
    */
@@ -33,7 +33,7 @@ export class Figure {
     this.#readout = h('output', { class: 'readout', 'aria-live': 'off' });
     this.#body = h('tbody');
     this.#disclosure = h('details', { toggle: () => this.list(Infinity) }, h('summary', {}, 'Numbers'),
-      h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers of this chart' },
+      h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': `Numbers: ${title}` },
         h('table', {}, h('thead', {}, h('tr', {}, ...table.head.map((name) => h('th', { scope: 'col' }, name)))), this.#body)));
     this.element = h('figure', { class: 'card chart', id }, h('figcaption', {}, h('h3', {}, title), h('p', { class: 'muted' }, about)),
       this.box, this.#readout, this.#disclosure);

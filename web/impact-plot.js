@@ -19,7 +19,7 @@ import { invalidate, surfaces } from './surface.js';
 /**
  * @typedef {object} Meaning
  * @property {string} id
- * @property {string | Node} title
+ * @property {string} title
  * @property {string | Node} about
  * @property {Axis} x
  * @property {Axis} y

@@ -99,12 +99,11 @@ const address = settled(150, () => {
 
 /** @type {AbortController | null} */
 let asking = null;
-const ask = settled(120, async () => {
+const askSoon = settled(120, async () => {
   asking?.abort();
   const query = typedQuery();
   if (!query) return verdict.fail('A parameter is not a number; it is marked below.');
   const mine = asking = new AbortController();
-  verdict.busy(true);
   try {
     const answer = await get(`v1/stability?${query}`, mine.signal);
     form?.blame([]);
@@ -123,6 +122,12 @@ const ask = settled(120, async () => {
     }
   }
 });
+
+/** What stands there is out of date from now on, and asked for anew once typing has paused. */
+function ask() {
+  verdict.busy(true);
+  askSoon();
+}
 
 /** Live parameters that were changed and go to the run together. @type {Set<string>} */
 const unsent = new Set();

@@ -82,7 +82,7 @@ export class SceneView {
     const live = phase !== 'idle' && this.#run.scene;
     if (live) this.#drawRun(now_ms, since_s);
     else if (this.#draft) this.#drawRelease(this.#draft);
-    else this.#ground(0.3);
+    else this.#ground();
     return Boolean(live) && phase === 'running' && this.#moving;
   }
 
@@ -93,7 +93,7 @@ export class SceneView {
     const y = Math.max(height, l * Math.cos(theta));
     this.#frame(scene, y);
     this.#camera = x;
-    this.#ground(this.#top);
+    this.#ground();
     const scale = this.#scale();
     this.#wanted(scale, scene);
     drawTable(this.#surface.context, scale, { x: x + l * Math.sin(theta), y: 0, alpha: 0 }, this.#plate(scene), this.#floor());
@@ -114,14 +114,14 @@ export class SceneView {
     const place = run.placeAt(now);
     const impact = place === null ? null : run.impacts.row(place);
     const arc = run.arcAt(now);
-    if (!arc) return this.#ground(this.#top || 0.3);
+    if (!arc) return this.#ground();
     // Where flights are not wanted, the pose of the last strike stands still until the next one.
     const t = this.#moving || !impact ? now : arc.t;
     const pose = poseOn(arc, t, scene);
     this.#frame(scene, arc.y + arc.y_dot ** 2 * Math.sign(Math.max(0, arc.y_dot)) / (2 * effectiveGravity(scene)));
     this.#follow(pose.x, since_s);
     const { context } = this.#surface;
-    this.#ground(this.#top);
+    this.#ground();
     const scale = this.#scale();
     this.#wanted(scale, scene);
     this.#trail(scale, scene, place, t);
@@ -154,7 +154,7 @@ export class SceneView {
   #frame(scene, apex) {
     const above = scene.body?.point ? 0.03 : Math.max(contactDistance(scene), scene.body?.radius_of_gyration ?? 0);
     const wanted = (Math.max(apex, scene.table?.target_height ?? 0) + above) * 1.08;
-    if (wanted > this.#top) this.#top = wanted;
+    if (wanted > this.#top && Number.isFinite(wanted)) this.#top = wanted;
   }
 
   /** The camera lets the rod wander through the middle third and then goes with it. @param {number} x @param {number} since_s */
@@ -165,13 +165,16 @@ export class SceneView {
     this.#camera += phase === 'running' && this.#moving && Math.abs(excess) < free * 6 ? excess * Math.min(1, since_s * 6) : excess;
   }
 
+  /** The height that fills the picture; a scene not yet typed has none of its own. */
+  get #shown() { return this.#top > 0 ? this.#top : 0.3; }
+
   #floor() { return this.#surface.height - RULER; }
 
   #scale() {
     const { width, height } = this.#surface;
     // Below the height of the contacts there is room for a tilted table and its foot.
     const depth = Math.max(58, (height - RULER) * 0.2);
-    const metre = Math.max(1, (height - RULER - depth - 6) / (this.#top || 0.3));
+    const metre = Math.max(1e-9, (height - RULER - depth - 6) / this.#shown);
     return { x: (/** @type {number} */ x) => width / 2 + (x - this.#camera) * metre, y: (/** @type {number} */ y) => height - RULER - depth - y * metre, metre, right: width };
   }
 
@@ -180,18 +183,16 @@ export class SceneView {
     return Math.min(0.7 * (contactDistance(scene) || 0.12), this.#surface.width * 0.3 / this.#scale().metre);
   }
 
-  /** @param {number} top */
-  #ground(top) {
+  #ground() {
     const { context, width, height } = this.#surface;
     const colours = theme();
-    this.#top = top;
     context.clearRect(0, 0, width, height);
     const scale = this.#scale();
     const step = roundStep(width / scale.metre, 8);
     const first = Math.ceil((this.#camera - width / 2 / scale.metre) / step);
     context.lineWidth = 1;
     for (let k = first; scale.x(k * step) < width; k += 1) line(context, colours.faint, Math.round(scale.x(k * step)) + 0.5, 0, Math.round(scale.x(k * step)) + 0.5, this.#floor());
-    const rung = roundStep(top, 4);
+    const rung = roundStep(this.#shown, 4);
     for (let k = 0; scale.y(k * rung) > 0; k += 1) line(context, k === 0 ? colours.line : colours.faint, 0, Math.round(scale.y(k * rung)) + 0.5, width, Math.round(scale.y(k * rung)) + 0.5);
   }
 
@@ -219,7 +220,7 @@ export class SceneView {
     context.textAlign = 'left';
     context.fillText('x / m', 6, floor + 7);
     context.textBaseline = 'bottom';
-    const rung = roundStep(this.#top, 4);
+    const rung = roundStep(this.#shown, 4);
     for (let k = 0; scale.y(k * rung) > 14; k += 1) context.fillText(k === 0 ? '0\u202fm' : number(k * rung), 6, scale.y(k * rung) - 2);
     this.#scaleBar(scale.metre);
   }
