@@ -166,6 +166,7 @@ export class Circle {
     context.textBaseline = 'bottom';
     context.textAlign = 'right';
     context.fillText(`κ = ${number(lower)}`, cx + unit - 9, cy - 4);
+    if (unit < 62) return;
     context.textAlign = 'left';
     const from = cx - unit + 9;
     context.fillText('κ', from, cy - 4);

@@ -43,6 +43,12 @@ export function symbol(text) {
 }
 
 /**
+ * The server's sentences with their symbols set as such.
+ * @param {string} text
+ */
+export const prose = (text) => text.split(/((?:κ|σ)_[A-Za-z]+|y\*)/).map((part, index) => (index % 2 ? symbol(part) : part));
+
+/**
  * Text to the clipboard, and the button says so for a moment.
  * @param {HTMLElement} button
  * @param {string} text

@@ -27,6 +27,7 @@ import { invalidate, surfaces } from './surface.js';
  * @property {(impacts: import('./impacts.js').Impacts, place: number) => string[]} cells
  * @property {(impacts: import('./impacts.js').Impacts, place: number) => string} readout
  * @property {string} hint while there is nothing
+ * @property {string} [lacking] when impacts have no such values
  * @property {string} spoken what it shows, for those who do not see it
  * @property {() => {value: number, name: string}[]} [levels] horizontal lines worth comparing with
  */
@@ -154,7 +155,7 @@ export class ImpactPlot {
   /** The empty plot with scales that hold what there is. */
   #paper() {
     const { context, width, height } = this.#plot;
-    const { x, y, hint, levels } = this.#meaning;
+    const { x, y, hint, lacking, levels } = this.#meaning;
     const extent = structuredClone(this.#extent);
     for (const { value } of levels?.() ?? []) {
       extent.y.low = Math.min(extent.y.low, value);
@@ -178,14 +179,14 @@ export class ImpactPlot {
       context.fillStyle = colours.good;
       context.textAlign = 'right';
       context.textBaseline = 'bottom';
-      context.fillText(name, this.#frame.left + this.#frame.width - 6, at - 3);
+      context.fillText(name, this.#frame.left + this.#frame.width, this.#frame.top - 6);
     }
     if (empty || this.#impacts.end === 0) {
       context.font = `12px ${SANS}`;
       context.fillStyle = colours.muted;
       context.textAlign = 'center';
       context.textBaseline = 'middle';
-      context.fillText(hint, this.#frame.left + this.#frame.width / 2, this.#frame.top + this.#frame.height / 2 - 14, this.#frame.width - 16);
+      context.fillText(this.#impacts.end > 0 && lacking ? lacking : hint, this.#frame.left + this.#frame.width / 2, this.#frame.top + this.#frame.height / 2 - 14, this.#frame.width - 16);
     }
     this.#drawn = 0;
     this.#stale = false;

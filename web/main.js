@@ -58,7 +58,7 @@ const run = new Run({
   },
 });
 const view = new SceneView(byId('scene-frame'), byId('scene-readout'), run);
-const plots = [anglePlane(run.impacts), velocityPlane(run.impacts), energyPlot(run.impacts, () => run.scene ?? playing)];
+const plots = [anglePlane(run.impacts), velocityPlane(run.impacts), energyPlot(run.impacts, () => run.scene ?? form?.read().scene ?? null)];
 const circle = new Circle();
 const verdict = new Verdict(byId('verdict'));
 const controls = new Controls(byId('controls'), {
@@ -158,6 +158,7 @@ function edited(path, final) {
     sendChanges();
   }
   view.draft(scene);
+  plots[2].redraw();
   ask();
   if (run.phase === 'idle') address();
   else showRun();
@@ -197,8 +198,8 @@ function showRun() {
   if (state.textContent !== words) state.textContent = words;
   state.dataset.phase = phase;
   const told = byId('outcome');
-  told.hidden = phase !== 'ended';
-  told.textContent = phase === 'ended' ? outcome?.detail ?? '' : run.impacts.missing > 0 ? `${run.impacts.missing} impacts were skipped over` : '';
+  told.hidden = phase !== 'ended' && run.impacts.missing === 0;
+  told.textContent = phase === 'ended' ? sentence(outcome?.detail ?? '') : run.impacts.missing > 0 ? `${run.impacts.missing} impacts were skipped over` : '';
   controls.show(phase, run.phase !== 'idle' && unplayed().length > 0, form !== null);
   if (run.active) {
     speed = run.clock.speed || speed;
@@ -207,6 +208,9 @@ function showRun() {
   }
   view.redraw();
 }
+
+/** @param {string} words */
+const sentence = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
 
 /** Shows a scene without running it. @param {Scene} scene */
 function present(scene) {
@@ -217,6 +221,7 @@ function present(scene) {
   byId('case-shows').textContent = chosen?.shows ?? 'A scene of your own.';
   document.title = chosen ? `${chosen.title} · equipoise` : 'equipoise';
   showPaper(byId('paper'), chosen);
+  plots[2].redraw();
   view.draft(scene);
   ask();
 }
@@ -227,7 +232,7 @@ function restore(search) {
   const bare = link.preset === null && Object.keys(link.changes).length === 0;
   chosen = cases.find((one) => one.name === (bare ? cases[0]?.name : link.preset)) ?? null;
   speed = link.speed;
-  run.stop();
+  run.reset();
   if (link.dropped.length > 0) {
     notice('link', [h('strong', {}, 'This link was not whole. '), 'Dropped: ', h('ul', {}, ...link.dropped.map((what) => h('li', {}, what)))], { caution: true });
   } else clearNotice('link');
@@ -250,10 +255,9 @@ function choose(one) {
   const going = run.phase !== 'idle';
   chosen = one;
   history.pushState(null, '', `?${new URLSearchParams({ preset: one.name })}`);
-  run.stop();
+  run.reset();
   present(one.scene);
   if (going) start();
-  else plots.forEach((plot) => plot.clear());
 }
 
 async function begin() {

@@ -1,6 +1,6 @@
 // The paper's printed values beside the computed ones. Not for computing either.
 
-import { h, symbol } from './dom.js';
+import { h, prose, symbol } from './dom.js';
 import { quantity } from './numbers.js';
 
 /** @typedef {import('./api.js').PaperValue} PaperValue */
@@ -26,7 +26,7 @@ export function showPaper(root, chosen) {
     const differs = Boolean(computed.why) || !same(printed?.value ?? null, computed.value);
     const name = h('th', { scope: 'row' }, computed.symbol ? symbol(computed.symbol) : computed.quantity, h('span', { class: 'muted name' }, ...computed.quantity.split(/(?<=[._])/).flatMap((part) => [part, h('wbr')])));
     const row = h('tr', { class: differs ? 'differs' : '' }, name, cell(printed), cell(computed), h('td', {}, differs ? '≠' : printed?.value == null ? '' : '='));
-    return computed.why ? [row, h('tr', { class: 'why' }, h('td', { colspan: 4 }, computed.why))] : [row];
+    return computed.why ? [row, h('tr', { class: 'why' }, h('td', { colspan: 4 }, ...prose(computed.why)))] : [row];
   });
   root.replaceChildren(h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Printed and computed values' }, h('table', { class: 'paper' },
     h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Quantity'), h('th', { scope: 'col' }, 'Printed'), h('th', { scope: 'col' }, 'Computed'), h('th', { scope: 'col' }, h('span', { class: 'unseen' }, 'Equal')))),

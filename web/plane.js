@@ -11,7 +11,7 @@ const HINT = 'Every impact becomes a dot here';
 export function anglePlane(impacts) {
   return new ImpactPlot(impacts, {
     id: 'plane-angle', title: 'Angle ⟨θ, θ̇⟩', about: 'Tilt and spin just before each impact. A closed loop is balance.', hint: HINT,
-    spoken: 'Phase plane of angle θ and angular velocity θ̇',
+    lacking: 'A point mass has no spin', spoken: 'Phase plane of angle θ and angular velocity θ̇',
     x: { column: 'theta', name: 'θ / rad', symmetric: true, span: 0.04 }, y: { column: 'theta_dot', name: 'θ̇ / rad s⁻¹', symmetric: true, span: 0.1 },
     head: ['impact', 't / s', 'θ / rad', 'θ̇ / rad s⁻¹', 'α / rad'],
     cells: (all, place) => [String(all.at('n', place)), fixed(all.at('t', place), 4), fixed(all.at('theta', place), 6), fixed(all.at('theta_dot', place), 6), fixed(all.at('alpha', place), 6)],

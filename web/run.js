@@ -85,6 +85,13 @@ export class Run {
     this.#become('idle');
   }
 
+  /** No run, and nothing of the one before. */
+  reset() {
+    this.stop();
+    this.scene = null;
+    this.#clear();
+  }
+
   retry() { this.#live?.retry(); }
 
   #clear() {

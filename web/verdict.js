@@ -1,6 +1,6 @@
 // The verdict in words with the numbers that carry it. Not for asking the server.
 
-import { h, symbol } from './dom.js';
+import { h, prose, symbol } from './dom.js';
 import { number, quantity } from './numbers.js';
 
 /** @typedef {import('./api.js').Stability} Stability */
@@ -62,12 +62,12 @@ export class Verdict {
     if (nonlinear) rows.push(['max |θ|', quantity(nonlinear.max_theta, 'rad'), `${number(nonlinear.impacts, 6)} impacts run: ${nonlinear.outcome}`]);
     this.#root.replaceChildren(
       h('p', { class: `verdict-words ${manner}` }, h('span', { class: 'sign', 'aria-hidden': 'true' }, SIGNS[manner]), ` ${words}`),
-      reason ? h('p', { class: 'reason' }, reason) : '',
+      reason ? h('p', { class: 'reason' }, ...prose(reason)) : '',
       h('p', { class: 'chips' },
         decider ? h('span', { class: 'chip' }, `decided by ${DECIDERS[decider] ?? decider}`) : '',
         agree === null ? '' : h('span', { class: `chip ${agree ? '' : 'caution'}` }, agree ? 'linear map and run agree' : 'linear map and run disagree')),
       h('dl', { class: 'numbers' }, ...rows.map(([name, value, meaning]) => h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning ?? '')))),
-      h('details', { class: 'model' }, h('summary', {}, `Model: ${answer.model.name.replaceAll('_', ' ')}`), h('p', { class: 'muted' }, answer.model.reason),
-        ...notes.map((note) => h('p', { class: 'muted' }, note))));
+      h('details', { class: 'model' }, h('summary', {}, `Model: ${answer.model.name.replaceAll('_', ' ')}`), h('p', { class: 'muted' }, ...prose(answer.model.reason)),
+        ...notes.map((note) => h('p', { class: 'muted' }, ...prose(note)))));
   }
 }
