@@ -5,11 +5,11 @@
  *
  * @typedef {object} Field one row of the table of scene fields
  * @property {string} path dotted, such as `table.tilt_gain`
- * @property {string} symbol
+ * @property {string | null} symbol
  * @property {string} group
  * @property {string} title
  * @property {string} about
- * @property {string} unit
+ * @property {string | null} unit
  * @property {'number' | 'integer' | 'choice' | 'boolean'} kind
  * @property {number | null} minimum
  * @property {number | null} maximum
@@ -19,7 +19,7 @@
  * @property {boolean} live may be changed during a run
  * @property {boolean} available
  *
- * @typedef {{quantity: string, symbol: string, unit: string, value: number | null, where: string, why?: string | null}} PaperValue
+ * @typedef {{quantity: string, symbol: string, unit: string, value: number | string | null, where: string, why?: string | null}} PaperValue
  * @typedef {{name: string, title: string, shows: string, scene: Scene, printed: PaperValue[], computed: PaperValue[]}} Case
  *
  * @typedef {{re: number, im: number, modulus: number}} Eigenvalue
@@ -94,6 +94,13 @@ export const pathOf = (pointer) => pointer.replace(/^\//, '').replace(/^scene[/.
  * @returns {any}
  */
 export const valueAt = (scene, path) => path.split('.').reduce((/** @type {any} */ value, key) => value?.[key], scene);
+
+/**
+ * The value a field has in a scene, its default where nothing is said; undefined when it has none.
+ * @param {Scene} scene
+ * @param {Field} field
+ */
+export const playedAt = (scene, field) => valueAt(scene, field.path) ?? field.default ?? undefined;
 
 /**
  * @param {Scene} scene

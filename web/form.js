@@ -188,7 +188,8 @@ export class Form {
   /** Fills in a scene; what it leaves open shows its default. @param {Scene} scene */
   fill(scene) {
     for (const row of this.#rows.values()) {
-      this.#put(row, valueAt(scene, row.field.path));
+      const value = valueAt(scene, row.field.path);
+      this.#put(row, value === row.field.default ? null : value);
       this.#say(row, null);
     }
     this.#reach();

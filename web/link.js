@@ -1,7 +1,7 @@
 // The page's address: scene and run in the words of `/v1/live`, read with care, since links grow old. Not for sending anything.
 
 import { number, quantity } from './numbers.js';
-import { setAt, valueAt } from './api.js';
+import { playedAt, setAt } from './api.js';
 
 /** @typedef {import('./api.js').Field} Field */
 /** @typedef {import('./api.js').Case} Case */
@@ -46,10 +46,10 @@ export function readLink(search, fields, cases) {
       if (value >= SLOWEST && value <= FASTEST) link.speed = value;
       else link.dropped.push(`the speed “${shown(text)}”: it must be from ${SLOWEST} to ${FASTEST}`);
     } else if (key === 'epoch') {
-      if (Number.isSafeInteger(value) && value >= 0) run.set(key, text);
+      if (Number.isFinite(value) && value >= 0) run.set(key, text);
       else link.dropped.push(`the start “${shown(text)}”, which is not a time in ms`);
     } else if (/^(interventions\.\d+\.(impact|(set|kick)\.[a-z_.]+)|clock\.\d+\.(wall|run|speed))$/.test(key)) {
-      if (Number.isFinite(value)) run.set(key, text);
+      if (Number.isFinite(value) || isChoice(key, text, fields)) run.set(key, text);
       else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
     } else if (key !== 'from') {
       link.dropped.push(`“${shown(key)}”, which has no meaning here`);
@@ -59,6 +59,12 @@ export function readLink(search, fields, cases) {
   else if (run.has('epoch')) link.run = joined(run, fields, link.dropped);
   else if ([...run.keys()].length > 0) link.dropped.push('the interventions, which belong to a run without a start');
   return link;
+}
+
+/** Whether an intervention sets a choice to one there is. @param {string} key @param {string} text @param {Field[]} fields */
+function isChoice(key, text, fields) {
+  const path = /^interventions\.\d+\.set\.(.+)$/.exec(key)?.[1];
+  return fields.some((field) => field.path === path && field.choices?.includes(text));
 }
 
 /** Foreign text, short enough to print. @param {string} text */
@@ -172,13 +178,13 @@ export function merged(preset, changes) {
  */
 export function sceneQuery(scene, preset, fields) {
   const query = new URLSearchParams();
-  const paths = fields.filter((field) => field.available).map((field) => field.path);
-  const covered = preset && paths.every((path) => valueAt(preset.scene, path) === undefined || valueAt(scene, path) !== undefined);
+  const known = fields.filter((field) => field.available);
+  const covered = preset && known.every((field) => playedAt(preset.scene, field) === undefined || playedAt(scene, field) !== undefined);
   if (covered) query.set('preset', preset.name);
-  for (const path of paths) {
-    const value = valueAt(scene, path);
-    if (value === undefined || (covered && value === valueAt(preset.scene, path))) continue;
-    query.set(`scene.${path}`, String(value));
+  for (const field of known) {
+    const value = playedAt(scene, field);
+    if (value === undefined || value === (covered ? playedAt(preset.scene, field) : field.default)) continue;
+    query.set(`scene.${field.path}`, String(value));
   }
   return query;
 }

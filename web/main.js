@@ -1,6 +1,6 @@
 // The page: joins the form, the run and the panels. Not for what any of them does.
 
-import { Problem, get, pathOf, server, setAt, valueAt } from './api.js';
+import { Problem, get, pathOf, playedAt, server, setAt, valueAt } from './api.js';
 import { Circle } from './circle.js';
 import { Controls } from './controls.js';
 import { Form } from './form.js';
@@ -13,7 +13,7 @@ import { clearNotice, connectionNotice, notice } from './notices.js';
 import { energyPlot } from './energy.js';
 import { invalidate } from './surface.js';
 import { listenToKeys } from './keys.js';
-import { merged, readLink, sceneQuery } from './link.js';
+import { interventionsOf, merged, readLink, sceneQuery } from './link.js';
 import { showCalls } from './calls.js';
 import { showPaper } from './paper.js';
 
@@ -86,7 +86,7 @@ function typedQuery() {
 /** Fields whose typed value the run does not play. */
 function unplayed() {
   const scene = form?.read().scene;
-  return scene && playing ? fields.filter(({ path }) => valueAt(scene, path) !== valueAt(/** @type {Scene} */ (playing), path)) : [];
+  return scene && playing ? fields.filter((field) => playedAt(scene, field) !== playedAt(/** @type {Scene} */ (playing), field)) : [];
 }
 
 /** The page's address says what is shown: the run while there is one, else what is typed. */
@@ -134,7 +134,7 @@ const unsent = new Set();
 const sendChanges = settled(100, () => {
   const scene = form?.read().scene;
   if (!scene || !playing || !run.active) return unsent.clear();
-  const changes = Object.fromEntries([...unsent].map((path) => [path, valueAt(scene, path)]).filter(([path, value]) => value !== undefined && value !== valueAt(/** @type {Scene} */ (playing), path)));
+  const changes = Object.fromEntries(unplayed().filter(({ path }) => unsent.has(path)).map((field) => [field.path, playedAt(scene, field)]).filter(([, value]) => value !== undefined));
   unsent.clear();
   lastSent = 'set';
   if (Object.keys(changes).length === 0 || !run.set(changes)) return;
@@ -241,10 +241,7 @@ function restore(search) {
   const query = sceneQuery(scene, chosen, fields);
   for (const [key, value] of link.run) query.set(key, value);
   query.set('speed', String(speed));
-  for (const [key, value] of link.run) {
-    const match = /^interventions\.\d+\.set\.(.+)$/.exec(key);
-    if (match) setAt(scene, match[1], Number(value));
-  }
+  for (const { set } of interventionsOf(link.run)) for (const [path, value] of Object.entries(set)) setAt(scene, path, value);
   present(scene);
   playing = form ? structuredClone(form.read().scene) : null;
   run.start(query);

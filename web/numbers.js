@@ -41,25 +41,25 @@ function grouped(text) {
   return typeset(part === undefined ? parted : `${parted}.${part}`);
 }
 
-/** The unit as printed after a number: nothing for a pure number. @param {string} unit */
-export const unitAfter = (unit) => (unit === '1' || unit === '' ? '' : NARROW + unit);
+/** The unit as printed after a number: nothing for a pure number. @param {string | null} unit */
+export const unitAfter = (unit) => (unit === null || unit === '1' || unit === '' ? '' : NARROW + unit);
 
 /**
  * @param {number | null | undefined} value
- * @param {string} unit
+ * @param {string | null} unit
  */
 export const quantity = (value, unit, digits = 4) => number(value, digits) + (value == null ? '' : unitAfter(unit));
 
 /**
  * What somebody typed, as a number: decimal comma, typographic minus, `45°` and `pi/4` included; null when it is none.
  * @param {string} text
- * @param {string} unit
+ * @param {string | null} unit
  */
 export function parse(text, unit) {
   const plain = text.trim().replaceAll(MINUS, '-').replace(/[\s\u202f\u2009]/g, '').replace(/^(-?\d*),(\d+)$/, '$1.$2');
   const turn = /^(-?)(\d*\.?\d*)\*?(?:π|pi)(?:\/(\d+\.?\d*))?$/i.exec(plain);
   if (turn) return (turn[1] ? -1 : 1) * (turn[2] ? Number(turn[2]) : 1) * Math.PI / (turn[3] ? Number(turn[3]) : 1);
-  const degrees = unit.startsWith('rad') && /^(.+)°$/.exec(plain);
+  const degrees = unit?.startsWith('rad') && /^(.+)°$/.exec(plain);
   if (degrees) return scaled(degrees[1], Math.PI / 180);
   return scaled(plain, 1);
 }

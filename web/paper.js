@@ -5,9 +5,10 @@ import { quantity } from './numbers.js';
 
 /** @typedef {import('./api.js').PaperValue} PaperValue */
 
-/** Whether the print is the computed value to its own digits. @param {number | null} printed @param {number | null} computed */
+/** Whether the print is the computed value to its own digits. @param {PaperValue['value']} printed @param {PaperValue['value']} computed */
 function same(printed, computed) {
   if (printed === null || computed === null) return true;
+  if (typeof printed === 'string' || typeof computed === 'string') return printed === computed;
   const decimals = (String(printed).split('.')[1] ?? '').length;
   return Math.abs(printed - computed) <= 0.5000001 * 10 ** -decimals;
 }
@@ -35,5 +36,5 @@ export function showPaper(root, chosen) {
 
 /** @param {PaperValue | undefined} value */
 function cell(value) {
-  return h('td', {}, quantity(value?.value, value?.unit ?? '', 5), h('span', { class: 'muted where' }, value?.where ?? ''));
+  return h('td', {}, typeof value?.value === 'string' ? value.value : quantity(value?.value, value?.unit ?? '', 5), h('span', { class: 'muted where' }, value?.where ?? ''));
 }
