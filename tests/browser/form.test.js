@@ -66,8 +66,10 @@ test('the printed values stand beside the computed ones, with the reason where t
   const { page, clean } = await stage.page('?preset=case-4');
   const { scenes } = await (await fetch(`${stage.url}v1/scenes`)).json();
   const differing = scenes.find(({ name }) => name === 'case-4').computed.filter(({ why }) => why);
-  const text = await page.locator('#paper').innerText();
-  for (const { why } of differing) assert.ok(text.includes(why), why);
+  // Symbols are set as such, so only the letters are compared.
+  const letters = (text) => text.replace(/[\s_*]/g, '');
+  const text = letters(await page.locator('#paper').innerText());
+  for (const { why } of differing) assert.ok(text.includes(letters(why)), why);
   assert.ok(await page.locator('#paper tbody tr').count() > 0);
   clean();
 });
