@@ -46,7 +46,7 @@ export function symbol(text) {
  * The server's sentences with their symbols set as such.
  * @param {string} text
  */
-export const prose = (text) => text.split(/((?:κ|σ)_[A-Za-z]+|y\*)/).map((part, index) => (index % 2 ? symbol(part) : part));
+export const prose = (text) => text.split(/((?:κ|σ)_[A-Za-z]+(?:,max)?|y\*)/).map((part, index) => (index % 2 ? symbol(part) : part));
 
 /**
  * Text to the clipboard, and the button says so for a moment.
@@ -56,12 +56,24 @@ export const prose = (text) => text.split(/((?:κ|σ)_[A-Za-z]+|y\*)/).map((part
 export async function copy(button, text) {
   const label = button.dataset.label ??= button.textContent ?? '';
   try {
-    await navigator.clipboard.writeText(text);
+    if (navigator.clipboard) await navigator.clipboard.writeText(text);
+    else copyOverHttp(text);
     button.textContent = 'Copied';
   } catch {
     button.textContent = 'Not allowed to copy';
   }
   setTimeout(() => { button.textContent = label; }, 1600);
+}
+
+/** A lab's machine is often reached by plain HTTP, where browsers have no clipboard but the old one. @param {string} text */
+function copyOverHttp(text) {
+  const carrier = h('textarea', { class: 'unseen' });
+  carrier.value = text;
+  document.body.append(carrier);
+  carrier.select();
+  const copied = document.execCommand('copy');
+  carrier.remove();
+  if (!copied) throw new Error('not copied');
 }
 
 /**

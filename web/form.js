@@ -17,8 +17,13 @@ import { pathOf, setAt, valueAt } from './api.js';
  * @property {{text: string, value: number} | null} exact what a shortened text stands for, until it is edited
  */
 
-/** @type {Record<string, string>} */
-const GROUPS = { body: 'Body', gravity: 'Gravity', contact: 'Contact', table: 'Table', release: 'Release', noise: 'Noise', '': 'Scene', scene: 'Scene' };
+// Fields that stand at the top of a scene, each a group of its own there, make one group here.
+const TOP = 'World';
+
+/** @param {Field} field */
+function groupOf({ path, group }) {
+  return path.includes('.') ? group[0].toUpperCase() + group.slice(1) : TOP;
+}
 
 // Where a slider moves at first: the ranges of the fields are a lab's, far too wide to aim in. A typed value widens it.
 /** @type {Record<string, [number, number]>} */
@@ -46,8 +51,9 @@ export function sliderRange(field, value) {
   const low = field.minimum ?? -Infinity;
   const high = field.maximum ?? Infinity;
   const [from, to] = COMFORTABLE[field.path] ?? [low >= 0 ? 0 : -2 * size, field.maximum === 1 ? 1 : 2 * size];
-  const reach = value == null ? [from, to] : [Math.min(from, value), Math.max(to, value)];
-  return [Math.max(low, reach[0]), Math.min(high, reach[1])];
+  if (value == null || (value >= from && value <= to)) return [Math.max(low, from), Math.min(high, to)];
+  const round = step((Math.max(to, value) - Math.min(from, value)) * 20);
+  return [Math.max(low, value < from ? Math.floor(value / round - 1) * round : from), Math.min(high, value > to ? Math.ceil(value / round + 1) * round : to)];
 }
 
 /**
@@ -77,10 +83,8 @@ export class Form {
    */
   constructor(root, fields, onEdit) {
     this.#onEdit = onEdit;
-    const groups = [...new Set(fields.map((field) => field.group ?? ''))];
-    for (const group of groups) {
-      const members = fields.filter((field) => (field.group ?? '') === group);
-      const title = GROUPS[group] ?? group[0].toUpperCase() + group.slice(1);
+    for (const title of new Set(fields.map(groupOf))) {
+      const members = fields.filter((field) => groupOf(field) === title);
       const missing = members.filter((field) => !field.available);
       const fieldset = h('fieldset', {}, h('legend', {}, title));
       for (const field of members) if (field.available) fieldset.append(this.#row(field));
@@ -105,7 +109,7 @@ export class Form {
     let slider = null;
     if (field.kind === 'choice') {
       input = h('select', { id, 'aria-describedby': described, change: () => this.#edited(field.path, true) },
-        ...(field.choices ?? []).map((choice) => h('option', { value: choice }, choice)));
+        field.default == null && h('option', { value: '' }, 'not set'), ...(field.choices ?? []).map((choice) => h('option', { value: choice }, choice)));
     } else if (field.kind === 'boolean') {
       input = h('input', { id, type: 'checkbox', 'aria-describedby': described, change: () => this.#edited(field.path, true) });
     } else {
@@ -114,11 +118,12 @@ export class Form {
         placeholder: field.default == null ? 'not set' : number(Number(field.default)),
         input: () => this.#edited(field.path, false), change: () => this.#edited(field.path, true),
       });
-      const moved = h('input', { type: 'range', 'aria-label': `${field.title}, slider`, tabindex: 0 });
-      const take = (/** @type {boolean} */ final) => { typed.value = moved.value; this.#edited(field.path, final, true); };
-      moved.addEventListener('input', () => take(false));
-      moved.addEventListener('change', () => take(true));
       input = typed;
+      // Nobody finds one number among trillions with a slider.
+      const moved = field.kind === 'integer' && (field.maximum ?? Infinity) > 1e6 ? null : h('input', { type: 'range', 'aria-label': `${field.title}, slider`, tabindex: 0 });
+      for (const [event, final] of /** @type {const} */ ([['input', false], ['change', true]])) {
+        moved?.addEventListener(event, () => { typed.value = moved.value; this.#edited(field.path, final, true); });
+      }
       slider = moved;
     }
     const unit = unitAfter(field.unit).trim();
@@ -126,7 +131,7 @@ export class Form {
       ? h('span', { class: 'range' }, `${number(field.minimum)} to ${quantity(field.maximum, field.unit)}`) : null;
     const element = h('div', { class: `field ${field.kind}` },
       h('div', { class: 'field-head' }, name, field.live && h('span', { class: 'live-tag' }, 'live')),
-      h('div', { class: 'field-row' }, slider, input, slider && h('span', { class: 'unit' }, unit)),
+      h('div', { class: 'field-row' }, slider ?? h('span'), input, field.kind !== 'choice' && field.kind !== 'boolean' && h('span', { class: 'unit' }, unit)),
       h('p', { class: 'field-foot' }, about, field.about && range ? ' · ' : '', range), error);
     this.#rows.set(field.path, { field, element, input, slider, error, exact: null });
     return element;
@@ -165,7 +170,7 @@ export class Form {
   #read({ field, input, exact }) {
     if (input.disabled) return { value: undefined, problem: null };
     if (field.kind === 'boolean') return { value: /** @type {HTMLInputElement} */ (input).checked || undefined, problem: null };
-    if (field.kind === 'choice') return { value: input.value === field.default ? undefined : input.value, problem: null };
+    if (field.kind === 'choice') return { value: input.value === (field.default ?? '') ? undefined : input.value, problem: null };
     if (input.value.trim() === '') {
       if (field.required && !field.path.startsWith('body.')) return { value: undefined, problem: `${field.title} is needed.` };
       return { value: undefined, problem: null };

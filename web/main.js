@@ -90,12 +90,13 @@ function unplayed() {
 }
 
 /** The page's address says what is shown: the run while there is one, else what is typed. */
-const address = settled(150, () => {
+function addressNow() {
   const query = run.phase === 'idle' ? typedQuery() : new URLSearchParams(run.query);
   if (!query) return;
   if (run.phase === 'idle' && speed !== 1) query.set('speed', String(speed));
   history.replaceState(null, '', `?${query}`);
-});
+}
+const address = settled(150, addressNow);
 
 /** @type {AbortController | null} */
 let asking = null;
@@ -279,7 +280,10 @@ async function begin() {
   showRun();
 }
 
-byId('share').addEventListener('click', (event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), location.href));
+byId('share').addEventListener('click', (event) => {
+  addressNow();
+  void copy(/** @type {HTMLElement} */ (event.currentTarget), location.href);
+});
 addEventListener('popstate', () => restore(location.search));
 listenToKeys([
   { key: ' ', label: 'Space', name: 'Run, pause, resume', act: toggle },

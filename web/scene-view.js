@@ -33,6 +33,8 @@ export class SceneView {
   #top = 0;
   #drawn_ms = 0;
   #read_ms = -Infinity;
+  /** Scrolled out of sight, it costs nothing. */
+  #seen = true;
 
   /**
    * @param {HTMLElement} box
@@ -47,6 +49,7 @@ export class SceneView {
     box.setAttribute('aria-label', 'The scene');
     [this.#surface] = surfaces(box, 1, () => this.redraw());
     onThemeChange(() => this.redraw());
+    new IntersectionObserver(([entry]) => { this.#seen = entry.isIntersecting; this.redraw(); }).observe(box);
     const motion = h('input', { type: 'checkbox', change: () => { this.#moving = motion.checked; this.redraw(); } });
     motion.checked = this.#moving;
     const offer = h('label', { class: 'motion check', hidden: !stillness.matches }, motion, 'Draw the flights, not only the strikes');
@@ -83,7 +86,7 @@ export class SceneView {
     if (live) this.#drawRun(now_ms, since_s);
     else if (this.#draft) this.#drawRelease(this.#draft);
     else this.#ground();
-    return Boolean(live) && phase === 'running' && this.#moving;
+    return Boolean(live) && phase === 'running' && this.#moving && this.#seen;
   }
 
   /** @param {Scene} scene */

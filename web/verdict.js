@@ -19,10 +19,13 @@ const SIGNS = { none: '–', unstable: '▲', beyond: '◆', stable: '●' };
 
 export class Verdict {
   #root;
+  // Only the words are spoken, not the table of numbers at every turn of a knob.
+  #spoken = h('p', { class: 'unseen', role: 'status' });
 
   /** @param {HTMLElement} root */
   constructor(root) {
     this.#root = root;
+    this.#root.before(this.#spoken);
     this.#root.append(h('p', { class: 'muted' }, 'Waiting for the server…'));
   }
 
@@ -34,6 +37,7 @@ export class Verdict {
   /** @param {string} words @param {() => void} [retry] */
   fail(words, retry) {
     this.busy(false);
+    this.#spoken.textContent = `No verdict. ${words}`;
     this.#root.replaceChildren(h('p', { class: 'verdict-words none' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, '–'), ' No verdict'),
       h('p', { class: 'muted' }, words), retry ? h('button', { type: 'button', click: retry }, 'Try again') : '');
   }
@@ -44,6 +48,7 @@ export class Verdict {
     const { verdict, decided_by: decider, reason, agree, linear, boundary, nonlinear, drift_speed: drift, notes } = answer;
     const manner = kind(verdict);
     const words = verdict === null ? 'No verdict' : verdict[0].toUpperCase() + verdict.slice(1);
+    this.#spoken.textContent = `Verdict: ${words}`;
     /** @type {[Node | string, string | Node, string?][]} */
     const rows = [];
     const gain = linear?.tilt_gain;
