@@ -1,0 +1,274 @@
+//! The contract and the server say the same: routes, examples, ranges of fields, and the document itself.
+//!
+//! That every single answer keeps to the contract is seen to by the frame, in every test of every file.
+
+mod support;
+
+use std::collections::BTreeSet;
+
+use axum::http::Method;
+use serde_json::{Value, json};
+use support::Server;
+use support::contract::{self, DOCUMENT};
+
+/// A path for a template.
+fn path(template: &str) -> String {
+    template.replace("{name}", "case-1")
+}
+
+#[tokio::test]
+async fn every_operation_is_routed() {
+    let server = Server::start();
+    for (template, method, _) in contract::operations() {
+        let target = path(template);
+        let answer = server.send(method, &target, &[("content-type", "application/json")], "").await;
+        assert!(!matches!(answer.status.as_u16(), 404 | 405 | 500), "{}: {}", answer.request, answer.status);
+    }
+}
+
+#[tokio::test]
+async fn every_other_method_is_refused_with_those_there_are() {
+    let server = Server::start();
+    for template in contract::templates() {
+        let item = &DOCUMENT["paths"][template];
+        let mut allowed: BTreeSet<&str> = BTreeSet::new();
+        for method in ["GET", "HEAD", "POST"] {
+            if item.get(method.to_lowercase()).is_some() {
+                allowed.insert(method);
+            }
+        }
+        // Whatever can be got can be asked for its headers, but for the upgrade to a WebSocket.
+        if allowed.contains("GET") && template != "/v1/live" {
+            allowed.insert("HEAD");
+        }
+        for method in ["GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"] {
+            if !allowed.contains(method) && !(template == "/v1/live" && method == "HEAD") {
+                let method = Method::from_bytes(method.as_bytes()).unwrap();
+                let answer = server.send(method, &path(template), &[], "").await.expect(405);
+                let named: BTreeSet<&str> = answer.header("allow").unwrap().split(',').map(str::trim).collect();
+                assert!(allowed.is_subset(&named), "{}: {named:?}, not {allowed:?}", answer.request);
+            }
+        }
+    }
+}
+
+#[tokio::test]
+async fn every_route_is_in_the_contract() {
+    let routes = routes();
+    assert!(routes.contains(&"/v1/trajectories".to_owned()), "{routes:?}");
+    let templates: BTreeSet<&str> = contract::templates().collect();
+    for route in &routes {
+        // Files of the page are served from a route of their own, which is not part of the API.
+        if !route.contains("{*") {
+            assert!(templates.contains(route.as_str()), "{route} is routed and not in the contract");
+        }
+    }
+    for template in templates {
+        assert!(template == "/" || routes.iter().any(|route| route == template), "{template} is not routed");
+    }
+}
+
+/// The routes of the router, read from what it prints of itself for debugging; axum has no other list of them.
+fn routes() -> Vec<String> {
+    let app = equipoise::routes::App::new(&equipoise::config::Config::default());
+    let printed = format!("{:?}", equipoise::router::router(app));
+    let mut routes: Vec<String> = printed
+        .split('"')
+        .skip(1)
+        .step_by(2)
+        .filter(|text| text.starts_with('/') && !text.contains("__private__axum"))
+        .map(str::to_owned)
+        .collect();
+    routes.sort();
+    routes.dedup();
+    routes
+}
+
+#[tokio::test]
+async fn every_example_of_a_body_runs() {
+    let server = Server::start();
+    let mut count = 0;
+    for (template, method, operation) in contract::operations() {
+        let media = &operation["requestBody"]["content"]["application/json"];
+        for (name, example) in media["examples"].as_object().into_iter().flatten() {
+            let body = &example["value"];
+            let faults = contract::faults(&media["schema"], body);
+            assert!(faults.is_empty(), "{method} {template} {name}: {faults:?}");
+            server.post(template, body).await.expect(200);
+            count += 1;
+        }
+    }
+    assert!(count >= 10, "{count} examples");
+}
+
+#[tokio::test]
+async fn every_example_of_a_query_runs() {
+    let server = Server::start();
+    let mut count = 0;
+    for (template, _, operation) in contract::operations() {
+        for query in operation["x-queries"].as_array().into_iter().flatten() {
+            let query = query.as_str().unwrap();
+            let target = if query.is_empty() { path(template) } else { format!("{}?{query}", path(template)) };
+            server.get(&target).await.expect(200);
+            count += 1;
+        }
+    }
+    assert!(count >= 10, "{count} queries");
+}
+
+#[tokio::test]
+async fn every_example_of_a_parameter_runs() {
+    let server = Server::start();
+    for (template, method, operation) in contract::operations() {
+        if method != Method::GET || !template.starts_with("/v1/") || template == "/v1/live" {
+            continue;
+        }
+        for parameter in operation["parameters"].as_array().into_iter().flatten().map(contract::resolved) {
+            let Some(example) = parameter.get("example") else { continue };
+            let faults = contract::faults(&parameter["schema"], example);
+            assert!(faults.is_empty(), "{template}: {parameter}: {faults:?}");
+            let text = example.as_str().map_or_else(|| example.to_string(), str::to_owned);
+            let name = parameter["name"].as_str().unwrap();
+            let start = if template.contains("scenes") || template.contains("fields") || name == "preset" {
+                String::new()
+            } else {
+                "preset=case-1&".to_owned()
+            };
+            server.get(&format!("{}?{start}{name}={text}", path(template))).await.expect(200);
+        }
+    }
+}
+
+#[tokio::test]
+async fn the_document_is_served_as_written() {
+    let server = Server::start();
+    let yaml = server.get("/openapi.yaml").await.expect(200);
+    assert_eq!(yaml.text(), contract::TEXT);
+    let json = server.get("/openapi.json").await.expect(200);
+    assert_eq!(json.json(), *DOCUMENT);
+}
+
+#[test]
+fn every_schema_compiles_and_every_reference_leads_somewhere() {
+    fn walk(node: &Value) {
+        match node {
+            Value::Object(fields) => {
+                contract::resolved(node);
+                for (name, field) in fields {
+                    if name == "schema" || name == "x-line" {
+                        contract::validator(field);
+                    }
+                    walk(field);
+                }
+            }
+            Value::Array(items) => items.iter().for_each(walk),
+            _ => {}
+        }
+    }
+    walk(&DOCUMENT);
+    for (name, schema) in DOCUMENT["components"]["schemas"].as_object().unwrap() {
+        contract::validator(&json!({ "$ref": format!("#/components/schemas/{name}") }));
+        for example in schema["examples"].as_array().into_iter().flatten() {
+            let faults = contract::faults(schema, example);
+            assert!(faults.is_empty(), "{name}: {faults:?}");
+        }
+    }
+}
+
+#[test]
+fn no_object_takes_fields_that_are_not_named() {
+    fn walk(place: &str, node: &Value) {
+        if let Some(fields) = node.as_object() {
+            let is_schema = fields.get("properties").is_some_and(Value::is_object) && fields.contains_key("type");
+            if is_schema {
+                assert_eq!(fields.get("additionalProperties"), Some(&json!(false)), "{place}");
+            }
+            for (name, field) in fields {
+                walk(&format!("{place}/{name}"), field);
+            }
+        }
+        for (index, item) in node.as_array().into_iter().flatten().enumerate() {
+            walk(&format!("{place}/{index}"), item);
+        }
+    }
+    walk("", &DOCUMENT["components"]["schemas"]);
+}
+
+#[tokio::test]
+async fn the_fields_of_a_scene_are_those_of_the_contract() {
+    let table = Server::start().get("/v1/fields").await.expect(200).json();
+    let schemas = DOCUMENT["components"]["schemas"].as_object().unwrap();
+    let mut differences = Vec::new();
+    let mut known = BTreeSet::new();
+    for field in table["fields"].as_array().unwrap() {
+        let path = field["path"].as_str().unwrap();
+        known.insert(path);
+        let Some(schema) = schemas.get(&format!("scene.{path}")) else {
+            differences.push(format!("{path}: not in the contract"));
+            continue;
+        };
+        let mut compare = |what: &str, table: &Value, contract: Option<&Value>| {
+            let contract = contract.unwrap_or(&Value::Null);
+            let equal = match (table.as_f64(), contract.as_f64()) {
+                (Some(table), Some(contract)) => table == contract,
+                _ => table == contract,
+            };
+            if !equal {
+                differences.push(format!("{path}: {what} is {table} in the table and {contract} in the contract"));
+            }
+        };
+        compare("minimum", &field["minimum"], schema.get("minimum"));
+        compare("maximum", &field["maximum"], schema.get("maximum"));
+        compare("default", &field["default"], schema.get("default"));
+        compare("unit", &field["unit"], schema.get("x-unit"));
+        compare("choices", &field["choices"], schema.get("enum"));
+        compare("available", &field["available"], schema.get("x-available"));
+        let kind = match schema["type"].as_str().unwrap() {
+            "string" => "choice",
+            other => other,
+        };
+        compare("kind", &field["kind"], Some(&json!(kind)));
+    }
+    for name in schemas.keys().filter_map(|name| name.strip_prefix("scene.")) {
+        if !known.contains(name) {
+            differences.push(format!("{name}: not in the table"));
+        }
+    }
+    assert!(differences.is_empty(), "{differences:#?}");
+}
+
+#[tokio::test]
+async fn what_can_be_set_live_is_what_the_contract_says() {
+    let table = Server::start().get("/v1/fields").await.expect(200).json();
+    let fields = table["fields"].as_array().unwrap().iter();
+    let live: BTreeSet<&str> =
+        fields.filter(|field| field["live"] == true).map(|field| field["path"].as_str().unwrap()).collect();
+    let set = DOCUMENT["components"]["schemas"]["live.set"]["properties"].as_object().unwrap();
+    let said: BTreeSet<&str> = set.keys().map(String::as_str).filter(|name| *name != "type").collect();
+    assert_eq!(live, said);
+}
+
+#[tokio::test]
+async fn every_preset_is_named_and_can_be_sent_back() {
+    let server = Server::start();
+    let presets = server.get("/v1/scenes").await.expect(200).json();
+    let names: Vec<&Value> = presets["scenes"].as_array().unwrap().iter().map(|preset| &preset["name"]).collect();
+    assert_eq!(json!(names), DOCUMENT["components"]["schemas"]["PresetName"]["enum"]);
+    for preset in presets["scenes"].as_array().unwrap() {
+        let name = preset["name"].as_str().unwrap();
+        assert_eq!(server.get(&format!("/v1/scenes/{name}")).await.expect(200).json(), *preset);
+        let quantities = |side: &str| -> Vec<String> {
+            preset[side].as_array().unwrap().iter().map(|quantity| quantity["quantity"].to_string()).collect()
+        };
+        assert_eq!(quantities("printed"), quantities("computed"), "{name}");
+        // The scene as answered is a scene that can be asked for, and stays what it is.
+        let named = server.post("/v1/trajectories", &json!({"preset": name, "impacts": 3})).await.expect(200).json();
+        let sent = json!({"scene": preset["scene"], "impacts": 3});
+        let faults = contract::faults(&DOCUMENT["components"]["schemas"]["TrajectoryRequest"], &sent);
+        assert!(faults.is_empty(), "{name}: {faults:?}");
+        let spelled = server.post("/v1/trajectories", &sent).await.expect(200).json();
+        assert_eq!(named, spelled, "{name}");
+        let again = json!({"scene": named["scene"], "impacts": 3});
+        assert_eq!(server.post("/v1/trajectories", &again).await.expect(200).json(), named, "{name}");
+    }
+}

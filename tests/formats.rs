@@ -1,0 +1,189 @@
+//! Every format says the same numbers, is well-formed, and is chosen as the client asks.
+
+mod support;
+
+use serde_json::{Value, json};
+use support::csv::Table;
+use support::{Answer, Server};
+
+const COLUMNS: [(&str, &str); 17] = [
+    ("n", "n"),
+    ("t", "t_s"),
+    ("x", "x_m"),
+    ("theta", "theta_rad"),
+    ("x_dot", "x_dot_m_per_s"),
+    ("y_dot", "y_dot_m_per_s"),
+    ("theta_dot", "theta_dot_rad_per_s"),
+    ("alpha", "alpha_rad"),
+    ("table_velocity_x", "table_velocity_x_m_per_s"),
+    ("table_velocity_y", "table_velocity_y_m_per_s"),
+    ("impulse_normal", "impulse_normal_m_per_s"),
+    ("impulse_tangential", "impulse_tangential_m_per_s"),
+    ("contact_mode", "contact_mode"),
+    ("energy", "energy_m2_per_s2"),
+    ("flight_time", "flight_time_s"),
+    ("contact_speed", "contact_speed_m_per_s"),
+    ("error_estimate", "error_estimate_m_per_s"),
+];
+
+/// What a cell of CSV stands for.
+fn value(cell: &str) -> Value {
+    if cell.is_empty() { Value::Null } else { serde_json::from_str(cell).unwrap_or_else(|_| json!(cell)) }
+}
+
+/// Bit for bit the same, whatever the notation.
+fn same(one: &Value, other: &Value) -> bool {
+    match (one.as_f64(), other.as_f64()) {
+        (Some(one), Some(other)) => one.to_bits() == other.to_bits(),
+        _ => one == other,
+    }
+}
+
+async fn all_formats(target: &str) -> [Answer; 3] {
+    let server = Server::start();
+    let json = server.get(target).await.expect(200);
+    let csv = server.get(&format!("{target}&format=csv")).await.expect(200);
+    let ndjson = server.get(&format!("{target}&format=ndjson")).await.expect(200);
+    [json, csv, ndjson]
+}
+
+#[tokio::test]
+async fn a_trajectory_has_the_same_numbers_in_every_format() {
+    for preset in ["case-1", "case-3", "case-4", "point-mass", "still-lossy"] {
+        let [json, csv, ndjson] = all_formats(&format!("/v1/trajectories?preset={preset}&impacts=60")).await;
+        let whole = json.json();
+        let count = whole["impacts"]["n"].as_array().unwrap().len();
+        assert!(count > 10, "{preset}: {count}");
+        let table = Table::parse(csv.text()).unwrap();
+        assert_eq!(table.names, COLUMNS.map(|(_, name)| name), "{preset}");
+        assert_eq!(table.rows.len(), count, "{preset}");
+        let lines: Vec<Value> = ndjson.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(lines.len(), count + 1, "{preset}");
+        assert_eq!(lines[count], json!({"end": {"outcome": whole["outcome"]}}), "{preset}");
+        for (name, header) in COLUMNS {
+            let column = whole["impacts"][name].as_array().unwrap();
+            assert_eq!(column.len(), count, "{preset}: {name}");
+            for (row, cell) in table.column(header).into_iter().enumerate() {
+                assert!(same(&column[row], &value(cell)), "{preset}: {name}[{row}]: {} {cell}", column[row]);
+                assert!(same(&column[row], &lines[row][name]), "{preset}: {name}[{row}]: {}", lines[row]);
+            }
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_matrix_has_the_same_numbers_in_every_format() {
+    for preset in ["case-1", "case-4", "point-mass"] {
+        let [json, csv, ndjson] = all_formats(&format!("/v1/jacobians?preset={preset}")).await;
+        let whole = json.json();
+        let order = whole["state_order"].as_array().unwrap();
+        let table = Table::parse(csv.text()).unwrap();
+        assert_eq!(table.rows.len(), order.len(), "{preset}");
+        for (index, row) in table.rows.iter().enumerate() {
+            assert_eq!(json!(row[0]), order[index], "{preset}");
+            for (column, cell) in row[1..].iter().enumerate() {
+                assert!(same(&whole["matrix"][index][column], &value(cell)), "{preset}: [{index}][{column}] {cell}");
+            }
+        }
+        let lines: Vec<Value> = ndjson.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(lines[0], whole, "{preset}");
+        assert!(lines.last().unwrap().get("end").is_some(), "{preset}");
+    }
+}
+
+#[tokio::test]
+async fn a_verdict_is_one_row() {
+    for preset in ["case-1", "critical-hard", "still-lossy", "point-mass"] {
+        let [json, csv, ndjson] = all_formats(&format!("/v1/stability?preset={preset}&impacts=200")).await;
+        let table = Table::parse(csv.text()).unwrap();
+        assert_eq!(table.rows.len(), 1, "{preset}");
+        assert_eq!(value(table.column("verdict")[0]), json.json()["verdict"], "{preset}");
+        let first: Value = serde_json::from_str(ndjson.text().lines().next().unwrap()).unwrap();
+        assert_eq!(first, json.json(), "{preset}");
+    }
+}
+
+#[tokio::test]
+async fn pictures_are_drawn() {
+    let server = Server::start();
+    for target in ["/v1/trajectories?preset=case-1", "/v1/stability?preset=case-1", "/v1/stability?preset=still-lossy"] {
+        let picture = server.get(&format!("{target}&format=svg")).await.expect(200);
+        assert_eq!(picture.media_type(), "image/svg+xml");
+        let text = picture.text();
+        assert!(text.contains("<title"), "{target}: a picture says what it is");
+        for outside in ["<script", "href=\"http", "url(http", "@import"] {
+            assert!(!text.contains(outside), "{target}: {outside}");
+        }
+    }
+    let points = server.get("/v1/trajectories?preset=point-mass&format=svg").await.expect(200);
+    assert!(!points.text().is_empty());
+}
+
+#[tokio::test]
+async fn the_format_is_the_one_asked_for() {
+    let server = Server::start();
+    for (accept, expected) in [
+        ("*/*", "application/json"),
+        ("", "application/json"),
+        ("application/json", "application/json"),
+        ("text/csv", "text/csv"),
+        ("application/x-ndjson", "application/x-ndjson"),
+        ("image/svg+xml", "image/svg+xml"),
+        ("text/csv;q=0.5, application/json;q=0.4", "text/csv"),
+        ("text/csv;q=0.4, application/json;q=0.5", "application/json"),
+        ("application/json;q=0, text/csv", "text/csv"),
+        // Grafana's Infinity.
+        ("application/json;q=0.9,text/plain", "application/json"),
+        // An <img> in Chromium, and a page.
+        ("image/avif,image/webp,image/apng,image/svg+xml,image/*,*/*;q=0.8", "image/svg+xml"),
+        ("text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8", "application/json"),
+    ] {
+        let target = "/v1/trajectories?preset=case-1&impacts=3";
+        let answer = server.get_with(target, &[("accept", accept)]).await.expect(200);
+        assert_eq!(answer.media_type(), expected, "{accept}");
+        let asked = server.get_with(&format!("{target}&format=csv"), &[("accept", accept)]).await.expect(200);
+        assert_eq!(asked.media_type(), "text/csv", "{accept}: format outranks Accept");
+    }
+}
+
+#[tokio::test]
+async fn format_is_a_parameter_of_post_as_well() {
+    let server = Server::start();
+    let body = json!({"preset": "case-1", "impacts": 3});
+    let post = server.post("/v1/trajectories?format=csv", &body).await.expect(200);
+    let get = server.get("/v1/trajectories?preset=case-1&impacts=3&format=csv").await.expect(200);
+    assert_eq!(post.text(), get.text());
+    let inside = json!({"preset": "case-1", "format": "csv"});
+    assert_eq!(server.post("/v1/trajectories", &inside).await.expect(422).pointers(), ["/format"]);
+}
+
+#[tokio::test]
+async fn large_answers_are_compressed_for_those_who_can_read_it() {
+    let server = Server::start();
+    for target in ["/v1/trajectories?preset=case-1", "/v1/trajectories?preset=case-1&format=csv", "/openapi.yaml"] {
+        let plain = server.get(target).await.expect(200);
+        assert_eq!(plain.header("content-encoding"), None);
+        let packed = server.get_with(target, &[("accept-encoding", "gzip, deflate, br")]).await.expect(200);
+        assert_eq!(packed.header("content-encoding"), Some("gzip"), "{target}");
+        assert!(packed.raw.len() < plain.raw.len() * 2 / 3, "{target}: {} of {}", packed.raw.len(), plain.raw.len());
+        assert_eq!(packed.body, plain.body, "{target}");
+        let refused = server.get_with(target, &[("accept-encoding", "gzip;q=0")]).await.expect(200);
+        assert_eq!(refused.header("content-encoding"), None, "{target}");
+    }
+}
+
+#[tokio::test]
+async fn numbers_survive_the_round_trip() {
+    let server = Server::start();
+    for gain in [1.1, 1.0 + f64::EPSILON, 0.1 + 0.2, 1.4999999999999998, 5e-324, -0.0] {
+        let body = json!({"preset": "case-1", "scene": {"table": {"tilt_gain": gain}}, "impacts": 1});
+        let post = server.post("/v1/trajectories", &body).await.expect(200).json();
+        let target = format!("/v1/trajectories?preset=case-1&impacts=1&scene.table.tilt_gain={gain:e}");
+        let get = server.get(&target).await.expect(200).json();
+        for answer in [&post, &get] {
+            let back = answer["scene"]["table"]["tilt_gain"].as_f64().unwrap();
+            assert_eq!(back.to_bits(), gain.to_bits(), "{gain:e} came back as {back:e}");
+        }
+        assert_eq!(post, get);
+    }
+}
