@@ -106,7 +106,8 @@ async fn a_verdict_is_one_row() {
 #[tokio::test]
 async fn pictures_are_drawn() {
     let server = Server::start();
-    for target in ["/v1/trajectories?preset=case-1", "/v1/stability?preset=case-1", "/v1/stability?preset=still-lossy"] {
+    for target in ["/v1/trajectories?preset=case-1", "/v1/stability?preset=case-1", "/v1/stability?preset=still-lossy"]
+    {
         let picture = server.get(&format!("{target}&format=svg")).await.expect(200);
         assert_eq!(picture.media_type(), "image/svg+xml");
         let text = picture.text();

@@ -1,0 +1,213 @@
+//! The rules of the house, as tests: what may import what, how long a file may be, what keeps answers the same on every CPU.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A source file: its path under the root, with `/`, and its text.
+struct Source {
+    path: String,
+    text: String,
+}
+
+impl Source {
+    /// Lines of code with their numbers: no comments, and nothing from the unit tests at the end of a file on.
+    fn code(&self) -> impl Iterator<Item = (usize, &str)> {
+        self.text
+            .lines()
+            .enumerate()
+            .take_while(|(_, line)| !line.starts_with("#[cfg(test)]"))
+            .map(|(index, line)| (index + 1, line.split("//").next().unwrap_or_default()))
+            .filter(|(_, line)| !line.trim().is_empty())
+    }
+
+    fn is_under(&self, folder: &str) -> bool {
+        self.path.strip_prefix(folder).is_some_and(|rest| rest.starts_with('/'))
+    }
+}
+
+fn sources(extensions: &[&str]) -> Vec<Source> {
+    fn gather(root: &Path, folder: &Path, extensions: &[&str], found: &mut Vec<Source>) {
+        let Ok(entries) = fs::read_dir(folder) else { return };
+        for path in entries.map(|entry| entry.expect("a readable folder").path()) {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            let generated = ["target", "node_modules", "vendor", "reference"].contains(&name.as_str());
+            if name.starts_with('.') || generated {
+                continue;
+            }
+            if path.is_dir() {
+                gather(root, &path, extensions, found);
+            } else if extensions.iter().any(|extension| path.extension().is_some_and(|own| own == *extension)) {
+                let relative = path.strip_prefix(root).expect("under the root");
+                let text = fs::read_to_string(&path).expect("a text file");
+                found.push(Source { path: relative.to_string_lossy().replace('\\', "/"), text });
+            }
+        }
+    }
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let mut found = Vec::new();
+    for folder in ["server", "tests", "benches", "web"] {
+        gather(&root, &root.join(folder), extensions, &mut found);
+    }
+    found.sort_by(|one, other| one.path.cmp(&other.path));
+    assert!(!found.is_empty(), "the sources are where they were");
+    found
+}
+
+fn none(faults: Vec<String>) {
+    assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
+}
+
+/// A floor of the house, and what must not be heard of there.
+const FLOORS: [(&str, &[&str]); 8] = [
+    ("server/physics", &["tokio", "axum", "serde_json", "std::time", "std::thread", "hyper", "equipoise::"]),
+    ("server/http", &["equipoise_physics", "crate::wire", "crate::live", "crate::routes"]),
+    (
+        "server/compute",
+        &["axum", "hyper", "equipoise_physics", "crate::http", "crate::wire", "crate::live", "crate::routes"],
+    ),
+    (
+        "server/wire",
+        &[
+            "axum::Router",
+            "axum::routing",
+            "tokio",
+            "crate::live",
+            "crate::routes",
+            "crate::router",
+            "crate::middleware",
+        ],
+    ),
+    ("server/live", &["axum::Router", "axum::routing", "crate::routes", "crate::router", "crate::middleware"]),
+    ("server/transport", &["equipoise_physics", "crate::wire", "crate::live"]),
+    ("server/routes", &["crate::router", "crate::middleware", "crate::transport"]),
+    ("server/limits.rs", &["equipoise_physics", "crate::", "axum"]),
+];
+
+#[test]
+fn imports_go_downwards_only() {
+    let mut faults = Vec::new();
+    for source in sources(&["rs"]) {
+        for (floor, above) in FLOORS {
+            if !(source.is_under(floor) || source.path == floor) || source.path.contains("/tests/") {
+                continue;
+            }
+            for (number, line) in source.code() {
+                for name in above.iter().filter(|name| mentions(line, name)) {
+                    faults.push(format!("{}:{number}: {name} is not for {floor}: {}", source.path, line.trim()));
+                }
+            }
+        }
+    }
+    none(faults);
+}
+
+/// Whether a line has this path and not only a longer name with it inside.
+fn mentions(line: &str, name: &str) -> bool {
+    line.match_indices(name).any(|(start, _)| {
+        let before = line[..start].chars().next_back();
+        let after = line[start + name.len()..].chars().next();
+        let is_word = |character: Option<char>| character.is_some_and(|c| c.is_alphanumeric() || c == '_');
+        !is_word(before) && (name.ends_with("::") || !is_word(after))
+    })
+}
+
+/// A file longer than this is two things.
+const LINES: usize = 450;
+
+#[test]
+fn files_are_short() {
+    let faults = sources(&["rs", "js", "mjs", "css"])
+        .iter()
+        .filter(|source| source.text.lines().count() > LINES)
+        .map(|source| format!("{}: {} lines; at most {LINES}", source.path, source.text.lines().count()))
+        .collect();
+    none(faults);
+}
+
+#[test]
+fn every_module_opens_with_what_it_is_for() {
+    let faults = sources(&["rs"])
+        .iter()
+        .filter(|source| !source.text.starts_with("//! "))
+        .map(|source| format!("{}: no //! at the top", source.path))
+        .collect();
+    none(faults);
+}
+
+/// The functions that the standard library takes from the platform, whose last bits differ from one to the next. Square
+/// roots, rounding and fused multiplication are exact everywhere. The physics has its own, under names of their own.
+const PLATFORM: [&str; 27] = [
+    "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh",
+    "exp", "exp2", "exp_m1", "ln", "ln_1p", "log", "log2", "log10", "powf", "powi", "cbrt", "hypot", "gamma",
+];
+
+#[test]
+fn no_answer_depends_on_the_platforms_mathematics() {
+    let mut faults = Vec::new();
+    for source in sources(&["rs"]) {
+        let is_test = ["/tests/", "/benches/", "/examples/"].iter().any(|folder| source.path.contains(folder));
+        if !source.is_under("server") || is_test {
+            continue;
+        }
+        for (number, line) in source.code() {
+            for name in PLATFORM {
+                let called = [format!(".{name}("), format!("f64::{name}("), format!("f64::{name})")];
+                if called.iter().any(|call| line.contains(call.as_str())) {
+                    faults.push(format!("{}:{number}: {name} is the platform's: {}", source.path, line.trim()));
+                }
+            }
+        }
+    }
+    none(faults);
+}
+
+#[test]
+fn no_map_without_an_order_decides_over_bytes() {
+    let mut faults = Vec::new();
+    for source in sources(&["rs"]) {
+        let answers = ["server/physics", "server/wire", "server/routes"].iter().any(|floor| source.is_under(floor));
+        if !answers || source.path.contains("/tests/") {
+            continue;
+        }
+        for (number, line) in source.code() {
+            if line.contains("HashMap") || line.contains("HashSet") {
+                faults.push(format!("{}:{number}: its order changes from run to run: {}", source.path, line.trim()));
+            }
+        }
+    }
+    none(faults);
+}
+
+#[test]
+fn names_say_what_things_are() {
+    let faults = sources(&["rs", "js", "mjs"])
+        .iter()
+        .filter(|source| {
+            let name = source.path.rsplit('/').next().unwrap_or_default().split('.').next().unwrap_or_default();
+            ["util", "utils", "helper", "helpers", "manager", "data", "common", "misc"].contains(&name)
+        })
+        .map(|source| format!("{}: a name that says nothing", source.path))
+        .collect();
+    none(faults);
+}
+
+#[test]
+fn the_page_loads_nothing_from_elsewhere() {
+    let mut faults = Vec::new();
+    for source in sources(&["html", "js", "mjs", "css"]).iter().filter(|source| source.is_under("web")) {
+        for (number, line) in source.text.lines().enumerate().map(|(index, line)| (index + 1, line)) {
+            let loads =
+                ["src=\"http", "src=\"//", "url(http", "url(\"http", "@import \"http", "from \"http", "import(\"http"];
+            for load in loads.iter().filter(|load| line.contains(**load)) {
+                faults.push(format!("{}:{number}: {load}", source.path));
+            }
+            if source.path.ends_with(".html") {
+                let inline = [" onclick=", " onload=", " style=", "javascript:"];
+                for inline in inline.iter().filter(|inline| line.contains(**inline)) {
+                    faults.push(format!("{}:{number}: inline {inline}", source.path));
+                }
+            }
+        }
+    }
+    none(faults);
+}
