@@ -80,7 +80,7 @@ const FLOORS: [(&str, &[&str]); 8] = [
     ("server/live", &["axum::Router", "axum::routing", "crate::routes", "crate::router", "crate::middleware"]),
     ("server/transport", &["equipoise_physics", "crate::wire", "crate::live"]),
     ("server/routes", &["crate::router", "crate::middleware", "crate::transport"]),
-    ("server/limits.rs", &["equipoise_physics", "crate::", "axum"]),
+    ("server/limits.rs", &["equipoise_physics", "axum", "crate::http", "crate::wire", "crate::live", "crate::routes"]),
 ];
 
 #[test]
