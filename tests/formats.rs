@@ -85,21 +85,57 @@ async fn a_matrix_has_the_same_numbers_in_every_format() {
                 assert!(same(&whole["matrix"][index][column], &value(cell)), "{preset}: [{index}][{column}] {cell}");
             }
         }
+        assert_eq!(table.names[0], "component", "{preset}");
+        assert_eq!(json!(table.names[1..]), whole["state_order"], "{preset}");
         let lines: Vec<Value> = ndjson.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-        assert_eq!(lines[0], whole, "{preset}");
-        assert!(lines.last().unwrap().get("end").is_some(), "{preset}");
+        assert_eq!(lines.len(), order.len() + 1, "{preset}");
+        for (index, line) in lines[..order.len()].iter().enumerate() {
+            assert_eq!(line["component"], order[index], "{preset}");
+            for (column, name) in order.iter().enumerate() {
+                assert!(same(&whole["matrix"][index][column], &line[name.as_str().unwrap()]), "{preset}: {line}");
+            }
+        }
     }
 }
 
+/// A column of a verdict's row, its unit, and where it is in the whole answer.
+const VERDICT: [(&str, &str, &str); 19] = [
+    ("verdict", "", "/verdict"),
+    ("decided_by", "", "/decided_by"),
+    ("agree", "", "/agree"),
+    ("class", "", "/linear/class"),
+    ("residue", "", "/linear/residue"),
+    ("rotation", "rad", "/linear/rotation"),
+    ("spectral_radius", "", "/linear/spectral_radius"),
+    ("tilt_gain", "", "/linear/tilt_gain/value"),
+    ("tilt_gain_lower", "", "/linear/tilt_gain/lower"),
+    ("tilt_gain_critical", "", "/linear/tilt_gain/critical"),
+    ("energy_gain", "s2_per_m2", "/linear/energy_gain/value"),
+    ("energy_gain_upper", "s2_per_m2", "/linear/energy_gain/upper"),
+    ("boundary_coefficient", "", "/boundary/coefficient"),
+    ("boundary_kind", "", "/boundary/kind"),
+    ("drift_speed", "m_per_s", "/drift_speed"),
+    ("outcome", "", "/nonlinear/outcome"),
+    ("impacts", "", "/nonlinear/impacts"),
+    ("t", "s", "/nonlinear/t"),
+    ("max_theta", "rad", "/nonlinear/max_theta"),
+];
+
 #[tokio::test]
 async fn a_verdict_is_one_row() {
-    for preset in ["case-1", "critical-hard", "still-lossy", "point-mass"] {
+    for preset in ["case-1", "case-4", "critical-hard", "still-lossy", "point-mass"] {
         let [json, csv, ndjson] = all_formats(&format!("/v1/stability?preset={preset}&impacts=200")).await;
+        let whole = json.json();
         let table = Table::parse(csv.text()).unwrap();
         assert_eq!(table.rows.len(), 1, "{preset}");
-        assert_eq!(value(table.column("verdict")[0]), json.json()["verdict"], "{preset}");
-        let first: Value = serde_json::from_str(ndjson.text().lines().next().unwrap()).unwrap();
-        assert_eq!(first, json.json(), "{preset}");
+        let line: Value = serde_json::from_str(ndjson.text().lines().next().unwrap()).unwrap();
+        for (index, (name, unit, pointer)) in VERDICT.into_iter().enumerate() {
+            let expected = whole.pointer(pointer).unwrap_or(&Value::Null);
+            let header = if unit.is_empty() { name.to_owned() } else { format!("{name}_{unit}") };
+            assert_eq!(table.names[index], header, "{preset}");
+            assert!(same(expected, &value(&table.rows[0][index])), "{preset}: {name}: {:?}", table.rows[0]);
+            assert!(same(expected, &line[name]), "{preset}: {name}: {line}");
+        }
     }
 }
 
