@@ -131,7 +131,8 @@ impl Contacts {
         let State { theta, x_dot, y_dot, theta_dot } = contact.state;
         // A table that does not strike tilts all the same.
         let strike = contact.strike.unwrap_or_else(|| self.body.strike(&contact.state));
-        let struck = |value: f64| contact.strike.is_some().then_some(value).filter(|value| value.is_finite());
+        // + 0.0: a table at rest moves by 0, not by −0.
+        let struck = |value: f64| contact.strike.is_some().then_some(value + 0.0).filter(|value| value.is_finite());
         let numbers = [
             contact.t,
             contact.x,
