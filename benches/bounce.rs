@@ -1,0 +1,77 @@
+//! What one bounce costs on one core: `cargo bench --bench bounce`. Each sample is 1000 bounces; read ns per item.
+
+use std::hint::black_box;
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, main as bench_all};
+use equipoise_physics::impact::{Rod, State};
+use equipoise_physics::jacobian::jacobian;
+use equipoise_physics::map::{Orbit, Release, Rules, run};
+use equipoise_physics::model::Model;
+
+const BOUNCES: u64 = 1000;
+
+/// The paper's case 1.
+const CASE_1: Rod = Rod {
+    contact_distance: 0.4 / 3.0,
+    radius_of_gyration: 0.094_280_904_158_206_35,
+    gravity: 9.81,
+    restitution: 1.0,
+    tilt_gain: 1.1,
+    strike_gain: 2.0,
+    strike_gain_per_energy: 0.0,
+    target_energy: 0.0,
+};
+const RULES: Rules = Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true };
+const RELEASE: Release =
+    Release { x: 0.0, height: 0.2, state: State { theta: 0.3, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 } };
+
+fn main() {
+    bench_all();
+}
+
+/// States only, outcomes checked, energy held: what `stability` runs.
+#[divan::bench]
+fn one_orbit(bencher: Bencher) {
+    bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
+        let mut orbit = Orbit::new(black_box(CASE_1), RULES, &RELEASE).ok()?;
+        run(&mut orbit, BOUNCES, |_| true)
+    });
+}
+
+/// The bare map, without outcome and without holding the energy.
+#[divan::bench]
+fn strike_and_flight(bencher: Bencher) {
+    bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
+        let rod = black_box(CASE_1);
+        let mut state = State { theta: 0.3, x_dot: 0.0, y_dot: -1.193_666_513_079_518, theta_dot: 0.0 };
+        for _ in 0..BOUNCES {
+            let strike = rod.strike(&state);
+            let flight = rod.flight(&strike);
+            let Ok(t) = equipoise_physics::contact_time::first_contact(&flight) else { break };
+            state = flight.end(t);
+        }
+        state
+    });
+}
+
+/// The exact derivative of the map, a product over the bounces.
+#[divan::bench]
+fn jacobian_product(bencher: Bencher) {
+    let state = State { theta: 0.3, x_dot: 0.0, y_dot: -1.193_666_513_079_518, theta_dot: 0.0 };
+    bencher
+        .counter(ItemsCount::new(BOUNCES))
+        .bench(|| jacobian(&Model::Rod(black_box(CASE_1)), &state, BOUNCES).map(|it| it.flight_time));
+}
+
+/// Sine and cosine, ours and the platform's, one after the other.
+#[divan::bench(args = ["ours", "platform"])]
+fn sine_and_cosine(bencher: Bencher, whose: &str) {
+    let function: fn(f64) -> (f64, f64) = if whose == "ours" { equipoise_physics::trig::sin_cos } else { f64::sin_cos };
+    bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
+        (0..BOUNCES).fold(black_box(0.3), |angle, _| {
+            let (sin, cos) = function(angle);
+            0.3 + 1e-9 * (sin + cos)
+        })
+    });
+}
