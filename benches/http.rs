@@ -27,11 +27,9 @@ async fn main() -> std::io::Result<()> {
     let answer = ask(ours, PATH).await?;
     let columns: serde_json::Value = serde_json::from_slice(&answer)?;
     let columns: Arc<Columns> = Arc::new(serde_json::from_value(columns["impacts"].clone())?);
-    let bare = serve(Router::new().route(
-        "/v1/trajectories",
-        get(move || async move { Json(Columns::clone(&columns)) }),
-    ))
-    .await?;
+    let bare =
+        serve(Router::new().route("/v1/trajectories", get(move || async move { Json(Columns::clone(&columns)) })))
+            .await?;
     println!("{} bytes each, {CONNECTIONS} connections, {ROUNDS} rounds of {ROUND:?}", answer.len());
     let mut ratios = Vec::new();
     for _ in 0..ROUNDS {

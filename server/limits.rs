@@ -53,9 +53,9 @@ pub const WORK: Limit = Limit { name: "work of this request", most: 30_000_000, 
 /// Numbers in one answer (columns times rows). JSON takes some 20 bytes for each, so 80 MB, held in memory until sent.
 pub const ANSWER: Limit = Limit { name: "size of the answer", most: 4_000_000, unit: "numbers" };
 
-/// Work up to this price, in bounces, is done on the async thread at once: with its JSON some 0.2 ms, hardly more than
-/// the way to another thread and back is worth.
-pub const INLINE_BOUNCES: u64 = 256;
+/// Work up to this price, in bounces, is done on the async thread at once: some 0.15 ms, hardly more than the way to
+/// another thread and back is worth.
+pub const INLINE_BOUNCES: u64 = 2048;
 
 /// Requests that may wait for a permit, for each permit there is. More would wait longer than `QUEUE_TIME` anyway.
 pub const QUEUE_PER_PERMIT: usize = 8;

@@ -74,11 +74,12 @@ fn newton(flight: &Flight, mut t: f64, mut gap: Gap) -> f64 {
     let spin = flight.start.theta_dot.abs();
     let stiffness = flight.gravity + flight.contact_distance * spin * spin;
     for steps in 0..MAX_STEPS {
-        let step = -gap.value / gap.slope;
+        let per_slope = 1.0 / gap.slope;
+        let step = -(gap.value * per_slope);
         let size = step.abs();
-        let bent = size * stiffness / gap.slope.abs();
+        let bent = size * stiffness * per_slope.abs();
         if size * bent * (bent + size * spin) <= f64::EPSILON * 0.25 * t {
-            return t + step * (1.0 - 0.5 * (gap.bend / gap.slope) * step);
+            return t + step * (1.0 - 0.5 * (gap.bend * per_slope) * step);
         }
         if steps > 0 && step >= 0.0 {
             return t;

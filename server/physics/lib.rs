@@ -8,6 +8,7 @@
 //! a run; [`jacobian`] differentiates it and [`stability`] judges it.
 
 pub mod contact_time;
+pub mod dispatch;
 pub mod dual;
 pub mod flight;
 pub mod impact;

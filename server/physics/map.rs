@@ -3,6 +3,7 @@
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
 use crate::contact_time::{self, TooManyPieces};
+use crate::dispatch::dispatch;
 use crate::flight::Flight;
 use crate::impact::{Rod, State, Strike};
 
@@ -360,8 +361,12 @@ impl<B: Body> Orbit<B> {
 
 /// Visits contact after contact up to number `impacts`, which ends as [`Ending::Completed`] unless it ended otherwise;
 /// the visitor may stop it early by returning `false`, and then there is no ending.
+pub fn run<B: Body>(orbit: &mut Orbit<B>, impacts: u64, visit: impl FnMut(&Contact) -> bool) -> Option<Ending> {
+    dispatch(|| run_here(orbit, impacts, visit))
+}
+
 #[inline(always)]
-pub fn run<B: Body>(orbit: &mut Orbit<B>, impacts: u64, mut visit: impl FnMut(&Contact) -> bool) -> Option<Ending> {
+fn run_here<B: Body>(orbit: &mut Orbit<B>, impacts: u64, mut visit: impl FnMut(&Contact) -> bool) -> Option<Ending> {
     loop {
         let mut contact = orbit.advance();
         if contact.ending.is_none() && contact.n >= impacts {

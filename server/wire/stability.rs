@@ -235,11 +235,11 @@ impl<'a> Stability<'a> {
             ("class", linear.map(|it| it.class)),
             ("boundary_kind", self.boundary.as_ref().map(|it| it.kind)),
             ("nonlinear_outcome", Some(self.nonlinear.outcome)),
-            ("agree", self.agree.map(|agree| if agree { "true" } else { "false" })),
         ];
         let mut columns = vec![
             Column { name: "verdict", unit: "", cells: Cells::Texts(vec![self.verdict.clone()]) },
             Column { name: "nonlinear_impacts", unit: "", cells: Cells::Counts(vec![self.nonlinear.impacts]) },
+            Column { name: "agree", unit: "", cells: Cells::Flags(vec![self.agree]) },
         ];
         columns.extend(words.map(|(name, word)| Column { name, unit: "", cells: Cells::Words(vec![word]) }));
         columns.extend(numbers.map(|(name, unit, value)| Column { name, unit, cells: Cells::Sparse(vec![value]) }));

@@ -26,6 +26,8 @@ pub enum Cells {
     Sparse(Vec<Option<f64>>),
     /// Words that need not exist.
     Words(Vec<Option<&'static str>>),
+    /// Yes or no, where there is an answer.
+    Flags(Vec<Option<bool>>),
     /// Sentences that need not exist.
     Texts(Vec<Option<String>>),
 }
@@ -37,6 +39,7 @@ impl Cells {
             Self::Numbers(cells) => cells.len(),
             Self::Sparse(cells) => cells.len(),
             Self::Words(cells) => cells.len(),
+            Self::Flags(cells) => cells.len(),
             Self::Texts(cells) => cells.len(),
         }
     }
@@ -49,6 +52,7 @@ impl Cells {
             Self::Numbers(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Sparse(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Words(cells) => serde_json::to_writer(out, &cells[row]),
+            Self::Flags(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Texts(cells) => serde_json::to_writer(out, &cells[row]),
         };
     }
@@ -58,7 +62,7 @@ impl Cells {
         let text = match self {
             Self::Words(cells) => cells[row],
             Self::Texts(cells) => cells[row].as_deref(),
-            Self::Counts(_) | Self::Numbers(_) | Self::Sparse(_) => {
+            Self::Counts(_) | Self::Numbers(_) | Self::Sparse(_) | Self::Flags(_) => {
                 let start = out.len();
                 self.write_json(row, out);
                 if out[start..] == *b"null" {

@@ -188,7 +188,8 @@ impl Contacts {
 #[derive(Debug, Default)]
 pub struct Flights {
     impact: Vec<u64>,
-    numbers: [Vec<f64>; 6],
+    numbers: [Vec<f64>; 5],
+    theta: Vec<Option<f64>>,
     theta_dot: Vec<Option<f64>>,
 }
 
@@ -214,7 +215,6 @@ impl Flights {
                 t + since,
                 x + start.x_dot * since,
                 y + since * (start.y_dot - 0.5 * gravity * since),
-                start.theta + start.theta_dot * since,
                 start.x_dot,
                 start.y_dot - gravity * since,
             ];
@@ -222,19 +222,21 @@ impl Flights {
             for (column, value) in self.numbers.iter_mut().zip(numbers) {
                 column.push(value);
             }
-            self.theta_dot.push(has_angle(scene).then_some(start.theta_dot));
+            let has_angle = has_angle(scene);
+            self.theta.push(has_angle.then_some(start.theta + start.theta_dot * since));
+            self.theta_dot.push(has_angle.then_some(start.theta_dot));
         }
     }
 
     /// All of them, in the order of the contract.
     pub fn into_table(self) -> Table {
-        let [t, x, y, theta, x_dot, y_dot] = self.numbers.map(Cells::Numbers);
+        let [t, x, y, x_dot, y_dot] = self.numbers.map(Cells::Numbers);
         let columns = [
             ("impact", "", Cells::Counts(self.impact)),
             ("t", "s", t),
             ("x", "m", x),
             ("y", "m", y),
-            ("theta", "rad", theta),
+            ("theta", "rad", Cells::Sparse(self.theta)),
             ("x_dot", "m_per_s", x_dot),
             ("y_dot", "m_per_s", y_dot),
             ("theta_dot", "rad_per_s", Cells::Sparse(self.theta_dot)),
