@@ -8,7 +8,7 @@ import { Run } from './run.js';
 import { SceneView } from './scene-view.js';
 import { Verdict } from './verdict.js';
 import { anglePlane, velocityPlane } from './plane.js';
-import { byId, copy, h, settled } from './dom.js';
+import { byId, copy, h, prose, settled } from './dom.js';
 import { clearNotice, connectionNotice, notice } from './notices.js';
 import { energyPlot } from './energy.js';
 import { invalidate } from './surface.js';
@@ -200,7 +200,7 @@ function showRun() {
   state.dataset.phase = phase;
   const told = byId('outcome');
   told.hidden = phase !== 'ended' && run.impacts.missing === 0;
-  told.textContent = phase === 'ended' ? sentence(outcome?.detail ?? '') : run.impacts.missing > 0 ? `${run.impacts.missing} impacts were skipped over` : '';
+  told.replaceChildren(...(phase === 'ended' ? prose(sentence(outcome?.detail ?? '')) : [`${run.impacts.missing} impacts were skipped over.`]));
   controls.show(phase, run.phase !== 'idle' && unplayed().length > 0, form !== null);
   if (run.active) {
     speed = run.clock.speed || speed;

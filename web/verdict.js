@@ -67,7 +67,7 @@ export class Verdict {
     if (nonlinear) rows.push(['max |θ|', quantity(nonlinear.max_theta, 'rad'), `${number(nonlinear.impacts, 6)} impacts run: ${nonlinear.outcome}`]);
     this.#root.replaceChildren(
       h('p', { class: `verdict-words ${manner}` }, h('span', { class: 'sign', 'aria-hidden': 'true' }, SIGNS[manner]), ` ${words}`),
-      reason ? h('p', { class: 'reason' }, ...prose(reason)) : '',
+      reason ? h('p', { class: 'reason' }, ...prose(reason[0].toUpperCase() + reason.slice(1))) : '',
       h('p', { class: 'chips' },
         decider ? h('span', { class: 'chip' }, `decided by ${DECIDERS[decider] ?? decider}`) : '',
         agree === null ? '' : h('span', { class: `chip ${agree ? '' : 'caution'}` }, agree ? 'linear map and run agree' : 'linear map and run disagree')),
