@@ -45,10 +45,10 @@ export function symbol(text) {
 }
 
 /**
- * The server's sentences with their symbols set as such, and their numbers no longer than one reads.
+ * The server's sentences for reading: symbols set as such, names of fields in words, numbers no longer than one reads.
  * @param {string} text
  */
-export const prose = (text) => text.replace(/-?\b\d+\.\d{6,}(?:e-?\d+)?/g, (digits) => number(Number(digits), 6)).split(/((?:κ|σ)_[A-Za-z]+(?:,max)?|y\*)/).map((part, index) => (index % 2 ? symbol(part) : part));
+export const prose = (text) => text.replace(/(?<=[a-z])_(?=[a-z])/g, ' ').replace(/-?\b\d+\.\d{6,}(?:e-?\d+)?/g, (digits) => number(Number(digits), 6)).split(/((?:κ|σ)_[A-Za-z]+(?:,max)?|y\*)/).map((part, index) => (index % 2 ? symbol(part) : part));
 
 /**
  * Text to the clipboard, and the button says so for a moment.
