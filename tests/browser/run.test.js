@@ -126,3 +126,34 @@ test('the point mass runs with what it has', async () => {
   assert.ok(await page.locator('#field-body-contact_distance').isDisabled());
   clean();
 });
+
+test('without frames, as in a hidden tab, nothing is drawn, and all of it on return', async () => {
+  const { page, clean } = await stage.page('?preset=case-1', { prepare: () => {
+    const frame = requestAnimationFrame.bind(globalThis);
+    const held = [];
+    globalThis.hide = () => { globalThis.requestAnimationFrame = (callback) => held.push(callback); };
+    globalThis.show = () => { globalThis.requestAnimationFrame = frame; for (const callback of held.splice(0)) frame(callback); };
+    globalThis.heldFrames = () => held.length;
+    globalThis.heard = 0;
+    const Socket = WebSocket;
+    globalThis.WebSocket = class extends Socket {
+      set onmessage(listener) { super.onmessage = (event) => { globalThis.heard += 1; listener(event); }; }
+    };
+  } });
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 3);
+  await page.evaluate(() => globalThis.hide());
+  // Polled by time, since there are no frames to poll by.
+  const wait = (condition, argument) => page.waitForFunction(condition, argument, { polling: 50 });
+  await wait(() => globalThis.heldFrames() > 0);
+  const dots = await ink(page, '#plane-angle', '--series-0');
+  const before = await page.evaluate(() => globalThis.heard);
+  await wait((from) => globalThis.heard >= from + 8, before);
+  assert.equal(await ink(page, '#plane-angle', '--series-0'), dots, 'nothing was drawn');
+  assert.equal(await page.evaluate(() => globalThis.heldFrames()), 1, 'one frame waits, however much there is to draw');
+  await page.evaluate(() => globalThis.show());
+  await reachImpact(page, 11);
+  assert.ok(await ink(page, '#plane-angle', '--series-0') > dots);
+  clean();
+});

@@ -64,8 +64,9 @@ export class Stage {
   /**
    * A page in a fresh browser profile, and what it did wrong so far.
    * @param {string} query
+   * @param {object} options of Playwright's context, and `prepare`, which the page runs before its own code
    */
-  async page(query = '', options = {}) {
+  async page(query = '', { prepare, ...options } = {}) {
     const context = await this.#browser.newContext({ viewport: { width: 1280, height: 860 }, ...options });
     await context.grantPermissions(['clipboard-read', 'clipboard-write']);
     const page = await context.newPage();
@@ -76,6 +77,7 @@ export class Stage {
     page.on('request', (request) => { if (!request.url().startsWith(this.url)) wrongs.push(`request elsewhere: ${request.url()}`); });
     page.on('websocket', (socket) => { if (!socket.url().startsWith(this.url.replace('http', 'ws'))) wrongs.push(`socket elsewhere: ${socket.url()}`); });
     await page.addInitScript(() => addEventListener('securitypolicyviolation', (event) => console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`)));
+    if (prepare) await page.addInitScript(prepare);
     await page.goto(this.url + query);
     await page.locator('#case:enabled').waitFor();
     return { page, context, wrongs, clean: () => assert.deepEqual(wrongs, []) };
