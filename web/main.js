@@ -32,8 +32,6 @@ let cases = [];
 let chosen = null;
 /** @type {Form | null} */
 let form = null;
-/** The scene the run plays, as it was typed. @type {Scene | null} */
-let playing = null;
 let speed = 1;
 /** The last thing sent to the run, to know whose error comes back. @type {'kick' | 'set' | 'other'} */
 let lastSent = 'other';
@@ -85,15 +83,19 @@ function typedQuery() {
 
 /** Fields whose typed value the run does not play. */
 function unplayed() {
-  const scene = form?.read().scene;
-  return scene && playing ? fields.filter((field) => playedAt(scene, field) !== playedAt(/** @type {Scene} */ (playing), field)) : [];
+  const typed = form?.read().scene;
+  const { asked } = run;
+  return typed && asked ? fields.filter((field) => field.available && playedAt(typed, field) !== playedAt(asked, field)) : [];
 }
 
 /** The page's address says what is shown: the run while there is one, else what is typed. */
 function addressNow() {
-  const query = run.phase === 'idle' ? typedQuery() : new URLSearchParams(run.query);
+  const query = run.released ? sceneQuery(run.released, chosen, fields) : typedQuery();
   if (!query) return;
-  if (run.phase === 'idle' && speed !== 1) query.set('speed', String(speed));
+  if (run.released) {
+    // The server spells the scene out; the name of the case says it shorter and for people.
+    for (const [key, value] of run.query) if (key !== 'preset' && !key.startsWith('scene.')) query.set(key, value);
+  } else if (speed !== 1) query.set('speed', String(speed));
   history.replaceState(null, '', `?${query}`);
 }
 const address = settled(150, addressNow);
@@ -130,17 +132,14 @@ function ask() {
   askSoon();
 }
 
-/** Live parameters that were changed and go to the run together. @type {Set<string>} */
-const unsent = new Set();
+/** Sends the live parameters that the run does not play yet; some make sense only together. */
 const sendChanges = settled(100, () => {
-  const scene = form?.read().scene;
-  if (!scene || !playing || !run.active) return unsent.clear();
-  const changes = Object.fromEntries(unplayed().filter(({ path }) => unsent.has(path)).map((field) => [field.path, playedAt(scene, field)]).filter(([, value]) => value !== undefined));
-  unsent.clear();
+  const typed = form?.read().scene;
+  if (!typed || !run.active) return;
+  const changes = Object.fromEntries(unplayed().filter(({ live }) => live).map((field) => [field.path, playedAt(typed, field)]).filter(([, value]) => value !== undefined));
+  if (Object.keys(changes).length === 0) return;
   lastSent = 'set';
-  if (Object.keys(changes).length === 0 || !run.set(changes)) return;
-  for (const [path, value] of Object.entries(changes)) setAt(playing, path, value);
-  showRun();
+  run.set(changes);
 });
 
 /**
@@ -154,10 +153,7 @@ function edited(path, final) {
     controls.setGain(value);
     circle.preview(value);
   }
-  if (final && run.active && fields.find((field) => field.path === path)?.live) {
-    unsent.add(path);
-    sendChanges();
-  }
+  if (final && run.active && fields.find((field) => field.path === path)?.live) sendChanges();
   view.draft(scene);
   plots[2].redraw();
   ask();
@@ -171,7 +167,6 @@ function start() {
     form?.complain();
     return form?.focusError();
   }
-  playing = structuredClone(form.read().scene);
   query.set('speed', String(speed));
   clearNotice('run');
   lastSent = 'other';
@@ -188,7 +183,7 @@ function toggle() {
 function restart() {
   lastSent = 'other';
   if (run.phase === 'idle') return;
-  if (!run.active || run.interventions.length > 0 || unplayed().length > 0) start();
+  if (!run.active || unplayed().length > 0) start();
   else run.restart();
 }
 
@@ -231,7 +226,8 @@ function present(scene) {
 function restore(search) {
   const link = readLink(search, fields, cases);
   const bare = link.preset === null && Object.keys(link.changes).length === 0;
-  chosen = cases.find((one) => one.name === (bare ? cases[0]?.name : link.preset)) ?? null;
+  chosen = cases.find((one) => one.name === (bare ? cases[0]?.name : link.preset))
+    ?? cases.find((one) => fields.every((field) => playedAt(one.scene, field) === playedAt(link.changes, field))) ?? null;
   speed = link.speed;
   run.reset();
   if (link.dropped.length > 0) {
@@ -244,7 +240,6 @@ function restore(search) {
   query.set('speed', String(speed));
   for (const { set } of interventionsOf(link.run)) for (const [path, value] of Object.entries(set)) setAt(scene, path, value);
   present(scene);
-  playing = form ? structuredClone(form.read().scene) : null;
   run.start(query);
 }
 

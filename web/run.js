@@ -43,8 +43,8 @@ export class Run {
   #live = null;
   #watcher;
   #epoch = 0;
-  /** @type {Scene} */
-  #released = {};
+  /** What it was released with. @type {Scene | null} */
+  released = null;
   /** @type {import('./flight.js').Arc | null} */
   #fall = null;
   /** @type {number | undefined} */
@@ -88,7 +88,6 @@ export class Run {
   /** No run, and nothing of the one before. */
   reset() {
     this.stop();
-    this.scene = null;
     this.#clear();
   }
 
@@ -98,6 +97,8 @@ export class Run {
     this.impacts.clear();
     this.outcome = null;
     this.interventions = [];
+    this.scene = null;
+    this.released = null;
     this.#epoch = 0;
     this.#fall = null;
     this.#watcher.cleared();
@@ -137,7 +138,7 @@ export class Run {
       case 'hello':
         if (this.#epoch && message.epoch !== this.#epoch) this.#clear();
         this.#epoch = message.epoch;
-        this.#released = message.scene;
+        this.released = message.scene;
         this.build = message.build ?? '';
         this.#fall = { ...message.release, theta_dot: message.release.theta_dot ?? 0, theta: message.release.theta ?? 0, duration: message.flight_time ?? 0 };
         this.clock.forget();
@@ -178,12 +179,21 @@ export class Run {
   }
 
   #rebuild() {
-    const next = (this.impacts.last?.n ?? 0) + 1;
-    this.scene = structuredClone(this.#released);
-    for (const { impact, set } of this.interventions) {
-      if (impact <= next) for (const [path, value] of Object.entries(set)) setAt(this.scene, path, value);
-    }
+    this.scene = this.#sceneAt((this.impacts.last?.n ?? 0) + 1);
   }
+
+  /** The scene in force at an impact, or null before the server has greeted. @param {number} n */
+  #sceneAt(n) {
+    if (!this.released) return null;
+    const scene = structuredClone(this.released);
+    for (const { impact, set } of this.interventions) {
+      if (impact <= n) for (const [path, value] of Object.entries(set)) setAt(scene, path, value);
+    }
+    return scene;
+  }
+
+  /** The scene with all that was set, waiting for its impact or not. */
+  get asked() { return this.#sceneAt(Infinity); }
 
   /** @param {Impact[]} fresh */
   #take(fresh) {
