@@ -42,6 +42,8 @@ export class Run {
   /** @type {Live | null} */
   #live = null;
   #watcher;
+  /** Whether it is shown from its first impact. */
+  #whole = true;
   #epoch = 0;
   /** What it was released with. @type {Scene | null} */
   released = null;
@@ -55,26 +57,35 @@ export class Run {
     this.#watcher = watcher;
   }
 
-  /** @param {URLSearchParams} query */
-  start(query) {
+  /**
+   * @param {URLSearchParams} query
+   * @param {boolean} [whole] a run that is already under way is shown from its first impact
+   */
+  start(query, whole = true) {
     this.stop();
     this.query = new URLSearchParams(query);
     this.query.delete('from');
     this.#clear();
     const first = new URLSearchParams(this.query);
-    // A run that is already under way is shown from its first impact.
-    if (first.has('epoch')) first.set('from', '1');
+    this.#whole = whole;
+    const joins = first.has('epoch') && whole;
+    if (joins) first.set('from', '1');
     this.#become('connecting');
     this.#live = new Live(`v1/live?${first}`, () => this.#resumption(), {
       message: (message) => this.#hear(message),
       lost: (seconds) => { this.#become('lost'); this.#watcher.lost(seconds); },
-      refused: (problem) => { this.stop(); this.#watcher.refused(problem); },
+      refused: (problem) => {
+        // Its whole past may be too much for the server to tell, where its present is not.
+        if (joins) return this.start(query, false);
+        this.stop();
+        this.#watcher.refused(problem);
+      },
     });
   }
 
   #resumption() {
     const query = new URLSearchParams(this.query);
-    query.set('from', String((this.impacts.last?.n ?? 0) + 1));
+    if (this.impacts.last || this.#whole) query.set('from', String((this.impacts.last?.n ?? 0) + 1));
     return `v1/live?${query}`;
   }
 
