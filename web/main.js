@@ -208,14 +208,17 @@ function showRun() {
 /** @param {string} words */
 const sentence = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
 
+/** Where nothing can be set low: in an option, in the window's title. @param {string} text */
+const plain = (text) => text.replaceAll('κ_', 'κ');
+
 /** Shows a scene without running it. @param {Scene} scene */
 function present(scene) {
   form?.fill(scene);
   controls.setGain(valueAt(scene, GAIN) ?? null);
   controls.setSpeed(speed);
   chooser.value = chosen?.name ?? '';
-  byId('case-shows').textContent = chosen?.shows ?? 'A scene of your own.';
-  document.title = chosen ? `${chosen.title} · equipoise` : 'equipoise';
+  byId('case-shows').replaceChildren(...prose(chosen?.shows ?? 'A scene of your own.'));
+  document.title = chosen ? `${plain(chosen.title)} · equipoise` : 'equipoise';
   showPaper(byId('paper'), chosen);
   plots[2].redraw();
   view.draft(scene);
@@ -267,7 +270,7 @@ async function begin() {
   root.replaceChildren();
   form = new Form(root, fields, edited);
   controls.knowGain(fields.find((field) => field.path === GAIN && field.available) ?? null);
-  chooser.replaceChildren(h('option', { value: '', hidden: true }, 'A scene of your own'), ...cases.map(({ name, title }) => h('option', { value: name }, title)));
+  chooser.replaceChildren(h('option', { value: '', hidden: true }, 'A scene of your own'), ...cases.map(({ name, title }) => h('option', { value: name }, plain(title))));
   chooser.disabled = false;
   chooser.addEventListener('change', () => { const one = cases.find(({ name }) => name === chooser.value); if (one) choose(one); });
   byId('build').textContent = server.build;
