@@ -10,6 +10,8 @@ import { Problem, get } from './api.js';
  */
 
 const LONGEST_WAIT_S = 15;
+// Close code of a server that has too much to do just now.
+const TRY_AGAIN_LATER = 1013;
 
 export class Live {
   /** @type {WebSocket | null} */
@@ -52,9 +54,10 @@ export class Live {
       }
       this.#listener.message(message);
     };
-    socket.onclose = async () => {
+    socket.onclose = async ({ code }) => {
       if (this.#closed || this.#socket !== socket) return;
-      if (!this.#greeted) problem ??= await refusal(url);
+      if (code === TRY_AGAIN_LATER) problem = null;
+      else if (!this.#greeted) problem ??= await refusal(url);
       if (this.#closed || this.#socket !== socket) return;
       if (problem) return this.#listener.refused(problem);
       this.#wait();

@@ -171,6 +171,9 @@ export class Run {
       case 'end':
         this.outcome = message.outcome;
         clearTimeout(this.#overdue);
+        // There is nothing more to hear.
+        this.#live?.close();
+        this.#live = null;
         this.#become('ended');
         break;
       case 'problem':
