@@ -57,7 +57,7 @@ export class Live {
     socket.onclose = async ({ code }) => {
       if (this.#closed || this.#socket !== socket) return;
       if (code === TRY_AGAIN_LATER) problem = null;
-      else if (!this.#greeted) problem ??= await refusal(url);
+      else if (!this.#greeted) problem ??= await refusal(url, this.#failures);
       if (this.#closed || this.#socket !== socket) return;
       if (problem) return this.#listener.refused(problem);
       this.#wait();
@@ -108,16 +108,21 @@ export class Live {
   }
 }
 
+const UPGRADE_REQUIRED = 426;
+
 /**
  * A browser hides why a handshake was refused; the same request without the handshake tells it.
  * @param {string} url
+ * @param {number} failures before this one
  * @returns {Promise<Problem | null>} null when the server is not there, or wants nothing but the handshake
  */
-async function refusal(url) {
+async function refusal(url, failures) {
   try {
     await get(url);
   } catch (error) {
-    if (error instanceof Problem && error.errors.length > 0 && error.status < 500) return error;
+    if (!(error instanceof Problem) || error.status >= 500) return null;
+    if (error.status !== UPGRADE_REQUIRED) return error;
+    if (failures >= 2) return new Problem('No live connection', 'The server answers, but no WebSocket gets through to it; a proxy on the way may not pass one on.', [], error.status);
   }
   return null;
 }
