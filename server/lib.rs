@@ -8,6 +8,7 @@ pub mod config;
 pub mod http;
 pub mod limits;
 pub mod middleware;
+pub mod picture;
 pub mod router;
 pub mod routes;
 pub mod transport;

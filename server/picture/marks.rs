@@ -1,0 +1,93 @@
+//! Marks: points, lines, bands and arrows, in pixels.
+
+use std::fmt::Write as _;
+
+use super::colour::PAPER;
+use super::panel::Frame;
+use super::svg::{Svg, fixed};
+
+/// A point in px.
+pub(super) type Point = (f64, f64);
+
+/// Many equal dots, as one path: a third of the bytes of circles.
+pub(super) fn dots(svg: &mut Svg, points: impl Iterator<Item = Point>, radius: f64, colour: &str) {
+    let mut path = String::new();
+    for (x, y) in points {
+        let _ = write!(path, "M{} {}h0", fixed(x), fixed(y));
+    }
+    if !path.is_empty() {
+        let tag = svg.tag("path").word("d", &path).word("fill", "none").word("stroke", colour);
+        tag.number("stroke-width", 2.0 * radius).word("stroke-linecap", "round").end();
+    }
+}
+
+/// Straight lines through points, dashed where `dashes` says so.
+pub(super) fn line(svg: &mut Svg, points: &[Point], colour: &str, thickness: f64, dashes: Option<&str>) {
+    let mut path = String::new();
+    for (x, y) in points {
+        let _ = write!(path, "{}{} {}", if path.is_empty() { "M" } else { "L" }, fixed(*x), fixed(*y));
+    }
+    let mut tag = svg.tag("path").word("d", &path).word("fill", "none").word("stroke", colour);
+    tag = tag.number("stroke-width", thickness).word("stroke-linejoin", "round");
+    if let Some(dashes) = dashes {
+        tag = tag.word("stroke-dasharray", dashes);
+    }
+    tag.end();
+}
+
+/// A full disc with a rim of paper, so that it stands off what is under it.
+pub(super) fn disc(svg: &mut Svg, (x, y): Point, radius: f64, colour: &str) {
+    let tag = svg.tag("circle").number("cx", x).number("cy", y).number("r", radius).word("fill", colour);
+    tag.word("stroke", PAPER).number("stroke-width", 1.5).end();
+}
+
+/// An open circle.
+pub(super) fn ring(svg: &mut Svg, (x, y): Point, radius: f64, colour: &str) {
+    for (stroke, width) in [(PAPER, 4.5), (colour, 2.0)] {
+        let tag = svg.tag("circle").number("cx", x).number("cy", y).number("r", radius).word("fill", "none");
+        tag.word("stroke", stroke).number("stroke-width", width).end();
+    }
+}
+
+/// A circle filled with paper.
+pub(super) fn hollow(svg: &mut Svg, (x, y): Point, radius: f64, colour: &str) {
+    let tag = svg.tag("circle").number("cx", x).number("cy", y).number("r", radius).word("fill", PAPER);
+    tag.word("stroke", colour).number("stroke-width", 2.0).end();
+}
+
+/// An open square.
+pub(super) fn square(svg: &mut Svg, (x, y): Point, half: f64, colour: &str) {
+    for (stroke, width) in [(PAPER, 4.5), (colour, 2.0)] {
+        let tag = svg.tag("rect").number("x", x - half).number("y", y - half).number("width", 2.0 * half);
+        tag.number("height", 2.0 * half)
+            .word("fill", "none")
+            .word("stroke", stroke)
+            .number("stroke-width", width)
+            .end();
+    }
+}
+
+/// An arrow head with its tip at a point, pointing along `direction`.
+pub(super) fn arrow(svg: &mut Svg, (x, y): Point, direction: Point, size: f64, colour: &str) {
+    let length = (direction.0 * direction.0 + direction.1 * direction.1).sqrt();
+    if length.is_nan() || length <= 0.0 {
+        return;
+    }
+    let (along, across) = (direction.0 / length * size, direction.1 / length * size);
+    let path = format!(
+        "M{} {}L{} {}L{} {}Z",
+        fixed(x),
+        fixed(y),
+        fixed(x - along - 0.5 * across),
+        fixed(y - across + 0.5 * along),
+        fixed(x - along + 0.5 * across),
+        fixed(y - across - 0.5 * along)
+    );
+    svg.tag("path").word("d", &path).word("fill", colour).word("stroke", PAPER).end();
+}
+
+/// A filled rectangle.
+pub(super) fn band(svg: &mut Svg, area: Frame, colour: &str) {
+    let tag = svg.tag("rect").number("x", area.left).number("y", area.top).number("width", area.width);
+    tag.number("height", area.height).word("fill", colour).end();
+}

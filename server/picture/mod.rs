@@ -1,0 +1,24 @@
+//! Pictures of answers as SVG, drawn by a small chart layer of our own: sheets, panels with axes, marks, legends.
+//!
+//! A picture is a function of its numbers: the same bytes everywhere, whatever the numbers are. It stands on its own paper,
+//! so that it reads in light and dark pages alike, and carries no style sheet and no script, so that any CSP takes it.
+//! Not here: HTTP, and computing what is drawn.
+
+mod colour;
+mod eigenvalues;
+mod legend;
+mod marks;
+mod number;
+mod panel;
+mod phase_planes;
+mod scale;
+mod sheet;
+mod svg;
+mod text;
+mod trail;
+
+pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
+pub use phase_planes::{PhasePlanes, phase_planes};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,124 @@
+//! A panel: a frame with two axes, their grid, ticks and titles. What is drawn inside are marks.
+
+use super::colour::{AXIS, GRID, INK, PAPER, SOFT_INK, ZERO};
+use super::marks::line;
+use super::number::raised;
+use super::scale::{Range, Scale, Ticks, ticks};
+use super::svg::{Anchor, Svg, Type};
+use super::text::{Span, width};
+
+/// Text of ticks, px.
+const TICK_SIZE: f64 = 12.0;
+
+/// Text of axis titles, px.
+const TITLE_SIZE: f64 = 13.5;
+
+/// Where the frame of a panel is, px.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) width: f64,
+    pub(super) height: f64,
+}
+
+/// What an axis shows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis<'a> {
+    /// In words.
+    pub(super) name: &'a str,
+    /// In a formula.
+    pub(super) symbol: &'a str,
+    /// Unit; empty for a pure number.
+    pub(super) unit: &'a str,
+    /// From where to where.
+    pub(super) range: Range,
+}
+
+/// A frame with its scales.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Panel {
+    pub(super) frame: Frame,
+    x: Scale,
+    y: Scale,
+}
+
+impl Panel {
+    /// Draws grid, ticks and titles, and gives the panel to draw marks in; `edge` is for after the marks.
+    pub(super) fn draw(svg: &mut Svg, frame: Frame, x: Axis<'_>, y: Axis<'_>) -> Self {
+        let panel = Self {
+            frame,
+            x: Scale::linear(x.range, frame.left, frame.left + frame.width),
+            y: Scale::linear(y.range, frame.top + frame.height, frame.top),
+        };
+        panel.draw_axes(svg, x, y);
+        panel
+    }
+
+    /// The place of a point, px; points outside are put on the edge.
+    pub(super) fn at(&self, x: f64, y: f64) -> (f64, f64) {
+        (self.x.at(x), self.y.at(y))
+    }
+
+    /// Draws the frame over the marks.
+    pub(super) fn edge(&self, svg: &mut Svg) {
+        let Frame { left, top, width, height } = self.frame;
+        let rectangle = svg.tag("rect").number("x", left).number("y", top).number("width", width);
+        rectangle.number("height", height).word("fill", "none").word("stroke", AXIS).end();
+    }
+
+    fn draw_axes(&self, svg: &mut Svg, x: Axis<'_>, y: Axis<'_>) {
+        let Frame { left, top, width: across, height } = self.frame;
+        let (right, bottom) = (left + across, top + height);
+        // As many labels as stand side by side with room between them.
+        let ticks_x = (2..=6).rev().map(|most| ticks(x.range, most)).find(|ticks| crowding(ticks) < 0.75 * across);
+        let ticks_x = ticks_x.unwrap_or_else(|| ticks(x.range, 2));
+        let ticks_y = ticks(y.range, 6);
+        svg.tag("rect")
+            .number("x", left)
+            .number("y", top)
+            .number("width", across)
+            .number("height", height)
+            .word("fill", PAPER)
+            .end();
+        let look = Type::new(TICK_SIZE, SOFT_INK);
+        let mut widest: f64 = 0.0;
+        for (value, label) in &ticks_x.marks {
+            let at = self.x.at(*value);
+            line(svg, &[(at, top), (at, bottom)], grid(*value), 1.0, None);
+            line(svg, &[(at, bottom), (at, bottom + 5.0)], AXIS, 1.0, None);
+            svg.text(at, bottom + 19.0, look.anchored(Anchor::Middle), &[Span::Plain(label)]);
+        }
+        for (value, label) in &ticks_y.marks {
+            let at = self.y.at(*value);
+            line(svg, &[(left, at), (right, at)], grid(*value), 1.0, None);
+            line(svg, &[(left - 5.0, at), (left, at)], AXIS, 1.0, None);
+            svg.text(left - 9.0, at + 4.2, look.anchored(Anchor::End), &[Span::Plain(label)]);
+            widest = widest.max(width(label, TICK_SIZE));
+        }
+        let look = Type::new(TITLE_SIZE, INK).anchored(Anchor::Middle);
+        title(svg, left + 0.5 * across, bottom + 40.0, look, x, &ticks_x);
+        title(svg, left - 20.0 - widest, top + 0.5 * height, look.upwards(), y, &ticks_y);
+    }
+}
+
+/// Width of all labels side by side, px.
+fn crowding(ticks: &Ticks) -> f64 {
+    ticks.marks.iter().map(|(_, label)| width(label, TICK_SIZE)).sum()
+}
+
+/// Zero stands out.
+fn grid(value: f64) -> &'static str {
+    if value == 0.0 { ZERO } else { GRID }
+}
+
+/// The title of an axis: name, symbol, unit and power of ten.
+fn title(svg: &mut Svg, x: f64, y: f64, look: Type, axis: Axis<'_>, ticks: &Ticks) {
+    let unit = match (ticks.power, axis.unit) {
+        (0, "") => String::new(),
+        (0, unit) => format!(" ({unit})"),
+        (power, unit) => format!(" (10{} {unit})", raised(power)).replace(" )", ")"),
+    };
+    let name = format!("{} ", axis.name);
+    svg.text(x, y, look, &[Span::Plain(&name), Span::Symbol(axis.symbol), Span::Plain(&unit)]);
+}
