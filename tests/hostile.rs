@@ -1,0 +1,120 @@
+//! Scenes that nobody should send: for each there is an answer or a 422, never a panic, a hang or a number that is none.
+
+mod support;
+
+use std::time::Duration;
+
+use serde_json::{Map, Value, json};
+use support::Server;
+
+const SCENES: u64 = 10_000;
+
+/// Numbers that repeat from run to run (splitmix64, Steele and others, 2014).
+struct Draw(u64);
+
+impl Draw {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, limit: u64) -> u64 {
+        self.next() % limit
+    }
+
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn chance(&mut self, share: f64) -> bool {
+        self.unit() < share
+    }
+
+    /// A value of a field, as `GET /v1/fields` describes it: mostly within its range, often at an end of it, and now and
+    /// then anything at all.
+    fn value(&mut self, field: &Value) -> Value {
+        if self.chance(0.02) {
+            let exponent = self.unit() * 600.0 - 300.0;
+            let wild = [json!(10_f64.powf(exponent)), json!(-10_f64.powf(exponent)), json!("nonsense"), json!([1]), json!({})];
+            return wild[self.below(5) as usize].clone();
+        }
+        match field["kind"].as_str().unwrap() {
+            "number" => {
+                let (low, high) = (field["minimum"].as_f64().unwrap(), field["maximum"].as_f64().unwrap());
+                match self.below(8) {
+                    0 => json!(low),
+                    1 => json!(high),
+                    2 => json!(low + (high - low) * 1e-12),
+                    3..=5 => json!((low + (high - low) * self.unit().powi(4)).clamp(low, high)),
+                    _ => json!((low + (high - low) * self.unit()).clamp(low, high)),
+                }
+            }
+            "integer" => json!(self.below(field["maximum"].as_u64().unwrap())),
+            "choice" => {
+                let choices = field["choices"].as_array().unwrap();
+                choices[self.below(choices.len() as u64) as usize].clone()
+            }
+            _ => json!(true),
+        }
+    }
+}
+
+fn put(scene: &mut Value, path: &str, value: Value) {
+    let mut at = scene;
+    for part in path.split('.') {
+        at = at.as_object_mut().unwrap().entry(part).or_insert_with(|| Value::Object(Map::new()));
+    }
+    *at = value;
+}
+
+#[tokio::test]
+async fn ten_thousand_random_scenes_are_answered() {
+    let server = Server::start();
+    let fields = server.get("/v1/fields").await.json()["fields"].as_array().unwrap().clone();
+    let mut draw = Draw(1);
+    let mut answered = std::collections::BTreeMap::<String, u64>::new();
+    for _ in 0..SCENES {
+        let mut scene = json!({});
+        for field in &fields {
+            let path = field["path"].as_str().unwrap();
+            let wanted = match (field["required"] == json!(true), field["available"] == json!(true), path) {
+                (.., "body.point") => 0.05,
+                (true, ..) => 0.99,
+                (_, true, _) => 0.4,
+                _ => 0.01,
+            };
+            if draw.chance(wanted) {
+                put(&mut scene, path, draw.value(field));
+            }
+        }
+        // Most random releases would lie below the table.
+        if draw.chance(0.8) && scene.pointer("/body/contact_distance").is_some() {
+            put(&mut scene, "release.height", json!(10.0 + 20.0 * draw.unit()));
+        }
+        let request = json!({"scene": scene, "impacts": 1 + draw.below(300)});
+        let answer = tokio::time::timeout(Duration::from_secs(60), server.post("/v1/trajectories", &request)).await;
+        let answer = answer.unwrap_or_else(|_| panic!("no answer to {request}"));
+        match answer.status.as_u16() {
+            200 => {
+                let kind = answer.json()["outcome"]["kind"].as_str().unwrap().to_owned();
+                *answered.entry(kind).or_default() += 1;
+                let text = String::from_utf8(answer.body.clone()).unwrap();
+                assert!(!text.contains("NaN") && !text.contains("inf"), "{request}");
+                for column in ["t", "x", "theta", "x_dot", "y_dot", "alpha", "energy", "contact_speed"] {
+                    let cells = answer.json()["impacts"][column].clone();
+                    assert!(cells.as_array().unwrap().iter().all(Value::is_number), "{column} of {request}");
+                }
+            }
+            422 => *answered.entry("422".to_owned()).or_default() += 1,
+            other => panic!("{other} to {request}"),
+        }
+    }
+    println!("{answered:?}");
+    let outcomes = ["completed", "toppled", "separating", "sinking", "settled", "diverged", "422"];
+    for outcome in outcomes {
+        assert!(answered.contains_key(outcome), "no scene ended as {outcome}: {answered:?}");
+    }
+}
