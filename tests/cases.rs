@@ -47,9 +47,7 @@ async fn every_reference_agrees_or_is_not_available() {
 #[tokio::test]
 async fn verdicts_and_limits_are_those_of_the_physics() {
     let server = Server::start();
-    let verdict = async |preset: &str| {
-        server.get(&format!("/v1/stability?preset={preset}&impacts=3000")).await.json()
-    };
+    let verdict = async |preset: &str| server.get(&format!("/v1/stability?preset={preset}&impacts=3000")).await.json();
     for (preset, critical) in [("case-1", 1.5), ("case-2", 1.502), ("case-4", 1.2857), ("case-5", 1.2857)] {
         let stability = verdict(preset).await;
         assert_eq!(stability["verdict"], "elliptic, 3000 bounces survived", "{preset}");
@@ -74,7 +72,10 @@ async fn the_boundary_is_soft_or_hard_by_more_than_eigenvalues() {
     close(&hard["boundary"]["coefficient"], -0.188, 5e-4);
     assert_eq!((&hard["verdict"], &hard["decided_by"]), (&json!("unstable"), &json!("boundary")));
     // Energy feedback holds η and not the energy: always hard. κ_c = 1 + 2/7 exactly.
-    let energy = verdict("preset=case-4&scene.table.tilt_gain=1.2857142857142858&scene.release.theta=1e-4").await;
+    let energy = verdict(
+        "preset=case-4&scene.table.tilt_gain=1.2857142857142858&scene.release.theta=1e-4&scene.release.height=0.25",
+    )
+    .await;
     assert_eq!(energy["boundary"]["kind"], "hard");
     assert_eq!(energy["verdict"], "unstable");
     assert_eq!(energy["nonlinear"]["impacts"], 112);
@@ -121,7 +122,9 @@ async fn a_point_mass_follows_equation_5() {
         close(angle, first * 0.2_f64.powi(i32::try_from(n).unwrap()), 1e-15);
     }
     assert!(run["impacts"]["theta_dot"][0].is_null());
-    for (kappa, verdict) in [("0.4", "stable in place"), ("0.99", "stable in place"), ("1.01", "unstable"), ("-0.1", "unstable")] {
+    for (kappa, verdict) in
+        [("0.4", "stable in place"), ("0.99", "stable in place"), ("1.01", "unstable"), ("-0.1", "unstable")]
+    {
         let answer = server.get(&format!("/v1/stability?preset=point-mass&scene.table.tilt_gain={kappa}")).await;
         assert_eq!(answer.json()["verdict"], verdict, "κ = {kappa}");
     }
@@ -137,7 +140,8 @@ async fn derivatives_are_served_where_they_exist() {
     // R over n bounces is sin²(nσ/2), cos σ = 1 − 2R.
     let rotation = (1.0_f64 - 0.4).acos();
     close(&ninth["residue"], (4.5 * rotation).sin().powi(2), 1e-12);
-    let state = json!({"preset": "case-1", "at": {"state": {"theta": 0.2, "x_dot": 0.1, "y_dot": -1.2, "theta_dot": 3}}});
+    let state =
+        json!({"preset": "case-1", "at": {"state": {"theta": 0.2, "x_dot": 0.1, "y_dot": -1.2, "theta_dot": 3}}});
     let exact = server.post("/v1/jacobians", &state).await.json();
     let mut differences = state.clone();
     differences["method"] = json!("finite_difference");

@@ -59,7 +59,7 @@ async fn a_trajectory_has_the_same_numbers_in_every_format() {
         assert_eq!(table.rows.len(), count, "{preset}");
         let lines: Vec<Value> = ndjson.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         assert_eq!(lines.len(), count + 1, "{preset}");
-        assert_eq!(lines[count], json!({"end": {"outcome": whole["outcome"]}}), "{preset}");
+        assert_eq!(lines[count], json!({"end": {"outcome": whole["outcome"], "notes": whole["notes"]}}), "{preset}");
         for (name, header) in COLUMNS {
             let column = whole["impacts"][name].as_array().unwrap();
             assert_eq!(column.len(), count, "{preset}: {name}");
@@ -99,7 +99,7 @@ async fn a_matrix_has_the_same_numbers_in_every_format() {
 }
 
 /// A column of a verdict's row, its unit, and where it is in the whole answer.
-const VERDICT: [(&str, &str, &str); 19] = [
+const VERDICT: [(&str, &str, &str); 25] = [
     ("verdict", "", "/verdict"),
     ("decided_by", "", "/decided_by"),
     ("agree", "", "/agree"),
@@ -119,6 +119,12 @@ const VERDICT: [(&str, &str, &str); 19] = [
     ("impacts", "", "/nonlinear/impacts"),
     ("t", "s", "/nonlinear/t"),
     ("max_theta", "rad", "/nonlinear/max_theta"),
+    ("tilt_gain_margin_below", "", "/linear/tilt_gain/margin_below"),
+    ("tilt_gain_margin_above", "", "/linear/tilt_gain/margin_above"),
+    ("energy_gain_eigenvalue", "", "/linear/energy_gain/eigenvalue"),
+    ("energy_gain_margin", "s2_per_m2", "/linear/energy_gain/margin"),
+    ("fixed_point_y_dot", "m_per_s", "/fixed_point/y_dot"),
+    ("fixed_point_flight_time", "s", "/fixed_point/flight_time"),
 ];
 
 #[tokio::test]

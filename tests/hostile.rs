@@ -38,7 +38,8 @@ impl Draw {
     fn value(&mut self, field: &Value) -> Value {
         if self.chance(0.02) {
             let exponent = self.unit() * 600.0 - 300.0;
-            let wild = [json!(10_f64.powf(exponent)), json!(-10_f64.powf(exponent)), json!("nonsense"), json!([1]), json!({})];
+            let wild =
+                [json!(10_f64.powf(exponent)), json!(-10_f64.powf(exponent)), json!("nonsense"), json!([1]), json!({})];
             return wild[self.below(5) as usize].clone();
         }
         match field["kind"].as_str().unwrap() {

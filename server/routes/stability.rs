@@ -13,7 +13,8 @@ use crate::limits;
 use crate::wire::scene;
 use crate::wire::stability::Stability;
 
-const RESOURCE: Resource = Resource { name: "stability", formats: &[Format::Json, Format::Csv, Format::Ndjson] };
+const RESOURCE: Resource =
+    Resource { name: "stability", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg] };
 
 /// Its path.
 pub fn routes() -> Router<App> {
@@ -35,6 +36,7 @@ async fn stability(State(app): State<App>, ask: Ask) -> Result<Response<Body>, P
         match format {
             Format::Csv => Ok(stability.to_table().to_csv()),
             Format::Ndjson => Ok(stability.to_table().to_ndjson(&stability.end())),
+            Format::Svg => Ok(stability.to_picture().into_bytes()),
             _ => super::json(&stability),
         }
     })

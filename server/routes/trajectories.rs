@@ -13,7 +13,8 @@ use crate::limits;
 use crate::wire::scene;
 use crate::wire::trajectory::Trajectory;
 
-const RESOURCE: Resource = Resource { name: "trajectories", formats: &[Format::Json, Format::Csv, Format::Ndjson] };
+const RESOURCE: Resource =
+    Resource { name: "trajectories", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg] };
 
 /// Numbers in a row of contacts, and in one of flight samples; and what a row costs beside its bounce, in bounces.
 const CONTACT_NUMBERS: u64 = 17;
@@ -46,6 +47,7 @@ async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Response<Body>
         match format {
             Format::Csv => Ok(trajectory.impacts.to_csv()),
             Format::Ndjson => Ok(trajectory.impacts.to_ndjson(&trajectory.end())),
+            Format::Svg => Ok(trajectory.to_picture().into_bytes()),
             _ => super::json(&trajectory),
         }
     })

@@ -224,7 +224,7 @@ impl<'a> Jacobian<'a> {
     /// The matrix as a table, a row for each component of the state at the end.
     pub fn to_table(&self) -> Table {
         let mut columns = vec![Column {
-            name: "state",
+            name: "component",
             unit: "",
             cells: Cells::Words(self.state_order.iter().map(|&name| Some(name)).collect()),
         }];

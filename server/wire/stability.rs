@@ -1,6 +1,6 @@
 //! The answer of `stability`: the verdict, and everything it rests on.
 
-use equipoise_physics::scene::{Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::{Judgement, Linear, Nonlinear, Verdict};
 use serde::Serialize;
 
@@ -8,6 +8,7 @@ use super::jacobian::Eigenvalue;
 use super::scene::{Resolved, has_angle};
 use super::table::{Cells, Column, Table};
 use super::trajectory::{Choice, Outcome};
+use crate::picture::{Eigenvalues, Spectrum, eigenvalues};
 
 #[derive(Debug, Clone, Serialize)]
 struct FixedPoint {
@@ -79,13 +80,6 @@ pub struct Stability<'a> {
     notes: Vec<String>,
 }
 
-fn number(scene: &Scene, name: Name) -> f64 {
-    match scene.value(name) {
-        Some(Value::Number(number)) => number,
-        _ => 0.0,
-    }
-}
-
 /// The verdict in words; what a run showed stands in it with its length.
 fn words(verdict: Verdict, run: &Nonlinear) -> String {
     match verdict {
@@ -98,8 +92,8 @@ fn words(verdict: Verdict, run: &Nonlinear) -> String {
 
 impl LinearPart {
     fn new(scene: &Scene, linear: &Linear) -> Self {
-        let kappa = number(scene, Name::TiltGain);
-        let energy_gain = number(scene, Name::EnergyGain);
+        let kappa = scene.number(Name::TiltGain).unwrap_or_default();
+        let energy_gain = scene.number(Name::EnergyGain).unwrap_or_default();
         Self {
             class: linear.class.name(),
             residue: linear.residue,
@@ -191,6 +185,25 @@ impl<'a> Stability<'a> {
         Some(answer)
     }
 
+    /// The eigenvalues on the unit circle against κ, as SVG.
+    pub fn to_picture(&self) -> String {
+        let values: Vec<(f64, f64)> =
+            self.linear.iter().flat_map(|linear| &linear.eigenvalues).map(|value| (value.re, value.im)).collect();
+        eigenvalues(&Eigenvalues {
+            title: &format!("Eigenvalues of a {}", self.model.name.replace('_', " ")),
+            verdict: self.verdict.as_deref(),
+            reason: &self.reason,
+            linear: self.linear.as_ref().map(|linear| Spectrum {
+                eigenvalues: &values,
+                tilt_gain: linear.tilt_gain.value,
+                lower: linear.tilt_gain.lower,
+                critical: linear.tilt_gain.critical,
+                residue: linear.residue,
+                rotation: linear.rotation,
+            }),
+        })
+    }
+
     /// How many bounces were computed for it.
     pub fn bounces(&self) -> u64 {
         self.nonlinear.impacts
@@ -210,39 +223,34 @@ impl<'a> Stability<'a> {
     pub fn to_table(&self) -> Table {
         let linear = self.linear.as_ref();
         let fixed_point = self.fixed_point.as_ref();
-        let numbers = [
-            ("tilt_gain", "", linear.map(|it| it.tilt_gain.value)),
-            ("tilt_gain_lower", "", linear.map(|it| it.tilt_gain.lower)),
-            ("tilt_gain_critical", "", linear.map(|it| it.tilt_gain.critical)),
-            ("tilt_gain_margin_below", "", linear.map(|it| it.tilt_gain.margin_below)),
-            ("tilt_gain_margin_above", "", linear.map(|it| it.tilt_gain.margin_above)),
-            ("residue", "", linear.and_then(|it| it.residue)),
-            ("rotation", "rad", linear.and_then(|it| it.rotation)),
-            ("spectral_radius", "", linear.map(|it| it.spectral_radius)),
-            ("energy_gain", "s2_per_m2", linear.map(|it| it.energy_gain.value)),
-            ("energy_gain_upper", "s2_per_m2", linear.map(|it| it.energy_gain.upper)),
-            ("energy_gain_eigenvalue", "", linear.map(|it| it.energy_gain.eigenvalue)),
-            ("energy_gain_margin", "s2_per_m2", linear.map(|it| it.energy_gain.margin)),
-            ("boundary_coefficient", "", self.boundary.as_ref().map(|it| it.coefficient)),
-            ("fixed_point_y_dot", "m_per_s", fixed_point.map(|it| it.y_dot)),
-            ("fixed_point_flight_time", "s", fixed_point.map(|it| it.flight_time)),
-            ("drift_speed", "m_per_s", self.drift_speed),
-            ("nonlinear_t", "s", Some(self.nonlinear.t)),
-            ("nonlinear_max_theta", "rad", Some(self.nonlinear.max_theta)),
-        ];
-        let words = [
-            ("decided_by", self.decided_by),
-            ("class", linear.map(|it| it.class)),
-            ("boundary_kind", self.boundary.as_ref().map(|it| it.kind)),
-            ("nonlinear_outcome", Some(self.nonlinear.outcome)),
-        ];
-        let mut columns = vec![
+        let word = |name, word| Column { name, unit: "", cells: Cells::Words(vec![word]) };
+        let number = |name, unit, value| Column { name, unit, cells: Cells::Sparse(vec![value]) };
+        Table(vec![
             Column { name: "verdict", unit: "", cells: Cells::Texts(vec![self.verdict.clone()]) },
-            Column { name: "nonlinear_impacts", unit: "", cells: Cells::Counts(vec![self.nonlinear.impacts]) },
+            word("decided_by", self.decided_by),
             Column { name: "agree", unit: "", cells: Cells::Flags(vec![self.agree]) },
-        ];
-        columns.extend(words.map(|(name, word)| Column { name, unit: "", cells: Cells::Words(vec![word]) }));
-        columns.extend(numbers.map(|(name, unit, value)| Column { name, unit, cells: Cells::Sparse(vec![value]) }));
-        Table(columns)
+            word("class", linear.map(|it| it.class)),
+            number("residue", "", linear.and_then(|it| it.residue)),
+            number("rotation", "rad", linear.and_then(|it| it.rotation)),
+            number("spectral_radius", "", linear.map(|it| it.spectral_radius)),
+            number("tilt_gain", "", linear.map(|it| it.tilt_gain.value)),
+            number("tilt_gain_lower", "", linear.map(|it| it.tilt_gain.lower)),
+            number("tilt_gain_critical", "", linear.map(|it| it.tilt_gain.critical)),
+            number("energy_gain", "s2_per_m2", linear.map(|it| it.energy_gain.value)),
+            number("energy_gain_upper", "s2_per_m2", linear.map(|it| it.energy_gain.upper)),
+            number("boundary_coefficient", "", self.boundary.as_ref().map(|it| it.coefficient)),
+            word("boundary_kind", self.boundary.as_ref().map(|it| it.kind)),
+            number("drift_speed", "m_per_s", self.drift_speed),
+            word("outcome", Some(self.nonlinear.outcome)),
+            Column { name: "impacts", unit: "", cells: Cells::Counts(vec![self.nonlinear.impacts]) },
+            number("t", "s", Some(self.nonlinear.t)),
+            number("max_theta", "rad", Some(self.nonlinear.max_theta)),
+            number("tilt_gain_margin_below", "", linear.map(|it| it.tilt_gain.margin_below)),
+            number("tilt_gain_margin_above", "", linear.map(|it| it.tilt_gain.margin_above)),
+            number("energy_gain_eigenvalue", "", linear.map(|it| it.energy_gain.eigenvalue)),
+            number("energy_gain_margin", "s2_per_m2", linear.map(|it| it.energy_gain.margin)),
+            number("fixed_point_y_dot", "m_per_s", fixed_point.map(|it| it.y_dot)),
+            number("fixed_point_flight_time", "s", fixed_point.map(|it| it.flight_time)),
+        ])
     }
 }

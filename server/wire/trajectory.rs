@@ -3,11 +3,12 @@
 use equipoise_physics::impact::State;
 use equipoise_physics::map::{Body, Contact, Ending, Orbit};
 use equipoise_physics::model::Model;
-use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::{Name, Scene};
 use serde::Serialize;
 
 use super::scene::{Resolved, has_angle};
 use super::table::{Cells, Column, Table};
+use crate::picture::{PhasePlanes, phase_planes};
 
 /// What a run is computed with, and why.
 #[derive(Debug, Clone, Serialize)]
@@ -265,6 +266,8 @@ pub struct Trajectory<'a> {
     pub flights: Option<Table>,
     /// Reasons for what is null.
     pub notes: Vec<String>,
+    #[serde(skip)]
+    tilt_gain: f64,
 }
 
 impl<'a> Trajectory<'a> {
@@ -315,6 +318,28 @@ impl<'a> Trajectory<'a> {
             predictable_impacts: None,
             flights: flights.map(Flights::into_table),
             notes,
+            tilt_gain: scene.number(Name::TiltGain).unwrap_or_default(),
+        })
+    }
+
+    /// The phase planes, as SVG.
+    pub fn to_picture(&self) -> String {
+        let column = |name: &str| self.impacts.0.iter().find(|column| column.name == name).map(|column| &column.cells);
+        let numbers = |name| match column(name) {
+            Some(Cells::Numbers(cells)) => cells.as_slice(),
+            _ => &[],
+        };
+        let theta_dot: Option<Vec<f64>> = match column("theta_dot") {
+            Some(Cells::Sparse(cells)) => cells.iter().copied().collect(),
+            _ => None,
+        };
+        phase_planes(&PhasePlanes {
+            title: &format!("Contacts of a {} with κ = {}", self.model.name.replace('_', " "), self.tilt_gain),
+            subtitle: &format!("{}: {}", self.outcome.kind, self.outcome.detail),
+            theta: numbers("theta"),
+            theta_dot: theta_dot.as_deref(),
+            x_dot: numbers("x_dot"),
+            y_dot: numbers("y_dot"),
         })
     }
 

@@ -57,6 +57,14 @@ impl Scene {
         self.draft.get(name)
     }
 
+    /// The value of a field that is a number.
+    pub fn number(&self, name: Name) -> Option<f64> {
+        match self.value(name) {
+            Some(Value::Number(number)) => Some(number),
+            _ => None,
+        }
+    }
+
     /// What the scene was made of, with its defaults, to change a field and build again.
     pub fn draft(&self) -> Draft {
         self.draft
