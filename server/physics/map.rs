@@ -25,6 +25,17 @@ pub struct Release {
     pub state: State,
 }
 
+/// Velocities that something else than the table gives a body, just after a strike.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Kick {
+    /// Added to the horizontal velocity, m/s.
+    pub x_dot: f64,
+    /// Added to the vertical velocity, m/s.
+    pub y_dot: f64,
+    /// Added to the angular velocity, rad/s.
+    pub theta_dot: f64,
+}
+
 /// A body that bounces: its strike and its flights.
 pub trait Body: Copy {
     /// Time of the first contact (0 if it is on the table already and does not rise), and the state just before it.
@@ -220,6 +231,7 @@ pub struct Orbit<B> {
     n: u64,
     t: Sum,
     x: Sum,
+    /// Of those that shrink, s; 0 until there is one.
     first_flight: f64,
     last_flight: f64,
     /// Energy that the run should have at the coming contact; known from its first one.
@@ -279,6 +291,33 @@ impl<B: Body> Orbit<B> {
     /// The coming contact. After one with an ending, call it no more: the state stays that of the last contact.
     #[inline(always)]
     pub fn advance(&mut self) -> Contact {
+        self.advance_disturbed(|_, _| ())
+    }
+
+    /// [`Orbit::advance`] with a kick between the strike and the flight: `strike.after` is with it.
+    pub fn advance_kicked(&mut self, kick: Kick) -> Contact {
+        self.advance_disturbed(|orbit, strike| {
+            strike.after.x_dot += kick.x_dot;
+            strike.after.y_dot += kick.y_dot;
+            strike.after.theta_dot += kick.theta_dot;
+            strike.contact_rise += kick.y_dot + orbit.body.contact_distance() * kick.theta_dot * strike.sin_cos_theta.0;
+            // What the kick gave is known only from the coming contact.
+            orbit.energy = None;
+        })
+    }
+
+    /// Goes on with another table or restitution from the coming contact on. Lengths and gravity have to stay: the flight
+    /// to that contact has been computed with them.
+    pub fn replace(&mut self, body: B, rules: Rules) {
+        (self.body, self.rules) = (body, rules);
+        self.energy = None;
+        if !rules.settles {
+            self.first_flight = 0.0;
+        }
+    }
+
+    #[inline(always)]
+    fn advance_disturbed(&mut self, disturb: impl FnOnce(&mut Self, &mut Strike)) -> Contact {
         self.n += 1;
         let state = self.state;
         let mut contact = Contact {
@@ -302,6 +341,7 @@ impl<B: Body> Orbit<B> {
         if self.rules.holds_energy {
             self.hold_energy(&mut strike);
         }
+        disturb(self, &mut strike);
         contact.strike = Some(strike);
         let after = strike.after;
         let spin = self.body.contact_distance() * after.theta_dot;
@@ -349,7 +389,7 @@ impl<B: Body> Orbit<B> {
     }
 
     fn settle(&mut self, flight_time: f64) -> Option<Ending> {
-        if self.n == 1 {
+        if self.first_flight == 0.0 {
             self.first_flight = flight_time;
         }
         (flight_time < SETTLED_SHARE * self.first_flight).then(|| {
