@@ -100,23 +100,7 @@ impl Walk<'_> {
     }
 
     fn leaf(&mut self, row: &'static Field, value: &Value, pointer: &str) {
-        let read = match (row.kind, value) {
-            (_, Value::Null) => Ok(None),
-            (Kind::Number { minimum, maximum }, _) => {
-                leaf::number_within(value, self.source, &(minimum..=maximum), row.unit)
-                    .map(FieldValue::Number)
-                    .map(Some)
-            }
-            (Kind::Integer { maximum }, _) => {
-                leaf::integer(value, self.source, &(0..=maximum)).map(FieldValue::Integer).map(Some)
-            }
-            (Kind::Choice(words), _) => {
-                let known: Vec<_> = words.iter().map(|word| (*word, *word)).collect();
-                leaf::choice(value, &known).map(FieldValue::Choice).map(Some)
-            }
-            (Kind::Flag, _) => leaf::boolean(value, self.source).map(|flag| flag.then_some(FieldValue::Flag(true))),
-        };
-        match read {
+        match read_value(row, value, self.source) {
             Ok(value) => {
                 if let Err(error) = self.draft.set(row.name, value) {
                     self.errors.push(pointer, error.detail);
@@ -142,6 +126,25 @@ impl Walk<'_> {
             // Taking a value back is always admitted.
             let _ = self.draft.set(row.name, None);
         }
+    }
+}
+
+/// The value of a field as a request says it, none for null. The error continues a sentence that begins with the
+/// field's name.
+pub fn read_value(row: &'static Field, value: &Value, source: Source) -> Result<Option<FieldValue>, String> {
+    match (row.kind, value) {
+        (_, Value::Null) => Ok(None),
+        (Kind::Number { minimum, maximum }, _) => {
+            leaf::number_within(value, source, &(minimum..=maximum), row.unit).map(FieldValue::Number).map(Some)
+        }
+        (Kind::Integer { maximum }, _) => {
+            leaf::integer(value, source, &(0..=maximum)).map(FieldValue::Integer).map(Some)
+        }
+        (Kind::Choice(words), _) => {
+            let known: Vec<_> = words.iter().map(|word| (*word, *word)).collect();
+            leaf::choice(value, &known).map(FieldValue::Choice).map(Some)
+        }
+        (Kind::Flag, _) => leaf::boolean(value, source).map(|flag| flag.then_some(FieldValue::Flag(true))),
     }
 }
 
