@@ -7,6 +7,7 @@ pub mod compute;
 pub mod config;
 pub mod http;
 pub mod limits;
+pub mod live;
 pub mod middleware;
 pub mod picture;
 pub mod router;

@@ -95,17 +95,50 @@ pub const LIVE_MESSAGE_BYTES: usize = 8 * 1024;
 /// Messages a second that a live client may send, averaged over a few seconds. A dragged slider sends up to 60.
 pub const LIVE_MESSAGES_PER_S: u32 = 120;
 
-/// Messages waiting for a slow live client before impacts are skipped over with a `gap`.
-pub const LIVE_QUEUE: usize = 256;
+/// Impacts waiting for a slow live client before the oldest are skipped over with a `gap`: four batches.
+pub const LIVE_QUEUE: usize = 1024;
+
+/// Time that a live client may be behind before it is closed with 1013. Under `STALL_TIME`, which would cut it off mute.
+pub const LIVE_BEHIND_TIME: Duration = Duration::from_secs(20);
+
+/// Bytes of one message that break the connection, since reading it to its end would only cost memory. In between a
+/// message is refused and the run goes on.
+pub const LIVE_FRAME_BYTES: usize = 4 * LIVE_MESSAGE_BYTES;
+
+/// Impacts in one message: 20 bytes for each of 14 numbers, so some 70 KiB.
+pub const LIVE_BATCH: usize = 256;
+
+/// Impacts a second on the wall above which they come in batches. No display shows more.
+pub const LIVE_SINGLE_PER_S: f64 = 60.0;
+
+/// Time from one such batch to the next.
+pub const LIVE_BATCH_TIME: Duration = Duration::from_millis(50);
+
+/// Work that a live run does between two batches, in bounces; `LIVE_BATCH` impacts are the other limit, 5,120 a second. A
+/// run that asks for more falls behind its clock, rather than taking a core from others.
+pub const LIVE_BATCH_BOUNCES: u64 = 4096;
+
+/// Impacts of one live run, after which it has `completed`: a month of four a second. Without it a run that bounces in
+/// place would never end.
+pub const LIVE_IMPACTS: u64 = 10_000_000;
 
 /// Interventions in one live run. They all stand in its URL, which has to stay under `URL_BYTES`.
 pub const LIVE_INTERVENTIONS: usize = 100;
+
+/// Entries of the clock in a live run's URL. Older ones matter to nobody who asks later, and are left out.
+pub const LIVE_CLOCK_ENTRIES: usize = 16;
 
 /// Time between pings to a live client; a client that answers none for `LIVE_SILENCE_TIME` is gone.
 pub const LIVE_PING_TIME: Duration = Duration::from_secs(20);
 
 /// Silence of a live client, its pongs included, after which its run ends.
 pub const LIVE_SILENCE_TIME: Duration = Duration::from_secs(60);
+
+/// Time that a live run which ended, or is paused, stays open without a message from its client.
+pub const LIVE_IDLE_TIME: Duration = Duration::from_secs(30 * 60);
+
+/// Work of writing one impact, in bounces.
+pub const LIVE_IMPACT_PRICE: u64 = 10;
 
 /// Work of catching up with an old `epoch` or `from`: 0.1 s of one core.
 pub const LIVE_CATCH_UP: Limit = Limit { name: "work of catching up with this run", most: 1_000_000, unit: "bounces" };

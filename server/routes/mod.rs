@@ -7,6 +7,7 @@ pub mod assets;
 pub mod contract;
 pub mod health;
 pub mod jacobians;
+pub mod live;
 pub mod metrics;
 pub mod scenes;
 pub mod stability;
@@ -74,6 +75,7 @@ pub fn all() -> Router<App> {
         .merge(scenes::routes())
         .merge(trajectories::routes())
         .merge(jacobians::routes())
+        .merge(live::routes())
         .merge(stability::routes())
 }
 

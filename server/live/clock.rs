@@ -1,0 +1,198 @@
+//! The clock of a run: which run time it is at a time on the wall. Pauses, steps and speeds are entries in it.
+//!
+//! It is part of the run's value and knows no clock of its own: wall times come from outside.
+
+/// Slowest and fastest speed, in run time per wall time.
+pub const SPEEDS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
+
+/// From a wall time on: the run time then, and how fast it goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Entry {
+    /// Unix time, ms.
+    pub wall: u64,
+    /// Run time, s.
+    pub run: f64,
+    /// Run time per wall time; 0 is a pause.
+    pub speed: f64,
+}
+
+/// Maps wall time to run time. Neither goes back from entry to entry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clock {
+    release: Entry,
+    entries: Vec<Entry>,
+}
+
+impl Clock {
+    /// A clock that shows 0 s at `epoch`, unix ms.
+    pub fn new(epoch: u64, speed: f64) -> Self {
+        Self { release: Entry { wall: epoch, run: 0.0, speed }, entries: Vec::new() }
+    }
+
+    /// When the run was released, unix ms.
+    pub fn epoch(&self) -> u64 {
+        self.release.wall
+    }
+
+    /// How fast it went at first.
+    pub fn first_speed(&self) -> f64 {
+        self.release.speed
+    }
+
+    /// What was changed since, in order.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// Adds an entry as it is.
+    ///
+    /// # Errors
+    /// Where it goes back behind the last one.
+    pub fn push(&mut self, entry: Entry) -> Result<(), String> {
+        let last = self.last();
+        if entry.wall < last.wall {
+            return Err(format!("wall is {} ms, before the {} ms of what it follows", entry.wall, last.wall));
+        }
+        if entry.run < last.run {
+            return Err(format!("run is {} s, before the {} s of what it follows", entry.run, last.run));
+        }
+        self.entries.push(entry);
+        Ok(())
+    }
+
+    /// The run time, s, at a wall time, unix ms; negative before the release.
+    pub fn run_time(&self, wall: u64) -> f64 {
+        let entry = self.entries.iter().rev().find(|entry| entry.wall <= wall).unwrap_or(&self.release);
+        entry.run + (wall as f64 - entry.wall as f64) * 1e-3 * entry.speed
+    }
+
+    /// The wall time, unix ms, at which it will be this run time, as far as the clock is known; none while it is paused.
+    pub fn wall_time(&self, run: f64) -> Option<f64> {
+        let entry = self.last();
+        (entry.speed > 0.0).then(|| entry.wall as f64 + (run - entry.run) * 1e3 / entry.speed)
+    }
+
+    /// How fast it goes, or would go on after the pause.
+    pub fn speed(&self) -> f64 {
+        self.entries.iter().rev().map(|entry| entry.speed).find(|speed| *speed > 0.0).unwrap_or(self.release.speed)
+    }
+
+    /// Whether it stands still.
+    pub fn is_paused(&self) -> bool {
+        self.last().speed == 0.0
+    }
+
+    /// Stops it.
+    pub fn pause(&mut self, wall: u64) {
+        if !self.is_paused() {
+            let run = self.run_time(self.not_before(wall));
+            self.change(wall, run, 0.0);
+        }
+    }
+
+    /// Lets it go on.
+    pub fn resume(&mut self, wall: u64) {
+        if self.is_paused() {
+            let (run, speed) = (self.last().run, self.speed());
+            self.change(wall, run, speed);
+        }
+    }
+
+    /// Goes on at another speed, after the pause if there is one.
+    pub fn set_speed(&mut self, wall: u64, speed: f64) {
+        let (run, paused) = (self.run_time(self.not_before(wall)), self.is_paused());
+        self.change(wall, run, speed);
+        if paused {
+            self.entries.push(Entry { speed: 0.0, ..self.last() });
+        }
+    }
+
+    /// Moves a paused clock on to a run time.
+    pub fn step(&mut self, wall: u64, run: f64) {
+        let run = run.max(self.last().run);
+        self.change(wall, run, 0.0);
+    }
+
+    /// Forgets the oldest entries beyond so many: whoever asks from now on sees no difference.
+    pub fn forget_beyond(&mut self, most: usize) {
+        let beyond = self.entries.len().saturating_sub(most);
+        self.entries.drain(..beyond);
+    }
+
+    fn last(&self) -> Entry {
+        self.entries.last().copied().unwrap_or(self.release)
+    }
+
+    /// A wall clock that was set back must not take the run back with it.
+    fn not_before(&self, wall: u64) -> u64 {
+        wall.max(self.last().wall)
+    }
+
+    fn change(&mut self, wall: u64, run: f64, speed: f64) {
+        let wall = self.not_before(wall);
+        // A pause that ends in another one, or at once, says nothing any more.
+        if self.entries.last().is_some_and(|last| last.speed == 0.0 && (speed == 0.0 || last.wall == wall)) {
+            self.entries.pop();
+            if self.entries.last().is_some_and(|last| last.speed > 0.0 && last.wall == wall && speed > 0.0) {
+                self.entries.pop();
+            }
+        }
+        self.entries.push(Entry { wall, run, speed });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn run_time_follows_the_entries() {
+        let mut clock = Clock::new(1000, 2.0);
+        assert_eq!((clock.run_time(500), clock.run_time(3000)), (-1.0, 4.0));
+        assert_eq!(clock.wall_time(4.0), Some(3000.0));
+        clock.pause(3000);
+        clock.pause(3500);
+        assert_eq!((clock.run_time(9000), clock.wall_time(5.0), clock.is_paused()), (4.0, None, true));
+        clock.step(9000, 4.5);
+        clock.set_speed(9500, 0.5);
+        assert_eq!((clock.is_paused(), clock.speed(), clock.run_time(20_000)), (true, 0.5, 4.5));
+        clock.resume(10_000);
+        assert_eq!((clock.is_paused(), clock.run_time(12_000), clock.run_time(2000)), (false, 5.5, 2.0));
+        clock.set_speed(12_000, 1.0);
+        assert_eq!((clock.run_time(13_000), clock.speed()), (6.5, 1.0));
+    }
+
+    #[test]
+    fn many_steps_are_one_entry_and_the_speed_is_kept() {
+        let mut clock = Clock::new(0, 1.0);
+        clock.set_speed(1000, 4.0);
+        clock.pause(2000);
+        for step in 0..100 {
+            clock.step(3000 + step, 10.0 + step as f64);
+        }
+        assert_eq!((clock.entries().len(), clock.speed(), clock.run_time(5000)), (2, 4.0, 109.0));
+    }
+
+    #[test]
+    fn forgetting_changes_nothing_from_now_on() {
+        let mut clock = Clock::new(0, 1.0);
+        for change in 1..100_u64 {
+            clock.set_speed(change * 1000, if change.is_multiple_of(2) { 1.0 } else { 0.5 });
+        }
+        clock.pause(100_000);
+        let mut shorter = clock.clone();
+        shorter.forget_beyond(4);
+        assert_eq!(shorter.entries().len(), 4);
+        assert_eq!((shorter.run_time(123_000), shorter.speed()), (clock.run_time(123_000), clock.speed()));
+    }
+
+    #[test]
+    fn nothing_goes_back() {
+        let mut clock = Clock::new(1000, 1.0);
+        clock.pause(2000);
+        clock.resume(1500);
+        assert_eq!(clock.run_time(2500), 1.5);
+        assert!(clock.push(Entry { wall: 1999, run: 5.0, speed: 1.0 }).unwrap_err().contains("1999 ms"));
+        assert!(clock.push(Entry { wall: 2000, run: 0.5, speed: 1.0 }).unwrap_err().contains("0.5 s"));
+    }
+}

@@ -1,0 +1,151 @@
+//! What waits to be sent to one live client: a bounded queue that skips over the oldest impacts of a slow one and says
+//! so. Nothing else is ever left out.
+
+use std::collections::VecDeque;
+use std::time::Instant;
+
+use axum::extract::ws::Message;
+
+use super::messages::{Columns, Impact, Said};
+use crate::limits;
+
+#[derive(Debug)]
+enum Item {
+    Impact(Box<Impact>),
+    Message(Message),
+}
+
+/// The queue of one client.
+#[derive(Debug)]
+pub struct Outbox {
+    items: VecDeque<Item>,
+    impacts: usize,
+    most_impacts: usize,
+    gap: Option<(u64, u64)>,
+    since: Option<Instant>,
+}
+
+impl Outbox {
+    /// An empty one in which so many impacts may wait.
+    pub fn new(most_impacts: usize) -> Self {
+        Self { items: VecDeque::new(), impacts: 0, most_impacts: most_impacts.max(1), gap: None, since: None }
+    }
+
+    /// Whether nothing waits.
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// Since when something has been waiting without a break.
+    pub fn waiting_since(&self) -> Option<Instant> {
+        self.since
+    }
+
+    /// Messages other than impacts that wait: each is an answer to one of the client's.
+    pub fn answers(&self) -> usize {
+        self.items.len() - self.impacts
+    }
+
+    /// Adds a message.
+    pub fn push(&mut self, message: Message) {
+        self.add(Item::Message(message));
+    }
+
+    /// Adds a text.
+    pub fn say(&mut self, text: String) {
+        self.push(Message::text(text));
+    }
+
+    /// Adds an impact; the oldest one goes if there are too many.
+    pub fn push_impact(&mut self, impact: Impact) {
+        self.add(Item::Impact(Box::new(impact)));
+        self.impacts += 1;
+        if self.impacts > self.most_impacts
+            && let Some(oldest) = self.items.iter().position(|item| matches!(item, Item::Impact(_)))
+            && let Some(Item::Impact(impact)) = self.items.remove(oldest)
+        {
+            self.impacts -= 1;
+            self.gap = Some((self.gap.map_or(impact.n, |(from, _)| from), impact.n));
+        }
+    }
+
+    /// Forgets the impacts that wait: they are of a run that is over for the client.
+    pub fn forget_impacts(&mut self) {
+        self.items.retain(|item| matches!(item, Item::Message(_)));
+        (self.impacts, self.gap) = (0, None);
+        self.note_emptiness();
+    }
+
+    /// The next message: impacts that wait one behind the other become one.
+    pub fn pop(&mut self) -> Option<Message> {
+        let message = match self.items.pop_front()? {
+            Item::Message(message) => message,
+            Item::Impact(impact) => match self.gap.take() {
+                Some((from, to)) => {
+                    self.items.push_front(Item::Impact(impact));
+                    Message::text(Said::Gap { from, to }.to_text())
+                }
+                None => self.impacts_from(*impact),
+            },
+        };
+        self.note_emptiness();
+        Some(message)
+    }
+
+    fn impacts_from(&mut self, first: Impact) -> Message {
+        let mut batch = vec![first];
+        while batch.len() < limits::LIVE_BATCH
+            && let Some(Item::Impact(_)) = self.items.front()
+            && let Some(Item::Impact(impact)) = self.items.pop_front()
+        {
+            batch.push(*impact);
+        }
+        self.impacts -= batch.len();
+        Message::text(match batch.as_slice() {
+            [one] => Said::Impact(one).to_text(),
+            _ => Said::Impacts { columns: Columns(batch) }.to_text(),
+        })
+    }
+
+    fn add(&mut self, item: Item) {
+        self.since.get_or_insert_with(Instant::now);
+        self.items.push_back(item);
+    }
+
+    fn note_emptiness(&mut self) {
+        if self.items.is_empty() {
+            self.since = None;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::live::course::Course;
+    use crate::live::run::tests::case;
+    use serde_json::{Value, json};
+
+    fn pop(outbox: &mut Outbox) -> Value {
+        serde_json::from_str(outbox.pop().unwrap().to_text().unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_slow_client_is_told_what_it_misses() {
+        let run = case("case-1");
+        let mut course = Course::new(&run).unwrap();
+        let mut outbox = Outbox::new(4);
+        outbox.push_impact(course.tell(&run).0);
+        assert_eq!(pop(&mut outbox)["n"], 1);
+        assert!(outbox.waiting_since().is_none());
+        outbox.push_impact(course.tell(&run).0);
+        outbox.say("1".to_owned());
+        for _ in 3..=12 {
+            outbox.push_impact(course.tell(&run).0);
+        }
+        assert_eq!(pop(&mut outbox), 1);
+        assert_eq!(pop(&mut outbox), json!({"type": "gap", "from": 2, "to": 8}));
+        assert_eq!(pop(&mut outbox)["columns"]["n"], json!([9, 10, 11, 12]));
+        assert!(outbox.is_empty() && outbox.waiting_since().is_none());
+    }
+}

@@ -1,0 +1,382 @@
+//! One live client: what it hears and when, and what it may ask for.
+//!
+//! A single loop over the clock, the client and the server's end. Impacts are computed when they are due, never ahead;
+//! what cannot be sent at once waits in the outbox. Not here: how a connection becomes a WebSocket.
+
+use std::pin::pin;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use axum::extract::ws::{CloseFrame, Message, close_code};
+use futures_util::{Sink, SinkExt, Stream, StreamExt};
+use prometheus_client::metrics::counter::Counter;
+use tokio::sync::mpsc;
+use tokio::time::{sleep_until, timeout};
+
+use super::address::{self, Asked, NO_ANGLE};
+use super::bounds::{Allowance, Bounds};
+use super::course::{self, Course, NotCaughtUp};
+use super::messages::{self, Ack, Hello, Said};
+use super::order::Order;
+use super::outbox::Outbox;
+use super::run::Run;
+use crate::compute::{Cancel, Limit, Pool, Price};
+use crate::http::{FieldError, Problem};
+use crate::limits;
+use crate::wire::scene::has_angle;
+
+/// What a session needs of the server.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// Where long work is done.
+    pub pool: Pool,
+    /// Counts the bounces.
+    pub bounces: Counter,
+    /// The bounds to keep.
+    pub bounds: Bounds,
+}
+
+/// How a session ends; none if the client has ended it.
+type Close = Option<(u16, &'static str)>;
+
+/// The server's clock, unix ms.
+pub fn wall_now() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_millis()).unwrap_or_default()
+}
+
+/// Tells a client its run until it leaves, breaks a bound, or the server is `closing`.
+pub async fn serve<E: Send>(
+    asked: Asked,
+    mut incoming: impl Stream<Item = Result<Message, E>> + Unpin + Send,
+    outgoing: impl Sink<Message> + Unpin + Send + 'static,
+    place: Place,
+    closing: impl Future<Output = ()> + Send,
+) {
+    // One message is being sent while the next is chosen: all others wait where they can still be left out.
+    let (sender, receiver) = mpsc::channel(1);
+    let mut writer = tokio::spawn(write(receiver, outgoing));
+    let mut outbox = Outbox::new(place.bounds.queue);
+    let close = match caught_up(&asked, &place).await {
+        Ok(course) => {
+            let mut session = Session::new(asked, course, outbox, place);
+            let close = session.run(&mut incoming, &sender, closing).await;
+            outbox = session.outbox;
+            close
+        }
+        Err(problem) => {
+            outbox.say(messages::problem(&problem));
+            let overloaded = problem.status().is_server_error();
+            Some(if overloaded { (close_code::AGAIN, "busy") } else { (close_code::POLICY, "over budget") })
+        }
+    };
+    outbox.forget_impacts();
+    if let Some((code, reason)) = close {
+        outbox.push(Message::Close(Some(CloseFrame { code, reason: reason.into() })));
+    }
+    let goodbye = async {
+        while let Some(message) = outbox.pop() {
+            if sender.send(message).await.is_err() {
+                break;
+            }
+        }
+        drop(sender);
+        let _ = (&mut writer).await;
+        // Until the client has closed too, so that it gets all of this.
+        while let Some(Ok(_)) = incoming.next().await {}
+    };
+    let _ = timeout(limits::GOODBYE_TIME, goodbye).await;
+    writer.abort();
+}
+
+async fn write(mut receiver: mpsc::Receiver<Message>, mut outgoing: impl Sink<Message> + Unpin) {
+    while let Some(message) = receiver.recv().await {
+        if outgoing.send(message).await.is_err() {
+            return;
+        }
+    }
+    // What was said last has been flushed; dropping the other half ends the connection.
+}
+
+/// The run where the telling begins. Little work is done here, much in the pool.
+async fn caught_up(asked: &Asked, place: &Place) -> Result<Course, Problem> {
+    let until = asked.run.clock.run_time(wall_now());
+    let limit = place.bounds.catch_up;
+    let little = Limit { most: limit.most.min(limits::INLINE_BOUNCES), ..limit };
+    let course = match course::catch_up(asked, until, &little, &Cancel::never()) {
+        Err(NotCaughtUp::OverBudget(_)) => {
+            let asked = asked.clone();
+            let work = move |cancel: &Cancel| course::catch_up(&asked, until, &limit, cancel).map_err(Problem::from);
+            place.pool.run(Price::bounces(limit.most), work).await?
+        }
+        other => other?,
+    };
+    place.bounces.inc_by(course.next_n().unwrap_or_default());
+    Ok(course)
+}
+
+struct Session {
+    run: Run,
+    course: Course,
+    /// The first impact that the client wants to hear of.
+    first: u64,
+    outbox: Outbox,
+    place: Place,
+    /// Whether impacts of before the client came are being told, as fast as it takes them.
+    catching_up: bool,
+    /// The run time at which it came, s. A run so fast that it never catches up is still paced.
+    came_at: f64,
+    next_pump: Instant,
+    next_ping: Instant,
+    last_heard: Instant,
+    last_order: Instant,
+    allowance: Allowance,
+}
+
+impl Session {
+    fn new(asked: Asked, course: Course, outbox: Outbox, place: Place) -> Self {
+        let now = Instant::now();
+        Self {
+            came_at: asked.run.clock.run_time(wall_now()),
+            run: asked.run,
+            course,
+            first: asked.from.unwrap_or(1),
+            outbox,
+            catching_up: true,
+            next_pump: now,
+            next_ping: now + place.bounds.ping,
+            last_heard: now,
+            last_order: now,
+            allowance: Allowance::new(place.bounds.messages_per_s, now),
+            place,
+        }
+    }
+
+    async fn run<E>(
+        &mut self,
+        incoming: &mut (impl Stream<Item = Result<Message, E>> + Unpin),
+        sender: &mpsc::Sender<Message>,
+        closing: impl Future<Output = ()>,
+    ) -> Close {
+        let mut closing = pin!(closing);
+        self.greet(wall_now());
+        loop {
+            while self.catching_up && self.outbox.is_empty() {
+                self.pump(wall_now());
+            }
+            if !self.catching_up && Instant::now() >= self.next_pump {
+                self.pump(wall_now());
+            }
+            if let Some(close) = self.overdue(Instant::now()) {
+                return Some(close);
+            }
+            tokio::select! {
+                () = &mut closing => return Some((close_code::AWAY, "the server is shutting down")),
+                permit = sender.reserve(), if !self.outbox.is_empty() => {
+                    let Ok(permit) = permit else { return None };
+                    if let Some(message) = self.outbox.pop() {
+                        permit.send(message);
+                    }
+                }
+                message = incoming.next() => {
+                    self.last_heard = Instant::now();
+                    match message {
+                        None | Some(Ok(Message::Close(_))) => return None,
+                        Some(Err(_)) => return Some((close_code::SIZE, "a message too large, or no WebSocket frame")),
+                        Some(Ok(message)) => {
+                            if let Some(close) = self.hear(&message) {
+                                return Some(close);
+                            }
+                        }
+                    }
+                }
+                () = sleep_until(self.wake().into()) => {}
+            }
+        }
+    }
+
+    /// Says which run it is.
+    fn greet(&mut self, now: u64) {
+        let hello = Hello::new(&self.run, &self.course, now);
+        self.outbox.say(Said::Hello(Box::new(hello)).to_text());
+        if let Some(outcome) = self.course.outcome() {
+            self.outbox.say(Said::End { outcome }.to_text());
+        }
+    }
+
+    /// Computes what is due, but not too much at a time, and sets when to look again.
+    fn pump(&mut self, now: u64) {
+        let begin = Instant::now();
+        let run_time = self.run.clock.run_time(now);
+        let (mut told, mut spent, mut last_flight) = (0, 0, None);
+        while told < limits::LIVE_BATCH
+            && spent < limits::LIVE_BATCH_BOUNCES
+            && self.course.next_t().is_some_and(|t| t <= run_time)
+        {
+            let (impact, price) = self.course.tell(&self.run);
+            (told, spent, last_flight) = (told + 1, spent + price.as_bounces(), impact.flight_time());
+            if impact.n >= self.first {
+                self.outbox.push_impact(impact);
+            }
+            if let Some(outcome) = self.course.outcome() {
+                self.outbox.say(Said::End { outcome }.to_text());
+            }
+        }
+        self.place.bounces.inc_by(told as u64);
+        let Some(t) = self.course.next_t() else {
+            self.catching_up = false;
+            self.next_pump = begin + self.place.bounds.idle;
+            return;
+        };
+        self.catching_up &= t <= self.came_at;
+        let batch = begin + limits::LIVE_BATCH_TIME;
+        if t <= run_time {
+            self.next_pump = batch;
+            return;
+        }
+        // Looked at once a second at least, since the wall clock may be set.
+        let wait_ms = self.run.clock.wall_time(t).map_or(1000.0, |wall| wall.ceil() - now as f64).clamp(1.0, 1000.0);
+        let due = begin + Duration::from_millis(wait_ms as u64);
+        let is_fast = last_flight.is_some_and(|flight| flight * limits::LIVE_SINGLE_PER_S < self.run.clock.speed());
+        self.next_pump = if is_fast { due.max(batch) } else { due };
+    }
+
+    /// The bound that has been broken, if one has; pings on the way.
+    fn overdue(&mut self, now: Instant) -> Option<(u16, &'static str)> {
+        let bounds = &self.place.bounds;
+        if now >= self.next_ping {
+            self.outbox.push(Message::Ping(axum::body::Bytes::new()));
+            self.next_ping = now + bounds.ping;
+        }
+        if now >= self.last_heard + bounds.silence {
+            return Some((close_code::POLICY, "no answer to pings"));
+        }
+        if self.is_idle() && now >= self.last_order + bounds.idle {
+            return Some((close_code::NORMAL, "idle"));
+        }
+        let is_behind = self.outbox.waiting_since().is_some_and(|since| now >= since + bounds.behind);
+        (is_behind || self.outbox.answers() > limits::LIVE_QUEUE).then_some((close_code::AGAIN, "too far behind"))
+    }
+
+    fn is_idle(&self) -> bool {
+        self.course.next_n().is_none() || self.run.clock.is_paused()
+    }
+
+    /// When to look at the time again.
+    fn wake(&self) -> Instant {
+        let bounds = &self.place.bounds;
+        let idle = self.is_idle().then(|| self.last_order + bounds.idle);
+        let behind = self.outbox.waiting_since().map(|since| since + bounds.behind);
+        let pump = (!self.catching_up && self.course.next_n().is_some()).then_some(self.next_pump);
+        let silence = self.last_heard + bounds.silence;
+        [Some(silence), Some(self.next_ping), idle, behind, pump].into_iter().flatten().min().unwrap_or(silence)
+    }
+
+    /// Takes a message.
+    fn hear(&mut self, message: &Message) -> Option<(u16, &'static str)> {
+        if matches!(message, Message::Ping(_) | Message::Pong(_)) {
+            return None;
+        }
+        let now = Instant::now();
+        self.last_order = now;
+        if !self.allowance.takes(now) {
+            let most = self.place.bounds.messages_per_s;
+            let detail = format!("more than {most} messages a second, which is the limit");
+            self.outbox.say(messages::problem(&Problem::invalid_at("", detail)));
+            return Some((close_code::POLICY, "too many messages"));
+        }
+        let done = match message {
+            Message::Text(text) if text.len() > limits::LIVE_MESSAGE_BYTES => {
+                let (bytes, most) = (text.len(), limits::LIVE_MESSAGE_BYTES);
+                Err(Problem::invalid_at("", format!("the message has {bytes} bytes; the limit is {most} bytes")))
+            }
+            Message::Text(text) => Order::read(text).and_then(|order| self.carry_out(&order, wall_now())),
+            _ => Err(Problem::invalid_at("", "the message is binary; it must be JSON text")),
+        };
+        if let Err(problem) = done {
+            self.outbox.say(messages::problem(&problem));
+        }
+        None
+    }
+
+    fn carry_out(&mut self, order: &Order, now: u64) -> Result<(), Problem> {
+        if !self.catching_up {
+            // What is due has happened before the order.
+            self.pump(now);
+        }
+        let mut run = self.run.clone();
+        let mut impact = None;
+        match order {
+            Order::Pause => run.clock.pause(now),
+            Order::Resume => run.clock.resume(now),
+            Order::Speed(speed) => run.clock.set_speed(now, *speed),
+            Order::Step => {
+                let (n, t) = self.coming()?;
+                if !run.clock.is_paused() {
+                    return Err(Problem::invalid_at(
+                        "/type",
+                        "step is for a paused run, and this one is not; send pause",
+                    ));
+                }
+                run.clock.step(now, t);
+                impact = Some(n);
+            }
+            Order::Set(changes) => {
+                let (n, _) = self.coming()?;
+                run.set(n, changes).map_err(|errors| {
+                    let place = |path: &str| if path.is_empty() { String::new() } else { format!("/{path}") };
+                    Problem::invalid(
+                        errors
+                            .into_iter()
+                            .map(|error| FieldError { pointer: place(error.path), detail: error.detail })
+                            .collect(),
+                    )
+                })?;
+                impact = Some(n);
+            }
+            Order::Kick(kick) => {
+                let (n, _) = self.coming()?;
+                if kick.theta_dot != 0.0 && !has_angle(run.scene()) {
+                    return Err(Problem::invalid_at("/theta_dot", NO_ANGLE));
+                }
+                run.kick(n, *kick).map_err(|detail| Problem::invalid_at("", detail))?;
+                impact = Some(n);
+            }
+            Order::Restart => {
+                let reached = self.course.next_n().or(self.course.outcome().map(|outcome| outcome.impacts));
+                self.run = run.restarted(now, reached.unwrap_or_default());
+                self.course = Course::new(&self.run).ok_or_else(Problem::internal)?;
+                (self.first, self.catching_up, self.next_pump) = (1, false, Instant::now());
+                self.outbox.forget_impacts();
+                self.greet(now);
+                return Ok(());
+            }
+        }
+        run.clock.forget_beyond(limits::LIVE_CLOCK_ENTRIES);
+        if matches!(order, Order::Set(_) | Order::Kick(_)) && address::is_too_long(&run) {
+            let most = limits::URL_BYTES;
+            let detail = format!("the run's URL would be over the limit of {most} bytes; restart keeps what was set");
+            return Err(Problem::invalid_at("", detail));
+        }
+        self.run = run;
+        self.next_pump = Instant::now();
+        let ack = Ack {
+            of: order.name(),
+            url: &address::url(&self.run),
+            run_time: self.run.clock.run_time(now),
+            now,
+            speed: self.run.clock.speed(),
+            paused: self.run.clock.is_paused(),
+            impact,
+        };
+        self.outbox.say(Said::Ack(ack).to_text());
+        Ok(())
+    }
+
+    /// The coming impact, its number and its time.
+    fn coming(&self) -> Result<(u64, f64), Problem> {
+        self.course.next_n().zip(self.course.next_t()).ok_or_else(|| {
+            let n = self.course.outcome().map_or(0, |outcome| outcome.impacts);
+            Problem::invalid_at("/type", format!("the run has ended at impact {n}; send restart to begin anew"))
+        })
+    }
+}

@@ -1,0 +1,156 @@
+//! A session over channels in the place of a socket: what happens to clients that are slow, silent or idle.
+
+use std::convert::Infallible;
+use std::time::Duration;
+
+use axum::extract::ws::Message;
+use futures_util::{sink, stream};
+use prometheus_client::metrics::counter::Counter;
+use serde_json::Value;
+use tokio::sync::mpsc::{Receiver, Sender, channel};
+use tokio::time::{sleep, timeout};
+
+use super::address::Asked;
+use super::bounds::Bounds;
+use super::clock::Clock;
+use super::run::Run;
+use super::run::tests::case;
+use super::session::{Place, serve, wall_now};
+use crate::compute::Pool;
+
+/// The client's ends of a connection that takes one message at a time.
+struct Client {
+    says: Sender<Result<Message, Infallible>>,
+    hears: Receiver<Message>,
+}
+
+fn open(asked: Asked, bounds: Bounds) -> Client {
+    let (says, incoming) = channel(1);
+    let (outgoing, hears) = channel(1);
+    let incoming = stream::unfold(incoming, async |mut from| from.recv().await.map(|message| (message, from)));
+    let outgoing = sink::unfold(outgoing, async |to: Sender<Message>, message| to.send(message).await.map(|()| to));
+    let place = Place { pool: Pool::new(1), bounces: Counter::default(), bounds };
+    tokio::spawn(serve(asked, Box::pin(incoming), Box::pin(outgoing), place, std::future::pending()));
+    Client { says, hears }
+}
+
+/// A run of a preset that is released now.
+fn now(preset: &str, speed: f64) -> Asked {
+    Asked { run: Run::new(*case(preset).scene(), Clock::new(wall_now(), speed)), from: None }
+}
+
+impl Client {
+    async fn hear(&mut self) -> Option<Message> {
+        timeout(Duration::from_secs(20), self.hears.recv()).await.expect("the session is silent")
+    }
+
+    /// Everything up to the end, as JSON, and the code with which it was closed.
+    async fn rest(&mut self) -> (Vec<Value>, Option<u16>) {
+        let (mut texts, mut code) = (vec![], None);
+        while let Some(message) = self.hear().await {
+            match message {
+                Message::Text(text) => texts.push(serde_json::from_str(&text).unwrap()),
+                Message::Close(frame) => code = frame.map(|frame| frame.code),
+                _ => {}
+            }
+        }
+        (texts, code)
+    }
+}
+
+#[tokio::test]
+async fn a_slow_client_gets_a_gap_and_no_impact_twice_or_out_of_order() {
+    let bounds = Bounds { queue: 4, ..Bounds::default() };
+    let mut client = open(now("still-lossy", 20.0), bounds);
+    assert!(client.hear().await.is_some());
+    sleep(Duration::from_millis(500)).await;
+    let (mut next, mut gaps, mut texts) = (1, 0, 0);
+    loop {
+        let Some(Message::Text(text)) = client.hear().await else { break };
+        texts += 1;
+        let message: Value = serde_json::from_str(&text).unwrap();
+        let (first, last) = match message["type"].as_str().unwrap() {
+            "impact" => (message["n"].as_u64().unwrap(), message["n"].as_u64().unwrap()),
+            "impacts" => {
+                let n = message["columns"]["n"].as_array().unwrap();
+                (n[0].as_u64().unwrap(), n[n.len() - 1].as_u64().unwrap())
+            }
+            "gap" => {
+                gaps += 1;
+                (message["from"].as_u64().unwrap(), message["to"].as_u64().unwrap())
+            }
+            _ => break,
+        };
+        assert_eq!(first, next, "{message}");
+        next = last + 1;
+    }
+    assert!(gaps > 0 && texts > 2 && next > 5, "{gaps} {texts} {next}");
+}
+
+#[tokio::test]
+async fn a_client_that_stays_behind_is_closed_with_1013() {
+    let bounds = Bounds { behind: Duration::from_millis(300), ..Bounds::default() };
+    let mut client = open(now("case-1", 20.0), bounds);
+    sleep(Duration::from_millis(600)).await;
+    assert_eq!(client.rest().await.1, Some(1013));
+}
+
+#[tokio::test]
+async fn a_catch_up_waits_for_its_client() {
+    let mut asked = now("case-1", 1.0);
+    asked.run.clock = Clock::new(wall_now() - 600_000, 1.0);
+    asked.from = Some(1);
+    let bounds = Bounds { queue: 256, ..Bounds::default() };
+    let mut client = open(asked, bounds);
+    let mut next = 1;
+    while next < 1000 {
+        sleep(Duration::from_millis(20)).await;
+        let Some(Message::Text(text)) = client.hear().await else { panic!("closed at {next}") };
+        let message: Value = serde_json::from_str(&text).unwrap();
+        if message["type"] == "impacts" {
+            for n in message["columns"]["n"].as_array().unwrap() {
+                assert_eq!(*n, next);
+                next += 1;
+            }
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_silent_client_is_pinged_and_then_given_up() {
+    let bounds = Bounds { ping: Duration::from_millis(50), silence: Duration::from_millis(250), ..Bounds::default() };
+    let mut client = open(now("case-1", 1.0), bounds);
+    let (mut pings, mut code) = (0, None);
+    while let Some(message) = client.hear().await {
+        match message {
+            Message::Ping(_) => pings += 1,
+            Message::Close(frame) => code = frame.map(|frame| frame.code),
+            _ => {}
+        }
+    }
+    assert!(pings >= 2);
+    assert_eq!(code, Some(1008));
+}
+
+#[tokio::test]
+async fn a_client_that_answers_pings_stays_until_it_is_idle() {
+    let bounds = Bounds {
+        ping: Duration::from_millis(50),
+        silence: Duration::from_millis(400),
+        idle: Duration::from_millis(1500),
+        ..Bounds::default()
+    };
+    let mut client = open(now("case-1", 1.0), bounds);
+    client.says.send(Ok(Message::text(r#"{"type":"pause"}"#))).await.unwrap();
+    let (mut pongs, mut code) = (0, None);
+    while let Some(message) = client.hear().await {
+        match message {
+            Message::Ping(_) if client.says.send(Ok(Message::Pong(axum::body::Bytes::new()))).await.is_ok() => {
+                pongs += 1;
+            }
+            Message::Close(frame) => code = frame.map(|frame| frame.code),
+            _ => {}
+        }
+    }
+    assert_eq!((code, pongs >= 10), (Some(1000), true), "{pongs}");
+}

@@ -1,0 +1,470 @@
+//! Live runs over real sockets: what is said, in which order, and that a run is its URL.
+//!
+//! Wall-clock times are never asserted, only order and content; runs go fast so that nobody waits.
+
+use std::collections::BTreeMap;
+use std::net::SocketAddr;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use equipoise::config::Config;
+use equipoise::routes::App;
+use equipoise::{limits, router, transport};
+use futures_util::{SinkExt, StreamExt};
+use serde_json::{Value, json};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::time::timeout;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest;
+use tokio_tungstenite::tungstenite::{Error, Message};
+use tokio_tungstenite::{WebSocketStream, client_async};
+
+const SOON: Duration = Duration::from_secs(20);
+
+/// A server on a free port.
+async fn start() -> (App, SocketAddr) {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let address = listener.local_addr().unwrap();
+    let app = App::new(&Config::default());
+    tokio::spawn(transport::serve(listener, router::router(app.clone()), std::future::pending()));
+    (app, address)
+}
+
+struct Client {
+    socket: WebSocketStream<TcpStream>,
+    /// Rows that came in one message and have not been asked for.
+    rows: Vec<Row>,
+}
+
+/// The numbers of an impact by the names that columns have.
+type Row = BTreeMap<String, Value>;
+
+async fn try_open(
+    address: SocketAddr,
+    url: &str,
+    headers: &[(&'static str, &str)],
+) -> Result<(Client, Option<String>), Error> {
+    let mut request = format!("ws://{address}{url}").into_client_request().unwrap();
+    for (name, value) in headers {
+        request.headers_mut().insert(*name, value.parse().unwrap());
+    }
+    let stream = TcpStream::connect(address).await.unwrap();
+    let (socket, response) = client_async(request, stream).await?;
+    let protocol = response.headers().get("sec-websocket-protocol").map(|value| value.to_str().unwrap().to_owned());
+    Ok((Client { socket, rows: vec![] }, protocol))
+}
+
+async fn open(address: SocketAddr, url: &str) -> Client {
+    try_open(address, url, &[]).await.unwrap().0
+}
+
+/// The problem with which a handshake is refused.
+async fn refused(address: SocketAddr, url: &str, headers: &[(&'static str, &str)]) -> Value {
+    match try_open(address, url, headers).await {
+        Err(Error::Http(response)) => {
+            let status = response.status().as_u16();
+            let problem: Value = serde_json::from_slice(response.body().as_ref().unwrap()).unwrap();
+            assert_eq!(problem["status"], status);
+            problem
+        }
+        Err(other) => panic!("{other}"),
+        Ok(_) => panic!("{url} was not refused"),
+    }
+}
+
+impl Client {
+    async fn send(&mut self, message: Value) {
+        self.socket.send(Message::text(message.to_string())).await.unwrap();
+    }
+
+    /// The next text; none when the server has closed, with its code.
+    async fn hear(&mut self) -> Result<Value, Option<u16>> {
+        loop {
+            match timeout(SOON, self.socket.next()).await.expect("the server is silent") {
+                Some(Ok(Message::Text(text))) => return Ok(serde_json::from_str(&text).unwrap()),
+                Some(Ok(Message::Close(frame))) => return Err(frame.map(|frame| frame.code.into())),
+                Some(Ok(_)) => {}
+                None | Some(Err(_)) => return Err(None),
+            }
+        }
+    }
+
+    async fn next(&mut self) -> Value {
+        self.hear().await.expect("the server has closed")
+    }
+
+    /// The next message of this type; others are passed over.
+    async fn next_of(&mut self, kind: &str) -> Value {
+        loop {
+            let message = self.next().await;
+            if message["type"] == kind {
+                return message;
+            }
+            self.keep(&message);
+        }
+    }
+
+    async fn ask(&mut self, message: Value) -> Value {
+        let of = message["type"].clone();
+        self.send(message).await;
+        let ack = self.next_of("ack").await;
+        assert_eq!(ack["of"], of);
+        ack
+    }
+
+    fn keep(&mut self, message: &Value) {
+        if message["type"] == "impact" {
+            self.rows.push(row(message));
+        } else if message["type"] == "impacts" {
+            self.rows.extend(rows(message));
+        }
+    }
+
+    /// So many impacts, however they come; fewer if the run ends.
+    async fn impacts(&mut self, count: usize) -> Vec<Row> {
+        while self.rows.len() < count {
+            let message = self.next().await;
+            self.keep(&message);
+            if message["type"] == "end" {
+                break;
+            }
+        }
+        let count = count.min(self.rows.len());
+        self.rows.drain(..count).collect()
+    }
+
+    async fn closed(&mut self) -> Option<u16> {
+        loop {
+            match self.hear().await {
+                Ok(_) => {}
+                Err(code) => return code,
+            }
+        }
+    }
+}
+
+fn row(impact: &Value) -> Row {
+    let mut row = Row::new();
+    for name in ["n", "t", "alpha", "flight_time", "energy", "contact_speed"] {
+        row.insert(name.to_owned(), impact[name].clone());
+    }
+    for name in ["x", "theta", "x_dot", "y_dot", "theta_dot"] {
+        row.insert(name.to_owned(), impact["before"][name].clone());
+    }
+    for name in ["x_dot", "y_dot", "theta_dot"] {
+        row.insert(format!("{name}_after"), impact["after"][name].clone());
+    }
+    row
+}
+
+fn rows(message: &Value) -> Vec<Row> {
+    let columns = message["columns"].as_object().unwrap();
+    let count = columns["n"].as_array().unwrap().len();
+    let cell = |index: usize| columns.iter().map(move |(name, cells)| (name.clone(), cells[index].clone())).collect();
+    (0..count).map(cell).collect()
+}
+
+fn numbers(rows: &[Row]) -> Vec<u64> {
+    rows.iter().map(|row| row["n"].as_u64().unwrap()).collect()
+}
+
+fn now_ms() -> u64 {
+    u64::try_from(SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_millis()).unwrap()
+}
+
+/// A run of case 1 that began so many seconds ago.
+fn old(seconds: u64) -> String {
+    format!("/v1/live?preset=case-1&epoch={}", now_ms() - 1000 * seconds)
+}
+
+#[tokio::test]
+async fn a_run_is_told_in_order_with_the_values_of_the_physics() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1&speed=10").await;
+    let hello = client.next().await;
+    assert_eq!(hello["type"], "hello");
+    assert_eq!(hello["scene"]["table"]["tilt_gain"], 1.1);
+    assert_eq!((hello["model"]["name"].as_str(), &hello["paused"]), (Some("rod"), &json!(false)));
+    assert!(hello["now"].as_u64().unwrap() >= hello["epoch"].as_u64().unwrap());
+    assert!(hello["url"].as_str().unwrap().starts_with("/v1/live?scene."));
+    let impacts = client.impacts(20).await;
+    assert_eq!(numbers(&impacts), (1..=20).collect::<Vec<_>>());
+    let scene = equipoise::wire::presets::find("case-1").unwrap().draft().build().unwrap();
+    let mut orbit = scene.orbit().unwrap();
+    assert_eq!(hello["flight_time"], orbit.t());
+    for impact in impacts {
+        let contact = orbit.advance();
+        let after = contact.strike.unwrap().after;
+        for (name, value) in [
+            ("t", contact.t),
+            ("x", contact.x),
+            ("theta", contact.state.theta),
+            ("x_dot", contact.state.x_dot),
+            ("y_dot", contact.state.y_dot),
+            ("theta_dot", contact.state.theta_dot),
+            ("x_dot_after", after.x_dot),
+            ("y_dot_after", after.y_dot),
+            ("theta_dot_after", after.theta_dot),
+            ("flight_time", contact.flight_time.unwrap()),
+        ] {
+            assert_eq!(impact[name].as_f64().unwrap().to_bits(), value.to_bits(), "{name}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_single_impact_says_all_of_it() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1&speed=2").await;
+    let impact = client.next_of("impact").await;
+    assert_eq!((impact["n"].as_u64(), impact["contact_mode"].as_str()), (Some(1), Some("frictionless")));
+    assert!(impact["impulse_normal"].as_f64().unwrap() > 0.0 && impact["table_velocity"]["y"].is_number());
+}
+
+#[tokio::test]
+async fn the_same_url_is_the_same_run_and_from_leaves_no_gap() {
+    let (_, address) = start().await;
+    let url = old(60);
+    let mut first = open(address, &format!("{url}&from=1")).await;
+    let hello = first.next().await;
+    let all = first.impacts(100).await;
+    assert_eq!(numbers(&all), (1..=100).collect::<Vec<_>>());
+    let mut second = open(address, &format!("{}&from=41", hello["url"].as_str().unwrap())).await;
+    assert_eq!(second.impacts(60).await, all[40..]);
+    // Without `from` it begins with the flight under way.
+    let mut third = open(address, &url).await;
+    let now = third.next().await["run_time"].as_f64().unwrap();
+    let begin = third.impacts(1).await.remove(0);
+    let t = begin["t"].as_f64().unwrap();
+    assert!(t <= now + 1.0 && t + begin["flight_time"].as_f64().unwrap() > now - 1.0, "{t} {now}");
+}
+
+#[tokio::test]
+async fn interventions_act_and_their_url_replays_the_run() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1&speed=10").await;
+    let mut seen = client.impacts(3).await;
+    let set = client.ask(json!({"type": "set", "table.tilt_gain": 1.2})).await;
+    let at_set = set["impact"].as_u64().unwrap();
+    let kick = client.ask(json!({"type": "kick", "theta_dot": 0.02, "x_dot": -0.001})).await;
+    let at_kick = kick["impact"].as_u64().unwrap();
+    client.ask(json!({"type": "speed", "value": 20})).await;
+    client.ask(json!({"type": "pause"})).await;
+    let mut wanted = 30 - seen.len();
+    let resumed = client.ask(json!({"type": "resume"})).await;
+    while wanted > 0 {
+        let more = client.impacts(wanted).await;
+        wanted -= more.len();
+        seen.extend(more);
+    }
+    assert_eq!(numbers(&seen), (1..=30).collect::<Vec<_>>());
+    assert_eq!((resumed["speed"].as_f64(), resumed["paused"].as_bool()), (Some(20.0), Some(false)));
+    assert!(at_kick >= at_set && at_set >= 4);
+    let gain = |row: &Row| row["alpha"].as_f64().unwrap() / row["theta"].as_f64().unwrap();
+    for row in &seen {
+        let expected = if row["n"].as_u64().unwrap() < at_set { 1.1 } else { 1.2 };
+        assert!((gain(row) - expected).abs() < 1e-12, "{row:?}");
+    }
+    let mut replay = open(address, &format!("{}&from=1", resumed["url"].as_str().unwrap())).await;
+    let hello = replay.next().await;
+    assert_eq!(hello["url"], resumed["url"]);
+    assert_eq!(hello["scene"]["table"]["tilt_gain"], 1.1);
+    assert_eq!(replay.impacts(30).await, seen);
+}
+
+#[tokio::test]
+async fn a_paused_run_goes_on_step_by_step() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1&speed=0.05").await;
+    client.next().await;
+    client.send(json!({"type": "step"})).await;
+    assert!(client.next_of("problem").await["detail"].as_str().unwrap().contains("paused"));
+    let paused = client.ask(json!({"type": "pause"})).await;
+    assert_eq!((paused["paused"].as_bool(), paused["speed"].as_f64()), (Some(true), Some(0.05)));
+    for n in 1..=20 {
+        let step = client.ask(json!({"type": "step"})).await;
+        assert_eq!(step["impact"], n);
+        let row = client.impacts(1).await.remove(0);
+        assert_eq!((row["n"].as_u64(), &row["t"]), (Some(n), &step["run_time"]));
+    }
+    // Whoever opens its URL finds it paused in the same place.
+    let last = client.ask(json!({"type": "pause"})).await;
+    let mut other = open(address, last["url"].as_str().unwrap()).await;
+    let hello = other.next().await;
+    assert_eq!((&hello["paused"], &hello["run_time"]), (&json!(true), &last["run_time"]));
+    assert_eq!(numbers(&other.impacts(1).await), [20]);
+}
+
+#[tokio::test]
+async fn a_run_ends_and_begins_anew() {
+    let (_, address) = start().await;
+    let epoch = now_ms() - 3_600_000;
+    let mut client = open(address, &format!("/v1/live?preset=case-3&epoch={epoch}&from=1")).await;
+    client.next().await;
+    let end = client.next_of("end").await;
+    assert_eq!((end["outcome"]["kind"].as_str(), end["outcome"]["impacts"].as_u64()), (Some("sinking"), Some(49)));
+    assert_eq!(client.rows.len(), 49);
+    assert_eq!(client.rows[48]["flight_time"], Value::Null);
+    client.rows.clear();
+    client.send(json!({"type": "kick", "theta_dot": 0.1})).await;
+    assert!(client.next().await["detail"].as_str().unwrap().contains("has ended at impact 49"));
+    client.ask(json!({"type": "speed", "value": 10})).await;
+    client.send(json!({"type": "restart"})).await;
+    let hello = client.next().await;
+    assert_eq!((hello["type"].as_str(), hello["speed"].as_f64()), (Some("hello"), Some(10.0)));
+    assert!(hello["epoch"].as_u64().unwrap() > epoch);
+    assert_eq!(numbers(&client.impacts(3).await), [1, 2, 3]);
+}
+
+#[tokio::test]
+async fn a_restart_keeps_what_was_set() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1&speed=5").await;
+    client.ask(json!({"type": "set", "table.tilt_gain": 1.2, "contact.restitution": 0.8})).await;
+    client.ask(json!({"type": "kick", "y_dot": 0.1})).await;
+    client.send(json!({"type": "restart"})).await;
+    let hello = client.next_of("hello").await;
+    assert_eq!(hello["scene"]["table"]["tilt_gain"], 1.2);
+    assert_eq!(hello["scene"]["contact"]["restitution"], 0.8);
+    assert!(!hello["url"].as_str().unwrap().contains("interventions"));
+}
+
+#[tokio::test]
+async fn a_bad_message_is_a_problem_and_the_run_goes_on() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1&speed=10").await;
+    for (text, pointer) in [
+        ("nonsense".to_owned(), None),
+        (r#"{"type":"stop"}"#.to_owned(), Some("/type")),
+        (r#"{"type":"speed","value":21}"#.to_owned(), Some("/value")),
+        (r#"{"type":"set","gravity":1}"#.to_owned(), Some("/gravity")),
+        (r#"{"type":"set","table.energy_gain":0.1}"#.to_owned(), Some("/table.target_height")),
+        (r#"{"type":"kick","theta_dot":500}"#.to_owned(), Some("/theta_dot")),
+        (format!(r#"{{"type":"pause","x":"{}"}}"#, "x".repeat(limits::LIVE_MESSAGE_BYTES)), Some("")),
+    ] {
+        client.socket.send(Message::text(text.clone())).await.unwrap();
+        let problem = client.next_of("problem").await;
+        assert!(!problem["title"].as_str().unwrap().is_empty());
+        assert_eq!(problem["errors"][0]["pointer"].as_str(), pointer, "{text:.50}: {problem}");
+    }
+    client.socket.send(Message::binary(vec![1_u8])).await.unwrap();
+    assert!(client.next_of("problem").await["detail"].as_str().unwrap().contains("binary"));
+    let seen = numbers(&client.impacts(10).await);
+    assert_eq!(seen, (1..=10).collect::<Vec<_>>());
+}
+
+#[tokio::test]
+async fn a_kick_turns_no_point_mass() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=point-mass&speed=10").await;
+    let hello = client.next().await;
+    assert_eq!((&hello["release"]["theta"], &hello["release"]["theta_dot"]), (&Value::Null, &Value::Null));
+    client.send(json!({"type": "kick", "theta_dot": 0.1})).await;
+    assert_eq!(client.next_of("problem").await["errors"][0]["pointer"], "/theta_dot");
+    let ack = client.ask(json!({"type": "kick", "x_dot": 0.01})).await;
+    let n = ack["impact"].as_u64().unwrap() as usize;
+    assert_eq!(client.impacts(n).await[n - 1]["theta_dot_after"], Value::Null);
+}
+
+#[tokio::test]
+async fn messages_are_limited_in_size_and_number() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1").await;
+    client.socket.send(Message::text("x".repeat(limits::LIVE_FRAME_BYTES + 1))).await.unwrap();
+    assert_eq!(client.closed().await, Some(1009));
+    let mut client = open(address, "/v1/live?preset=case-1").await;
+    for _ in 0..4 * limits::LIVE_MESSAGES_PER_S {
+        if client.socket.send(Message::text("{}")).await.is_err() {
+            break;
+        }
+    }
+    assert_eq!(client.closed().await, Some(1008));
+}
+
+#[tokio::test]
+async fn interventions_are_limited() {
+    let (_, address) = start().await;
+    let mut url = "/v1/live?preset=case-1&speed=0.05".to_owned();
+    for index in 0..limits::LIVE_INTERVENTIONS {
+        url += &format!("&interventions.{index}.impact={}&interventions.{index}.kick.x_dot=0", index + 100);
+    }
+    assert!(url.len() < limits::URL_BYTES);
+    let mut client = open(address, &url).await;
+    client.ask(json!({"type": "pause"})).await;
+    client.send(json!({"type": "kick", "x_dot": 0.1})).await;
+    let problem = client.next_of("problem").await;
+    assert!(problem["detail"].as_str().unwrap().contains("100 interventions"), "{problem}");
+    url += "&interventions.100.impact=200&interventions.100.kick.x_dot=0";
+    assert_eq!(refused(address, &url, &[]).await["errors"][0]["pointer"], "/interventions");
+}
+
+#[tokio::test]
+async fn an_epoch_too_old_is_refused() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1&epoch=0").await;
+    let problem = client.next().await;
+    assert_eq!(
+        (problem["type"].as_str(), problem["title"].as_str()),
+        (Some("problem"), Some("The request costs too much"))
+    );
+    assert_eq!(client.closed().await, Some(1008));
+}
+
+#[tokio::test]
+async fn a_run_that_settles_ends_without_spinning() {
+    let (app, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=still-lossy&speed=20").await;
+    let end = client.next_of("end").await;
+    let impacts = end["outcome"]["impacts"].as_u64().unwrap();
+    assert_eq!(numbers(&client.rows), (1..=impacts).collect::<Vec<_>>());
+    assert!(app.metrics.bounces.get() <= impacts + 1);
+}
+
+#[tokio::test]
+async fn what_is_no_run_or_no_websocket_is_a_problem() {
+    let (app, address) = start().await;
+    assert_eq!(refused(address, "/v1/live?preset=case-9", &[]).await["errors"][0]["pointer"], "/preset");
+    assert_eq!(refused(address, "/v1/live?preset=case-1&speed=0", &[]).await["errors"][0]["pointer"], "/speed");
+    let foreign = [("origin", "http://elsewhere.example")];
+    assert_eq!(refused(address, "/v1/live?preset=case-1", &foreign).await["status"], 403);
+    let own = format!("http://{address}");
+    assert!(try_open(address, "/v1/live?preset=case-1", &[("origin", &own)]).await.is_ok());
+    app.metrics.live_sessions.inc_by(limits::LIVE_SESSIONS as i64);
+    assert_eq!(refused(address, "/v1/live?preset=case-1", &[]).await["status"], 503);
+    let plain = async |head: &str| {
+        let mut socket = TcpStream::connect(address).await.unwrap();
+        socket.write_all(format!("{head}host: x\r\nconnection: close\r\n\r\n").as_bytes()).await.unwrap();
+        let mut answer = String::new();
+        socket.read_to_string(&mut answer).await.unwrap();
+        answer
+    };
+    let answer = plain("GET /v1/live?preset=case-1 HTTP/1.1\r\n").await;
+    assert!(answer.starts_with("HTTP/1.1 426") && answer.contains("upgrade: websocket"), "{answer}");
+    assert!(answer.contains("application/problem+json"));
+    assert!(plain("GET /v1/live?preset=case-9 HTTP/1.1\r\n").await.starts_with("HTTP/1.1 422"));
+    assert!(plain("POST /v1/live HTTP/1.1\r\n").await.starts_with("HTTP/1.1 405"));
+}
+
+#[tokio::test]
+async fn the_subprotocol_is_agreed_on() {
+    let (_, address) = start().await;
+    let offered = [("sec-websocket-protocol", "other, equipoise.v1")];
+    let (_, protocol) = try_open(address, "/v1/live?preset=case-1", &offered).await.unwrap();
+    assert_eq!(protocol.as_deref(), Some("equipoise.v1"));
+}
+
+#[tokio::test]
+async fn a_server_that_closes_says_so() {
+    let (app, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1").await;
+    client.next().await;
+    assert_eq!(app.metrics.live_sessions.get(), 1);
+    app.close();
+    assert_eq!(client.closed().await, Some(1001));
+    timeout(SOON, async {
+        while app.metrics.live_sessions.get() > 0 {
+            tokio::time::sleep(Duration::from_millis(5)).await;
+        }
+    })
+    .await
+    .expect("the session goes on for nobody");
+}
