@@ -3,7 +3,7 @@
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
 use crate::contact_time::{self, TooManyPieces};
-use crate::dispatch::dispatch;
+use crate::dispatch::{Work, dispatch};
 use crate::flight::Flight;
 use crate::impact::{Rod, State, Strike};
 
@@ -402,22 +402,32 @@ impl<B: Body> Orbit<B> {
 /// Visits contact after contact up to number `impacts`, which ends as [`Ending::Completed`] unless it ended otherwise;
 /// the visitor may stop it early by returning `false`, and then there is no ending.
 pub fn run<B: Body>(orbit: &mut Orbit<B>, impacts: u64, visit: impl FnMut(&Contact) -> bool) -> Option<Ending> {
-    dispatch(|| run_here(orbit, impacts, visit))
+    dispatch(Run { orbit, impacts, visit })
 }
 
-#[inline(always)]
-fn run_here<B: Body>(orbit: &mut Orbit<B>, impacts: u64, mut visit: impl FnMut(&Contact) -> bool) -> Option<Ending> {
-    loop {
-        let mut contact = orbit.advance();
-        if contact.ending.is_none() && contact.n >= impacts {
-            contact.ending = Some(Ending::Completed);
-            contact.flight_time = None;
-        }
-        if !visit(&contact) {
-            return None;
-        }
-        if contact.ending.is_some() {
-            return contact.ending;
+struct Run<'a, B, V> {
+    orbit: &'a mut Orbit<B>,
+    impacts: u64,
+    visit: V,
+}
+
+impl<B: Body, V: FnMut(&Contact) -> bool> Work for Run<'_, B, V> {
+    type Output = Option<Ending>;
+
+    #[inline(always)]
+    fn call(mut self) -> Self::Output {
+        loop {
+            let mut contact = self.orbit.advance();
+            if contact.ending.is_none() && contact.n >= self.impacts {
+                contact.ending = Some(Ending::Completed);
+                contact.flight_time = None;
+            }
+            if !(self.visit)(&contact) {
+                return None;
+            }
+            if contact.ending.is_some() {
+                return contact.ending;
+            }
         }
     }
 }
