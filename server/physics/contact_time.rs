@@ -6,6 +6,7 @@
 
 use crate::flight::{Flight, Gap};
 use crate::impact::State;
+use crate::number::{Number, Real};
 use std::f64::consts::TAU;
 
 /// Most pieces that one flight may be cut into. The ranges of a scene allow 25,000; a run whose energy feedback drives it
@@ -27,34 +28,53 @@ pub struct TooManyPieces;
 /// [`TooManyPieces`] where the work limit is passed.
 #[inline(always)]
 pub fn first_contact(flight: &Flight) -> Result<f64, TooManyPieces> {
-    let State { y_dot, theta_dot, .. } = flight.start;
-    let speed = flight.contact_distance * theta_dot;
-    let bulge = speed * theta_dot;
-    if bulge > flight.gravity {
+    if flight.bulge() > flight.gravity {
         return first_contact_spinning(*flight);
     }
-    let (sin, cos) = flight.sin_cos_theta;
-    // g to fourth order: h₀ + v t − a t²/2 − b t³/6 − c t⁴/24. With h₀ = 0 and t = 2v/a · s the root solves
-    // s = 1 − P s² − Q s³, inverted as a series; it is a start, and Newton's first slope decides whether a good one.
-    let v = y_dot + speed * sin;
-    let a = flight.gravity - bulge * cos;
-    let per_a = 1.0 / a;
-    let start = if flight.clearance == 0.0 {
-        let rough = 2.0 * v * per_a;
-        let turn = theta_dot * rough;
-        let curl = bulge * per_a;
-        let p = curl * turn * sin * (1.0 / 3.0);
-        let q = curl * turn * turn * cos * (1.0 / 12.0);
-        rough * (((1.0 - q) - p) + 2.0 * p * p)
-    } else {
-        (v + (v * v + 2.0 * a * flight.clearance).max(0.0).sqrt()) * per_a
-    };
+    let start = if flight.clearance == 0.0 { guess(flight) } else { guess_from_above(flight) };
     let gap = flight.gap(start);
     if gap.slope < 0.0 && start > 0.0 {
         return Ok(newton(flight, start, gap));
     }
     let end = latest_contact(flight);
     Ok(newton(flight, end, flight.gap(end)))
+}
+
+impl<N: Number> Flight<N> {
+    /// l θ̇², m/s²: up to G the gap is concave.
+    #[inline(always)]
+    pub(crate) fn bulge(&self) -> N {
+        self.contact_distance * self.start.theta_dot * self.start.theta_dot
+    }
+}
+
+/// Where to start on a flight from the table.
+///
+/// To fourth order g = v t − a t²/2 − b t³/6 − c t⁴/24. With t = 2v/a · s the root solves s = 1 − P s² − Q s³, inverted
+/// here as a series. It is a start and no more: Newton's first slope decides whether a good one.
+#[inline(always)]
+pub(crate) fn guess<N: Number>(flight: &Flight<N>) -> N {
+    let number = N::from_f64;
+    let State { y_dot, theta_dot, .. } = flight.start;
+    let (sin, cos) = flight.sin_cos_theta;
+    let speed = flight.contact_distance * theta_dot;
+    let bulge = speed * theta_dot;
+    let v = y_dot + speed * sin;
+    let per_a = number(1.0) / (flight.gravity - bulge * cos);
+    let rough = number(2.0) * v * per_a;
+    let turn = theta_dot * rough;
+    let curl = bulge * per_a;
+    let p = curl * turn * sin * number(1.0 / 3.0);
+    let q = curl * turn * turn * cos * number(1.0 / 12.0);
+    rough * (((number(1.0) - q) - p) + number(2.0) * p * p)
+}
+
+/// Where to start on a flight from above the table: the root of the gap to second order.
+fn guess_from_above(flight: &Flight) -> f64 {
+    let (sin, cos) = flight.sin_cos_theta;
+    let v = flight.start.y_dot + flight.contact_distance * flight.start.theta_dot * sin;
+    let a = flight.gravity - flight.bulge() * cos;
+    (v + (v * v + 2.0 * a * flight.clearance).max(0.0).sqrt()) / a
 }
 
 /// The time by which the centre of gravity has fallen to y = −l, so that the contact came before or is there.
@@ -71,23 +91,49 @@ fn latest_contact(flight: &Flight) -> f64 {
 /// last place.
 #[inline(always)]
 fn newton(flight: &Flight, mut t: f64, mut gap: Gap) -> f64 {
-    let spin = flight.start.theta_dot.abs();
-    let stiffness = flight.gravity + flight.contact_distance * spin * spin;
     for steps in 0..MAX_STEPS {
-        let per_slope = 1.0 / gap.slope;
-        let step = -(gap.value * per_slope);
-        let size = step.abs();
-        let bent = size * stiffness * per_slope.abs();
-        if size * bent * (bent + size * spin) <= f64::EPSILON * 0.25 * t {
-            return t + step * (1.0 - 0.5 * (gap.bend * per_slope) * step);
+        let step = Step::new(flight, t, &gap);
+        if step.left_out <= step.negligible {
+            return step.refined;
         }
-        if steps > 0 && step >= 0.0 {
+        if steps > 0 && step.newton >= 0.0 {
             return t;
         }
-        t += step;
+        t += step.newton;
         gap = flight.gap(t);
     }
     t
+}
+
+/// One step from `t`: Newton's, and one that uses the second derivative too.
+pub(crate) struct Step<N> {
+    /// What Newton adds to t.
+    newton: N,
+    /// The better t.
+    pub(crate) refined: N,
+    /// How much more that may be off, at most.
+    pub(crate) left_out: N,
+    /// Half a unit in the last place of t, and less.
+    pub(crate) negligible: N,
+}
+
+impl<N: Real> Step<N> {
+    #[inline(always)]
+    pub(crate) fn new(flight: &Flight<N>, t: N, gap: &Gap<N>) -> Self {
+        let number = N::from_f64;
+        let spin = flight.start.theta_dot.magnitude();
+        let stiffness = flight.gravity + flight.contact_distance * spin * spin;
+        let per_slope = number(1.0) / gap.slope;
+        let newton = -(gap.value * per_slope);
+        let size = newton.magnitude();
+        let bent = size * stiffness * per_slope.magnitude();
+        Self {
+            newton,
+            refined: t + newton * (number(1.0) - number(0.5) * (gap.bend * per_slope) * newton),
+            left_out: size * bent * (bent + size * spin),
+            negligible: number(f64::EPSILON * 0.25) * t,
+        }
+    }
 }
 
 /// [`first_contact`] where l θ̇² > G.

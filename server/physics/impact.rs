@@ -122,6 +122,24 @@ impl<N: Number> Rod<N> {
     }
 }
 
+impl<N: Number> Strike<N> {
+    /// Brings the velocities after the strike onto the energy that the run should have at this contact, and gives that
+    /// which it should have at the next.
+    ///
+    /// Flights conserve energy and a strike changes it by a known amount, so what the state before the strike is off is
+    /// rounding. A strike is linear in the velocities: correcting them after it is as good as before it, and off the
+    /// critical path. It holds the slow growth of phase errors: a tenth of the error after 100 bounces (`tests/accuracy.rs`).
+    #[inline(always)]
+    pub fn hold_energy(&mut self, energy: N) -> N {
+        let stretch = (energy - self.energy) / self.speed_squared;
+        let State { x_dot, y_dot, theta_dot, .. } = &mut self.after;
+        for velocity in [x_dot, y_dot, theta_dot, &mut self.contact_rise] {
+            *velocity = *velocity + *velocity * stretch;
+        }
+        energy + self.energy_gain
+    }
+}
+
 impl Rod<f64> {
     /// The same rod in another kind of number.
     #[inline(always)]

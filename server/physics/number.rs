@@ -19,6 +19,19 @@ pub trait Number:
     fn sin_versine(self) -> (Self, Self);
 }
 
+/// A number with a size: what error bounds need. Still no ordering.
+pub trait Real: Number {
+    /// Its absolute value.
+    fn magnitude(self) -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        self.abs()
+    }
+}
+
 impl Number for f64 {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
