@@ -145,7 +145,7 @@ export function drawStrike(context, scale, impact, strike, strength) {
     const length = Math.min(ARROW_S * impulse * scale.metre, y * 0.8);
     // Beside the rod, so that the arrow is seen along its whole length.
     const offset = dx > 0 ? -16 : 16;
-    arrow(context, x + offset, y, x + offset + dx / impulse * length, y - dy / impulse * length, colours.strike);
+    if (length > 9) arrow(context, x + offset, y, x + offset + dx / impulse * length, y - dy / impulse * length, colours.strike);
     context.font = `11px ${SANS}`;
     context.fillStyle = colours.strike;
     const words = [`impulse ${fixed(impulse, 2)}\u202fm/s`, `α ${fixed(strike.alpha, 3)}\u202frad`];

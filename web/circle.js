@@ -160,13 +160,13 @@ export class Circle {
       line(context, colours.muted, cx + dx * (unit - 4), cy + dy * (unit - 4), cx + dx * (unit + 4), cy + dy * (unit + 4));
       context.fillText(number(gain), cx + dx * (unit + 17), cy + dy * (unit + 13));
     }
+    if (unit < 62) return;
     context.font = `italic 13px ${SERIF}`;
     context.fillStyle = colours.ink;
     // The ends of the dial are named inside the circle, where there is always room for them.
     context.textBaseline = 'bottom';
     context.textAlign = 'right';
     context.fillText(`κ = ${number(lower)}`, cx + unit - 9, cy - 4);
-    if (unit < 62) return;
     context.textAlign = 'left';
     const from = cx - unit + 9;
     context.fillText('κ', from, cy - 4);

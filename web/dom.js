@@ -48,7 +48,7 @@ export function symbol(text) {
  * The server's sentences for reading: symbols set as such, names of fields in words, numbers no longer than one reads.
  * @param {string} text
  */
-export const prose = (text) => text.replace(/(?<=[a-z])_(?=[a-z])/g, ' ').replace(/-?\b\d+\.\d{6,}(?:e-?\d+)?/g, (digits) => number(Number(digits), 6)).split(/((?:κ|σ)_[A-Za-z]+(?:,max)?|y\*)/).map((part, index) => (index % 2 ? symbol(part) : part));
+export const prose = (text) => text.replaceAll('`', '').replace(/(?<=[a-z])_(?=[a-z])/g, ' ').replace(/-?\b\d+\.\d{6,}(?:e-?\d+)?/g, (digits) => number(Number(digits), 6)).split(/((?:κ|σ)_[A-Za-z]+(?:,max)?|y\*)/).map((part, index) => (index % 2 ? symbol(part) : part));
 
 /**
  * Text to the clipboard, and the button says so for a moment.

@@ -9,7 +9,7 @@ import { effectiveGravity } from './flight.js';
  * @param {() => import('./api.js').Scene | null} scene
  */
 export function energyPlot(impacts, scene) {
-  /** The wanted energy G·y* with energy feedback; the first energy where nothing is lost and nothing fed back. */
+  /** The wanted energy G·y* with energy feedback; the first energy where a bounce keeps it. */
   const levels = () => {
     const now = scene();
     if (!now) return [];
@@ -19,7 +19,7 @@ export function energyPlot(impacts, scene) {
       return [{ value, name: `target G y* = ${number(value)} m²/s²` }];
     }
     const first = impacts.end > 0 ? impacts.at('energy', impacts.begin) : NaN;
-    return Number.isFinite(first) && now.table?.strike !== 'still' ? [{ value: first, name: `constant: ${number(first)} m²/s²` }] : [];
+    return Number.isFinite(first) && now.table?.strike !== 'still' ? [{ value: first, name: `released with ${number(first)} m²/s²` }] : [];
   };
   return new ImpactPlot(impacts, {
     id: 'energy', title: 'Energy', about: 'Per unit mass just before each impact, with its target.', hint: 'One dot per impact, with its target',

@@ -42,6 +42,8 @@ export class ImpactPlot {
   /** @type {number | null} */
   #pointed = null;
   #stale = true;
+  /** Whether the hint stands where impacts go. */
+  #hinting = false;
   /** @type {import('./axes.js').Frame} */
   #frame = { left: 0, top: 0, width: 0, height: 0, x: { low: 0, high: 1 }, y: { low: 0, high: 1 } };
   /** @type {{x: import('./axes.js').Range, y: import('./axes.js').Range}} */
@@ -134,7 +136,7 @@ export class ImpactPlot {
   draw(now_ms) {
     const { begin, end } = this.#impacts;
     if (end < this.#drawn) this.#drawn = begin;
-    if (!this.#extend(Math.max(begin, this.#drawn))) this.#stale = true;
+    if (!this.#extend(Math.max(begin, this.#drawn)) || (this.#hinting && end > 0)) this.#stale = true;
     if (this.#stale) this.#paper();
     const { context } = this.#plot;
     for (let place = Math.max(begin, this.#drawn); place < end; place += 1) {
@@ -181,7 +183,8 @@ export class ImpactPlot {
       context.textBaseline = 'bottom';
       context.fillText(name, this.#frame.left + this.#frame.width, this.#frame.top - 6);
     }
-    if (empty || this.#impacts.end === 0) {
+    this.#hinting = this.#impacts.end === 0;
+    if (empty || this.#hinting) {
       context.font = `12px ${SANS}`;
       context.fillStyle = colours.muted;
       context.textAlign = 'center';

@@ -146,7 +146,9 @@ export class SceneView {
   #say(now_ms, t, pose, impact) {
     const moving = this.#run.phase === 'running';
     if (moving && now_ms - this.#read_ms < 100) return;
-    this.#readout.textContent = `t ${fixed(t, 2)} s   impact ${impact?.n ?? 0}   θ ${fixed(pose.theta, 3)} rad   x ${fixed(pose.x, 3)} m   y ${fixed(pose.y, 3)} m`;
+    // What stands still can be read to the last digit that matters.
+    const [seconds, rest] = moving ? [2, 3] : [4, 5];
+    this.#readout.textContent = `t ${fixed(t, seconds)} s   impact ${impact?.n ?? 0}   θ ${fixed(pose.theta, rest)} rad   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m`;
     if (!moving || now_ms - this.#read_ms > 2000 || this.#read_ms === -Infinity) {
       this.#box.setAttribute('aria-label', `The rod and the table after impact ${impact?.n ?? 0}: tilted by ${fixed(pose.theta, 2)} rad at x = ${fixed(pose.x, 2)} m`);
     }

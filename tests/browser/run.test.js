@@ -50,6 +50,32 @@ test('what is drawn is what the server computes', async () => {
   clean();
 });
 
+test('between impacts the rod is where its flight takes it', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 6);
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  await page.locator('#scene-readout', { hasText: /t \d+\.\d{4} s/ }).waitFor();
+  const words = (await page.locator('#scene-readout').innerText()).replaceAll('\u2212', '-');
+  const [t, n, theta, x, y] = /t (\S+) s\s+impact (\d+)\s+θ (\S+) rad\s+x (\S+) m\s+y (\S+) m/.exec(words).slice(1).map(Number);
+  const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=200`)).json();
+  const { impacts: all, scene } = answer;
+  const [before, after] = [n - 1, n];
+  assert.ok(all.t[before] <= t + 5e-5 && t <= all.t[after] + 5e-5, `${t} lies between impacts ${n} and ${n + 1}`);
+  // Angle and place go evenly with time in a flight; the height falls freely between the two contacts.
+  const part = (t - all.t[before]) / (all.t[after] - all.t[before]);
+  const even = (column) => column[before] + (column[after] - column[before]) * part;
+  const l = scene.body.contact_distance;
+  const [from, to] = [l * Math.cos(all.theta[before]), l * Math.cos(all.theta[after])];
+  const height = from + (to - from) * part + scene.gravity / 2 * (t - all.t[before]) * (all.t[after] - t);
+  assert.ok(Math.abs(theta - even(all.theta)) < 1e-3, `theta ${theta}, ${even(all.theta)}`);
+  assert.ok(Math.abs(x - even(all.x)) < 1e-3, `x ${x}, ${even(all.x)}`);
+  assert.ok(Math.abs(y - height) < 1e-3, `y ${y}, ${height}`);
+  clean();
+});
+
 test('pause holds the run, step moves it by one impact, restart begins again', async () => {
   const { page, clean } = await stage.page('?preset=case-2');
   await page.click('#run');
