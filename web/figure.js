@@ -1,6 +1,7 @@
 // The frame around a chart: title, sentence, picture with a name, readout, table of its numbers. Not for the picture itself.
 
 import { h } from './dom.js';
+import { unbroken } from './numbers.js';
 
 /**
  * @typedef {object} Table the numbers behind a picture
@@ -39,9 +40,9 @@ export class Figure {
       this.box, this.#readout, this.#disclosure);
   }
 
-  /** @param {...(string | Node)} content */
-  read(...content) {
-    this.#readout.replaceChildren(...content);
+  /** @param {string} text */
+  read(text) {
+    this.#readout.textContent = unbroken(text);
   }
 
   /**

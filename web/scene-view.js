@@ -6,7 +6,7 @@ import { line, roundStep } from './axes.js';
 import { SANS, onThemeChange, theme } from './theme.js';
 import { contactDistance, effectiveGravity, poseOn, strikeAfter, tableBetween } from './flight.js';
 import { invalidate, surfaces } from './surface.js';
-import { fixed, number } from './numbers.js';
+import { fixed, number, unbroken } from './numbers.js';
 
 /** @typedef {import('./api.js').Scene} Scene */
 /** @typedef {import('./run.js').Run} Run */
@@ -148,7 +148,7 @@ export class SceneView {
     if (moving && now_ms - this.#read_ms < 100) return;
     // What stands still can be read to the last digit that matters.
     const [seconds, rest] = moving ? [2, 3] : [4, 5];
-    this.#readout.textContent = `t ${fixed(t, seconds)} s   impact ${impact?.n ?? 0}   θ ${fixed(pose.theta, rest)} rad   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m`;
+    this.#readout.textContent = unbroken(`t ${fixed(t, seconds)} s   impact ${impact?.n ?? 0}   θ ${fixed(pose.theta, rest)} rad   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m`);
     if (!moving || now_ms - this.#read_ms > 2000 || this.#read_ms === -Infinity) {
       this.#box.setAttribute('aria-label', `The rod and the table after impact ${impact?.n ?? 0}: tilted by ${fixed(pose.theta, 2)} rad at x = ${fixed(pose.x, 2)} m`);
     }

@@ -57,9 +57,9 @@ test('between impacts the rod is where its flight takes it', async () => {
   await reachImpact(page, 6);
   await page.click('#run');
   await reachPhase(page, 'paused');
-  await page.locator('#scene-readout', { hasText: /t \d+\.\d{4} s/ }).waitFor();
+  await page.locator('#scene-readout', { hasText: /t\s\d+\.\d{4}\ss/ }).waitFor();
   const words = (await page.locator('#scene-readout').innerText()).replaceAll('\u2212', '-');
-  const [t, n, theta, x, y] = /t (\S+) s\s+impact (\d+)\s+θ (\S+) rad\s+x (\S+) m\s+y (\S+) m/.exec(words).slice(1).map(Number);
+  const [t, n, theta, x, y] = /t\s(\S+)\ss\s+impact\s(\d+)\s+θ\s(\S+)\srad\s+x\s(\S+)\sm\s+y\s(\S+)\sm/.exec(words).slice(1).map(Number);
   const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=200`)).json();
   const { impacts: all, scene } = answer;
   const [before, after] = [n - 1, n];
@@ -94,7 +94,7 @@ test('pause holds the run, step moves it by one impact, restart begins again', a
   await page.click('#run');
   await reachImpact(page, held + 4);
   await page.click('#restart');
-  await page.waitForFunction((before) => Number(/^n (\d+)/.exec(document.querySelector('#plane-angle .readout').textContent)?.[1] ?? 0) < before, held);
+  await page.waitForFunction((before) => Number(/^n\s(\d+)/.exec(document.querySelector('#plane-angle .readout').textContent)?.[1] ?? 0) < before, held);
   await reachImpact(page, 1);
   await reachPhase(page, 'running');
   clean();
@@ -148,7 +148,7 @@ test('a server that goes away and comes back loses no impact', async () => {
 test('the point mass runs with what it has', async () => {
   const { page, clean } = await stage.page('?preset=point-mass');
   await page.click('#run');
-  await page.waitForFunction(() => /impact [1-9]/.test(document.querySelector('#scene-readout').textContent));
+  await page.waitForFunction(() => /impact\s[1-9]/.test(document.querySelector('#scene-readout').textContent));
   assert.ok(await page.locator('#field-body-contact_distance').isDisabled());
   clean();
 });

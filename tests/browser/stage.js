@@ -93,10 +93,10 @@ export async function verdict(page) {
 /** The number of the last impact on the page. */
 export async function impacts(page) {
   const text = await page.locator('#plane-angle .readout').innerText();
-  return Number(/^n (\d+)/.exec(text)?.[1] ?? 0);
+  return Number(/^n\s(\d+)/.exec(text)?.[1] ?? 0);
 }
 
-export const reachImpact = (page, n) => page.waitForFunction((wanted) => Number(/^n (\d+)/.exec(document.querySelector('#plane-angle .readout')?.textContent ?? '')?.[1] ?? 0) >= wanted, n);
+export const reachImpact = (page, n) => page.waitForFunction((wanted) => Number(/^n\s(\d+)/.exec(document.querySelector('#plane-angle .readout')?.textContent ?? '')?.[1] ?? 0) >= wanted, n);
 
 export const reachPhase = (page, phase) => page.locator(`#run-state[data-phase=${phase}]`).waitFor();
 
