@@ -13,37 +13,58 @@ const HALF_PI_LOW: f64 = 2.022_266_248_795_950_6e-21;
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
 
 /// Largest angle, in rad, that the three-piece reduction takes (n < 2²⁰); beyond it the slow exact one is used.
-const REDUCIBLE: f64 = 1.6e6;
+pub(crate) const REDUCIBLE: f64 = 1.6e6;
+
+/// Largest angle, in rad, that needs no reduction: π/4.
+pub(crate) const SMALL: f64 = std::f64::consts::FRAC_PI_4;
 
 /// Sine and cosine of an angle in rad; error below 1 ulp at every finite angle, NaN for what is not finite.
 #[inline(always)]
 pub fn sin_cos(angle: f64) -> (f64, f64) {
-    if angle.abs() <= std::f64::consts::FRAC_PI_4 {
-        return (sin_kernel(angle, None), cos_kernel(angle, None));
-    }
-    sin_cos_reduced(angle)
+    if angle.abs() <= SMALL { (sin_small(angle), cos_small(angle)) } else { sin_cos_reduced(angle) }
 }
 
 /// sin u and 1 − cos u of an angle in rad; relative error of either below 2 ulp where |u| ≤ π/4, absolute below
 /// 1 ulp of 1 elsewhere.
 #[inline(always)]
 pub fn sin_versine(angle: f64) -> (f64, f64) {
-    if angle.abs() <= std::f64::consts::FRAC_PI_4 {
-        let z = angle * angle;
-        return (sin_kernel(angle, None), 0.5 * z - z * z * cos_tail(z));
+    if angle.abs() <= SMALL {
+        return (sin_small(angle), versine_small(angle));
     }
     let (sin, cos) = sin_cos_reduced(angle);
     (sin, 1.0 - cos)
 }
 
+/// Sine where |x| ≤ [`SMALL`].
+#[inline(always)]
+pub(crate) fn sin_small(x: f64) -> f64 {
+    sin_kernel(x, None)
+}
+
+/// Cosine where |x| ≤ [`SMALL`].
+#[inline(always)]
+pub(crate) fn cos_small(x: f64) -> f64 {
+    cos_kernel(x, None)
+}
+
+/// 1 − cos x where |x| ≤ [`SMALL`].
+#[inline(always)]
+pub(crate) fn versine_small(x: f64) -> f64 {
+    let z = x * x;
+    0.5 * z - z * z * cos_tail(z)
+}
+
 #[inline]
 fn sin_cos_reduced(angle: f64) -> (f64, f64) {
-    if angle.abs().is_nan() || angle.abs() > REDUCIBLE {
-        return libm::sincos(angle);
-    }
+    // Not a number is beyond it as well.
+    if angle.abs() <= REDUCIBLE { sin_cos_reducible(angle) } else { libm::sincos(angle) }
+}
+
+/// Sine and cosine where |angle| ≤ [`REDUCIBLE`], without a branch; the bits of [`sin_cos`].
+#[inline(always)]
+pub(crate) fn sin_cos_reducible(angle: f64) -> (f64, f64) {
     let rounded = angle * std::f64::consts::FRAC_2_PI + ROUNDING;
     let n = rounded - ROUNDING;
-    let quadrant = rounded.to_bits() & 3;
     let first = angle - n * HALF_PI_HIGH;
     let correction = n * HALF_PI_MIDDLE;
     let second = first - correction;
@@ -51,12 +72,18 @@ fn sin_cos_reduced(angle: f64) -> (f64, f64) {
     let reduced = second - rest;
     let tail = (second - reduced) - rest;
     let (sin, cos) = (sin_kernel(reduced, Some(tail)), cos_kernel(reduced, Some(tail)));
-    match quadrant {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
-    }
+    let quadrant = rounded.to_bits();
+    let (first, second) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };
+    // sin changes its sign in quadrants 2 and 3, cos in 1 and 2.
+    let flip = |value: f64, flips: u64| f64::from_bits(value.to_bits() ^ ((flips & 2) << 62));
+    (flip(first, quadrant), flip(second, quadrant + 1))
+}
+
+/// sin u and 1 − cos u where |angle| ≤ [`REDUCIBLE`], without a branch; the bits of [`sin_versine`].
+#[inline(always)]
+pub(crate) fn sin_versine_reducible(angle: f64) -> (f64, f64) {
+    let (sin, cos) = sin_cos_reducible(angle);
+    (sin, if angle.abs() <= SMALL { versine_small(angle) } else { 1.0 - cos })
 }
 
 /// sin(x + tail) for |x| ≤ π/4. Terms are paired rather than nested: half the latency, the same error; and a tail of zero
@@ -156,6 +183,18 @@ mod tests {
             assert!(ulps(versine, 2.0 * half * half) <= 3.0 && ulps(sin, -libm::sin(angle)) <= 1.0, "{angle}");
         }
         assert_eq!(sin_versine(2.0), (sin_cos(2.0).0, 1.0 - sin_cos(2.0).1));
+    }
+
+    #[test]
+    fn without_a_branch_the_bits_are_the_same() {
+        let mut angle = 1e-9;
+        while angle < REDUCIBLE {
+            for signed in [angle, -angle] {
+                assert_eq!(sin_cos(signed), sin_cos_reducible(signed));
+                assert_eq!(sin_versine(signed), sin_versine_reducible(signed));
+            }
+            angle *= 1.000_93;
+        }
     }
 
     #[test]

@@ -266,9 +266,9 @@ pub const FIELDS: [Field; 28] = [
         availability: Availability::Only(Value::Number(0.0)), ..BLANK },
     Field { name: Name::NoiseModel, path: "noise.model", title: "Noise model",
         about: "Whether the table meets the object early or late, or carries out a plan made for another time",
-        kind: Kind::Choice(&["strike", "plan"]), ..BLANK },
+        kind: Kind::Choice(&["strike", "plan"]), availability: Availability::None, ..BLANK },
     Field { name: Name::Seed, path: "noise.seed", title: "Seed", about: "Seed of the noise",
-        kind: Kind::Integer { maximum: (1 << 53) - 1 }, ..BLANK },
+        kind: Kind::Integer { maximum: (1 << 53) - 1 }, availability: Availability::None, ..BLANK },
 ];
 
 #[cfg(test)]

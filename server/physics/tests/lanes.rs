@@ -1,0 +1,97 @@
+//! Lanes and one orbit alone are the same: outcome, number of contacts and largest angle, bit for bit, over random rods.
+
+use equipoise_physics::impact::{Rod, State};
+use equipoise_physics::map::{Orbit, Rules, run};
+use equipoise_physics::sweep::{End, Outcome, Start, sweep};
+use proptest::prelude::*;
+
+prop_compose! {
+    fn starts()(
+        length in 0.02..2.0_f64, ratio in 0.2..1.5, tilt_gain in -0.5..2.5, near in any::<bool>(),
+        theta in -1.0..1.0, x_dot in -1.0..1.0, y_dot in -4.0..-0.2, theta_dot in -30.0..30.0,
+        energy_gain in prop_oneof![Just(0.0), 0.0..0.3], restitution in 0.2..1.0, above in 1.2..3.0,
+    ) -> Start {
+        let scale = if near { 0.05 } else { 1.0 };
+        Start {
+            rod: Rod {
+                contact_distance: length,
+                radius_of_gyration: length * ratio,
+                gravity: 9.81,
+                restitution,
+                tilt_gain,
+                strike_gain: 2.0,
+                strike_gain_per_energy: (1.0 + restitution) * energy_gain,
+                target_energy: 9.81 * length * above,
+            },
+            rules: Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true },
+            state: State { theta: theta * scale, x_dot: x_dot * scale, y_dot, theta_dot: theta_dot * scale },
+        }
+    }
+}
+
+fn alone(start: &Start, impacts: u64) -> End {
+    let mut orbit = Orbit::at(start.rod, start.rules, start.state);
+    let mut max_theta: f64 = 0.0;
+    let ending = run(&mut orbit, impacts, |contact| {
+        max_theta = max_theta.max(contact.state.theta.abs());
+        true
+    });
+    End { impacts: orbit.contacts(), outcome: ending.unwrap().into(), max_theta }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn lanes_are_orbits(starts in prop::collection::vec(starts(), 1..60), impacts in 1..400_u64) {
+        let mut ends = vec![None; starts.len()];
+        let mut next = starts.iter().copied().enumerate();
+        sweep(impacts, || next.next(), |number, end| ends[number] = Some(end), || true);
+        for (start, end) in starts.iter().zip(ends) {
+            prop_assert_eq!(end, Some(alone(start, impacts)), "{:?}", start);
+        }
+    }
+}
+
+#[test]
+fn every_outcome_of_a_lane_occurs_and_a_sweep_can_be_stopped() {
+    let rod = Rod {
+        contact_distance: 0.4 / 3.0,
+        radius_of_gyration: 0.094,
+        gravity: 9.81,
+        restitution: 1.0,
+        tilt_gain: 1.1,
+        strike_gain: 2.0,
+        strike_gain_per_energy: 0.0,
+        target_energy: 0.0,
+    };
+    let rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true };
+    let state = |theta, y_dot, theta_dot| State { theta, x_dot: 0.0, y_dot, theta_dot };
+    let start = |rod, state| Start { rod, rules, state };
+    let wild = Rod { strike_gain_per_energy: 1e8, target_energy: 1e8, ..rod };
+    let starts = [
+        (start(rod, state(0.1, -1.0, 0.0)), Outcome::Completed),
+        (start(rod, state(1.6, -1.0, 0.0)), Outcome::Toppled),
+        (start(rod, state(0.0, 1.0, 0.0)), Outcome::Separating),
+        (start(Rod { tilt_gain: 3.0, ..rod }, state(0.4, -1.0, 0.0)), Outcome::Sinking),
+        (start(wild, state(0.1, -1.0, 0.0)), Outcome::Diverged),
+    ];
+    let mut next = starts.iter().map(|(start, _)| *start).enumerate();
+    let mut seen = vec![None; starts.len()];
+    sweep(100, || next.next(), |number, end| seen[number] = Some(end.outcome), || true);
+    for ((start, outcome), seen) in starts.iter().zip(seen) {
+        assert_eq!(seen, Some(*outcome));
+        assert_eq!(alone(start, 100).outcome, *outcome);
+    }
+    let mut asked = 0;
+    sweep(
+        u64::MAX,
+        || Some((0, starts[0].0)),
+        |_, _| (),
+        || {
+            asked += 1;
+            asked < 5
+        },
+    );
+    assert_eq!(asked, 5);
+}
