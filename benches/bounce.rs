@@ -8,6 +8,7 @@ use equipoise_physics::impact::{Rod, State};
 use equipoise_physics::jacobian::jacobian;
 use equipoise_physics::map::{Orbit, Release, Rules, run};
 use equipoise_physics::model::Model;
+use equipoise_physics::sweep::{Start, sweep};
 
 const BOUNCES: u64 = 1000;
 
@@ -73,5 +74,23 @@ fn sine_and_cosine(bencher: Bencher, whose: &str) {
             let (sin, cos) = function(angle);
             0.3 + 1e-9 * (sin + cos)
         })
+    });
+}
+
+/// Eight rods side by side with survival bookkeeping, on one core: what a region runs. Items are bounces.
+#[divan::bench]
+fn lanes(bencher: Bencher) {
+    const RUNS: u64 = 32;
+    let state = |theta| State { theta, x_dot: 0.0, y_dot: -1.15, theta_dot: 0.0 };
+    bencher.counter(ItemsCount::new(RUNS * BOUNCES)).bench(|| {
+        let mut left = RUNS;
+        let next = || {
+            left = left.checked_sub(1)?;
+            let rod = Rod { tilt_gain: black_box(1.1 + 0.01 * left as f64), ..CASE_1 };
+            Some((0, Start { rod, rules: RULES, state: state(0.002 * left as f64) }))
+        };
+        let mut survived = 0;
+        sweep(BOUNCES, next, |_, end| survived += end.impacts, || true);
+        assert_eq!(survived, RUNS * BOUNCES);
     });
 }
