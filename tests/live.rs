@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use equipoise::config::Config;
 use equipoise::routes::App;
@@ -417,6 +417,20 @@ async fn a_run_that_settles_ends_without_spinning() {
     let impacts = end["outcome"]["impacts"].as_u64().unwrap();
     assert_eq!(numbers(&client.rows), (1..=impacts).collect::<Vec<_>>());
     assert!(app.metrics.bounces.get() <= impacts + 1);
+}
+
+#[tokio::test]
+async fn a_run_of_a_million_bounces_a_second_takes_no_core() {
+    let (app, address) = start().await;
+    let begin = Instant::now();
+    let low = "scene.release.theta=0&scene.release.height=0.133333334&speed=20";
+    let mut client = open(address, &format!("/v1/live?preset=case-1&{low}")).await;
+    let seen = numbers(&client.impacts(2000).await);
+    assert_eq!(seen, (1..=2000).collect::<Vec<_>>());
+    let batches = begin.elapsed().as_secs_f64() / limits::LIVE_BATCH_TIME.as_secs_f64();
+    // Those at its beginning were due at once.
+    let most = (batches + 3.0) * limits::LIVE_BATCH as f64 + limits::INLINE_BOUNCES as f64;
+    assert!((app.metrics.bounces.get() as f64) < most, "{} {most}", app.metrics.bounces.get());
 }
 
 #[tokio::test]

@@ -227,7 +227,7 @@ impl Session {
             self.next_pump = begin + self.place.bounds.idle;
             return;
         };
-        self.catching_up &= t <= self.came_at;
+        self.catching_up &= t <= self.came_at.min(run_time);
         let batch = begin + limits::LIVE_BATCH_TIME;
         if t <= run_time {
             self.next_pump = batch;
