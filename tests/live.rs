@@ -2,174 +2,18 @@
 //!
 //! Wall-clock times are never asserted, only order and content; runs go fast so that nobody waits.
 
-use std::collections::BTreeMap;
-use std::net::SocketAddr;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+mod support;
 
-use equipoise::config::Config;
-use equipoise::routes::App;
-use equipoise::{limits, router, transport};
-use futures_util::{SinkExt, StreamExt};
+use std::time::{Duration, Instant};
+
+use equipoise::limits;
+use futures_util::SinkExt;
 use serde_json::{Value, json};
+use support::socket::{Row, SOON, now_ms, numbers, open, refused, start, try_open};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
-use tokio::net::{TcpListener, TcpStream};
+use tokio::net::TcpStream;
 use tokio::time::timeout;
-use tokio_tungstenite::tungstenite::client::IntoClientRequest;
-use tokio_tungstenite::tungstenite::{Error, Message};
-use tokio_tungstenite::{WebSocketStream, client_async};
-
-const SOON: Duration = Duration::from_secs(20);
-
-/// A server on a free port.
-async fn start() -> (App, SocketAddr) {
-    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
-    let address = listener.local_addr().unwrap();
-    let app = App::new(&Config::default());
-    tokio::spawn(transport::serve(listener, router::router(app.clone()), std::future::pending()));
-    (app, address)
-}
-
-struct Client {
-    socket: WebSocketStream<TcpStream>,
-    /// Rows that came in one message and have not been asked for.
-    rows: Vec<Row>,
-}
-
-/// The numbers of an impact by the names that columns have.
-type Row = BTreeMap<String, Value>;
-
-async fn try_open(
-    address: SocketAddr,
-    url: &str,
-    headers: &[(&'static str, &str)],
-) -> Result<(Client, Option<String>), Error> {
-    let mut request = format!("ws://{address}{url}").into_client_request().unwrap();
-    for (name, value) in headers {
-        request.headers_mut().insert(*name, value.parse().unwrap());
-    }
-    let stream = TcpStream::connect(address).await.unwrap();
-    let (socket, response) = client_async(request, stream).await?;
-    let protocol = response.headers().get("sec-websocket-protocol").map(|value| value.to_str().unwrap().to_owned());
-    Ok((Client { socket, rows: vec![] }, protocol))
-}
-
-async fn open(address: SocketAddr, url: &str) -> Client {
-    try_open(address, url, &[]).await.unwrap().0
-}
-
-/// The problem with which a handshake is refused.
-async fn refused(address: SocketAddr, url: &str, headers: &[(&'static str, &str)]) -> Value {
-    match try_open(address, url, headers).await {
-        Err(Error::Http(response)) => {
-            let status = response.status().as_u16();
-            let problem: Value = serde_json::from_slice(response.body().as_ref().unwrap()).unwrap();
-            assert_eq!(problem["status"], status);
-            problem
-        }
-        Err(other) => panic!("{other}"),
-        Ok(_) => panic!("{url} was not refused"),
-    }
-}
-
-impl Client {
-    async fn send(&mut self, message: Value) {
-        self.socket.send(Message::text(message.to_string())).await.unwrap();
-    }
-
-    /// The next text; none when the server has closed, with its code.
-    async fn hear(&mut self) -> Result<Value, Option<u16>> {
-        loop {
-            match timeout(SOON, self.socket.next()).await.expect("the server is silent") {
-                Some(Ok(Message::Text(text))) => return Ok(serde_json::from_str(&text).unwrap()),
-                Some(Ok(Message::Close(frame))) => return Err(frame.map(|frame| frame.code.into())),
-                Some(Ok(_)) => {}
-                None | Some(Err(_)) => return Err(None),
-            }
-        }
-    }
-
-    async fn next(&mut self) -> Value {
-        self.hear().await.expect("the server has closed")
-    }
-
-    /// The next message of this type; others are passed over.
-    async fn next_of(&mut self, kind: &str) -> Value {
-        loop {
-            let message = self.next().await;
-            if message["type"] == kind {
-                return message;
-            }
-            self.keep(&message);
-        }
-    }
-
-    async fn ask(&mut self, message: Value) -> Value {
-        let of = message["type"].clone();
-        self.send(message).await;
-        let ack = self.next_of("ack").await;
-        assert_eq!(ack["of"], of);
-        ack
-    }
-
-    fn keep(&mut self, message: &Value) {
-        if message["type"] == "impact" {
-            self.rows.push(row(message));
-        } else if message["type"] == "impacts" {
-            self.rows.extend(rows(message));
-        }
-    }
-
-    /// So many impacts, however they come; fewer if the run ends.
-    async fn impacts(&mut self, count: usize) -> Vec<Row> {
-        while self.rows.len() < count {
-            let message = self.next().await;
-            self.keep(&message);
-            if message["type"] == "end" {
-                break;
-            }
-        }
-        let count = count.min(self.rows.len());
-        self.rows.drain(..count).collect()
-    }
-
-    async fn closed(&mut self) -> Option<u16> {
-        loop {
-            match self.hear().await {
-                Ok(_) => {}
-                Err(code) => return code,
-            }
-        }
-    }
-}
-
-fn row(impact: &Value) -> Row {
-    let mut row = Row::new();
-    for name in ["n", "t", "alpha", "flight_time", "energy", "contact_speed"] {
-        row.insert(name.to_owned(), impact[name].clone());
-    }
-    for name in ["x", "theta", "x_dot", "y_dot", "theta_dot"] {
-        row.insert(name.to_owned(), impact["before"][name].clone());
-    }
-    for name in ["x_dot", "y_dot", "theta_dot"] {
-        row.insert(format!("{name}_after"), impact["after"][name].clone());
-    }
-    row
-}
-
-fn rows(message: &Value) -> Vec<Row> {
-    let columns = message["columns"].as_object().unwrap();
-    let count = columns["n"].as_array().unwrap().len();
-    let cell = |index: usize| columns.iter().map(move |(name, cells)| (name.clone(), cells[index].clone())).collect();
-    (0..count).map(cell).collect()
-}
-
-fn numbers(rows: &[Row]) -> Vec<u64> {
-    rows.iter().map(|row| row["n"].as_u64().unwrap()).collect()
-}
-
-fn now_ms() -> u64 {
-    u64::try_from(SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_millis()).unwrap()
-}
+use tokio_tungstenite::tungstenite::Message;
 
 /// A run of case 1 that began so many seconds ago.
 fn old(seconds: u64) -> String {
@@ -426,7 +270,7 @@ async fn a_run_of_a_million_bounces_a_second_takes_no_core() {
     let low = "scene.release.theta=0&scene.release.height=0.133333334&speed=20";
     let mut client = open(address, &format!("/v1/live?preset=case-1&{low}")).await;
     let seen = numbers(&client.impacts(2000).await);
-    assert_eq!(seen, (1..=2000).collect::<Vec<_>>());
+    assert!(seen.into_iter().eq(1..=2000), "nothing is left out for a client that keeps up");
     let batches = begin.elapsed().as_secs_f64() / limits::LIVE_BATCH_TIME.as_secs_f64();
     // Those at its beginning were due at once.
     let most = (batches + 3.0) * limits::LIVE_BATCH as f64 + limits::INLINE_BOUNCES as f64;

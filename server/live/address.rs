@@ -31,7 +31,7 @@ const CLOCK_ROOM: usize = limits::LIVE_CLOCK_ENTRIES * 100 + 40;
 pub struct Asked {
     /// The run.
     pub run: Run,
-    /// The first impact that it wants to see; none is now.
+    /// The first impact that it wants to see; none is the last one so far.
     pub from: Option<u64>,
 }
 
@@ -39,13 +39,14 @@ pub struct Asked {
 pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<Asked> {
     let scene = scene::read(reader);
     let speed = reader.number("speed", SPEEDS, "").unwrap_or(1.0);
-    let epoch = reader.integer("epoch", 0..=LARGEST_EXACT).unwrap_or(now);
-    let from = reader.integer("from", 1..=limits::LIVE_IMPACTS);
+    let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
+    // Of a run that begins with this request, nothing is missed.
+    let from = reader.integer("from", 1..=limits::LIVE_IMPACTS).or(epoch.is_none().then_some(1));
     let mut interventions = Vec::new();
     reader.objects("interventions", limits::LIVE_INTERVENTIONS, |_, item| interventions.push(intervention(item)));
     let mut entries = Vec::new();
     reader.objects("clock", limits::LIVE_CLOCK_ENTRIES, |_, item| entries.push(clock_entry(item)));
-    let mut run = Run::new(scene?, Clock::new(epoch, speed));
+    let mut run = Run::new(scene?, Clock::new(epoch.unwrap_or(now), speed));
     for (index, read) in interventions.into_iter().enumerate() {
         let Some((impact, set, kick)) = read else { continue };
         let pointer = format!("{}/{index}", reader.pointer_to("interventions"));
@@ -329,7 +330,7 @@ mod tests {
     #[test]
     fn the_defaults_are_now_at_normal_speed() {
         let asked = read_url("/v1/live?preset=case-1").unwrap();
-        assert_eq!((asked.run.clock, asked.from), (Clock::new(NOW, 1.0), None));
+        assert_eq!((asked.run.clock, asked.from), (Clock::new(NOW, 1.0), Some(1)));
     }
 
     #[test]

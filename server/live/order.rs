@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 
 use super::address::{read_kick, read_set};
 use super::clock::SPEEDS;
+use crate::http::reader::join;
 use crate::http::{Errors, Problem, Reader, Source, json};
 
 /// What a client can say.
@@ -89,6 +90,9 @@ impl Order {
             }
             Type::Set => {
                 let paths: Map<String, Value> = fields.clone().into_iter().filter(|(key, _)| key != "type").collect();
+                for (key, _) in paths.iter().filter(|(_, value)| value.is_object()) {
+                    errors.push(join("", key), "an object has no place here; name fields by dotted path");
+                }
                 read_set(&paths, "", Source::Json, &mut errors).map(Order::Set)
             }
         };
@@ -125,7 +129,7 @@ mod tests {
         assert_eq!(Order::read(r#"{"type":"pause"}"#).unwrap(), Order::Pause);
         assert_eq!(Order::read(r#"{"type":"speed","value":2}"#).unwrap(), Order::Speed(2.0));
         assert_eq!(
-            Order::read(r#"{"type":"set","table.tilt_gain":1.3,"contact":{"restitution":0.5}}"#).unwrap(),
+            Order::read(r#"{"type":"set","table.tilt_gain":1.3,"contact.restitution":0.5}"#).unwrap(),
             Order::Set(vec![(Name::Restitution, FieldValue::Number(0.5)), (Name::TiltGain, FieldValue::Number(1.3))])
         );
         let kick = Kick { theta_dot: 0.5, ..Kick::default() };
@@ -144,7 +148,7 @@ mod tests {
             (r#"{"type":"speed","value":0}"#, vec!["/value"]),
             (r#"{"type":"set"}"#, vec![""]),
             (r#"{"type":"set","table.tilt_gain":"1"}"#, vec!["/table.tilt_gain"]),
-            (r#"{"type":"set","table.tilt_gain":1,"table":{"tilt_gain":2}}"#, vec![""]),
+            (r#"{"type":"set","table":{"tilt_gain":2}}"#, vec!["/table"]),
             (
                 r#"{"type":"set","gravity":1,"colour":2,"table.tilt_gain":null}"#,
                 vec!["/colour", "/gravity", "/table.tilt_gain"],

@@ -136,8 +136,8 @@ async fn a_silent_client_is_pinged_and_then_given_up() {
 async fn a_client_that_answers_pings_stays_until_it_is_idle() {
     let bounds = Bounds {
         ping: Duration::from_millis(50),
-        silence: Duration::from_millis(400),
-        idle: Duration::from_millis(1500),
+        silence: Duration::from_secs(1),
+        idle: Duration::from_millis(2000),
         ..Bounds::default()
     };
     let mut client = open(now("case-1", 1.0), bounds);

@@ -7,6 +7,7 @@
 
 pub(crate) mod contract;
 pub(crate) mod csv;
+pub(crate) mod socket;
 
 use std::io::Read;
 

@@ -1,0 +1,182 @@
+//! A live client over a real socket. Every message that it hears is held to `openapi.yaml`.
+//!
+//! Not here: what a session says; that stands in `live.rs`.
+
+use std::collections::BTreeMap;
+use std::net::SocketAddr;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use equipoise::config::Config;
+use equipoise::routes::App;
+use equipoise::{router, transport};
+use futures_util::{SinkExt, StreamExt};
+use serde_json::{Value, json};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::time::timeout;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest;
+use tokio_tungstenite::tungstenite::{Error, Message};
+use tokio_tungstenite::{WebSocketStream, client_async};
+
+use super::contract;
+
+pub(crate) const SOON: Duration = Duration::from_secs(20);
+
+/// A server on a free port.
+pub(crate) async fn start() -> (App, SocketAddr) {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let address = listener.local_addr().unwrap();
+    let app = App::new(&Config::default());
+    tokio::spawn(transport::serve(listener, router::router(app.clone()), std::future::pending()));
+    (app, address)
+}
+
+pub(crate) struct Client {
+    pub(crate) socket: WebSocketStream<TcpStream>,
+    /// Rows that came in one message and have not been asked for.
+    pub(crate) rows: Vec<Row>,
+}
+
+/// The numbers of an impact by the names that columns have.
+pub(crate) type Row = BTreeMap<String, Value>;
+
+pub(crate) async fn try_open(
+    address: SocketAddr,
+    url: &str,
+    headers: &[(&'static str, &str)],
+) -> Result<(Client, Option<String>), Error> {
+    let mut request = format!("ws://{address}{url}").into_client_request().unwrap();
+    for (name, value) in headers {
+        request.headers_mut().insert(*name, value.parse().unwrap());
+    }
+    let stream = TcpStream::connect(address).await.unwrap();
+    let (socket, response) = client_async(request, stream).await?;
+    let protocol = response.headers().get("sec-websocket-protocol").map(|value| value.to_str().unwrap().to_owned());
+    Ok((Client { socket, rows: vec![] }, protocol))
+}
+
+pub(crate) async fn open(address: SocketAddr, url: &str) -> Client {
+    try_open(address, url, &[]).await.unwrap().0
+}
+
+/// The problem with which a handshake is refused.
+pub(crate) async fn refused(address: SocketAddr, url: &str, headers: &[(&'static str, &str)]) -> Value {
+    match try_open(address, url, headers).await {
+        Err(Error::Http(response)) => {
+            let status = response.status().as_u16();
+            let problem: Value = serde_json::from_slice(response.body().as_ref().unwrap()).unwrap();
+            assert_eq!(problem["status"], status);
+            problem
+        }
+        Err(other) => panic!("{other}"),
+        Ok(_) => panic!("{url} was not refused"),
+    }
+}
+
+impl Client {
+    pub(crate) async fn send(&mut self, message: Value) {
+        self.socket.send(Message::text(message.to_string())).await.unwrap();
+    }
+
+    /// The next text; none when the server has closed, with its code.
+    pub(crate) async fn hear(&mut self) -> Result<Value, Option<u16>> {
+        loop {
+            match timeout(SOON, self.socket.next()).await.expect("the server is silent") {
+                Some(Ok(Message::Text(text))) => return Ok(held(&text)),
+                Some(Ok(Message::Close(frame))) => return Err(frame.map(|frame| frame.code.into())),
+                Some(Ok(_)) => {}
+                None | Some(Err(_)) => return Err(None),
+            }
+        }
+    }
+
+    pub(crate) async fn next(&mut self) -> Value {
+        self.hear().await.expect("the server has closed")
+    }
+
+    /// The next message of this type; others are passed over.
+    pub(crate) async fn next_of(&mut self, kind: &str) -> Value {
+        loop {
+            let message = self.next().await;
+            if message["type"] == kind {
+                return message;
+            }
+            self.keep(&message);
+        }
+    }
+
+    pub(crate) async fn ask(&mut self, message: Value) -> Value {
+        let of = message["type"].clone();
+        self.send(message).await;
+        let ack = self.next_of("ack").await;
+        assert_eq!(ack["of"], of);
+        ack
+    }
+
+    fn keep(&mut self, message: &Value) {
+        if message["type"] == "impact" {
+            self.rows.push(row(message));
+        } else if message["type"] == "impacts" {
+            self.rows.extend(rows(message));
+        }
+    }
+
+    /// So many impacts, however they come; fewer if the run ends.
+    pub(crate) async fn impacts(&mut self, count: usize) -> Vec<Row> {
+        while self.rows.len() < count {
+            let message = self.next().await;
+            self.keep(&message);
+            if message["type"] == "end" {
+                break;
+            }
+        }
+        let count = count.min(self.rows.len());
+        self.rows.drain(..count).collect()
+    }
+
+    pub(crate) async fn closed(&mut self) -> Option<u16> {
+        loop {
+            match self.hear().await {
+                Ok(_) => {}
+                Err(code) => return code,
+            }
+        }
+    }
+}
+
+/// A message that is as the contract says.
+fn held(text: &str) -> Value {
+    let message: Value = serde_json::from_str(text).unwrap();
+    let name = format!("#/components/schemas/live.{}", message["type"].as_str().unwrap());
+    let faults = contract::faults(&json!({"$ref": name}), &message);
+    assert!(faults.is_empty(), "{faults:?} in {text}");
+    message
+}
+
+fn row(impact: &Value) -> Row {
+    let mut row = Row::new();
+    for name in ["n", "t", "alpha", "flight_time", "energy", "contact_speed"] {
+        row.insert(name.to_owned(), impact[name].clone());
+    }
+    for name in ["x", "theta", "x_dot", "y_dot", "theta_dot"] {
+        row.insert(name.to_owned(), impact["before"][name].clone());
+    }
+    for name in ["x_dot", "y_dot", "theta_dot"] {
+        row.insert(format!("{name}_after"), impact["after"][name].clone());
+    }
+    row
+}
+
+fn rows(message: &Value) -> Vec<Row> {
+    let columns = message["columns"].as_object().unwrap();
+    let count = columns["n"].as_array().unwrap().len();
+    let cell = |index: usize| columns.iter().map(move |(name, cells)| (name.clone(), cells[index].clone())).collect();
+    (0..count).map(cell).collect()
+}
+
+pub(crate) fn numbers(rows: &[Row]) -> Vec<u64> {
+    rows.iter().map(|row| row["n"].as_u64().unwrap()).collect()
+}
+
+pub(crate) fn now_ms() -> u64 {
+    u64::try_from(SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_millis()).unwrap()
+}
