@@ -50,6 +50,19 @@ pub const SAMPLES_PER_FLIGHT: u64 = 256;
 /// Work of one request, in bounces of the plain rod (some 70 ns each): two seconds of one core.
 pub const WORK: Limit = Limit { name: "work of this request", most: 30_000_000, unit: "bounces" };
 
+/// Work of one region, in bounces of lanes, a sixth of a plain one each: some 20 s of two cores for a million cells of
+/// 2000 contacts. It is the one request that may take long; it is stopped as soon as its client is gone.
+pub const REGION_WORK: Limit = Limit { name: "work of this region", most: 2_000_000_000, unit: "bounces" };
+
+/// Values of one side of a region. More than a screen has pixels; larger maps are tiles put together.
+pub const REGION_SIDE: u64 = 4096;
+
+/// Cells of one block of rows, the piece of a region that a thread takes at a time.
+pub const REGION_BLOCK_CELLS: usize = 2048;
+
+/// Nodes along a side of the grid on which the linear boundary of a region is found.
+pub const REGION_BOUNDARY_NODES: usize = 49;
+
 /// Numbers in one answer (columns times rows). JSON takes some 20 bytes for each, so 80 MB, held in memory until sent.
 pub const ANSWER: Limit = Limit { name: "size of the answer", most: 4_000_000, unit: "numbers" };
 

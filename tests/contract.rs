@@ -123,10 +123,11 @@ async fn every_example_of_a_parameter_runs() {
             assert!(faults.is_empty(), "{template}: {parameter}: {faults:?}");
             let text = example.as_str().map_or_else(|| example.to_string(), str::to_owned);
             let name = parameter["name"].as_str().unwrap();
-            let start = if template.contains("scenes") || template.contains("fields") || name == "preset" {
-                String::new()
-            } else {
-                "preset=case-1&".to_owned()
+            let base = operation["x-base-query"].as_str().unwrap_or("preset=case-1");
+            let start = match (template.contains("scenes") || template.contains("fields"), name) {
+                (true, _) => String::new(),
+                (_, "preset") => format!("{}&", base.trim_start_matches("preset=case-1")),
+                _ => format!("{base}&"),
             };
             server.get(&format!("{}?{start}{name}={text}", path(template))).await.expect(200);
         }

@@ -107,6 +107,11 @@ impl Pool {
         })
     }
 
+    /// How many threads work at a time.
+    pub fn permits(&self) -> usize {
+        self.count
+    }
+
     async fn turn(&self) -> Result<(OwnedSemaphorePermit, OwnedSemaphorePermit), Refused> {
         let full = Refused::Full { permits: self.count, places: self.count * limits::QUEUE_PER_PERMIT };
         let place = self.places.clone().try_acquire_owned().map_err(|_| full)?;

@@ -18,6 +18,7 @@ pub mod map;
 pub mod model;
 pub mod number;
 pub mod point;
+pub mod region;
 pub mod scene;
 pub mod stability;
 pub mod sweep;

@@ -45,6 +45,17 @@ pub enum Outcome {
     Diverged,
 }
 
+impl Outcome {
+    /// All of them, each at the place of its number.
+    pub const ALL: [Self; 6] =
+        [Self::Completed, Self::Toppled, Self::Separating, Self::Sinking, Self::Settled, Self::Diverged];
+
+    /// Its name in answers, that of the [`Ending`].
+    pub fn name(self) -> &'static str {
+        ["completed", "toppled", "separating", "sinking", "settled", "diverged"][self as usize]
+    }
+}
+
 impl From<Ending> for Outcome {
     fn from(ending: Ending) -> Self {
         match ending {

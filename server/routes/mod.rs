@@ -9,6 +9,7 @@ pub mod health;
 pub mod jacobians;
 pub mod live;
 pub mod metrics;
+pub mod regions;
 pub mod scenes;
 pub mod stability;
 pub mod trajectories;
@@ -77,6 +78,7 @@ pub fn all() -> Router<App> {
         .merge(jacobians::routes())
         .merge(live::routes())
         .merge(stability::routes())
+        .merge(regions::routes())
 }
 
 /// An answer as JSON.
@@ -86,6 +88,11 @@ fn json(answer: &impl Serialize) -> Result<Vec<u8>, Problem> {
 
 /// A request with all defaults filled in: the scene, and whatever else determines the answer.
 fn canonical(scene: &Scene, rest: &impl Serialize) -> Vec<u8> {
+    canonical_of(&(Resolved(scene), rest))
+}
+
+/// The same where a scene and the rest do not say it.
+fn canonical_of(request: &impl Serialize) -> Vec<u8> {
     // Writing to memory does not fail.
-    serde_json::to_vec(&(Resolved(scene), rest)).unwrap_or_default()
+    serde_json::to_vec(request).unwrap_or_default()
 }

@@ -5,6 +5,7 @@
 pub mod fields;
 pub mod jacobian;
 pub mod presets;
+pub mod region;
 pub mod scene;
 pub mod stability;
 pub mod table;

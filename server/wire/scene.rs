@@ -17,6 +17,13 @@ const NOT_AVAILABLE: [&str; 2] = ["body.vertices", "body.contact_vertex"];
 ///
 /// None if something is wrong; then it is in the reader's errors.
 pub fn read(reader: &mut Reader<'_, '_>) -> Option<Scene> {
+    let draft = read_draft(reader)?;
+    let pointer = reader.pointer_to("scene");
+    build(draft, &pointer, reader.errors())
+}
+
+/// What a request says of its scene, not yet built: something else may still set a field of it.
+pub fn read_draft(reader: &mut Reader<'_, '_>) -> Option<Draft> {
     let (preset, changes) = (reader.text("preset"), reader.value("scene"));
     let (source, pointer) = (reader.source(), reader.pointer_to("scene"));
     if preset.is_none() && changes.is_none() {
@@ -33,7 +40,7 @@ pub fn read(reader: &mut Reader<'_, '_>) -> Option<Scene> {
         };
         draft = preset.draft();
     }
-    apply(&mut draft, changes, &pointer, source, reader.errors())
+    changes.is_none_or(|changes| merge(&mut draft, changes, &pointer, source, reader.errors())).then_some(draft)
 }
 
 /// Merges `changes`, which stand at `pointer`, onto a draft and builds the scene. Null takes a value back.
@@ -44,13 +51,19 @@ pub fn apply(
     source: Source,
     errors: &mut Errors,
 ) -> Option<Scene> {
+    let merged = changes.is_none_or(|changes| merge(draft, changes, pointer, source, errors));
+    if merged { build(*draft, pointer, errors) } else { None }
+}
+
+/// Whether all of `changes` could be said.
+fn merge(draft: &mut Draft, changes: &Value, pointer: &str, source: Source, errors: &mut Errors) -> bool {
     let before = errors.len();
-    if let Some(changes) = changes {
-        Walk { draft, source, errors }.object(changes, "", pointer);
-    }
-    if errors.len() > before {
-        return None;
-    }
+    Walk { draft, source, errors }.object(changes, "", pointer);
+    errors.len() == before
+}
+
+/// The scene of a draft whose fields stand at `pointer`.
+pub fn build(draft: Draft, pointer: &str, errors: &mut Errors) -> Option<Scene> {
     match draft.build() {
         Ok(scene) => Some(scene),
         Err(found) => {

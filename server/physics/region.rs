@@ -1,0 +1,218 @@
+//! A map of stability over two fields of a scene: how long each cell's run survives, or what the linear analysis says of it.
+//!
+//! Not here: which threads do it, and how it is drawn.
+
+use crate::map::{Body, run};
+use crate::model::Model;
+use crate::scene::{Draft, Name, Scene, Value};
+use crate::stability::Linear;
+use crate::sweep::{End, Outcome, Start, sweep};
+use std::ops::Range;
+
+/// One side of a region: a field and the values it takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    /// The field, one whose values are numbers.
+    pub name: Name,
+    /// Its first value.
+    pub from: f64,
+    /// Its last value.
+    pub to: f64,
+    /// How many values.
+    pub count: usize,
+}
+
+impl Axis {
+    /// Value number `index`, evenly spaced from `from` to `to`, both exact.
+    pub fn value(&self, index: usize) -> f64 {
+        self.at(index as f64 / (self.count.max(2) - 1) as f64)
+    }
+
+    /// The value at a share of the way.
+    fn at(&self, share: f64) -> f64 {
+        if share == 1.0 { self.to } else { self.from + (self.to - self.from) * share }
+    }
+}
+
+/// What a cell shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Contacts survived.
+    Survival,
+    /// Largest |θ| at a contact, rad.
+    MaxTheta,
+    /// Greene's residue at the fixed point.
+    Residue,
+    /// Largest modulus of an eigenvalue at the fixed point.
+    SpectralRadius,
+}
+
+/// A region: a scene, two of its fields, and for how many contacts each run is watched.
+#[derive(Clone, Copy, Debug)]
+pub struct Region {
+    /// Everything but the two fields.
+    pub scene: Draft,
+    /// The field that grows along a row.
+    pub x: Axis,
+    /// The field that grows from row to row.
+    pub y: Axis,
+    /// Contacts.
+    pub impacts: u64,
+    /// What the cells show.
+    pub quantity: Quantity,
+}
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Its quantity; none where the scene cannot be, or has no fixed point to ask.
+    pub value: Option<f64>,
+    /// How its run ended; none where there was no run.
+    pub outcome: Option<Outcome>,
+}
+
+const NOTHING: Cell = Cell { value: None, outcome: None };
+
+impl Region {
+    /// The scene of a cell, if it can be: a release may lie below the table, a target height be missing.
+    pub fn scene(&self, column: usize, row: usize) -> Option<Scene> {
+        self.scene_at(self.x.value(column), self.y.value(row))
+    }
+
+    fn scene_at(&self, x: f64, y: f64) -> Option<Scene> {
+        let mut draft = self.scene;
+        draft.set(self.x.name, Some(Value::Number(x))).ok()?;
+        draft.set(self.y.name, Some(Value::Number(y))).ok()?;
+        draft.build().ok()
+    }
+
+    /// The cells of some rows, one row after the other; none if `go_on` said `false`, which is asked every few thousand
+    /// bounces.
+    pub fn cells(&self, rows: Range<usize>, mut go_on: impl FnMut() -> bool) -> Option<Vec<Cell>> {
+        let first = rows.start * self.x.count;
+        let mut cells = vec![NOTHING; rows.len() * self.x.count];
+        if matches!(self.quantity, Quantity::Residue | Quantity::SpectralRadius) {
+            for (index, cell) in cells.iter_mut().enumerate() {
+                if index.is_multiple_of(4096) && !go_on() {
+                    return None;
+                }
+                cell.value = self.linear((first + index) % self.x.count, (first + index) / self.x.count);
+            }
+            return Some(cells);
+        }
+        let (mut next, mut alone, mut stopped) = (0, Vec::new(), false);
+        let count = cells.len();
+        let start = || {
+            while next < count {
+                let index = next;
+                next += 1;
+                let (column, row) = ((first + index) % self.x.count, (first + index) / self.x.count);
+                let Some(scene) = self.scene(column, row) else { continue };
+                match start_of(&scene) {
+                    Some(start) => return Some((index, start)),
+                    None => alone.push((index, scene)),
+                }
+            }
+            None
+        };
+        sweep(
+            self.impacts,
+            start,
+            |index, end| cells[index] = self.cell(&end),
+            || {
+                stopped = !go_on();
+                !stopped
+            },
+        );
+        for (index, scene) in alone {
+            let end = if stopped { None } else { run_alone(&scene, self.impacts, &mut go_on) };
+            stopped |= end.is_none();
+            cells[index] = end.map_or(NOTHING, |end| self.cell(&end));
+        }
+        (!stopped).then_some(cells)
+    }
+
+    fn cell(&self, end: &End) -> Cell {
+        let value = if self.quantity == Quantity::MaxTheta { end.max_theta } else { end.impacts as f64 };
+        Cell { value: Some(value), outcome: Some(end.outcome) }
+    }
+
+    fn linear(&self, column: usize, row: usize) -> Option<f64> {
+        let linear = linear(&self.scene(column, row)?)?;
+        if self.quantity == Quantity::Residue { linear.residue } else { Some(linear.spectral_radius()) }
+    }
+
+    /// Where the residue is 0 or 1, the ends of the linear verdict, as line segments (residue, from, to) of points (x, y).
+    ///
+    /// From a grid of at most `nodes` × `nodes` over the whole region, with every crossing of an edge refined to 1e-12 of
+    /// the region.
+    pub fn boundary(&self, nodes: usize) -> Vec<(f64, [f64; 2], [f64; 2])> {
+        let residue = |u: f64, v: f64| {
+            let scene = self.scene_at(self.x.at(u), self.y.at(v))?;
+            linear(&scene)?.residue
+        };
+        let (columns, rows) = (self.x.count.clamp(2, nodes), self.y.count.clamp(2, nodes));
+        let place = |index: usize, count: usize| index as f64 / (count - 1) as f64;
+        let grid: Vec<Option<f64>> = (0..rows * columns)
+            .map(|index| residue(place(index % columns, columns), place(index / columns, rows)))
+            .collect();
+        let mut segments = Vec::new();
+        for level in [0.0, 1.0] {
+            for row in 0..rows - 1 {
+                for column in 0..columns - 1 {
+                    let corners = [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)];
+                    let mut crossings = Vec::new();
+                    for edge in 0..4 {
+                        let (a, b) = (corners[edge], corners[(edge + 1) % 4]);
+                        let (Some(at_a), Some(at_b)) = (grid[a.1 * columns + a.0], grid[b.1 * columns + b.0]) else {
+                            continue;
+                        };
+                        if (at_a < level) != (at_b < level) {
+                            let point = |(column, row): (usize, usize)| [place(column, columns), place(row, rows)];
+                            let crossing = cross(point(a), point(b), |[u, v]| residue(u, v).map(|at| at - level));
+                            crossings.push([self.x.at(crossing[0]), self.y.at(crossing[1])]);
+                        }
+                    }
+                    for pair in crossings.chunks_exact(2) {
+                        segments.push((level, pair[0], pair[1]));
+                    }
+                }
+            }
+        }
+        segments
+    }
+}
+
+fn linear(scene: &Scene) -> Option<Linear> {
+    Some(scene.linear(&scene.fixed_point().ok()?))
+}
+
+/// Where a function changes its sign between two points, by bisection.
+fn cross(mut low: [f64; 2], mut high: [f64; 2], function: impl Fn([f64; 2]) -> Option<f64>) -> [f64; 2] {
+    let negative = |point| function(point).is_some_and(|value| value < 0.0);
+    let side = negative(low);
+    let middle = |low: [f64; 2], high: [f64; 2]| [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
+    for _ in 0..40 {
+        let between = middle(low, high);
+        if negative(between) == side { low = between } else { high = between }
+    }
+    middle(low, high)
+}
+
+/// The start of a run that can go in a lane.
+fn start_of(scene: &Scene) -> Option<Start> {
+    let Model::Rod(rod) = scene.model() else { return None };
+    let (_, state) = rod.fall(scene.release()).ok()?;
+    let start = Start { rod, rules: scene.rules(), state };
+    start.fits().then_some(start)
+}
+
+fn run_alone(scene: &Scene, impacts: u64, go_on: &mut impl FnMut() -> bool) -> Option<End> {
+    let mut orbit = scene.orbit().ok()?;
+    let mut max_theta: f64 = 0.0;
+    let ending = run(&mut orbit, impacts, |contact| {
+        max_theta = max_theta.max(contact.state.theta.abs());
+        !contact.n.is_multiple_of(4096) || go_on()
+    })?;
+    Some(End { impacts: orbit.contacts(), outcome: ending.into(), max_theta })
+}

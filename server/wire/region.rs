@@ -1,0 +1,359 @@
+//! The request and the answer of `regions`: two fields of a scene, and what becomes of each pair of their values.
+
+use std::ops::Range;
+
+use equipoise_physics::region::{Axis, Cell, Quantity, Region};
+use equipoise_physics::scene::{Availability, Kind, Scene, field};
+use equipoise_physics::sweep::Outcome;
+use serde::{Serialize, Serializer};
+
+use super::scene::{Resolved, build, read_draft};
+use crate::http::{Errors, Reader};
+use crate::limits;
+
+/// A band of whole rows: number `index`, from 0, of `of`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Tile {
+    /// Which.
+    pub index: u64,
+    /// Of how many.
+    pub of: u64,
+}
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct Request {
+    /// The region.
+    pub region: Region,
+    /// A scene of it that can be, to show.
+    pub scene: Scene,
+    /// Which rows.
+    pub tile: Tile,
+}
+
+/// The name that a cell without a run has among the outcomes.
+const NO_RUN: &str = "none";
+
+impl Request {
+    /// Reads a request.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let draft = read_draft(reader);
+        let axes = [read_axis(reader, "x"), read_axis(reader, "y")];
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(1000);
+        let quantities = [
+            ("survival", Quantity::Survival),
+            ("max_theta", Quantity::MaxTheta),
+            ("residue", Quantity::Residue),
+            ("spectral_radius", Quantity::SpectralRadius),
+        ];
+        let quantity = reader.choice("quantity", &quantities).unwrap_or(Quantity::Survival);
+        let tile = read_tile(reader);
+        let ([Some(x), Some(y)], Some(draft), Some(tile)) = (axes, draft, tile) else { return None };
+        if x.name == y.name {
+            reader.refuse("y", format!("y has the parameter of x, {}; a region needs two", x.name.row().path));
+            return None;
+        }
+        if tile.of > y.count as u64 {
+            reader.refuse("tile", format!("tile has {} bands, but y has only {} rows", tile.of, y.count));
+            return None;
+        }
+        let region = Region { scene: draft, x, y, impacts, quantity };
+        let corners = [(0, 0), (x.count - 1, 0), (0, y.count - 1), (x.count - 1, y.count - 1)];
+        let middle = (x.count / 2, y.count / 2);
+        let possible = corners.into_iter().chain([middle]).find_map(|(column, row)| region.scene(column, row));
+        let Some(scene) = possible else {
+            let mut draft = draft;
+            let mut errors = Errors::default();
+            for axis in [x, y] {
+                // Within its range, so it is admitted.
+                let _ = draft.set(axis.name, Some(equipoise_physics::scene::Value::Number(axis.from)));
+            }
+            build(draft, &reader.pointer_to("scene"), &mut errors);
+            let problem = errors.into_result().err();
+            for error in problem.iter().flat_map(|problem| problem.errors()) {
+                reader
+                    .errors()
+                    .push(error.pointer.clone(), format!("{} (so at all corners of the region)", error.detail));
+            }
+            return None;
+        };
+        Some(Self { region, scene, tile })
+    }
+
+    /// The rows of the tile.
+    pub fn rows(&self) -> Range<usize> {
+        let share = |index: u64| (self.region.y.count as u64 * index / self.tile.of) as usize;
+        share(self.tile.index)..share(self.tile.index + 1)
+    }
+
+    /// How many cells the tile has.
+    pub fn cells(&self) -> u64 {
+        (self.rows().len() * self.region.x.count) as u64
+    }
+
+    /// What its runs cost, in bounces of lanes.
+    pub fn bounces(&self) -> u64 {
+        let runs = matches!(self.region.quantity, Quantity::Survival | Quantity::MaxTheta);
+        self.cells().saturating_mul(if runs { self.region.impacts } else { 10 })
+    }
+}
+
+fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Axis> {
+    if !reader.has(name) {
+        reader.refuse(
+            name,
+            format!("{name} is missing: {{parameter, from, to, count}}, a field of the scene and its values"),
+        );
+        return None;
+    }
+    reader.within(name, |axis| {
+        axis.require(&["parameter", "from", "to", "count"]);
+        let path = axis.text("parameter");
+        let row = path.and_then(field).filter(|row| row.availability == Availability::Full);
+        let range = match row.map(|row| row.kind) {
+            Some(Kind::Number { minimum, maximum }) => Some(minimum..=maximum),
+            _ => None,
+        };
+        if let (Some(path), None) = (path, &range) {
+            axis.refuse("parameter", format!("parameter is {path:?}; it must be a field of a scene whose values are numbers, such as table.tilt_gain"));
+        }
+        // Without a range the ends are read all the same, so that they count as known.
+        let ends = range.clone().unwrap_or(f64::MIN..=f64::MAX);
+        let unit = row.map_or("", |row| row.unit);
+        let (from, to) = (axis.number("from", ends.clone(), unit), axis.number("to", ends, unit));
+        let count = axis.integer("count", 1..=limits::REGION_SIDE);
+        range?;
+        Some(Axis { name: row?.name, from: from?, to: to?, count: usize::try_from(count?).ok()? })
+    })?
+}
+
+fn read_tile(reader: &mut Reader<'_, '_>) -> Option<Tile> {
+    if !reader.has("tile") {
+        return Some(Tile { index: 0, of: 1 });
+    }
+    reader.within("tile", |tile| {
+        tile.require(&["index", "of"]);
+        let (index, of) = (tile.integer("index", 0..=limits::REGION_SIDE), tile.integer("of", 1..=limits::REGION_SIDE));
+        let (index, of) = (index?, of?);
+        if index >= of {
+            tile.refuse("index", format!("index is {index}; it must be from 0 to {}, below `of`", of - 1));
+            return None;
+        }
+        Some(Tile { index, of })
+    })?
+}
+
+/// The answer: the cells of a tile.
+#[derive(Debug)]
+pub struct Answer {
+    request: Request,
+    cells: Vec<Cell>,
+}
+
+impl Answer {
+    /// From the cells of the tile's rows, one row after the other.
+    pub fn new(request: Request, cells: Vec<Cell>) -> Self {
+        Self { request, cells }
+    }
+
+    /// How many bounces its runs took.
+    pub fn bounces(&self) -> u64 {
+        let survival = self.request.region.quantity == Quantity::Survival;
+        self.cells.iter().filter_map(|cell| cell.value).map(|value| if survival { value as u64 } else { 0 }).sum()
+    }
+
+    /// Columns named after the two fields, then value and outcome: a row for each cell.
+    pub fn to_csv(&self) -> Vec<u8> {
+        let Region { x, y, .. } = self.request.region;
+        let quantity = quantity_name(self.request.region.quantity);
+        let mut out = format!("{},{},{quantity},outcome\r\n", x.name.row().path, y.name.row().path).into_bytes();
+        let columns: Vec<String> = (0..x.count).map(|column| written(x.value(column))).collect();
+        let whole = self.is_whole();
+        for (row, cells) in self.rows() {
+            let y = written(y.value(row));
+            for (cell, x) in cells.iter().zip(&columns) {
+                let value = match cell.value {
+                    Some(value) if whole => (value as u64).to_string(),
+                    Some(value) => written(value),
+                    None => String::new(),
+                };
+                out.extend_from_slice(format!("{x},{y},{value},{}\r\n", outcome_name(cell)).as_bytes());
+            }
+        }
+        out
+    }
+
+    /// A line for each row, then `{"end": …}`.
+    pub fn to_ndjson(&self) -> Vec<u8> {
+        #[derive(Serialize)]
+        struct Row<'a> {
+            row: usize,
+            y: f64,
+            values: Values<'a>,
+            outcomes: Outcomes<'a>,
+        }
+        #[derive(Serialize)]
+        struct End {
+            end: Counts,
+        }
+        let mut out = Vec::new();
+        for (row, cells) in self.rows() {
+            let line = Row {
+                row,
+                y: self.request.region.y.value(row),
+                values: Values { cells, whole: self.is_whole() },
+                outcomes: Outcomes(cells),
+            };
+            // Writing to memory does not fail.
+            let _ = serde_json::to_writer(&mut out, &line);
+            out.push(b'\n');
+        }
+        let _ = serde_json::to_writer(&mut out, &End { end: self.counts() });
+        out.push(b'\n');
+        out
+    }
+
+    fn is_whole(&self) -> bool {
+        self.request.region.quantity == Quantity::Survival
+    }
+
+    fn rows(&self) -> impl Iterator<Item = (usize, &[Cell])> {
+        self.request.rows().zip(self.cells.chunks(self.request.region.x.count))
+    }
+
+    fn counts(&self) -> Counts {
+        let mut counts = [0; Outcome::ALL.len() + 1];
+        for cell in &self.cells {
+            counts[code(cell)] += 1;
+        }
+        Counts { counts }
+    }
+}
+
+fn written(value: f64) -> String {
+    serde_json::to_string(&value).unwrap_or_default()
+}
+
+/// The number of a cell's outcome; one more than there are where there was no run.
+fn code(cell: &Cell) -> usize {
+    cell.outcome.map_or(Outcome::ALL.len(), |outcome| outcome as usize)
+}
+
+fn outcome_name(cell: &Cell) -> &'static str {
+    cell.outcome.map_or(NO_RUN, Outcome::name)
+}
+
+fn quantity_name(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Survival => "survival",
+        Quantity::MaxTheta => "max_theta",
+        Quantity::Residue => "residue",
+        Quantity::SpectralRadius => "spectral_radius",
+    }
+}
+
+/// A row of values; contacts are counted, and written as whole numbers.
+struct Values<'a> {
+    cells: &'a [Cell],
+    whole: bool,
+}
+
+impl Serialize for Values<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let values = self.cells.iter().map(|cell| cell.value);
+        if self.whole {
+            serializer.collect_seq(values.map(|value| value.map(|value| value as u64)))
+        } else {
+            serializer.collect_seq(values)
+        }
+    }
+}
+
+struct Outcomes<'a>(&'a [Cell]);
+
+impl Serialize for Outcomes<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.0.iter().map(code))
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Counts {
+    #[serde(serialize_with = "by_name")]
+    counts: [u64; Outcome::ALL.len() + 1],
+}
+
+fn by_name<S: Serializer>(counts: &[u64; Outcome::ALL.len() + 1], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(outcome_names().zip(counts))
+}
+
+fn outcome_names() -> impl Iterator<Item = &'static str> {
+    Outcome::ALL.into_iter().map(Outcome::name).chain([NO_RUN])
+}
+
+/// A line of the linear boundary.
+#[derive(Debug, Serialize)]
+struct Segment {
+    residue: f64,
+    x: [f64; 2],
+    y: [f64; 2],
+}
+
+impl Serialize for Answer {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Side {
+            parameter: &'static str,
+            unit: &'static str,
+            from: f64,
+            to: f64,
+            count: usize,
+        }
+        #[derive(Serialize)]
+        struct Json<'a> {
+            scene: Resolved<'a>,
+            impacts: u64,
+            quantity: &'static str,
+            axes: [Side; 2],
+            tile: Tile,
+            x: Vec<f64>,
+            y: Vec<f64>,
+            values: Vec<Values<'a>>,
+            outcomes: Vec<Outcomes<'a>>,
+            outcome_names: Vec<&'static str>,
+            boundary: Vec<Segment>,
+            #[serde(flatten)]
+            counts: Counts,
+            notes: Vec<String>,
+        }
+        let Request { region, scene, tile } = &self.request;
+        let side = |axis: Axis| {
+            let row = axis.name.row();
+            Side { parameter: row.path, unit: row.unit, from: axis.from, to: axis.to, count: axis.count }
+        };
+        let boundary = region.boundary(limits::REGION_BOUNDARY_NODES);
+        let mut notes = vec!["scene is one of the region; x and y replace its two fields".to_owned()];
+        if self.cells.iter().any(|cell| cell.value.is_none()) {
+            notes.push("a value is null where the scene cannot be, or has no fixed point".to_owned());
+        }
+        Json {
+            scene: Resolved(scene),
+            impacts: region.impacts,
+            quantity: quantity_name(region.quantity),
+            axes: [side(region.x), side(region.y)],
+            tile: *tile,
+            x: (0..region.x.count).map(|column| region.x.value(column)).collect(),
+            y: self.request.rows().map(|row| region.y.value(row)).collect(),
+            values: self.rows().map(|(_, cells)| Values { cells, whole: self.is_whole() }).collect(),
+            outcomes: self.rows().map(|(_, cells)| Outcomes(cells)).collect(),
+            outcome_names: outcome_names().collect(),
+            boundary: boundary
+                .into_iter()
+                .map(|(residue, a, b)| Segment { residue, x: [a[0], b[0]], y: [a[1], b[1]] })
+                .collect(),
+            counts: self.counts(),
+            notes,
+        }
+        .serialize(serializer)
+    }
+}

@@ -1,0 +1,159 @@
+//! Maps of stability: each cell is the run of its own scene, tiles are bands of the whole, threads do not show.
+
+mod support;
+
+use equipoise::compute::fan_out;
+use serde_json::{Value, json};
+use support::Server;
+
+/// Tilt gain over the angle of the release, as the paper's body is explored.
+const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=14\
+                   &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=11&impacts=300";
+
+#[tokio::test]
+async fn a_cell_is_the_run_of_its_scene() {
+    let server = Server::start();
+    let map = server.get(MAP).await.expect(200).json();
+    let names = map["outcome_names"].as_array().unwrap();
+    let mut fell = 0;
+    for (row, theta) in map["y"].as_array().unwrap().iter().enumerate() {
+        for (column, kappa) in map["x"].as_array().unwrap().iter().enumerate() {
+            let scene = json!({"table": {"tilt_gain": kappa}, "release": {"theta": theta}});
+            let run =
+                server.post("/v1/stability", &json!({"preset": "case-1", "scene": scene, "impacts": 300})).await.json();
+            let code = map["outcomes"][row][column].as_u64().unwrap() as usize;
+            assert_eq!(map["values"][row][column], run["nonlinear"]["impacts"], "{kappa} {theta}");
+            assert_eq!(names[code], run["nonlinear"]["outcome"], "{kappa} {theta}");
+            fell += u64::from(names[code] != "completed");
+        }
+    }
+    assert!(fell > 20 && fell < 140, "{fell} of 154 cells fell");
+}
+
+#[tokio::test]
+async fn tiles_put_together_are_the_whole() {
+    let server = Server::start();
+    for quantity in ["survival", "max_theta", "residue", "spectral_radius"] {
+        let target = format!("{MAP}&quantity={quantity}");
+        let whole = server.get(&target).await.json();
+        let csv = server.get(&format!("{target}&format=csv")).await;
+        let ndjson = server.get(&format!("{target}&format=ndjson")).await;
+        let (mut values, mut rows, mut lines) = (Vec::new(), Vec::new(), Vec::new());
+        for index in 0..3 {
+            let tile = format!("{target}&tile.index={index}&tile.of=3");
+            values.extend(server.get(&tile).await.json()["values"].as_array().unwrap().clone());
+            rows.extend(
+                server
+                    .get(&format!("{tile}&format=csv"))
+                    .await
+                    .text()
+                    .lines()
+                    .skip(1)
+                    .map(str::to_owned)
+                    .collect::<Vec<_>>(),
+            );
+            let text = server.get(&format!("{tile}&format=ndjson")).await.text().to_owned();
+            lines.extend(
+                text.lines().filter(|line| !line.starts_with("{\"end\"")).map(str::to_owned).collect::<Vec<_>>(),
+            );
+        }
+        assert_eq!(json!(values), whole["values"], "{quantity}");
+        assert_eq!(rows, csv.text().lines().skip(1).collect::<Vec<_>>(), "{quantity}");
+        assert_eq!(lines, ndjson.text().lines().take(11).collect::<Vec<_>>(), "{quantity}");
+    }
+}
+
+/// The linear boundary over tilt gain and angle is two upright lines: κ = 1 and κ_c, which the angle does not move.
+#[tokio::test]
+async fn the_boundary_is_where_the_residue_is_0_or_1() {
+    let server = Server::start();
+    let map = server.get(MAP).await.json();
+    let segments = map["boundary"].as_array().unwrap();
+    assert!(!segments.is_empty());
+    for segment in segments {
+        let expected = if segment["residue"] == json!(0.0) { 1.0 } else { 1.5 };
+        for x in segment["x"].as_array().unwrap() {
+            assert!((x.as_f64().unwrap() - expected).abs() < 1e-9, "{segment}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn scenes_that_cannot_be_have_no_run() {
+    let server = Server::start();
+    let target = "/v1/regions?preset=case-1&x.parameter=release.height&x.from=0.05&x.to=0.3&x.count=6\
+                  &y.parameter=release.theta&y.from=0&y.to=0.2&y.count=3&impacts=50";
+    let map = server.get(target).await.json();
+    assert!(map["values"][0][0].is_null());
+    assert_eq!(map["outcome_names"][map["outcomes"][0][0].as_u64().unwrap() as usize], "none");
+    assert_eq!(map["values"][0][5], 50);
+    let total: u64 = map["counts"].as_object().unwrap().values().filter_map(Value::as_u64).sum();
+    assert_eq!(total, 18);
+}
+
+/// Scenes that do not fit into lanes run one by one.
+#[tokio::test]
+async fn point_masses_and_still_tables_have_maps_too() {
+    let server = Server::start();
+    for (target, outcome) in [
+        ("preset=point-mass&x.parameter=table.tilt_gain&x.from=0.1&x.to=0.9&x.count=4", "completed"),
+        ("preset=still-lossy&x.parameter=contact.restitution&x.from=0.2&x.to=0.6&x.count=4", "settled"),
+    ] {
+        let target =
+            format!("/v1/regions?{target}&y.parameter=release.height&y.from=0.2&y.to=0.4&y.count=2&impacts=60");
+        let map = server.get(&target).await.json();
+        assert_eq!(map["counts"][outcome], 8, "{}", map["counts"]);
+    }
+}
+
+#[tokio::test]
+async fn what_cannot_be_mapped_is_named() {
+    let server = Server::start();
+    let side = |parameter: &str, to: f64| json!({"parameter": parameter, "from": 1.0, "to": to, "count": 4});
+    let kappa = side("table.tilt_gain", 1.5);
+    for (x, y, pointer) in [
+        (kappa.clone(), kappa.clone(), "/y"),
+        (kappa.clone(), side("table.strike", 1.5), "/y/parameter"),
+        (kappa.clone(), side("contact.friction", 1.5), "/y/parameter"),
+        (side("table.tilt_gain", 1e4), side("release.height", 2.0), "/x/to"),
+        (json!({"parameter": "table.tilt_gain"}), side("release.height", 2.0), "/x/count"),
+    ] {
+        let answer = server.post("/v1/regions", &json!({"preset": "case-1", "x": x, "y": y})).await;
+        assert_eq!(answer.status, 422);
+        let pointers: Vec<_> =
+            answer.json()["errors"].as_array().unwrap().iter().map(|error| error["pointer"].clone()).collect();
+        assert!(pointers.contains(&json!(pointer)), "{pointer}: {pointers:?}");
+    }
+    let huge = "preset=case-1&x.parameter=table.tilt_gain&x.from=1&x.to=2&x.count=4096&y.parameter=release.theta&y.from=0&y.to=1&y.count=400&impacts=100000";
+    let answer = server.get(&format!("/v1/regions?{huge}")).await;
+    assert_eq!(answer.status, 422);
+    assert!(answer.text().contains("the limit is"), "{}", answer.text());
+}
+
+/// The bytes of a map, computed on 1, 2, 3 and 8 threads.
+#[test]
+fn threads_do_not_show() {
+    use equipoise_physics::region::{Axis, Quantity, Region};
+    use equipoise_physics::scene::{Draft, Name, Value as Field};
+    let mut scene = Draft::default();
+    for (name, value) in [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 0.094), (Name::Height, 0.2)] {
+        scene.set(name, Some(Field::Number(value))).unwrap();
+    }
+    let region = Region {
+        scene,
+        x: Axis { name: Name::TiltGain, from: 1.0, to: 1.6, count: 37 },
+        y: Axis { name: Name::Theta, from: 0.0, to: 0.5, count: 23 },
+        impacts: 500,
+        quantity: Quantity::MaxTheta,
+    };
+    let map = |threads| fan_out(threads, 23, |row| region.cells(row..row + 1, || true)).unwrap().concat();
+    let one = map(1);
+    for threads in [2, 3, 8] {
+        let other = map(threads);
+        let same = one
+            .iter()
+            .zip(&other)
+            .all(|(a, b)| a.value.map(f64::to_bits) == b.value.map(f64::to_bits) && a.outcome == b.outcome);
+        assert!(same && one.len() == other.len(), "{threads} threads");
+    }
+}
