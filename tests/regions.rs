@@ -146,7 +146,7 @@ fn threads_do_not_show() {
         impacts: 500,
         quantity: Quantity::MaxTheta,
     };
-    let map = |threads| fan_out(threads, 23, |row| region.cells(row..row + 1, || true)).unwrap().concat();
+    let map = |threads| fan_out(threads, 23, |row| region.cells(row..row + 1, &mut || true)).unwrap().concat();
     let one = map(1);
     for threads in [2, 3, 8] {
         let other = map(threads);

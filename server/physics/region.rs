@@ -88,7 +88,7 @@ impl Region {
 
     /// The cells of some rows, one row after the other; none if `go_on` said `false`, which is asked every few thousand
     /// bounces.
-    pub fn cells(&self, rows: Range<usize>, mut go_on: impl FnMut() -> bool) -> Option<Vec<Cell>> {
+    pub fn cells(&self, rows: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Cell>> {
         let first = rows.start * self.x.count;
         let mut cells = vec![NOTHING; rows.len() * self.x.count];
         if matches!(self.quantity, Quantity::Residue | Quantity::SpectralRadius) {
@@ -125,7 +125,7 @@ impl Region {
             },
         );
         for (index, scene) in alone {
-            let end = if stopped { None } else { run_alone(&scene, self.impacts, &mut go_on) };
+            let end = if stopped { None } else { run_alone(&scene, self.impacts, go_on) };
             stopped |= end.is_none();
             cells[index] = end.map_or(NOTHING, |end| self.cell(&end));
         }
@@ -207,7 +207,7 @@ fn start_of(scene: &Scene) -> Option<Start> {
     start.fits().then_some(start)
 }
 
-fn run_alone(scene: &Scene, impacts: u64, go_on: &mut impl FnMut() -> bool) -> Option<End> {
+fn run_alone(scene: &Scene, impacts: u64, go_on: &mut dyn FnMut() -> bool) -> Option<End> {
     let mut orbit = scene.orbit().ok()?;
     let mut max_theta: f64 = 0.0;
     let ending = run(&mut orbit, impacts, |contact| {

@@ -36,7 +36,7 @@ async fn regions(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Pro
         let block = (limits::REGION_BLOCK_CELLS / region.x.count).max(1);
         let cells = fan_out(threads, rows.len().div_ceil(block), |number| {
             let first = rows.start + number * block;
-            region.cells(first..(first + block).min(rows.end), || !cancel.is_set())
+            region.cells(first..(first + block).min(rows.end), &mut || !cancel.is_set())
         });
         let answer = Answer::new(request, cells.ok_or(Cancelled)?.concat());
         metrics.bounces.inc_by(answer.bounces());
