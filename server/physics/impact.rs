@@ -54,8 +54,10 @@ pub struct Strike<N = f64> {
     pub sin_cos_theta: (N, N),
     /// v_nc, velocity of the contact point along the table's normal just before, m/s.
     pub normal_velocity: N,
-    /// Velocity of the contact point relative to the table, along its normal, just before, m/s; a table cannot pull,
-    /// so there is a strike only where this is negative.
+    /// γ v_nc, m/s: a table cannot pull, so there is a strike only where this is negative.
+    pub push: N,
+    /// γ v_nc/(1 + e), velocity of the contact point relative to the table, along its normal, just before, m/s. Its sign
+    /// is that of `push`, which costs no division.
     pub approach: N,
     /// The table's velocity in x and y, m/s.
     pub table_velocity: (N, N),
@@ -95,7 +97,8 @@ impl<N: Number> Rod<N> {
         // B = 1 + l² sin²β / ρ², what the contact point weighs along the normal, eq. (33). Near upright it rounds to 1 and
         // the strike loses no digit, which a common factor ρ² would cost.
         let turn = arm * (one / (self.radius_of_gyration * self.radius_of_gyration));
-        let impulse = -(gain * normal_velocity) / (one + arm * turn);
+        let push = gain * normal_velocity;
+        let impulse = -push / (one + arm * turn);
         let share = gain / (one + self.restitution);
         let table = normal_velocity * (one - share);
         let after = State {
@@ -111,6 +114,7 @@ impl<N: Number> Rod<N> {
             alpha,
             sin_cos_theta: (sin_theta, cos_theta),
             normal_velocity,
+            push,
             approach: share * normal_velocity,
             table_velocity: (-(table * sin_alpha), table * cos_alpha),
             impulse_normal: impulse,

@@ -334,7 +334,7 @@ impl<B: Body> Orbit<B> {
             return contact;
         }
         let mut strike = self.body.strike(&state);
-        if strike.approach >= 0.0 {
+        if strike.push >= 0.0 {
             contact.ending = Some(Ending::Separating { approach: strike.approach });
             return contact;
         }

@@ -227,7 +227,7 @@ impl Orbits {
     #[inline(always)]
     fn bounce(&mut self, impacts: u64) -> (u8, [Outcome; WIDTH]) {
         let mut strike = self.rod.strike(&self.state);
-        let approach = strike.approach;
+        let push = strike.push;
         let size = self.state.theta.magnitude();
         self.energy = strike.hold_energy(self.energy);
         let State { x_dot, y_dot, theta_dot, .. } = strike.after;
@@ -245,7 +245,7 @@ impl Orbits {
             self.max_theta.0[lane] = self.max_theta.0[lane].max(size.0[lane]);
             // All of these are false where something is not a number, so the tests are for what is common.
             let goes_on = (size.0[lane] < self.topple_angle.0[lane])
-                & (approach.0[lane] < 0.0)
+                & (push.0[lane] < 0.0)
                 & (speed_squared.0[lane] <= SPEED_LIMIT * SPEED_LIMIT)
                 & (strike.contact_rise.0[lane] > 0.0);
             let common = (bulge.0[lane] <= flight.gravity.0[lane])
@@ -276,7 +276,7 @@ impl Orbits {
             // In the order of `Orbit::advance`.
             if size.0[lane] >= self.topple_angle.0[lane] {
                 outcomes[lane] = Outcome::Toppled;
-            } else if approach.0[lane] >= 0.0 {
+            } else if push.0[lane] >= 0.0 {
                 outcomes[lane] = Outcome::Separating;
             } else if speed_squared.0[lane].is_nan() || speed_squared.0[lane] > SPEED_LIMIT * SPEED_LIMIT {
                 outcomes[lane] = Outcome::Diverged;
@@ -316,6 +316,7 @@ fn pick_strike(strike: &Strike<Lanes>, lane: usize) -> Strike {
         alpha: pick(strike.alpha),
         sin_cos_theta: (pick(strike.sin_cos_theta.0), pick(strike.sin_cos_theta.1)),
         normal_velocity: pick(strike.normal_velocity),
+        push: pick(strike.push),
         approach: pick(strike.approach),
         table_velocity: (pick(strike.table_velocity.0), pick(strike.table_velocity.1)),
         impulse_normal: pick(strike.impulse_normal),
