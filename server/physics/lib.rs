@@ -5,7 +5,7 @@
 //!
 //! Where to look: [`scene`] is what a user may say; [`model`] chooses the smallest model that is exact for it;
 //! [`impact`], [`flight`] and [`contact_time`] are the three parts of one bounce; [`map`] puts them together and ends
-//! a run; [`jacobian`] differentiates it and [`stability`] judges it.
+//! a run; [`jacobian`] differentiates it, [`stability`] judges it and [`periodic_orbits`] finds what comes back.
 
 pub mod contact_time;
 pub mod dispatch;
@@ -17,6 +17,7 @@ pub mod lanes;
 pub mod map;
 pub mod model;
 pub mod number;
+pub mod periodic_orbits;
 pub mod point;
 pub mod region;
 pub mod scene;

@@ -1,0 +1,87 @@
+//! What the derivative over a period says: eigenvalues, Greene's residue, and whether small deviations stay small.
+//!
+//! One eigenvalue is 1 by the drift, and one more by the energy where nothing steers it. They make the matrix defective,
+//! so the others come from the characteristic polynomial with those factors divided out, never from an iteration on it.
+
+use crate::jacobian::{modulus, sort_eigenvalues};
+use crate::stability::PARABOLIC;
+use nalgebra::{Complex, Matrix3, Matrix4};
+
+/// The verdict on an orbit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Multipliers {
+    /// All four eigenvalues, largest modulus first.
+    pub eigenvalues: Vec<Complex<f64>>,
+    /// Greene's residue R = (2 − λ − λ')/4 of the pair that belongs to the angle.
+    pub residue: f64,
+    /// Whether small deviations stay small; none on the boundary, where the linear analysis is silent.
+    pub stable: Option<bool>,
+    /// What changes sign where an eigenvalue passes 1, where one passes −1, and where a pair leaves the unit circle.
+    pub(super) tests: [f64; 3],
+}
+
+impl Multipliers {
+    /// Of the derivative over a period; `steered` where feedback sets the energy.
+    pub(super) fn new(product: &Matrix4<f64>, steered: bool) -> Option<Self> {
+        let trace = product.trace();
+        let second = 0.5 * (trace * trace - (product * product).trace());
+        // What rounding does to the coefficients grows with the entries.
+        let slack = 1e-8 + 1e-14 * product.norm_squared();
+        if steered {
+            // (λ − 1)(λ³ − aλ² + bλ − c)
+            let a = trace - 1.0;
+            let b = second - a;
+            let c = product.determinant();
+            let companion = Matrix3::new(a, -b, c, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+            let schur = nalgebra::Schur::try_new(companion, f64::EPSILON, 10_000)?;
+            let roots: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
+            let tests = [1.0 - a + b - c, 1.0 + a + b + c, 1.0 - b + c * (a - c)];
+            Some(Self::judge(roots.clone(), 0.25 * (2.0 - pair(&roots).re), tests, c.abs() < 1.0, slack))
+        } else {
+            // (λ − 1)²(λ² − aλ + b)
+            let a = trace - 2.0;
+            let b = second - 2.0 * a - 1.0;
+            let half = 0.5 * a;
+            let under = half * half - b;
+            let roots = if under < 0.0 {
+                let height = (-under).sqrt();
+                vec![Complex::new(half, height), Complex::new(half, -height)]
+            } else {
+                let large = half + if half < 0.0 { -under.sqrt() } else { under.sqrt() };
+                let small = if large == 0.0 { 0.0 } else { b / large };
+                vec![Complex::new(large, 0.0), Complex::new(small, 0.0)]
+            };
+            let mut all = roots;
+            all.push(Complex::new(1.0, 0.0));
+            Some(Self::judge(all, 0.25 * (2.0 - a), [1.0 - a + b, 1.0 + a + b, 1.0 - b], true, slack))
+        }
+        .filter(|found| found.residue.is_finite())
+    }
+
+    fn judge(roots: Vec<Complex<f64>>, residue: f64, tests: [f64; 3], contracts: bool, slack: f64) -> Self {
+        let mut eigenvalues = roots;
+        eigenvalues.push(Complex::new(1.0, 0.0));
+        sort_eigenvalues(&mut eigenvalues);
+        let [at_one, at_minus_one, circle] = tests;
+        let silent = at_one.abs() <= 4.0 * PARABOLIC || at_minus_one.abs() <= 4.0 * PARABOLIC;
+        let inside = at_one > 0.0 && at_minus_one > 0.0 && circle >= -slack && contracts;
+        Self { eigenvalues, residue, stable: (!silent).then_some(inside), tests }
+    }
+
+    /// Largest modulus.
+    pub fn spectral_radius(&self) -> f64 {
+        self.eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max)
+    }
+}
+
+/// λ + λ' of the pair that belongs to the angle: the complex one, or that whose product is nearest to 1, as it is exactly
+/// where the orbit is its own reverse.
+fn pair(roots: &[Complex<f64>]) -> Complex<f64> {
+    let away = |one: usize, other: usize| {
+        let complex = roots[one].im != 0.0 && roots[other].im == -roots[one].im;
+        if complex { -1.0 } else { modulus(roots[one] * roots[other] - Complex::new(1.0, 0.0)) }
+    };
+    let (one, other) =
+        [(0, 1), (0, 2), (1, 2)].into_iter().min_by(|x, y| away(x.0, x.1).total_cmp(&away(y.0, y.1))).unwrap_or((0, 1));
+    roots[one] + roots[other]
+}

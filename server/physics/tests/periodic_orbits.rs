@@ -1,0 +1,152 @@
+//! Periodic orbits against what is known of them exactly: the symmetric family, κ_c, the sign and size of C.
+
+use equipoise_physics::periodic_orbits::branch::{Branch, Kind, Start, Sweep, follow};
+use equipoise_physics::periodic_orbits::{Failure, Setting, find, symmetric};
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+fn scene(values: &[(Name, f64)]) -> Scene {
+    let mut draft = Draft::default();
+    let paper = [
+        (Name::ContactDistance, 0.4 / 3.0),
+        (Name::RadiusOfGyration, 2f64.sqrt() / 15.0),
+        (Name::TiltGain, 1.1),
+        (Name::Height, 0.2),
+    ];
+    for (name, value) in paper.iter().chain(values) {
+        draft.set(*name, Some(Value::Number(*value))).unwrap();
+    }
+    draft.build().unwrap()
+}
+
+fn critical(scene: &Scene) -> f64 {
+    scene.linear(&scene.fixed_point().unwrap()).critical_tilt_gain
+}
+
+fn tilt(scene: &Scene, period: usize, start: Start, from: f64, to: f64, points: usize) -> Result<Branch, Failure> {
+    follow(&Sweep { scene, name: Name::TiltGain, from, to }, period, start, points, || true)
+}
+
+/// ρ of the true triangle, whose boundary is hard.
+const TRIANGLE: f64 = 0.051_370_116_691_408_15;
+
+#[test]
+fn the_symmetric_family_is_a_solution_as_it_stands() {
+    for (kappa, theta) in [(1.55, 0.1), (1.55, 0.4), (1.3, 0.2), (1.7, -0.6), (1.52, 1e-3)] {
+        let scene = scene(&[(Name::TiltGain, kappa)]);
+        let setting = Setting::of(&scene).unwrap();
+        let state = symmetric(&setting.rod, theta).unwrap();
+        let own = Setting { energy: Some(setting.rod.energy(&state)), ..setting };
+        let orbit = find(&own, 2, &state).unwrap();
+        assert!(orbit.residual < 1e-12, "{kappa} {theta}: {}", orbit.residual);
+        assert_eq!(orbit.least_period, 2);
+        let [one, other] = orbit.states[..] else { panic!() };
+        for (found, exact) in [(one.theta, state.theta), (one.x_dot, state.x_dot), (one.y_dot, state.y_dot)] {
+            assert!((found - exact).abs() < 1e-11, "{kappa} {theta}: {found} {exact}");
+        }
+        assert!((one.theta + other.theta).abs() < 1e-11 && orbit.drift.abs() < 1e-12);
+        // From a little aside it comes back to an orbit of the same energy.
+        let aside = equipoise_physics::impact::State { theta: state.theta * 1.0001, ..state };
+        let again = find(&own, 2, &aside).unwrap();
+        assert!(again.residual < 1e-12 && again.drift.abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_upright_bounce_has_the_residue_of_the_closed_form() {
+    for values in [vec![], vec![(Name::Restitution, 0.5), (Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25)]] {
+        for kappa in [0.95, 1.1, 1.3, 1.7] {
+            let scene = scene(&[values.clone(), vec![(Name::TiltGain, kappa)]].concat());
+            let setting = Setting::of(&scene).unwrap();
+            let orbit = find(&setting, 1, &setting.upright()).unwrap();
+            let linear = scene.linear(&scene.fixed_point().unwrap());
+            assert!((orbit.multipliers.residue - linear.residue.unwrap()).abs() < 1e-10, "{kappa}");
+            assert_eq!(orbit.multipliers.stable, Some(linear.says_bounded()), "{kappa}");
+        }
+    }
+}
+
+#[test]
+fn the_upright_bounce_changes_at_the_closed_forms() {
+    for values in [vec![], vec![(Name::RadiusOfGyration, TRIANGLE)]] {
+        let scene = scene(&values);
+        let critical = critical(&scene);
+        let branch = tilt(&scene, 1, Start::Upright, 0.9, critical + 0.2, 200).unwrap();
+        let changes: Vec<_> = branch.points.iter().filter_map(|point| Some((point.change?, point.parameter))).collect();
+        assert_eq!(changes.iter().map(|change| change.0).collect::<Vec<_>>(), [Kind::Pitchfork, Kind::PeriodDoubling]);
+        assert!(
+            (changes[0].1 - 1.0).abs() < 1e-10 && (changes[1].1 - critical).abs() < 1e-10,
+            "{changes:?} {critical}"
+        );
+    }
+}
+
+#[test]
+fn the_branch_springs_from_the_critical_gain_to_its_side() {
+    for (rho, soft) in [(2f64.sqrt() / 15.0, true), (TRIANGLE, false)] {
+        let scene = scene(&[(Name::RadiusOfGyration, rho)]);
+        let fixed_point = scene.fixed_point().unwrap();
+        let critical = critical(&scene);
+        let coefficient = scene.boundary(&fixed_point).unwrap().coefficient;
+        assert_eq!(coefficient > 0.0, soft);
+        let branch = tilt(&scene, 2, Start::Symmetric(0.03), critical - 0.02, critical + 0.05, 60).unwrap();
+        let spring = &branch.points[0];
+        assert!(spring.springs && spring.change == Some(Kind::PeriodDoubling), "{:?}", branch.ends);
+        assert!((spring.parameter - critical).abs() < 1e-10, "{} {critical}", spring.parameter);
+        for point in branch.points.iter().filter(|point| (1e-3..0.05).contains(&point.orbit.max_theta())) {
+            let theta = point.orbit.max_theta();
+            let slope = (point.parameter - critical) / (theta * theta) / (critical - 1.0);
+            assert!((slope - coefficient).abs() < 0.03 + 30.0 * theta * theta, "{theta}: {slope} {coefficient}");
+            assert_eq!(point.orbit.multipliers.stable, Some(soft), "{theta}");
+            assert_eq!(point.orbit.multipliers.residue > 0.0, soft);
+            assert!(point.orbit.residual < 1e-11);
+        }
+    }
+}
+
+#[test]
+fn with_energy_feedback_the_branch_is_hard() {
+    let values =
+        [(Name::Restitution, 0.5), (Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25), (Name::Incline, 0.785)];
+    let scene = scene(&values);
+    let critical = critical(&scene);
+    let coefficient = scene.boundary(&scene.fixed_point().unwrap()).unwrap().coefficient;
+    let branch = tilt(&scene, 2, Start::Symmetric(0.03), critical - 0.05, critical + 0.05, 60).unwrap();
+    assert!((branch.points[0].parameter - critical).abs() < 1e-10, "{:?}", branch.ends);
+    let point = &branch.points[branch.start];
+    let slope = (point.parameter - critical) / (0.03 * 0.03) / (critical - 1.0);
+    assert!((slope - coefficient).abs() < 0.05, "{slope} {coefficient}");
+    assert_eq!(point.orbit.multipliers.stable, Some(false));
+}
+
+#[test]
+fn a_branch_goes_round_its_fold_and_changes_are_where_the_residue_vanishes() {
+    let scene = scene(&[(Name::RadiusOfGyration, TRIANGLE)]);
+    let critical = critical(&scene);
+    let branch = tilt(&scene, 2, Start::Symmetric(0.03), critical - 0.05, critical + 0.5, 400).unwrap();
+    let changes: Vec<_> = branch.points.iter().filter(|point| point.change.is_some()).collect();
+    let kinds: Vec<_> = changes.iter().map(|point| point.change.unwrap()).collect();
+    assert_eq!(kinds, [Kind::PeriodDoubling, Kind::Fold, Kind::Pitchfork], "{:?}", branch.ends);
+    assert!(changes.iter().all(|point| point.orbit.multipliers.residue.abs() < 1e-10));
+    assert!(changes.iter().all(|point| point.orbit.multipliers.stable.is_none()));
+    // The fold is the least parameter of the branch, and hard becomes soft there.
+    let fold = changes[1];
+    assert!(branch.points.iter().all(|point| point.parameter >= fold.parameter - 1e-12));
+    for point in &branch.points {
+        let theta = point.orbit.max_theta();
+        let between = theta > fold.orbit.max_theta() && theta < changes[2].orbit.max_theta();
+        assert!(point.change.is_some() || point.orbit.multipliers.stable == Some(between), "{theta}");
+    }
+    assert!(branch.ends[1].contains("separating"), "{:?}", branch.ends);
+}
+
+#[test]
+fn what_has_no_orbit_says_why() {
+    let scene = scene(&[]);
+    let setting = Setting::of(&scene).unwrap();
+    let far = equipoise_physics::impact::State { theta: 0.9, x_dot: 0.5, y_dot: -0.2, theta_dot: 3.0 };
+    assert!(matches!(find(&setting, 3, &far), Err(Failure::Ends { .. } | Failure::NoConvergence { .. })));
+    let beside = tilt(&scene, 2, Start::Symmetric(0.1), 1.1, 1.2, 10).unwrap_err();
+    assert!(beside.to_string().contains("no mirror-symmetric orbit"), "{beside}");
+    let sweep = Sweep { scene: &scene, name: Name::TiltGain, from: 1.1, to: 1.2 };
+    assert_eq!(follow(&sweep, 1, Start::Upright, 10, || false).unwrap_err(), Failure::Cancelled);
+}
