@@ -44,6 +44,12 @@ pub const IMPACTS: u64 = 100_000;
 /// digits are gone.
 pub const PERIOD: u64 = 1000;
 
+/// Contacts after which a periodic orbit may come back. Newton's iteration over more has no digits left.
+pub const ORBIT_PERIOD: u64 = 64;
+
+/// Points of one branch of periodic orbits. A picture shows no more.
+pub const BRANCH_POINTS: u64 = 2000;
+
 /// Samples of one flight. A canvas is no wider.
 pub const SAMPLES_PER_FLIGHT: u64 = 256;
 

@@ -4,6 +4,7 @@
 //! so that it reads in light and dark pages alike, and carries no style sheet and no script, so that any CSP takes it.
 //! Not here: HTTP, and computing what is drawn.
 
+mod branches;
 mod colour;
 mod eigenvalues;
 mod legend;
@@ -17,6 +18,7 @@ mod svg;
 mod text;
 mod trail;
 
+pub use branches::{Branches, Change, branches};
 pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
 pub use phase_planes::{PhasePlanes, phase_planes};
 

@@ -9,6 +9,7 @@ pub mod health;
 pub mod jacobians;
 pub mod live;
 pub mod metrics;
+pub mod periodic_orbits;
 pub mod regions;
 pub mod scenes;
 pub mod stability;
@@ -77,6 +78,7 @@ pub fn all() -> Router<App> {
         .merge(trajectories::routes())
         .merge(jacobians::routes())
         .merge(live::routes())
+        .merge(periodic_orbits::routes())
         .merge(stability::routes())
         .merge(regions::routes())
 }

@@ -4,6 +4,7 @@
 
 pub mod fields;
 pub mod jacobian;
+pub mod periodic_orbits;
 pub mod presets;
 pub mod region;
 pub mod scene;

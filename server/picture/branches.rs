@@ -1,0 +1,111 @@
+//! The picture of a branch of periodic orbits: largest angle against a parameter, stable solid, unstable dashed.
+
+use super::colour::{BLUE, INK, SOFT_INK, VERMILLION};
+use super::legend::{Sample, legend};
+use super::marks::{Point, hollow, line};
+use super::number::significant;
+use super::panel::{Axis, Frame, Panel};
+use super::scale::Range;
+use super::sheet::{Sheet, Words};
+use super::svg::{Anchor, Type};
+use super::text::Span;
+
+/// A place on the branch where stability changes.
+#[derive(Clone, Copy, Debug)]
+pub struct Change {
+    /// Parameter and largest |θ|.
+    pub at: (f64, f64),
+    /// What changes.
+    pub kind: &'static str,
+}
+
+/// A branch of periodic orbits.
+#[derive(Clone, Copy, Debug)]
+pub struct Branches<'a> {
+    /// What it is, in a few words.
+    pub title: &'a str,
+    /// The parameter in words.
+    pub name: &'a str,
+    /// Its symbol.
+    pub symbol: &'a str,
+    /// Its unit; empty for none.
+    pub unit: &'a str,
+    /// The range asked for.
+    pub ends: (f64, f64),
+    /// Parameter, largest |θ|, and whether it is stable; none where it changes.
+    pub points: &'a [(f64, f64, Option<bool>)],
+    /// Where it changes.
+    pub changes: &'a [Change],
+    /// κ_c, where the parameter is κ.
+    pub critical: Option<f64>,
+}
+
+/// Draws the diagram.
+pub fn branches(drawn: &Branches<'_>) -> String {
+    const ROOM: f64 = 464.0;
+    const FRAME: Frame = Frame { left: 86.0, top: 30.0, width: 600.0, height: 348.0 };
+    let listed: Vec<String> = drawn
+        .changes
+        .iter()
+        .map(|change| {
+            let (parameter, theta) = (significant(change.at.0, 6), significant(change.at.1, 3));
+            format!("{} at {parameter} (θ = {theta} rad)", change.kind.replace('_', " "))
+        })
+        .collect();
+    let caption = if listed.is_empty() {
+        "Stability does not change on this branch.".to_owned()
+    } else {
+        format!("Stability changes: {}.", listed.join(", "))
+    };
+    let subtitle = format!("largest angle of the orbit against {}", drawn.name.to_lowercase());
+    let description = format!("{}: {subtitle}. {caption}", drawn.title);
+    let words = Words { title: drawn.title, subtitle: &subtitle, caption: &caption, description: &description };
+    let Sheet { mut svg, top } = Sheet::new(720.0, ROOM, words);
+    let frame = Frame { top: top + FRAME.top, ..FRAME };
+    let range = Range::new(drawn.ends.0.min(drawn.ends.1), drawn.ends.0.max(drawn.ends.1));
+    let highest = drawn.points.iter().map(|point| point.1).fold(0.0, f64::max);
+    let tall = Range::new(0.0, f64::max(1.06 * highest, 0.1));
+    let name = drawn.name.to_lowercase();
+    let x = Axis { name: &name, symbol: drawn.symbol, unit: drawn.unit, range };
+    let y = Axis { name: "largest angle", symbol: "|θ|", unit: "rad", range: tall };
+    let panel = Panel::draw(&mut svg, frame, x, y);
+    if let Some(critical) = drawn.critical.filter(|critical| (range.low..=range.high).contains(critical)) {
+        let (at, bottom) = panel.at(critical, 0.0);
+        line(&mut svg, &[(at, frame.top), (at, bottom)], SOFT_INK, 1.0, Some("2 3"));
+        let label = format!(" = {}", significant(critical, 4));
+        let look = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
+        svg.text(at, frame.top - 7.0, look, &[Span::Symbol("κ"), Span::Below("c"), Span::Plain(&label)]);
+    }
+    let dashes = |stable: bool| if stable { (BLUE, None) } else { (VERMILLION, Some("6 4")) };
+    let mut run: Vec<Point> = Vec::new();
+    let mut last: Option<bool> = None;
+    for pair in drawn.points.windows(2) {
+        // A change between them is a point of its own, so one of the two knows.
+        let stable = pair[0].2.or(pair[1].2).unwrap_or(false);
+        if last.is_some_and(|last| last != stable) {
+            let (colour, dashes) = dashes(!stable);
+            line(&mut svg, &run, colour, 3.0, dashes);
+            run.clear();
+        }
+        if run.is_empty() {
+            run.push(panel.at(pair[0].0, pair[0].1));
+        }
+        run.push(panel.at(pair[1].0, pair[1].1));
+        last = Some(stable);
+    }
+    if let Some(stable) = last {
+        let (colour, dashes) = dashes(stable);
+        line(&mut svg, &run, colour, 3.0, dashes);
+    }
+    for change in drawn.changes {
+        hollow(&mut svg, panel.at(change.at.0, change.at.1), 5.0, INK);
+    }
+    panel.edge(&mut svg);
+    let entries = [
+        (Sample::Line { colour: BLUE, dashes: None }, "stable"),
+        (Sample::Line { colour: VERMILLION, dashes: Some("6 4") }, "unstable"),
+        (Sample::Hollow(INK), "stability changes"),
+    ];
+    legend(&mut svg, 386.0, top + ROOM - 22.0, &entries);
+    svg.finish()
+}

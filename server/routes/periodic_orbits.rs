@@ -1,0 +1,51 @@
+//! `periodic-orbits`: what comes back, and its branches.
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::State;
+use axum::http::Response;
+use axum::routing::get;
+
+use super::App;
+use crate::compute::{Cancel, Cancelled, Price};
+use crate::http::{Ask, Format, Problem, Resource};
+use crate::limits;
+use crate::wire::periodic_orbits::{PeriodicOrbits, Request};
+use crate::wire::scene;
+
+const RESOURCE: Resource =
+    Resource { name: "periodic-orbits", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg] };
+
+/// Its path.
+pub fn routes() -> Router<App> {
+    Router::new().route("/v1/periodic-orbits", get(periodic_orbits).post(periodic_orbits))
+}
+
+async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+    let (scene, request) = ask.read(|reader| {
+        let scene = scene::read(reader);
+        let request = Request::read(reader);
+        Some((scene?, request?))
+    })?;
+    let price = Price::bounces(request.price()).within(&limits::WORK)?;
+    let canonical = super::canonical(&scene, &request);
+    let metrics = app.metrics.clone();
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
+        let orbits = match PeriodicOrbits::compute(&scene, &request, || !cancel.is_set()) {
+            Ok(orbits) => orbits,
+            Err(Some((pointer, detail))) => return Err(Problem::invalid_at(pointer, detail)),
+            Err(None) => return Err(Cancelled.into()),
+        };
+        metrics.bounces.inc_by(orbits.bounces());
+        match format {
+            Format::Csv => Ok(orbits.to_table().to_csv()),
+            Format::Ndjson => Ok(orbits.to_table().to_ndjson(&orbits.end())),
+            Format::Svg => orbits
+                .to_picture()
+                .map(String::into_bytes)
+                .ok_or_else(|| Problem::invalid_at("/sweep", "the picture is of a branch; give a sweep")),
+            _ => super::json(&orbits),
+        }
+    })
+    .await
+}
