@@ -99,7 +99,7 @@ async fn a_matrix_has_the_same_numbers_in_every_format() {
 }
 
 /// A column of a verdict's row, its unit, and where it is in the whole answer.
-const VERDICT: [(&str, &str, &str); 25] = [
+const VERDICT: [(&str, &str, &str); 35] = [
     ("verdict", "", "/verdict"),
     ("decided_by", "", "/decided_by"),
     ("agree", "", "/agree"),
@@ -125,12 +125,22 @@ const VERDICT: [(&str, &str, &str); 25] = [
     ("energy_gain_margin", "s2_per_m2", "/linear/energy_gain/margin"),
     ("fixed_point_y_dot", "m_per_s", "/fixed_point/y_dot"),
     ("fixed_point_flight_time", "s", "/fixed_point/flight_time"),
+    ("rotation_number_measured", "", "/rotation_number/measured"),
+    ("rotation_number_linear", "", "/rotation_number/linear"),
+    ("resonance_p", "", "/rotation_number/resonance/p"),
+    ("resonance_q", "", "/rotation_number/resonance/q"),
+    ("resonance_distance", "", "/rotation_number/resonance/distance"),
+    ("chaos_indicator", "", "/chaos/indicator"),
+    ("chaotic", "", "/chaos/chaotic"),
+    ("predictable_impacts", "", "/predictable_impacts"),
+    ("basin_theta", "rad", "/basin/theta"),
+    ("basin_unbroken", "rad", "/basin/unbroken"),
 ];
 
 #[tokio::test]
 async fn a_verdict_is_one_row() {
     for preset in ["case-1", "case-4", "critical-hard", "still-lossy", "point-mass"] {
-        let [json, csv, ndjson] = all_formats(&format!("/v1/stability?preset={preset}&impacts=200")).await;
+        let [json, csv, ndjson] = all_formats(&format!("/v1/stability?preset={preset}&impacts=600&basin=true")).await;
         let whole = json.json();
         let table = Table::parse(csv.text()).unwrap();
         assert_eq!(table.rows.len(), 1, "{preset}");

@@ -5,8 +5,11 @@
 //!
 //! Where to look: [`scene`] is what a user may say; [`model`] chooses the smallest model that is exact for it;
 //! [`impact`], [`flight`] and [`contact_time`] are the three parts of one bounce; [`map`] puts them together and ends
-//! a run; [`jacobian`] differentiates it, [`stability`] judges it and [`periodic_orbits`] finds what comes back.
+//! a run; [`jacobian`] differentiates it, [`stability`] and [`regularity`] look at it from near and far, [`basin`] asks how far
+//! aside it may start, and [`verdict`] concludes. [`periodic_orbits`] finds what comes back; [`sweep`] runs many at once, for
+//! a [`region`].
 
+pub mod basin;
 pub mod contact_time;
 pub mod dispatch;
 pub mod dual;
@@ -20,7 +23,9 @@ pub mod number;
 pub mod periodic_orbits;
 pub mod point;
 pub mod region;
+pub mod regularity;
 pub mod scene;
 pub mod stability;
 pub mod sweep;
 pub mod trig;
+pub mod verdict;

@@ -1,4 +1,5 @@
-//! The fixed point of a scene, its linear verdict in closed form, and what a run of the scene says beside it.
+//! The fixed point of a scene, its linear verdict in closed form, and what a run of the scene says beside it. What is
+//! concluded from them is [`crate::verdict`].
 //!
 //! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
 //! off by the square root of rounding.
@@ -116,54 +117,6 @@ pub struct Nonlinear {
     pub t: f64,
     /// Largest |θ| at a contact, rad.
     pub max_theta: f64,
-}
-
-/// The verdict on a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// A small deviation dies out.
-    StableInPlace,
-    /// The linear analysis says that the angle circles, and the run did for as long as it was watched; no theorem says more.
-    Elliptic,
-    /// At or beyond κ_c, yet bounded around the period-2 orbit.
-    BoundedBeyondBoundary,
-    /// It falls, or would from a start a little aside.
-    Unstable,
-}
-
-/// What a verdict rests on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DecidedBy {
-    /// Eigenvalues, by residue.
-    Linear,
-    /// The run of the scene.
-    Nonlinear,
-    /// The boundary coefficient.
-    Boundary,
-}
-
-impl DecidedBy {
-    /// Its name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Nonlinear => "nonlinear",
-            Self::Boundary => "boundary",
-        }
-    }
-}
-
-/// A verdict with what it rests on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Judgement {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// What decided.
-    pub decided_by: DecidedBy,
-    /// Whether linear analysis and run tell the same story.
-    pub agree: bool,
-    /// Why, in a sentence with numbers.
-    pub reason: String,
 }
 
 impl Scene {
@@ -296,6 +249,48 @@ impl Scene {
         Some(Boundary { coefficient })
     }
 
+    /// θ, rad, of the mirror-symmetric period-2 orbit at the energy of the fixed point, the one nearest to upright; none
+    /// where there is none within the topple angle.
+    ///
+    /// Its states are (±θ, ±V tan κθ, −V, ±Gθ/V) with V² = Gρ²θ cos κθ / (l sin((κ − 1)θ)); with energy feedback η is held in
+    /// place of the energy.
+    pub fn period_two(&self, fixed_point: &FixedPoint) -> Option<f64> {
+        let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
+        let (kappa, gravity) = (self.tilt_gain, self.gravity);
+        let weight = gravity * contact_distance;
+        // What the orbit with angle θ has more than the fixed point; not a number where there is no such orbit.
+        let excess = |theta: f64| {
+            let (sin_alpha, cos_alpha) = trig::sin_cos(kappa * theta);
+            let (sin_beta, _) = trig::sin_cos((kappa - 1.0) * theta);
+            let (_, versine) = trig::sin_versine(theta);
+            let rho_squared = radius_of_gyration * radius_of_gyration;
+            let speed_squared = gravity * rho_squared * theta * cos_alpha / (contact_distance * sin_beta);
+            let slant = sin_alpha / cos_alpha;
+            let aside = slant * slant * speed_squared + rho_squared * gravity * gravity * theta * theta / speed_squared;
+            let held = if self.energy_gain > 0.0 { 0.0 } else { 0.5 * aside };
+            let speed = fixed_point.speed;
+            if cos_alpha > 0.0 && speed_squared > 0.0 {
+                0.5 * (speed_squared - speed * speed) + held - weight * versine
+            } else {
+                f64::NAN
+            }
+        };
+        let step = self.topple_angle / 1024.0;
+        let (mut low, mut high) = (step * 1e-6, step);
+        while excess(low) * excess(high) > 0.0 && high < self.topple_angle {
+            (low, high) = (high, high + step);
+        }
+        let (below, above) = (excess(low), excess(high));
+        if below.is_nan() || above.is_nan() || below * above > 0.0 {
+            return None;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if excess(middle) * below > 0.0 { low = middle } else { high = middle }
+        }
+        Some(0.5 * (low + high))
+    }
+
     /// Runs the scene for up to `impacts` contacts; `go_on` is asked now and then, and a `false` gives none.
     pub fn nonlinear(&self, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<Nonlinear> {
         let Ok(mut orbit) = self.orbit() else {
@@ -310,85 +305,6 @@ impl Scene {
             !contact.n.is_multiple_of(1024) || go_on()
         })?;
         Some(Nonlinear { ending, impacts: orbit.contacts(), t, max_theta })
-    }
-
-    /// Weighs the linear verdict, the boundary coefficient and the run against each other.
-    pub fn judge(&self, linear: &Linear, boundary: Option<Boundary>, run: &Nonlinear) -> Judgement {
-        let survived = run.ending == Ending::Completed;
-        let agree = linear.says_bounded() == survived;
-        let judgement = |verdict, decided_by, reason| Judgement { verdict, decided_by, agree, reason };
-        let start = self.start();
-        let undisturbed = start.theta == 0.0 && start.theta_dot == 0.0;
-        let kappa = self.tilt_gain;
-        let critical = linear.critical_tilt_gain;
-        if linear.energy_eigenvalue.abs() > 1.0 + PARABOLIC {
-            let reason = format!(
-                "energy_gain is {} s²/m² and must be between 0 and {}: deviations of the height grow by {} a bounce",
-                self.energy_gain, linear.upper_energy_gain, linear.energy_eigenvalue
-            );
-            return judgement(Verdict::Unstable, DecidedBy::Linear, reason);
-        }
-        let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
-        if !survived && linear.class != Class::Hyperbolic && linear.class != Class::Parabolic {
-            let reason = format!("{fell}, although the linear analysis is stable: the start is outside the basin");
-            return judgement(Verdict::Unstable, DecidedBy::Nonlinear, reason);
-        }
-        match linear.class {
-            Class::Attracting => {
-                let reason = format!("the angle of the velocity shrinks by {} a bounce (eq. 4)", 1.0 - 2.0 * kappa);
-                judgement(Verdict::StableInPlace, DecidedBy::Linear, reason)
-            }
-            Class::Elliptic => {
-                let reason = format!(
-                    "tilt_gain {kappa} is between {} and {critical}, so small deviations circle, and the run survived",
-                    linear.lower_tilt_gain
-                );
-                judgement(Verdict::Elliptic, DecidedBy::Linear, reason)
-            }
-            Class::Parabolic if kappa > 0.5 * (1.0 + critical) => match boundary {
-                Some(Boundary { coefficient }) if coefficient > 0.0 && survived => judgement(
-                    Verdict::BoundedBeyondBoundary,
-                    DecidedBy::Boundary,
-                    format!(
-                        "tilt_gain is κ_c, where eigenvalues are silent; C = {coefficient} > 0 is soft, and the run survived"
-                    ),
-                ),
-                Some(Boundary { coefficient }) if coefficient > 0.0 => judgement(
-                    Verdict::Unstable,
-                    DecidedBy::Nonlinear,
-                    format!("tilt_gain is κ_c and C = {coefficient} > 0 is soft for small starts, but {fell}"),
-                ),
-                _ => judgement(
-                    Verdict::Unstable,
-                    DecidedBy::Boundary,
-                    format!(
-                        "tilt_gain is κ_c, where eigenvalues are silent; C = {} is not positive: hard, every small start \
-                         falls in the end",
-                        boundary.map_or(0.0, |boundary| boundary.coefficient)
-                    ),
-                ),
-            },
-            Class::Parabolic => judgement(
-                Verdict::Unstable,
-                DecidedBy::Linear,
-                "tilt_gain is 1, where the angle drifts off at a constant rate".to_owned(),
-            ),
-            Class::Hyperbolic if survived && !undisturbed && kappa > critical => judgement(
-                Verdict::BoundedBeyondBoundary,
-                DecidedBy::Nonlinear,
-                format!(
-                    "tilt_gain {kappa} is beyond κ_c = {critical}, yet the run stayed within |θ| ≤ {} rad",
-                    run.max_theta
-                ),
-            ),
-            Class::Hyperbolic => {
-                let side = if kappa < linear.lower_tilt_gain { "below" } else { "beyond" };
-                let limit = if kappa < linear.lower_tilt_gain { linear.lower_tilt_gain } else { critical };
-                let shown = if survived { "this run has not left yet" } else { fell.as_str() };
-                let reason = format!("tilt_gain {kappa} is {side} {limit}, so small deviations grow; {shown}");
-                judgement(Verdict::Unstable, DecidedBy::Linear, reason)
-            }
-        }
     }
 }
 

@@ -22,16 +22,17 @@ pub fn routes() -> Router<App> {
 }
 
 async fn stability(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
-    let (scene, impacts) = ask.read(|reader| {
+    let (scene, impacts, basin) = ask.read(|reader| {
         let scene = scene::read(reader);
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(2000);
-        Some((scene?, impacts))
+        let basin = reader.boolean("basin").unwrap_or(false);
+        Some((scene?, impacts, basin))
     })?;
-    let price = Price::bounces(impacts).within(&limits::WORK)?;
-    let canonical = super::canonical(&scene, &impacts);
+    let price = Price::bounces(Stability::price(impacts, basin)).within(&limits::WORK)?;
+    let canonical = super::canonical(&scene, &(impacts, basin));
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
-        let stability = Stability::compute(&scene, impacts, || !cancel.is_set()).ok_or(Cancelled)?;
+        let stability = Stability::compute(&scene, impacts, basin, || !cancel.is_set()).ok_or(Cancelled)?;
         metrics.bounces.inc_by(stability.bounces());
         match format {
             Format::Csv => Ok(stability.to_table().to_csv()),

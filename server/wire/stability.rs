@@ -1,9 +1,13 @@
 //! The answer of `stability`: the verdict, and everything it rests on.
 
+use equipoise_physics::basin::{self, NoBasin};
+use equipoise_physics::regularity::WATCHED;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::{Judgement, Linear, Nonlinear, Verdict};
+use equipoise_physics::stability::{Linear, Nonlinear};
+use equipoise_physics::verdict::{Judgement, Verdict};
 use serde::Serialize;
 
+use super::evidence::{Basin, Chaos, Evidence, RotationNumber};
 use super::jacobian::Eigenvalue;
 use super::scene::{Resolved, has_angle};
 use super::table::{Cells, Column, Table};
@@ -77,6 +81,10 @@ pub struct Stability<'a> {
     nonlinear: NonlinearPart,
     drift_speed: Option<f64>,
     agree: Option<bool>,
+    rotation_number: Option<RotationNumber>,
+    chaos: Option<Chaos>,
+    predictable_impacts: Option<u64>,
+    basin: Option<Basin>,
     notes: Vec<String>,
 }
 
@@ -118,10 +126,10 @@ impl LinearPart {
 }
 
 impl<'a> Stability<'a> {
-    /// Judges a scene by its linear verdict and a run of up to `impacts` contacts; `go_on` is asked now and then, and a
-    /// `false` gives none.
-    pub fn compute(scene: &'a Scene, impacts: u64, go_on: impl FnMut() -> bool) -> Option<Self> {
-        let run = scene.nonlinear(impacts, go_on)?;
+    /// Judges a scene by its linear verdict and a run of up to `impacts` contacts, and looks for its basin if asked to;
+    /// `go_on` is asked now and then, and a `false` gives none.
+    pub fn compute(scene: &'a Scene, impacts: u64, basin: bool, mut go_on: impl FnMut() -> bool) -> Option<Self> {
+        let run = scene.nonlinear(impacts, &mut go_on)?;
         let mut notes = Vec::new();
         let mut answer = Self {
             scene: Resolved(scene),
@@ -141,6 +149,10 @@ impl<'a> Stability<'a> {
             },
             drift_speed: scene.drift_speed(),
             agree: None,
+            rotation_number: None,
+            chaos: None,
+            predictable_impacts: None,
+            basin: None,
             notes: Vec::new(),
         };
         if !has_angle(scene) {
@@ -154,13 +166,15 @@ impl<'a> Stability<'a> {
         }
         match scene.fixed_point() {
             Err(why) => {
-                notes.push(format!("verdict, fixed_point, linear, boundary and agree are null: {why}"));
+                notes.push(format!("verdict, fixed_point, linear, boundary, agree, rotation_number, chaos and predictable_impacts are null: {why}"));
                 answer.reason = why;
             }
             Ok(fixed_point) => {
                 let linear = scene.linear(&fixed_point);
                 let boundary = scene.boundary(&fixed_point);
-                let Judgement { verdict, decided_by, agree, reason } = scene.judge(&linear, boundary, &run);
+                let evidence = Evidence::new(scene, &fixed_point, &linear, impacts);
+                let Judgement { verdict, decided_by, agree, reason } =
+                    scene.judge(&fixed_point, &linear, boundary, &run, evidence.chaos());
                 answer.verdict = Some(words(verdict, &run));
                 answer.decided_by = Some(decided_by.name());
                 answer.agree = Some(agree);
@@ -170,6 +184,10 @@ impl<'a> Stability<'a> {
                 if answer.boundary.is_some() && linear.rotation.is_none() {
                     notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
                 }
+                evidence.explain(&linear, &mut notes);
+                answer.predictable_impacts = evidence.predictable_impacts();
+                answer.chaos = evidence.chaos().map(Chaos::from);
+                answer.rotation_number = evidence.rotation().map(RotationNumber::from);
                 answer.linear = Some(LinearPart::new(scene, &linear));
                 answer.fixed_point = Some(FixedPoint {
                     theta: 0.0,
@@ -179,6 +197,19 @@ impl<'a> Stability<'a> {
                     flight_time: fixed_point.flight_time,
                     apex_height: fixed_point.apex_height,
                 });
+            }
+        }
+        if basin {
+            match scene.basin(impacts, &mut go_on) {
+                Ok(basin) => {
+                    notes.push(format!(
+                        "basin: released at rest; no hole wider than {} rad was missed, and its edges are known to {} rad",
+                        basin.spacing, basin.tolerance
+                    ));
+                    answer.basin = Some(basin.into());
+                }
+                Err(NoBasin::Stopped) => return None,
+                Err(NoBasin::Because(why)) => notes.push(format!("basin is null: {why}")),
             }
         }
         answer.notes = notes;
@@ -204,9 +235,15 @@ impl<'a> Stability<'a> {
         })
     }
 
-    /// How many bounces were computed for it.
+    /// How many bounces its run had.
     pub fn bounces(&self) -> u64 {
         self.nonlinear.impacts
+    }
+
+    /// What it costs at most, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs go
+    /// in lanes for a quarter of that each.
+    pub fn price(impacts: u64, basin: bool) -> u64 {
+        impacts + 4 * impacts.min(WATCHED) + if basin { basin::RUNS * impacts / 4 } else { 0 }
     }
 
     /// What ends it as NDJSON: the reason and the notes, which are no scalars.
@@ -223,6 +260,7 @@ impl<'a> Stability<'a> {
     pub fn to_table(&self) -> Table {
         let linear = self.linear.as_ref();
         let fixed_point = self.fixed_point.as_ref();
+        let rotation = self.rotation_number.as_ref();
         let word = |name, word| Column { name, unit: "", cells: Cells::Words(vec![word]) };
         let number = |name, unit, value| Column { name, unit, cells: Cells::Sparse(vec![value]) };
         Table(vec![
@@ -251,6 +289,28 @@ impl<'a> Stability<'a> {
             number("energy_gain_margin", "s2_per_m2", linear.map(|it| it.energy_gain.margin)),
             number("fixed_point_y_dot", "m_per_s", fixed_point.map(|it| it.y_dot)),
             number("fixed_point_flight_time", "s", fixed_point.map(|it| it.flight_time)),
+            number("rotation_number_measured", "", rotation.and_then(|it| it.measured)),
+            number("rotation_number_linear", "", rotation.map(|it| it.linear)),
+            Column {
+                name: "resonance_p",
+                unit: "",
+                cells: Cells::SparseCounts(vec![rotation.map(|it| it.resonance.p.into())]),
+            },
+            Column {
+                name: "resonance_q",
+                unit: "",
+                cells: Cells::SparseCounts(vec![rotation.map(|it| it.resonance.q.into())]),
+            },
+            number("resonance_distance", "", rotation.map(|it| it.resonance.distance)),
+            number("chaos_indicator", "", self.chaos.as_ref().map(|it| it.indicator)),
+            Column { name: "chaotic", unit: "", cells: Cells::Flags(vec![self.chaos.as_ref().map(|it| it.chaotic)]) },
+            Column {
+                name: "predictable_impacts",
+                unit: "",
+                cells: Cells::SparseCounts(vec![self.predictable_impacts]),
+            },
+            number("basin_theta", "rad", self.basin.as_ref().map(|it| it.theta)),
+            number("basin_unbroken", "rad", self.basin.as_ref().map(|it| it.unbroken)),
         ])
     }
 }

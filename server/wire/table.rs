@@ -24,6 +24,8 @@ pub enum Cells {
     Numbers(Vec<f64>),
     /// Numbers that need not exist.
     Sparse(Vec<Option<f64>>),
+    /// Whole numbers that need not exist.
+    SparseCounts(Vec<Option<u64>>),
     /// Words that need not exist.
     Words(Vec<Option<&'static str>>),
     /// Yes or no, where there is an answer.
@@ -38,6 +40,7 @@ impl Cells {
             Self::Counts(cells) => cells.len(),
             Self::Numbers(cells) => cells.len(),
             Self::Sparse(cells) => cells.len(),
+            Self::SparseCounts(cells) => cells.len(),
             Self::Words(cells) => cells.len(),
             Self::Flags(cells) => cells.len(),
             Self::Texts(cells) => cells.len(),
@@ -51,6 +54,7 @@ impl Cells {
             Self::Counts(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Numbers(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Sparse(cells) => serde_json::to_writer(out, &cells[row]),
+            Self::SparseCounts(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Words(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Flags(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Texts(cells) => serde_json::to_writer(out, &cells[row]),
@@ -62,7 +66,7 @@ impl Cells {
         let text = match self {
             Self::Words(cells) => cells[row],
             Self::Texts(cells) => cells[row].as_deref(),
-            Self::Counts(_) | Self::Numbers(_) | Self::Sparse(_) | Self::Flags(_) => {
+            Self::Counts(_) | Self::Numbers(_) | Self::Sparse(_) | Self::SparseCounts(_) | Self::Flags(_) => {
                 let start = out.len();
                 self.write_json(row, out);
                 if out[start..] == *b"null" {

@@ -1,0 +1,52 @@
+//! The basin of release angles against runs one by one.
+
+use equipoise_physics::basin::NoBasin;
+use equipoise_physics::map::Ending;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+fn scene(tilt_gain: f64, theta: f64) -> Scene {
+    let mut draft = Draft::default();
+    for (name, value) in [
+        (Name::ContactDistance, 0.4 / 3.0),
+        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
+        (Name::Height, 0.2),
+        (Name::Theta, theta),
+        (Name::TiltGain, tilt_gain),
+    ] {
+        draft.set(name, Some(Value::Number(value))).unwrap();
+    }
+    draft.build().unwrap()
+}
+
+fn survives(tilt_gain: f64, theta: f64, impacts: u64) -> bool {
+    scene(tilt_gain, theta).nonlinear(impacts, || true).unwrap().ending == Ending::Completed
+}
+
+#[test]
+fn edges_and_holes_are_where_runs_fall() {
+    for tilt_gain in [1.1, 1.2, 1.3, 1.375, 1.45] {
+        let basin = scene(tilt_gain, 0.01).basin(1000, || true).unwrap();
+        println!("κ = {tilt_gain}: {basin:?}");
+        assert!(basin.unbroken <= basin.theta && basin.tolerance < 1e-6);
+        for edge in [basin.theta, basin.unbroken] {
+            assert!(survives(tilt_gain, edge, 1000), "κ = {tilt_gain}: {edge}");
+            // Not all of them need to: at the outer edge angles that fall and survive are mixed at every scale.
+            let falls = |step: i32| !survives(tilt_gain, edge + basin.tolerance * f64::from(step) / 20.0, 1000);
+            assert!((1..=21).any(falls), "κ = {tilt_gain}: {edge}");
+        }
+        assert_eq!(basin.holes.is_empty(), basin.unbroken == basin.theta);
+        for (from, to) in &basin.holes {
+            assert!(basin.unbroken < *from && from <= to && *to < basin.theta);
+            assert!(!survives(tilt_gain, *from, 1000) && !survives(tilt_gain, *to, 1000));
+        }
+    }
+    // The order-3 resonance, at R = 3/4.
+    let width = |tilt_gain| scene(tilt_gain, 0.01).basin(1000, || true).unwrap().theta;
+    assert!(width(1.375) < 0.1 && width(1.1) > 0.25);
+}
+
+#[test]
+fn below_one_nothing_survives_and_a_search_can_be_stopped() {
+    assert!(scene(0.9, 0.01).basin(1000, || true).unwrap().theta < 1e-4);
+    assert_eq!(scene(1.1, 0.01).basin(100_000, || false), Err(NoBasin::Stopped));
+}

@@ -1,0 +1,152 @@
+//! The verdict on a scene: what the linear analysis, the boundary coefficient and the run say, weighed against each other.
+//!
+//! Not here: how any of them comes about ([`crate::stability`], [`crate::regularity`]).
+
+use crate::map::Ending;
+use crate::regularity::{CHAOTIC, Chaos};
+use crate::scene::Scene;
+use crate::stability::{Boundary, Class, FixedPoint, Linear, Nonlinear, PARABOLIC};
+
+/// The verdict on a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// A small deviation dies out.
+    StableInPlace,
+    /// The linear analysis says that the angle circles, and the run did for as long as it was watched; no theorem says more.
+    Elliptic,
+    /// At or beyond κ_c, yet bounded around the period-2 orbit.
+    BoundedBeyondBoundary,
+    /// It falls, or would from a start a little aside.
+    Unstable,
+}
+
+/// What a verdict rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DecidedBy {
+    /// Eigenvalues, by residue.
+    Linear,
+    /// The run of the scene.
+    Nonlinear,
+    /// The boundary coefficient.
+    Boundary,
+}
+
+impl DecidedBy {
+    /// Its name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Nonlinear => "nonlinear",
+            Self::Boundary => "boundary",
+        }
+    }
+}
+
+/// A verdict with what it rests on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// What decided.
+    pub decided_by: DecidedBy,
+    /// Whether linear analysis and run tell the same story.
+    pub agree: bool,
+    /// Why, in a sentence with numbers.
+    pub reason: String,
+}
+
+impl Scene {
+    /// Weighs the linear verdict, the boundary coefficient, the run and how regular it is against each other.
+    pub fn judge(
+        &self,
+        fixed_point: &FixedPoint,
+        linear: &Linear,
+        boundary: Option<Boundary>,
+        run: &Nonlinear,
+        chaos: Option<Chaos>,
+    ) -> Judgement {
+        let survived = run.ending == Ending::Completed;
+        let agree = linear.says_bounded() == survived;
+        let judgement = |verdict, decided_by, reason| Judgement { verdict, decided_by, agree, reason };
+        let start = self.start();
+        let undisturbed = start.theta == 0.0 && start.theta_dot == 0.0;
+        let kappa = self.tilt_gain;
+        let critical = linear.critical_tilt_gain;
+        if linear.energy_eigenvalue.abs() > 1.0 + PARABOLIC {
+            let reason = format!(
+                "energy_gain is {} s²/m² and must be between 0 and {}: deviations of the height grow by {} a bounce",
+                self.energy_gain, linear.upper_energy_gain, linear.energy_eigenvalue
+            );
+            return judgement(Verdict::Unstable, DecidedBy::Linear, reason);
+        }
+        let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
+        if !survived && linear.class != Class::Hyperbolic && linear.class != Class::Parabolic {
+            let reason = format!("{fell}, although the linear analysis is stable: the start is outside the basin");
+            return judgement(Verdict::Unstable, DecidedBy::Nonlinear, reason);
+        }
+        match linear.class {
+            Class::Attracting => {
+                let reason = format!("the angle of the velocity shrinks by {} a bounce (eq. 4)", 1.0 - 2.0 * kappa);
+                judgement(Verdict::StableInPlace, DecidedBy::Linear, reason)
+            }
+            Class::Elliptic => {
+                let mut reason = format!(
+                    "tilt_gain {kappa} is between {} and {critical}, so small deviations circle, and the run survived",
+                    linear.lower_tilt_gain
+                );
+                if let Some(Chaos { indicator, chaotic: true, impacts }) = chaos {
+                    reason += &format!(
+                        ", but it is chaotic (MEGNO {indicator} over {impacts} impacts, above {CHAOTIC}), so that it may still \
+                         fall later"
+                    );
+                }
+                judgement(Verdict::Elliptic, DecidedBy::Linear, reason)
+            }
+            Class::Parabolic if kappa > 0.5 * (1.0 + critical) => match boundary {
+                Some(Boundary { coefficient }) if coefficient > 0.0 && survived => judgement(
+                    Verdict::BoundedBeyondBoundary,
+                    DecidedBy::Boundary,
+                    format!(
+                        "tilt_gain is κ_c, where eigenvalues are silent; C = {coefficient} > 0 is soft, and the run survived"
+                    ),
+                ),
+                Some(Boundary { coefficient }) if coefficient > 0.0 => judgement(
+                    Verdict::Unstable,
+                    DecidedBy::Nonlinear,
+                    format!("tilt_gain is κ_c and C = {coefficient} > 0 is soft for small starts, but {fell}"),
+                ),
+                _ => judgement(
+                    Verdict::Unstable,
+                    DecidedBy::Boundary,
+                    format!(
+                        "tilt_gain is κ_c, where eigenvalues are silent; C = {} is not positive: hard, every small start \
+                         falls in the end",
+                        boundary.map_or(0.0, |boundary| boundary.coefficient)
+                    ),
+                ),
+            },
+            Class::Parabolic => judgement(
+                Verdict::Unstable,
+                DecidedBy::Linear,
+                "tilt_gain is 1, where the angle drifts off at a constant rate".to_owned(),
+            ),
+            Class::Hyperbolic if survived && !undisturbed && kappa > critical => judgement(
+                Verdict::BoundedBeyondBoundary,
+                DecidedBy::Nonlinear,
+                format!(
+                    "tilt_gain {kappa} is beyond κ_c = {critical}, yet the run stayed within |θ| ≤ {} rad{}",
+                    run.max_theta,
+                    self.period_two(fixed_point)
+                        .map_or_else(String::new, |theta| format!(", around the period-2 orbit at θ = ±{theta} rad"))
+                ),
+            ),
+            Class::Hyperbolic => {
+                let side = if kappa < linear.lower_tilt_gain { "below" } else { "beyond" };
+                let limit = if kappa < linear.lower_tilt_gain { linear.lower_tilt_gain } else { critical };
+                let shown = if survived { "this run has not left yet" } else { fell.as_str() };
+                let reason = format!("tilt_gain {kappa} is {side} {limit}, so small deviations grow; {shown}");
+                judgement(Verdict::Unstable, DecidedBy::Linear, reason)
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What a verdict has beyond the linear analysis, as it is written in the answer: rotation number, chaos, basin, and the words
+//! on each of them. Not for the verdict itself.
+
+use equipoise_physics::basin;
+use equipoise_physics::regularity::{self, FEWEST, Regularity, TOLERANCE, WATCHED};
+use equipoise_physics::scene::Scene;
+use equipoise_physics::stability::{FixedPoint, Linear};
+use serde::Serialize;
+
+/// Distance from 1/3 and 1/4, in turns a bounce, within which they are named: about the width of their dents in the basin.
+const NEAR: f64 = 0.02;
+
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Resonance {
+    pub(super) p: u32,
+    pub(super) q: u32,
+    pub(super) distance: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct RotationNumber {
+    pub(super) measured: Option<f64>,
+    pub(super) linear: f64,
+    pub(super) resonance: Resonance,
+}
+
+impl From<regularity::Rotation> for RotationNumber {
+    fn from(rotation: regularity::Rotation) -> Self {
+        let regularity::Resonance { p, q, distance } = rotation.resonance;
+        Self { measured: rotation.measured, linear: rotation.linear, resonance: Resonance { p, q, distance } }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Chaos {
+    pub(super) indicator: f64,
+    pub(super) chaotic: bool,
+    impacts: u64,
+}
+
+impl From<regularity::Chaos> for Chaos {
+    fn from(chaos: regularity::Chaos) -> Self {
+        Self { indicator: chaos.indicator, chaotic: chaos.chaotic, impacts: chaos.impacts }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Basin {
+    pub(super) theta: f64,
+    impacts: u64,
+    holes: Vec<(f64, f64)>,
+    pub(super) unbroken: f64,
+    tolerance: f64,
+    spacing: f64,
+}
+
+impl From<basin::Basin> for Basin {
+    fn from(basin: basin::Basin) -> Self {
+        let basin::Basin { theta, unbroken, holes, impacts, tolerance, spacing } = basin;
+        Self { theta, impacts, holes, unbroken, tolerance, spacing }
+    }
+}
+
+/// What the watch over the first contacts says of a scene; nothing for a body without an angle.
+#[derive(Debug)]
+pub(super) struct Evidence(Option<Regularity>);
+
+impl Evidence {
+    pub(super) fn new(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear, impacts: u64) -> Self {
+        Self(scene.regularity(fixed_point, linear, impacts))
+    }
+
+    pub(super) fn rotation(&self) -> Option<regularity::Rotation> {
+        self.0.as_ref()?.rotation
+    }
+
+    pub(super) fn chaos(&self) -> Option<regularity::Chaos> {
+        self.0.as_ref()?.chaos
+    }
+
+    pub(super) fn predictable_impacts(&self) -> Option<u64> {
+        self.0.as_ref()?.predictable_impacts(TOLERANCE)
+    }
+
+    /// Why something is null, and what a client should know of the rest.
+    pub(super) fn explain(&self, linear: &Linear, notes: &mut Vec<String>) {
+        let Some(regularity) = &self.0 else {
+            notes.push(
+                "rotation_number, chaos and predictable_impacts are null: they are of a body with an angle".to_owned(),
+            );
+            return;
+        };
+        let watched = regularity.growth.len();
+        match regularity.rotation {
+            None => notes.push("rotation_number is null: at this tilt_gain small deviations do not circle".to_owned()),
+            Some(rotation) => {
+                if rotation.measured.is_none() {
+                    notes.push(format!(
+                        "rotation_number.measured is null: the run stands at the fixed point or lasted {watched} impacts, fewer \
+                         than about {FEWEST}"
+                    ));
+                }
+                for (order, effect) in [(3, "shrinks to nothing"), (4, "has a dent")] {
+                    let near = |turns: f64| (turns - 1.0 / f64::from(order)).abs();
+                    let distance = rotation.measured.map_or(f64::INFINITY, near).min(near(rotation.linear));
+                    if distance <= NEAR {
+                        let residue = linear.residue.unwrap_or_default();
+                        notes.push(format!(
+                            "resonance 1/{order}: the rotation number is within {distance} of it (named up to {NEAR}) at residue \
+                             {residue}; there the basin {effect}, which the linear verdict does not see"
+                        ));
+                    }
+                }
+            }
+        }
+        if regularity.chaos.is_none() {
+            notes.push(format!(
+                "chaos is null: it takes {WATCHED} impacts aside from the fixed point, and {watched} were watched"
+            ));
+        }
+        if regularity.predictable_impacts(TOLERANCE).is_none() {
+            let growth = regularity.growth.last().copied().unwrap_or_default();
+            notes.push(format!(
+                "predictable_impacts is null: over the {watched} impacts watched, deviations grew by e^{growth}, which does not \
+                 bring rounding up to {TOLERANCE} of the contact speed"
+            ));
+        }
+    }
+}
