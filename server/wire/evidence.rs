@@ -7,7 +7,7 @@ use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::{FixedPoint, Linear};
 use serde::Serialize;
 
-/// Distance from 1/3 and 1/4, in turns a bounce, within which they are named: about the width of their dents in the basin.
+/// Distance from 1/3 and 1/4, in turns a bounce, within which they are named.
 const NEAR: f64 = 0.02;
 
 #[derive(Debug, Clone, Serialize)]
@@ -100,14 +100,14 @@ impl Evidence {
                          than about {FEWEST}"
                     ));
                 }
-                for (order, effect) in [(3, "shrinks to nothing"), (4, "has a dent")] {
+                for order in [3, 4] {
                     let near = |turns: f64| (turns - 1.0 / f64::from(order)).abs();
                     let distance = rotation.measured.map_or(f64::INFINITY, near).min(near(rotation.linear));
                     if distance <= NEAR {
                         let residue = linear.residue.unwrap_or_default();
                         notes.push(format!(
                             "resonance 1/{order}: the rotation number is within {distance} of it (named up to {NEAR}) at residue \
-                             {residue}; there the basin {effect}, which the linear verdict does not see"
+                             {residue}; near it the basin may have a dent, which the linear verdict does not see"
                         ));
                     }
                 }

@@ -40,9 +40,10 @@ fn edges_and_holes_are_where_runs_fall() {
             assert!(!survives(tilt_gain, *from, 1000) && !survives(tilt_gain, *to, 1000));
         }
     }
-    // The order-3 resonance, at R = 3/4.
-    let width = |tilt_gain| scene(tilt_gain, 0.01).basin(1000, || true).unwrap().theta;
-    assert!(width(1.375) < 0.1 && width(1.1) > 0.25);
+    // The dent beyond the order-4 resonance, R = 1/2.
+    let width = |tilt_gain| scene(tilt_gain, 0.01).basin(1000, || true).unwrap().unbroken;
+    println!("{}", width(1.266));
+    assert!(width(1.266) < 0.2 && width(1.1) > 0.3);
 }
 
 #[test]
