@@ -21,3 +21,8 @@ pub(super) const ORANGE: &str = "#e69f00";
 pub(super) const VERMILLION: &str = "#d55e00";
 /// Blue so light that everything reads on it.
 pub(super) const PALE_BLUE: &str = "#e3f0f8";
+
+/// Under the hatching of what has no value.
+pub(super) const PALE_GREY: &str = "#eff0f2";
+/// Hatching.
+pub(super) const HATCH: &str = "#8f97a1";

@@ -1,9 +1,10 @@
 //! A legend: one row of samples with their meaning.
 
 use super::colour::SOFT_INK;
-use super::marks::{arrow, disc, dots, hollow, line, ring, square};
-use super::svg::{Svg, Type};
-use super::text::{Span, width};
+use super::marks::{arrow, cased, disc, dots, hatched, hollow, line, ring, square};
+use super::panel::Frame;
+use super::svg::{Svg, Type, fixed};
+use super::text::{sentence, width};
 
 /// Text of a legend, px.
 const SIZE: f64 = 12.5;
@@ -17,13 +18,16 @@ pub(super) enum Sample {
     Hollow(&'static str),
     Square(&'static str),
     Line { colour: &'static str, dashes: Option<&'static str> },
+    Cased { dashes: Option<&'static str> },
+    Hatched,
     Arrow(&'static str),
 }
 
 impl Sample {
     fn width(self) -> f64 {
         match self {
-            Self::Line { .. } => 26.0,
+            Self::Line { .. } | Self::Cased { .. } => 26.0,
+            Self::Hatched => 18.0,
             _ => 12.0,
         }
     }
@@ -37,6 +41,8 @@ impl Sample {
             Self::Hollow(colour) => hollow(svg, middle, 5.0, colour),
             Self::Square(colour) => square(svg, middle, 5.0, colour),
             Self::Line { colour, dashes } => line(svg, &[(x, y), (x + 26.0, y)], colour, 3.0, dashes),
+            Self::Cased { dashes } => cased(svg, &format!("M{} {}h26", fixed(x), fixed(y)), dashes),
+            Self::Hatched => hatched(svg, Frame { left: x, top: y - 6.0, width: 18.0, height: 12.0 }),
             Self::Arrow(colour) => arrow(svg, (x + 11.0, y), (1.0, 0.0), 11.0, colour),
         }
     }
@@ -52,7 +58,7 @@ pub(super) fn legend(svg: &mut Svg, middle: f64, y: f64, entries: &[(Sample, &st
     for entry in entries {
         let (sample, text) = *entry;
         sample.draw(svg, x, y);
-        svg.text(x + sample.width() + SPACE, y + 4.3, Type::new(SIZE, SOFT_INK), &[Span::Plain(text)]);
+        svg.text(x + sample.width() + SPACE, y + 4.3, Type::new(SIZE, SOFT_INK), &sentence(text));
         x += wide(entry) + GAP;
     }
 }

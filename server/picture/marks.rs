@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::colour::PAPER;
+use super::colour::{HATCH, INK, PALE_GREY, PAPER};
 use super::panel::Frame;
 use super::svg::{Svg, fixed};
 
@@ -90,4 +90,41 @@ pub(super) fn arrow(svg: &mut Svg, (x, y): Point, direction: Point, size: f64, c
 pub(super) fn band(svg: &mut Svg, area: Frame, colour: &str) {
     let tag = svg.tag("rect").number("x", area.left).number("y", area.top).number("width", area.width);
     tag.number("height", area.height).word("fill", colour).end();
+}
+
+/// A path drawn dark on a casing of paper, so that it shows on any colour; only the dark is dashed.
+pub(super) fn cased(svg: &mut Svg, path: &str, dashes: Option<&str>) {
+    for (stroke, width, dashes) in [(PAPER, 4.6, None), (INK, 2.0, dashes)] {
+        let mut tag = svg.tag("path").word("d", path).word("fill", "none").word("stroke", stroke);
+        tag = tag.number("stroke-width", width).word("stroke-linejoin", "round");
+        if let Some(dashes) = dashes {
+            tag = tag.word("stroke-dasharray", dashes);
+        }
+        tag.end();
+    }
+}
+
+/// Hatching along a path.
+pub(super) fn hatch(svg: &mut Svg, path: &str) {
+    let tag = svg.tag("path").word("d", path).word("fill", "none").word("stroke", HATCH);
+    tag.number("stroke-width", 1.0).end();
+}
+
+/// A small hatched rectangle.
+pub(super) fn hatched(svg: &mut Svg, area: Frame) {
+    let Frame { left, top, width, height } = area;
+    band(svg, area, PALE_GREY);
+    let mut path = String::new();
+    for share in [0.0, 0.5] {
+        // From the left side up to the top, then from the bottom up to the right side.
+        let (x, y) = (share * width, share * height);
+        let _ = write!(path, "M{} {}", fixed(left + x), fixed(top + height));
+        let _ = write!(path, "L{} {}", fixed(left + width), fixed(top + y));
+        if share > 0.0 {
+            let _ = write!(path, "M{} {}L{} {}", fixed(left), fixed(top + y), fixed(left + x), fixed(top));
+        }
+    }
+    hatch(svg, &path);
+    let tag = svg.tag("rect").number("x", left).number("y", top).number("width", width).number("height", height);
+    tag.word("fill", "none").word("stroke", HATCH).end();
 }

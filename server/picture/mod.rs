@@ -4,9 +4,13 @@
 //! so that it reads in light and dark pages alike, and carries no style sheet and no script, so that any CSP takes it.
 //! Not here: HTTP, and computing what is drawn.
 
+mod boundary;
 mod branches;
+mod cells;
+mod cividis;
 mod colour;
 mod eigenvalues;
+mod heat_map;
 mod legend;
 mod marks;
 mod number;
@@ -20,7 +24,10 @@ mod trail;
 
 pub use branches::{Branches, Change, branches};
 pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
+pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use phase_planes::{PhasePlanes, phase_planes};
 
+#[cfg(test)]
+mod heat_map_tests;
 #[cfg(test)]
 mod tests;

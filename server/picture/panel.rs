@@ -8,10 +8,10 @@ use super::svg::{Anchor, Svg, Type};
 use super::text::{Span, width};
 
 /// Text of ticks, px.
-const TICK_SIZE: f64 = 12.0;
+pub(super) const TICK_SIZE: f64 = 12.0;
 
 /// Text of axis titles, px.
-const TITLE_SIZE: f64 = 13.5;
+pub(super) const TITLE_SIZE: f64 = 13.5;
 
 /// Where the frame of a panel is, px.
 #[derive(Clone, Copy, Debug)]
@@ -113,7 +113,7 @@ fn grid(value: f64) -> &'static str {
 }
 
 /// The title of an axis: name, symbol, unit and power of ten.
-fn title(svg: &mut Svg, x: f64, y: f64, look: Type, axis: Axis<'_>, ticks: &Ticks) {
+pub(super) fn title(svg: &mut Svg, x: f64, y: f64, look: Type, axis: Axis<'_>, ticks: &Ticks) {
     let unit = match (ticks.power, axis.unit) {
         (0, "") => String::new(),
         (0, unit) => format!(" ({unit})"),

@@ -2,11 +2,11 @@
 
 use super::*;
 
-const AWKWARD: [f64; 12] =
+pub(super) const AWKWARD: [f64; 12] =
     [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN, 5e-324, -0.0, 0.0, 1e-12, 1.0, -3.7, 1e17];
 
 /// Checks what must hold for every picture, and gives its text.
-fn sound(picture: &str) -> String {
+pub(super) fn sound(picture: &str) -> String {
     let document = roxmltree::Document::parse(picture).unwrap_or_else(|error| panic!("{error}:\n{picture}"));
     let root = document.root_element();
     assert_eq!(root.tag_name().name(), "svg");
