@@ -13,7 +13,8 @@ use crate::limits;
 use crate::wire::region::{Answer, Request};
 use crate::wire::scene::Resolved;
 
-const RESOURCE: Resource = Resource { name: "regions", formats: &[Format::Json, Format::Csv, Format::Ndjson] };
+const RESOURCE: Resource =
+    Resource { name: "regions", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg] };
 
 /// Its path.
 pub fn routes() -> Router<App> {
@@ -43,6 +44,7 @@ async fn regions(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Pro
         match format {
             Format::Csv => Ok(answer.to_csv()),
             Format::Ndjson => Ok(answer.to_ndjson()),
+            Format::Svg => Ok(answer.to_picture().into_bytes()),
             _ => super::json(&answer),
         }
     })

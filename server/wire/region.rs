@@ -10,6 +10,7 @@ use serde::{Serialize, Serializer};
 use super::scene::{Resolved, build, read_draft};
 use crate::http::{Errors, Reader};
 use crate::limits;
+use crate::picture::{HeatAxis, HeatMap, heat_map};
 
 /// A band of whole rows: number `index`, from 0, of `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -211,6 +212,47 @@ impl Answer {
         let _ = serde_json::to_writer(&mut out, &End { end: self.counts() });
         out.push(b'\n');
         out
+    }
+
+    /// The tile as a heat map with the linear boundary over it, as SVG.
+    pub fn to_picture(&self) -> String {
+        let Request { region, tile, .. } = &self.request;
+        let rows = self.request.rows();
+        let side = |axis: &Axis, first: usize, count: usize| {
+            let row = axis.name.row();
+            HeatAxis {
+                name: row.title,
+                symbol: row.symbol,
+                unit: row.unit,
+                from: axis.value(first),
+                to: axis.value(first + count.max(1) - 1),
+                count,
+            }
+        };
+        let (quantity, unit) = match region.quantity {
+            Quantity::Survival => ("contacts survived", "1"),
+            Quantity::MaxTheta => ("largest |θ|", "rad"),
+            Quantity::Residue => ("residue R", "1"),
+            Quantity::SpectralRadius => ("spectral radius", "1"),
+        };
+        let values: Vec<Option<f64>> = self.cells.iter().map(|cell| cell.value).collect();
+        let finite = || values.iter().flatten().copied().filter(|value| value.is_finite());
+        let scale = match region.quantity {
+            Quantity::Survival => (0.0, region.impacts as f64),
+            _ => (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)),
+        };
+        let part = if tile.of > 1 { format!(", tile {} of {}", tile.index + 1, tile.of) } else { String::new() };
+        heat_map(&HeatMap {
+            title: &format!("{} over {} and {}", quantity, region.x.name.row().title, region.y.name.row().title),
+            subtitle: &format!("runs of up to {} contacts{part}", region.impacts),
+            x: side(&region.x, 0, region.x.count),
+            y: side(&region.y, rows.start, rows.len()),
+            values: &values,
+            scale,
+            quantity,
+            unit,
+            boundary: &region.boundary(limits::REGION_BOUNDARY_NODES),
+        })
     }
 
     fn is_whole(&self) -> bool {
