@@ -4,11 +4,12 @@ use std::hint::black_box;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as bench_all};
+use equipoise_physics::dispatch::Path;
 use equipoise_physics::impact::{Rod, State};
 use equipoise_physics::jacobian::jacobian;
 use equipoise_physics::map::{Orbit, Release, Rules, run};
 use equipoise_physics::model::Model;
-use equipoise_physics::sweep::{Start, sweep};
+use equipoise_physics::sweep::{Start, sweep_on};
 
 const BOUNCES: u64 = 1000;
 
@@ -78,8 +79,8 @@ fn sine_and_cosine(bencher: Bencher, whose: &str) {
 }
 
 /// Eight rods side by side with survival bookkeeping, on one core: what a region runs. Items are bounces.
-#[divan::bench]
-fn lanes(bencher: Bencher) {
+#[divan::bench(args = Path::ALL)]
+fn lanes(bencher: Bencher, path: Path) {
     const RUNS: u64 = 32;
     let state = |theta| State { theta, x_dot: 0.0, y_dot: -1.15, theta_dot: 0.0 };
     bencher.counter(ItemsCount::new(RUNS * BOUNCES)).bench(|| {
@@ -90,7 +91,7 @@ fn lanes(bencher: Bencher) {
             Some((0, Start { rod, rules: RULES, state: state(0.002 * left as f64) }))
         };
         let mut survived = 0;
-        sweep(BOUNCES, next, |_, end| survived += end.impacts, || true);
+        sweep_on(path, BOUNCES, next, |_, end| survived += end.impacts, || true);
         assert_eq!(survived, RUNS * BOUNCES);
     });
 }

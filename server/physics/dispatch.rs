@@ -14,22 +14,59 @@ pub trait Work {
     fn call(self) -> Self::Output;
 }
 
+/// A kind of instructions to compile for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Path {
+    /// AVX-512 (F, VL and DQ).
+    Avx512,
+    /// AVX2.
+    Avx2,
+    /// What every CPU of this kind has.
+    Portable,
+}
+
+impl Path {
+    /// All of them, the best first.
+    pub const ALL: [Self; 3] = [Self::Avx512, Self::Avx2, Self::Portable];
+
+    /// Whether this CPU can take it.
+    #[inline]
+    pub fn is_there(self) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::is_x86_feature_detected as has;
+            match self {
+                Self::Avx512 => has!("avx512f") && has!("avx512vl") && has!("avx512dq"),
+                Self::Avx2 => has!("avx2"),
+                Self::Portable => true,
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        {
+            self == Self::Portable
+        }
+    }
+}
+
 /// Does `work`, compiled for the best instructions there are.
 #[inline]
 pub fn dispatch<W: Work>(work: W) -> W::Output {
-    #[cfg(target_arch = "x86_64")]
-    {
-        use std::arch::is_x86_feature_detected as has;
-        if has!("avx512f") && has!("avx512vl") && has!("avx512dq") {
-            // SAFETY: the CPU has just these features, which is all that calling this needs.
-            return unsafe { with_avx512(work) };
-        }
-        if has!("avx2") {
-            // SAFETY: as above.
-            return unsafe { with_avx2(work) };
-        }
+    let best = Path::ALL.into_iter().find(|path| path.is_there()).unwrap_or(Path::Portable);
+    dispatch_on(best, work)
+}
+
+/// Does `work` on one path, or on the portable one where this CPU cannot take it; the bits are the same on all.
+#[inline]
+pub fn dispatch_on<W: Work>(path: Path, work: W) -> W::Output {
+    match path {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: the CPU has just these features, which is all that calling this needs.
+        Path::Avx512 if path.is_there() => unsafe { with_avx512(work) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        Path::Avx2 if path.is_there() => unsafe { with_avx2(work) },
+        _ => work.call(),
     }
-    work.call()
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -4,7 +4,7 @@
 //! rod at once, so that dead cells cost nothing; a flight that is not the common one goes through the scalar contact time.
 
 use crate::contact_time::{self, Step};
-use crate::dispatch::{Work, dispatch};
+use crate::dispatch::{Path, Work, dispatch, dispatch_on};
 use crate::impact::{Rod, State, Strike};
 use crate::lanes::{Lanes, WIDTH};
 use crate::map::{Body, Ending, Rules, SPEED_LIMIT};
@@ -87,6 +87,17 @@ pub fn sweep(
     go_on: impl FnMut() -> bool,
 ) {
     dispatch(Sweep { impacts, next, done, go_on });
+}
+
+/// [`sweep`] with one kind of instructions, to hold all of them together.
+pub fn sweep_on(
+    path: Path,
+    impacts: u64,
+    next: impl FnMut() -> Option<(usize, Start)>,
+    done: impl FnMut(usize, End),
+    go_on: impl FnMut() -> bool,
+) {
+    dispatch_on(path, Sweep { impacts, next, done, go_on });
 }
 
 struct Sweep<Next, Done, GoOn> {
