@@ -20,6 +20,7 @@ pub mod lanes;
 pub mod map;
 pub mod model;
 pub mod number;
+pub mod outcome;
 pub mod periodic_orbits;
 pub mod point;
 pub mod region;

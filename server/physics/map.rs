@@ -6,6 +6,7 @@ use crate::contact_time::{self, TooManyPieces};
 use crate::dispatch::{Work, dispatch};
 use crate::flight::Flight;
 use crate::impact::{Rod, State, Strike};
+use crate::outcome::Outcome;
 
 /// Fastest speed, m/s, of the centre of gravity or of the contact point about it, that a run may reach: beyond it
 /// doubles no longer resolve a flight, and only a wrong energy feedback gets there.
@@ -157,14 +158,7 @@ pub enum Ending {
 impl Ending {
     /// Its name in answers.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Toppled { .. } => "toppled",
-            Self::Separating { .. } => "separating",
-            Self::Sinking { .. } => "sinking",
-            Self::Settled { .. } => "settled",
-            Self::Diverged { .. } => "diverged",
-            Self::Completed => "completed",
-        }
+        Outcome::from(self).name()
     }
 }
 

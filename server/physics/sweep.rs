@@ -7,8 +7,9 @@ use crate::contact_time::{self, Step};
 use crate::dispatch::{Path, Work, dispatch, dispatch_on};
 use crate::impact::{Rod, State, Strike};
 use crate::lanes::{Lanes, WIDTH};
-use crate::map::{Body, Ending, Rules, SPEED_LIMIT};
+use crate::map::{Body, Rules, SPEED_LIMIT};
 use crate::number::{Number, Real};
+pub use crate::outcome::Outcome;
 
 /// One run to be made.
 #[derive(Clone, Copy, Debug)]
@@ -26,47 +27,10 @@ pub struct Start {
 pub struct End {
     /// Contacts, the last included.
     pub impacts: u64,
-    /// The name of the ending, as [`Ending::name`].
+    /// The name of the ending, as [`Outcome::name`].
     pub outcome: Outcome,
     /// Largest |θ| at a contact, rad.
     pub max_theta: f64,
-}
-
-/// The kinds of [`Ending`], without their numbers.
-#[allow(missing_docs)] // as in `Ending`
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Outcome {
-    Completed,
-    Toppled,
-    Separating,
-    Sinking,
-    Settled,
-    Diverged,
-}
-
-impl Outcome {
-    /// All of them, each at the place of its number.
-    pub const ALL: [Self; 6] =
-        [Self::Completed, Self::Toppled, Self::Separating, Self::Sinking, Self::Settled, Self::Diverged];
-
-    /// Its name in answers, that of the [`Ending`].
-    pub fn name(self) -> &'static str {
-        ["completed", "toppled", "separating", "sinking", "settled", "diverged"][self as usize]
-    }
-}
-
-impl From<Ending> for Outcome {
-    fn from(ending: Ending) -> Self {
-        match ending {
-            Ending::Completed => Self::Completed,
-            Ending::Toppled { .. } => Self::Toppled,
-            Ending::Separating { .. } => Self::Separating,
-            Ending::Sinking { .. } => Self::Sinking,
-            Ending::Settled { .. } => Self::Settled,
-            Ending::Diverged { .. } => Self::Diverged,
-        }
-    }
 }
 
 impl Start {

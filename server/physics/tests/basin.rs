@@ -1,22 +1,10 @@
 //! The basin of release angles against runs one by one.
 
+mod paper;
+
 use equipoise_physics::basin::NoBasin;
 use equipoise_physics::map::Ending;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
-
-fn scene(tilt_gain: f64, theta: f64) -> Scene {
-    let mut draft = Draft::default();
-    for (name, value) in [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
-        (Name::Height, 0.2),
-        (Name::Theta, theta),
-        (Name::TiltGain, tilt_gain),
-    ] {
-        draft.set(name, Some(Value::Number(value))).unwrap();
-    }
-    draft.build().unwrap()
-}
+use paper::scene;
 
 fn survives(tilt_gain: f64, theta: f64, impacts: u64) -> bool {
     scene(tilt_gain, theta).nonlinear(impacts, || true).unwrap().ending == Ending::Completed

@@ -1,25 +1,13 @@
 //! Rotation, chaos and horizon of runs against what is known of them; false rates of the chaos indicator on runs that are
 //! labelled by what they do over 30,000 contacts.
 
+mod paper;
+
 use equipoise_physics::map::{Ending, Orbit};
 use equipoise_physics::model::Model;
 use equipoise_physics::regularity::{Regularity, TOLERANCE, Turns, WATCHED, nearest_resonance, weighted_average};
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
-
-/// The paper's body, released at rest from 0.2 m.
-fn scene(tilt_gain: f64, theta: f64) -> Scene {
-    let mut draft = Draft::default();
-    for (name, value) in [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
-        (Name::Height, 0.2),
-        (Name::Theta, theta),
-        (Name::TiltGain, tilt_gain),
-    ] {
-        draft.set(name, Some(Value::Number(value))).unwrap();
-    }
-    draft.build().unwrap()
-}
+use equipoise_physics::scene::Scene;
+use paper::scene;
 
 fn regularity(scene: &Scene) -> Regularity {
     let fixed_point = scene.fixed_point().unwrap();
