@@ -58,7 +58,7 @@ pub(crate) fn guess<N: Number>(flight: &Flight<N>) -> N {
     let State { y_dot, theta_dot, .. } = flight.start;
     let (sin, cos) = flight.sin_cos_theta;
     let speed = flight.contact_distance * theta_dot;
-    let bulge = speed * theta_dot;
+    let bulge = flight.bulge();
     let v = y_dot + speed * sin;
     let per_a = number(1.0) / (flight.gravity - bulge * cos);
     let rough = number(2.0) * v * per_a;
@@ -108,7 +108,7 @@ fn newton(flight: &Flight, mut t: f64, mut gap: Gap) -> f64 {
 /// One step from `t`: Newton's, and one that uses the second derivative too.
 pub(crate) struct Step<N> {
     /// What Newton adds to t.
-    newton: N,
+    pub(crate) newton: N,
     /// The better t.
     pub(crate) refined: N,
     /// How much more that may be off, at most.
@@ -122,7 +122,7 @@ impl<N: Real> Step<N> {
     pub(crate) fn new(flight: &Flight<N>, t: N, gap: &Gap<N>) -> Self {
         let number = N::from_f64;
         let spin = flight.start.theta_dot.magnitude();
-        let stiffness = flight.gravity + flight.contact_distance * spin * spin;
+        let stiffness = flight.gravity + flight.bulge();
         let per_slope = number(1.0) / gap.slope;
         let newton = -(gap.value * per_slope);
         let size = newton.magnitude();

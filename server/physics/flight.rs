@@ -42,7 +42,8 @@ impl<N: Number> Flight<N> {
         let (sin_theta, cos_theta) = self.sin_cos_theta;
         let (sin, versine) = (theta_dot * t).sin_versine();
         let (reach_x, reach_y) = (self.contact_distance * sin_theta, self.contact_distance * cos_theta);
-        let (speed_x, speed_y) = (reach_y * theta_dot, reach_x * theta_dot);
+        let spin = self.contact_distance * theta_dot;
+        let (speed_x, speed_y) = (spin * cos_theta, spin * sin_theta);
         let fall = self.gravity * t;
         let turned = speed_x * sin - speed_y * versine;
         Gap {

@@ -43,6 +43,23 @@ pub struct Rod<N = f64> {
     pub target_energy: N,
 }
 
+/// What a strike takes from the angles alone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tilt<N> {
+    /// α, table tilt, rad.
+    pub(crate) alpha: N,
+    /// sin θ.
+    pub(crate) sin_theta: N,
+    /// 1 − cos θ.
+    pub(crate) versine_theta: N,
+    /// sin α.
+    pub(crate) sin_alpha: N,
+    /// cos α.
+    pub(crate) cos_alpha: N,
+    /// sin β of β = θ − α, the rod's angle from the table's normal.
+    pub(crate) sin_beta: N,
+}
+
 /// All there is to know about one strike. Velocities are of the centre of gravity, impulses per unit mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strike<N = f64> {
@@ -78,16 +95,35 @@ impl<N: Number> Rod<N> {
     /// The frictionless strike, eq. (24) with (27) and (28).
     #[inline(always)]
     pub fn strike(&self, before: &State<N>) -> Strike<N> {
+        self.strike_with(before, &self.tilt(before.theta), self.leverage())
+    }
+
+    /// The table's tilt at an angle of the rod.
+    #[inline(always)]
+    pub(crate) fn tilt(&self, theta: N) -> Tilt<N> {
+        let alpha = self.tilt_gain * theta;
+        let (sin_theta, versine_theta) = theta.sin_versine();
+        let (sin_alpha, cos_alpha) = alpha.sincos();
+        // Without the rounding of α: the strike turns the rod by sin β, which is small beside θ.
+        let (sin_beta, _) = ((N::from_f64(1.0) - self.tilt_gain) * theta).sincos();
+        Tilt { alpha, sin_theta, versine_theta, sin_alpha, cos_alpha, sin_beta }
+    }
+
+    /// 1/ρ², 1/m²: of all that a strike needs, what depends on the rod alone and costs a division.
+    #[inline(always)]
+    pub(crate) fn leverage(&self) -> N {
+        N::from_f64(1.0) / (self.radius_of_gyration * self.radius_of_gyration)
+    }
+
+    /// [`Rod::strike`] with what it needs of the angle and of the rod.
+    #[inline(always)]
+    pub(crate) fn strike_with(&self, before: &State<N>, tilt: &Tilt<N>, leverage: N) -> Strike<N> {
         let one = N::from_f64(1.0);
         let half = N::from_f64(0.5);
         let State { theta, x_dot, y_dot, theta_dot } = *before;
-        let alpha = self.tilt_gain * theta;
-        let (sin_theta, versine_theta) = theta.sin_versine();
+        let Tilt { alpha, sin_theta, versine_theta, sin_alpha, cos_alpha, sin_beta } = *tilt;
         let cos_theta = one - versine_theta;
-        let (sin_alpha, cos_alpha) = alpha.sincos();
-        // β = θ − α, the rod's angle from the table's normal, without the rounding of α: the strike turns the rod by sin β,
-        // which is small beside θ. Then eq. (32) in the plane's axes.
-        let (sin_beta, _) = ((one - self.tilt_gain) * theta).sincos();
+        // Eq. (32) in the plane's axes.
         let arm = self.contact_distance * sin_beta;
         let normal_velocity = cos_alpha * y_dot - sin_alpha * x_dot + arm * theta_dot;
         // η of eq. (28).
@@ -96,7 +132,7 @@ impl<N: Number> Rod<N> {
         let gain = self.strike_gain + self.strike_gain_per_energy * (self.target_energy - bounce_energy);
         // B = 1 + l² sin²β / ρ², what the contact point weighs along the normal, eq. (33). Near upright it rounds to 1 and
         // the strike loses no digit, which a common factor ρ² would cost.
-        let turn = arm * (one / (self.radius_of_gyration * self.radius_of_gyration));
+        let turn = arm * leverage;
         let push = gain * normal_velocity;
         let impulse = -push / (one + arm * turn);
         let share = gain / (one + self.restitution);
@@ -118,7 +154,7 @@ impl<N: Number> Rod<N> {
             approach: share * normal_velocity,
             table_velocity: (-(table * sin_alpha), table * cos_alpha),
             impulse_normal: impulse,
-            contact_rise: after.y_dot + self.contact_distance * after.theta_dot * sin_theta,
+            contact_rise: self.contact_rise(&after, sin_theta),
             speed_squared,
             energy: half * speed_squared - weight * versine_theta,
             energy_gain: half * (N::from_f64(2.0) - gain) * impulse * normal_velocity,
@@ -126,7 +162,43 @@ impl<N: Number> Rod<N> {
     }
 }
 
-impl<N: Number> Strike<N> {
+impl<N: Copy> Rod<N> {
+    /// The same rod in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Rod<M> {
+        Rod {
+            contact_distance: function(self.contact_distance),
+            radius_of_gyration: function(self.radius_of_gyration),
+            gravity: function(self.gravity),
+            restitution: function(self.restitution),
+            tilt_gain: function(self.tilt_gain),
+            strike_gain: function(self.strike_gain),
+            strike_gain_per_energy: function(self.strike_gain_per_energy),
+            target_energy: function(self.target_energy),
+        }
+    }
+}
+
+impl<N: Copy> State<N> {
+    /// The same state in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> State<M> {
+        State {
+            theta: function(self.theta),
+            x_dot: function(self.x_dot),
+            y_dot: function(self.y_dot),
+            theta_dot: function(self.theta_dot),
+        }
+    }
+}
+
+impl<N: Number> Rod<N> {
+    /// ẏ_c = ẏ + l θ̇ sin θ, m/s.
+    #[inline(always)]
+    fn contact_rise(&self, state: &State<N>, sin_theta: N) -> N {
+        state.y_dot + self.contact_distance * state.theta_dot * sin_theta
+    }
+
     /// Brings the velocities after the strike onto the energy that the run should have at this contact, and gives that
     /// which it should have at the next.
     ///
@@ -134,13 +206,14 @@ impl<N: Number> Strike<N> {
     /// rounding. A strike is linear in the velocities: correcting them after it is as good as before it, and off the
     /// critical path. It holds the slow growth of phase errors: a tenth of the error after 100 bounces (`tests/accuracy.rs`).
     #[inline(always)]
-    pub fn hold_energy(&mut self, energy: N) -> N {
-        let stretch = (energy - self.energy) / self.speed_squared;
-        let State { x_dot, y_dot, theta_dot, .. } = &mut self.after;
-        for velocity in [x_dot, y_dot, theta_dot, &mut self.contact_rise] {
+    pub fn hold_energy(&self, strike: &mut Strike<N>, energy: N) -> N {
+        let stretch = (energy - strike.energy) / strike.speed_squared;
+        let State { x_dot, y_dot, theta_dot, .. } = &mut strike.after;
+        for velocity in [x_dot, y_dot, theta_dot] {
             *velocity = *velocity + *velocity * stretch;
         }
-        energy + self.energy_gain
+        strike.contact_rise = self.contact_rise(&strike.after, strike.sin_cos_theta.0);
+        energy + strike.energy_gain
     }
 }
 
@@ -148,16 +221,7 @@ impl Rod<f64> {
     /// The same rod in another kind of number.
     #[inline(always)]
     pub fn lift<N: Number>(&self) -> Rod<N> {
-        Rod {
-            contact_distance: N::from_f64(self.contact_distance),
-            radius_of_gyration: N::from_f64(self.radius_of_gyration),
-            gravity: N::from_f64(self.gravity),
-            restitution: N::from_f64(self.restitution),
-            tilt_gain: N::from_f64(self.tilt_gain),
-            strike_gain: N::from_f64(self.strike_gain),
-            strike_gain_per_energy: N::from_f64(self.strike_gain_per_energy),
-            target_energy: N::from_f64(self.target_energy),
-        }
+        self.map(N::from_f64)
     }
 
     /// Energy per unit mass ½|v|² + G l cos θ at a contact, |v|² = ẋ² + ẏ² + ρ²θ̇², m²/s².

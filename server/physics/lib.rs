@@ -16,7 +16,7 @@ pub mod dual;
 pub mod flight;
 pub mod impact;
 pub mod jacobian;
-pub mod lanes;
+mod lanes;
 pub mod map;
 pub mod model;
 pub mod number;

@@ -48,6 +48,9 @@ pub trait Body: Copy {
     /// The strike at a contact.
     fn strike(&self, before: &State) -> Strike;
 
+    /// Keeps rounding off the energy of a strike: as [`Rod::hold_energy`].
+    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64;
+
     /// Length of the flight after a strike, s, and the state at its end.
     ///
     /// # Errors
@@ -93,6 +96,11 @@ impl Body for Rod {
     #[inline(always)]
     fn strike(&self, before: &State) -> Strike {
         Rod::strike(self, before)
+    }
+
+    #[inline(always)]
+    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
+        Rod::hold_energy(self, strike, energy)
     }
 
     #[inline(always)]
@@ -333,7 +341,10 @@ impl<B: Body> Orbit<B> {
             return contact;
         }
         if self.rules.holds_energy {
-            self.energy = Some(strike.hold_energy(self.energy.unwrap_or(strike.energy)));
+            self.energy = Some({
+                let energy = self.energy.unwrap_or(strike.energy);
+                self.body.hold_energy(&mut strike, energy)
+            });
         }
         disturb(self, &mut strike);
         contact.strike = Some(strike);
@@ -374,6 +385,16 @@ impl<B: Body> Orbit<B> {
             let ratio = flight_time / self.last_flight;
             Ending::Settled { flight_time, settle_time: self.t.value + flight_time / (1.0 - ratio) }
         })
+    }
+}
+
+/// One contact in the midst of a run, with the energy that it should have there, and the flight after it: the state just
+/// before the next contact and the energy there, or why the run ends.
+pub(crate) fn contact(body: Rod, rules: Rules, state: State, energy: f64) -> Result<(State, f64), Ending> {
+    let mut orbit = Orbit { energy: Some(energy), ..Orbit::at(body, rules, state) };
+    match orbit.advance().ending {
+        None => Ok((orbit.state, orbit.energy.unwrap_or(energy))),
+        Some(ending) => Err(ending),
     }
 }
 

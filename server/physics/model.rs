@@ -146,6 +146,11 @@ impl Body for Model {
     }
 
     #[inline(always)]
+    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
+        either!(self, body => Body::hold_energy(body, strike, energy))
+    }
+
+    #[inline(always)]
     fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
         either!(self, body => body.fly(strike))
     }

@@ -45,6 +45,10 @@ impl Body for Point {
         self.rod.strike(before)
     }
 
+    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
+        self.rod.hold_energy(strike, energy)
+    }
+
     fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
         self.rod.fly(strike).map(Self::turned)
     }

@@ -1,14 +1,12 @@
 //! Runs many rods side by side in lanes, each to its end: what a region of stability is made of.
 //!
 //! Every lane gives the bits that [`crate::map::run`] gives for its rod alone. A lane whose run has ended takes the next
-//! rod at once, so that dead cells cost nothing; a flight that is not the common one goes through the scalar contact time.
+//! rod at once, so that dead cells cost nothing; a bounce that is not a common one is done alone, by the map itself.
 
-use crate::contact_time::{self, Step};
 use crate::dispatch::{Path, Work, dispatch, dispatch_on};
-use crate::impact::{Rod, State, Strike};
-use crate::lanes::{Lanes, WIDTH};
-use crate::map::{Body, Rules, SPEED_LIMIT};
-use crate::number::{Number, Real};
+use crate::impact::{Rod, State};
+use crate::lanes::{Bounced, Far, Moving, Near, Rods, Scratch, WIDTH, bounce};
+use crate::map::{Rules, contact};
 pub use crate::outcome::Outcome;
 
 /// One run to be made.
@@ -34,6 +32,10 @@ pub struct End {
 }
 
 impl Start {
+    fn energy(&self) -> f64 {
+        self.rod.strike(&self.state).energy
+    }
+
     /// Whether it can run in lanes: a run that settles goes alone.
     pub fn fits(&self) -> bool {
         self.rules.holds_energy && !self.rules.settles
@@ -84,40 +86,65 @@ where
 
     #[inline(always)]
     fn call(mut self) {
-        let mut orbits = Orbits::idle();
+        let mut orbits = Orbits::idle(self.impacts);
         for lane in 0..WIDTH {
             orbits.load(lane, (self.next)());
         }
-        let mut turns: u64 = 0;
+        let mut looked = 0;
         while orbits.busy != 0 {
-            turns += 1;
-            if turns.is_multiple_of(LOOK) && !(self.go_on)() {
-                return;
+            if orbits.turn >= looked + LOOK {
+                looked = orbits.turn;
+                if !(self.go_on)() {
+                    return;
+                }
             }
-            let (mut ended, outcomes) = orbits.bounce(self.impacts);
-            while ended != 0 {
-                let lane = ended.trailing_zeros() as usize;
-                ended &= ended - 1;
-                let end =
-                    End { impacts: orbits.impacts[lane], outcome: outcomes[lane], max_theta: orbits.max_theta.0[lane] };
-                (self.done)(orbits.number[lane], end);
+            let apart = orbits.together(LOOK) & orbits.busy;
+            let mut ended = orbits.completed();
+            for lane in bits(apart) {
+                if let Some(outcome) = orbits.alone(lane) {
+                    ended |= 1 << lane;
+                    orbits.outcome[lane] = outcome;
+                }
+            }
+            for lane in bits(ended & orbits.busy) {
+                (self.done)(orbits.number[lane], orbits.end(lane));
                 orbits.load(lane, (self.next)());
             }
         }
     }
 }
 
-/// What an orbit holds, in lanes.
+/// A bit for each lane.
+type Mask = u16;
+
+/// The lanes of a mask.
+fn bits(mut mask: Mask) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = mask.trailing_zeros() as usize;
+        (mask != 0).then(|| {
+            mask &= mask - 1;
+            lane
+        })
+    })
+}
+
+/// Orbits side by side.
 struct Orbits {
-    rod: Rod<Lanes>,
-    state: State<Lanes>,
-    energy: Lanes,
-    topple_angle: Lanes,
-    max_theta: Lanes,
-    impacts: [u64; WIDTH],
+    rods: Rods,
+    moving: Moving,
+    /// Contacts of each run.
+    impacts: u64,
+    /// Contacts of every lane since the start.
+    turn: u64,
+    /// The turn before a lane's first contact.
+    first: [u64; WIDTH],
+    /// The turn of its last one.
+    last: [u64; WIDTH],
+    outcome: [Outcome; WIDTH],
     number: [usize; WIDTH],
-    /// A bit for each lane that has a run.
-    busy: u8,
+    busy: Mask,
+    /// Whether an angle was too large for [`Near`] lately.
+    far: bool,
 }
 
 /// What an idle lane does: it bounces upright, for ever, and nobody looks.
@@ -137,167 +164,103 @@ const IDLE: Start = Start {
 };
 
 impl Orbits {
-    fn idle() -> Self {
-        let zero = Lanes::from_f64(0.0);
-        let mut orbits = Self {
-            rod: IDLE.rod.lift(),
-            state: State { theta: zero, x_dot: zero, y_dot: zero, theta_dot: zero },
-            energy: zero,
-            topple_angle: zero,
-            max_theta: zero,
-            impacts: [0; WIDTH],
+    fn idle(impacts: u64) -> Self {
+        Self {
+            rods: Rods::all(&IDLE.rod, IDLE.rules.topple_angle),
+            moving: Moving::all(&IDLE.state, IDLE.energy()),
+            impacts,
+            turn: 0,
+            first: [0; WIDTH],
+            last: [u64::MAX; WIDTH],
+            outcome: [Outcome::Completed; WIDTH],
             number: [0; WIDTH],
             busy: 0,
-        };
-        for lane in 0..WIDTH {
-            orbits.put(lane, &IDLE);
+            far: false,
         }
-        orbits
     }
 
     /// Gives a lane its next run, or none.
     fn load(&mut self, lane: usize, next: Option<(usize, Start)>) {
-        match next {
+        let (start, last) = match next {
             Some((number, start)) => {
                 self.number[lane] = number;
                 self.busy |= 1 << lane;
-                self.put(lane, &start);
+                (start, self.turn.saturating_add(self.impacts))
             }
             None => {
                 self.busy &= !(1 << lane);
-                self.put(lane, &IDLE);
+                (IDLE, u64::MAX)
             }
+        };
+        self.rods.set(lane, &start.rod, start.rules.topple_angle);
+        self.moving.set(lane, &start.state, start.energy());
+        self.moving.max_theta[lane] = 0.0;
+        (self.first[lane], self.last[lane]) = (self.turn, last);
+        self.outcome[lane] = Outcome::Completed;
+    }
+
+    fn end(&self, lane: usize) -> End {
+        End {
+            impacts: self.turn - self.first[lane],
+            outcome: self.outcome[lane],
+            max_theta: self.moving.max_theta[lane],
         }
     }
 
-    fn put(&mut self, lane: usize, start: &Start) {
-        let Start { rod, rules, state } = start;
-        for (lanes, value) in [
-            (&mut self.rod.contact_distance, rod.contact_distance),
-            (&mut self.rod.radius_of_gyration, rod.radius_of_gyration),
-            (&mut self.rod.gravity, rod.gravity),
-            (&mut self.rod.restitution, rod.restitution),
-            (&mut self.rod.tilt_gain, rod.tilt_gain),
-            (&mut self.rod.strike_gain, rod.strike_gain),
-            (&mut self.rod.strike_gain_per_energy, rod.strike_gain_per_energy),
-            (&mut self.rod.target_energy, rod.target_energy),
-            (&mut self.energy, rod.strike(state).energy),
-            (&mut self.topple_angle, rules.topple_angle),
-            (&mut self.max_theta, 0.0),
-        ] {
-            lanes.0[lane] = value;
-        }
-        self.impacts[lane] = 0;
-        self.set_state(lane, state);
+    /// The lanes whose last contact is behind them.
+    fn completed(&self) -> Mask {
+        (0..WIDTH).filter(|&lane| self.turn >= self.last[lane]).fold(0, |mask, lane| mask | 1 << lane)
     }
 
-    fn set_state(&mut self, lane: usize, state: &State) {
-        self.state.theta.0[lane] = state.theta;
-        self.state.x_dot.0[lane] = state.x_dot;
-        self.state.y_dot.0[lane] = state.y_dot;
-        self.state.theta_dot.0[lane] = state.theta_dot;
-    }
-
-    /// One contact of every lane and the flight to the next: a bit for each run that ended, and how.
+    /// Contacts of all lanes with the flights after them: at most `most`, up to the next that is somebody's last, or that is
+    /// not a common one for all. Those lanes are left before it, and told.
     #[inline(always)]
-    fn bounce(&mut self, impacts: u64) -> (u8, [Outcome; WIDTH]) {
-        let mut strike = self.rod.strike(&self.state);
-        let push = strike.push;
-        let size = self.state.theta.magnitude();
-        self.energy = strike.hold_energy(self.energy);
-        let State { x_dot, y_dot, theta_dot, .. } = strike.after;
-        let spin = self.rod.contact_distance * theta_dot;
-        let speed_squared = x_dot * x_dot + y_dot * y_dot + spin * spin;
-        let flight = self.rod.flight(&strike);
-        let start = contact_time::guess(&flight);
-        let gap = flight.gap(start);
-        let step = Step::new(&flight, start, &gap);
-        let bulge = flight.bulge();
-        self.state = flight.end(step.refined);
-        let (mut ended, mut rare) = (0_u8, 0_u8);
-        for lane in 0..WIDTH {
-            self.impacts[lane] += 1;
-            self.max_theta.0[lane] = self.max_theta.0[lane].max(size.0[lane]);
-            // All of these are false where something is not a number, so the tests are for what is common.
-            let goes_on = (size.0[lane] < self.topple_angle.0[lane])
-                & (push.0[lane] < 0.0)
-                & (speed_squared.0[lane] <= SPEED_LIMIT * SPEED_LIMIT)
-                & (strike.contact_rise.0[lane] > 0.0);
-            let common = (bulge.0[lane] <= flight.gravity.0[lane])
-                & (gap.slope.0[lane] < 0.0)
-                & (start.0[lane] > 0.0)
-                & (step.left_out.0[lane] <= step.negligible.0[lane]);
-            ended |= u8::from(!goes_on | (self.impacts[lane] >= impacts)) << lane;
-            rare |= u8::from(goes_on & !common) << lane;
-        }
-        let mut outcomes = [Outcome::Completed; WIDTH];
-        rare &= self.busy;
-        while rare != 0 {
-            let lane = rare.trailing_zeros() as usize;
-            rare &= rare - 1;
-            match fly_alone(pick_rod(&self.rod, lane), pick_strike(&strike, lane)) {
-                Some(state) => self.set_state(lane, &state),
-                None => {
-                    ended |= 1 << lane;
-                    outcomes[lane] = Outcome::Diverged;
-                }
+    fn together(&mut self, most: u64) -> Mask {
+        let most = self.last.iter().map(|last| last - self.turn).fold(most, u64::min);
+        let (mut next, mut scratch) = (self.moving, Scratch::new());
+        for _ in 0..most {
+            self.turn += 1;
+            let mut bounced = Bounced { near: false, common: false };
+            if !self.far {
+                bounced = bounce::<Near>(&self.rods, &self.moving, &mut next, &mut scratch);
+                self.far = !bounced.near;
             }
-        }
-        ended &= self.busy;
-        let mut look = ended;
-        while look != 0 {
-            let lane = look.trailing_zeros() as usize;
-            look &= look - 1;
-            // In the order of `Orbit::advance`.
-            if size.0[lane] >= self.topple_angle.0[lane] {
-                outcomes[lane] = Outcome::Toppled;
-            } else if push.0[lane] >= 0.0 {
-                outcomes[lane] = Outcome::Separating;
-            } else if speed_squared.0[lane].is_nan() || speed_squared.0[lane] > SPEED_LIMIT * SPEED_LIMIT {
-                outcomes[lane] = Outcome::Diverged;
-            } else if strike.contact_rise.0[lane] <= 0.0 {
-                outcomes[lane] = Outcome::Sinking;
+            if self.far {
+                bounced = bounce::<Far>(&self.rods, &self.moving, &mut next, &mut scratch);
+                self.far = !bounced.near;
             }
+            if !bounced.common {
+                return self.take_common(&next, &scratch.apart);
+            }
+            self.moving = next;
         }
-        (ended, outcomes)
+        0
     }
-}
 
-/// The flight of one lane, by the scalar contact time.
-#[cold]
-#[inline(never)]
-fn fly_alone(rod: Rod, strike: Strike) -> Option<State> {
-    Some(rod.fly(&strike).ok()?.1)
-}
-
-fn pick_rod(rod: &Rod<Lanes>, lane: usize) -> Rod {
-    Rod {
-        contact_distance: rod.contact_distance.0[lane],
-        radius_of_gyration: rod.radius_of_gyration.0[lane],
-        gravity: rod.gravity.0[lane],
-        restitution: rod.restitution.0[lane],
-        tilt_gain: rod.tilt_gain.0[lane],
-        strike_gain: rod.strike_gain.0[lane],
-        strike_gain_per_energy: rod.strike_gain_per_energy.0[lane],
-        target_energy: rod.target_energy.0[lane],
+    #[cold]
+    #[inline(never)]
+    fn take_common(&mut self, next: &Moving, apart: &[u64; WIDTH]) -> Mask {
+        let mut mask = 0;
+        for (lane, apart) in apart.iter().enumerate() {
+            if *apart == 0 { self.moving.take(lane, next) } else { mask |= 1 << lane }
+        }
+        mask
     }
-}
 
-fn pick_strike(strike: &Strike<Lanes>, lane: usize) -> Strike {
-    let pick = |lanes: Lanes| lanes.0[lane];
-    let State { theta, x_dot, y_dot, theta_dot } = strike.after;
-    Strike {
-        after: State { theta: pick(theta), x_dot: pick(x_dot), y_dot: pick(y_dot), theta_dot: pick(theta_dot) },
-        alpha: pick(strike.alpha),
-        sin_cos_theta: (pick(strike.sin_cos_theta.0), pick(strike.sin_cos_theta.1)),
-        normal_velocity: pick(strike.normal_velocity),
-        push: pick(strike.push),
-        approach: pick(strike.approach),
-        table_velocity: (pick(strike.table_velocity.0), pick(strike.table_velocity.1)),
-        impulse_normal: pick(strike.impulse_normal),
-        contact_rise: pick(strike.contact_rise),
-        speed_squared: pick(strike.speed_squared),
-        energy: pick(strike.energy),
-        energy_gain: pick(strike.energy_gain),
+    /// One contact of one lane: how its run ends there, if it does.
+    #[cold]
+    #[inline(never)]
+    fn alone(&mut self, lane: usize) -> Option<Outcome> {
+        let (rod, state) = (self.rods.rod(lane), self.moving.state(lane));
+        let max_theta = &mut self.moving.max_theta[lane];
+        *max_theta = max_theta.max(state.theta.abs());
+        let rules = Rules { topple_angle: self.rods.topple_angle(lane), ..IDLE.rules };
+        match contact(rod, rules, state, self.moving.energy[lane]) {
+            Ok((state, energy)) => {
+                self.moving.set(lane, &state, energy);
+                None
+            }
+            Err(ending) => Some(ending.into()),
+        }
     }
 }
