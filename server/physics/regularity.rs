@@ -18,7 +18,8 @@ pub const WATCHED: u64 = 500;
 pub const FEWEST: usize = 50;
 
 /// The mean growth factor above which a run is called chaotic. Regular ones tend to 2 from below, chaotic ones grow with
-/// their length; `tests/regularity.rs` measures how often this is wrong. On the same runs the alignment of tangents (SALI) and
+/// their length; `tests/regularity.rs` measures how often this is wrong: on other bodies than it was chosen on, 10 of 694
+/// regular and 6 of 48 chaotic runs. On the same runs the alignment of tangents (SALI) and
 /// the bare growth (FLI) separate as well, halves of a weighted average of the rotation half as well.
 pub const CHAOTIC: f64 = 2.2;
 
