@@ -6,6 +6,7 @@
 pub mod compute;
 pub mod config;
 pub mod http;
+pub mod integrators;
 pub mod limits;
 pub mod live;
 pub mod middleware;

@@ -58,12 +58,29 @@ fn none(faults: Vec<String>) {
 }
 
 /// A floor of the house, and what must not be heard of there.
-const FLOORS: [(&str, &[&str]); 8] = [
+const FLOORS: [(&str, &[&str]); 9] = [
     ("server/physics", &["tokio", "axum", "serde_json", "std::time", "std::thread", "hyper", "equipoise::"]),
     ("server/http", &["equipoise_physics", "crate::wire", "crate::live", "crate::routes"]),
     (
         "server/compute",
         &["axum", "hyper", "equipoise_physics", "crate::http", "crate::wire", "crate::live", "crate::routes"],
+    ),
+    (
+        "server/integrators",
+        &[
+            "tokio",
+            "axum",
+            "serde_json",
+            "std::time",
+            "std::thread",
+            "hyper",
+            "crate::compute",
+            "crate::http",
+            "crate::picture",
+            "crate::wire",
+            "crate::live",
+            "crate::routes",
+        ],
     ),
     (
         "server/wire",

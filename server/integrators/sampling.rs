@@ -1,0 +1,57 @@
+//! The exact flight, looked at on a grid of times: what scripts do that know the parabola and not its contact time.
+//!
+//! A contact between two looks, after which the gap is open again, is not seen.
+
+use std::convert::Infallible;
+
+use equipoise_physics::flight::Flight;
+use equipoise_physics::trig;
+
+use super::course::{Course, Halt, bisect};
+use super::motion::Motion;
+
+pub(super) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
+    let (mut motion, at_contact) = course.start();
+    let mut contact_t = 0.0;
+    let mut flight = if at_contact {
+        let strike = course.strike(0.0, &mut motion)?;
+        course.rod.flight(&strike)
+    } else {
+        Flight {
+            start: motion.state(),
+            sin_cos_theta: trig::sin_cos(motion.place[2]),
+            clearance: course.gap(&motion),
+            contact_distance: course.rod.contact_distance,
+            gravity: course.rod.gravity,
+        }
+    };
+    loop {
+        let mut looks = 0.0;
+        let end = loop {
+            course.step(contact_t, &motion)?;
+            looks += 1.0;
+            course.work.gaps += 1;
+            if flight.gap(looks * step).value <= 0.0 {
+                break looks * step;
+            }
+        };
+        let begin = end - step;
+        let t = begin
+            + bisect(step, |part| {
+                course.work.gaps += 1;
+                flight.gap(begin + part).value > 0.0
+            });
+        motion = after(&motion, &flight, t);
+        contact_t += t;
+        let strike = course.strike(contact_t, &mut motion)?;
+        flight = course.rod.flight(&strike);
+    }
+}
+
+/// The rod a time after the start of its flight. Its height at a contact is that of a contact.
+fn after(start: &Motion, flight: &Flight, t: f64) -> Motion {
+    let end = flight.end(t);
+    let x = start.place[0] + end.x_dot * t;
+    let y = flight.contact_distance * trig::sin_cos(end.theta).1;
+    Motion { place: [x, y, end.theta], velocity: [end.x_dot, end.y_dot, end.theta_dot] }
+}
