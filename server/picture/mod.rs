@@ -7,6 +7,7 @@
 mod boundary;
 mod branches;
 mod cells;
+mod chart;
 mod cividis;
 mod colour;
 mod eigenvalues;
@@ -23,6 +24,7 @@ mod text;
 mod trail;
 
 pub use branches::{Branches, Change, branches};
+pub use chart::{Chart, Curve, Look, Plot, Side, chart};
 pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use phase_planes::{PhasePlanes, phase_planes};

@@ -3,7 +3,7 @@
 use super::colour::{AXIS, GRID, INK, PAPER, SOFT_INK, ZERO};
 use super::marks::line;
 use super::number::raised;
-use super::scale::{Range, Scale, Ticks, ticks};
+use super::scale::{Range, Scale, Ticks, decades, ticks};
 use super::svg::{Anchor, Svg, Type};
 use super::text::{Span, width};
 
@@ -46,12 +46,17 @@ pub(super) struct Panel {
 impl Panel {
     /// Draws grid, ticks and titles, and gives the panel to draw marks in; `edge` is for after the marks.
     pub(super) fn draw(svg: &mut Svg, frame: Frame, x: Axis<'_>, y: Axis<'_>) -> Self {
+        Self::draw_scaled(svg, frame, x, y, [false; 2])
+    }
+
+    /// The same where the ranges of x or y are of logarithms to base ten, and so are the values to put in.
+    pub(super) fn draw_scaled(svg: &mut Svg, frame: Frame, x: Axis<'_>, y: Axis<'_>, logarithmic: [bool; 2]) -> Self {
         let panel = Self {
             frame,
             x: Scale::linear(x.range, frame.left, frame.left + frame.width),
             y: Scale::linear(y.range, frame.top + frame.height, frame.top),
         };
-        panel.draw_axes(svg, x, y);
+        panel.draw_axes(svg, x, y, logarithmic);
         panel
     }
 
@@ -67,13 +72,14 @@ impl Panel {
         rectangle.number("height", height).word("fill", "none").word("stroke", AXIS).end();
     }
 
-    fn draw_axes(&self, svg: &mut Svg, x: Axis<'_>, y: Axis<'_>) {
+    fn draw_axes(&self, svg: &mut Svg, x: Axis<'_>, y: Axis<'_>, logarithmic: [bool; 2]) {
+        let choose = |way: usize, range: Range, most: u32| if logarithmic[way] { decades } else { ticks }(range, most);
         let Frame { left, top, width: across, height } = self.frame;
         let (right, bottom) = (left + across, top + height);
         // As many labels as stand side by side with room between them.
-        let ticks_x = (2..=6).rev().map(|most| ticks(x.range, most)).find(|ticks| crowding(ticks) < 0.75 * across);
-        let ticks_x = ticks_x.unwrap_or_else(|| ticks(x.range, 2));
-        let ticks_y = ticks(y.range, 6);
+        let ticks_x = (2..=6).rev().map(|most| choose(0, x.range, most)).find(|ticks| crowding(ticks) < 0.75 * across);
+        let ticks_x = ticks_x.unwrap_or_else(|| choose(0, x.range, 2));
+        let ticks_y = choose(1, y.range, 6);
         svg.tag("rect")
             .number("x", left)
             .number("y", top)
@@ -85,13 +91,13 @@ impl Panel {
         let mut widest: f64 = 0.0;
         for (value, label) in &ticks_x.marks {
             let at = self.x.at(*value);
-            line(svg, &[(at, top), (at, bottom)], grid(*value), 1.0, None);
+            line(svg, &[(at, top), (at, bottom)], grid(*value, logarithmic[0]), 1.0, None);
             line(svg, &[(at, bottom), (at, bottom + 5.0)], AXIS, 1.0, None);
             svg.text(at, bottom + 19.0, look.anchored(Anchor::Middle), &[Span::Plain(label)]);
         }
         for (value, label) in &ticks_y.marks {
             let at = self.y.at(*value);
-            line(svg, &[(left, at), (right, at)], grid(*value), 1.0, None);
+            line(svg, &[(left, at), (right, at)], grid(*value, logarithmic[1]), 1.0, None);
             line(svg, &[(left - 5.0, at), (left, at)], AXIS, 1.0, None);
             svg.text(left - 9.0, at + 4.2, look.anchored(Anchor::End), &[Span::Plain(label)]);
             widest = widest.max(width(label, TICK_SIZE));
@@ -107,9 +113,9 @@ fn crowding(ticks: &Ticks) -> f64 {
     ticks.marks.iter().map(|(_, label)| width(label, TICK_SIZE)).sum()
 }
 
-/// Zero stands out.
-fn grid(value: f64) -> &'static str {
-    if value == 0.0 { ZERO } else { GRID }
+/// Zero stands out, unless it is the logarithm of 1.
+fn grid(value: f64, is_logarithm: bool) -> &'static str {
+    if value == 0.0 && !is_logarithm { ZERO } else { GRID }
 }
 
 /// The title of an axis: name, symbol, unit and power of ten.

@@ -1,6 +1,7 @@
-//! Ranges of values, their map onto pixels, and ticks at 1, 2 and 5 times powers of ten. Linear.
+//! Ranges of values, their map onto pixels, and ticks at 1, 2 and 5 times powers of ten, or at powers of ten where the values
+//! are logarithms.
 
-use super::number::{decimal, exponent, written_out};
+use super::number::{decimal, exponent, raised, written_out};
 
 /// Largest value that a range holds, so that its width is finite.
 const LARGEST: f64 = 1e300;
@@ -108,9 +109,28 @@ pub(super) fn ticks(range: Range, most: u32) -> Ticks {
     Ticks { power, marks }
 }
 
+/// Ticks at whole numbers inside a range of logarithms, at most `most` of them (two at least), labelled as powers of ten.
+pub(super) fn decades(range: Range, most: u32) -> Ticks {
+    let (first, last) = (range.low.ceil() as i32, range.high.floor() as i32);
+    let count = last.saturating_sub(first).saturating_add(1).max(1);
+    let step = count.div_euclid(most.max(2) as i32) + i32::from(count.rem_euclid(most.max(2) as i32) > 0);
+    let whole = (first..=last).filter(|power| power.rem_euclid(step.max(1)) == 0);
+    let label = |power: i32| if power == 0 { "1".to_owned() } else { format!("10{}", raised(power)) };
+    Ticks { power: 0, marks: whole.map(|power| (f64::from(power), label(power))).collect() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn decades_are_powers_of_ten() {
+        let labels = |low, high, most| {
+            decades(Range { low, high }, most).marks.into_iter().map(|(_, label)| label).collect::<Vec<_>>()
+        };
+        assert_eq!(labels(-2.3, 1.0, 6), ["10⁻²", "10⁻¹", "1", "10¹"]);
+        assert_eq!(labels(-16.0, 0.0, 6), ["10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "1"]);
+    }
 
     fn labels(low: f64, high: f64) -> Vec<String> {
         ticks(Range { low, high }, 6).marks.into_iter().map(|(_, label)| label).collect()
