@@ -60,6 +60,7 @@ fn none(faults: Vec<String>) {
 /// A floor of the house, and what must not be heard of there.
 const FLOORS: [(&str, &[&str]); 9] = [
     ("server/physics", &["tokio", "axum", "serde_json", "std::time", "std::thread", "hyper", "equipoise::"]),
+    ("server/gallery", &["axum", "tokio", "serde", "crate::http", "crate::wire", "crate::live", "crate::routes"]),
     ("server/http", &["equipoise_physics", "crate::wire", "crate::live", "crate::routes"]),
     (
         "server/compute",

@@ -5,6 +5,7 @@
 
 pub mod assets;
 pub mod contract;
+pub mod failures;
 pub mod health;
 pub mod jacobians;
 pub mod live;
@@ -74,6 +75,7 @@ pub fn all() -> Router<App> {
         .merge(contract::routes())
         .merge(health::routes())
         .merge(metrics::routes())
+        .merge(failures::routes())
         .merge(scenes::routes())
         .merge(trajectories::routes())
         .merge(jacobians::routes())
