@@ -146,3 +146,102 @@ async fn beyond_the_boundary_a_run_stays_about_the_orbit_that_caught_it() {
     let swing = number(&run["max_theta"]) / low;
     assert!((swing / 2.0_f64.sqrt() - 1.0).abs() < 0.05, "{low} {run}");
 }
+
+/// The request of a case with some of its parameters said otherwise.
+fn otherwise(case: &Value, resource: &str, changes: &[(&str, f64)]) -> String {
+    let (path, query) = case["ask"].as_str().unwrap().split_once('?').unwrap();
+    assert!(path.starts_with("/v1/"));
+    let kept = query.split('&').filter(|part| {
+        let name = part.split('=').next().unwrap();
+        name.starts_with("scene.") && changes.iter().all(|(changed, _)| *changed != name)
+    });
+    let changed = changes.iter().map(|(name, value)| format!("{name}={value}"));
+    let query: Vec<String> = kept.map(str::to_owned).chain(changed).collect();
+    format!("/v1/{resource}?{}", query.join("&"))
+}
+
+/// How the run of a case ends with some of its parameters said otherwise: its name and contact.
+async fn end(server: &Server, case: &Value, changes: &[(&str, f64)]) -> (String, u64) {
+    let run = server.get(&otherwise(case, "stability", changes)).await.expect(200).json()["nonlinear"].clone();
+    (run["outcome"].as_str().unwrap().to_owned(), run["impacts"].as_u64().unwrap())
+}
+
+#[tokio::test]
+async fn at_kappa_one_no_strike_turns_the_rod() {
+    let server = Server::start();
+    let case = case("parallel-drift").await;
+    let run = server.get(case["ask"].as_str().unwrap()).await.expect(200).json();
+    let (t, theta) = (run["impacts"]["t"].as_array().unwrap(), run["impacts"]["theta"].as_array().unwrap());
+    for (t, theta) in t.iter().zip(theta) {
+        assert!((number(theta) - 0.01 * number(t)).abs() < 1e-15, "{t} {theta}");
+    }
+    assert_eq!(run["outcome"]["kind"], "separating");
+    assert!(number(theta.last().unwrap()) > 20.0 * number(&theta[0]), "{run}");
+}
+
+#[tokio::test]
+async fn at_order_three_the_time_to_fall_is_inverse_to_the_start() {
+    let server = Server::start();
+    let case = case("order-three").await;
+    let mut scaled = Vec::new();
+    for theta in [0.002, 0.001, 0.0005, 0.00025] {
+        let (outcome, impacts) = end(&server, &case, &[("scene.release.theta", theta), ("impacts", 20_000.0)]).await;
+        assert_ne!(outcome, "completed", "{theta}");
+        scaled.push(theta * impacts as f64);
+    }
+    // A quadratic map at a third of a turn: dr/dn = c r², so n θ₀ is a constant.
+    assert!(scaled.iter().all(|value| (value / scaled[3] - 1.0).abs() < 0.05), "{scaled:?}");
+    let calm = [("scene.release.theta", 0.2), ("scene.release.x_dot", 0.0), ("impacts", 100_000.0)];
+    assert_eq!(end(&server, &case, &calm).await.0, "completed");
+    // The drift leaves the eigenvalues as they are: a third of a turn.
+    let speed = (2.0 * 9.81 * (0.2_f64 - 0.4 / 3.0)).sqrt();
+    let at =
+        [("at.state.theta", 0.0), ("at.state.x_dot", 0.4), ("at.state.y_dot", -speed), ("at.state.theta_dot", 0.0)];
+    let jacobian = server.get(&otherwise(&case, "jacobians", &at)).await.expect(200).json();
+    let third = jacobian["eigenvalues"].as_array().unwrap().iter().filter(|it| (number(&it["re"]) + 0.5).abs() < 1e-12);
+    assert_eq!(third.count(), 2, "{jacobian}");
+}
+
+#[tokio::test]
+async fn a_wide_start_is_outside_of_the_basin() {
+    let server = Server::start();
+    let case = case("wide-start").await;
+    let basin = &server.get(case["ask"].as_str().unwrap()).await.expect(200).json()["basin"];
+    assert!((0.15..0.3).contains(&number(&basin["theta"])), "{basin}");
+    let narrow = [("scene.release.theta", 0.1), ("impacts", 100_000.0)];
+    assert_eq!(end(&server, &case, &narrow).await, ("completed".to_owned(), 100_000));
+    assert_eq!(end(&server, &case, &[("impacts", 10.0)]).await, ("sinking".to_owned(), 4));
+}
+
+#[tokio::test]
+async fn beyond_the_horizon_runs_part_and_their_distribution_stays() {
+    let server = Server::start();
+    let case = case("chaos").await;
+    let horizon = number(&says(&case, "Jacobian product")["value"]) as usize;
+    let angles = async |theta: f64| {
+        let target = otherwise(&case, "trajectories", &[("scene.release.theta", theta), ("impacts", 3000.0)]);
+        let run = server.get(&target).await.expect(200).json();
+        run["impacts"]["theta"].as_array().unwrap().iter().map(number).collect::<Vec<f64>>()
+    };
+    let one = angles(0.032).await;
+    let mut ends = Vec::new();
+    for k in 1..=40 {
+        // Others than those of the case: on the other side of its start.
+        let other = angles(0.032 - f64::from(k) * 1e-15).await;
+        let apart = one.iter().zip(&other).map(|(a, b)| (a - b).abs());
+        let (before, after) = (horizon / 2, horizon * 5 / 4);
+        let early = apart.clone().take(before).fold(0.0, f64::max);
+        assert!(early < 1e-3, "{k}: {early} before contact {before}");
+        if k % 10 == 0 {
+            let late = apart.take(after).fold(0.0, f64::max);
+            assert!(late > 1e-2, "{k}: {late} by contact {after}");
+        }
+        ends.push(other.len());
+    }
+    ends.sort_unstable();
+    assert!(ends[0] >= horizon && ends[4] < 350 && ends[35] > 1000, "{ends:?}");
+    let median = number(&says(&case, "ensemble")["value"]);
+    // Of 40 runs, fewer than 11 or more than 29 below the true median: 4 in a thousand.
+    let below = ends.iter().filter(|end| (**end as f64) < median).count();
+    assert!((11..=29).contains(&below), "{median} {ends:?}");
+}

@@ -1,6 +1,6 @@
 //! At κ_c and beyond it, where the eigenvalues are silent or cry wolf, and the next order of the normal form decides.
 
-use super::course::{ANGLE, CONTACT, Course, spectral_radius};
+use super::course::{ANGLE, CONTACT, Course, eigenvalue, upright};
 use super::{Case, Says, Seen, built, rod, with};
 use crate::picture::{Chart, Curve, Look, Plot};
 use equipoise_physics::scene::{Name, Scene};
@@ -119,21 +119,6 @@ pub(super) const BEYOND: Case = Case {
     },
     picture: |scene, impacts| outlines(BEYOND.title, scene, impacts, "what the linear map says"),
 };
-
-fn upright(scene: &Scene) -> FixedPoint {
-    scene.fixed_point().expect("a test builds every case")
-}
-
-fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> Says {
-    let (verdict, radius, (re, im)) = spectral_radius(scene, fixed_point);
-    let exact = scene.linear(fixed_point).spectral_radius();
-    let detail = format!(
-        "the largest modulus comes out as 1 + {:.2e} (exactly: {exact:.6}), the angle's eigenvalue as {re:.9} ± {:.2e}i",
-        radius - 1.0,
-        im.abs()
-    );
-    Says { method, verdict, value: Some(radius), unit: None, detail }
-}
 
 fn coefficient(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> Says {
     let value = scene.boundary(fixed_point).map(|boundary| boundary.coefficient);

@@ -85,7 +85,7 @@ pub(super) const ANGLE: Side = Side::new("angle at the contact", "|θ|", "rad").
 
 /// What the largest modulus of the computed Jacobian's eigenvalues at the fixed point says, and the eigenvalue of the angle
 /// farthest from 1: (re, im).
-pub(super) fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f64, (f64, f64)) {
+fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f64, (f64, f64)) {
     let upright =
         equipoise_physics::impact::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
     let matrix = jacobian::jacobian(&scene.model(), &upright, 1).map(|linearization| linearization.matrix);
@@ -98,4 +98,21 @@ pub(super) fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'sta
     };
     let least = values.iter().min_by(|a, b| a.re.total_cmp(&b.re)).map_or((0.0, 0.0), |value| (value.re, value.im));
     (verdict, radius, least)
+}
+
+/// The upright bounce, which every scene of this gallery has.
+pub(super) fn upright(scene: &Scene) -> FixedPoint {
+    scene.fixed_point().expect("a test builds every case")
+}
+
+/// What the eigenvalues of a computed Jacobian say.
+pub(super) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> Says {
+    let (verdict, radius, (re, im)) = spectral_radius(scene, fixed_point);
+    let exact = scene.linear(fixed_point).spectral_radius();
+    let detail = format!(
+        "the largest modulus comes out as 1 + {:.2e} (exactly: {exact:.6}), the angle's eigenvalue as {re:.9} ± {:.2e}i",
+        radius - 1.0,
+        im.abs()
+    );
+    Says { method, verdict, value: Some(radius), unit: None, detail }
 }

@@ -3,8 +3,10 @@
 //! A case is a scene and functions of it: everything it says is computed when it is asked for, nothing is recorded. Not here:
 //! how a case is written down, and HTTP.
 
+mod basin;
 mod boundary;
 mod course;
+mod horizon;
 
 use crate::picture::Chart;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -75,7 +77,16 @@ pub struct Says {
 }
 
 /// All cases, in the order in which they are shown.
-pub const CASES: [Case; 4] = [boundary::SOFT, boundary::HARD, boundary::HARD_WITH_FEEDBACK, boundary::BEYOND];
+pub const CASES: [Case; 8] = [
+    boundary::SOFT,
+    boundary::HARD,
+    boundary::HARD_WITH_FEEDBACK,
+    basin::DRIFT,
+    basin::RESONANCE,
+    basin::WIDE,
+    boundary::BEYOND,
+    horizon::CHAOS,
+];
 
 /// The case of this name.
 pub fn find(name: &str) -> Option<&'static Case> {

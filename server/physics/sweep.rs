@@ -55,6 +55,14 @@ pub fn sweep(
     dispatch(Sweep { impacts, next, done, go_on });
 }
 
+/// [`sweep`] over all of `starts`: their ends, in the same order. None once `go_on` said `false`.
+pub fn sweep_all(impacts: u64, starts: &[Start], go_on: &mut dyn FnMut() -> bool) -> Option<Vec<End>> {
+    let mut ends = vec![None; starts.len()];
+    let mut starts = starts.iter().copied().enumerate();
+    sweep(impacts, || starts.next(), |number, end| ends[number] = Some(end), go_on);
+    ends.into_iter().collect()
+}
+
 /// [`sweep`] with one kind of instructions, to hold all of them together.
 pub fn sweep_on(
     path: Path,
