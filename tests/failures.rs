@@ -245,3 +245,70 @@ async fn beyond_the_horizon_runs_part_and_their_distribution_stays() {
     let below = ends.iter().filter(|end| (**end as f64) < median).count();
     assert!((11..=29).contains(&below), "{median} {ends:?}");
 }
+
+fn oracle() -> Value {
+    serde_json::from_str(include_str!("oracle/failures.json")).unwrap()
+}
+
+fn digits(value: &Value) -> f64 {
+    value.as_str().unwrap().parse().unwrap()
+}
+
+#[tokio::test]
+async fn the_derivative_of_the_formulas_meets_that_of_sixty_digits_and_no_difference_does() {
+    let server = Server::start();
+    let case = case("finite-differences").await;
+    let rows = |matrix: &Value| -> Vec<f64> {
+        matrix.as_array().unwrap().iter().flat_map(|row| row.as_array().unwrap()).map(number).collect()
+    };
+    let truth = rows(&oracle()["derivative"]);
+    let exact = rows(&server.get(case["ask"].as_str().unwrap()).await.expect(200).json()["matrix"]);
+    let largest = truth.iter().map(|entry| entry.abs()).fold(0.0, f64::max);
+    let error = exact.iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest;
+    assert!(error < 2e-12, "{error}");
+    assert!(number(&says(&case, "derivative of the formulas")["value"]) < 1e-11);
+    for method in ["usual step", "long step", "short step", "best of all steps"] {
+        let said = number(&says(&case, method)["value"]);
+        assert!(said > 1e3 * error, "{method}: {said}");
+    }
+}
+
+#[tokio::test]
+async fn towards_the_graze_the_derivative_times_the_contact_speed_is_a_constant() {
+    let server = Server::start();
+    let case = case("grazing").await;
+    let edge = digits(&oracle()["graze"]["height"]);
+    let mut products = Vec::new();
+    for below in [1e-6, 1e-8, 1e-10] {
+        let height = [("scene.release.height", edge - below), ("at.impact", 1.0)];
+        let jacobian = server.get(&otherwise(&case, "jacobians", &height)).await.expect(200).json();
+        let entries = jacobian["matrix"].as_array().unwrap().iter().flat_map(|row| row.as_array().unwrap());
+        let largest = entries.map(|entry| number(entry).abs()).fold(0.0, f64::max);
+        products.push(-number(&jacobian["contact_speed"]) * largest);
+    }
+    assert!(products.iter().all(|product| (product / products[2] - 1.0).abs() < 0.05), "{products:?}");
+    // The last digits of the height decide which contact is next.
+    let mut found = Vec::new();
+    for beside in [-1e-12, 1e-12] {
+        let changes = [("scene.release.height", edge + beside), ("impacts", 2.0)];
+        let run = server.get(&otherwise(&case, "trajectories", &changes)).await.expect(200).json();
+        found.push(number(&run["impacts"]["flight_time"][0]));
+    }
+    assert!((found[0] - digits(&oracle()["graze"]["flight_time"])).abs() < 1e-5 && found[1] > 0.12, "{found:?}");
+}
+
+#[tokio::test]
+async fn every_flight_of_the_chatter_is_that_of_sixty_digits() {
+    let server = Server::start();
+    let case = case("trivial-root").await;
+    let run = server.get(case["ask"].as_str().unwrap()).await.expect(200).json();
+    let flights = run["impacts"]["flight_time"].as_array().unwrap();
+    let truth = oracle()["chatter"].clone();
+    for (flight, truth) in flights.iter().zip(truth.as_array().unwrap()) {
+        assert!((number(flight) - digits(truth)).abs() < 1e-15, "{flight} {truth}");
+    }
+    let said = number(&says(&case, "divided out")["value"]);
+    assert!((said / digits(&truth[8]) - 1.0).abs() < 1e-11, "{said}");
+    assert_eq!(says(&case, "Newton")["value"], 0.0);
+    assert_eq!(says(&case, "change of sign")["value"], Value::Null);
+}

@@ -1,10 +1,9 @@
 //! A chaotic run beyond its horizon: what single runs say there, and what many of them say together.
 
 use super::course::{Course, upright};
-use super::{Case, Says, Seen, built, rod, with};
+use super::{Case, Says, Seen, built, rod, rod_of, with};
 use crate::picture::{Chart, Curve, Look, Plot, Side};
 use equipoise_physics::map::{Body, Ending, Orbit, Release, Rules, run};
-use equipoise_physics::model::Model;
 use equipoise_physics::regularity::TOLERANCE;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::sweep::{Start, sweep_all};
@@ -148,7 +147,7 @@ fn horizon(scene: &Scene) -> Option<u64> {
 
 /// At which contacts the runs of an ensemble end, upwards: those whose starts have these numbers.
 fn ends(scene: &Scene, impacts: u64, numbers: std::ops::Range<usize>) -> Vec<u64> {
-    let Model::Rod(rod) = scene.model() else { return Vec::new() };
+    let rod = rod_of(scene);
     let starts: Vec<Start> = numbers
         .filter_map(|number| {
             let mut release: Release = *scene.release();

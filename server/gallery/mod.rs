@@ -5,10 +5,14 @@
 
 mod basin;
 mod boundary;
+mod contact;
 mod course;
+mod derivative;
 mod horizon;
 
 use crate::picture::Chart;
+use equipoise_physics::impact::Rod;
+use equipoise_physics::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 /// A scene on which a common method is wrong.
@@ -77,7 +81,7 @@ pub struct Says {
 }
 
 /// All cases, in the order in which they are shown.
-pub const CASES: [Case; 8] = [
+pub const CASES: [Case; 11] = [
     boundary::SOFT,
     boundary::HARD,
     boundary::HARD_WITH_FEEDBACK,
@@ -85,6 +89,9 @@ pub const CASES: [Case; 8] = [
     basin::RESONANCE,
     basin::WIDE,
     boundary::BEYOND,
+    derivative::DIFFERENCES,
+    derivative::GRAZE,
+    contact::TRIVIAL_ROOT,
     horizon::CHAOS,
 ];
 
@@ -112,4 +119,12 @@ fn with(mut draft: Draft, numbers: &[(Name, f64)]) -> Draft {
 
 fn built(draft: Draft) -> Scene {
     draft.build().expect("a test builds every case")
+}
+
+/// The rod of a scene: there are no point masses in the gallery.
+fn rod_of(scene: &Scene) -> Rod {
+    match scene.model() {
+        Model::Rod(rod) => rod,
+        Model::Point(point) => *point.parameters(),
+    }
 }

@@ -91,4 +91,5 @@ def main():
     print("[" + ",\n".join(json.dumps(sample) for sample in samples) + "]")
 
 
-main()
+if __name__ == "__main__":
+    main()
