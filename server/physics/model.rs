@@ -3,6 +3,7 @@
 use crate::contact_time::TooManyPieces;
 use crate::impact::{Rod, State, Strike};
 use crate::map::{Body, Orbit, Release, Rules};
+use crate::number::Number;
 use crate::point::Point;
 use crate::scene::{BodyShape, Scene, Striking};
 
@@ -43,26 +44,35 @@ pub enum Model {
 impl Scene {
     /// The smallest model that is exact for this scene.
     pub fn model(&self) -> Model {
+        match self.body {
+            BodyShape::Rod { .. } => Model::Rod(self.parameters()),
+            BodyShape::Point => Model::Point(Point::new(self.parameters())),
+        }
+    }
+
+    /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
+    /// point mass has those of a rod of no length.
+    pub fn parameters<N: Number>(&self) -> Rod<N> {
+        let number = N::from_f64;
         let (contact_distance, radius_of_gyration) = match self.body {
             BodyShape::Rod { contact_distance, radius_of_gyration } => (contact_distance, radius_of_gyration),
             BodyShape::Point => (0.0, 1.0),
         };
-        let rod = Rod {
-            contact_distance,
-            radius_of_gyration,
-            gravity: self.gravity,
-            restitution: self.restitution,
-            tilt_gain: self.tilt_gain,
+        let restitution = number(self.restitution);
+        let one_and_restitution = number(1.0) + restitution;
+        let gravity = number(self.full_gravity) * number(self.incline).sincos().0;
+        Rod {
+            contact_distance: number(contact_distance),
+            radius_of_gyration: number(radius_of_gyration),
+            gravity,
+            restitution,
+            tilt_gain: number(self.tilt_gain),
             strike_gain: match self.strike {
-                Striking::Compensated => 2.0,
-                Striking::Still => 1.0 + self.restitution,
+                Striking::Compensated => number(2.0),
+                Striking::Still => one_and_restitution,
             },
-            strike_gain_per_energy: (1.0 + self.restitution) * self.energy_gain,
-            target_energy: self.gravity * self.target_height.unwrap_or(0.0),
-        };
-        match self.body {
-            BodyShape::Rod { .. } => Model::Rod(rod),
-            BodyShape::Point => Model::Point(Point::new(rod)),
+            strike_gain_per_energy: one_and_restitution * number(self.energy_gain),
+            target_energy: gravity * number(self.target_height.unwrap_or(0.0)),
         }
     }
 

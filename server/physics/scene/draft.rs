@@ -91,8 +91,8 @@ impl Draft {
             *slot = slot.or(row.default);
         }
         let body = self.body(&mut errors);
-        let gravity =
-            self.required(Name::Gravity, &mut errors) * trig::sin_cos(self.required(Name::Incline, &mut errors)).0;
+        let full_gravity = self.required(Name::Gravity, &mut errors);
+        let incline = self.required(Name::Incline, &mut errors);
         let strike = if self.get(Name::Strike) == Some(Value::Choice("still")) {
             Striking::Still
         } else {
@@ -114,7 +114,9 @@ impl Draft {
         }
         let scene = Scene {
             body,
-            gravity,
+            gravity: full_gravity * trig::sin_cos(incline).0,
+            full_gravity,
+            incline,
             restitution: self.required(Name::Restitution, &mut errors),
             tilt_gain: self.required(Name::TiltGain, &mut errors),
             energy_gain,

@@ -40,6 +40,10 @@ pub struct Scene {
     pub(crate) body: BodyShape,
     /// G = g sin φ, m/s².
     pub(crate) gravity: f64,
+    /// g, m/s².
+    pub(crate) full_gravity: f64,
+    /// φ, rad.
+    pub(crate) incline: f64,
     pub(crate) restitution: f64,
     pub(crate) tilt_gain: f64,
     pub(crate) energy_gain: f64,
