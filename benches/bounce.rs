@@ -5,10 +5,12 @@ use std::hint::black_box;
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as bench_all};
 use equipoise_physics::dispatch::Path;
+use equipoise_physics::extended;
 use equipoise_physics::impact::{Rod, State};
 use equipoise_physics::jacobian::jacobian;
 use equipoise_physics::map::{Orbit, Release, Rules, run};
 use equipoise_physics::model::Model;
+use equipoise_physics::scene::{Draft, Name, Value};
 use equipoise_physics::sweep::{Start, sweep_on};
 
 const BOUNCES: u64 = 1000;
@@ -54,6 +56,26 @@ fn strike_and_flight(bencher: Bencher) {
             state = flight.end(t);
         }
         state
+    });
+}
+
+/// With 31 digits, outcomes checked, energy held.
+#[divan::bench]
+fn extended(bencher: Bencher) {
+    let mut draft = Draft::default();
+    for (name, number) in [
+        (Name::ContactDistance, CASE_1.contact_distance),
+        (Name::RadiusOfGyration, CASE_1.radius_of_gyration),
+        (Name::TiltGain, CASE_1.tilt_gain),
+        (Name::Height, RELEASE.height),
+        (Name::Theta, RELEASE.state.theta),
+    ] {
+        let _ = draft.set(name, Some(Value::Number(number)));
+    }
+    let scene = draft.build().expect("a scene");
+    bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
+        let mut orbit = black_box(&scene).extended_orbit().ok()?;
+        extended::run(&mut orbit, BOUNCES, |_| true)
     });
 }
 

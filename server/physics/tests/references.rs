@@ -2,32 +2,9 @@
 //! as the plain algorithm in doubles comes, or closer.
 
 use equipoise_physics::map::{Body, run};
-use equipoise_physics::scene::{Draft, FIELDS, Kind, Value};
-use serde_json::Value as Json;
-use std::path::{Path, PathBuf};
 
-fn references() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/reference");
-    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.sort();
-    files
-}
-
-fn draft(scene: &Json) -> Option<Draft> {
-    let mut draft = Draft::default();
-    for row in &FIELDS {
-        let pointer = format!("/{}", row.path.replace('.', "/"));
-        let Some(json) = scene.pointer(&pointer) else { continue };
-        let value = match row.kind {
-            Kind::Number { .. } => Value::Number(json.as_f64().unwrap()),
-            Kind::Integer { .. } => Value::Integer(json.as_u64().unwrap()),
-            Kind::Choice(words) => Value::Choice(words.iter().find(|word| Some(**word) == json.as_str()).unwrap()),
-            Kind::Flag => Value::Flag(json.as_bool().unwrap()),
-        };
-        draft.set(row.name, Some(value)).ok()?;
-    }
-    Some(draft)
-}
+#[path = "support/reference.rs"]
+mod reference;
 
 /// Distance of a double from a decimal of more digits than a double holds: the decimal's own rest counts too.
 fn distance(value: f64, exact: &str) -> f64 {
@@ -37,15 +14,8 @@ fn distance(value: f64, exact: &str) -> f64 {
 #[test]
 fn every_frictionless_reference_agrees() {
     let mut seen = 0;
-    for file in references() {
-        let name = file.file_stem().unwrap().to_string_lossy().into_owned();
-        let reference: Json = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
-        let Some(draft) = draft(&reference["scene"]) else {
-            assert!(name.starts_with("friction"), "{name} was refused");
-            continue;
-        };
+    for (name, scene, reference) in reference::frictionless() {
         seen += 1;
-        let scene = draft.build().unwrap();
         let mut orbit = scene.orbit().unwrap();
         let mut contacts = Vec::new();
         let ending = run(&mut orbit, reference["impacts"].as_u64().unwrap(), |contact| {

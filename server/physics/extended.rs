@@ -1,0 +1,242 @@
+//! The map with 31 digits: the reference that everything faster is held against, and the method of last resort.
+//!
+//! The formulas are those of the map itself ([`crate::impact`], [`crate::flight`]) in double-double numbers, and so are the
+//! parameters, from the fields of the scene on. Which root of a flight is the next contact is decided in doubles, with the
+//! certificate of [`crate::contact_time`]; the root is then lifted by Newton's iteration.
+
+use crate::contact_time::{self, TooManyPieces};
+use crate::double_double::DoubleDouble;
+use crate::flight::Flight;
+use crate::impact::{Rod, State, Strike};
+use crate::map::{Ending, Rules, SETTLED_SHARE, SPEED_LIMIT};
+use crate::number::Number;
+use crate::scene::{BodyShape, Scene};
+use crate::trig;
+
+/// Most Newton steps of a lift: one does, except where the rod grazes the table.
+const MAX_STEPS: u32 = 64;
+
+/// Share of a root below which what a Newton step leaves out no longer counts.
+const NEGLIGIBLE: f64 = 1e-33;
+
+/// One contact of a run, as [`crate::map::Contact`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Its number, from 1.
+    pub n: u64,
+    /// When, s after release.
+    pub t: DoubleDouble,
+    /// Where the centre of gravity is, m.
+    pub x: DoubleDouble,
+    /// Angle and velocities just before it.
+    pub state: State<DoubleDouble>,
+    /// The strike, unless the run ended before it.
+    pub strike: Option<Strike<DoubleDouble>>,
+    /// Time to the next contact, s; none where the run ended.
+    pub flight_time: Option<DoubleDouble>,
+    /// Why the run ended here, if it did.
+    pub ending: Option<Ending>,
+}
+
+/// A run that is computed contact by contact with 31 digits.
+#[derive(Clone, Copy, Debug)]
+pub struct Orbit {
+    rod: Rod<DoubleDouble>,
+    is_point: bool,
+    rules: Rules,
+    state: State<DoubleDouble>,
+    n: u64,
+    t: DoubleDouble,
+    x: DoubleDouble,
+    first_flight: DoubleDouble,
+    last_flight: DoubleDouble,
+    energy: Option<DoubleDouble>,
+}
+
+impl Scene {
+    /// A run of the scene from its release, with 31 digits.
+    ///
+    /// # Errors
+    /// [`TooManyPieces`], which the ranges of a scene exclude.
+    pub fn extended_orbit(&self) -> Result<Orbit, TooManyPieces> {
+        Orbit::new(self)
+    }
+}
+
+impl Orbit {
+    fn new(scene: &Scene) -> Result<Self, TooManyPieces> {
+        let zero = DoubleDouble::from_f64(0.0);
+        let release = scene.release();
+        let State { theta, x_dot, y_dot, theta_dot } = release.state;
+        let mut orbit = Self {
+            rod: scene.parameters(),
+            is_point: scene.body() == BodyShape::Point,
+            rules: scene.rules(),
+            state: State { theta: theta.into(), x_dot: x_dot.into(), y_dot: y_dot.into(), theta_dot: theta_dot.into() },
+            n: 0,
+            t: zero,
+            x: release.x.into(),
+            first_flight: zero,
+            last_flight: zero,
+            energy: None,
+        };
+        let (sin, cos) = orbit.state.theta.sincos();
+        let height = orbit.rod.contact_distance * cos;
+        let clearance = DoubleDouble::from_f64(release.height) - height;
+        // As in doubles: a height typed as l cos θ means a contact.
+        let typed = 4.0 * f64::EPSILON * f64::max(release.height.abs(), height.to_f64().abs());
+        let flight = Flight {
+            start: orbit.state,
+            sin_cos_theta: (sin, cos),
+            clearance: if clearance.to_f64() <= typed { zero } else { clearance },
+            contact_distance: orbit.rod.contact_distance,
+            gravity: orbit.rod.gravity,
+        };
+        let gap = flight.gap(zero);
+        let falls = gap.slope < zero || (gap.slope == zero && gap.bend <= zero);
+        if flight.clearance == zero && falls {
+            orbit.arrive(zero, orbit.state);
+        } else {
+            let t = first_contact(&flight)?;
+            orbit.arrive(t, flight.end(t));
+        }
+        Ok(orbit)
+    }
+
+    /// Angle and velocities just before the coming contact.
+    pub fn state(&self) -> &State<DoubleDouble> {
+        &self.state
+    }
+
+    /// What bounces; its parameters are those of a rod of no length where it is a point mass.
+    pub fn rod(&self) -> &Rod<DoubleDouble> {
+        &self.rod
+    }
+
+    /// The coming contact. After one with an ending, call it no more: the state stays that of the last contact.
+    pub fn advance(&mut self) -> Contact {
+        let zero = DoubleDouble::from_f64(0.0);
+        self.n += 1;
+        let Self { state, rules, .. } = *self;
+        let mut contact =
+            Contact { n: self.n, t: self.t, x: self.x, state, strike: None, flight_time: None, ending: None };
+        let theta = state.theta.to_f64();
+        if theta.abs() >= rules.topple_angle {
+            contact.ending = Some(Ending::Toppled { theta, limit: rules.topple_angle });
+            return contact;
+        }
+        let mut strike = self.rod.strike(&state);
+        if strike.push >= zero {
+            contact.ending = Some(Ending::Separating { approach: strike.approach.to_f64() });
+            return contact;
+        }
+        if rules.holds_energy {
+            let energy = self.energy.unwrap_or(strike.energy);
+            self.energy = Some(self.rod.hold_energy(&mut strike, energy));
+        }
+        contact.strike = Some(strike);
+        let after = strike.after;
+        let spin = (self.rod.contact_distance * after.theta_dot).to_f64();
+        let (x_dot, y_dot) = (after.x_dot.to_f64(), after.y_dot.to_f64());
+        let speed_squared = x_dot * x_dot + y_dot * y_dot + spin * spin;
+        if speed_squared.is_nan() || speed_squared > SPEED_LIMIT * SPEED_LIMIT {
+            contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
+            return contact;
+        }
+        if strike.contact_rise <= zero {
+            contact.ending = Some(Ending::Sinking { contact_rise: strike.contact_rise.to_f64() });
+            return contact;
+        }
+        let flight = self.rod.flight(&strike);
+        let Ok(t) = first_contact(&flight) else {
+            contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
+            return contact;
+        };
+        if rules.settles {
+            if self.first_flight == zero {
+                self.first_flight = t;
+            }
+            if t < DoubleDouble::from_f64(SETTLED_SHARE) * self.first_flight {
+                let rest = t / (DoubleDouble::from_f64(1.0) - t / self.last_flight);
+                let (flight_time, settle_time) = (t.to_f64(), (self.t + rest).to_f64());
+                contact.ending = Some(Ending::Settled { flight_time, settle_time });
+                return contact;
+            }
+            self.last_flight = t;
+        }
+        contact.flight_time = Some(t);
+        self.arrive(t, flight.end(t));
+        contact
+    }
+
+    fn arrive(&mut self, t: DoubleDouble, state: State<DoubleDouble>) {
+        self.t = self.t + t;
+        self.x = self.x + state.x_dot * t;
+        self.state = if self.is_point { State { theta: fall_angle(&state), ..state } } else { state };
+    }
+}
+
+/// Visits contact after contact up to number `impacts`, as [`crate::map::run`].
+pub fn run(orbit: &mut Orbit, impacts: u64, mut visit: impl FnMut(&Contact) -> bool) -> Option<Ending> {
+    loop {
+        let mut contact = orbit.advance();
+        if contact.ending.is_none() && contact.n >= impacts {
+            contact.ending = Some(Ending::Completed);
+            contact.flight_time = None;
+        }
+        if !visit(&contact) {
+            return None;
+        }
+        if contact.ending.is_some() {
+            return contact.ending;
+        }
+    }
+}
+
+/// The length of a flight: the root certified in doubles, lifted.
+fn first_contact(flight: &Flight<DoubleDouble>) -> Result<DoubleDouble, TooManyPieces> {
+    let State { theta, x_dot, y_dot, theta_dot } = flight.start;
+    let rounded = Flight {
+        start: State {
+            theta: theta.to_f64(),
+            x_dot: x_dot.to_f64(),
+            y_dot: y_dot.to_f64(),
+            theta_dot: theta_dot.to_f64(),
+        },
+        sin_cos_theta: (flight.sin_cos_theta.0.to_f64(), flight.sin_cos_theta.1.to_f64()),
+        clearance: flight.clearance.to_f64(),
+        contact_distance: flight.contact_distance.to_f64(),
+        gravity: flight.gravity.to_f64(),
+    };
+    let root = contact_time::first_contact(&rounded)?;
+    let mut t = DoubleDouble::from_f64(root);
+    let mut last = f64::INFINITY;
+    for _ in 0..MAX_STEPS {
+        let gap = flight.gap(t);
+        let step = gap.value / gap.slope;
+        let size = step.to_f64().abs();
+        // Steps that shrink no more have met rounding, or a graze that doubles see and these digits do not.
+        if size.is_nan() || size >= last {
+            break;
+        }
+        t = t - step;
+        // What is left is some l θ̇² + G over the slope times the square of the step.
+        let stiffness = gap.bend.to_f64().abs() / gap.slope.to_f64().abs();
+        if size * size * (stiffness + theta_dot.to_f64().abs()) <= NEGLIGIBLE * root {
+            break;
+        }
+        last = size;
+    }
+    Ok(t)
+}
+
+/// The angle of a velocity from straight down, rad: that in doubles, turned by the little that is left. Its square is lost.
+fn fall_angle(state: &State<DoubleDouble>) -> DoubleDouble {
+    let State { x_dot, y_dot, .. } = *state;
+    if x_dot == DoubleDouble::from_f64(0.0) && y_dot == x_dot {
+        return x_dot;
+    }
+    let angle = DoubleDouble::from_f64(trig::atan2(x_dot.to_f64(), -y_dot.to_f64()));
+    let (sin, cos) = angle.sincos();
+    angle + (x_dot * cos + y_dot * sin) / (x_dot * sin - y_dot * cos)
+}

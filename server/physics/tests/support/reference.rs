@@ -1,0 +1,38 @@
+//! The reference runs of `tests/reference` that have no friction, as scenes.
+
+use equipoise_physics::scene::{Draft, FIELDS, Kind, Scene, Value};
+use serde_json::Value as Json;
+use std::path::{Path, PathBuf};
+
+/// Name, scene and what was computed with 60 digits.
+pub(crate) fn frictionless() -> Vec<(String, Scene, Json)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/reference");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    let mut found = Vec::new();
+    for file in files {
+        let name = file.file_stem().unwrap().to_string_lossy().into_owned();
+        let reference: Json = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
+        match draft(&reference["scene"]) {
+            Some(draft) => found.push((name, draft.build().unwrap(), reference)),
+            None => assert!(name.starts_with("friction"), "{name} was refused"),
+        }
+    }
+    found
+}
+
+fn draft(scene: &Json) -> Option<Draft> {
+    let mut draft = Draft::default();
+    for row in &FIELDS {
+        let pointer = format!("/{}", row.path.replace('.', "/"));
+        let Some(json) = scene.pointer(&pointer) else { continue };
+        let value = match row.kind {
+            Kind::Number { .. } => Value::Number(json.as_f64().unwrap()),
+            Kind::Integer { .. } => Value::Integer(json.as_u64().unwrap()),
+            Kind::Choice(words) => Value::Choice(words.iter().find(|word| Some(**word) == json.as_str()).unwrap()),
+            Kind::Flag => Value::Flag(json.as_bool().unwrap()),
+        };
+        draft.set(row.name, Some(value)).ok()?;
+    }
+    Some(draft)
+}
