@@ -10,7 +10,7 @@ use equipoise_physics::impact::{Rod, State};
 use equipoise_physics::jacobian::jacobian;
 use equipoise_physics::map::{Orbit, Release, Rules, run};
 use equipoise_physics::model::Model;
-use equipoise_physics::scene::{Draft, Name, Value};
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::sweep::{Start, sweep_on};
 
 const BOUNCES: u64 = 1000;
@@ -59,9 +59,8 @@ fn strike_and_flight(bencher: Bencher) {
     });
 }
 
-/// With 31 digits, outcomes checked, energy held.
-#[divan::bench]
-fn extended(bencher: Bencher) {
+/// The paper's case 1 as a scene.
+fn case_1() -> Scene {
     let mut draft = Draft::default();
     for (name, number) in [
         (Name::ContactDistance, CASE_1.contact_distance),
@@ -72,11 +71,26 @@ fn extended(bencher: Bencher) {
     ] {
         let _ = draft.set(name, Some(Value::Number(number)));
     }
-    let scene = draft.build().expect("a scene");
+    draft.build().expect("a scene")
+}
+
+/// With 31 digits, outcomes checked, energy held.
+#[divan::bench]
+fn extended(bencher: Bencher) {
+    let scene = case_1();
     bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
         let mut orbit = black_box(&scene).extended_orbit().ok()?;
         extended::run(&mut orbit, BOUNCES, |_| true)
     });
+}
+
+/// In doubles with an error estimate carried along.
+#[divan::bench]
+fn with_error_estimate(bencher: Bencher) {
+    let scene = case_1();
+    bencher
+        .counter(ItemsCount::new(BOUNCES))
+        .bench(|| black_box(&scene).predictable_impacts(BOUNCES, f64::INFINITY, || true));
 }
 
 /// The exact derivative of the map, a product over the bounces.

@@ -7,13 +7,15 @@
 //! [`impact`], [`flight`] and [`contact_time`] are the three parts of one bounce; [`map`] puts them together and ends
 //! a run; [`jacobian`] differentiates it, [`stability`] and [`regularity`] look at it from near and far, [`basin`] asks how far
 //! aside it may start, and [`verdict`] concludes. [`periodic_orbits`] finds what comes back; [`sweep`] runs many at once, for
-//! a [`region`]. [`extended`] is the map with 31 digits, to hold the others against.
+//! a [`region`]. [`extended`] is the map with 31 digits, to
+//! hold the others against; [`error_estimate`] says how far doubles may be off it.
 
 pub mod basin;
 pub mod contact_time;
 pub mod dispatch;
 pub mod double_double;
 pub mod dual;
+pub mod error_estimate;
 pub mod extended;
 pub mod flight;
 pub mod impact;

@@ -1,0 +1,85 @@
+//! The error estimate is never below the error and seldom far above it, over random scenes of every kind and over the
+//! references. Other seeds than these set its safety factor.
+
+use equipoise_physics::extended;
+use equipoise_physics::map::Body;
+use equipoise_physics::scene::Scene;
+
+#[path = "support/random.rs"]
+mod random;
+#[path = "support/reference.rs"]
+mod reference;
+
+/// Beyond it a bound says no more than "lost".
+const USEFUL: f64 = 1e-3;
+
+/// Largest of error/bound, and bound/error of every contact, the error at least one unit in the last place of the state.
+fn compare(scene: &Scene, impacts: u64) -> (f64, Vec<f64>) {
+    let mut orbit = scene.orbit().unwrap();
+    let mut exact = scene.extended_orbit().unwrap();
+    let mut estimate = scene.error_estimate(orbit.t());
+    let rho = exact.rod().radius_of_gyration.to_f64();
+    let is_point = orbit.body.contact_distance() == 0.0;
+    let (mut worst, mut ratios) = (0.0_f64, Vec::new());
+    for _ in 0..impacts {
+        let (contact, reference): (_, extended::Contact) = (orbit.advance(), exact.advance());
+        let bound = estimate.bound();
+        if bound > USEFUL {
+            break;
+        }
+        let (ours, exact) = (contact.state, reference.state);
+        let error =
+            |ours: f64, exact: equipoise_physics::double_double::DoubleDouble| (exact - ours.into()).to_f64().abs();
+        let turned = if is_point { 0.0 } else { rho * error(ours.theta, exact.theta) };
+        let error = turned
+            .max(error(ours.x_dot, exact.x_dot))
+            .max(error(ours.y_dot, exact.y_dot))
+            .max(rho * error(ours.theta_dot, exact.theta_dot));
+        let size = ours.x_dot.abs().max(ours.y_dot.abs()).max(rho * ours.theta_dot.abs()).max(rho * ours.theta.abs());
+        if error > 0.0 {
+            worst = worst.max(error / bound);
+        }
+        ratios.push(bound / error.max(f64::EPSILON * size));
+        if contact.flight_time.is_none() || reference.flight_time.is_none() {
+            break;
+        }
+        estimate.pass(&contact);
+    }
+    (worst, ratios)
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Runs of each kind, 1,000 and some in all.
+const RUNS: usize = 115;
+
+#[test]
+fn bounds_hold_over_random_scenes() {
+    for kind in random::KINDS {
+        let mut source = random::Random(2026);
+        let (mut worst, mut all) = (0.0_f64, Vec::new());
+        for _ in 0..RUNS {
+            let scene = random::scene(&mut source, kind);
+            let (share, ratios) = compare(&scene, 300);
+            worst = worst.max(share);
+            all.extend(ratios);
+        }
+        let typical = median(&mut all);
+        println!("{kind:?}: error/bound at most {worst:.2}, bound/error {typical:.1}, {} contacts", all.len());
+        assert!(worst <= 1.0, "{kind:?}: an error is {worst} of its bound");
+        assert!(typical <= 100.0, "{kind:?}: bounds are {typical} errors");
+    }
+}
+
+#[test]
+fn bounds_hold_over_the_references() {
+    for (name, scene, reference) in reference::frictionless() {
+        let (worst, mut ratios) = compare(&scene, reference["impacts"].as_u64().unwrap());
+        let typical = median(&mut ratios);
+        println!("{name}: error/bound at most {worst:.2}, bound/error {typical:.1}, {} contacts", ratios.len());
+        assert!(worst <= 1.0 && typical <= 100.0, "{name}: {worst} {typical}");
+    }
+}

@@ -1,0 +1,163 @@
+//! Random scenes of every kind that can be computed without friction, from a seed.
+
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+/// A generator of the splitmix family (G. L. Steele, D. Lea and C. H. Flood, 2014).
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform between two numbers.
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Uniform in its logarithm, of either sign.
+    pub(crate) fn size(&mut self, low: f64, high: f64) -> f64 {
+        let size = self.between(low.ln(), high.ln()).exp();
+        if self.next() & 1 == 0 { size } else { -size }
+    }
+}
+
+/// What a random scene shows.
+#[allow(dead_code)] // not every test uses each
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Kind {
+    Regular,
+    Small,
+    Chaotic,
+    Spinning,
+    Still,
+    Feedback,
+    Grazing,
+    Point,
+    /// From the whole range of the fields.
+    Wide,
+}
+
+#[allow(dead_code)]
+pub(crate) const KINDS: [Kind; 9] = [
+    Kind::Regular,
+    Kind::Small,
+    Kind::Chaotic,
+    Kind::Spinning,
+    Kind::Still,
+    Kind::Feedback,
+    Kind::Grazing,
+    Kind::Point,
+    Kind::Wide,
+];
+
+/// A scene of this kind.
+pub(crate) fn scene(random: &mut Random, kind: Kind) -> Scene {
+    match kind {
+        Kind::Wide => return wide(random),
+        Kind::Point => return point(random),
+        _ => {}
+    }
+    loop {
+        let length = random.between(0.05, 0.5);
+        let rho = length * random.between(0.3, 1.2);
+        let above = length * random.between(0.2, 2.0);
+        // The residue: (κ − 1) over the width of the stable interval, Gρ²/(V²l).
+        let width = rho * rho / (2.0 * above * length);
+        let residue = match kind {
+            Kind::Chaotic => random.between(0.5, 1.3),
+            Kind::Spinning | Kind::Grazing => random.between(-0.5, 1.5),
+            _ => random.between(0.05, 0.95),
+        };
+        let (theta, theta_dot, x_dot) = match kind {
+            Kind::Regular | Kind::Still | Kind::Feedback => {
+                (random.size(0.003, 0.2), random.size(0.001, 0.5), random.size(0.001, 0.3))
+            }
+            Kind::Small => (random.size(1e-7, 1e-2), random.size(1e-7, 1e-2), random.size(1e-7, 1e-2)),
+            Kind::Chaotic => (random.size(0.1, 0.7), random.size(0.1, 2.0), random.size(0.01, 0.5)),
+            Kind::Spinning => (random.between(-1.2, 1.2), random.size(5.0, 40.0), random.size(0.01, 1.0)),
+            Kind::Grazing | Kind::Point | Kind::Wide => {
+                (random.size(0.3, 1.3), random.size(0.5, 12.0), random.size(0.01, 1.0))
+            }
+        };
+        let mut values = vec![
+            (Name::ContactDistance, length),
+            (Name::RadiusOfGyration, rho),
+            (Name::TiltGain, 1.0 + residue * width),
+            (Name::Height, length + above),
+            (Name::Theta, theta),
+            (Name::ThetaDot, theta_dot),
+            (Name::XDot, x_dot),
+            (Name::Restitution, random.between(0.2, 1.0)),
+        ];
+        if random.between(0.0, 1.0) < 0.3 {
+            values.push((Name::Incline, random.between(0.2, 1.5)));
+        }
+        let mut draft = Draft::default();
+        if kind == Kind::Feedback {
+            // Around a share of its upper bound 2/((1 + e)V²), roughly.
+            values.push((Name::EnergyGain, random.between(0.02, 0.8) / (2.0 * 9.81 * above)));
+            values.push((Name::TargetHeight, length + above * random.between(0.7, 1.5)));
+        }
+        if kind == Kind::Still {
+            draft.set(Name::Strike, Some(Value::Choice("still"))).unwrap();
+        }
+        for (name, number) in values {
+            draft.set(name, Some(Value::Number(number))).unwrap();
+        }
+        if let Ok(scene) = draft.build() {
+            return scene;
+        }
+    }
+}
+
+fn wide(random: &mut Random) -> Scene {
+    loop {
+        let length = random.size(1e-3, 10.0).abs();
+        let mut draft = Draft::default();
+        for (name, number) in [
+            (Name::ContactDistance, length),
+            (Name::RadiusOfGyration, random.size(1e-3, 10.0).abs()),
+            (Name::Gravity, random.size(0.1, 100.0).abs()),
+            (Name::Incline, random.between(0.01, 1.57)),
+            (Name::TiltGain, random.size(1e-3, 100.0)),
+            (Name::Height, length + random.size(1e-6, 90.0).abs()),
+            (Name::Theta, random.size(1e-9, 1.5)),
+            (Name::ThetaDot, random.size(1e-9, 200.0)),
+            (Name::XDot, random.size(1e-9, 100.0)),
+            (Name::YDot, random.size(1e-9, 100.0)),
+            (Name::Restitution, random.between(0.0, 1.0)),
+        ] {
+            draft.set(name, Some(Value::Number(number))).unwrap();
+        }
+        match (random.between(0.0, 4.0)) as u8 {
+            0 => draft.set(Name::Strike, Some(Value::Choice("still"))).unwrap(),
+            1 => {
+                draft.set(Name::EnergyGain, Some(Value::Number(random.size(1e-6, 10.0)))).unwrap();
+                draft.set(Name::TargetHeight, Some(Value::Number(random.size(1e-3, 100.0).abs()))).unwrap();
+            }
+            _ => {}
+        }
+        if let Ok(scene) = draft.build() {
+            return scene;
+        }
+    }
+}
+
+fn point(random: &mut Random) -> Scene {
+    let mut draft = Draft::default();
+    for (name, number) in [
+        (Name::TiltGain, random.between(-0.01, 1.01)),
+        (Name::Incline, random.between(0.1, 1.57)),
+        (Name::Height, random.between(0.01, 1.0)),
+        (Name::XDot, random.size(1e-3, 1.0)),
+    ] {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
+    draft.build().unwrap()
+}
