@@ -193,6 +193,16 @@ pub fn run(orbit: &mut Orbit, impacts: u64, mut visit: impl FnMut(&Contact) -> b
     }
 }
 
+/// One bounce from a state just before a contact: the length of the flight, s, and the state at its end. None where there is
+/// no strike or no next contact.
+pub fn bounce(rod: &Rod<DoubleDouble>, state: &State<DoubleDouble>) -> Option<(DoubleDouble, State<DoubleDouble>)> {
+    let strike = rod.strike(state);
+    let flies = strike.push.to_f64() < 0.0 && strike.contact_rise.to_f64() > 0.0;
+    let flight = rod.flight(&strike);
+    let t = flies.then(|| first_contact(&flight).ok())??;
+    Some((t, flight.end(t)))
+}
+
 /// The length of a flight: the root certified in doubles, lifted.
 fn first_contact(flight: &Flight<DoubleDouble>) -> Result<DoubleDouble, TooManyPieces> {
     let State { theta, x_dot, y_dot, theta_dot } = flight.start;

@@ -8,7 +8,7 @@
 //! a run; [`jacobian`] differentiates it, [`stability`] and [`regularity`] look at it from near and far, [`basin`] asks how far
 //! aside it may start, and [`verdict`] concludes. [`periodic_orbits`] finds what comes back; [`sweep`] runs many at once, for
 //! a [`region`]. [`extended`] is the map with 31 digits, to
-//! hold the others against; [`error_estimate`] says how far doubles may be off it.
+//! hold the others against; [`error_estimate`] says how far doubles may be off it, [`linear`] gives any impact in closed form.
 
 pub mod basin;
 pub mod contact_time;
@@ -21,6 +21,7 @@ pub mod flight;
 pub mod impact;
 pub mod jacobian;
 mod lanes;
+pub mod linear;
 pub mod map;
 pub mod model;
 pub mod number;

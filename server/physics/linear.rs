@@ -1,0 +1,417 @@
+//! The linear solution about the fixed point in closed form, eq. (13) and (20) to (23): the state at any impact at the cost of
+//! one, with a bound on what it leaves out.
+//!
+//! With u = τθ̇ and Greene's residue R the angle goes by θ' = (1 − 4R)θ + u, u' = u − 4Rθ, whose powers are sines (0 < R < 1),
+//! hyperbolic sines or straight lines. Beyond the paper, ẏ is that of the exact energy, so that what is left out is of third
+//! order in the angle; with energy feedback it is ẏ's own eigenvalue, and what is left out is of second.
+//! Not here: point masses, and tables that stand still, which have no fixed point.
+
+use crate::double_double::DoubleDouble;
+use crate::extended;
+use crate::impact::{Rod, State};
+use crate::model::Model;
+use crate::number::Number;
+use crate::scene::Scene;
+use crate::stability::Class;
+use crate::trig;
+
+/// By how much a bound is above the sum of what each bounce leaves out: those are taken at the linear state, not the true one.
+pub const SAFETY: f64 = 1.5;
+
+/// Points at which what a bounce leaves out is looked at: phases of half a turn, or bounces of a run.
+const SAMPLES: u64 = 12;
+
+/// The linear solution of one run.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearSolution {
+    rod: Rod,
+    extended: Rod<DoubleDouble>,
+    /// V, m/s.
+    speed: f64,
+    /// τ, s.
+    flight_time: f64,
+    residue: f64,
+    class: Class,
+    /// Rotation or growth per bounce, rad or 1.
+    exponent: f64,
+    /// Eigenvalue of ẏ; none where the energy is exact.
+    energy_eigenvalue: Option<f64>,
+    /// Just before the first impact.
+    start: State,
+    t: f64,
+    x: f64,
+    /// |v|² − 2Gl(1 − cos θ), m²/s².
+    energy: f64,
+    /// The most that bounces leave out where the angle circles: at any time, and more on the approach to the wanted energy.
+    circling: [LeftOut; 2],
+}
+
+/// The linear state just before one impact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearImpact {
+    /// When, s after release.
+    pub t: f64,
+    /// Where the centre of gravity is, m.
+    pub x: f64,
+    /// Angle and velocities just before it.
+    pub state: State,
+    /// Bound on the largest of |ρδθ| (m), |δẋ|, |δẏ| and |ρδθ̇| (m/s).
+    pub error_estimate: f64,
+    /// Bound on the error of `t`, s.
+    pub t_error: f64,
+}
+
+/// What one bounce leaves out, without signs: of θ, u, ẋ beside its law, ẏ and the flight time.
+#[derive(Clone, Copy, Debug, Default)]
+struct LeftOut {
+    theta: f64,
+    u: f64,
+    /// Of θ and u together, in the norm that the rotation keeps.
+    turned: f64,
+    drift: f64,
+    y_dot: f64,
+    t: f64,
+}
+
+impl LeftOut {
+    fn or(self, other: Self) -> Self {
+        Self {
+            theta: self.theta.max(other.theta),
+            u: self.u.max(other.u),
+            turned: self.turned.max(other.turned),
+            drift: self.drift.max(other.drift),
+            y_dot: self.y_dot.max(other.y_dot),
+            t: self.t.max(other.t),
+        }
+    }
+}
+
+impl Scene {
+    /// The linear solution of a run of this scene.
+    ///
+    /// # Errors
+    /// Why there is none, in a sentence.
+    pub fn linear_solution(&self) -> Result<LinearSolution, String> {
+        let fixed_point = self.fixed_point()?;
+        let linear = self.linear(&fixed_point);
+        let (Model::Rod(rod), Some(residue)) = (self.model(), linear.residue) else {
+            return Err("a point mass has no angle; its eq. (5) is exact".to_owned());
+        };
+        let orbit = self.orbit().map_err(|_| "the first contact is not found".to_owned())?;
+        let feeds_back = self.energy_gain != 0.0;
+        if feeds_back && linear.energy_eigenvalue.abs() >= 1.0 {
+            let eigenvalue = linear.energy_eigenvalue;
+            return Err(format!("energy_gain drives the energy away: the eigenvalue of y_dot is {eigenvalue}"));
+        }
+        let root = |share: f64| 2.0 * libm::asin(share.sqrt());
+        let exponent = match linear.class {
+            Class::Elliptic if residue <= 0.5 => root(residue),
+            Class::Elliptic => std::f64::consts::PI - root(1.0 - residue),
+            _ if residue < 0.0 => 2.0 * libm::asinh((-residue).sqrt()),
+            _ => 2.0 * libm::asinh(f64::max(residue - 1.0, 0.0).sqrt()),
+        };
+        let start = *orbit.state();
+        let spin = rod.radius_of_gyration * start.theta_dot;
+        let (_, versine) = trig::sin_versine(start.theta);
+        let mut solution = LinearSolution {
+            extended: self.parameters(),
+            speed: fixed_point.speed,
+            flight_time: fixed_point.flight_time,
+            residue,
+            class: linear.class,
+            exponent,
+            energy_eigenvalue: feeds_back.then_some(linear.energy_eigenvalue),
+            start,
+            t: orbit.t(),
+            x: orbit.x(),
+            energy: start.x_dot * start.x_dot + start.y_dot * start.y_dot + spin * spin
+                - 2.0 * rod.gravity * rod.contact_distance * versine,
+            rod,
+            circling: [LeftOut::default(); 2],
+        };
+        if solution.class == Class::Elliptic {
+            solution.circling = solution.on_circle(0.0);
+            if feeds_back {
+                let [always, first] = solution.circling;
+                let aside = always.y_dot.max(first.y_dot) / (1.0 - linear.energy_eigenvalue.abs());
+                solution.circling = solution.on_circle(aside);
+            }
+        }
+        Ok(solution)
+    }
+}
+
+impl LinearSolution {
+    /// The state just before impact `n` (from 1), and how far it may be off.
+    pub fn impact(&self, n: u64) -> LinearImpact {
+        let m = n.saturating_sub(1);
+        let (theta, u) = self.angle(m);
+        let (state, along) = (self.state(theta, u, m), self.x_along(m, theta));
+        let (error_estimate, t_error) = self.errors(m, &state);
+        LinearImpact { t: self.t + self.time(m), x: self.x + along, state, error_estimate, t_error }
+    }
+
+    fn start_u(&self) -> f64 {
+        self.flight_time * self.start.theta_dot
+    }
+
+    /// How far ẏ starts from its fixed point, m/s.
+    fn start_excess(&self) -> f64 {
+        self.start.y_dot + self.speed
+    }
+
+    fn is_at_lower_end(&self) -> bool {
+        self.class == Class::Parabolic && self.residue < 0.5
+    }
+
+    /// sin mσ / sin σ, or what takes its place: Chebyshev's U of index m − 1 at 1 − 2R.
+    fn chebyshev(&self, m: u64) -> f64 {
+        let count = m as f64;
+        let size = match self.class {
+            Class::Parabolic => count,
+            Class::Elliptic => {
+                let sine = 2.0 * (self.residue * (1.0 - self.residue)).sqrt();
+                return trig::sin_cos(count * self.exponent).0 / sine;
+            }
+            _ => libm::sinh(count * self.exponent) / libm::sinh(self.exponent),
+        };
+        if self.residue > 0.5 && m.is_multiple_of(2) { -size } else { size }
+    }
+
+    /// θ and u after `m` bounces: A^m = U_{m−1} A − U_{m−2}.
+    fn angle(&self, m: u64) -> (f64, f64) {
+        let (theta, u) = (self.start.theta, self.start_u());
+        if m == 0 {
+            return (theta, u);
+        }
+        let (now, before) = (self.chebyshev(m), self.chebyshev(m - 1));
+        let (next_theta, next_u) = self.step(theta, u);
+        (now * next_theta - before * theta, now * next_u - before * u)
+    }
+
+    fn step(&self, theta: f64, u: f64) -> (f64, f64) {
+        ((1.0 - 4.0 * self.residue) * theta + u, u - 4.0 * self.residue * theta)
+    }
+
+    /// ẋ per u along the motion: ẋ − this·u is the drift and stays.
+    fn lever(&self) -> f64 {
+        self.speed * self.rod.tilt_gain / (2.0 * self.residue)
+    }
+
+    fn state(&self, theta: f64, u: f64, m: u64) -> State {
+        let x_dot = if self.is_at_lower_end() {
+            let count = m as f64;
+            let sum = count * self.start.theta + 0.5 * count * (count - 1.0) * self.start_u();
+            self.start.x_dot - 2.0 * self.speed * self.rod.tilt_gain * sum
+        } else {
+            self.start.x_dot + self.lever() * (u - self.start_u())
+        };
+        let theta_dot = u / self.flight_time;
+        let y_dot = match self.energy_eigenvalue {
+            Some(eigenvalue) => -self.speed + power(eigenvalue, m) * self.start_excess(),
+            None => self.on_energy(theta, x_dot, theta_dot),
+        };
+        State { theta, x_dot, y_dot, theta_dot }
+    }
+
+    fn on_energy(&self, theta: f64, x_dot: f64, theta_dot: f64) -> f64 {
+        let spin = self.rod.radius_of_gyration * theta_dot;
+        let (_, versine) = trig::sin_versine(theta);
+        let weight = self.rod.gravity * self.rod.contact_distance;
+        -f64::max(self.energy - x_dot * x_dot - spin * spin + 2.0 * weight * versine, 0.0).sqrt()
+    }
+
+    /// Σ of the flight times, 2|ẏ|/G at the end of each.
+    fn time(&self, m: u64) -> f64 {
+        let late = self.energy_eigenvalue.map_or(0.0, |eigenvalue| {
+            eigenvalue * (1.0 - power(eigenvalue, m)) / (1.0 - eigenvalue) * self.start_excess()
+        });
+        m as f64 * self.flight_time - 2.0 * late / self.rod.gravity
+    }
+
+    /// Σ ẋτ over the flights.
+    fn x_along(&self, m: u64, theta: f64) -> f64 {
+        let (count, tau) = (m as f64, self.flight_time);
+        if self.is_at_lower_end() {
+            let twice = 0.5 * count * (count + 1.0) * self.start.theta
+                + self.start_u() * (count - 1.0) * count * (count + 1.0) / 6.0;
+            return tau * (count * self.start.x_dot - 2.0 * self.speed * self.rod.tilt_gain * twice);
+        }
+        let turned = theta - self.start.theta - count * self.start_u();
+        tau * (count * self.start.x_dot + self.lever() * turned)
+    }
+
+    /// What the bounce from a state leaves out, with 31 digits; infinite where there is no bounce.
+    fn left_out(&self, theta: f64, u: f64, x_dot: f64, y_dot: f64) -> LeftOut {
+        let number = DoubleDouble::from_f64;
+        let tau = number(self.flight_time);
+        let lifted =
+            State { theta: number(theta), x_dot: number(x_dot), y_dot: number(y_dot), theta_dot: number(u) / tau };
+        let Some((t, end)) = extended::bounce(&self.extended, &lifted) else {
+            let lost = f64::INFINITY;
+            return LeftOut { theta: lost, u: lost, turned: lost, drift: lost, y_dot: lost, t: lost };
+        };
+        let fall = number(4.0 * self.residue) * number(theta);
+        let of_theta = (end.theta - (number(theta) - fall + number(u))).to_f64();
+        let of_u = (end.theta_dot * tau - (number(u) - fall)).to_f64();
+        let pushed = number(2.0 * self.speed) * number(self.rod.tilt_gain) * number(theta);
+        let of_x = (end.x_dot - (number(x_dot) - pushed)).to_f64();
+        let (of_y, next_y) = match self.energy_eigenvalue {
+            Some(eigenvalue) => {
+                let next = number(eigenvalue) * number(y_dot + self.speed) - number(self.speed);
+                ((end.y_dot - next).to_f64(), next.to_f64())
+            }
+            None => (0.0, -self.speed),
+        };
+        let sine = (self.residue * (1.0 - self.residue)).max(0.0).sqrt() * 2.0;
+        let (across, beside) = (sine * of_theta, of_u - 2.0 * self.residue * of_theta);
+        let lever = if self.is_at_lower_end() { 0.0 } else { self.lever() };
+        LeftOut {
+            theta: of_theta.abs(),
+            u: of_u.abs(),
+            turned: (across * across + beside * beside).sqrt(),
+            drift: (of_x - lever * of_u).abs(),
+            y_dot: of_y.abs(),
+            t: (t.to_f64() + 2.0 * next_y / self.rod.gravity).abs(),
+        }
+    }
+
+    /// The most that a bounce leaves out about an angle, with ẏ within `aside` of `excess` from the fixed point.
+    fn worst_about(&self, theta: f64, u: f64, x_dot: f64, excess: f64, aside: f64) -> LeftOut {
+        if self.energy_eigenvalue.is_none() {
+            return self.left_out(theta, u, x_dot, self.on_energy(theta, x_dot, u / self.flight_time));
+        }
+        let y_dot = -self.speed + excess;
+        let upper = self.left_out(theta, u, x_dot, y_dot + aside);
+        if aside == 0.0 { upper } else { upper.or(self.left_out(theta, u, x_dot, y_dot - aside)) }
+    }
+
+    /// Bounds on the error of the state and of the time after `m` bounces.
+    fn errors(&self, m: u64, state: &State) -> (f64, f64) {
+        let count = m as f64;
+        let decay = self.energy_eigenvalue.map_or(0.0, f64::abs);
+        // Σ|λ|^k: how often a bounce counts for ẏ, and how many bounces of the approach to the wanted energy there are.
+        let approach = if decay < 1.0 { (1.0 - power(decay, m)) / (1.0 - decay) } else { count };
+        let sine = (self.residue * (1.0 - self.residue)).max(0.0).sqrt() * 2.0;
+        let (mut theta, mut u, mut drift, mut y_dot, mut t) = (0.0, 0.0, 0.0, 0.0_f64, 0.0);
+        if self.class == Class::Elliptic {
+            let [always, first] = self.circling;
+            let sum = |of: fn(&LeftOut) -> f64| count * of(&always) + approach * of(&first);
+            let turned = sum(|out| out.turned);
+            theta = turned / sine;
+            u = turned * (1.0 + (2.0 * self.residue / sine) * (2.0 * self.residue / sine)).sqrt();
+            (drift, t) = (sum(|out| out.drift), sum(|out| out.t));
+            y_dot = approach * (always.y_dot + first.y_dot);
+        } else {
+            let forced = self.along(m, 0.0).iter().fold(0.0, |most: f64, (_, out)| most.max(out.y_dot)) * approach;
+            let samples = self.along(m, if self.energy_eigenvalue.is_some() { forced } else { 0.0 });
+            for pair in samples.windows(2) {
+                let gap = (pair[1].0 - pair[0].0) as f64;
+                let mut most = [0.0_f64; 4];
+                for (k, out) in pair {
+                    let left = (m - 1).saturating_sub(*k);
+                    let (now, before) = (self.chebyshev(left + 1), self.chebyshev(left));
+                    let terms = [
+                        (now * (1.0 - 4.0 * self.residue) - before).abs() * out.theta + now.abs() * out.u,
+                        4.0 * (self.residue * now).abs() * out.theta + (now - before).abs() * out.u,
+                        out.drift,
+                        out.t,
+                    ];
+                    for (most, term) in most.iter_mut().zip(terms) {
+                        *most = most.max(term);
+                    }
+                    y_dot = y_dot.max(approach * out.y_dot);
+                }
+                (theta, u) = (theta + gap * most[0], u + gap * most[1]);
+                (drift, t) = (drift + gap * most[2], t + gap * most[3]);
+            }
+        }
+        // The samples are compared with flights from their own ẏ.
+        t += count * 2.0 * y_dot / self.rod.gravity;
+        let rho = self.rod.radius_of_gyration;
+        let lever = if self.is_at_lower_end() {
+            drift += 2.0 * (self.speed * self.rod.tilt_gain).abs() * count * theta;
+            0.0
+        } else {
+            self.lever().abs()
+        };
+        let x_dot = lever * u + drift;
+        let spin = rho * u / self.flight_time;
+        if self.energy_eigenvalue.is_none() {
+            let (sin, _) = trig::sin_cos(state.theta);
+            let weight = self.rod.gravity * self.rod.contact_distance;
+            y_dot = (state.x_dot.abs() * x_dot
+                + (rho * state.theta_dot).abs() * spin
+                + weight * (sin.abs() + theta) * theta
+                + x_dot * x_dot
+                + spin * spin)
+                / state.y_dot.abs().max(f64::MIN_POSITIVE);
+        }
+        // Rounding: of the phase, which grows with m, and of each sum.
+        let size =
+            self.start.theta.abs().max(self.start_u().abs()) / if self.class == Class::Elliptic { sine } else { 1.0 };
+        let phase = f64::EPSILON * (4.0 + count * self.exponent) * size.max(state.theta.abs());
+        let speed = self.speed.abs() + self.start.x_dot.abs() + state.x_dot.abs();
+        let rounding = 4.0 * f64::EPSILON * speed + phase * (rho.max(rho / self.flight_time) + 2.0 * lever);
+        let largest = (rho * theta).max(x_dot).max(y_dot).max(spin);
+        let bound = SAFETY * (largest + rounding);
+        let t_bound = SAFETY * (t + 4.0 * f64::EPSILON * (self.t + count * self.flight_time));
+        (if bound.is_nan() { f64::INFINITY } else { bound }, if t_bound.is_nan() { f64::INFINITY } else { t_bound })
+    }
+
+    /// The most that bounces leave out at any phase, with ẏ within `aside` of its fixed point, and with the first excess of it.
+    fn on_circle(&self, aside: f64) -> [LeftOut; 2] {
+        let (theta, u) = (self.start.theta, self.start_u());
+        let sine = 2.0 * (self.residue * (1.0 - self.residue)).sqrt();
+        let (across, beside) = (sine * theta, u - 2.0 * self.residue * theta);
+        let radius = (across * across + beside * beside).sqrt();
+        let mut most = [LeftOut::default(); 2];
+        for index in 0..2 * SAMPLES {
+            let (sin, cos) = trig::sin_cos(index as f64 * std::f64::consts::PI / SAMPLES as f64);
+            let theta = radius * sin / sine;
+            let u = radius * cos + 2.0 * self.residue * theta;
+            let x_dot = self.start.x_dot + self.lever() * (u - self.start_u());
+            most[0] = most[0].or(self.worst_about(theta, u, x_dot, 0.0, aside));
+            if self.energy_eigenvalue.is_some() {
+                most[1] = most[1].or(self.worst_about(theta, u, x_dot, self.start_excess(), aside));
+            }
+        }
+        most
+    }
+
+    /// What bounces before the `m`-th leave out, some of them, each with its number; the last stands for the end as well.
+    fn along(&self, m: u64, aside: f64) -> Vec<(u64, LeftOut)> {
+        let mut samples = Vec::new();
+        if m == 0 {
+            return samples;
+        }
+        let ks = (0..=SAMPLES).map(|index| (u128::from(m - 1) * u128::from(index) / u128::from(SAMPLES)) as u64);
+        let mut last = None;
+        for k in ks.chain([m - 1]) {
+            if last.replace(k) == Some(k) {
+                continue;
+            }
+            let (theta, u) = self.angle(k);
+            let state = self.state(theta, u, k);
+            samples.push((k, self.worst_about(theta, u, state.x_dot, state.y_dot + self.speed, aside)));
+        }
+        // A bounce more, so that the gaps between samples add up to m.
+        if let Some(&(_, out)) = samples.last() {
+            samples.push((m, out));
+        }
+        samples
+    }
+}
+
+/// base^m for |base| ≤ 1.
+fn power(base: f64, m: u64) -> f64 {
+    let (mut result, mut square, mut left) = (1.0, base, m);
+    while left > 0 {
+        if left & 1 == 1 {
+            result *= square;
+        }
+        square *= square;
+        left >>= 1;
+    }
+    result
+}
