@@ -64,3 +64,24 @@ impl Motion {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Between contacts, where there is more to it than a parabola: a pendulum, against itself with steps of a hundredth.
+    #[test]
+    fn runge_kutta_is_of_order_4() {
+        let after = |steps: u32| {
+            let step = 1.0 / f64::from(steps);
+            let start = Motion { place: [0.0, 0.0, 1.0], velocity: [0.0, 0.0, 2.0] };
+            (0..steps).fold(start, |motion, _| {
+                motion.runge_kutta(step, |motion, _| [0.0, 0.0, -9.0 * trig::sin_cos(motion.place[2]).0])
+            })
+        };
+        let fine = after(2000).place[2];
+        let error = |steps| (after(steps).place[2] - fine).abs();
+        let order = (error(20) / error(40)).log2();
+        assert!((order - 4.0).abs() < 0.2, "order {order}, errors {:e} {:e}", error(20), error(40));
+    }
+}
