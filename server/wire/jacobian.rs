@@ -50,14 +50,7 @@ impl At {
         reader.within("at", |at| {
             if at.has("state") {
                 kinds += 1;
-                found = at
-                    .within("state", |state| {
-                        let values = STATE.map(|(name, limit, unit)| state.number(name, -limit..=limit, unit));
-                        state.require(&["y_dot"]);
-                        let [theta, x_dot, y_dot, theta_dot] = values.map(|value| value.unwrap_or(0.0));
-                        State { theta, x_dot, y_dot, theta_dot }
-                    })
-                    .map(Self::State);
+                found = at.within("state", read_state).map(Self::State);
             }
             if at.has("impact") {
                 kinds += 1;
@@ -73,6 +66,14 @@ impl At {
 
 fn components<S: Serializer>(state: &State, serializer: S) -> Result<S::Ok, S::Error> {
     (state.theta, state.x_dot, state.y_dot, state.theta_dot).serialize(serializer)
+}
+
+/// Reads a state just before a contact.
+pub(super) fn read_state(reader: &mut Reader<'_, '_>) -> State {
+    let values = STATE.map(|(name, limit, unit)| reader.number(name, -limit..=limit, unit));
+    reader.require(&["y_dot"]);
+    let [theta, x_dot, y_dot, theta_dot] = values.map(|value| value.unwrap_or(0.0));
+    State { theta, x_dot, y_dot, theta_dot }
 }
 
 /// Components of a state with their limits and units; as wide as a run can get from the ranges of a scene.

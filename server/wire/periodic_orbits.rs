@@ -1,12 +1,11 @@
 //! The request and the answer of `periodic-orbits`: an orbit, or a branch of them along a field of the scene.
 
-use equipoise_physics::impact::State;
 use equipoise_physics::periodic_orbits::branch::{Branch, Point, Start, Sweep, follow};
 use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
 use equipoise_physics::scene::{Kind, Name, Scene, Value, field};
 use serde::{Serialize, Serializer};
 
-use super::jacobian::Eigenvalue;
+use super::jacobian::{Eigenvalue, read_state};
 use super::scene::Resolved;
 use super::table::{Cells, Column, Table};
 use super::trajectory::Choice;
@@ -47,25 +46,12 @@ impl Serialize for Request {
     }
 }
 
-/// Components of a guess with their limits and units, as in `jacobians`.
-const STATE: [(&str, f64, &str); 4] = [
-    ("theta", std::f64::consts::PI, "rad"),
-    ("x_dot", 1000.0, "m/s"),
-    ("y_dot", 1000.0, "m/s"),
-    ("theta_dot", 1000.0, "rad/s"),
-];
-
 impl Request {
     /// Reads everything but the scene.
     pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let before = reader.errors().len();
         let period = reader.integer("period", 1..=limits::ORBIT_PERIOD);
-        let guess = reader.within("guess", |guess| {
-            let values = STATE.map(|(name, limit, unit)| guess.number(name, -limit..=limit, unit));
-            guess.require(&["y_dot"]);
-            let [theta, x_dot, y_dot, theta_dot] = values.map(|value| value.unwrap_or(0.0));
-            State { theta, x_dot, y_dot, theta_dot }
-        });
+        let guess = reader.within("guess", read_state);
         let family = reader.choice("family", &[("symmetric", ())]);
         let theta = reader.number("theta", -1.5..=1.5, "rad");
         let sweep = if reader.has("sweep") { reader.within("sweep", Range::read).flatten() } else { None };

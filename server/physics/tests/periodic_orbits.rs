@@ -1,7 +1,11 @@
 //! Periodic orbits against what is known of them exactly: the symmetric family, κ_c, the sign and size of C.
 
+mod paper;
+
+use equipoise_physics::impact::State;
+use equipoise_physics::map::Orbit;
 use equipoise_physics::periodic_orbits::branch::{Branch, Kind, Start, Sweep, follow};
-use equipoise_physics::periodic_orbits::{Failure, Setting, find, symmetric};
+use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 fn scene(values: &[(Name, f64)]) -> Scene {
@@ -45,7 +49,7 @@ fn the_symmetric_family_is_a_solution_as_it_stands() {
         }
         assert!((one.theta + other.theta).abs() < 1e-11 && orbit.drift.abs() < 1e-12);
         // From a little aside it comes back to an orbit of the same energy.
-        let aside = equipoise_physics::impact::State { theta: state.theta * 1.0001, ..state };
+        let aside = State { theta: state.theta * 1.0001, ..state };
         let again = find(&own, 2, &aside).unwrap();
         assert!(again.residual < 1e-12 && again.drift.abs() < 1e-12);
     }
@@ -143,10 +147,56 @@ fn a_branch_goes_round_its_fold_and_changes_are_where_the_residue_vanishes() {
 fn what_has_no_orbit_says_why() {
     let scene = scene(&[]);
     let setting = Setting::of(&scene).unwrap();
-    let far = equipoise_physics::impact::State { theta: 0.9, x_dot: 0.5, y_dot: -0.2, theta_dot: 3.0 };
+    let far = State { theta: 0.9, x_dot: 0.5, y_dot: -0.2, theta_dot: 3.0 };
     assert!(matches!(find(&setting, 3, &far), Err(Failure::Ends { .. } | Failure::NoConvergence { .. })));
     let beside = tilt(&scene, 2, Start::Symmetric(0.1), 1.1, 1.2, 10).unwrap_err();
     assert!(beside.to_string().contains("no mirror-symmetric orbit"), "{beside}");
     let sweep = Sweep { scene: &scene, name: Name::TiltGain, from: 1.1, to: 1.2 };
     assert_eq!(follow(&sweep, 1, Start::Upright, 10, || false).unwrap_err(), Failure::Cancelled);
+}
+
+/// From a guess to an orbit of the scene, which the run itself confirms.
+fn come_back(kappa: f64, period: usize, theta: f64, x_dot: f64) -> PeriodicOrbit {
+    let scene = scene(&[(Name::TiltGain, kappa)]);
+    let setting = Setting::of(&scene).unwrap();
+    let guess = State { theta, x_dot, y_dot: -setting.speed, theta_dot: 0.0 };
+    let orbit = find(&setting, period, &guess).unwrap();
+    assert_eq!(orbit.least_period, period);
+    let mut run = Orbit::at(setting.rod, scene.rules(), orbit.states[0]);
+    for n in 0..period {
+        let (there, here) = (orbit.states[n], *run.state());
+        assert!((there.theta - here.theta).abs() < 1e-11 && (there.y_dot - here.y_dot).abs() < 1e-11, "{n}");
+        assert!(run.advance().ending.is_none());
+    }
+    let (start, end) = (orbit.states[0], *run.state());
+    for (start, end) in [(start.theta, end.theta), (start.x_dot, end.x_dot), (start.theta_dot, end.theta_dot)] {
+        assert!((start - end).abs() < 1e-11, "{start} {end}");
+    }
+    orbit
+}
+
+#[test]
+fn orbits_of_period_three_and_four_spring_from_the_resonances() {
+    // R = (κ − 1)/(κ_c − 1) = 1/2 at κ = 1.25: a pair, one stable and wide, one unstable, whose angle goes to 0 there as √.
+    let mut last = f64::INFINITY;
+    for (kappa, theta, wide) in [(1.27, 0.055, 0.11), (1.265, 0.04, 0.075), (1.26, 0.025, 0.055)] {
+        let (unstable, stable) = (come_back(kappa, 4, theta, 0.4), come_back(kappa, 4, wide, 0.4));
+        assert_eq!((unstable.multipliers.stable, stable.multipliers.stable), (Some(false), Some(true)), "{kappa}");
+        assert!(unstable.max_theta() < stable.max_theta() && unstable.max_theta() < last);
+        last = unstable.max_theta();
+        let per_root = unstable.max_theta() / (kappa - 1.25).sqrt();
+        assert!((1.0..1.1).contains(&per_root), "{kappa}: {per_root}");
+        let at_rest = unstable.states.iter().any(|state| state.x_dot.abs() < 1e-12 && state.theta_dot.abs() < 1e-12);
+        assert!(at_rest);
+        if kappa > 1.26 {
+            // It is what cuts the dent into the survival map: released at rest inside it a body stays, beyond it falls. Nearer
+            // to the resonance the stable one still catches it.
+            let basin = paper::scene(kappa, 0.01).basin(1000, || true).unwrap().unbroken;
+            assert!((basin / unstable.max_theta() - 1.0).abs() < 0.05, "{kappa}: {basin}");
+        }
+    }
+    // R = 3/4 at κ = 1.375.
+    let angles =
+        [(1.38, 0.005), (1.39, 0.015), (1.4, 0.02)].map(|(kappa, theta)| come_back(kappa, 3, theta, 0.4).max_theta());
+    assert!(angles[0] < angles[1] && angles[1] < angles[2] && angles[0] < 0.13, "{angles:?}");
 }
