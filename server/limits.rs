@@ -72,6 +72,12 @@ pub const REGION_BOUNDARY_NODES: usize = 49;
 /// Numbers in one answer (columns times rows). JSON takes some 20 bytes for each, so 80 MB, held in memory until sent.
 pub const ANSWER: Limit = Limit { name: "size of the answer", most: 4_000_000, unit: "numbers" };
 
+/// Pixels of one picture. The largest drawing has 0.9 million; a pixel takes four bytes, three times over.
+pub const PICTURE_PIXELS: u64 = 4_000_000;
+
+/// Work of drawing the pixels of one picture, in bounces: some 30 ms.
+pub const PNG_PRICE: u64 = 400_000;
+
 /// Work up to this price, in bounces, is done on the async thread at once: some 0.15 ms, hardly more than the way to
 /// another thread and back is worth.
 pub const INLINE_BOUNCES: u64 = 2048;

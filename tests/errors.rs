@@ -55,17 +55,17 @@ async fn a_method_that_is_not_there_is_405() {
 async fn a_format_that_is_not_there_is_406() {
     let server = Server::start();
     for (target, there) in [
-        ("/v1/trajectories?preset=case-1", "json, csv, ndjson, svg"),
-        ("/v1/stability?preset=case-1", "json, csv, ndjson, svg"),
+        ("/v1/trajectories?preset=case-1", "json, csv, ndjson, svg, png"),
+        ("/v1/stability?preset=case-1", "json, csv, ndjson, svg, png"),
         ("/v1/scenes?", "json"),
         ("/v1/fields?", "json"),
     ] {
-        for format in ["pdf", "png", "JSON", ""] {
+        for format in ["pdf", "gif", "JSON", ""] {
             let answer = server.get(&format!("{target}&format={format}")).await.expect(406);
             assert!(answer.json()["detail"].as_str().unwrap().contains(there), "{target}: {}", answer.text());
         }
         server.get_with(target, &[("accept", "text/plain")]).await.expect(406);
-        server.get_with(target, &[("accept", "image/png, application/json;q=0")]).await.expect(406);
+        server.get_with(target, &[("accept", "image/gif, application/json;q=0")]).await.expect(406);
     }
     server.get("/v1/jacobians?preset=case-1&format=svg").await.expect(406);
 }

@@ -11,8 +11,8 @@ use super::leaf::Source;
 use super::negotiate::{self, Encoding, Format};
 use super::problem::Problem;
 use super::request::Ask;
-use crate::BUILD;
 use crate::compute::{Cancel, Cancelled, Pool, Price};
+use crate::{BUILD, limits};
 
 /// A resource as far as negotiation and entity tags go.
 #[derive(Debug, Clone, Copy)]
@@ -69,7 +69,8 @@ impl Ask {
 
     fn negotiate(&self, resource: &Resource) -> Result<(Format, Encoding), Problem> {
         let format = negotiate::format(self.format.as_deref(), &self.headers, resource.formats)?;
-        Ok((format, negotiate::encoding(&self.headers)?))
+        let encoding = negotiate::encoding(&self.headers)?;
+        Ok((format, if format.is_compressible() { encoding } else { Encoding::Identity }))
     }
 }
 
@@ -80,7 +81,7 @@ async fn computed(
     price: Price,
     compute: impl FnOnce(Format, &Cancel) -> Result<Vec<u8>, Problem> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
-    let encoding = if format.is_compressible() { encoding } else { Encoding::Identity };
+    let price = if format == Format::Png { price.and(Price::bounces(limits::PNG_PRICE)) } else { price };
     // Compression is part of the work: it takes as long as computing, and ends with it when the client goes away.
     let work = move |cancel: &Cancel| {
         let bytes = compute(format, cancel)?;

@@ -17,6 +17,7 @@ mod marks;
 mod number;
 mod panel;
 mod phase_planes;
+mod pixels;
 mod scale;
 mod sheet;
 mod svg;
@@ -28,6 +29,7 @@ pub use chart::{Chart, Curve, Look, Plot, Side, chart};
 pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use phase_planes::{PhasePlanes, phase_planes};
+pub use pixels::{NoPixels, png};
 
 #[cfg(test)]
 mod heat_map_tests;

@@ -24,9 +24,10 @@ use equipoise_physics::scene::Scene;
 use serde::Serialize;
 use tokio::sync::watch;
 
-use crate::compute::Pool;
+use crate::compute::{Cancel, Cancelled, Pool};
 use crate::config::Config;
-use crate::http::Problem;
+use crate::http::{Format, Problem};
+use crate::picture::{NoPixels, png};
 use crate::wire::scene::Resolved;
 use metrics::Metrics;
 
@@ -88,6 +89,17 @@ pub fn all() -> Router<App> {
 /// An answer as JSON.
 fn json(answer: &impl Serialize) -> Result<Vec<u8>, Problem> {
     serde_json::to_vec(answer).map_err(|_| Problem::internal())
+}
+
+/// A picture as it is asked for: as it was drawn, or in pixels.
+fn picture(svg: String, format: Format, cancel: &Cancel) -> Result<Vec<u8>, Problem> {
+    if format == Format::Svg {
+        return Ok(svg.into_bytes());
+    }
+    png(&svg, || !cancel.is_set()).map_err(|none| match none {
+        NoPixels::Cancelled => Cancelled.into(),
+        NoPixels::Unfit => Problem::internal(),
+    })
 }
 
 /// A request with all defaults filled in: the scene, and whatever else determines the answer.

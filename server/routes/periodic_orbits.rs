@@ -13,8 +13,10 @@ use crate::limits;
 use crate::wire::periodic_orbits::{PeriodicOrbits, Request};
 use crate::wire::scene;
 
-const RESOURCE: Resource =
-    Resource { name: "periodic-orbits", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg] };
+const RESOURCE: Resource = Resource {
+    name: "periodic-orbits",
+    formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png],
+};
 
 /// Its path.
 pub fn routes() -> Router<App> {
@@ -40,10 +42,12 @@ async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<Response<Bo
         match format {
             Format::Csv => Ok(orbits.to_table().to_csv()),
             Format::Ndjson => Ok(orbits.to_table().to_ndjson(&orbits.end())),
-            Format::Svg => orbits
-                .to_picture()
-                .map(String::into_bytes)
-                .ok_or_else(|| Problem::invalid_at("/sweep", "the picture is of a branch; give a sweep")),
+            Format::Svg | Format::Png => {
+                let picture = orbits.to_picture();
+                let picture =
+                    picture.ok_or_else(|| Problem::invalid_at("/sweep", "the picture is of a branch; give a sweep"))?;
+                super::picture(picture, format, cancel)
+            }
             _ => super::json(&orbits),
         }
     })

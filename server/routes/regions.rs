@@ -14,7 +14,7 @@ use crate::wire::region::{Answer, Request};
 use crate::wire::scene::Resolved;
 
 const RESOURCE: Resource =
-    Resource { name: "regions", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg] };
+    Resource { name: "regions", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png] };
 
 /// Its path.
 pub fn routes() -> Router<App> {
@@ -44,7 +44,7 @@ async fn regions(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Pro
         match format {
             Format::Csv => Ok(answer.to_csv()),
             Format::Ndjson => Ok(answer.to_ndjson()),
-            Format::Svg => Ok(answer.to_picture().into_bytes()),
+            Format::Svg | Format::Png => super::picture(answer.to_picture(), format, cancel),
             _ => super::json(&answer),
         }
     })

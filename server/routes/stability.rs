@@ -14,7 +14,7 @@ use crate::wire::scene;
 use crate::wire::stability::Stability;
 
 const RESOURCE: Resource =
-    Resource { name: "stability", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg] };
+    Resource { name: "stability", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png] };
 
 /// Its path.
 pub fn routes() -> Router<App> {
@@ -37,7 +37,7 @@ async fn stability(State(app): State<App>, ask: Ask) -> Result<Response<Body>, P
         match format {
             Format::Csv => Ok(stability.to_table().to_csv()),
             Format::Ndjson => Ok(stability.to_table().to_ndjson(&stability.end())),
-            Format::Svg => Ok(stability.to_picture().into_bytes()),
+            Format::Svg | Format::Png => super::picture(stability.to_picture(), format, cancel),
             _ => super::json(&stability),
         }
     })

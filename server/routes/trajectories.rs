@@ -14,7 +14,7 @@ use crate::wire::scene;
 use crate::wire::trajectory::Trajectory;
 
 const RESOURCE: Resource =
-    Resource { name: "trajectories", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg] };
+    Resource { name: "trajectories", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png] };
 
 /// Numbers in a row of contacts, and in one of flight samples; and what a row costs beside its bounce, in bounces.
 const CONTACT_NUMBERS: u64 = 17;
@@ -47,7 +47,7 @@ async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Response<Body>
         match format {
             Format::Csv => Ok(trajectory.impacts.to_csv()),
             Format::Ndjson => Ok(trajectory.impacts.to_ndjson(&trajectory.end())),
-            Format::Svg => Ok(trajectory.to_picture().into_bytes()),
+            Format::Svg | Format::Png => super::picture(trajectory.to_picture(), format, cancel),
             _ => super::json(&trajectory),
         }
     })

@@ -209,6 +209,7 @@ fn hold_body(media: &Value, media_type: &str, answer: &Answer) {
             assert_eq!(root.tag_name().namespace(), Some("http://www.w3.org/2000/svg"), "{request}");
             assert!(!text.contains("NaN") && !text.contains("inf"), "{request}: a number that is none");
         }
+        "image/png" => assert!(answer.body.starts_with(b"\x89PNG\r\n\x1a\n"), "{request}: no PNG"),
         _ => {
             answer.text();
         }
