@@ -63,8 +63,12 @@ pub const REGION_WORK: Limit = Limit { name: "work of this region", most: 2_000_
 /// Values of one side of a region. More than a screen has pixels; larger maps are tiles put together.
 pub const REGION_SIDE: u64 = 4096;
 
-/// Cells of one block of rows, the piece of a region that a thread takes at a time.
-pub const REGION_BLOCK_CELLS: usize = 2048;
+/// Work of one block of a region, the piece that a thread takes at a time, in bounces of lanes: some 10 ms, so that a
+/// request beside it does not wait longer.
+pub const REGION_BLOCK_WORK: u64 = 1_000_000;
+
+/// Cells of one block: at least so many that lanes are full, at most so many that rows come as they are done.
+pub const REGION_BLOCK_CELLS: std::ops::RangeInclusive<u64> = 64..=2048;
 
 /// Nodes along a side of the grid on which the linear boundary of a region is found.
 pub const REGION_BOUNDARY_NODES: usize = 49;

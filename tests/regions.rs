@@ -2,7 +2,6 @@
 
 mod support;
 
-use equipoise::compute::fan_out;
 use serde_json::{Value, json};
 use support::Server;
 
@@ -130,30 +129,18 @@ async fn what_cannot_be_mapped_is_named() {
     assert!(answer.text().contains("the limit is"), "{}", answer.text());
 }
 
-/// The bytes of a map, computed on 1, 2, 3 and 8 threads.
-#[test]
-fn threads_do_not_show() {
-    use equipoise_physics::region::{Axis, Quantity, Region};
-    use equipoise_physics::scene::{Draft, Name, Value as Field};
-    let mut scene = Draft::default();
-    for (name, value) in [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 0.094), (Name::Height, 0.2)] {
-        scene.set(name, Some(Field::Number(value))).unwrap();
-    }
-    let region = Region {
-        scene,
-        x: Axis { name: Name::TiltGain, from: 1.0, to: 1.6, count: 37 },
-        y: Axis { name: Name::Theta, from: 0.0, to: 0.5, count: 23 },
-        impacts: 500,
-        quantity: Quantity::MaxTheta,
-    };
-    let map = |threads| fan_out(threads, 23, |row| region.cells(row..row + 1, &mut || true)).unwrap().concat();
-    let one = map(1);
-    for threads in [2, 3, 8] {
-        let other = map(threads);
-        let same = one
-            .iter()
-            .zip(&other)
-            .all(|(a, b)| a.value.map(f64::to_bits) == b.value.map(f64::to_bits) && a.outcome == b.outcome);
-        assert!(same && one.len() == other.len(), "{threads} threads");
+/// The bytes of a map, computed on 1, 2, 3 and 8 threads; rows in order, and the same ones.
+#[tokio::test]
+async fn threads_do_not_show() {
+    let map = MAP.replace("count=14", "count=137").replace("count=11", "count=53");
+    for rest in ["&quantity=max_theta", "&format=ndjson", "&format=csv", "&format=svg", "&tile.index=1&tile.of=3"] {
+        for headers in [&[][..], &[("accept-encoding", "gzip")]] {
+            let target = format!("{map}{rest}");
+            let one = Server::with_permits(1).get_with(&target, headers).await.expect(200);
+            for permits in [2, 3, 8] {
+                let other = Server::with_permits(permits).get_with(&target, headers).await.expect(200);
+                assert_eq!(one.raw, other.raw, "{rest}: {permits} threads");
+            }
+        }
     }
 }

@@ -4,9 +4,17 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use tokio::sync::Notify;
+
 /// Shared between the one who waits and the one who works.
 #[derive(Debug, Clone, Default)]
-pub struct Cancel(Arc<AtomicBool>);
+pub struct Cancel(Arc<Flag>);
+
+#[derive(Debug, Default)]
+struct Flag {
+    is_set: AtomicBool,
+    changed: Notify,
+}
 
 impl Cancel {
     /// One that nobody will set, for work that someone waits for in any case.
@@ -16,12 +24,13 @@ impl Cancel {
 
     /// Says that nobody waits any more.
     pub fn set(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.is_set.store(true, Ordering::SeqCst);
+        self.0.changed.notify_waiters();
     }
 
     /// Whether nobody waits any more. Costs a load; still, in a loop of nanoseconds look every thousand turns.
     pub fn is_set(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.0.is_set.load(Ordering::Relaxed)
     }
 
     /// `is_set` as an error, for `?`.
@@ -31,7 +40,16 @@ impl Cancel {
 
     /// The flag itself, for code that knows only the standard library.
     pub fn flag(&self) -> &AtomicBool {
-        &self.0
+        &self.0.is_set
+    }
+
+    /// Waits until it is set.
+    pub(super) async fn wait(&self) {
+        let changed = self.0.changed.notified();
+        // Set before the wait began, or it wakes the wait: `notified` counts from its making on.
+        if !self.0.is_set.load(Ordering::SeqCst) {
+            changed.await;
+        }
     }
 }
 

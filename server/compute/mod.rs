@@ -3,11 +3,11 @@
 //! No HTTP and no physics here: work is a closure with a price, and a refusal is a value.
 
 mod cancel;
-mod fan;
 mod pool;
 mod price;
+mod turns;
 
 pub use cancel::{Cancel, Cancelled};
-pub use fan::fan_out;
 pub use pool::{Counted, Pool, Refused};
 pub use price::{Limit, OverBudget, Price};
+pub use turns::Turns;

@@ -4,12 +4,14 @@ use std::fmt;
 use std::sync::Arc;
 
 use prometheus_client::metrics::gauge::Gauge;
+use tokio::runtime::Handle;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::spawn_blocking;
 use tokio::time::timeout;
 
 use super::cancel::{Cancel, OnDrop};
 use super::price::Price;
+use super::turns::Turns;
 use crate::limits;
 
 /// Admits work and runs it. Cheap to clone; clones share their permits.
@@ -19,6 +21,8 @@ pub struct Pool {
     places: Arc<Semaphore>,
     /// Permits to run.
     permits: Arc<Semaphore>,
+    /// Blocks of long work that have a permit or wait for one.
+    blocks: Arc<Semaphore>,
     count: usize,
     running: Gauge,
     queued: Gauge,
@@ -60,6 +64,7 @@ impl Pool {
         Self {
             places: Arc::new(Semaphore::new(permits * (1 + limits::QUEUE_PER_PERMIT))),
             permits: Arc::new(Semaphore::new(permits)),
+            blocks: Arc::new(Semaphore::new(permits)),
             count: permits,
             running: Gauge::default(),
             queued: Gauge::default(),
@@ -92,12 +97,39 @@ impl Pool {
             return work(&Cancel::never());
         }
         let permit = self.turn().await?;
+        // The permit goes along: it is free again when the work has ended, not when its result is no longer wanted.
+        self.apart(permit, work).await
+    }
+
+    /// Does long `work` on another thread when it is its turn. It computes in turns only, on as many threads as there are
+    /// permits, and keeps no more than its place in between. Otherwise as `run`.
+    pub async fn run_in_turns<T, E>(&self, work: impl FnOnce(&Turns) -> Result<T, E> + Send + 'static) -> Result<T, E>
+    where
+        T: Send + 'static,
+        E: From<Refused> + Send + 'static,
+    {
+        let (place, _) = self.turn().await?;
+        let (permits, blocks, threads) = (self.permits.clone(), self.blocks.clone(), self.count);
+        let runtime = Handle::current();
+        let work = move |cancel: &Cancel| work(&Turns { cancel: cancel.clone(), permits, blocks, threads, runtime });
+        self.apart(place, work).await
+    }
+
+    /// Does `work` on another thread, which holds on to `held` until it has ended.
+    async fn apart<T, E>(
+        &self,
+        held: impl Send + 'static,
+        work: impl FnOnce(&Cancel) -> Result<T, E> + Send + 'static,
+    ) -> Result<T, E>
+    where
+        T: Send + 'static,
+        E: Send + 'static,
+    {
         let waiting = OnDrop(Cancel::default());
         let cancel = waiting.0.clone();
         let running = Counted::one(&self.running);
-        // The permit goes along: it is free again when the work has ended, not when its result is no longer wanted.
         let task = spawn_blocking(move || {
-            let _held = (permit, running);
+            let _held = (held, running);
             work(&cancel)
         });
         let done = task.await;
@@ -105,11 +137,6 @@ impl Pool {
             Ok(panic) => std::panic::resume_unwind(panic),
             Err(_) => unreachable!("only a shutdown of the runtime aborts work, and then nobody is here"),
         })
-    }
-
-    /// How many threads work at a time.
-    pub fn permits(&self) -> usize {
-        self.count
     }
 
     async fn turn(&self) -> Result<(OwnedSemaphorePermit, OwnedSemaphorePermit), Refused> {

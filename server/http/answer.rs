@@ -9,9 +9,10 @@ use super::encode;
 use super::etag::EntityTag;
 use super::leaf::Source;
 use super::negotiate::{self, Encoding, Format};
+use super::outlet::{Outlet, computed_in_turns};
 use super::problem::Problem;
 use super::request::Ask;
-use crate::compute::{Cancel, Cancelled, Pool, Price};
+use crate::compute::{Cancel, Cancelled, Pool, Price, Turns};
 use crate::{BUILD, limits};
 
 /// A resource as far as negotiation and entity tags go.
@@ -40,13 +41,39 @@ impl Ask {
         compute: impl FnOnce(Format, &Cancel) -> Result<Vec<u8>, Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
+        self.tagged(resource, (format, encoding), canonical, computed(pool, format, encoding, price, compute)).await
+    }
+
+    /// The same for long work, which `compute` does in turns. Formats that are in `streamed` are sent piece by piece.
+    pub async fn respond_in_turns(
+        &self,
+        pool: &Pool,
+        resource: &Resource,
+        canonical: &[u8],
+        streamed: &[Format],
+        compute: impl FnOnce(Format, &Turns, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+    ) -> Result<Response<Body>, Problem> {
+        let (format, encoding) = self.negotiate(resource)?;
+        let streams = streamed.contains(&format);
+        let answer = computed_in_turns(pool, format, encoding, streams, compute);
+        self.tagged(resource, (format, encoding), canonical, answer).await
+    }
+
+    /// An answer under its entity tag, or a 304 without computing it.
+    async fn tagged(
+        &self,
+        resource: &Resource,
+        (format, encoding): (Format, Encoding),
+        canonical: &[u8],
+        answer: impl Future<Output = Result<Response<Body>, Problem>>,
+    ) -> Result<Response<Body>, Problem> {
         let parts = [resource.name, BUILD, format.name(), encoding.name()].map(str::as_bytes);
         let tag = EntityTag::of(&[parts[0], parts[1], parts[2], parts[3], canonical]);
         // A query is a GET or a HEAD; on POST the precondition has no such meaning.
         let mut response = if self.source == Source::Query && tag.is_held_by(&self.headers) {
             status_only(StatusCode::NOT_MODIFIED)
         } else {
-            computed(pool, format, encoding, price, compute).await?
+            answer.await?
         };
         response.headers_mut().insert(header::ETAG, tag.header());
         response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);

@@ -8,9 +8,12 @@ use flate2::write::GzEncoder;
 use crate::compute::{Cancel, Cancelled};
 use crate::limits;
 
-/// Compresses an answer that was computed for one request. Fast rather than small: digits of doubles hardly shrink more.
+/// Fast rather than small: digits of doubles hardly shrink more.
+const FAST: Compression = Compression::new(1);
+
+/// Compresses an answer that was computed for one request.
 pub fn gzip(bytes: &[u8], cancel: &Cancel) -> Result<Vec<u8>, Cancelled> {
-    compress(bytes, Compression::new(1), cancel)
+    compress(bytes, FAST, cancel)
 }
 
 /// Compresses what is sent many times, as well as it goes.
@@ -21,11 +24,22 @@ pub fn gzip_best(bytes: &[u8]) -> Vec<u8> {
 fn compress(bytes: &[u8], level: Compression, cancel: &Cancel) -> Result<Vec<u8>, Cancelled> {
     // No time, no name and no system in the header, so that equal answers are equal bytes.
     let mut encoder = GzEncoder::new(Vec::with_capacity(bytes.len() / 2), level);
+    feed(&mut encoder, bytes, cancel)?;
+    Ok(encoder.finish().expect("a vector takes all bytes"))
+}
+
+/// Compresses what comes piece by piece as `gzip` does.
+pub(super) fn encoder() -> GzEncoder<Vec<u8>> {
+    GzEncoder::new(Vec::new(), FAST)
+}
+
+/// Compresses a large piece, as long as somebody waits for it.
+pub(super) fn feed(encoder: &mut GzEncoder<Vec<u8>>, bytes: &[u8], cancel: &Cancel) -> Result<(), Cancelled> {
     for step in bytes.chunks(limits::GZIP_STEP_BYTES) {
         cancel.check()?;
         encoder.write_all(step).expect("a vector takes all bytes");
     }
-    Ok(encoder.finish().expect("a vector takes all bytes"))
+    Ok(())
 }
 
 #[cfg(test)]

@@ -86,11 +86,10 @@ impl Region {
         draft.build().ok()
     }
 
-    /// The cells of some rows, one row after the other; none if `go_on` said `false`, which is asked every few thousand
-    /// bounces.
-    pub fn cells(&self, rows: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Cell>> {
-        let first = rows.start * self.x.count;
-        let mut cells = vec![NOTHING; rows.len() * self.x.count];
+    /// Some cells, counted row after row; none if `go_on` said `false`, which is asked every few thousand bounces.
+    pub fn cells(&self, numbers: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Cell>> {
+        let first = numbers.start;
+        let mut cells = vec![NOTHING; numbers.len()];
         if matches!(self.quantity, Quantity::Residue | Quantity::SpectralRadius) {
             for (index, cell) in cells.iter_mut().enumerate() {
                 if index.is_multiple_of(4096) && !go_on() {

@@ -7,14 +7,18 @@ use axum::http::Response;
 use axum::routing::get;
 
 use super::App;
-use crate::compute::{Cancel, Cancelled, Price, fan_out};
-use crate::http::{Ask, Format, Problem, Resource};
+use crate::compute::Turns;
+use crate::http::{Ask, Format, Outlet, Problem, Resource};
 use crate::limits;
 use crate::wire::region::{Answer, Request};
+use crate::wire::region_rows::Rows;
 use crate::wire::scene::Resolved;
 
 const RESOURCE: Resource =
     Resource { name: "regions", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png] };
+
+/// Those that are sent row by row as they are computed.
+const STREAMED: [Format; 2] = [Format::Csv, Format::Ndjson];
 
 /// Its path.
 pub fn routes() -> Router<App> {
@@ -25,28 +29,37 @@ async fn regions(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Pro
     let request = ask.read(Request::read)?;
     limits::ANSWER.admit(request.cells().saturating_mul(2))?;
     limits::REGION_WORK.admit(request.bounces())?;
-    // A bounce in lanes takes a sixth of a plain one.
-    let price = Price::bounces(request.bounces() / 6 + request.cells());
     let region = request.region;
     let sides = [region.x, region.y].map(|axis| (axis.name.row().path, axis.from, axis.to, axis.count));
     let rest = (sides, region.impacts, region.quantity as u8, request.tile);
     let canonical = super::canonical_of(&(Resolved(&request.scene), rest));
-    let (metrics, threads) = (app.metrics.clone(), app.pool.permits());
-    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
-        let rows = request.rows();
-        let block = (limits::REGION_BLOCK_CELLS / region.x.count).max(1);
-        let cells = fan_out(threads, rows.len().div_ceil(block), |number| {
-            let first = rows.start + number * block;
-            region.cells(first..(first + block).min(rows.end), &mut || !cancel.is_set())
-        });
-        let answer = Answer::new(request, cells.ok_or(Cancelled)?.concat());
-        metrics.bounces.inc_by(answer.bounces());
-        match format {
-            Format::Csv => Ok(answer.to_csv()),
-            Format::Ndjson => Ok(answer.to_ndjson()),
-            Format::Svg | Format::Png => super::picture(answer.to_picture(), format, cancel),
-            _ => super::json(&answer),
+    let metrics = app.metrics.clone();
+    ask.respond_in_turns(&app.pool, &RESOURCE, &canonical, &STREAMED, move |format, turns: &Turns, out: &mut Outlet| {
+        let (cells, block, cancel) = (request.numbers(), request.block_cells(), turns.cancel());
+        let blocks = cells.len().div_ceil(block);
+        let compute = |number| {
+            let first = cells.start + number * block;
+            let computed = region.cells(first..(first + block).min(cells.end), &mut || !cancel.is_set())?;
+            metrics.bounces.inc_by(request.bounces_of(&computed));
+            Some(computed)
+        };
+        if STREAMED.contains(&format) {
+            let mut rows = Rows::new(request, format);
+            out.send(rows.begin());
+            turns.spread(blocks, compute, |cells| out.send(rows.add(&cells)))?;
+            out.send(rows.end());
+            return Ok(());
         }
+        let mut all = Vec::with_capacity(cells.len());
+        turns.spread(blocks, compute, |cells| all.extend(cells))?;
+        turns.take(|| {
+            let answer = Answer::new(request, all);
+            let bytes = match format {
+                Format::Svg | Format::Png => super::picture(answer.to_picture(), format, cancel)?,
+                _ => super::json(&answer)?,
+            };
+            Ok(out.send_whole(bytes, cancel)?)
+        })?
     })
     .await
 }

@@ -9,6 +9,7 @@ pub mod jacobian;
 pub mod periodic_orbits;
 pub mod presets;
 pub mod region;
+pub mod region_rows;
 pub mod scene;
 pub mod stability;
 pub mod table;

@@ -92,6 +92,29 @@ impl Request {
         (self.rows().len() * self.region.x.count) as u64
     }
 
+    /// The numbers of its cells, which are counted over the whole region, row after row.
+    pub fn numbers(&self) -> Range<usize> {
+        let (rows, columns) = (self.rows(), self.region.x.count);
+        rows.start * columns..rows.end * columns
+    }
+
+    /// How many cells make a block, a matter of the request alone.
+    pub fn block_cells(&self) -> usize {
+        let cells = limits::REGION_BLOCK_WORK * self.cells().max(1) / self.bounces().max(1);
+        let (least, most) = limits::REGION_BLOCK_CELLS.into_inner();
+        cells.clamp(least, most) as usize
+    }
+
+    /// How many bounces the runs of some of its cells took, as far as their values say it.
+    pub fn bounces_of(&self, cells: &[Cell]) -> u64 {
+        cells.iter().filter_map(|cell| cell.value.filter(|_| self.is_whole())).map(|value| value as u64).sum()
+    }
+
+    /// Whether values are whole numbers.
+    pub(super) fn is_whole(&self) -> bool {
+        self.region.quantity == Quantity::Survival
+    }
+
     /// What its runs cost, in bounces of lanes.
     pub fn bounces(&self) -> u64 {
         let runs = matches!(self.region.quantity, Quantity::Survival | Quantity::MaxTheta);
@@ -157,63 +180,6 @@ impl Answer {
         Self { request, cells }
     }
 
-    /// How many bounces its runs took.
-    pub fn bounces(&self) -> u64 {
-        let survival = self.request.region.quantity == Quantity::Survival;
-        self.cells.iter().filter_map(|cell| cell.value).map(|value| if survival { value as u64 } else { 0 }).sum()
-    }
-
-    /// Columns named after the two fields, then value and outcome: a row for each cell.
-    pub fn to_csv(&self) -> Vec<u8> {
-        let Region { x, y, .. } = self.request.region;
-        let quantity = quantity_name(self.request.region.quantity);
-        let mut out = format!("{},{},{quantity},outcome\r\n", x.name.row().path, y.name.row().path).into_bytes();
-        let columns: Vec<String> = (0..x.count).map(|column| written(x.value(column))).collect();
-        let whole = self.is_whole();
-        for (row, cells) in self.rows() {
-            let y = written(y.value(row));
-            for (cell, x) in cells.iter().zip(&columns) {
-                let value = match cell.value {
-                    Some(value) if whole => (value as u64).to_string(),
-                    Some(value) => written(value),
-                    None => String::new(),
-                };
-                out.extend_from_slice(format!("{x},{y},{value},{}\r\n", outcome_name(cell)).as_bytes());
-            }
-        }
-        out
-    }
-
-    /// A line for each row, then `{"end": …}`.
-    pub fn to_ndjson(&self) -> Vec<u8> {
-        #[derive(Serialize)]
-        struct Row<'a> {
-            row: usize,
-            y: f64,
-            values: Values<'a>,
-            outcomes: Outcomes<'a>,
-        }
-        #[derive(Serialize)]
-        struct End {
-            end: Counts,
-        }
-        let mut out = Vec::new();
-        for (row, cells) in self.rows() {
-            let line = Row {
-                row,
-                y: self.request.region.y.value(row),
-                values: Values { cells, whole: self.is_whole() },
-                outcomes: Outcomes(cells),
-            };
-            // Writing to memory does not fail.
-            let _ = serde_json::to_writer(&mut out, &line);
-            out.push(b'\n');
-        }
-        let _ = serde_json::to_writer(&mut out, &End { end: self.counts() });
-        out.push(b'\n');
-        out
-    }
-
     /// The tile as a heat map with the linear boundary over it, as SVG.
     pub fn to_picture(&self) -> String {
         let Request { region, tile, .. } = &self.request;
@@ -255,24 +221,18 @@ impl Answer {
         })
     }
 
-    fn is_whole(&self) -> bool {
-        self.request.region.quantity == Quantity::Survival
-    }
-
     fn rows(&self) -> impl Iterator<Item = (usize, &[Cell])> {
         self.request.rows().zip(self.cells.chunks(self.request.region.x.count))
     }
 
     fn counts(&self) -> Counts {
-        let mut counts = [0; Outcome::ALL.len() + 1];
-        for cell in &self.cells {
-            counts[code(cell)] += 1;
-        }
-        Counts { counts }
+        let mut counts = Counts::default();
+        counts.add(&self.cells);
+        counts
     }
 }
 
-fn written(value: f64) -> String {
+pub(super) fn written(value: f64) -> String {
     serde_json::to_string(&value).unwrap_or_default()
 }
 
@@ -281,11 +241,11 @@ fn code(cell: &Cell) -> usize {
     cell.outcome.map_or(Outcome::ALL.len(), |outcome| outcome as usize)
 }
 
-fn outcome_name(cell: &Cell) -> &'static str {
+pub(super) fn outcome_name(cell: &Cell) -> &'static str {
     cell.outcome.map_or(NO_RUN, Outcome::name)
 }
 
-fn quantity_name(quantity: Quantity) -> &'static str {
+pub(super) fn quantity_name(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Survival => "survival",
         Quantity::MaxTheta => "max_theta",
@@ -295,9 +255,9 @@ fn quantity_name(quantity: Quantity) -> &'static str {
 }
 
 /// A row of values; contacts are counted, and written as whole numbers.
-struct Values<'a> {
-    cells: &'a [Cell],
-    whole: bool,
+pub(super) struct Values<'a> {
+    pub(super) cells: &'a [Cell],
+    pub(super) whole: bool,
 }
 
 impl Serialize for Values<'_> {
@@ -311,7 +271,7 @@ impl Serialize for Values<'_> {
     }
 }
 
-struct Outcomes<'a>(&'a [Cell]);
+pub(super) struct Outcomes<'a>(pub(super) &'a [Cell]);
 
 impl Serialize for Outcomes<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -319,10 +279,19 @@ impl Serialize for Outcomes<'_> {
     }
 }
 
-#[derive(Debug, Serialize)]
-struct Counts {
+/// How many cells there are of each outcome.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Counts {
     #[serde(serialize_with = "by_name")]
     counts: [u64; Outcome::ALL.len() + 1],
+}
+
+impl Counts {
+    pub(super) fn add(&mut self, cells: &[Cell]) {
+        for cell in cells {
+            self.counts[code(cell)] += 1;
+        }
+    }
 }
 
 fn by_name<S: Serializer>(counts: &[u64; Outcome::ALL.len() + 1], serializer: S) -> Result<S::Ok, S::Error> {
@@ -386,7 +355,7 @@ impl Serialize for Answer {
             tile: *tile,
             x: (0..region.x.count).map(|column| region.x.value(column)).collect(),
             y: self.request.rows().map(|row| region.y.value(row)).collect(),
-            values: self.rows().map(|(_, cells)| Values { cells, whole: self.is_whole() }).collect(),
+            values: self.rows().map(|(_, cells)| Values { cells, whole: self.request.is_whole() }).collect(),
             outcomes: self.rows().map(|(_, cells)| Outcomes(cells)).collect(),
             outcome_names: outcome_names().collect(),
             boundary: boundary

@@ -28,6 +28,12 @@ impl Server {
         Self { router: equipoise::router::router(app) }
     }
 
+    pub(crate) fn with_permits(permits: usize) -> Self {
+        let permits = std::num::NonZeroUsize::new(permits);
+        let config = equipoise::config::Config { permits, ..Default::default() };
+        Self { router: equipoise::router::router(equipoise::routes::App::new(&config)) }
+    }
+
     pub(crate) async fn get(&self, target: &str) -> Answer {
         self.send(Method::GET, target, &[], "").await
     }

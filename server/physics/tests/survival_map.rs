@@ -34,7 +34,7 @@ fn outline(region: &Region, survives: impl Fn(usize, usize) -> bool, tilt_gain: 
 #[test]
 fn the_map_of_the_papers_body_is_true() {
     let region = region();
-    let cells: Vec<Cell> = region.cells(0..ROWS, &mut || true).unwrap();
+    let cells: Vec<Cell> = region.cells(0..ROWS * COLUMNS, &mut || true).unwrap();
     let at = |column: usize, row: usize| cells[row * COLUMNS + column];
     let survives = |column, row| at(column, row).value == Some(IMPACTS as f64);
 

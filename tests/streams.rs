@@ -1,0 +1,136 @@
+//! Answers that are sent row by row as they are computed, and what becomes of the work when the reader leaves or is slow.
+
+mod support;
+
+use std::time::{Duration, Instant};
+
+use equipoise::router;
+use equipoise::routes::App;
+use serde_json::{Value, json};
+use support::Server;
+use support::socket::{SOON, start};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::time::timeout;
+use tower::ServiceExt;
+
+const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6\
+                   &y.parameter=release.theta&y.from=0&y.to=0.5";
+
+async fn ask(address: std::net::SocketAddr, target: &str) -> TcpStream {
+    let mut socket = TcpStream::connect(address).await.unwrap();
+    let request = format!("GET {target} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n");
+    socket.write_all(request.as_bytes()).await.unwrap();
+    socket
+}
+
+/// What comes until `text` is in it.
+async fn read_until(socket: &mut TcpStream, text: &str) -> String {
+    let mut read = Vec::new();
+    while !String::from_utf8_lossy(&read).contains(text) {
+        let count = timeout(SOON, socket.read_buf(&mut read)).await.expect("the server is silent").unwrap();
+        assert!(count > 0, "the end came before {text:?}");
+    }
+    String::from_utf8_lossy(&read).into_owned()
+}
+
+/// The body of a chunked answer.
+fn unchunked(answer: &str) -> String {
+    let (head, mut rest) = answer.split_once("\r\n\r\n").unwrap();
+    assert!(head.contains("transfer-encoding: chunked"), "{head}");
+    let mut body = String::new();
+    loop {
+        let (size, after) = rest.split_once("\r\n").unwrap();
+        let size = usize::from_str_radix(size, 16).unwrap();
+        if size == 0 {
+            return body;
+        }
+        body.push_str(&after[..size]);
+        rest = &after[size + 2..];
+    }
+}
+
+async fn jobs_running(app: &App) -> String {
+    let request = axum::http::Request::get("/metrics").body(axum::body::Body::empty()).unwrap();
+    let response = router::router(app.clone()).oneshot(request).await.unwrap();
+    let bytes = axum::body::to_bytes(response.into_body(), usize::MAX).await.unwrap();
+    let text = String::from_utf8(bytes.to_vec()).unwrap();
+    text.lines().find(|line| line.starts_with("equipoise_jobs_running")).unwrap().to_owned()
+}
+
+/// A million cells whose reader leaves after the first rows: the cores are free again.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_million_cells_end_with_their_reader() {
+    let (app, address) = start().await;
+    for (format, first) in [("ndjson", "{\"row\":1,"), ("csv", "\r\n"), ("json", ""), ("png", "")] {
+        let mut socket = ask(address, &format!("{MAP}&x.count=1000&y.count=1000&impacts=2000&format={format}")).await;
+        if first.is_empty() {
+            while app.pool.running().get() == 0 {
+                tokio::time::sleep(Duration::from_millis(1)).await;
+            }
+        } else {
+            read_until(&mut socket, first).await;
+        }
+        assert_eq!(jobs_running(&app).await, "equipoise_jobs_running 1", "{format}");
+        drop(socket);
+        let left = Instant::now();
+        while app.pool.running().get() > 0 {
+            assert!(left.elapsed() < Duration::from_millis(50), "{format}: the work goes on for nobody");
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+        assert_eq!(jobs_running(&app).await, "equipoise_jobs_running 0", "{format}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_slow_reader_holds_no_core_and_misses_nothing() {
+    let (app, address) = start().await;
+    let target = format!("{MAP}&x.count=700&y.count=700&impacts=2&quantity=max_theta&format=ndjson");
+    let mut socket = ask(address, &target).await;
+    let begun = read_until(&mut socket, "{\"row\":0,").await;
+    // Reads nothing more until all is computed.
+    let wait = async {
+        while app.pool.running().get() > 0 {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+    };
+    timeout(SOON, wait).await.expect("the work waits for its reader");
+    let mut rest = String::new();
+    timeout(SOON, socket.read_to_string(&mut rest)).await.expect("the server is silent").unwrap();
+    let body = unchunked(&(begun + &rest));
+    assert_eq!(body.lines().count(), 701);
+    assert_eq!(body, Server::start().get(&target).await.expect(200).text());
+}
+
+/// The lines are those of the whole answer in JSON.
+#[tokio::test]
+async fn rows_say_what_the_whole_says() {
+    let server = Server::start();
+    // Rows of three blocks and blocks of many rows.
+    for (columns, rows, impacts) in [(150, 3, 40_000), (9, 400, 5)] {
+        let target = format!("{MAP}&x.count={columns}&y.count={rows}&impacts={impacts}");
+        let whole = server.get(&target).await.expect(200).json();
+        let lines = server.get(&format!("{target}&format=ndjson")).await.expect(200);
+        let lines: Vec<Value> = lines.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(lines.len(), rows + 1);
+        for (row, line) in lines[..rows].iter().enumerate() {
+            let expected = json!({"row": row, "y": whole["y"][row], "values": whole["values"][row],
+                                  "outcomes": whole["outcomes"][row]});
+            assert_eq!(*line, expected);
+        }
+        assert_eq!(lines[rows], json!({"end": {"counts": whole["counts"]}}));
+    }
+}
+
+#[tokio::test]
+async fn a_stream_has_a_tag_and_no_work_is_done_for_who_has_it() {
+    let server = Server::start();
+    let target = format!("{MAP}&x.count=30&y.count=20&impacts=50&format=ndjson");
+    let plain = server.get(&target).await.expect(200);
+    assert_eq!(plain.header("content-length"), None);
+    server.get_with(&target, &[("if-none-match", plain.etag())]).await.expect(304);
+    let packed = server.get_with(&target, &[("accept-encoding", "gzip")]).await.expect(200);
+    assert_eq!((packed.header("content-encoding"), &packed.body), (Some("gzip"), &plain.body));
+    assert_ne!(packed.etag(), plain.etag());
+    assert_eq!(server.head(&target).await.expect(200).etag(), plain.etag());
+}
