@@ -196,8 +196,8 @@ fn any_scene_ends_as_the_map_says() {
             }
         }
         // What is known to the step alone may end otherwise, but begins alike.
-        for method in [time_stepping(1e-4), penalty(1e-4), runge_kutta(Location::StepEnd)(1e-4)] {
-            assert!(distance(&exact[0], &scene.by(method, 1).impacts[0]) < 1e-2, "{scene:?} {method:?}");
+        for method in [time_stepping(1e-3), penalty(1e-3), runge_kutta(Location::StepEnd)(1e-3)] {
+            assert!(distance(&exact[0], &scene.by(method, 1).impacts[0]) < 2e-2, "{scene:?} {method:?}");
         }
     }
     println!("{endings:?}");
