@@ -44,6 +44,10 @@
  * @property {{outcome: string, impacts: number, t: number, max_theta: number, detail: string} | null} nonlinear
  * @property {number | null} drift_speed
  * @property {boolean | null} agree
+ * @property {{measured: number | null, linear: number, resonance: {p: number, q: number, distance: number}} | null} rotation_number
+ * @property {{indicator: number, chaotic: boolean, impacts: number} | null} chaos
+ * @property {number | null} predictable_impacts
+ * @property {{theta: number, impacts: number, holes: [number, number][], unbroken: number, tolerance: number, spacing: number} | null} basin
  * @property {string[]} notes
  *
  * @typedef {{kind: string, impacts: number, t: number, detail: string}} Outcome

@@ -110,7 +110,7 @@ const askSoon = settled(120, async () => {
   try {
     const answer = await get(`v1/stability?${query}`, mine.signal);
     form?.blame([]);
-    verdict.show(answer);
+    verdict.show(answer, () => get(`v1/stability?${query}&basin=true`, mine.signal));
     circle.show(answer);
     showCalls(byId('calls'), query, run.interventions.length > 0);
     byId('build').textContent = server.build;

@@ -1,5 +1,6 @@
 // The verdict in words with the numbers that carry it. Not for asking the server.
 
+import { evidence } from './evidence.js';
 import { h, prose, symbol } from './dom.js';
 import { number, quantity } from './numbers.js';
 
@@ -42,8 +43,8 @@ export class Verdict {
       h('p', { class: 'muted' }, words), retry ? h('button', { type: 'button', click: retry }, 'Try again') : '');
   }
 
-  /** @param {Stability} answer */
-  show(answer) {
+  /** @param {Stability} answer @param {() => Promise<Stability>} measureBasin */
+  show(answer, measureBasin) {
     this.busy(false);
     const { verdict, decided_by: decider, reason, agree, linear, boundary, nonlinear, drift_speed: drift, notes } = answer;
     const manner = kind(verdict);
@@ -55,7 +56,7 @@ export class Verdict {
     if (gain) {
       rows.push([symbol('κ'), number(gain.value), 'tilt gain']);
       if (gain.critical != null) rows.push([symbol('κ_c'), number(gain.critical, 5), 'critical gain']);
-      if (gain.margin_above != null) rows.push(['margin', `${number(gain.margin_below, 3)} below · ${number(gain.margin_above, 3)} above`, 'to the ends of the stable interval']);
+      if (gain.margin_above != null) rows.push(['margin', `${number(gain.margin_below, 3)} below · ${number(gain.margin_above, 3)} above`, 'to the ends of stability']);
     }
     if (linear?.residue != null) rows.push([symbol('R'), number(linear.residue), `residue: ${linear.class}`]);
     if (linear?.rotation != null) rows.push([symbol('σ'), `${quantity(linear.rotation, 'rad')} (${quantity(linear.rotation * 180 / Math.PI, '°')})`, 'rotation a bounce']);
@@ -64,7 +65,7 @@ export class Verdict {
     if (energy && energy.value !== 0) rows.push([symbol('κ_E'), `${quantity(energy.value, 's²/m²')} of ${number(energy.upper)}`, `energy gain: eigenvalue ${number(energy.eigenvalue)}`]);
     if (boundary?.coefficient != null) rows.push([symbol('C'), number(boundary.coefficient, 3), `boundary: ${boundary.kind}`]);
     if (drift != null) rows.push([symbol('c'), quantity(drift, 'm/s', 3), 'drift of the whole']);
-    if (nonlinear) rows.push(['max |θ|', quantity(nonlinear.max_theta, 'rad'), `${number(nonlinear.impacts, 6)} impacts run: ${nonlinear.outcome}`]);
+    if (nonlinear) rows.push(['max |θ|', quantity(nonlinear.max_theta, 'rad'), `${number(nonlinear.impacts, 6)} impacts: ${nonlinear.outcome}`]);
     this.#root.replaceChildren(
       h('p', { class: `verdict-words ${manner}` }, h('span', { class: 'sign', 'aria-hidden': 'true' }, SIGNS[manner]), ` ${words}`),
       reason ? h('p', { class: 'reason' }, ...prose(reason[0].toUpperCase() + reason.slice(1))) : '',
@@ -72,6 +73,7 @@ export class Verdict {
         decider ? h('span', { class: 'chip' }, `decided by ${DECIDERS[decider] ?? decider}`) : '',
         agree === null ? '' : h('span', { class: `chip ${agree ? '' : 'caution'}` }, agree ? 'linear map and run agree' : 'linear map and run disagree')),
       h('dl', { class: 'numbers' }, ...rows.map(([name, value, meaning]) => h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning ?? '')))),
+      evidence(answer, measureBasin),
       h('details', { class: 'model' }, h('summary', {}, `Model: ${answer.model.name.replaceAll('_', ' ')}`), h('p', { class: 'muted' }, ...prose(answer.model.reason)),
         ...notes.map((note) => h('p', { class: 'muted' }, ...prose(note)))));
   }

@@ -1,0 +1,84 @@
+// What the verdict shows beyond the linear map, beside the server’s own numbers.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+const ask = async (query) => (await fetch(`${stage.url}v1/stability?${query}`)).json();
+/** Numbers of a text, with what comes after them. */
+const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
+const words = async (page) => plain(await page.locator('.evidence').innerText());
+const short = (value, digits = 4) => String(Number(value.toPrecision(digits)));
+
+test('rotation, chaos and predictability are told with the server’s numbers', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const { rotation_number: rotation, chaos } = await ask('preset=case-1');
+  const told = await words(page);
+  assert.ok(told.includes(`${short(rotation.measured)} turns a bounce`), told);
+  assert.ok(told.includes(`small deviations ${short(rotation.linear)}`), told);
+  assert.ok(told.includes(`${rotation.resonance.p}/${rotation.resonance.q}`), told);
+  assert.ok(told.includes('Regular') && told.includes(`MEGNO ${short(chaos.indicator, 3)} over ${chaos.impacts} impacts`), told);
+  assert.match(told, /For all 500 impacts watched/);
+  clean();
+});
+
+test('a chaotic run says so, and for how long it can be predicted', async () => {
+  // Released so far aside that the run wanders about between islands before it falls.
+  const query = 'preset=case-1&scene.table.tilt_gain=1.15&scene.release.theta=0.365';
+  const { page, clean } = await stage.page(`?${query}`);
+  await verdict(page);
+  const { chaos, predictable_impacts: predictable } = await ask(query);
+  assert.ok(chaos.chaotic && predictable > 0);
+  const told = await words(page);
+  assert.match(told, /Chaotic/);
+  assert.ok(told.includes(`For ${predictable} impacts`), told);
+  clean();
+});
+
+test('a resonance nearby is named', async () => {
+  const query = 'preset=case-1&scene.table.tilt_gain=1.375&scene.release.theta=0.02';
+  const { page, clean } = await stage.page(`?${query}`);
+  await verdict(page);
+  assert.match(await words(page), /Resonance\s+1\/3: the rotation number is within/);
+  clean();
+});
+
+test('the basin is measured when somebody asks, and belongs to its scene', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  const asked = [];
+  page.on('request', (request) => { if (request.url().includes('basin=true')) asked.push(request.url()); });
+  await verdict(page);
+  assert.equal(asked.length, 0);
+  await page.click('#basin');
+  await page.locator('.evidence', { hasText: 'Released at rest' }).waitFor();
+  const { basin } = await ask('preset=case-1&basin=true');
+  const told = await words(page);
+  assert.ok(told.includes(`${basin.impacts} impacts from up to ${short(basin.unbroken)} rad (${short(basin.unbroken * 180 / Math.PI, 3)} °)`), told);
+  assert.ok(told.includes(`${basin.holes.length} gaps up to ${short(basin.theta)} rad`), told);
+  assert.equal(asked.length, 1);
+  await page.locator('#field-table-tilt_gain').fill('1.2');
+  await page.locator('#basin').waitFor();
+  assert.equal(asked.length, 1);
+  clean();
+});
+
+test('a basin that cannot be asked for can be asked for again', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  await verdict(page);
+  await stage.stopServer();
+  await page.click('#basin');
+  await page.locator('.evidence', { hasText: 'did not answer' }).waitFor();
+  await stage.startServer();
+  await page.click('#basin');
+  await page.locator('.evidence', { hasText: 'Released at rest' }).waitFor();
+});
+
+test('a point mass has none of it', async () => {
+  const { page, clean } = await stage.page('?preset=point-mass');
+  await verdict(page);
+  assert.equal(await page.locator('.evidence').count(), 0);
+  clean();
+});
