@@ -82,8 +82,13 @@ export async function get(path, signal) {
   const response = await fetch(path, { signal, headers: { accept: 'application/json' } });
   server.build = response.headers.get('equipoise-build') ?? server.build;
   if (response.ok) return response.json();
+  throw await problemOf(response);
+}
+
+/** @param {Response} response that is no success */
+export async function problemOf(response) {
   const body = await response.json().catch(() => ({}));
-  throw new Problem(body.title ?? response.statusText, body.detail ?? '', body.errors ?? [], response.status);
+  return new Problem(body.title ?? response.statusText, body.detail ?? '', body.errors ?? [], response.status);
 }
 
 /**

@@ -17,6 +17,7 @@ export const FASTEST = 20;
  * @property {Scene} changes to the preset, or the whole scene without one
  * @property {number} speed
  * @property {URLSearchParams | null} run epoch, interventions and clock of a run to join
+ * @property {URLSearchParams} map what the stability map shows, read where it is drawn
  * @property {string[]} dropped what could not be kept, in words
  */
 
@@ -28,7 +29,7 @@ export const FASTEST = 20;
  */
 export function readLink(search, fields, cases) {
   /** @type {Link} */
-  const link = { preset: null, changes: {}, speed: 1, run: null, dropped: [] };
+  const link = { preset: null, changes: {}, speed: 1, run: null, map: new URLSearchParams(), dropped: [] };
   const run = new URLSearchParams();
   const query = new URLSearchParams(search);
   let whole = true;
@@ -51,6 +52,8 @@ export function readLink(search, fields, cases) {
     } else if (/^(interventions\.\d+\.(impact|(set|kick)\.[a-z_.]+)|clock\.\d+\.(wall|run|speed))$/.test(key)) {
       if (Number.isFinite(value) || isChoice(key, text, fields)) run.set(key, text);
       else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
+    } else if (/^map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)$/.test(key)) {
+      link.map.set(key, text);
     } else if (key !== 'from') {
       link.dropped.push(`“${shown(key)}”, which has no meaning here`);
     }

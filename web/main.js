@@ -14,6 +14,7 @@ import { energyPlot } from './energy.js';
 import { invalidate } from './surface.js';
 import { listenToKeys } from './keys.js';
 import { interventionsOf, merged, readLink, sceneQuery } from './link.js';
+import { lazily } from './lazy.js';
 import { showCalls } from './calls.js';
 import { showPaper } from './paper.js';
 
@@ -33,6 +34,10 @@ let chosen = null;
 /** @type {Form | null} */
 let form = null;
 let speed = 1;
+/** What the map shows by the link, until there is the map itself. */
+let mapLink = new URLSearchParams();
+/** @type {import('./map/panel.js').MapPanel | null} */
+let map = null;
 /** The last thing sent to the run, to know whose error comes back. @type {'kick' | 'set' | 'other'} */
 let lastSent = 'other';
 
@@ -96,6 +101,7 @@ function addressNow() {
     // The server spells the scene out; the name of the case says it shorter and for people.
     for (const [key, value] of run.query) if (key !== 'preset' && !key.startsWith('scene.')) query.set(key, value);
   } else if (speed !== 1) query.set('speed', String(speed));
+  for (const [key, value] of map?.query() ?? mapLink) query.set(key, value);
   history.replaceState(null, '', `?${query}`);
 }
 const address = settled(150, addressNow);
@@ -156,6 +162,7 @@ function edited(path, final) {
   if (final && run.active && fields.find((field) => field.path === path)?.live) sendChanges();
   view.draft(scene);
   plots[2].redraw();
+  map?.sceneChanged();
   ask();
   if (run.phase === 'idle') address();
   else showRun();
@@ -222,7 +229,21 @@ function present(scene) {
   showPaper(byId('paper'), chosen);
   plots[2].redraw();
   view.draft(scene);
+  map?.sceneChanged();
   ask();
+}
+
+/** Releases what is typed with these values in it. @param {Record<string, number>} values */
+function launch(values) {
+  for (const [path, value] of Object.entries(values)) form?.put(path, value);
+  run.reset();
+  const scene = form?.read().scene ?? {};
+  controls.setGain(valueAt(scene, GAIN) ?? null);
+  circle.preview(valueAt(scene, GAIN) ?? null);
+  view.draft(scene);
+  map?.sceneChanged();
+  ask();
+  start();
 }
 
 /** @param {string} search */
@@ -233,6 +254,8 @@ function restore(search) {
     ?? cases.find((one) => fields.every((field) => playedAt(one.scene, field) === playedAt(link.changes, field))) ?? null;
   speed = link.speed;
   run.reset();
+  mapLink = link.map;
+  map?.restore(mapLink);
   if (link.dropped.length > 0) {
     notice('link', [h('strong', {}, 'This link was not whole. '), 'Dropped: ', h('ul', {}, ...link.dropped.map((what) => h('li', {}, what)))], { caution: true });
   } else clearNotice('link');
@@ -250,7 +273,7 @@ function restore(search) {
 function choose(one) {
   const going = run.phase !== 'idle';
   chosen = one;
-  history.pushState(null, '', `?${new URLSearchParams({ preset: one.name })}`);
+  history.pushState(null, '', `?${new URLSearchParams([['preset', one.name], ...(map?.query() ?? mapLink)])}`);
   run.reset();
   present(one.scene);
   if (going) start();
@@ -276,6 +299,9 @@ async function begin() {
   byId('build').textContent = server.build;
   restore(location.search);
   showRun();
+  lazily(byId('map-body'), 'map/map.css', () => import('./map/panel.js'), ({ MapPanel }) => {
+    map = new MapPanel(byId('map-body'), { fields, query: typedQuery, scene: () => form?.read().scene ?? {}, launch, changed: address }, mapLink);
+  });
 }
 
 byId('share').addEventListener('click', (event) => {

@@ -27,6 +27,14 @@ for (const colorScheme of ['light', 'dark']) {
       await page.locator('#field-release-theta').fill('?');
       await page.locator('#field-release-theta').blur();
       assert.deepEqual(await violations(page), [], 'running, with tables open and an error');
+      await page.locator('#field-release-theta').fill('0.3');
+      for (const id of ['map-body']) {
+        await page.locator(`#${id}`).scrollIntoViewIfNeeded();
+        await page.locator(`#${id} :is(#map-links a, article)`).first().waitFor();
+      }
+      await page.fill('#map-x-from', '9');
+      await page.locator('#map-x-from').blur();
+      assert.deepEqual(await violations(page), [], 'with all that loads later, and an error there');
       await page.click('#keys-open');
       assert.deepEqual(await violations(page), [], 'with the dialog');
     });
@@ -52,6 +60,11 @@ test('nothing is wider than 320 px', async () => {
   await reachImpact(page, 3);
   for (const summary of await page.locator('summary').all()) await summary.click();
   assert.equal(await excess(), 0);
+  for (const id of ['map-body']) {
+    await page.locator(`#${id}`).scrollIntoViewIfNeeded();
+    await page.locator(`#${id} :is(#map-links a, article)`).first().waitFor();
+  }
+  assert.equal(await excess(), 0);
   clean();
 });
 
@@ -59,11 +72,11 @@ test('a whole session needs no pointer', async () => {
   const { page, clean } = await stage.page('');
   await verdict(page);
   const reached = new Set();
-  for (let k = 0; k < 120; k += 1) {
+  for (let k = 0; k < 160; k += 1) {
     await page.keyboard.press('Tab');
     reached.add(await page.evaluate(() => document.activeElement?.id ?? ''));
   }
-  for (const id of ['share', 'keys-open', 'case', 'run', 'gain', 'speed', 'field-table-tilt_gain', 'field-release-theta']) assert.ok(reached.has(id), `Tab reaches ${id}`);
+  for (const id of ['share', 'keys-open', 'case', 'run', 'gain', 'speed', 'field-table-tilt_gain', 'map-box', 'map-compute', 'field-release-theta']) assert.ok(reached.has(id), `Tab reaches ${id}`);
   await page.locator('#case').focus();
   await page.keyboard.press('ArrowDown');
   await page.waitForFunction(() => document.querySelector('#case').selectedIndex === 2);

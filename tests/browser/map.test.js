@@ -1,0 +1,365 @@
+// The stability map: drawn as it arrives, cancelled, clicked, looked into, kept in the link.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, reachPhase, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+/** Lets only so many lines of a map through, as a slow network would. Runs in the page. */
+function gate() {
+  globalThis.linesLet = Infinity;
+  globalThis.aborted = 0;
+  const real = globalThis.fetch;
+  globalThis.fetch = async (input, init) => {
+    if (!String(input).includes('format=ndjson')) return real(input, init);
+    init?.signal?.addEventListener('abort', () => { globalThis.aborted += 1; });
+    const response = await real(input, init);
+    let passed = 0;
+    let rest = '';
+    const slow = new TransformStream({
+      async transform(chunk, out) {
+        const lines = (rest + new TextDecoder().decode(chunk)).split('\n');
+        rest = lines.pop();
+        for (const line of lines) {
+          while (passed >= globalThis.linesLet && !init.signal.aborted) await new Promise((done) => setTimeout(done, 5));
+          if (init.signal.aborted) return;
+          passed += 1;
+          out.enqueue(new TextEncoder().encode(`${line}\n`));
+        }
+      },
+    });
+    return new Response(response.ok ? response.body.pipeThrough(slow) : response.body, { status: response.status, headers: response.headers });
+  };
+}
+
+/** Opens the page and goes down to the map. */
+async function open(query = '?preset=case-1', options = {}) {
+  const opened = await stage.page(query, options);
+  await opened.page.locator('#map-body').scrollIntoViewIfNeeded();
+  await opened.page.locator('#map-box canvas').first().waitFor();
+  return opened;
+}
+
+const whole = (page) => page.locator('#map-told', { hasText: /cells[:,] \w/ }).waitFor();
+
+/** Waits until the map has answered anew after `act`. */
+async function anew(page, act) {
+  const before = await page.locator('#map-links a').first().getAttribute('href');
+  await act();
+  await page.waitForFunction((old) => document.querySelector('#map-links a')?.getAttribute('href') !== old, before);
+  await whole(page);
+}
+
+const readout = async (page) => (await page.locator('#map-readout').innerText()).replaceAll('\u2212', '-');
+const frames = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+/** Where the cells are on the screen: what the canvas leaves for axes and colour bar is known. */
+async function place(page, across, upwards) {
+  const box = await page.locator('#map-box').boundingBox();
+  return [box.x + 52 + (box.width - 52 - 18) * across, box.y + 24 + (box.height - 24 - 96) * (1 - upwards)];
+}
+
+/** The colour at a share of the map, as [r, g, b, a]. */
+async function colourAt(page, across, upwards) {
+  await frames(page);
+  return page.locator('#map-box canvas').first().evaluate((canvas, [right, up]) => {
+    const ratio = devicePixelRatio;
+    const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height }).getContext('2d', { willReadFrequently: true });
+    copy.drawImage(canvas, 0, 0);
+    return [...copy.getImageData(Math.round(52 * ratio + (canvas.width - 70 * ratio) * right), Math.round(24 * ratio + (canvas.height - 120 * ratio) * (1 - up)), 1, 1).data];
+  }, [across, upwards]);
+}
+
+const isColour = ([r, g, b], [R, G, B]) => Math.abs(r - R) + Math.abs(g - G) + Math.abs(b - B) < 30;
+const LIGHTEST = [254, 232, 56];
+const DARKEST = [0, 34, 78];
+
+async function drag(page, from, to) {
+  const [x0, y0] = await place(page, ...from);
+  const [x1, y1] = await place(page, ...to);
+  await page.mouse.move(x0, y0);
+  await page.mouse.down();
+  await page.mouse.move((x0 + x1) / 2, (y0 + y1) / 2, { steps: 3 });
+  await page.mouse.move(x1, y1);
+  await page.mouse.up();
+}
+
+const inputs = (page) => page.evaluate(() => ['map-x-from', 'map-x-to', 'map-y-from', 'map-y-to'].map((id) => Number(document.getElementById(id).value)));
+
+test('nothing of the map is loaded before it comes near', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const asked = () => page.evaluate(() => performance.getEntriesByType('resource').filter(({ name }) => /\/map\/|regions/.test(name)).length);
+  assert.equal(await asked(), 0);
+  await page.locator('#map-body').scrollIntoViewIfNeeded();
+  await whole(page);
+  assert.ok(await asked() > 3);
+  clean();
+});
+
+test('what is drawn is what the server computes, with the linear boundary over it', async () => {
+  const { page, clean } = await open();
+  await whole(page);
+  const href = await page.locator('#map-links a', { hasText: 'JSON' }).getAttribute('href');
+  const answer = await (await fetch(stage.url + href)).json();
+  assert.equal(answer.x.length * answer.y.length, 6144);
+  for (const [column, row] of [[10, 10], [60, 20], [90, 60], [30, 50], [48, 1]]) {
+    const [across, upwards] = [(column + 0.5) / 96, (row + 0.5) / 64];
+    const value = answer.values[row][column];
+    if (value === 1000) assert.ok(isColour(await colourAt(page, across, upwards), LIGHTEST), `${column} ${row}`);
+    if (value < 5) assert.ok(isColour(await colourAt(page, across, upwards), DARKEST), `${column} ${row}`);
+    await page.mouse.move(...await place(page, across, upwards));
+    await page.waitForFunction((wanted) => document.querySelector('#map-readout').textContent.replaceAll('\u00a0', ' ').includes(`${wanted} of 1000 contacts`), value);
+    assert.ok((await readout(page)).replaceAll('\u00a0', ' ').includes(answer.outcome_names[answer.outcomes[row][column]]));
+  }
+  const boundary = answer.boundary.filter(({ residue }) => residue === 1);
+  assert.ok(boundary.length > 10 && boundary.every(({ x }) => Math.abs(x[0] - 1.5) < 1e-9));
+  const half = 0.6 / 95 / 2;
+  const around = await Promise.all([-0.002, -0.001, 0, 0.001, 0.002].map((aside) => colourAt(page, (1.5 - 1 + half) / (0.6 + 2 * half) + aside, 0.8)));
+  assert.ok(around.some((colour) => isColour(colour, [255, 255, 255])), `a light line at κ_c: ${around}`);
+  clean();
+});
+
+test('rows are drawn as they arrive, with their count', async () => {
+  const { page, clean } = await stage.page('?preset=case-1', { prepare: gate });
+  await page.evaluate(() => { globalThis.linesLet = 20; });
+  await page.locator('#map-body').scrollIntoViewIfNeeded();
+  await page.locator('.map-progress', { hasText: '20 / 64 rows' }).waitFor();
+  assert.equal(await page.locator('#map-progress').evaluate((bar) => bar.value / bar.max), 20 / 64);
+  assert.ok(isColour(await colourAt(page, 0.4, 0.1), LIGHTEST), 'the rows that are there');
+  assert.ok(!isColour(await colourAt(page, 0.97, 0.6), DARKEST), 'and no other');
+  assert.ok(await page.locator('#map-cancel').isEnabled());
+  await page.mouse.move(...await place(page, 0.4, 0.6));
+  assert.match(await readout(page), /not.computed.yet/);
+  await page.evaluate(() => { globalThis.linesLet = Infinity; });
+  await whole(page);
+  assert.ok(isColour(await colourAt(page, 0.97, 0.6), DARKEST));
+  assert.ok(await page.locator('#map-cancel').isDisabled());
+  clean();
+});
+
+test('cancel keeps what is there and frees the server', async () => {
+  const { page, clean } = await open();
+  await whole(page);
+  const running = async () => Number(/^equipoise_jobs_running (\d+)/m.exec(await (await fetch(`${stage.url}metrics`)).text())[1]);
+  const aborted = page.waitForEvent('requestfailed', (request) => request.url().includes('impacts=100000&format=ndjson'));
+  await page.fill('#map-impacts', '100000');
+  await page.locator('#map-impacts').blur();
+  while (await running() === 0) await new Promise((done) => setTimeout(done, 5));
+  await page.click('#map-cancel');
+  await aborted;
+  while (await running() > 0) await new Promise((done) => setTimeout(done, 5));
+  assert.equal(await page.locator('#map-told').innerText(), 'Cancelled.');
+  assert.ok(await page.locator('#map-cancel').isDisabled());
+  assert.ok(isColour(await colourAt(page, 0.4, 0.1), LIGHTEST), 'the map before is still there');
+  await page.fill('#map-impacts', '500');
+  await page.locator('#map-impacts').blur();
+  await whole(page);
+  clean();
+});
+
+test('of questions in quick succession only the last is answered', async () => {
+  const { page, clean } = await open('?preset=case-1', { prepare: gate });
+  await whole(page);
+  await page.evaluate(() => { globalThis.linesLet = 3; });
+  for (const impacts of [200, 300, 400]) {
+    await page.fill('#map-impacts', String(impacts));
+    await page.locator('#map-impacts').blur();
+    await page.locator('.map-progress', { hasText: /^3 \/ 64/ }).waitFor();
+  }
+  assert.equal(await page.evaluate(() => globalThis.aborted), 2);
+  await page.evaluate(() => { globalThis.linesLet = Infinity; });
+  await whole(page);
+  assert.match(await page.locator('#map-links a').first().getAttribute('href'), /impacts=400/);
+  assert.match((await readout(page)).replaceAll('\u00a0', ' '), /400 of 400/);
+  clean();
+});
+
+test('a click runs the scene of its cell, and the run ends as the map says', async () => {
+  const { page, clean } = await open();
+  await whole(page);
+  await page.mouse.click(...await place(page, 0.7, 0.8));
+  const words = (await readout(page)).replaceAll('\u00a0', ' ');
+  const survived = Number(/(\d+) of 1000 contacts survived/.exec(words)[1]);
+  assert.ok(survived < 20, words);
+  await page.waitForFunction(() => /epoch=/.test(location.search));
+  const query = new URLSearchParams(new URL(page.url()).search);
+  const scene = new URLSearchParams([...query].filter(([key]) => key === 'preset' || key.startsWith('scene.')));
+  const { outcome } = await (await fetch(`${stage.url}v1/trajectories?${scene}&impacts=1000`)).json();
+  assert.equal(outcome.impacts, survived);
+  const typed = Number(await page.inputValue('#field-table-tilt_gain'));
+  assert.ok(Math.abs(typed - Number(query.get('scene.table.tilt_gain'))) < 1e-4 && typed > 1.4);
+  assert.match(await page.locator('#map-told').innerText(), /Released with tilt gain 1\.4\d+, angle 0\.4\d*\srad/);
+  await reachPhase(page, 'ended');
+  await page.click('#map-run');
+  await page.waitForFunction(() => document.querySelector('#run-state').getBoundingClientRect().top < innerHeight);
+  clean();
+});
+
+test('a rectangle is looked into, and Back and Escape return', async () => {
+  const { page, clean } = await open();
+  await whole(page);
+  const first = await inputs(page);
+  assert.ok(await page.locator('#map-back').isDisabled());
+  await anew(page, () => drag(page, [0.5, 0.2], [0.8, 0.6]));
+  const second = await inputs(page);
+  assert.ok(second[0] > 1.29 && second[0] < 1.31 && second[1] > 1.47 && second[1] < 1.49, String(second));
+  assert.ok(second[2] > 0.08 && second[2] < 0.11 && second[3] > 0.28 && second[3] < 0.32, String(second));
+  await page.waitForFunction(() => /map\.x\.from=1\.3/.test(location.search));
+  await anew(page, () => drag(page, [0.6, 0.9], [0.3, 0.4]));
+  const third = await inputs(page);
+  assert.ok(third[0] > second[0] && third[3] < second[3]);
+  await anew(page, () => page.click('#map-back'));
+  assert.deepEqual(await inputs(page), second);
+  await page.locator('#map-box').focus();
+  await anew(page, () => page.keyboard.press('Escape'));
+  assert.deepEqual(await inputs(page), first);
+  await page.waitForFunction(() => !/map\./.test(location.search));
+  assert.ok(await page.locator('#map-back').isDisabled());
+  clean();
+});
+
+test('a drag that ends with Escape, or is too thin, does nothing', async () => {
+  const { page, clean } = await open();
+  await whole(page);
+  const before = await inputs(page);
+  await page.locator('#map-box').focus();
+  await page.mouse.move(...await place(page, 0.3, 0.3));
+  await page.mouse.down();
+  await page.mouse.move(...await place(page, 0.6, 0.6), { steps: 4 });
+  await page.keyboard.press('Escape');
+  await page.mouse.up();
+  await drag(page, [0.3, 0.3], [0.6, 0.301]);
+  assert.deepEqual(await inputs(page), before);
+  assert.equal(await page.locator('#run-state').getAttribute('data-phase'), 'idle');
+  clean();
+});
+
+test('keys move over the map, tell, look closer and run', async () => {
+  const { page, clean } = await open();
+  await whole(page);
+  await page.locator('#map-box').focus();
+  await page.keyboard.press('ArrowRight');
+  const spoken = () => page.locator('#map-box ~ [role=status]').innerText();
+  const first = await spoken();
+  assert.match(first, /κ 1\.1\d*\s+θ₀ 0\.30\d*\srad\s+1000 of 1000 contacts survived\s+completed/);
+  await page.keyboard.press('ArrowRight');
+  assert.notEqual(await spoken(), first);
+  await page.keyboard.press('End');
+  assert.match(await spoken(), /κ 1\.6\s/);
+  await page.keyboard.press('Home');
+  await page.keyboard.press('PageUp');
+  assert.match(await spoken(), /κ 1\s+θ₀ 0\.5\s?rad/);
+  await anew(page, () => page.keyboard.press('+'));
+  assert.ok((await inputs(page))[1] < 1.31);
+  await anew(page, () => page.keyboard.press('Escape'));
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => /epoch=/.test(location.search));
+  assert.equal(await page.inputValue('#field-table-tilt_gain'), '1');
+  clean();
+});
+
+test('the mark follows the scene, and the map the rest of it', async () => {
+  const { page, clean } = await open();
+  await whole(page);
+  const href = () => page.locator('#map-links a').first().getAttribute('href');
+  const before = await href();
+  await page.locator('#field-table-tilt_gain').fill('1.25');
+  await page.waitForFunction(() => /κ.1\.2[45]\d*/.test(document.querySelector('#map-readout').textContent));
+  await page.locator('#field-table-tilt_gain').fill('1.9');
+  await page.locator('#map-readout', { hasText: 'outside' }).waitFor();
+  await page.waitForTimeout(500);
+  assert.equal(await href(), before, 'a field of the map itself changes nothing of it');
+  await anew(page, () => page.locator('#field-release-height').fill('0.25'));
+  assert.match(await href(), /scene\.release\.height=0\.25/);
+  clean();
+});
+
+test('a link restores the map', async () => {
+  const first = await open();
+  await whole(first.page);
+  await anew(first.page, () => first.page.selectOption('#map-y', 'release.theta_dot'));
+  await anew(first.page, () => first.page.selectOption('#map-quantity', 'max_theta'));
+  await anew(first.page, () => first.page.selectOption('#map-columns', '48'));
+  await anew(first.page, async () => { await first.page.fill('#map-x-to', '1,3'); await first.page.locator('#map-x-to').blur(); });
+  await first.page.waitForFunction(() => /map\.x\.to=1\.3/.test(location.search));
+  const second = await open(new URL(first.page.url()).search);
+  await whole(second.page);
+  assert.equal(await second.page.locator('#map-links a').first().getAttribute('href'), await first.page.locator('#map-links a').first().getAttribute('href'));
+  assert.equal(await second.page.locator('#map-told').innerText(), await first.page.locator('#map-told').innerText());
+  assert.equal(await second.page.locator('#notices').innerText(), '');
+  first.clean();
+  second.clean();
+});
+
+test('what a link says wrongly of the map is dropped and told there', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&map.x.parameter=body.colour&map.x.from=1&map.x.to=2&map.quantity=beauty&map.impacts=-3&map.columns=7');
+  await page.locator('#map-body').scrollIntoViewIfNeeded();
+  await page.locator('#map-links a').first().waitFor();
+  const told = await page.locator('#map-notice').innerText();
+  for (const word of ['body.colour', 'beauty', 'impacts', 'resolution']) assert.ok(told.includes(word), told);
+  assert.equal(await page.inputValue('#map-x'), 'table.tilt_gain');
+  clean();
+});
+
+test('errors stand beside what they are about, and what was typed stays', async () => {
+  const { page } = await open();
+  await whole(page);
+  const type = async (id, text) => { await page.fill(`#${id}`, text); await page.locator(`#${id}`).blur(); };
+  await type('map-x-from', '2');
+  assert.match(await page.locator('#map-x-error').innerText(), /below 1\.6/);
+  assert.equal(await page.getAttribute('#map-x-from', 'aria-invalid'), 'true');
+  await type('map-x-from', 'steep');
+  assert.match(await page.locator('#map-x-error').innerText(), /“steep” is not a number/);
+  await type('map-x-from', '1');
+  assert.equal(await page.locator('#map-x-error').innerText(), '');
+  await type('map-y-to', '50');
+  await page.locator('#map-y-error', { hasText: /50.*rad/ }).waitFor();
+  assert.equal(await page.getAttribute('#map-y-to', 'aria-invalid'), 'true');
+  assert.equal(await page.inputValue('#map-y-to'), '50');
+  await type('map-y-to', '0.5');
+  await type('map-impacts', '1.5');
+  assert.match(await page.locator('#map-impacts-error').innerText(), /whole number/);
+  await type('map-impacts', '100000');
+  await page.selectOption('#map-columns', '384');
+  await page.locator('#map-told', { hasText: /limit is [\d\s]+bounces/ }).waitFor();
+  await type('map-impacts', '100');
+  await whole(page);
+  await page.locator('#field-release-theta').fill('?');
+  await page.locator('#map-told', { hasText: 'not a number' }).waitFor();
+});
+
+test('without a server the map says so and can be asked for again', async () => {
+  const { page } = await open();
+  await whole(page);
+  await stage.stopServer();
+  await page.selectOption('#map-columns', '48');
+  await page.locator('#map-told', { hasText: 'The server does not answer' }).waitFor();
+  await stage.startServer();
+  await page.click('#map-compute');
+  await whole(page);
+});
+
+test('an answer that is cut off keeps its rows and says so', async () => {
+  const { page } = await stage.page('?preset=case-1', { prepare: () => {
+    const real = globalThis.fetch;
+    globalThis.fetch = async (input, init) => {
+      const response = await real(input, init);
+      if (!String(input).includes('format=ndjson')) return response;
+      return new Response((await response.text()).split('\n').slice(0, 30).join('\n'), { headers: response.headers });
+    };
+  } });
+  await page.locator('#map-body').scrollIntoViewIfNeeded();
+  await page.locator('#map-told', { hasText: /cut off\. \d+ of 64 rows/ }).waitFor();
+  assert.ok(isColour(await colourAt(page, 0.4, 0.1), LIGHTEST));
+});
+
+test('a point mass and a quantity without runs have their maps too', async () => {
+  const { page, clean } = await open('?preset=point-mass&map.y.parameter=release.x_dot&map.y.from=-0.2&map.y.to=0.2&map.columns=48');
+  await whole(page);
+  await anew(page, () => page.selectOption('#map-quantity', 'spectral_radius'));
+  assert.match(await page.locator('#map-told').innerText(), /1536 cells, from/);
+  assert.ok(await page.locator('#map-impacts').isDisabled());
+  clean();
+});

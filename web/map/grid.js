@@ -1,0 +1,118 @@
+// The cells of a map as they arrive, row by row, and the reading of lines from an answer. Not for drawing them.
+
+import { rowsOf } from './settings.js';
+
+/** @typedef {{residue: number, x: [number, number], y: [number, number]}} Segment of the linear boundary */
+/** @typedef {{row: number, values: (number | null)[], outcomes: number[]} | {end: {counts: Record<string, number>}}} Line */
+
+export class Grid {
+  columns;
+  rows;
+  settings;
+  /** Not a number where there is none. */
+  values;
+  outcomes;
+  /** Which rows are there. */
+  #arrived;
+  arrived = 0;
+  /** Whether some cell that arrived has no value. */
+  lacks = false;
+  low = Infinity;
+  high = -Infinity;
+  /** Of every outcome how many; null until the answer is whole. @type {Record<string, number> | null} */
+  counts = null;
+  /** @type {string[]} */
+  names;
+  /** @type {Segment[]} */
+  boundary;
+
+  /**
+   * @param {import('./settings.js').Settings} settings
+   * @param {{outcome_names: string[], boundary: Segment[]}} outline
+   */
+  constructor(settings, outline) {
+    this.settings = settings;
+    this.columns = settings.columns;
+    this.rows = rowsOf(settings.columns);
+    this.values = new Float64Array(this.columns * this.rows).fill(NaN);
+    this.outcomes = new Uint8Array(this.columns * this.rows);
+    this.#arrived = new Uint8Array(this.rows);
+    this.names = outline.outcome_names;
+    this.boundary = outline.boundary;
+  }
+
+  /** @param {Line} line */
+  take(line) {
+    if ('end' in line) {
+      this.counts = line.end.counts;
+      return;
+    }
+    const from = line.row * this.columns;
+    line.values.forEach((value, column) => {
+      if (value === null) {
+        this.lacks = true;
+        return;
+      }
+      this.values[from + column] = value;
+      this.low = Math.min(this.low, value);
+      this.high = Math.max(this.high, value);
+    });
+    this.outcomes.set(line.outcomes, from);
+    this.arrived += 1 - this.#arrived[line.row];
+    this.#arrived[line.row] = 1;
+  }
+
+  /** @param {number} row */
+  has(row) {
+    return this.#arrived[row] === 1;
+  }
+
+  /** The value of the field across, bit for bit the server's. @param {number} column */
+  x(column) {
+    return valueOn(this.settings.x, column, this.columns);
+  }
+
+  /** @param {number} row */
+  y(row) {
+    return valueOn(this.settings.y, row, this.rows);
+  }
+
+  /** What the colours go from and to: with impacts to survive, from none to all. */
+  get scale() {
+    if (this.settings.quantity === 'survival') return { low: 0, high: this.settings.impacts };
+    return this.low <= this.high ? { low: this.low, high: this.high } : { low: 0, high: 1 };
+  }
+}
+
+/**
+ * @param {import('./settings.js').Side} side
+ * @param {number} index
+ * @param {number} count
+ */
+function valueOn({ from, to }, index, count) {
+  const share = index / (count - 1);
+  return share === 1 ? to : from + (to - from) * share;
+}
+
+/**
+ * The objects of an NDJSON answer, each as soon as its line is there.
+ * @param {ReadableStream<Uint8Array>} body
+ * @returns {AsyncGenerator<any>}
+ */
+export async function* lines(body) {
+  const reader = body.getReader();
+  const decoder = new TextDecoder();
+  let rest = '';
+  try {
+    for (;;) {
+      const { done, value } = await reader.read();
+      const parts = (rest + decoder.decode(value, { stream: !done })).split('\n');
+      rest = parts.pop() ?? '';
+      for (const part of parts) if (part !== '') yield JSON.parse(part);
+      if (done) return;
+    }
+  } finally {
+    // Whoever stops early wants no more of it.
+    void reader.cancel().catch(() => {});
+  }
+}
