@@ -45,10 +45,13 @@ export function symbol(text) {
 }
 
 /**
- * The server's sentences for reading: symbols set as such, names of fields in words, numbers no longer than one reads.
+ * The server's sentences: symbols and minus signs set as such, names of fields in words.
  * @param {string} text
  */
-export const prose = (text) => text.replaceAll('`', '').replace(/(?<=[a-z])_(?=[a-z])/g, ' ').replace(/-?\b\d+\.\d{6,}(?:e-?\d+)?/g, (digits) => number(Number(digits), 6)).split(/((?:κ|σ)_[A-Za-z]+(?:,max)?|y\*)/).map((part, index) => (index % 2 ? symbol(part) : part));
+export const marked = (text) => text.replaceAll('`', '').replace(/(?<=[a-z])_(?=[a-z])/g, ' ').replace(/(?<![\w.])-(?=\d)/g, '\u2212').split(/((?:κ|σ)_[A-Za-z]+(?:,max)?|y\*)/).map((part, index) => (index % 2 ? symbol(part) : part));
+
+/** The same with numbers no longer than one reads. @param {string} text */
+export const prose = (text) => marked(text.replace(/-?\b\d+\.\d{6,}(?:e-?\d+)?/g, (digits) => number(Number(digits), 6)));
 
 /**
  * Text to the clipboard, and the button says so for a moment.

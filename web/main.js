@@ -218,6 +218,9 @@ const sentence = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
 /** Where nothing can be set low: in an option, in the window's title. @param {string} text */
 const plain = (text) => text.replaceAll('κ_', 'κ');
 
+/** The case that a scene is, if it is one. @param {Scene} scene */
+const caseOf = (scene) => cases.find((one) => fields.every((field) => playedAt(one.scene, field) === playedAt(scene, field))) ?? null;
+
 /** Shows a scene without running it. @param {Scene} scene */
 function present(scene) {
   form?.fill(scene);
@@ -246,12 +249,22 @@ function launch(values) {
   start();
 }
 
+/** Shows a scene from further below and runs it. @param {Scene} scene */
+function play(scene) {
+  chosen = caseOf(scene);
+  history.pushState(null, '', `?${new URLSearchParams([...sceneQuery(scene, chosen, fields), ...(map?.query() ?? mapLink)])}`);
+  run.reset();
+  present(scene);
+  start();
+  chooser.focus({ preventScroll: true });
+  scrollTo(0, 0);
+}
+
 /** @param {string} search */
 function restore(search) {
   const link = readLink(search, fields, cases);
   const bare = link.preset === null && Object.keys(link.changes).length === 0;
-  chosen = cases.find((one) => one.name === (bare ? cases[0]?.name : link.preset))
-    ?? cases.find((one) => fields.every((field) => playedAt(one.scene, field) === playedAt(link.changes, field))) ?? null;
+  chosen = cases.find((one) => one.name === (bare ? cases[0]?.name : link.preset)) ?? caseOf(link.changes);
   speed = link.speed;
   run.reset();
   mapLink = link.map;
@@ -302,6 +315,7 @@ async function begin() {
   lazily(byId('map-body'), 'map/map.css', () => import('./map/panel.js'), ({ MapPanel }) => {
     map = new MapPanel(byId('map-body'), { fields, query: typedQuery, scene: () => form?.read().scene ?? {}, launch, changed: address }, mapLink);
   });
+  lazily(byId('gallery-body'), 'gallery/gallery.css', () => import('./gallery/gallery.js'), ({ showGallery }) => void showGallery(byId('gallery-body'), ({ scene }) => play(scene)));
 }
 
 byId('share').addEventListener('click', (event) => {

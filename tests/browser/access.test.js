@@ -28,7 +28,7 @@ for (const colorScheme of ['light', 'dark']) {
       await page.locator('#field-release-theta').blur();
       assert.deepEqual(await violations(page), [], 'running, with tables open and an error');
       await page.locator('#field-release-theta').fill('0.3');
-      for (const id of ['map-body']) {
+      for (const id of ['map-body', 'gallery-body']) {
         await page.locator(`#${id}`).scrollIntoViewIfNeeded();
         await page.locator(`#${id} :is(#map-links a, article)`).first().waitFor();
       }
@@ -60,7 +60,7 @@ test('nothing is wider than 320 px', async () => {
   await reachImpact(page, 3);
   for (const summary of await page.locator('summary').all()) await summary.click();
   assert.equal(await excess(), 0);
-  for (const id of ['map-body']) {
+  for (const id of ['map-body', 'gallery-body']) {
     await page.locator(`#${id}`).scrollIntoViewIfNeeded();
     await page.locator(`#${id} :is(#map-links a, article)`).first().waitFor();
   }
