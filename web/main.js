@@ -38,6 +38,10 @@ let speed = 1;
 let mapLink = new URLSearchParams();
 /** @type {import('./map/panel.js').MapPanel | null} */
 let map = null;
+/** What the newest verdict belongs to. @type {{answer: import('./api.js').Stability, scene: URLSearchParams} | null} */
+let judged = null;
+/** @type {import('./branch/branch.js').Branch | null} */
+let branch = null;
 /** The last thing sent to the run, to know whose error comes back. @type {'kick' | 'set' | 'other'} */
 let lastSent = 'other';
 
@@ -118,6 +122,8 @@ const askSoon = settled(120, async () => {
     form?.blame([]);
     verdict.show(answer, () => get(`v1/stability?${query}&basin=true`, mine.signal));
     circle.show(answer);
+    judged = { answer, scene: query };
+    branch?.show(judged);
     showCalls(byId('calls'), query, run.interventions.length > 0);
     byId('build').textContent = server.build;
   } catch (error) {
@@ -314,6 +320,10 @@ async function begin() {
   showRun();
   lazily(byId('map-body'), 'map/map.css', () => import('./map/panel.js'), ({ MapPanel }) => {
     map = new MapPanel(byId('map-body'), { fields, query: typedQuery, scene: () => form?.read().scene ?? {}, launch, changed: address }, mapLink);
+  });
+  lazily(byId('branch-body'), 'branch/branch.css', () => import('./branch/branch.js'), ({ Branch }) => {
+    branch = new Branch(byId('branch-body'));
+    if (judged) branch.show(judged);
   });
   lazily(byId('gallery-body'), 'gallery/gallery.css', () => import('./gallery/gallery.js'), ({ showGallery }) => void showGallery(byId('gallery-body'), ({ scene }) => play(scene)));
 }

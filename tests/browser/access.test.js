@@ -28,9 +28,9 @@ for (const colorScheme of ['light', 'dark']) {
       await page.locator('#field-release-theta').blur();
       assert.deepEqual(await violations(page), [], 'running, with tables open and an error');
       await page.locator('#field-release-theta').fill('0.3');
-      for (const id of ['map-body', 'gallery-body']) {
+      for (const id of ['map-body', 'branch-body', 'gallery-body']) {
         await page.locator(`#${id}`).scrollIntoViewIfNeeded();
-        await page.locator(`#${id} :is(#map-links a, article)`).first().waitFor();
+        await page.locator(`#${id} :is(#map-links a, .changes, article)`).first().waitFor();
       }
       await page.fill('#map-x-from', '9');
       await page.locator('#map-x-from').blur();
@@ -60,9 +60,9 @@ test('nothing is wider than 320 px', async () => {
   await reachImpact(page, 3);
   for (const summary of await page.locator('summary').all()) await summary.click();
   assert.equal(await excess(), 0);
-  for (const id of ['map-body', 'gallery-body']) {
+  for (const id of ['map-body', 'branch-body', 'gallery-body']) {
     await page.locator(`#${id}`).scrollIntoViewIfNeeded();
-    await page.locator(`#${id} :is(#map-links a, article)`).first().waitFor();
+    await page.locator(`#${id} :is(#map-links a, .changes, article)`).first().waitFor();
   }
   assert.equal(await excess(), 0);
   clean();

@@ -129,7 +129,7 @@ export class MapPanel {
     this.#controls.busy(null);
     const request = this.#request();
     this.#asked = String(request);
-    if (!request) return this.#controls.say(['A parameter of the scene is not a number; it is marked below.'], 'wrong');
+    if (!request) return this.#controls.say(['A parameter of the scene is not a number; it is marked among them.'], 'wrong');
     const kept = this.#kept.get(this.#asked);
     if (kept) return this.#finish(kept, request);
     const asking = this.#asking = new AbortController();

@@ -1,0 +1,64 @@
+// The branch of orbits of period 2: the server’s picture with its numbers, for the scene of the page.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+async function open(query) {
+  const opened = await stage.page(query);
+  await opened.page.locator('#branch-body').scrollIntoViewIfNeeded();
+  return opened;
+}
+
+const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
+
+for (const [preset, kind] of [['case-1', 'soft'], ['critical-hard', 'hard']]) {
+  test(`${preset}: picture and changes of a ${kind} boundary`, async () => {
+    const { page, clean } = await open(`?preset=${preset}`);
+    const image = page.locator('#branch-body img');
+    await image.evaluate((element) => element.decode());
+    assert.ok(await image.evaluate((element) => element.naturalWidth > 300));
+    const { changes } = await (await fetch(await page.locator('#branch-body .actions a', { hasText: 'JSON' }).evaluate((link) => link.href))).json();
+    const rows = await page.locator('.changes tbody tr').evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.firstChild.textContent)));
+    assert.deepEqual(rows.map(([name]) => name), changes.map((change) => change.kind.replaceAll('_', ' ')));
+    for (const [index, [, gain, theta]] of rows.entries()) {
+      assert.ok(Math.abs(Number(gain) - changes[index].parameter) < 1e-4 && Math.abs(Number(theta) - changes[index].theta) < 1e-4, String(rows[index]));
+    }
+    assert.match(plain(await page.locator('#branch-body').innerText()), new RegExp(`a ${kind} boundary \\(C = ${kind === 'hard' ? '-' : ''}0\\.\\d+\\)`));
+    clean();
+  });
+}
+
+test('it follows the scene, and a body without an angle has none', async () => {
+  const { page, clean } = await open('?preset=case-1');
+  const src = () => page.locator('#branch-body img').getAttribute('src');
+  await page.locator('#branch-body img').waitFor();
+  const before = await src();
+  await page.locator('#field-release-height').fill('0.25');
+  await page.locator('#branch-body').scrollIntoViewIfNeeded();
+  await page.waitForFunction((old) => document.querySelector('#branch-body img')?.getAttribute('src') !== old, before);
+  assert.match(await src(), /scene\.release\.height=0\.25/);
+  await page.selectOption('#case', 'point-mass');
+  await verdict(page);
+  await page.locator('#branch-body').scrollIntoViewIfNeeded();
+  await page.locator('#branch-body', { hasText: 'no angle' }).waitFor();
+  await page.selectOption('#case', 'still-lossy');
+  await page.locator('#branch-body').scrollIntoViewIfNeeded();
+  await page.locator('#branch-body', { hasText: 'no critical gain' }).waitFor();
+  clean();
+});
+
+test('without a server it says so and can be asked for again', async () => {
+  const { page } = await stage.page('?preset=case-1', { prepare: () => {
+    const real = globalThis.fetch;
+    globalThis.refuse = true;
+    globalThis.fetch = (input, init) => (globalThis.refuse && String(input).includes('periodic-orbits') ? Promise.reject(new TypeError('no network')) : real(input, init));
+  } });
+  await page.locator('#branch-body').scrollIntoViewIfNeeded();
+  await page.locator('#branch-body', { hasText: 'The server does not answer' }).waitFor();
+  await page.evaluate(() => { globalThis.refuse = false; });
+  await page.locator('#branch-body button').click();
+  await page.locator('#branch-body img').waitFor();
+});
