@@ -312,3 +312,58 @@ async fn every_flight_of_the_chatter_is_that_of_sixty_digits() {
     assert_eq!(says(&case, "Newton")["value"], 0.0);
     assert_eq!(says(&case, "change of sign")["value"], Value::Null);
 }
+
+#[tokio::test]
+async fn smaller_steps_come_to_what_the_map_says_of_invented_and_destroyed_stability() {
+    let server = Server::start();
+    let invented = case("invented-stability").await;
+    // The true run is out long before its rounding could matter, whatever its last digits.
+    for beside in [-1e-9, 0.0, 1e-9] {
+        let changes = [("scene.release.theta", 0.35 + beside), ("impacts", 400.0)];
+        assert_eq!(end(&server, &invented, &changes).await, ("sinking".to_owned(), 23), "{beside}");
+    }
+    assert!(says(&invented, "1 ms")["detail"].as_str().unwrap().contains("at contact 23"), "{invented}");
+    // The paper's first case, which the references of 30 digits follow for 100 contacts.
+    let destroyed = case("destroyed-stability").await;
+    assert_eq!(end(&server, &destroyed, &[("impacts", 100_000.0)]).await, ("completed".to_owned(), 100_000));
+    let contacts = |said: &Value| {
+        let detail = said["detail"].as_str().unwrap();
+        detail.split("at contact ").nth(1).unwrap().split(';').next().unwrap().parse::<u32>().unwrap()
+    };
+    let (coarse, fine) = (contacts(says(&destroyed, "steps of 1 ms")), contacts(says(&destroyed, "steps of 0.1 ms")));
+    assert!(coarse < fine && fine < 100, "smaller steps delay it: {coarse}, {fine}");
+}
+
+#[tokio::test]
+async fn the_contact_that_is_missed_is_there() {
+    let case = case("missed-contact").await;
+    let found = number(&says(&case, "the map")["value"]);
+    // Rigid flight after the first contact, from the answer's own state: the gap changes its sign there and back.
+    let run = Server::start().get(case["ask"].as_str().unwrap()).await.expect(200).json();
+    let first = |name: &str| number(&run["impacts"][name][0]);
+    let (l, rho) = (0.4 / 3.0, 0.094_280_904_158_206_35_f64);
+    let (theta, alpha) = (first("theta"), 1.1 * first("theta"));
+    let arm = l * (theta - alpha).sin();
+    let normal = alpha.cos() * first("y_dot") - alpha.sin() * first("x_dot") + arm * first("theta_dot");
+    let impulse = -2.0 * normal / (1.0 + (arm / rho).powi(2));
+    let (rise, turn) = (first("y_dot") + impulse * alpha.cos(), first("theta_dot") + impulse * arm / (rho * rho));
+    let gap = |t: f64| rise * t - 0.5 * 9.81 * t * t + l * theta.cos() - l * (theta + turn * t).cos();
+    let flight = found - first("t");
+    assert!(gap(flight - 1e-5) > 1e-9 && gap(flight + 1e-5) < -1e-9, "{} {}", gap(flight - 1e-5), gap(flight + 1e-5));
+    assert!((1..1000).all(|n| gap(flight * f64::from(n) / 1000.0) > 0.0));
+    let look = (flight / 1e-2).ceil() * 1e-2;
+    assert!(gap(look) > 0.0, "open again at the next look");
+    for method in ["adaptive", "every 10 ms"] {
+        assert!(number(&says(&case, method)["value"]) > found + 0.05);
+    }
+}
+
+#[tokio::test]
+async fn the_bounces_end_where_their_geometric_series_does() {
+    let case = case("zeno").await;
+    let limit = 3.0 * (2.0 * (0.2_f64 - 0.4 / 3.0) / 9.81).sqrt();
+    assert!((number(&says(&case, "the map")["value"]) - limit).abs() < 1e-15);
+    for method in ["Runge-Kutta, steps", "Moreau", "event location"] {
+        assert!(number(&says(&case, method)["value"]) > limit, "{method} has gone past the end");
+    }
+}

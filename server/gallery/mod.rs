@@ -9,6 +9,7 @@ mod contact;
 mod course;
 mod derivative;
 mod horizon;
+mod steps;
 
 use crate::picture::Chart;
 use equipoise_physics::impact::Rod;
@@ -81,7 +82,7 @@ pub struct Says {
 }
 
 /// All cases, in the order in which they are shown.
-pub const CASES: [Case; 11] = [
+pub const CASES: [Case; 15] = [
     boundary::SOFT,
     boundary::HARD,
     boundary::HARD_WITH_FEEDBACK,
@@ -89,8 +90,12 @@ pub const CASES: [Case; 11] = [
     basin::RESONANCE,
     basin::WIDE,
     boundary::BEYOND,
+    steps::INVENTED,
+    steps::DESTROYED,
+    steps::MISSED,
     derivative::DIFFERENCES,
     derivative::GRAZE,
+    steps::ZENO,
     contact::TRIVIAL_ROOT,
     horizon::CHAOS,
 ];
