@@ -5,7 +5,9 @@
 //! forget that the next bounce turns what the last one stretched; a covariance does not.
 
 use crate::contact_time;
+use crate::double_double::DoubleDouble;
 use crate::dual::Dual;
+use crate::extended;
 use crate::flight::Flight;
 use crate::impact::{Rod, State, Strike};
 use crate::map::Contact;
@@ -23,6 +25,9 @@ const REPEATING: f64 = 0.15;
 
 /// Half a unit in the last place, as a share: the most that one rounding is off.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;
+
+/// The same for numbers of 31 digits: a fifth of what is proved for their operations, ten times what they do.
+const EXTENDED_ROUNDING: f64 = 2e-32;
 
 /// Rounding of the states (five directions), and of three parameters, which is the same at every bounce.
 const DIRECTIONS: usize = 8;
@@ -47,6 +52,8 @@ pub struct ErrorEstimate {
     state: State<Number8>,
     /// Held energy, from the first contact on.
     energy: Option<Number8>,
+    /// The most that one rounding is off, as a share.
+    unit: f64,
     /// Standard deviation of a rounding, as a share, at this bounce.
     rounding: f64,
     /// Whether derivatives have stopped to say anything.
@@ -54,8 +61,17 @@ pub struct ErrorEstimate {
 }
 
 impl Scene {
-    /// The error estimate of a run of this scene, just before its first contact at `first` (s after release).
+    /// The error estimate of a run of this scene in doubles, just before its first contact at `first` (s after release).
     pub fn error_estimate(&self, first: f64) -> ErrorEstimate {
+        self.estimate(first, ROUNDING)
+    }
+
+    /// The same of [`crate::extended`].
+    pub fn extended_error_estimate(&self, first: f64) -> ErrorEstimate {
+        self.estimate(first, EXTENDED_ROUNDING)
+    }
+
+    fn estimate(&self, first: f64, unit: f64) -> ErrorEstimate {
         let (rod, is_point) = match self.model() {
             Model::Rod(rod) => (rod, false),
             Model::Point(point) => (*point.parameters(), true),
@@ -63,28 +79,27 @@ impl Scene {
         let mut lifted: Rod<Number8> = rod.lift();
         // Parameters that are rounded. Other factors of the strike, such as 1 − κ, act as the radius of gyration does.
         let sloped = self.incline != std::f64::consts::FRAC_PI_2;
-        lifted.gravity.partials[OF_GRAVITY] = if sloped { 2.0 * ROUNDING * rod.gravity } else { 0.0 };
-        lifted.radius_of_gyration.partials[OF_GYRATION] = 1.5 * ROUNDING * rod.radius_of_gyration;
+        lifted.gravity.partials[OF_GRAVITY] = if sloped { 2.0 * unit * rod.gravity } else { 0.0 };
+        lifted.radius_of_gyration.partials[OF_GYRATION] = 1.5 * unit * rod.radius_of_gyration;
         if rod.strike_gain_per_energy != 0.0 {
             let weight = rod.gravity * rod.contact_distance;
-            lifted.target_energy.partials[OF_GAIN] = ROUNDING * (2.0 * rod.target_energy.abs() + weight);
+            lifted.target_energy.partials[OF_GAIN] = unit * (2.0 * rod.target_energy.abs() + weight);
             lifted.target_energy.partials[OF_GRAVITY] =
                 lifted.gravity.partials[OF_GRAVITY] * self.target_height.unwrap_or(0.0);
         } else if rod.strike_gain != 2.0 {
-            lifted.strike_gain.partials[OF_GAIN] = ROUNDING * rod.strike_gain;
+            lifted.strike_gain.partials[OF_GAIN] = unit * rod.strike_gain;
         }
         let release = self.release();
         let exact = Number8::from_f64;
-        let State { theta, x_dot, y_dot, theta_dot } = release.state;
-        let start =
-            State { theta: exact(theta), x_dot: exact(x_dot), y_dot: exact(y_dot), theta_dot: exact(theta_dot) };
+        let start = release.state.map(exact);
         let mut estimate = ErrorEstimate {
             rod: lifted,
             is_point,
             holds_energy: self.rules().holds_energy,
             state: start,
             energy: None,
-            rounding: ROUNDING,
+            unit,
+            rounding: unit,
             lost: false,
         };
         if first > 0.0 {
@@ -141,12 +156,22 @@ impl ErrorEstimate {
 
     /// Goes on over a contact of the run and the flight after it; over one without a flight it does nothing.
     pub fn pass(&mut self, contact: &Contact) {
-        let Some(flight_time) = contact.flight_time else { return };
+        self.bounce(contact.n, &contact.state, contact.flight_time);
+    }
+
+    /// The same with a contact of 31 digits.
+    pub fn pass_extended(&mut self, contact: &extended::Contact) {
+        let state = contact.state.map(DoubleDouble::to_f64);
+        self.bounce(contact.n, &state, contact.flight_time.map(DoubleDouble::to_f64));
+    }
+
+    fn bounce(&mut self, n: u64, state: &State, flight_time: Option<f64>) {
+        let Some(flight_time) = flight_time else { return };
         if self.lost {
             return;
         }
-        let State { theta, x_dot, y_dot, theta_dot } = contact.state;
-        self.rounding = ROUNDING * (1.0 + 2.0 * REPEATING * REPEATING * contact.n as f64).sqrt();
+        let State { theta, x_dot, y_dot, theta_dot } = *state;
+        self.rounding = self.unit * (1.0 + 2.0 * REPEATING * REPEATING * n as f64).sqrt();
         for (number, value) in [
             (&mut self.state.theta, theta),
             (&mut self.state.x_dot, x_dot),
@@ -249,14 +274,14 @@ impl ErrorEstimate {
 
     /// Whether all flights within the bound end at the same root of the gap. Only a fast spin has more than one.
     fn same_root(&self, flight: &Flight<Number8>, t: f64, speed: f64) -> bool {
-        let State { theta, x_dot, y_dot, theta_dot } = &flight.start;
+        let State { theta, y_dot, theta_dot, .. } = &flight.start;
         let l = flight.contact_distance.value;
         if l * theta_dot.value * theta_dot.value <= flight.gravity.value {
             return true;
         }
         let reach = SAFETY * (spread(y_dot) + l * spread(theta_dot) + 2.0 * l * spread(theta) / t) + ROUNDING * l / t;
         let plain = Flight {
-            start: State { theta: theta.value, x_dot: x_dot.value, y_dot: y_dot.value, theta_dot: theta_dot.value },
+            start: flight.start.map(|number| number.value),
             sin_cos_theta: (flight.sin_cos_theta.0.value, flight.sin_cos_theta.1.value),
             clearance: flight.clearance.value,
             contact_distance: l,

@@ -67,12 +67,11 @@ impl Orbit {
     fn new(scene: &Scene) -> Result<Self, TooManyPieces> {
         let zero = DoubleDouble::from_f64(0.0);
         let release = scene.release();
-        let State { theta, x_dot, y_dot, theta_dot } = release.state;
         let mut orbit = Self {
             rod: scene.parameters(),
             is_point: scene.body() == BodyShape::Point,
             rules: scene.rules(),
-            state: State { theta: theta.into(), x_dot: x_dot.into(), y_dot: y_dot.into(), theta_dot: theta_dot.into() },
+            state: release.state.map(DoubleDouble::from),
             n: 0,
             t: zero,
             x: release.x.into(),
@@ -106,6 +105,16 @@ impl Orbit {
     /// Angle and velocities just before the coming contact.
     pub fn state(&self) -> &State<DoubleDouble> {
         &self.state
+    }
+
+    /// When the coming contact is, s after release.
+    pub fn t(&self) -> DoubleDouble {
+        self.t
+    }
+
+    /// Where the centre of gravity is at the coming contact, m.
+    pub fn x(&self) -> DoubleDouble {
+        self.x
     }
 
     /// What bounces; its parameters are those of a rod of no length where it is a point mass.
@@ -205,14 +214,9 @@ pub fn bounce(rod: &Rod<DoubleDouble>, state: &State<DoubleDouble>) -> Option<(D
 
 /// The length of a flight: the root certified in doubles, lifted.
 fn first_contact(flight: &Flight<DoubleDouble>) -> Result<DoubleDouble, TooManyPieces> {
-    let State { theta, x_dot, y_dot, theta_dot } = flight.start;
+    let start = flight.start.map(DoubleDouble::to_f64);
     let rounded = Flight {
-        start: State {
-            theta: theta.to_f64(),
-            x_dot: x_dot.to_f64(),
-            y_dot: y_dot.to_f64(),
-            theta_dot: theta_dot.to_f64(),
-        },
+        start,
         sin_cos_theta: (flight.sin_cos_theta.0.to_f64(), flight.sin_cos_theta.1.to_f64()),
         clearance: flight.clearance.to_f64(),
         contact_distance: flight.contact_distance.to_f64(),
@@ -232,7 +236,7 @@ fn first_contact(flight: &Flight<DoubleDouble>) -> Result<DoubleDouble, TooManyP
         t = t - step;
         // What is left is some l θ̇² + G over the slope times the square of the step.
         let stiffness = gap.bend.to_f64().abs() / gap.slope.to_f64().abs();
-        if size * size * (stiffness + theta_dot.to_f64().abs()) <= NEGLIGIBLE * root {
+        if size * size * (stiffness + start.theta_dot.abs()) <= NEGLIGIBLE * root {
             break;
         }
         last = size;
