@@ -7,8 +7,8 @@
 //! [`impact`], [`flight`] and [`contact_time`] are the three parts of one bounce; [`map`] puts them together and ends
 //! a run; [`jacobian`] differentiates it, [`stability`] and [`regularity`] look at it from near and far, [`basin`] asks how far
 //! aside it may start, and [`verdict`] concludes. [`periodic_orbits`] finds what comes back; [`sweep`] runs many at once, for
-//! a [`region`]. [`extended`] is the map with 31 digits, to
-//! hold the others against; [`error_estimate`] says how far doubles may be off it, [`linear`] gives any impact in closed form.
+//! a [`region`]. [`extended`] is the map with 31 digits, to hold the others against; [`error_estimate`] says how far doubles
+//! may be off it, [`linear`] gives any impact in closed form, and [`method`] chooses among the three.
 
 pub mod basin;
 pub mod contact_time;
@@ -23,6 +23,7 @@ pub mod jacobian;
 mod lanes;
 pub mod linear;
 pub mod map;
+pub mod method;
 pub mod model;
 pub mod number;
 pub mod outcome;
