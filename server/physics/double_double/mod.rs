@@ -15,7 +15,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// A number of some 31 digits: `high + low`, where `low` is at most half a unit in the last place of `high`.
 ///
 /// A product or quotient is off by less than 1e-31 of itself, a sum by less than 4e-32 of itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
     high: f64,
     low: f64,
@@ -67,11 +67,6 @@ impl DoubleDouble {
     #[inline(always)]
     pub fn to_f64(self) -> f64 {
         self.high
-    }
-
-    /// What is left of it beyond the nearest double.
-    pub fn rest(self) -> f64 {
-        self.low
     }
 
     #[inline(always)]
