@@ -161,7 +161,7 @@ impl ErrorEstimate {
 
     /// The same with a contact of 31 digits.
     pub fn pass_extended(&mut self, contact: &extended::Contact) {
-        let state = contact.state.map(DoubleDouble::to_f64);
+        let state = extended::in_doubles(&contact.state);
         self.bounce(contact.n, &state, contact.flight_time.map(DoubleDouble::to_f64));
     }
 
@@ -244,7 +244,7 @@ impl ErrorEstimate {
         let (l, gravity) = (flight.contact_distance.value, flight.gravity.value);
         let speed = contact_speed.value.abs();
         let grazing = SAFETY * spread(&contact_speed) / speed;
-        self.lost |= !(grazing < GRAZING_SHARE) || !self.same_root(flight, t, speed);
+        self.lost |= grazing.is_nan() || grazing >= GRAZING_SHARE || !self.same_root(flight, t, speed);
         let turned = (theta_dot.value * t).abs();
         let reach = l * (flight.sin_cos_theta.0.value.abs() * turned.min(1.0) + (0.5 * turned * turned).min(2.0));
         let parts = t * (flight.start.y_dot.value.abs() + gravity * t) + 3.0 * reach + doubt;
@@ -322,10 +322,8 @@ fn add(numbers: [&mut Number8; STATES], sums: &[f64; STATES], directions: &[[f64
     let mut factor = [[0.0; STATES]; STATES];
     for row in 0..STATES {
         for column in 0..=row {
-            let mut rest = covariance[row][column];
-            for index in 0..column {
-                rest -= factor[row][index] * factor[column][index];
-            }
+            let known: f64 = (0..column).map(|index| factor[row][index] * factor[column][index]).sum();
+            let rest = covariance[row][column] - known;
             factor[row][column] = if row == column {
                 f64::max(rest, 0.0).sqrt()
             } else if factor[column][column] > 0.0 {

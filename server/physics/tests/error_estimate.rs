@@ -106,7 +106,7 @@ fn twins(scene: &Scene) -> [Scene; 2] {
 #[test]
 fn bounds_with_31_digits_hold_between_twins() {
     for kind in [scenes::Kind::Regular, scenes::Kind::Chaotic, scenes::Kind::Still] {
-        let mut source = random::Random(31);
+        let mut source = random::Random(2027);
         let (mut worst, mut ratios, mut lost) = (0.0_f64, Vec::new(), 0);
         // Chaotic ones that stay up: the paper's body beyond its soft boundary.
         let paper = reference::frictionless().into_iter().find(|(name, ..)| name == "case-1").unwrap().1;

@@ -2,6 +2,7 @@
 
 use equipoise_physics::double_double::DoubleDouble;
 use equipoise_physics::extended::{self, Contact};
+use equipoise_physics::map::Body;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use serde_json::Value as Json;
 
@@ -54,6 +55,17 @@ fn every_frictionless_reference_agrees_to_its_last_digits() {
         // The bound is of m/s, which are some ten times the angles; the references are written with 25 digits.
         assert!(worst <= 20.0 * bound + 1e-24 && bound < 1e-19, "{name}: error {worst:.1e}, bound {bound:.1e}");
         let allowed = f64::max(1e-23, reference["plain_double_error"].as_f64().unwrap() * 1e-15);
+        let orbit = scene.extended_orbit().unwrap();
+        if scene.rung().name() == "rod" {
+            let energies: Vec<_> = contacts.iter().map(|contact| orbit.energy(&contact.state)).collect();
+            let drift = energies.iter().map(|energy| (*energy - energies[0]).to_f64().abs()).fold(0.0, f64::max);
+            assert!(drift <= 1e-30, "{name}: energy drifts by {drift:.1e}");
+        }
+        let last = contacts.last().unwrap().state;
+        let speed = orbit.contact_speed(&last).to_f64();
+        assert!(
+            (speed - scene.model().contact_speed(&extended::in_doubles(&last))).abs() <= 1e-14 * speed.abs().max(1.0)
+        );
         println!("{name}: error {worst:.1e}, bound {bound:.1e}, allowed {allowed:.1e}");
         assert!(worst <= allowed, "{name}: error {worst:.1e}, allowed {allowed:.1e}");
         seen += 1;
