@@ -4,8 +4,11 @@
 //! A pure function: costs come from a table and not from a clock, so that the same question always gets the same answer.
 //! Whether a method is accurate enough is its own bound's to say.
 
+use crate::double_double::DoubleDouble;
+use crate::extended;
 use crate::impact::State;
-use crate::map::Body;
+use crate::linear::LinearSolution;
+use crate::map::{self, Body, Contact, Ending};
 use crate::scene::Scene;
 use crate::stability::Class;
 
@@ -43,6 +46,17 @@ impl Method {
         };
         once + each * impacts as f64
     }
+}
+
+/// One impact of a run by some method.
+#[derive(Clone, Copy, Debug)]
+pub struct Impact<'a> {
+    /// In doubles.
+    pub contact: Contact,
+    /// Bound on the largest of |ρδθ| (m), |δẋ|, |δẏ| and |ρδθ̇| (m/s) just before it; infinite where nothing is known.
+    pub error_estimate: f64,
+    /// All its digits and the orbit that it is of, where the method has more than doubles.
+    pub extended: Option<(&'a extended::Orbit, &'a extended::Contact)>,
 }
 
 /// The method chosen.
@@ -128,76 +142,118 @@ impl Scene {
     }
 
     fn reach(&self, method: Method, impacts: u64, tolerance: f64, go_on: &mut impl FnMut() -> bool) -> Option<Reach> {
-        let lost = || Some(Reach::None("the first contact is not found".to_owned()));
-        match method {
-            Method::Linear => self.linear_reach(impacts, tolerance, go_on),
-            Method::Map => {
-                let Ok(mut orbit) = self.orbit() else { return lost() };
-                let mut estimate = self.error_estimate(orbit.t());
-                follow(impacts, tolerance, go_on, || {
-                    let bound = estimate.bound();
-                    let contact = orbit.advance();
-                    estimate.pass(&contact);
-                    (bound, contact.flight_time.is_some())
-                })
-            }
-            Method::Extended => {
-                let Ok(mut orbit) = self.extended_orbit() else { return lost() };
-                let first = orbit.t().to_f64();
-                let mut estimate = self.extended_error_estimate(first);
-                follow(impacts, tolerance, go_on, || {
-                    let bound = estimate.bound();
-                    let contact = orbit.advance();
-                    estimate.pass_extended(&contact);
-                    (bound, contact.flight_time.is_some())
-                })
-            }
-        }
-    }
-
-    fn linear_reach(&self, impacts: u64, tolerance: f64, go_on: &mut impl FnMut() -> bool) -> Option<Reach> {
-        if !self.circles() {
+        if method == Method::Linear && !self.circles() {
             return Some(Reach::None("small deviations do not circle about a fixed point".to_owned()));
         }
-        let solution = match self.linear_solution() {
-            Ok(solution) => solution,
-            Err(why) => return Some(Reach::None(why)),
-        };
-        let body = self.model();
-        let mut n = 0;
-        follow(impacts, tolerance, go_on, || {
-            n += 1;
-            let impact = solution.impact(n);
-            // The linear solution knows no end of a run: it has to stay away from every one.
-            let State { theta, .. } = impact.state;
-            let strike = Body::strike(&body, &impact.state);
-            let margin = (strike.contact_rise).min(-strike.approach);
-            let safe = theta.abs() < 0.5 * self.topple_angle && 10.0 * impact.error_estimate < margin;
-            (if safe { impact.error_estimate } else { f64::INFINITY }, true)
-        })
+        let (mut largest, mut lost) = (0.0, None);
+        let run = self.run_by(method, impacts, |impact| {
+            let bound = impact.error_estimate;
+            if bound.is_nan() || bound > tolerance {
+                lost = Some(impact.contact.n - 1);
+                return false;
+            }
+            largest = f64::max(largest, bound);
+            !impact.contact.n.is_multiple_of(1024) || go_on()
+        });
+        match (run, lost) {
+            (Err(why), _) => Some(Reach::None(why)),
+            (Ok(_), Some(last)) => Some(Reach::Until(last)),
+            (Ok(ending), None) => ending.map(|_| Reach::All(largest)),
+        }
     }
-}
 
-/// Asks for the bounds of one impact after the other, each with whether the run goes on.
-fn follow(
-    impacts: u64,
-    tolerance: f64,
-    go_on: &mut impl FnMut() -> bool,
-    mut next: impl FnMut() -> (f64, bool),
-) -> Option<Reach> {
-    let mut largest = 0.0;
-    for n in 0..impacts {
-        if n.is_multiple_of(1024) && !go_on() {
-            return None;
-        }
-        let (bound, flies) = next();
-        if bound.is_nan() || bound > tolerance {
-            return Some(Reach::Until(n));
-        }
-        largest = f64::max(largest, bound);
-        if !flies {
-            break;
+    /// Runs the scene by a method: visits impact after impact up to number `impacts`, or to the end of the run. The visitor may
+    /// stop it by returning `false`, and then there is no ending.
+    ///
+    /// # Errors
+    /// Why the method does not apply, in a sentence.
+    pub fn run_by(
+        &self,
+        method: Method,
+        impacts: u64,
+        mut visit: impl FnMut(&Impact<'_>) -> bool,
+    ) -> Result<Option<Ending>, String> {
+        let lost = |_| "the first contact is not found".to_owned();
+        match method {
+            Method::Linear => {
+                let solution = self.linear_solution()?;
+                Ok(self.run_linear(&solution, impacts, visit))
+            }
+            Method::Map => {
+                let mut orbit = self.orbit().map_err(lost)?;
+                let mut estimate = self.error_estimate(orbit.t());
+                Ok(map::run(&mut orbit, impacts, |contact| {
+                    let error_estimate = estimate.bound();
+                    estimate.pass(contact);
+                    visit(&Impact { contact: *contact, error_estimate, extended: None })
+                }))
+            }
+            Method::Extended => {
+                let mut orbit = self.extended_orbit().map_err(lost)?;
+                let (rod, body) = (orbit, self.model());
+                let mut estimate = self.extended_error_estimate(orbit.t().to_f64());
+                Ok(extended::run(&mut orbit, impacts, |contact| {
+                    let error_estimate = estimate.bound();
+                    estimate.pass_extended(contact);
+                    let state = extended::in_doubles(&contact.state);
+                    let rounded = Contact {
+                        n: contact.n,
+                        t: contact.t.to_f64(),
+                        x: contact.x.to_f64(),
+                        state,
+                        strike: contact.strike.map(|_| body.strike(&state)),
+                        flight_time: contact.flight_time.map(DoubleDouble::to_f64),
+                        ending: contact.ending,
+                    };
+                    visit(&Impact { contact: rounded, error_estimate, extended: Some((&rod, contact)) })
+                }))
+            }
         }
     }
-    Some(Reach::All(largest))
+
+    /// The linear solution knows no end of a run; those of the map are looked for at its states.
+    fn run_linear(
+        &self,
+        solution: &LinearSolution,
+        impacts: u64,
+        mut visit: impl FnMut(&Impact<'_>) -> bool,
+    ) -> Option<Ending> {
+        let body = self.model();
+        let mut next = solution.impact(1);
+        for n in 1.. {
+            let here = next;
+            next = solution.impact(n + 1);
+            let State { theta, .. } = here.state;
+            let strike = body.strike(&here.state);
+            let ending = if theta.abs() >= self.topple_angle {
+                Some(Ending::Toppled { theta, limit: self.topple_angle })
+            } else if strike.push >= 0.0 {
+                Some(Ending::Separating { approach: strike.approach })
+            } else if strike.contact_rise <= 0.0 {
+                Some(Ending::Sinking { contact_rise: strike.contact_rise })
+            } else {
+                (n >= impacts).then_some(Ending::Completed)
+            };
+            // Too near to an end to say on which side of it the run is.
+            let margin = strike.contact_rise.min(-strike.approach);
+            let safe = theta.abs() < 0.5 * self.topple_angle && 10.0 * here.error_estimate < margin;
+            let contact = Contact {
+                n,
+                t: here.t,
+                x: here.x,
+                state: here.state,
+                strike: (strike.push < 0.0 && theta.abs() < self.topple_angle).then_some(strike),
+                flight_time: ending.is_none().then_some(next.t - here.t),
+                ending,
+            };
+            let error_estimate = if safe { here.error_estimate } else { f64::INFINITY };
+            if !visit(&Impact { contact, error_estimate, extended: None }) {
+                return None;
+            }
+            if ending.is_some() {
+                return ending;
+            }
+        }
+        None
+    }
 }
