@@ -109,13 +109,6 @@ impl<'v, 'e> Reader<'v, 'e> {
         }
     }
 
-    /// A field of the contract that this version does not compute yet: an error if it is there.
-    pub fn not_available(&mut self, name: &'v str) {
-        if self.has(name) {
-            self.refuse(name, format!("{name} is not available in this version"));
-        }
-    }
-
     /// The field, read by one of the functions of `leaf`, whose errors continue a sentence that begins with the name.
     pub fn read<T>(&mut self, name: &'v str, read: impl FnOnce(&'v Value, Source) -> Result<T, String>) -> Option<T> {
         let value = self.value(name)?;
@@ -145,17 +138,6 @@ impl<'v, 'e> Reader<'v, 'e> {
     /// One of the words in `known`, answered with what stands beside it.
     pub fn choice<T: Copy>(&mut self, name: &'v str, known: &[(&str, T)]) -> Option<T> {
         self.read(name, |value, _| leaf::choice(value, known))
-    }
-
-    /// Like `choice`, for a field that also has words of the contract which this version does not compute yet.
-    pub fn choice_so_far<T: Copy>(&mut self, name: &'v str, known: &[(&str, T)], later: &[&str]) -> Option<T> {
-        self.read(name, |value, _| match value.as_str() {
-            Some(word) if later.contains(&word) => {
-                let words: Vec<&str> = known.iter().map(|(word, _)| *word).collect();
-                Err(format!("is {word:?}, which is not available in this version; it must be {}", leaf::one_of(&words)))
-            }
-            _ => leaf::choice(value, known),
-        })
     }
 
     /// An object within this one, with errors to the same place. Finish it before reading on here.
@@ -267,16 +249,6 @@ mod tests {
         });
         let pointers: Vec<&str> = errors.iter().map(|(pointer, _)| pointer.as_str()).collect();
         assert_eq!(pointers, ["/list/1", "/list/2/m"]);
-    }
-
-    #[test]
-    fn what_is_not_there_yet_says_so() {
-        let errors = errors_of(&json!({"tolerance": 1e-9, "method": "linear"}), Source::Json, |reader| {
-            reader.not_available("tolerance");
-            assert_eq!(reader.choice_so_far("method", &[("auto", 1), ("map", 2)], &["linear"]), None);
-        });
-        assert_eq!(errors[0].1, "tolerance is not available in this version");
-        assert!(errors[1].1.starts_with("method is \"linear\", which is not available in this version"));
     }
 
     #[test]

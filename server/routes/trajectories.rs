@@ -11,15 +11,10 @@ use crate::compute::{Cancel, Cancelled, Price};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::limits;
 use crate::wire::scene;
-use crate::wire::trajectory::Trajectory;
+use crate::wire::trajectory::{Request, Trajectory};
 
 const RESOURCE: Resource =
     Resource { name: "trajectories", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png] };
-
-/// Numbers in a row of contacts, and in one of flight samples; and what a row costs beside its bounce, in bounces.
-const CONTACT_NUMBERS: u64 = 17;
-const SAMPLE_NUMBERS: u64 = 8;
-const ROW_PRICE: u64 = 10;
 
 /// Its path.
 pub fn routes() -> Router<App> {
@@ -27,22 +22,21 @@ pub fn routes() -> Router<App> {
 }
 
 async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
-    let (scene, impacts, samples) = ask.read(|reader| {
+    let (scene, request) = ask.read(|reader| {
         let scene = scene::read(reader);
-        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
-        let samples = reader.integer("samples_per_flight", 0..=limits::SAMPLES_PER_FLIGHT).unwrap_or(0);
-        // There is one method so far, so that there is nothing to choose.
-        reader.choice_so_far("method", &[("auto", ()), ("map", ())], &["linear", "extended"]);
-        reader.not_available("tolerance");
-        Some((scene?, impacts, samples))
+        let request = Request::read(reader);
+        Some((scene?, request))
     })?;
-    let rows = impacts.saturating_mul(CONTACT_NUMBERS).saturating_add(impacts.saturating_mul(samples * SAMPLE_NUMBERS));
-    limits::ANSWER.admit(rows)?;
-    let price = Price::bounces(impacts).times(1 + samples).times(ROW_PRICE).within(&limits::WORK)?;
-    let canonical = super::canonical(&scene, &(impacts, samples));
+    limits::ANSWER.admit(request.numbers())?;
+    let price = Price::bounces(request.price()).within(&limits::WORK)?;
+    let canonical = super::canonical(&scene, &request);
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
-        let trajectory = Trajectory::compute(&scene, impacts, samples, || !cancel.is_set()).ok_or(Cancelled)?;
+        let trajectory = match Trajectory::compute(&scene, &request, || !cancel.is_set()) {
+            Ok(trajectory) => trajectory,
+            Err(Some((pointer, detail))) => return Err(Problem::invalid_at(pointer, detail)),
+            Err(None) => return Err(Cancelled.into()),
+        };
         metrics.bounces.inc_by(trajectory.outcome.impacts);
         match format {
             Format::Csv => Ok(trajectory.impacts.to_csv()),

@@ -2,6 +2,7 @@
 //!
 //! Not the physics' own types, so that these can change without breaking a client; and no HTTP.
 
+mod contacts;
 mod evidence;
 pub mod failure;
 pub mod fields;

@@ -1,5 +1,6 @@
 //! A table of results, defined once and written as JSON columns, CSV with units in its header, or NDJSON rows.
 
+use equipoise_physics::double_double::DoubleDouble;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
@@ -32,6 +33,13 @@ pub enum Cells {
     Flags(Vec<Option<bool>>),
     /// Sentences that need not exist.
     Texts(Vec<Option<String>>),
+    /// Numbers of 32 digits that need not exist, as text.
+    #[serde(serialize_with = "decimals")]
+    Decimals(Vec<Option<DoubleDouble>>),
+}
+
+fn decimals<S: Serializer>(cells: &[Option<DoubleDouble>], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(cells.iter().map(|cell| cell.map(|number| number.to_string())))
 }
 
 impl Cells {
@@ -44,6 +52,17 @@ impl Cells {
             Self::Words(cells) => cells.len(),
             Self::Flags(cells) => cells.len(),
             Self::Texts(cells) => cells.len(),
+            Self::Decimals(cells) => cells.len(),
+        }
+    }
+
+    /// As doubles; none unless every one exists.
+    pub fn numbers(&self) -> Option<Vec<f64>> {
+        match self {
+            Self::Numbers(cells) => Some(cells.clone()),
+            Self::Sparse(cells) => cells.iter().copied().collect(),
+            Self::Decimals(cells) => cells.iter().map(|cell| cell.map(DoubleDouble::to_f64)).collect(),
+            _ => None,
         }
     }
 
@@ -58,6 +77,7 @@ impl Cells {
             Self::Words(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Flags(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Texts(cells) => serde_json::to_writer(out, &cells[row]),
+            Self::Decimals(cells) => serde_json::to_writer(out, &cells[row].map(|number| number.to_string())),
         };
     }
 
@@ -66,6 +86,11 @@ impl Cells {
         let text = match self {
             Self::Words(cells) => cells[row],
             Self::Texts(cells) => cells[row].as_deref(),
+            Self::Decimals(cells) => {
+                let number = cells[row].map(|number| number.to_string());
+                out.extend_from_slice(number.unwrap_or_default().as_bytes());
+                return;
+            }
             Self::Counts(_) | Self::Numbers(_) | Self::Sparse(_) | Self::SparseCounts(_) | Self::Flags(_) => {
                 let start = out.len();
                 self.write_json(row, out);

@@ -1,13 +1,15 @@
 //! The answer of `trajectories`: the contacts of a run as a table, how it ended, and its flights where they are asked for.
 
-use equipoise_physics::impact::State;
-use equipoise_physics::map::{Body, Contact, Ending, Orbit};
-use equipoise_physics::model::Model;
+use equipoise_physics::map::{Body, Ending};
+use equipoise_physics::method::{self, Impact, Method};
 use equipoise_physics::scene::{Name, Scene};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
+use super::contacts::{Contacts, Flights};
 use super::scene::{Resolved, has_angle};
-use super::table::{Cells, Column, Table};
+use super::table::Table;
+use crate::http::Reader;
+use crate::limits;
 use crate::picture::{PhasePlanes, phase_planes};
 
 /// What a run is computed with, and why.
@@ -98,151 +100,113 @@ impl Outcome {
     }
 }
 
-/// The contacts of a run, gathered one by one.
-#[derive(Debug)]
-pub struct Contacts {
-    body: Model,
-    has_angle: bool,
-    n: Vec<u64>,
-    numbers: [Vec<f64>; 8],
-    theta_dot: Vec<Option<f64>>,
-    strikes: [Vec<Option<f64>>; 4],
-    contact_mode: Vec<Option<&'static str>>,
-    flight_time: Vec<Option<f64>>,
+/// What is asked for beside the scene.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Request {
+    /// How many contacts at most.
+    pub impacts: u64,
+    /// Points along each flight.
+    pub samples_per_flight: u64,
+    /// A method by name; none leaves the choice.
+    #[serde(serialize_with = "name_of")]
+    pub method: Option<Method>,
+    /// Wanted bound on the error, m/s.
+    pub tolerance: Option<f64>,
 }
 
-impl Contacts {
-    /// None yet, with room for some.
-    pub fn new(scene: &Scene, expected: usize) -> Self {
-        let room = expected.min(1 << 16);
-        Self {
-            body: scene.model(),
-            has_angle: has_angle(scene),
-            n: Vec::with_capacity(room),
-            numbers: std::array::from_fn(|_| Vec::with_capacity(room)),
-            theta_dot: Vec::with_capacity(room),
-            strikes: std::array::from_fn(|_| Vec::with_capacity(room)),
-            contact_mode: Vec::with_capacity(room),
-            flight_time: Vec::with_capacity(room),
-        }
+fn name_of<S: Serializer>(method: &Option<Method>, serializer: S) -> Result<S::Ok, S::Error> {
+    method.map(Method::name).serialize(serializer)
+}
+
+/// Tolerances, m/s. Below, no method has the digits; above, no bound says anything.
+const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-30..=1.0;
+
+/// The tolerance, m/s, up to which impacts count as predictable where none is asked for.
+const PREDICTABLE: f64 = 1e-3;
+
+/// Numbers in a row of contacts, and in one of flight samples.
+const CONTACT_NUMBERS: u64 = 17;
+const SAMPLE_NUMBERS: u64 = 8;
+
+/// What a row costs beside its bounce, and what each method costs an impact with its error estimate, in bounces.
+const ROW_PRICE: u64 = 10;
+const LINEAR_PRICE: u64 = 200;
+const MAP_PRICE: u64 = 8;
+const EXTENDED_PRICE: u64 = 40;
+
+impl Request {
+    /// Reads everything but the scene.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Self {
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
+        let samples_per_flight = reader.integer("samples_per_flight", 0..=limits::SAMPLES_PER_FLIGHT).unwrap_or(0);
+        let [linear, map, extended] = Method::ALL.map(|method| (method.name(), Some(method)));
+        let method = reader.choice("method", &[("auto", None), map, linear, extended]).flatten();
+        let tolerance = reader.number("tolerance", TOLERANCES, "m/s");
+        Self { impacts, samples_per_flight, method, tolerance }
     }
 
-    /// Adds one.
-    pub fn push(&mut self, contact: &Contact) {
-        let State { theta, x_dot, y_dot, theta_dot } = contact.state;
-        // A table that does not strike tilts all the same.
-        let strike = contact.strike.unwrap_or_else(|| self.body.strike(&contact.state));
-        // + 0.0: a table at rest moves by 0, not by −0.
-        let struck = |value: f64| contact.strike.is_some().then_some(value + 0.0).filter(|value| value.is_finite());
-        let numbers = [
-            contact.t,
-            contact.x,
-            theta,
-            x_dot,
-            y_dot,
-            strike.alpha,
-            self.body.energy(&contact.state),
-            self.body.contact_speed(&contact.state),
-        ];
-        self.n.push(contact.n);
-        for (column, value) in self.numbers.iter_mut().zip(numbers) {
-            column.push(value);
-        }
-        self.theta_dot.push(self.has_angle.then_some(theta_dot));
-        let (table_x, table_y) = strike.table_velocity;
-        for (column, value) in self.strikes.iter_mut().zip([table_x, table_y, strike.impulse_normal, 0.0]) {
-            column.push(struck(value));
-        }
-        self.contact_mode.push(contact.strike.map(|_| "frictionless"));
-        self.flight_time.push(contact.flight_time);
+    /// Numbers in its answer.
+    pub fn numbers(&self) -> u64 {
+        self.impacts.saturating_mul(CONTACT_NUMBERS + self.samples_per_flight * SAMPLE_NUMBERS)
     }
 
-    /// All of them, in the order of the contract.
-    pub fn into_table(self) -> Table {
-        let rows = self.n.len();
-        let [t, x, theta, x_dot, y_dot, alpha, energy, contact_speed] = self.numbers.map(Cells::Numbers);
-        let [table_x, table_y, normal, tangential] = self.strikes.map(Cells::Sparse);
-        let columns = [
-            ("n", "", Cells::Counts(self.n)),
-            ("t", "s", t),
-            ("x", "m", x),
-            ("theta", "rad", theta),
-            ("x_dot", "m_per_s", x_dot),
-            ("y_dot", "m_per_s", y_dot),
-            ("theta_dot", "rad_per_s", Cells::Sparse(self.theta_dot)),
-            ("alpha", "rad", alpha),
-            ("table_velocity_x", "m_per_s", table_x),
-            ("table_velocity_y", "m_per_s", table_y),
-            ("impulse_normal", "m_per_s", normal),
-            ("impulse_tangential", "m_per_s", tangential),
-            ("contact_mode", "", Cells::Words(self.contact_mode)),
-            ("energy", "m2_per_s2", energy),
-            ("flight_time", "s", Cells::Sparse(self.flight_time)),
-            ("contact_speed", "m_per_s", contact_speed),
-            ("error_estimate", "m_per_s", Cells::Sparse(vec![None; rows])),
-        ];
-        Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into())
+    /// Its work, in bounces.
+    pub fn price(&self) -> u64 {
+        let method = match (self.method, self.tolerance) {
+            (Some(Method::Linear), _) => LINEAR_PRICE,
+            (Some(Method::Map), _) | (None, None) => MAP_PRICE,
+            (Some(Method::Extended), _) => EXTENDED_PRICE,
+            // Each may be tried, and the dearest run again.
+            (None, Some(_)) => LINEAR_PRICE + MAP_PRICE + 2 * EXTENDED_PRICE,
+        };
+        self.impacts.saturating_mul(method + ROW_PRICE * (1 + self.samples_per_flight))
     }
 }
 
-/// Samples of the flights between contacts, evenly in time, each flight from its start.
-#[derive(Debug, Default)]
-pub struct Flights {
-    impact: Vec<u64>,
-    numbers: [Vec<f64>; 5],
-    theta: Vec<Option<f64>>,
-    theta_dot: Vec<Option<f64>>,
+/// The method of a run, why, and what it costs.
+#[derive(Debug, Clone, Serialize)]
+pub struct MethodChoice {
+    /// Its name.
+    pub name: &'static str,
+    /// The reason, in a sentence.
+    pub reason: String,
+    /// What it costs by the fixed table that choices are made by, µs.
+    pub cost_us: f64,
+    /// The next dearer one that would have done.
+    pub next: Option<Dearer>,
 }
 
-impl Flights {
-    /// Adds `samples` of the flight that follows contact `impact` (0: the fall from the release) at time `t`, place `x`
-    /// and height `y` of the centre of gravity.
-    #[expect(clippy::too_many_arguments, reason = "a flight is that many numbers")]
-    pub fn push(
-        &mut self,
-        scene: &Scene,
-        impact: u64,
-        t: f64,
-        x: f64,
-        y: f64,
-        start: &State,
-        length: f64,
-        samples: u64,
-    ) {
-        let gravity = scene.gravity();
-        for sample in 0..samples {
-            let since = length * sample as f64 / samples as f64;
-            let numbers = [
-                t + since,
-                x + start.x_dot * since,
-                y + since * (start.y_dot - 0.5 * gravity * since),
-                start.x_dot,
-                start.y_dot - gravity * since,
-            ];
-            self.impact.push(impact);
-            for (column, value) in self.numbers.iter_mut().zip(numbers) {
-                column.push(value);
-            }
-            let has_angle = has_angle(scene);
-            self.theta.push(has_angle.then_some(start.theta + start.theta_dot * since));
-            self.theta_dot.push(has_angle.then_some(start.theta_dot));
-        }
-    }
+/// A method that was not needed.
+#[derive(Debug, Clone, Serialize)]
+pub struct Dearer {
+    /// Its name.
+    pub name: &'static str,
+    /// As for the one chosen, µs.
+    pub cost_us: f64,
+}
 
-    /// All of them, in the order of the contract.
-    pub fn into_table(self) -> Table {
-        let [t, x, y, x_dot, y_dot] = self.numbers.map(Cells::Numbers);
-        let columns = [
-            ("impact", "", Cells::Counts(self.impact)),
-            ("t", "s", t),
-            ("x", "m", x),
-            ("y", "m", y),
-            ("theta", "rad", Cells::Sparse(self.theta)),
-            ("x_dot", "m_per_s", x_dot),
-            ("y_dot", "m_per_s", y_dot),
-            ("theta_dot", "rad_per_s", Cells::Sparse(self.theta_dot)),
-        ];
-        Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into())
+/// Why there is no answer: nobody wants it any more (none), or a field and what is wrong with it.
+pub type Refused = Option<(&'static str, String)>;
+
+impl MethodChoice {
+    fn of(scene: &Scene, request: &Request, go_on: &mut impl FnMut() -> bool) -> Result<(Method, Self), Refused> {
+        let Request { impacts, method, tolerance, .. } = *request;
+        if let (None, Some(tolerance)) = (method, tolerance) {
+            let choice = scene
+                .choose_method(impacts, tolerance, go_on)
+                .ok_or(None)?
+                .map_err(|refusal| Some(("/tolerance", refusal.detail)))?;
+            let method::Choice { method, cost_us, next, reason, .. } = choice;
+            let next = next.map(|(method, cost_us)| Dearer { name: method.name(), cost_us });
+            return Ok((method, Self { name: method.name(), reason, cost_us, next }));
+        }
+        let reason = match method {
+            Some(_) => "as asked for",
+            None => "the map from contact to contact in closed form; no tolerance was asked for",
+        };
+        let method = method.unwrap_or(Method::Map);
+        let cost_us = method.cost_us(impacts);
+        Ok((method, Self { name: method.name(), reason: reason.to_owned(), cost_us, next: None }))
     }
 }
 
@@ -254,12 +218,12 @@ pub struct Trajectory<'a> {
     /// The model and why.
     pub model: Choice,
     /// The method and why.
-    pub method: Choice,
+    pub method: MethodChoice,
     /// How the run ended.
     pub outcome: Outcome,
     /// Its contacts.
     pub impacts: Table,
-    /// Up to which contact the states mean something.
+    /// The last contact before the error estimate passes the tolerance; none where it does not.
     pub predictable_impacts: Option<u64>,
     /// Samples of its flights.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -271,51 +235,60 @@ pub struct Trajectory<'a> {
 }
 
 impl<'a> Trajectory<'a> {
-    /// Runs a scene for up to `impacts` contacts; `go_on` is asked now and then, and a `false` gives none.
-    pub fn compute(
-        scene: &'a Scene,
-        impacts: u64,
-        samples_per_flight: u64,
-        mut go_on: impl FnMut() -> bool,
-    ) -> Option<Self> {
-        // The ranges of a scene bound its first flight, so there always is an orbit.
-        let mut orbit: Orbit<Model> = scene.orbit().ok()?;
+    /// Runs a scene; `go_on` is asked now and then.
+    ///
+    /// # Errors
+    /// [`Refused`]: where `go_on` said no, where no method holds the tolerance, and where the method does not apply.
+    pub fn compute(scene: &'a Scene, request: &Request, mut go_on: impl FnMut() -> bool) -> Result<Self, Refused> {
+        let (method, choice) = MethodChoice::of(scene, request, &mut go_on)?;
+        let Request { impacts, samples_per_flight: samples, tolerance, .. } = *request;
         let mut contacts = Contacts::new(scene, usize::try_from(impacts).unwrap_or(usize::MAX));
-        let mut flights = (samples_per_flight > 0).then(Flights::default);
-        if let Some(flights) = &mut flights {
-            let release = scene.release();
-            flights.push(scene, 0, 0.0, release.x, release.height, &release.state, orbit.t(), samples_per_flight);
-        }
+        let mut flights = (samples > 0).then(Flights::default);
         let body = scene.model();
-        let mut last_t = 0.0;
-        let ending = equipoise_physics::map::run(&mut orbit, impacts, |contact| {
-            contacts.push(contact);
-            last_t = contact.t;
-            if let (Some(flights), Some(strike), Some(length)) = (&mut flights, contact.strike, contact.flight_time) {
-                let y = body.contact_height(&contact.state);
-                flights.push(scene, contact.n, contact.t, contact.x, y, &strike.after, length, samples_per_flight);
+        let (mut last, mut unknown, mut predictable) = (None, 0, None);
+        let run = scene.run_by(method, impacts, |impact| {
+            let Impact { contact, error_estimate, .. } = impact;
+            contacts.push(impact);
+            if let Some(flights) = &mut flights {
+                if contact.n == 1 {
+                    let release = scene.release();
+                    flights.push(scene, 0, 0.0, release.x, release.height, &release.state, contact.t, samples);
+                }
+                if let (Some(strike), Some(length)) = (contact.strike, contact.flight_time) {
+                    let y = body.contact_height(&contact.state);
+                    flights.push(scene, contact.n, contact.t, contact.x, y, &strike.after, length, samples);
+                }
+            }
+            last = Some((contact.n, contact.t));
+            unknown += u64::from(!error_estimate.is_finite());
+            if predictable.is_none() && !(*error_estimate <= tolerance.unwrap_or(PREDICTABLE)) {
+                predictable = Some(contact.n - 1);
             }
             !contact.n.is_multiple_of(256) || go_on()
-        })?;
-        let mut notes =
-            vec!["error_estimate and predictable_impacts are null: this version does not estimate errors".to_owned()];
+        });
+        let ending = run.map_err(|why| Some(("/method", format!("{} does not apply: {why}", choice.name))))?;
+        let ((contacts_made, t), ending) = last.zip(ending).ok_or(None)?;
+        let mut notes = Vec::new();
+        if unknown > 0 {
+            notes.push(format!(
+                "error_estimate is null at {unknown} impacts: past a graze, or once rounding has grown to the size of the \
+                 run, no bound is known"
+            ));
+        }
         if !has_angle(scene) {
             notes.push(
                 "theta is the angle of the velocity from straight down, and theta_dot is null: a point mass has no \
-                        angle of its own"
+                 angle of its own"
                     .to_owned(),
             );
         }
-        Some(Self {
+        Ok(Self {
             scene: Resolved(scene),
             model: Choice::model(scene),
-            method: Choice {
-                name: "map",
-                reason: "the map from contact to contact in closed form, the only method of this version".to_owned(),
-            },
-            outcome: Outcome::new(ending, orbit.contacts(), last_t),
+            method: choice,
+            outcome: Outcome::new(ending, contacts_made, t),
             impacts: contacts.into_table(),
-            predictable_impacts: None,
+            predictable_impacts: predictable,
             flights: flights.map(Flights::into_table),
             notes,
             tilt_gain: scene.number(Name::TiltGain).unwrap_or_default(),
@@ -324,22 +297,16 @@ impl<'a> Trajectory<'a> {
 
     /// The phase planes, as SVG.
     pub fn to_picture(&self) -> String {
-        let column = |name: &str| self.impacts.0.iter().find(|column| column.name == name).map(|column| &column.cells);
-        let numbers = |name| match column(name) {
-            Some(Cells::Numbers(cells)) => cells.as_slice(),
-            _ => &[],
-        };
-        let theta_dot: Option<Vec<f64>> = match column("theta_dot") {
-            Some(Cells::Sparse(cells)) => cells.iter().copied().collect(),
-            _ => None,
-        };
+        let column = |name: &str| self.impacts.0.iter().find(|column| column.name == name)?.cells.numbers();
+        let numbers = |name| column(name).unwrap_or_default();
+        let theta_dot = column("theta_dot");
         phase_planes(&PhasePlanes {
             title: &format!("Contacts of a {} with κ = {}", self.model.name.replace('_', " "), self.tilt_gain),
             subtitle: &format!("{}: {}", self.outcome.kind, self.outcome.detail),
-            theta: numbers("theta"),
+            theta: &numbers("theta"),
             theta_dot: theta_dot.as_deref(),
-            x_dot: numbers("x_dot"),
-            y_dot: numbers("y_dot"),
+            x_dot: &numbers("x_dot"),
+            y_dot: &numbers("y_dot"),
         })
     }
 
@@ -348,8 +315,12 @@ impl<'a> Trajectory<'a> {
         #[derive(Serialize)]
         struct End {
             outcome: Outcome,
+            method: MethodChoice,
+            predictable_impacts: Option<u64>,
             notes: Vec<String>,
         }
-        End { outcome: self.outcome.clone(), notes: self.notes.clone() }
+        let Self { outcome, method, predictable_impacts, notes, .. } = self;
+        let (outcome, method, notes) = (outcome.clone(), method.clone(), notes.clone());
+        End { outcome, method, predictable_impacts: *predictable_impacts, notes }
     }
 }

@@ -1,0 +1,148 @@
+//! How a run is computed: by what is asked for, or the cheapest method that holds the tolerance, with an error estimate that is true.
+
+mod support;
+
+use equipoise_physics::double_double::DoubleDouble;
+use serde_json::{Value, json};
+use support::{Answer, Server};
+
+fn number(value: &Value) -> DoubleDouble {
+    match value {
+        Value::String(digits) => digits.parse().unwrap(),
+        value => DoubleDouble::from(value.as_f64().unwrap()),
+    }
+}
+
+fn column(answer: &Value, name: &str) -> Vec<DoubleDouble> {
+    answer["impacts"][name].as_array().unwrap().iter().map(number).collect()
+}
+
+/// The largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇| at each impact.
+fn errors(answer: &Value, exact: &Value) -> Vec<f64> {
+    let rho = answer["scene"]["body"]["radius_of_gyration"].as_f64().unwrap_or(0.0);
+    let mut largest = Vec::new();
+    for (name, scale) in [("theta", rho), ("x_dot", 1.0), ("y_dot", 1.0), ("theta_dot", rho)] {
+        let pairs = column(answer, name).into_iter().zip(column(exact, name));
+        let errors: Vec<f64> = pairs.map(|(value, exact)| scale * (value - exact).to_f64().abs()).collect();
+        largest.resize(errors.len(), 0.0);
+        largest.iter_mut().zip(errors).for_each(|(largest, error)| *largest = f64::max(*largest, error));
+    }
+    largest
+}
+
+/// Every run that was computed with 60 digits and has no friction.
+fn references() -> Vec<(String, Value)> {
+    let files = std::fs::read_dir("tests/reference").unwrap().map(|entry| entry.unwrap().path());
+    let named = files.map(|file| (file.file_stem().unwrap().to_string_lossy().into_owned(), file));
+    let plain = named.filter(|(name, _)| !name.starts_with("friction"));
+    let read = |file| serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+    plain.map(|(name, file)| (name, read(file))).collect()
+}
+
+#[tokio::test]
+async fn extended_gives_the_references_digit_by_digit() {
+    let server = Server::start();
+    for (name, reference) in references() {
+        let request = json!({"scene": reference["scene"], "impacts": reference["impacts"], "method": "extended"});
+        let answer = server.post("/v1/trajectories", &request).await.expect(200).json();
+        assert_eq!(answer["outcome"]["kind"], reference["outcome"], "{name}");
+        let plain = reference["plain_double_error"].as_f64().unwrap();
+        for quantity in ["t", "x", "theta", "x_dot", "y_dot", "theta_dot"] {
+            let exact: Vec<DoubleDouble> =
+                reference["states"][quantity].as_array().unwrap().iter().map(number).collect();
+            let values = column(&answer, quantity);
+            assert_eq!(values.len(), exact.len(), "{name}: {quantity}");
+            for (value, exact) in values.into_iter().zip(exact) {
+                let (error, size) = ((value - exact).to_f64().abs(), exact.to_f64().abs());
+                // 25 digits are printed.
+                let allowed = f64::max(1e-23 * size, plain * 1e-15).max(1e-25);
+                assert!(error <= allowed, "{name}: {quantity} is {value}, off by {error:e}, allowed {allowed:e}");
+            }
+        }
+    }
+}
+
+#[tokio::test]
+async fn error_estimates_hold_and_are_not_idle() {
+    let server = Server::start();
+    let mut ratios = Vec::new();
+    for (name, reference) in references() {
+        let run = async |method: &str| {
+            let request = json!({"scene": reference["scene"], "impacts": reference["impacts"], "method": method});
+            server.post("/v1/trajectories", &request).await.expect(200).json()
+        };
+        let (map, exact) = (run("map").await, run("extended").await);
+        let estimates = map["impacts"]["error_estimate"].as_array().unwrap();
+        for (n, (error, estimate)) in errors(&map, &exact).into_iter().zip(estimates).enumerate() {
+            let Some(estimate) = estimate.as_f64().filter(|estimate| *estimate < 1e-3) else { continue };
+            assert!(error <= estimate, "{name}: contact {} is off by {error:e}, estimated {estimate:e}", n + 1);
+            ratios.push(estimate / error.max(2.3e-16));
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    let median = ratios[ratios.len() / 2];
+    println!("{} estimates, median {median:.1} times the error", ratios.len());
+    assert!(median <= 100.0, "{median}");
+}
+
+#[tokio::test]
+async fn auto_takes_the_cheapest_that_holds_the_tolerance() {
+    let server = Server::start();
+    let ask =
+        async |query: &str| server.get(&format!("/v1/trajectories?preset=case-1&{query}")).await.expect(200).json();
+    for (query, name, next) in [
+        ("impacts=100", "map", Value::Null),
+        ("impacts=100&tolerance=1e-9", "map", json!("extended")),
+        ("impacts=5000&tolerance=1e-6&scene.release.theta=1e-4", "linear", json!("map")),
+        ("impacts=1000&tolerance=1e-20", "extended", Value::Null),
+    ] {
+        let answer = ask(query).await;
+        assert_eq!((&answer["method"]["name"], &answer["method"]["next"]["name"]), (&json!(name), &next), "{query}");
+        let exact = ask(&format!("{query}&method=extended")).await;
+        let tolerance = query.split('&').find_map(|part| part.strip_prefix("tolerance=")?.parse::<f64>().ok());
+        if let Some(tolerance) = tolerance {
+            let worst = errors(&answer, &exact).into_iter().fold(0.0, f64::max);
+            assert!(worst <= tolerance, "{query}: {worst:e}");
+            assert_eq!(answer["predictable_impacts"], Value::Null);
+        }
+    }
+}
+
+#[tokio::test]
+async fn an_impossible_tolerance_is_refused_with_the_horizon() {
+    let server = Server::start();
+    let chaotic = "/v1/trajectories?preset=case-1&scene.table.tilt_gain=1.55&scene.release.theta=0.02";
+    let refused = server.get(&format!("{chaotic}&impacts=1000&tolerance=1e-3")).await.expect(422);
+    assert_eq!(refused.pointers(), ["/tolerance"]);
+    let detail = refused.json()["errors"][0]["detail"].as_str().unwrap().to_owned();
+    let horizon: u64 = detail.split("at most ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!((100..1000).contains(&horizon), "{detail}");
+    server.get(&format!("{chaotic}&impacts={horizon}&tolerance=1e-3")).await.expect(200);
+    // Without a tolerance it is run, and says how far it means something.
+    let run = server.get(&format!("{chaotic}&impacts={horizon}")).await.expect(200).json();
+    let predictable = run["predictable_impacts"].as_u64().unwrap();
+    assert!(predictable > 10 && predictable < horizon, "{predictable} of {horizon}");
+    for (query, pointer) in [("tolerance=0", "/tolerance"), ("tolerance=2", "/tolerance"), ("method=euler", "/method")]
+    {
+        assert_eq!(server.get(&format!("{chaotic}&{query}")).await.expect(422).pointers(), [pointer]);
+    }
+    let still = server.get("/v1/trajectories?preset=still-lossy&method=linear").await.expect(422);
+    assert_eq!(still.pointers(), ["/method"]);
+    assert!(still.text().contains("does not apply"), "{}", still.text());
+}
+
+#[tokio::test]
+async fn decimals_are_the_same_in_every_format() {
+    let server = Server::start();
+    let ask = async |format: &str| -> Answer {
+        let target = "/v1/trajectories?preset=case-3&impacts=60&method=extended&samples_per_flight=2&format=";
+        server.get(&format!("{target}{format}")).await.expect(200)
+    };
+    let json = ask("json").await.json();
+    let digits = json["impacts"]["theta"][7].as_str().unwrap();
+    assert!(digits.len() > 30, "{digits}");
+    assert_eq!(json["impacts"]["flight_time"].as_array().unwrap().last(), Some(&Value::Null));
+    assert!(ask("csv").await.text().contains(&format!(",{digits},")));
+    assert!(ask("ndjson").await.text().contains(&format!("\"theta\":\"{digits}\"")));
+    assert!(ask("svg").await.text().starts_with("<svg"));
+}
