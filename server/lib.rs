@@ -12,6 +12,7 @@ pub mod limits;
 pub mod live;
 pub mod middleware;
 pub mod picture;
+pub mod precision;
 pub mod router;
 pub mod routes;
 pub mod transport;

@@ -73,6 +73,24 @@ pub const REGION_BLOCK_CELLS: std::ops::RangeInclusive<u64> = 64..=2048;
 /// Nodes along a side of the grid on which the linear boundary of a region is found.
 pub const REGION_BOUNDARY_NODES: usize = 49;
 
+/// Contacts over which methods are charted. Errors of chaotic runs say nothing long before, and fine steps take too long.
+pub const PRECISION_IMPACTS: u64 = 1000;
+
+/// Steps of one run of a charted method, some 30 ms: settings that would take more are left out.
+pub const PRECISION_STEPS: u64 = 1_000_000;
+
+/// Time over which one method with one setting is measured; all sixty of them take some 1.5 s.
+pub const PRECISION_TIME: Duration = Duration::from_millis(30);
+
+/// Work of that, in bounces.
+pub const PRECISION_PRICE: u64 = 430_000;
+
+/// Least time of one look of the stopwatch: a thousand times the grain of the clock.
+pub const PRECISION_LOOK: Duration = Duration::from_micros(50);
+
+/// Looks of which a median is taken.
+pub const PRECISION_REPEATS: usize = 301;
+
 /// Numbers in one answer (columns times rows). JSON takes some 20 bytes for each, so 80 MB, held in memory until sent.
 pub const ANSWER: Limit = Limit { name: "size of the answer", most: 4_000_000, unit: "numbers" };
 

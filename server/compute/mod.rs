@@ -5,6 +5,7 @@
 mod cancel;
 mod pool;
 mod price;
+pub mod stopwatch;
 mod turns;
 
 pub use cancel::{Cancel, Cancelled};

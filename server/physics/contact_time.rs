@@ -7,6 +7,7 @@
 use crate::flight::{Flight, Gap};
 use crate::impact::State;
 use crate::number::{Number, Real};
+use std::cell::Cell;
 use std::f64::consts::TAU;
 
 /// Most pieces that one flight may be cut into. The ranges of a scene allow 25,000; a run whose energy feedback drives it
@@ -28,16 +29,50 @@ pub struct TooManyPieces;
 /// [`TooManyPieces`] where the work limit is passed.
 #[inline(always)]
 pub fn first_contact(flight: &Flight) -> Result<f64, TooManyPieces> {
+    look_for_contact(flight, Uncounted)
+}
+
+/// How many times [`first_contact`] evaluates the gap of a flight. It is done for that, so it is not for loops in a hurry.
+pub fn evaluations(flight: &Flight) -> u64 {
+    let count = Cell::new(0);
+    let _ = look_for_contact(flight, &count);
+    count.get()
+}
+
+/// Who looks at the gap; nothing to pass where nobody counts.
+trait Eye: Copy {
+    fn gap(self, flight: &Flight, t: f64) -> Gap;
+}
+
+#[derive(Clone, Copy)]
+struct Uncounted;
+
+impl Eye for Uncounted {
+    #[inline(always)]
+    fn gap(self, flight: &Flight, t: f64) -> Gap {
+        flight.gap(t)
+    }
+}
+
+impl Eye for &Cell<u64> {
+    fn gap(self, flight: &Flight, t: f64) -> Gap {
+        self.set(self.get() + 1);
+        flight.gap(t)
+    }
+}
+
+#[inline(always)]
+fn look_for_contact(flight: &Flight, eye: impl Eye) -> Result<f64, TooManyPieces> {
     if flight.bulge() > flight.gravity {
-        return first_contact_spinning(*flight);
+        return first_contact_spinning(*flight, eye);
     }
     let start = if flight.clearance == 0.0 { guess(flight) } else { guess_from_above(flight) };
-    let gap = flight.gap(start);
+    let gap = eye.gap(flight, start);
     if gap.slope < 0.0 && start > 0.0 {
-        return Ok(newton(flight, start, gap));
+        return Ok(newton(flight, eye, start, gap));
     }
     let end = latest_contact(flight);
-    Ok(newton(flight, end, flight.gap(end)))
+    Ok(newton(flight, eye, end, eye.gap(flight, end)))
 }
 
 impl<N: Number> Flight<N> {
@@ -90,7 +125,7 @@ fn latest_contact(flight: &Flight) -> f64 {
 /// the root. The last step uses the second derivative too, as soon as what it leaves out is below half a unit in the
 /// last place.
 #[inline(always)]
-fn newton(flight: &Flight, mut t: f64, mut gap: Gap) -> f64 {
+fn newton(flight: &Flight, eye: impl Eye, mut t: f64, mut gap: Gap) -> f64 {
     for steps in 0..MAX_STEPS {
         let step = Step::new(flight, t, &gap);
         if step.left_out <= step.negligible {
@@ -100,7 +135,7 @@ fn newton(flight: &Flight, mut t: f64, mut gap: Gap) -> f64 {
             return t;
         }
         t += step.newton;
-        gap = flight.gap(t);
+        gap = eye.gap(flight, t);
     }
     t
 }
@@ -139,8 +174,8 @@ impl<N: Real> Step<N> {
 /// [`first_contact`] where l θ̇² > G.
 #[cold]
 #[inline(never)]
-fn first_contact_spinning(flight: Flight) -> Result<f64, TooManyPieces> {
-    let pieces = Pieces::new(&flight);
+fn first_contact_spinning(flight: Flight, eye: impl Eye) -> Result<f64, TooManyPieces> {
+    let pieces = Pieces::new(&flight, eye);
     let end = latest_contact(&flight);
     // While the centre of gravity is higher than l, the rod cannot reach the table.
     let State { y_dot, .. } = flight.start;
@@ -164,8 +199,9 @@ fn first_contact_spinning(flight: Flight) -> Result<f64, TooManyPieces> {
 }
 
 /// The pieces between the inflections of the gap, at cos(θ + θ̇t) = G/(l θ̇²).
-struct Pieces<'a> {
+struct Pieces<'a, E> {
     flight: &'a Flight,
+    eye: E,
     /// |θ̇|, and θ seen so that it grows.
     spin: f64,
     angle: f64,
@@ -173,16 +209,21 @@ struct Pieces<'a> {
     half_width: f64,
 }
 
-impl<'a> Pieces<'a> {
-    fn new(flight: &'a Flight) -> Self {
+impl<'a, E: Eye> Pieces<'a, E> {
+    fn new(flight: &'a Flight, eye: E) -> Self {
         let State { theta, theta_dot, .. } = flight.start;
         let bulge = flight.contact_distance * theta_dot * theta_dot;
         Self {
             flight,
+            eye,
             spin: theta_dot.abs(),
             angle: theta * theta_dot.signum(),
             half_width: crate::trig::acos(flight.gravity / bulge),
         }
+    }
+
+    fn gap(&self, t: f64) -> Gap {
+        self.eye.gap(self.flight, t)
     }
 
     fn time_of(&self, angle: f64) -> f64 {
@@ -193,7 +234,7 @@ impl<'a> Pieces<'a> {
         let angle = self.angle + self.spin * from;
         let mut turn = ((angle + self.half_width) / TAU).floor();
         let mut convex = angle - TAU * turn < self.half_width;
-        let (mut a, mut at_a) = (from, self.flight.gap(from));
+        let (mut a, mut at_a) = (from, self.gap(from));
         loop {
             *budget = budget.checked_sub(1).ok_or(TooManyPieces)?;
             let boundary = if convex {
@@ -203,7 +244,7 @@ impl<'a> Pieces<'a> {
                 TAU * turn - self.half_width
             };
             let b = self.time_of(boundary).clamp(a, to);
-            let at_b = self.flight.gap(b);
+            let at_b = self.gap(b);
             let crossing = if convex { self.in_convex(a, at_a, b, at_b) } else { self.in_concave(a, at_a, b, at_b) };
             if crossing.is_some() || b >= to {
                 return Ok(crossing);
@@ -220,7 +261,7 @@ impl<'a> Pieces<'a> {
         if at_b.value > 0.0 || b <= a {
             return None;
         }
-        Some(if at_b.slope < 0.0 { newton(self.flight, b, at_b) } else { b })
+        Some(if at_b.slope < 0.0 { newton(self.flight, self.eye, b, at_b) } else { b })
     }
 
     /// A convex gap falls towards its first zero, if it has one, and Newton from the left never passes it; past the lowest
@@ -244,7 +285,7 @@ impl<'a> Pieces<'a> {
             if next <= t {
                 break;
             }
-            (t, gap) = (next, self.flight.gap(next));
+            (t, gap) = (next, self.gap(next));
             if gap.slope >= 0.0 {
                 return if gap.value > 0.0 { None } else { Some(t) };
             }

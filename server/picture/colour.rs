@@ -18,6 +18,8 @@ pub(super) const GRID: &str = "#eceef1";
 pub(super) const BLUE: &str = "#0072b2";
 pub(super) const GREEN: &str = "#009e73";
 pub(super) const ORANGE: &str = "#e69f00";
+pub(super) const SKY: &str = "#56b4e9";
+pub(super) const PURPLE: &str = "#cc79a7";
 pub(super) const VERMILLION: &str = "#d55e00";
 /// Blue so light that everything reads on it.
 pub(super) const PALE_BLUE: &str = "#e3f0f8";

@@ -20,6 +20,7 @@ mod phase_planes;
 mod pixels;
 mod scale;
 mod sheet;
+mod speed_accuracy;
 mod svg;
 mod text;
 mod trail;
@@ -30,6 +31,7 @@ pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use phase_planes::{PhasePlanes, phase_planes};
 pub use pixels::{NoPixels, png};
+pub use speed_accuracy::{Series, SpeedAccuracy, speed_accuracy};
 
 #[cfg(test)]
 mod heat_map_tests;

@@ -120,6 +120,28 @@ fn no_numbers_break_eigenvalues() {
 }
 
 #[test]
+fn no_numbers_break_speed_against_accuracy() {
+    for a in AWKWARD {
+        for b in AWKWARD {
+            let series: Vec<_> = (0..12)
+                .map(|number| Series { number, label: "<one>", points: vec![([a, b, a], b), ([1.0; 3], a)] })
+                .collect();
+            let picture = speed_accuracy(&SpeedAccuracy {
+                title: "Cost",
+                subtitle: "error over cost",
+                caption: "none",
+                cost: ("clock time", "ns"),
+                error: "error",
+                series: &series,
+                front: &[(a, b), (b, a)],
+                rounding: a,
+            });
+            assert!(sound(&picture).contains("<one>"));
+        }
+    }
+}
+
+#[test]
 fn text_is_escaped_and_bounded() {
     let nasty = "<script>&\"'\u{0}\u{ffff}]]>\n".to_owned() + &"x".repeat(5000);
     let none = Eigenvalues { title: &nasty, verdict: Some(&nasty), reason: &nasty, linear: None };

@@ -11,6 +11,7 @@ pub mod jacobians;
 pub mod live;
 pub mod metrics;
 pub mod periodic_orbits;
+pub mod precision;
 pub mod regions;
 pub mod scenes;
 pub mod stability;
@@ -82,6 +83,7 @@ pub fn all() -> Router<App> {
         .merge(jacobians::routes())
         .merge(live::routes())
         .merge(periodic_orbits::routes())
+        .merge(precision::routes())
         .merge(stability::routes())
         .merge(regions::routes())
 }

@@ -8,6 +8,7 @@ pub mod failure;
 pub mod fields;
 pub mod jacobian;
 pub mod periodic_orbits;
+pub mod precision;
 pub mod presets;
 pub mod region;
 pub mod region_rows;

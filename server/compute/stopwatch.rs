@@ -1,0 +1,112 @@
+//! Times work by the clock: many short looks at several pieces of work in turns, so that what else the machine does falls on all of them
+//! alike, and the median of each.
+//!
+//! What is measured differs from one time to the next; nothing but `precision` may ask for it.
+
+use std::time::{Duration, Instant};
+
+use super::{Cancel, Cancelled};
+
+/// What was measured of one piece of work.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timing {
+    /// Seconds that doing it once takes: quartile, median, quartile of all looks.
+    pub quartiles_s: [f64; 3],
+    /// How many looks there were.
+    pub repeats: usize,
+}
+
+/// How long to measure.
+#[derive(Debug, Clone, Copy)]
+pub struct Bounds {
+    /// Time for each piece of work; one that takes longer is done once.
+    pub time: Duration,
+    /// Least time of one look: work that is shorter is done several times in it, since the clock has a grain.
+    pub look: Duration,
+    /// Most looks at one piece of work.
+    pub repeats: usize,
+}
+
+/// A piece of work; it may give up when it is cancelled.
+pub type Work<'a> = Box<dyn FnMut(&Cancel) + 'a>;
+
+struct Watched<'w, 'a> {
+    work: &'w mut Work<'a>,
+    /// How often it is done in one look.
+    times: u32,
+    spent: Duration,
+    looks_s: Vec<f64>,
+}
+
+/// Times all pieces of work in turns.
+pub fn time(works: &mut [Work<'_>], bounds: Bounds, cancel: &Cancel) -> Result<Vec<Timing>, Cancelled> {
+    let mut watched = Vec::with_capacity(works.len());
+    for work in works {
+        let first = look(work, 1, cancel)?;
+        let times = (bounds.look.as_secs_f64() / first.as_secs_f64().max(1e-9)).ceil().clamp(1.0, 1e6) as u32;
+        let mut watch = Watched { work, times, spent: first, looks_s: Vec::new() };
+        // The first look finds caches cold; it counts only where it is the only one.
+        if first >= bounds.time {
+            watch.looks_s.push(first.as_secs_f64());
+        }
+        watched.push(watch);
+    }
+    let goes_on = |watch: &Watched<'_, '_>| {
+        watch.looks_s.is_empty() || (watch.spent < bounds.time && watch.looks_s.len() < bounds.repeats)
+    };
+    while watched.iter().any(goes_on) {
+        for watch in watched.iter_mut().filter(|watch| goes_on(watch)) {
+            let taken = look(watch.work, watch.times, cancel)?;
+            watch.spent += taken;
+            watch.looks_s.push(taken.as_secs_f64() / f64::from(watch.times));
+        }
+    }
+    Ok(watched.into_iter().map(|watch| timing(watch.looks_s)).collect())
+}
+
+fn look(work: &mut Work<'_>, times: u32, cancel: &Cancel) -> Result<Duration, Cancelled> {
+    let start = Instant::now();
+    for _ in 0..times {
+        work(cancel);
+    }
+    let taken = start.elapsed();
+    cancel.check().map(|()| taken)
+}
+
+fn timing(mut looks_s: Vec<f64>) -> Timing {
+    looks_s.sort_by(f64::total_cmp);
+    let at = |share: f64| looks_s[((looks_s.len() - 1) as f64 * share).round() as usize];
+    Timing { quartiles_s: [at(0.25), at(0.5), at(0.75)], repeats: looks_s.len() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    const BOUNDS: Bounds = Bounds { time: Duration::from_millis(40), look: Duration::from_millis(2), repeats: 5 };
+
+    #[test]
+    fn short_work_is_repeated_and_long_work_is_done_once() {
+        let (short, long) = (Cell::new(0), Cell::new(0));
+        let mut works: Vec<Work<'_>> = vec![
+            Box::new(|_| short.set(short.get() + 1)),
+            Box::new(|_| {
+                long.set(long.get() + 1);
+                std::thread::sleep(BOUNDS.time);
+            }),
+        ];
+        let timings = time(&mut works, BOUNDS, &Cancel::never()).unwrap();
+        drop(works);
+        assert_eq!((timings[0].repeats, timings[1].repeats, long.get()), (5, 1, 1));
+        assert!(short.get() > 100, "{} times", short.get());
+        assert!(timings[0].quartiles_s[1] < 1e-4 && timings[1].quartiles_s[1] >= 0.04, "{timings:?}");
+    }
+
+    #[test]
+    fn what_nobody_waits_for_is_given_up() {
+        let cancel = Cancel::never();
+        let mut works: Vec<Work<'_>> = vec![Box::new(|cancel| cancel.set())];
+        assert_eq!(time(&mut works, BOUNDS, &cancel), Err(Cancelled));
+    }
+}

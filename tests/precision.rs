@@ -1,0 +1,179 @@
+//! Speed against accuracy over HTTP: every method is there, counts and errors are what they are everywhere, times are not kept.
+
+mod support;
+
+use axum::http::Method;
+use serde_json::{Value, json};
+use support::csv::Table;
+use support::{Answer, Server};
+
+const NAMES: [&str; 11] = [
+    "map",
+    "map_free",
+    "linear",
+    "extended",
+    "adaptive",
+    "runge_kutta_bisection",
+    "runge_kutta_secant",
+    "runge_kutta_step_end",
+    "sampling",
+    "time_stepping",
+    "penalty",
+];
+
+const TEN: &str = "/v1/precision?preset=case-1&impacts=10";
+
+fn points(answer: &Answer) -> Vec<Value> {
+    answer.json()["points"].as_array().unwrap().clone()
+}
+
+fn of(points: &[Value], method: &str) -> Vec<Value> {
+    points.iter().filter(|point| point["method"] == method).cloned().collect()
+}
+
+fn error(point: &Value) -> f64 {
+    point["error"].as_f64().unwrap_or_else(|| panic!("no error: {point}"))
+}
+
+fn number(point: &Value, name: &str) -> f64 {
+    point[name].as_f64().unwrap_or_else(|| panic!("no {name}: {point}"))
+}
+
+/// What does not depend on the clock.
+fn counted(points: &[Value]) -> Vec<Value> {
+    let names = ["method", "setting", "impacts", "steps", "evaluations", "error", "outcome", "pareto_evaluations"];
+    points.iter().map(|point| names.iter().map(|name| point[name].clone()).collect()).collect()
+}
+
+#[tokio::test]
+async fn every_method_is_charted_and_no_answer_is_kept() {
+    let server = Server::start();
+    let answer = server.get(TEN).await.expect(200);
+    assert_eq!((answer.header("cache-control"), answer.header("etag")), (Some("no-store"), None));
+    let again = server.get_with(TEN, &[("if-none-match", "*")]).await.expect(200);
+    server.send(Method::HEAD, &format!("{TEN}&methods.0=map"), &[], "").await.expect(200);
+    let (points, again) = (points(&answer), points(&again));
+    assert_eq!(counted(&points), counted(&again));
+    for name in NAMES {
+        assert!(!of(&points, name).is_empty(), "{name}");
+    }
+    for point in &points {
+        assert!(number(point, "cost_ns_per_impact") > 0.0 && number(point, "repeats") >= 1.0, "{point}");
+        let spread =
+            [&point["spread_ns_per_impact"][0], &point["spread_ns_per_impact"][1]].map(|at| at.as_f64().unwrap());
+        let cost = number(point, "cost_ns_per_impact");
+        assert!(spread[0] <= cost && cost <= spread[1], "{point}");
+        assert_eq!(point["error"].is_null(), !point["reason"].is_null(), "{point}");
+    }
+}
+
+/// What is done is bounded by counts, on machines of any speed.
+#[tokio::test]
+async fn work_is_bounded() {
+    let server = Server::start();
+    let longest =
+        server.get("/v1/precision?preset=case-1&impacts=1000&methods.0=time_stepping&methods.1=sampling").await;
+    for point in points(&longest.expect(200)) {
+        assert!(number(&point, "steps") <= 1e6, "{point}");
+    }
+    assert_eq!(server.get("/v1/precision?preset=case-1&impacts=1001").await.expect(422).pointers(), ["/impacts"]);
+}
+
+#[tokio::test]
+async fn errors_are_those_of_the_methods() {
+    let answer = Server::start().get("/v1/precision?preset=case-1&impacts=20").await.expect(200);
+    let points = points(&answer);
+    for name in ["map", "map_free"] {
+        let map = &of(&points, name)[0];
+        assert!(error(map) <= 1e-12, "{map}");
+        assert_eq!((&map["steps"], &map["error_at"]), (&json!(20), &json!(20)));
+    }
+    assert!(error(&of(&points, "linear")[0]) > 1e-3, "0.3 rad is no small angle");
+    for name in ["runge_kutta_secant", "runge_kutta_step_end", "time_stepping"] {
+        let own = of(&points, name);
+        let (coarse, fine) = (&own[0], &own[own.len() - 1]);
+        assert!(error(coarse) > 10.0 * error(fine), "{coarse} {fine}");
+        assert!(number(coarse, "steps") < number(fine, "steps"), "{coarse} {fine}");
+    }
+    for name in ["adaptive", "runge_kutta_bisection", "sampling"] {
+        let map = &of(&points, "map")[0];
+        for point in of(&points, name) {
+            assert!(error(&point) < 1e-10, "a parabola and a located contact lose nothing: {point}");
+            assert!(number(&point, "evaluations") > 20.0 * number(map, "evaluations"), "{point}");
+        }
+    }
+}
+
+/// Recomputed here from cost and error.
+#[tokio::test]
+async fn the_front_is_what_nothing_beats() {
+    let points = points(&Server::start().get(TEN).await.expect(200));
+    for (flag, cost) in [("pareto", "cost_ns_per_impact"), ("pareto_evaluations", "evaluations")] {
+        let place = |point: &Value| Some((point[cost].as_f64()?, point["error"].as_f64()?));
+        let places: Vec<_> = points.iter().filter_map(place).collect();
+        for point in &points {
+            let beaten = place(point)
+                .is_none_or(|own| places.iter().any(|other| other.0 <= own.0 && other.1 <= own.1 && *other != own));
+            assert_eq!(point[flag], !beaten, "{flag}: {point}");
+        }
+        assert!(points.iter().any(|point| point[flag] == true && point["method"].as_str().unwrap().starts_with("map")));
+    }
+}
+
+#[tokio::test]
+async fn a_run_that_ends_early_is_compared_where_it_ends() {
+    let answer =
+        Server::start().get("/v1/precision?preset=case-1&scene.table.tilt_gain=3&impacts=100").await.expect(200);
+    let reference = &answer.json()["reference"];
+    assert!(reference["outcome"] != "completed" && reference["impacts"].as_u64().unwrap() < 100, "{reference}");
+    let points = points(&answer);
+    let map = &of(&points, "map")[0];
+    assert_eq!((&map["outcome"], &map["error_at"]), (&reference["outcome"], &reference["impacts"]));
+    assert!(error(map) < 1e-9, "{map}");
+    let linear = &of(&points, "linear")[0];
+    assert!(linear["error"].is_null() && linear["reason"].as_str().unwrap().contains("reference"), "{linear}");
+}
+
+#[tokio::test]
+async fn what_cannot_run_says_why() {
+    let points = points(&Server::start().get("/v1/precision?preset=point-mass&impacts=10").await.expect(200));
+    assert!(error(&of(&points, "map")[0]) < 1e-12);
+    for name in ["linear", "adaptive", "penalty"] {
+        for point in of(&points, name) {
+            assert_eq!((&point["outcome"], &point["cost_ns_per_impact"]), (&json!("unavailable"), &Value::Null));
+            assert!(point["reason"].as_str().unwrap().contains("point mass"), "{point}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn unknown_methods_are_refused_with_those_there_are() {
+    let server = Server::start();
+    let body = json!({"preset": "case-1", "methods": ["map", "guess", 3]});
+    let answer = server.post("/v1/precision", &body).await.expect(422);
+    assert_eq!(answer.pointers(), ["/methods/1", "/methods/2"]);
+    let detail = answer.json()["errors"][0]["detail"].to_string();
+    assert!(NAMES.iter().all(|name| detail.contains(name)), "{detail}");
+    let empty = json!({"preset": "case-1", "methods": []});
+    assert_eq!(server.post("/v1/precision", &empty).await.expect(422).pointers(), ["/methods"]);
+    assert_eq!(server.get("/v1/precision?preset=case-1&axis=steps").await.expect(422).pointers(), ["/axis"]);
+}
+
+#[tokio::test]
+async fn every_format_has_every_point() {
+    let server = Server::start();
+    let asked = "/v1/precision?preset=case-1&impacts=10&methods.0=map&methods.1=linear&methods.2=sampling";
+    let count = points(&server.get(asked).await.expect(200)).len();
+    let table = Table::parse(server.get(&format!("{asked}&format=csv")).await.expect(200).text()).unwrap();
+    assert_eq!(table.column("method").len(), count);
+    let lines = server.get(&format!("{asked}&format=ndjson")).await.expect(200);
+    assert_eq!(lines.text().lines().count(), count + 1);
+    for (axis, title) in [("time", "clock time"), ("evaluations", "evaluations of motion and gap")] {
+        let picture = server.get(&format!("{asked}&axis={axis}&format=svg")).await.expect(200);
+        for part in [title, "Pareto front", "sampled flight", "error at impact 10"] {
+            assert!(picture.text().contains(part), "{axis}: {part}");
+        }
+    }
+    let pixels = server.get(&format!("{asked}&format=png")).await.expect(200);
+    assert_eq!((pixels.media_type(), pixels.header("cache-control")), ("image/png", Some("no-store")));
+}
