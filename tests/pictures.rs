@@ -8,13 +8,18 @@ use support::Server;
 const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.6&x.to=1.4&x.count=8\
                    &y.parameter=release.theta&y.from=0.02&y.to=0.08&y.count=4&impacts=300";
 
-const TARGETS: [&str; 4] = [
+const TARGETS: [&str; 5] = [
     MAP,
     "/v1/trajectories?preset=case-1",
     "/v1/stability?preset=case-4",
     "/v1/periodic-orbits?preset=case-1&family=symmetric&theta=0.05&sweep.parameter=table.tilt_gain&sweep.from=1.4\
      &sweep.to=1.7&sweep.points=20",
+    "/v1/failures/order-three",
 ];
+
+fn formatted(target: &str, format: &str) -> String {
+    format!("{target}{}format={format}", if target.contains('?') { '&' } else { '?' })
+}
 
 /// Width, height and the pixels, four bytes each.
 fn decoded(bytes: &[u8]) -> (usize, usize, Vec<u8>) {
@@ -29,8 +34,8 @@ fn decoded(bytes: &[u8]) -> (usize, usize, Vec<u8>) {
 async fn pixels_are_the_drawing_at_its_own_size() {
     let server = Server::start();
     for target in TARGETS {
-        let drawing = server.get(&format!("{target}&format=svg")).await.expect(200);
-        let picture = server.get(&format!("{target}&format=png")).await.expect(200);
+        let drawing = server.get(&formatted(target, "svg")).await.expect(200);
+        let picture = server.get(&formatted(target, "png")).await.expect(200);
         assert_eq!(picture.media_type(), "image/png");
         let (width, height, pixels) = decoded(&picture.raw);
         let root = roxmltree::Document::parse(drawing.text()).unwrap();
@@ -76,7 +81,7 @@ async fn every_cell_has_its_colour() {
 #[tokio::test]
 async fn the_same_picture_is_the_same_bytes_and_is_not_compressed_again() {
     for target in TARGETS {
-        let target = format!("{target}&format=png");
+        let target = formatted(target, "png");
         let (server, other) = (Server::start(), Server::start());
         let one = server.get(&target).await.expect(200);
         let two = other.get_with(&target, &[("accept-encoding", "gzip")]).await.expect(200);

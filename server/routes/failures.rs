@@ -11,7 +11,7 @@ use super::App;
 use crate::compute::{Cancel, Cancelled, Price};
 use crate::gallery::{self, CASES};
 use crate::http::{Ask, Format, Problem, Resource};
-use crate::picture;
+use crate::picture::chart;
 use crate::wire::failure::Failure;
 
 /// Its paths.
@@ -36,15 +36,15 @@ async fn failures(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Pr
 }
 
 async fn failure(State(app): State<App>, Path(name): Path<String>, ask: Ask) -> Result<Response<Body>, Problem> {
-    const RESOURCE: Resource = Resource { name: "failure", formats: &[Format::Json, Format::Svg] };
+    const RESOURCE: Resource = Resource { name: "failure", formats: &[Format::Json, Format::Svg, Format::Png] };
     let Some(case) = gallery::find(&name) else {
         let names = CASES.map(|case| case.name).join(", ");
         return Err(Problem::not_found(format!("there is no failure of this name; there are {names}")));
     };
     ask.read(|_| Some(()))?;
     let price = Price::bounces(case.price);
-    ask.respond(&app.pool, &RESOURCE, case.name.as_bytes(), price, move |format, _: &Cancel| match format {
-        Format::Svg => Ok(picture::chart(&case.picture()).into_bytes()),
+    ask.respond(&app.pool, &RESOURCE, case.name.as_bytes(), price, move |format, cancel: &Cancel| match format {
+        Format::Svg | Format::Png => super::picture(chart(&case.picture()), format, cancel),
         _ => super::json(&Failure::compute(case)),
     })
     .await
