@@ -2,7 +2,7 @@
 
 use super::course::{ANGLE, CONTACT, Course, eigenvalue, upright};
 use super::{Case, Says, Seen, built, rod, with};
-use crate::picture::{Chart, Curve, Look, Plot};
+use crate::picture::{Chart, Curve, Look, Plot, significant};
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::FixedPoint;
 
@@ -151,8 +151,8 @@ fn outlines(title: &'static str, scene: &Scene, impacts: u64, label: &'static st
         title,
         subtitle: format!(
             "the largest angles of a run from {} rad at tilt gain {}",
-            scene.start().theta,
-            scene.number(Name::TiltGain).unwrap_or_default()
+            significant(scene.start().theta, 4),
+            significant(scene.number(Name::TiltGain).unwrap_or_default(), 6)
         ),
         caption: format!("The run: {}.", run.detail),
         plots: vec![Plot {

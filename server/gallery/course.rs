@@ -109,10 +109,13 @@ pub(super) fn upright(scene: &Scene) -> FixedPoint {
 pub(super) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> Says {
     let (verdict, radius, (re, im)) = spectral_radius(scene, fixed_point);
     let exact = scene.linear(fixed_point).spectral_radius();
+    let imaginary = if im == 0.0 { String::new() } else { format!(" ± {:.2e}i", im.abs()) };
+    let excess = match radius - 1.0 {
+        0.0 => String::new(),
+        excess => format!(" {} {:.2e}", if excess < 0.0 { '−' } else { '+' }, excess.abs()),
+    };
     let detail = format!(
-        "the largest modulus comes out as 1 + {:.2e} (exactly: {exact:.6}), the angle's eigenvalue as {re:.9} ± {:.2e}i",
-        radius - 1.0,
-        im.abs()
+        "the largest modulus comes out as 1{excess} (exactly: {exact:.6}), the angle's eigenvalue as {re:.9}{imaginary}"
     );
     Says { method, verdict, value: Some(radius), unit: None, detail }
 }

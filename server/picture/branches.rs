@@ -10,6 +10,9 @@ use super::sheet::{Sheet, Words};
 use super::svg::{Anchor, Type};
 use super::text::Span;
 
+/// Angles below this are rounding where 0 is meant, rad.
+const ROUNDING: f64 = 1e-12;
+
 /// A place on the branch where stability changes.
 #[derive(Clone, Copy, Debug)]
 pub struct Change {
@@ -48,8 +51,9 @@ pub fn branches(drawn: &Branches<'_>) -> String {
         .changes
         .iter()
         .map(|change| {
-            let (parameter, theta) = (significant(change.at.0, 6), significant(change.at.1, 3));
-            format!("{} at {parameter} (θ = {theta} rad)", change.kind.replace('_', " "))
+            let theta = if change.at.1 < ROUNDING { 0.0 } else { change.at.1 };
+            let (kind, parameter, theta) = (change.kind.replace('_', " "), change.at.0, significant(theta, 3));
+            format!("{kind} at {} (θ = {theta} rad)", significant(parameter, 6))
         })
         .collect();
     let caption = if listed.is_empty() {

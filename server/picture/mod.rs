@@ -29,6 +29,7 @@ pub use branches::{Branches, Change, branches};
 pub use chart::{Chart, Curve, Look, Plot, Side, chart};
 pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
+pub use number::significant;
 pub use phase_planes::{PhasePlanes, phase_planes};
 pub use pixels::{NoPixels, png};
 pub use speed_accuracy::{Series, SpeedAccuracy, speed_accuracy};

@@ -33,7 +33,7 @@ pub(super) fn written_out(mantissa: i64, exponent: i32) -> String {
 }
 
 /// A number to `digits` significant digits, trailing zeros dropped.
-pub(super) fn significant(value: f64, digits: usize) -> String {
+pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return if value.is_nan() { "not a number".to_owned() } else { "infinite".to_owned() };
     }

@@ -39,14 +39,17 @@ impl Sheet {
     /// A sheet of this width with `room` px of height for panels; its own height follows from the words.
     pub(super) fn new(width: f64, room: f64, words: Words<'_>) -> Self {
         let space = width - 2.0 * MARGIN;
-        let title = wrap(words.title, TITLE, space, LINES);
-        let subtitle = wrap(words.subtitle, SUBTITLE, space, LINES);
-        let caption = wrap(words.caption, CAPTION, space, LINES);
+        // Words that are set as code elsewhere have no other type here.
+        let [given, subtitle, caption, description] =
+            [words.title, words.subtitle, words.caption, words.description].map(|words| words.replace('`', ""));
+        let title = wrap(&given, TITLE, space, LINES);
+        let subtitle = wrap(&subtitle, SUBTITLE, space, LINES);
+        let caption = wrap(&caption, CAPTION, space, LINES);
         let tall = |lines: &[String], size: f64| lines.len() as f64 * size * LEADING;
         let top = 22.0 + tall(&title, TITLE) + tall(&subtitle, SUBTITLE) + 18.0;
         let below = if caption.is_empty() { 8.0 } else { tall(&caption, CAPTION) + 16.0 };
         let height = top + room + below;
-        let mut svg = Svg::new(width, height, words.title, words.description);
+        let mut svg = Svg::new(width, height, &given, &description);
         let paper = svg.tag("rect").number("x", 0.5).number("y", 0.5).number("width", width - 1.0);
         paper.number("height", height - 1.0).number("rx", 6.0).word("fill", PAPER).word("stroke", EDGE).end();
         let mut y = 22.0;

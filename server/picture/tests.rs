@@ -153,6 +153,28 @@ fn text_is_escaped_and_bounded() {
 }
 
 #[test]
+fn code_has_no_marks_in_a_picture() {
+    let text = sound(&eigenvalues(&Eigenvalues { title: "A rod", verdict: None, reason: "ends as `sinking`", linear: None }));
+    assert!(text.contains("ends as sinking") && !text.contains('`'), "{text}");
+}
+
+#[test]
+fn an_angle_of_rounding_is_zero_in_a_branch() {
+    let changes = [(1.127e-27, "period_doubling"), (0.25, "fold")].map(|(theta, kind)| Change { at: (1.5, theta), kind });
+    let text = sound(&branches(&Branches {
+        title: "Orbits",
+        name: "Tilt gain",
+        symbol: "κ",
+        unit: "",
+        ends: (1.4, 1.6),
+        points: &[(1.5, 1.127e-27, None), (1.55, 0.25, Some(true))],
+        changes: &changes,
+        critical: None,
+    }));
+    assert!(text.contains("period doubling at 1.5 (θ = 0 rad), fold at 1.5 (θ = 0.25 rad)"), "{text}");
+}
+
+#[test]
 fn the_same_numbers_give_the_same_bytes() {
     let theta: Vec<f64> = (0..500).map(|n| f64::from(n * n % 97) * 0.01).collect();
     assert_eq!(planes(&theta, Some(&theta), &theta, &theta), planes(&theta, Some(&theta), &theta, &theta));
