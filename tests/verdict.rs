@@ -81,6 +81,23 @@ async fn the_basin_is_looked_for_when_asked() {
 }
 
 #[tokio::test]
+async fn all_bounces_of_a_verdict_are_counted() {
+    let server = Server::start();
+    let bounces = async || {
+        let text = server.get("/metrics").await.expect(200).text().to_owned();
+        let line = text.lines().find(|line| line.starts_with("equipoise_bounces_total ")).unwrap();
+        line.rsplit(' ').next().unwrap().parse::<u64>().unwrap()
+    };
+    server.get("/v1/stability?preset=case-1&impacts=600").await.expect(200);
+    let watch = 5 * 500;
+    assert_eq!(bounces().await, 600 + watch);
+    // With it the basin: most angles of its fine scan survive, and no run is longer.
+    server.get("/v1/stability?preset=case-1&impacts=600&basin=true").await.expect(200);
+    let basin = bounces().await - 2 * (600 + watch);
+    assert!((128 * 600..=448 * 600).contains(&basin), "{basin}");
+}
+
+#[tokio::test]
 async fn what_cannot_be_said_is_null_with_its_reason() {
     // Upright, too short, and of a body that has no angle.
     for query in ["preset=case-1&scene.release.theta=0", "preset=case-1&impacts=100", "preset=point-mass"] {

@@ -8,6 +8,7 @@ use crate::map::{Body, Release};
 use crate::model::Model;
 use crate::scene::Scene;
 use crate::sweep::{Outcome, Start, sweep};
+use std::cell::Cell;
 
 /// Angles of the rough scan, over all there are, and of the fine one, over those that matter.
 const ROUGH: usize = 128;
@@ -35,6 +36,8 @@ pub struct Basin {
     pub tolerance: f64,
     /// Distance of the angles of the scan, rad: the narrowest hole that cannot be missed.
     pub spacing: f64,
+    /// Contacts of all runs that were made for it.
+    pub bounces: u64,
 }
 
 /// Why there is no basin.
@@ -73,6 +76,7 @@ impl Scene {
             let (_, state) = rod.fall(&Release { x: 0.0, height, state }).ok()?;
             Some(Start { rod, rules, state })
         };
+        let bounces = Cell::new(0);
         let mut survive = |angles: &[f64]| {
             let mut survivors = vec![false; angles.len()];
             let mut stopped = false;
@@ -80,7 +84,10 @@ impl Scene {
             sweep(
                 impacts,
                 || starts.next(),
-                |index, end| survivors[index] = end.outcome == Outcome::Completed,
+                |index, end| {
+                    survivors[index] = end.outcome == Outcome::Completed;
+                    bounces.set(bounces.get() + end.impacts);
+                },
                 || {
                     stopped = !go_on();
                     !stopped
@@ -134,6 +141,6 @@ impl Scene {
             inside = !survives;
         }
         let tolerance = (0..ROUNDS).fold(spacing, |width, _| width / (TRIED as f64 + 1.0));
-        Ok(Basin { theta, unbroken, holes, impacts, tolerance, spacing })
+        Ok(Basin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: bounces.get() })
     }
 }

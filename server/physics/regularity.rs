@@ -74,6 +74,11 @@ pub struct Regularity {
 }
 
 impl Regularity {
+    /// What the watch took, in bounces: that of each contact, and one for each of its four tangents.
+    pub fn bounces(&self) -> u64 {
+        5 * self.growth.len() as u64
+    }
+
     /// The contact before which deviations as large as rounding have grown beyond `tolerance`, both as a share of V: where
     /// ln(tolerance/rounding) is used up by the growth of the product of the derivatives along the run, in the Frobenius
     /// norm with ρδθ divided by the flight time. None where it is not used up over the contacts watched.

@@ -56,7 +56,7 @@ pub(super) struct Basin {
 
 impl From<basin::Basin> for Basin {
     fn from(basin: basin::Basin) -> Self {
-        let basin::Basin { theta, unbroken, holes, impacts, tolerance, spacing } = basin;
+        let basin::Basin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: _ } = basin;
         Self { theta, impacts, holes, unbroken, tolerance, spacing }
     }
 }
@@ -68,6 +68,10 @@ pub(super) struct Evidence(Option<Regularity>);
 impl Evidence {
     pub(super) fn new(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear, impacts: u64) -> Self {
         Self(scene.regularity(fixed_point, linear, impacts))
+    }
+
+    pub(super) fn bounces(&self) -> u64 {
+        self.0.as_ref().map_or(0, Regularity::bounces)
     }
 
     pub(super) fn rotation(&self) -> Option<regularity::Rotation> {

@@ -86,6 +86,8 @@ pub struct Stability<'a> {
     predictable_impacts: Option<u64>,
     basin: Option<Basin>,
     notes: Vec<String>,
+    #[serde(skip)]
+    bounces: u64,
 }
 
 /// The verdict in words; what a run showed stands in it with its length.
@@ -154,6 +156,7 @@ impl<'a> Stability<'a> {
             predictable_impacts: None,
             basin: None,
             notes: Vec::new(),
+            bounces: run.impacts,
         };
         if !has_angle(scene) {
             notes.push(
@@ -184,6 +187,7 @@ impl<'a> Stability<'a> {
                 if answer.boundary.is_some() && linear.rotation.is_none() {
                     notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
                 }
+                answer.bounces += evidence.bounces();
                 evidence.explain(&linear, &mut notes);
                 answer.predictable_impacts = evidence.predictable_impacts();
                 answer.chaos = evidence.chaos().map(Chaos::from);
@@ -206,6 +210,7 @@ impl<'a> Stability<'a> {
                         "basin: released at rest; no hole wider than {} rad was missed, and its edges are known to {} rad",
                         basin.spacing, basin.tolerance
                     ));
+                    answer.bounces += basin.bounces;
                     answer.basin = Some(basin.into());
                 }
                 Err(NoBasin::Stopped) => return None,
@@ -235,9 +240,9 @@ impl<'a> Stability<'a> {
         })
     }
 
-    /// How many bounces its run had.
+    /// How many bounces were computed for it: those of its run, of the watch over it and of the basin.
     pub fn bounces(&self) -> u64 {
-        self.nonlinear.impacts
+        self.bounces
     }
 
     /// What it costs at most, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs go
