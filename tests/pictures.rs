@@ -105,3 +105,17 @@ async fn an_image_may_ask_by_accept_and_a_matrix_has_no_picture() {
     server.get("/v1/jacobians?preset=case-1&format=png").await.expect(406);
     server.get("/v1/periodic-orbits?preset=case-1&period=1&format=png").await.expect(422);
 }
+
+#[tokio::test]
+async fn what_a_mean_hides_is_counted() {
+    let server = Server::start();
+    // Two cells in each that is drawn.
+    let target = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=1.3&x.to=1.6&x.count=1024\
+                  &y.parameter=release.theta&y.from=0.15&y.to=0.15&y.count=1&impacts=40";
+    let map = server.get(target).await.expect(200).json();
+    let outcomes = map["outcomes"][0].as_array().unwrap();
+    let mixed = outcomes.chunks(2).filter(|pair| pair[0] != pair[1]).count();
+    assert!(mixed > 0 && mixed < 512, "{mixed}");
+    let drawing = server.get(&formatted(target, "svg")).await.expect(200);
+    assert!(drawing.text().contains(&format!("Mixed are {mixed}: ")), "{mixed}: {}", drawing.text());
+}

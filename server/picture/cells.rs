@@ -44,25 +44,44 @@ pub(super) struct Cells {
     columns: usize,
     rows: usize,
     values: Vec<Option<f64>>,
+    /// How many of them hold cells of different kinds, which a mean hides.
+    pub(super) mixed: usize,
 }
+
+/// What came into one drawn cell so far.
+#[derive(Clone, Copy, Default)]
+struct Bin {
+    sum: f64,
+    count: u32,
+    kind: Option<Kind>,
+    mixed: bool,
+}
+
+/// The outcome of a cell that has a value; none of one that has not.
+type Kind = Option<u8>;
 
 impl Cells {
     /// Puts row after row into bins and takes the mean of what has a value in each. Values that are not finite are none.
-    pub(super) fn binned(values: &[Option<f64>], x: Side, y: Side) -> Self {
+    /// Outcomes are numbered as anyone likes, in the order of the values; those that are left out are all one.
+    pub(super) fn binned(values: &[Option<f64>], outcomes: &[u8], x: Side, y: Side) -> Self {
         let (columns, rows) = (x.drawn(), y.drawn());
-        let mut sums = vec![(0.0, 0_u32); columns * rows];
-        for (n, row) in values.chunks(x.count.max(1)).take(y.count).enumerate() {
-            let below = y.bin(n) * columns;
-            for (n, value) in row.iter().enumerate().take(x.count) {
-                if let Some(value) = value.filter(|value| value.is_finite()) {
-                    let (sum, count) = &mut sums[below + x.bin(n)];
-                    *sum += value;
-                    *count += 1;
+        let mut bins = vec![Bin::default(); columns * rows];
+        for (row, values) in values.chunks(x.count.max(1)).take(y.count).enumerate() {
+            let (below, first) = (y.bin(row) * columns, row * x.count);
+            for (column, value) in values.iter().enumerate().take(x.count) {
+                let bin = &mut bins[below + x.bin(column)];
+                let value = value.filter(|value| value.is_finite());
+                let kind = value.map(|_| outcomes.get(first + column).copied().unwrap_or_default());
+                bin.mixed |= *bin.kind.get_or_insert(kind) != kind;
+                if let Some(value) = value {
+                    bin.sum += value;
+                    bin.count += 1;
                 }
             }
         }
-        let mean = |(sum, count): &(f64, u32)| (*count > 0).then(|| sum / f64::from(*count));
-        Self { columns, rows, values: sums.iter().map(mean).collect() }
+        let mean = |bin: &Bin| (bin.count > 0).then(|| bin.sum / f64::from(bin.count));
+        let mixed = bins.iter().filter(|bin| bin.mixed).count();
+        Self { columns, rows, values: bins.iter().map(mean).collect(), mixed }
     }
 
     /// Whether any cell is drawn without a value.
@@ -177,7 +196,7 @@ mod tests {
     #[test]
     fn runs_of_one_colour_are_one_rectangle() {
         let values = [0.0, 0.0, 9.0, 0.0, 9.0, 9.0, 9.0, 9.0].map(Some);
-        let cells = Cells::binned(&values, ALONG, Side { count: 2, reversed: false });
+        let cells = Cells::binned(&values, &[], ALONG, Side { count: 2, reversed: false });
         let mut svg = Svg::new(1.0, 1.0, "", "");
         cells.draw(&mut svg, Frame { left: 0.0, top: 0.0, width: 8.0, height: 8.0 }, |value| value as usize);
         let text = svg.finish();
@@ -190,18 +209,34 @@ mod tests {
     fn bins_hold_the_mean_of_what_has_a_value() {
         let values: Vec<_> = (0..2 * MOST).map(|n| (n != 0).then_some(n as f64)).collect();
         let x = Side { count: 2 * MOST, reversed: false };
-        let cells = Cells::binned(&values, x, Side { count: 1, reversed: false });
+        let cells = Cells::binned(&values, &[], x, Side { count: 1, reversed: false });
         assert_eq!((cells.values[0], cells.values[1], cells.values[MOST - 1]), (Some(1.0), Some(2.5), Some(1022.5)));
-        let back = Cells::binned(&values, Side { reversed: true, ..x }, Side { count: 1, reversed: true });
+        let back = Cells::binned(&values, &[], Side { reversed: true, ..x }, Side { count: 1, reversed: true });
         assert_eq!(back.values[MOST - 1], Some(1.0));
         let odd = Side { count: MOST + 1, reversed: false };
-        assert!(!Cells::binned(&values[1..MOST + 2], odd, Side { count: 1, reversed: false }).any_empty());
+        assert!(!Cells::binned(&values[1..MOST + 2], &[], odd, Side { count: 1, reversed: false }).any_empty());
+    }
+
+    #[test]
+    fn bins_of_different_kinds_are_counted() {
+        let (x, y) = (Side { count: 2 * MOST, reversed: false }, Side { count: 1, reversed: false });
+        let values = vec![Some(1.0); 2 * MOST];
+        let mut outcomes = vec![0; 2 * MOST];
+        assert_eq!(Cells::binned(&values, &outcomes, x, y).mixed, 0);
+        // Two bins of one kind, one of two.
+        outcomes[4..7].fill(1);
+        assert_eq!(Cells::binned(&values, &outcomes, x, y).mixed, 1);
+        // A cell without a value beside one with, whatever its outcome; and two without.
+        let holes: Vec<_> = (0..2 * MOST).map(|n| (![8, 10, 11].contains(&n)).then_some(1.0)).collect();
+        assert_eq!(Cells::binned(&holes, &outcomes, x, y).mixed, 2);
+        let shown = Side { count: MOST, reversed: false };
+        assert_eq!(Cells::binned(&holes, &outcomes, shown, y).mixed, 0);
     }
 
     #[test]
     fn too_few_and_too_many_values_are_taken_as_they_come() {
-        assert!(Cells::binned(&[Some(1.0); 3], ALONG, ALONG).any_empty());
-        assert_eq!(Cells::binned(&[Some(1.0); 99], ALONG, ALONG).values, [Some(1.0); 16]);
-        assert!(Cells::binned(&[Some(1.0)], Side { count: 0, reversed: true }, ALONG).values.is_empty());
+        assert!(Cells::binned(&[Some(1.0); 3], &[], ALONG, ALONG).any_empty());
+        assert_eq!(Cells::binned(&[Some(1.0); 99], &[], ALONG, ALONG).values, [Some(1.0); 16]);
+        assert!(Cells::binned(&[Some(1.0)], &[], Side { count: 0, reversed: true }, ALONG).values.is_empty());
     }
 }

@@ -33,6 +33,8 @@ pub struct HeatMap<'a> {
     pub y: HeatAxis<'a>,
     /// Row after row, the first at `y.from`; none where the fields make no scene.
     pub values: &'a [Option<f64>],
+    /// How the run of each cell ended, as numbers; empty where nothing ran.
+    pub outcomes: &'a [u8],
     /// Values at the ends of the colour bar, which may be equal.
     pub scale: (f64, f64),
     /// What the values are, in words.
@@ -90,15 +92,15 @@ impl HeatAxis<'_> {
 
 /// Draws the cells, the boundary, a colour bar and a legend.
 ///
-/// At most 512 × 512 cells are drawn, each the mean of those in it; the caption says so, and what has no value or is beyond
-/// the colour bar.
+/// At most 512 × 512 cells are drawn, each the mean of those in it; the caption says so, and in how many of them that hides
+/// different outcomes, and what has no value or is beyond the colour bar.
 pub fn heat_map(map: &HeatMap<'_>) -> String {
     const WIDTH: f64 = 784.0;
     const ROOM: f64 = 598.0;
     const SIDE: f64 = MOST as f64;
-    let cells = Cells::binned(map.values, map.x.side(), map.y.side());
+    let cells = Cells::binned(map.values, map.outcomes, map.x.side(), map.y.side());
     let bar = Bar::new(map);
-    let caption = caption(map, &bar);
+    let caption = caption(map, &bar, cells.mixed);
     let description = format!(
         "{} Colours: {} from {} to {} over {} {} (to the right) and {} {} (upwards). {caption}",
         map.subtitle,
@@ -152,7 +154,7 @@ fn with_unit(value: f64, unit: &str) -> String {
 }
 
 /// What the cells are, in words.
-fn caption(map: &HeatMap<'_>, bar: &Bar) -> String {
+fn caption(map: &HeatMap<'_>, bar: &Bar, mixed: usize) -> String {
     let (columns, rows) = (map.x.count, map.y.count);
     let all = columns.saturating_mul(rows);
     if all == 0 {
@@ -167,7 +169,8 @@ fn caption(map: &HeatMap<'_>, bar: &Bar) -> String {
     if columns > MOST || rows > MOST {
         let (columns, rows) = (map.x.side().drawn(), map.y.side().drawn());
         text.push_str(&format!(
-            " Drawn as {columns} × {rows}; the shade of each is the mean of the cells in it that have a value."
+            " Drawn as {columns} × {rows}; the shade of each is the mean of the cells in it that have a value. Mixed are {mixed}: \
+             their cells ended differently, or not all have a value."
         ));
     }
     let finite = values().filter(|value| value.is_finite()).count();

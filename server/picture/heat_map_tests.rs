@@ -14,6 +14,7 @@ fn map(values: &[Option<f64>]) -> HeatMap<'_> {
         x: KAPPA,
         y: THETA,
         values,
+        outcomes: &[],
         scale: (0.0, 1000.0),
         quantity: "impacts survived",
         unit: "",
@@ -97,6 +98,11 @@ fn many_cells_are_binned_and_the_caption_says_so() {
     let binned = HeatMap { x, y, ..map(&values) };
     let text = words(&binned);
     assert!(text.contains("2000 × 2000 cells") && text.contains("Drawn as 512 × 512; the shade of each"), "{text}");
+    let outcomes: Vec<u8> = (0..4_000_000).map(|n| u8::from(n % 2000 < 100)).collect();
+    let even = vec![Some(1.0); 4_000_000];
+    // Columns 98 to 101 are drawn as one.
+    let text = words(&HeatMap { values: &even, outcomes: &outcomes, ..binned });
+    assert!(text.replace('|', " ").contains("Mixed are 512: "), "{text}");
     let (x, y) = (HeatAxis { count: 512, ..KAPPA }, HeatAxis { count: 512, ..THETA });
     let noise = checked(&HeatMap { x, y, ..map(&values) });
     assert!(noise.len() < 5_000_000, "{} bytes", noise.len());

@@ -154,13 +154,15 @@ fn text_is_escaped_and_bounded() {
 
 #[test]
 fn code_has_no_marks_in_a_picture() {
-    let text = sound(&eigenvalues(&Eigenvalues { title: "A rod", verdict: None, reason: "ends as `sinking`", linear: None }));
+    let text =
+        sound(&eigenvalues(&Eigenvalues { title: "A rod", verdict: None, reason: "ends as `sinking`", linear: None }));
     assert!(text.contains("ends as sinking") && !text.contains('`'), "{text}");
 }
 
 #[test]
 fn an_angle_of_rounding_is_zero_in_a_branch() {
-    let changes = [(1.127e-27, "period_doubling"), (0.25, "fold")].map(|(theta, kind)| Change { at: (1.5, theta), kind });
+    let changes =
+        [(1.127e-27, "period_doubling"), (0.25, "fold")].map(|(theta, kind)| Change { at: (1.5, theta), kind });
     let text = sound(&branches(&Branches {
         title: "Orbits",
         name: "Tilt gain",

@@ -202,6 +202,7 @@ impl Answer {
             Quantity::SpectralRadius => ("spectral radius", "1"),
         };
         let values: Vec<Option<f64>> = self.cells.iter().map(|cell| cell.value).collect();
+        let outcomes: Vec<u8> = self.cells.iter().map(|cell| code(cell) as u8).collect();
         let finite = || values.iter().flatten().copied().filter(|value| value.is_finite());
         let scale = match region.quantity {
             Quantity::Survival => (0.0, region.impacts as f64),
@@ -214,6 +215,7 @@ impl Answer {
             x: side(&region.x, 0, region.x.count),
             y: side(&region.y, rows.start, rows.len()),
             values: &values,
+            outcomes: &outcomes,
             scale,
             quantity,
             unit,
