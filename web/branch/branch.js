@@ -92,7 +92,7 @@ export class Branch {
         h('tbody', {}, ...changes.map(({ kind, parameter, theta, residue, detail }) => h('tr', {},
           h('th', { scope: 'row' }, kind.replaceAll('_', ' '), h('span', { class: 'muted' }, ...prose(detail))),
           ...[number(parameter, 5), quantity(tiny(theta), '1'), number(tiny(residue), 3)].map((text) => h('td', {}, text))))))),
-      h('p', { class: 'actions' }, 'The branch as ', ...['svg', 'csv', 'json'].map((format) => h('a', { href: `${path}&format=${format}` }, format.toUpperCase())))));
+      h('p', { class: 'actions' }, 'The branch as ', ...['svg', 'png', 'csv', 'json'].map((format) => h('a', { href: `${path}&format=${format}` }, format.toUpperCase())))));
   }
 }
 

@@ -183,7 +183,7 @@ export class MapPanel {
     this.#grid = grid;
     this.#picture.show(grid.settings, this.#names(grid.settings), grid);
     this.#mark();
-    this.#links.replaceChildren('This map as ', ...['svg', 'csv', 'json'].map((format) => h('a', { href: `v1/regions?${request}&format=${format}` }, format.toUpperCase())));
+    this.#links.replaceChildren('This map as ', ...['svg', 'png', 'csv', 'json'].map((format) => h('a', { href: `v1/regions?${request}&format=${format}` }, format.toUpperCase())));
     const swatch = (/** @type {string} */ kind, /** @type {string} */ words) => h('span', {}, h('span', { class: `swatch ${kind}`, 'aria-hidden': 'true' }), words);
     const has = (/** @type {number} */ residue) => grid.boundary.some((segment) => segment.residue === residue);
     this.#legend.replaceChildren(...[swatch('scene', 'the scene'), has(1) && swatch('whole', 'linear boundary, R = 1'), has(0) && swatch('broken', 'linear boundary, R = 0'), grid.lacks && swatch('none', QUANTITIES[grid.settings.quantity].runs ? 'no such scene' : 'no fixed point')].filter((one) => one !== false));
