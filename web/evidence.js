@@ -35,6 +35,17 @@ function basinSentence({ basin, notes }) {
   return `Released at rest it survives ${number(impacts)} impacts from up to ${inBoth(unbroken)} to either side${gaps}; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
 }
 
+/** The same in a line, for a first look. @param {Stability} answer */
+function gist({ rotation_number: rotation, chaos, predictable_impacts: predictable, notes }) {
+  const near = /^resonance (1\/\d)/.exec(notes.find((note) => note.startsWith('resonance')) ?? '');
+  const parts = [
+    chaos && (chaos.chaotic ? 'chaotic' : 'regular'),
+    rotation && `${number(rotation.measured ?? rotation.linear, 3)} turns a bounce${near ? `, near ${near[1]}` : ''}`,
+    predictable !== null ? `predictable for ${number(predictable)} impacts` : chaos && `predictable ≥ ${number(chaos.impacts)} impacts`,
+  ].filter((part) => part).join(' · ');
+  return parts ? parts[0].toUpperCase() + parts.slice(1) : 'Beyond the linear map';
+}
+
 /**
  * @param {Stability} answer
  * @param {() => Promise<Stability>} measure asks for the basin as well, which is dearer
@@ -59,6 +70,7 @@ export function evidence(answer, measure) {
   if (answer.scene.body?.point || !answer.fixed_point) return '';
   /** @param {string} name @param {...(Node | string)} words */
   const row = (name, ...words) => [h('dt', {}, name), h('dd', {}, ...words)];
-  return h('dl', { class: 'evidence', 'aria-label': 'Beyond the linear map' }, ...sentences(answer).flatMap(([name, words]) => row(name, words)),
-    ...(resonance ? row('Resonance', ...prose(resonance.replace(/^resonance /, ''))) : []), ...row('Basin', basin));
+  return h('details', { class: 'evidence' }, h('summary', {}, gist(answer)), h('dl', { 'aria-label': 'Beyond the linear map' },
+    ...sentences(answer).flatMap(([name, words]) => row(name, words)),
+    ...(resonance ? row('Resonance', ...prose(resonance.replace(/^resonance /, ''))) : []), ...row('Basin', basin)));
 }

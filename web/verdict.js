@@ -56,16 +56,17 @@ export class Verdict {
     if (gain) {
       rows.push([symbol('κ'), number(gain.value), 'tilt gain']);
       if (gain.critical != null) rows.push([symbol('κ_c'), number(gain.critical, 5), 'critical gain']);
-      if (gain.margin_above != null) rows.push(['margin', `${number(gain.margin_below, 3)} below · ${number(gain.margin_above, 3)} above`, 'to the ends of stability']);
+      if (gain.margin_above != null) rows.push(['margin', `${number(gain.margin_below, 3)} · ${number(gain.margin_above, 3)}`, 'to lower · upper end']);
     }
     if (linear?.residue != null) rows.push([symbol('R'), number(linear.residue), `residue: ${linear.class}`]);
     if (linear?.rotation != null) rows.push([symbol('σ'), `${quantity(linear.rotation, 'rad')} (${quantity(linear.rotation * 180 / Math.PI, '°')})`, 'rotation a bounce']);
     if (linear?.spectral_radius != null) rows.push(['max |λ|', number(linear.spectral_radius, 5), 'spectral radius']);
     const energy = linear?.energy_gain;
-    if (energy && energy.value !== 0) rows.push([symbol('κ_E'), `${quantity(energy.value, 's²/m²')} of ${number(energy.upper)}`, `energy gain: eigenvalue ${number(energy.eigenvalue)}`]);
+    if (energy && energy.value !== 0) rows.push([symbol('κ_E'), `${quantity(energy.value, 's²/m²')} of ${number(energy.upper)}`, `energy gain: λ ${number(energy.eigenvalue)}`]);
     if (boundary?.coefficient != null) rows.push([symbol('C'), number(boundary.coefficient, 3), `boundary: ${boundary.kind}`]);
     if (drift != null) rows.push([symbol('c'), quantity(drift, 'm/s', 3), 'drift of the whole']);
     if (nonlinear) rows.push(['max |θ|', quantity(nonlinear.max_theta, 'rad'), `${number(nonlinear.impacts, 6)} impacts: ${nonlinear.outcome}`]);
+    const open = [...this.#root.querySelectorAll('details[open]')].map(({ className }) => className);
     this.#root.replaceChildren(
       h('p', { class: `verdict-words ${manner}` }, h('span', { class: 'sign', 'aria-hidden': 'true' }, SIGNS[manner]), ` ${words}`),
       reason ? h('p', { class: 'reason' }, ...prose(reason[0].toUpperCase() + reason.slice(1))) : '',
@@ -76,5 +77,7 @@ export class Verdict {
       evidence(answer, measureBasin),
       h('details', { class: 'model' }, h('summary', {}, `Model: ${answer.model.name.replaceAll('_', ' ')}`), h('p', { class: 'muted' }, ...prose(answer.model.reason)),
         ...notes.map((note) => h('p', { class: 'muted' }, ...prose(note)))));
+    // What somebody opened stays open while the numbers in it change.
+    for (const details of this.#root.querySelectorAll('details')) details.open = open.includes(details.className);
   }
 }

@@ -9,7 +9,12 @@ const stage = await Stage.open();
 const ask = async (query) => (await fetch(`${stage.url}v1/stability?${query}`)).json();
 /** Numbers of a text, with what comes after them. */
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
-const words = async (page) => plain(await page.locator('.evidence').innerText());
+const disclose = (page) => page.locator('.evidence:not([open]) summary').click();
+/** What it says once it is opened, without its line for a first look. */
+const words = async (page) => {
+  if (await page.locator('.evidence:not([open])').count() > 0) await disclose(page);
+  return plain(await page.locator('.evidence dl').innerText());
+};
 const short = (value, digits = 4) => String(Number(value.toPrecision(digits)));
 
 test('rotation, chaos and predictability are told with the server’s numbers', async () => {
@@ -38,6 +43,30 @@ test('a chaotic run says so, and for how long it can be predicted', async () => 
   clean();
 });
 
+test('a line tells it for a first look, and what was opened stays open', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const gist = async () => plain(await page.locator('.evidence summary').innerText());
+  const { rotation_number: rotation, chaos } = await ask('preset=case-1');
+  assert.equal(await gist(), `Regular · ${short(rotation.measured, 3)} turns a bounce · predictable ≥ ${chaos.impacts} impacts`);
+  assert.ok(!(await page.locator('.evidence dl').isVisible()));
+  await disclose(page);
+  await page.locator('#field-table-tilt_gain').fill('1.375');
+  await page.locator('.evidence', { hasText: 'near 1/3' }).waitFor();
+  assert.ok(await page.locator('.evidence dl').isVisible());
+  clean();
+});
+
+test('at 1280 × 860 scene, verdict, planes and eigenvalues are seen at once', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  for (const selector of ['#scene-frame', '#controls', '#verdict', '#plane-angle canvas', '#plane-velocity canvas', '#circle canvas']) {
+    const box = await page.locator(selector).first().boundingBox();
+    assert.ok(box.y >= 0 && box.y + box.height <= 860, `${selector} ends at ${box.y + box.height} px`);
+  }
+  clean();
+});
+
 test('a resonance nearby is named', async () => {
   const query = 'preset=case-1&scene.table.tilt_gain=1.375&scene.release.theta=0.02';
   const { page, clean } = await stage.page(`?${query}`);
@@ -52,6 +81,7 @@ test('the basin is measured when somebody asks, and belongs to its scene', async
   page.on('request', (request) => { if (request.url().includes('basin=true')) asked.push(request.url()); });
   await verdict(page);
   assert.equal(asked.length, 0);
+  await disclose(page);
   await page.click('#basin');
   await page.locator('.evidence', { hasText: 'Released at rest' }).waitFor();
   const { basin } = await ask('preset=case-1&basin=true');
@@ -69,6 +99,7 @@ test('a basin that cannot be asked for can be asked for again', async () => {
   const { page } = await stage.page('?preset=case-1');
   await verdict(page);
   await stage.stopServer();
+  await disclose(page);
   await page.click('#basin');
   await page.locator('.evidence', { hasText: 'did not answer' }).waitFor();
   await stage.startServer();
