@@ -38,6 +38,8 @@ let speed = 1;
 let mapLink = new URLSearchParams();
 /** @type {import('./map/panel.js').MapPanel | null} */
 let map = null;
+/** @type {import('./precision/panel.js').PrecisionPanel | null} */
+let precision = null;
 /** What the newest verdict belongs to. @type {{answer: import('./api.js').Stability, scene: URLSearchParams} | null} */
 let judged = null;
 /** @type {import('./branch/branch.js').Branch | null} */
@@ -169,6 +171,7 @@ function edited(path, final) {
   view.draft(scene);
   plots[2].redraw();
   map?.sceneChanged();
+  precision?.sceneChanged();
   ask();
   if (run.phase === 'idle') address();
   else showRun();
@@ -239,6 +242,7 @@ function present(scene) {
   plots[2].redraw();
   view.draft(scene);
   map?.sceneChanged();
+  precision?.sceneChanged();
   ask();
 }
 
@@ -251,6 +255,7 @@ function launch(values) {
   circle.preview(valueAt(scene, GAIN) ?? null);
   view.draft(scene);
   map?.sceneChanged();
+  precision?.sceneChanged();
   ask();
   start();
 }
@@ -324,6 +329,9 @@ async function begin() {
   lazily(byId('branch-body'), 'branch/branch.css', () => import('./branch/branch.js'), ({ Branch }) => {
     branch = new Branch(byId('branch-body'));
     if (judged) branch.show(judged);
+  });
+  lazily(byId('precision-body'), 'precision/precision.css', () => import('./precision/panel.js'), ({ PrecisionPanel }) => {
+    precision = new PrecisionPanel(byId('precision-body'), typedQuery);
   });
   lazily(byId('gallery-body'), 'gallery/gallery.css', () => import('./gallery/gallery.js'), ({ showGallery }) => void showGallery(byId('gallery-body'), ({ scene }) => play(scene)));
 }

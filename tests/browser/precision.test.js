@@ -1,0 +1,110 @@
+// Speed against accuracy on the page: measured when asked, the server's numbers, by pointer and by keys.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, measure, slide, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+async function open(query, options) {
+  const opened = await stage.page(query, options);
+  const answers = [];
+  opened.page.on('response', async (response) => { if (response.url().includes('v1/precision?')) answers.push(await response.json().catch(() => null)); });
+  await verdict(opened.page);
+  await opened.page.locator('#precision-body').scrollIntoViewIfNeeded();
+  await opened.page.locator('#precision-measure').waitFor();
+  return { ...opened, answers };
+}
+
+const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
+const marks = (page) => page.locator('#precision-box .mark').count();
+
+test('it is measured when somebody asks, and shows every point that has an error', async () => {
+  const { page, answers, clean } = await open('?preset=case-1');
+  assert.equal(answers.length, 0);
+  assert.ok(await page.locator('.precision-sheet').isHidden());
+  await measure(page, 20);
+  assert.equal(answers.length, 1);
+  const [{ points, methods, reference }] = answers;
+  assert.equal(reference.impacts, 20);
+  const drawn = (cost) => points.filter((point) => point.error !== null && cost(point) > 0);
+  assert.equal(await marks(page), drawn((point) => point.cost_ns_per_impact).length);
+  // Costs rise to the right and errors upwards: the order on the screen is that of the numbers.
+  const places = await page.locator('#precision-box .mark').evaluateAll((all) => all.map((one) => { const { x, y, width, height } = one.getBBox(); return [x + width / 2, y + height / 2]; }));
+  const timed = drawn((point) => point.cost_ns_per_impact);
+  const [left, right] = [places.findIndex(([x]) => x === Math.min(...places.map(([h]) => h))), places.findIndex(([, y]) => y === Math.min(...places.map(([, v]) => v)))];
+  assert.equal(timed[right].error, Math.max(...timed.map(({ error }) => error)));
+  assert.ok(timed[left].cost_ns_per_impact <= 1.2 * Math.min(...timed.map((point) => point.cost_ns_per_impact)));
+  assert.equal(await page.locator('#precision-box .front').count(), 1);
+  const listed = await page.locator('.methods li').allInnerTexts();
+  assert.equal(listed.length, methods.length);
+  for (const [index, { title }] of methods.entries()) assert.ok(listed[index].startsWith(title), listed[index]);
+  await page.locator('.precision-sheet summary', { hasText: 'Numbers' }).click();
+  const rows = await page.locator('.precision-sheet tbody tr').evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  assert.equal(rows.length, points.length);
+  assert.deepEqual(rows.map((row) => Number(plain(row[4]).replaceAll(' ', ''))).filter((steps) => steps < 1e6), points.map(({ steps }) => steps).filter((steps) => steps < 1e6));
+  await page.selectOption('#precision-axis', 'evaluations');
+  assert.equal(await marks(page), drawn((point) => point.evaluations).length);
+  assert.match(await page.locator('#precision-links a', { hasText: 'SVG' }).getAttribute('href'), /impacts=20&axis=evaluations&format=svg$/);
+  await page.selectOption('#precision-axis', 'steps');
+  assert.equal(await marks(page), drawn((point) => point.steps).length);
+  assert.equal(await page.locator('#precision-box .front').count(), 0);
+  assert.equal(answers.length, 1, 'another axis is no other measurement');
+  clean();
+});
+
+test('pointer and keys read the points', async () => {
+  const { page, answers, clean } = await open('?preset=case-1');
+  await measure(page, 20);
+  const [{ points, methods }] = answers;
+  const readout = async () => plain(await page.locator('#precision-readout').innerText());
+  const title = (name) => methods.find((method) => method.name === name).title;
+  const timed = points.filter((point) => point.error !== null && point.cost_ns_per_impact > 0);
+  await page.focus('#precision-box');
+  await page.keyboard.press('Home');
+  assert.ok((await readout()).startsWith(title(timed[0].method)));
+  await page.keyboard.press('End');
+  const last = timed.at(-1);
+  assert.ok((await readout()).startsWith(title(last.method)) && (await readout()).includes(last.setting.name), await readout());
+  await page.keyboard.press('ArrowUp');
+  assert.ok(!(await page.locator('.precision-sheet .unseen').innerText()).startsWith(title(last.method)));
+  await page.keyboard.press('Escape');
+  assert.equal(await readout(), '');
+  await page.locator('#precision-box').scrollIntoViewIfNeeded();
+  const box = await page.locator('#precision-box .mark').first().boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  assert.match(await readout(), /ns an impact.*steps.*error/);
+  assert.ok(await page.locator('#precision-box .pointed').isVisible());
+  clean();
+});
+
+test('it can be cancelled, and says when the scene is another one', async () => {
+  const { page, answers, clean } = await open('?preset=case-1');
+  await page.click('#precision-measure');
+  assert.ok(await page.locator('#precision-told progress').isVisible());
+  await page.click('#precision-cancel');
+  await page.locator('#precision-told', { hasText: 'Cancelled' }).waitFor();
+  assert.ok(await page.locator('#precision-measure').isEnabled());
+  await page.fill('#precision-impacts', '1001');
+  await page.click('#precision-measure');
+  assert.match(await page.locator('#precision-error').innerText(), /from 1 to 1000/);
+  await measure(page);
+  const before = answers.filter((answer) => answer).length;
+  await slide(page, '#gain', await page.locator('#gain').evaluate((slider) => Number(slider.value) + Number(slider.step || 1)));
+  await page.locator('#precision-told', { hasText: 'has changed' }).waitFor();
+  assert.equal(answers.filter((answer) => answer).length, before);
+  clean();
+});
+
+test('what the server refuses is told, and it can be asked again', async () => {
+  const { page } = await open('?preset=case-1', { prepare: () => {
+    const real = globalThis.fetch;
+    globalThis.refuse = true;
+    globalThis.fetch = (input, init) => (globalThis.refuse && String(input).includes('v1/precision') ? Promise.reject(new TypeError('no network')) : real(input, init));
+  } });
+  await page.fill('#precision-impacts', '10');
+  await page.click('#precision-measure');
+  await page.locator('#precision-told', { hasText: 'The server does not answer' }).waitFor();
+  await page.evaluate(() => { globalThis.refuse = false; });
+  await measure(page);
+});
