@@ -79,11 +79,12 @@ pub const PRECISION_IMPACTS: u64 = 1000;
 /// Steps of one run of a charted method, some 30 ms: settings that would take more are left out.
 pub const PRECISION_STEPS: u64 = 1_000_000;
 
-/// Time over which one method with one setting is measured; all sixty of them take some 1.5 s.
+/// Time over which one method with one setting is measured, three times as long where one run takes all of it: some 1.5 to 2 s
+/// for all fifty.
 pub const PRECISION_TIME: Duration = Duration::from_millis(30);
 
-/// Work of that, in bounces.
-pub const PRECISION_PRICE: u64 = 430_000;
+/// Work of that, in bounces, with the longer time that long runs get.
+pub const PRECISION_PRICE: u64 = 550_000;
 
 /// Least time of one look of the stopwatch: a thousand times the grain of the clock.
 pub const PRECISION_LOOK: Duration = Duration::from_micros(50);

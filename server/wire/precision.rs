@@ -218,8 +218,8 @@ impl<'a> Precision<'a> {
             .filter(|method| method.name != "extended" && series.iter().all(|series| series.label != method.title))
             .map(|method| method.title.to_owned())
             .collect();
-        let mut caption =
-            "Each point is a step or a tolerance; bars are quartiles. No point lies below the Pareto front.".to_owned();
+        let bars = if self.axis == Axis::Time { "; bars are quartiles" } else { "" };
+        let mut caption = format!("Each point is a step or a tolerance{bars}. No point lies below the Pareto front.");
         if let Some([_, cost_ns, _]) =
             points.iter().find(|point| point.method.name == "extended").and_then(crate::precision::Point::cost_ns)
         {
