@@ -143,6 +143,7 @@ impl Scene {
 impl ErrorEstimate {
     /// Bound on the largest of |ρδθ| (m), |δẋ|, |δẏ| and |ρδθ̇| (m/s) just before the coming contact; infinite once nothing is
     /// known any more. Of a point mass, on that of |δẋ| and |δẏ|.
+    #[inline(always)]
     pub fn bound(&self) -> f64 {
         if self.lost {
             return f64::INFINITY;
@@ -155,6 +156,7 @@ impl ErrorEstimate {
     }
 
     /// Goes on over a contact of the run and the flight after it; over one without a flight it does nothing.
+    #[inline(always)]
     pub fn pass(&mut self, contact: &Contact) {
         self.bounce(contact.n, &contact.state, contact.flight_time);
     }
@@ -162,9 +164,11 @@ impl ErrorEstimate {
     /// The same with a contact of 31 digits.
     pub fn pass_extended(&mut self, contact: &extended::Contact) {
         let state = extended::in_doubles(&contact.state);
-        self.bounce(contact.n, &state, contact.flight_time.map(DoubleDouble::to_f64));
+        let flight_time = contact.flight_time.map(DoubleDouble::to_f64);
+        self.bounce(contact.n, &state, flight_time);
     }
 
+    #[inline(always)]
     fn bounce(&mut self, n: u64, state: &State, flight_time: Option<f64>) {
         let Some(flight_time) = flight_time else { return };
         if self.lost {
@@ -194,6 +198,7 @@ impl ErrorEstimate {
     }
 
     /// Adds what the strike rounds: the impulse along its own direction, the energy along the velocity, and each sum.
+    #[inline(always)]
     fn round_strike(&self, strike: &mut Strike<Number8>, energy: &mut Number8) {
         let before = &self.state;
         let (l, rho) = (self.rod.contact_distance.value, self.rod.radius_of_gyration.value);
@@ -236,6 +241,7 @@ impl ErrorEstimate {
     }
 
     /// Carries the error over a flight of length `t`, in which terms of `doubt` m more are rounded.
+    #[inline(always)]
     fn fly(&mut self, flight: &Flight<Number8>, t: f64, doubt: f64) {
         let time = flight.lift_root(t);
         let State { mut theta, x_dot, mut y_dot, theta_dot } = flight.end(time);
@@ -273,6 +279,7 @@ impl ErrorEstimate {
     }
 
     /// Whether all flights within the bound end at the same root of the gap. Only a fast spin has more than one.
+    #[inline]
     fn same_root(&self, flight: &Flight<Number8>, t: f64, speed: f64) -> bool {
         let State { theta, y_dot, theta_dot, .. } = &flight.start;
         let l = flight.contact_distance.value;
@@ -298,12 +305,14 @@ impl ErrorEstimate {
 }
 
 /// The standard deviation of a number.
+#[inline(always)]
 fn spread<const K: usize>(number: &Dual<K>) -> f64 {
     number.partials.iter().map(|partial| partial * partial).sum::<f64>().sqrt()
 }
 
 /// Adds independent errors to five numbers: one to each, and two along directions. Their covariance gains D, and is factored
 /// again into as many directions as there are numbers (Cholesky); the directions of parameters stay.
+#[inline(always)]
 fn add(numbers: [&mut Number8; STATES], sums: &[f64; STATES], directions: &[[f64; STATES]; 2]) {
     let mut covariance = [[0.0; STATES]; STATES];
     for row in 0..STATES {
@@ -319,18 +328,25 @@ fn add(numbers: [&mut Number8; STATES], sums: &[f64; STATES], directions: &[[f64
             covariance[row][column] = sum;
         }
     }
+    // Without square roots on the way (L D Lᵀ): they would all wait for one another. `scaled` is L D.
     let mut factor = [[0.0; STATES]; STATES];
-    for row in 0..STATES {
+    let mut scaled = [[0.0; STATES]; STATES];
+    let mut per_pivot = [0.0; STATES];
+    for column in 0..STATES {
+        for row in column..STATES {
+            let known: f64 = (0..column).map(|index| scaled[row][index] * factor[column][index]).sum();
+            scaled[row][column] = covariance[row][column] - known;
+        }
+        let pivot = scaled[column][column];
+        per_pivot[column] = if pivot > 0.0 { 1.0 / pivot } else { 0.0 };
+        for row in column..STATES {
+            factor[row][column] = scaled[row][column] * per_pivot[column];
+        }
+    }
+    let roots = per_pivot.map(f64::sqrt);
+    for (row, scaled) in scaled.iter().enumerate() {
         for column in 0..=row {
-            let known: f64 = (0..column).map(|index| factor[row][index] * factor[column][index]).sum();
-            let rest = covariance[row][column] - known;
-            factor[row][column] = if row == column {
-                f64::max(rest, 0.0).sqrt()
-            } else if factor[column][column] > 0.0 {
-                rest / factor[column][column]
-            } else {
-                0.0
-            };
+            factor[row][column] = scaled[column] * roots[column];
         }
     }
     for (number, row) in numbers.into_iter().zip(factor) {
