@@ -6,11 +6,11 @@
 
 use std::io::{self, Write};
 use std::panic::AssertUnwindSafe;
-use std::pin::Pin;
 
 use axum::body::{Body, Bytes};
 use axum::http::Response;
 use flate2::write::GzEncoder;
+use futures_util::future::BoxFuture;
 use futures_util::{FutureExt, StreamExt, stream};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
@@ -64,7 +64,7 @@ impl Outlet {
 struct Pieces {
     made: UnboundedReceiver<Bytes>,
     /// Dropping it cancels the work.
-    work: Option<Pin<Box<dyn Future<Output = Result<(), Problem>> + Send>>>,
+    work: Option<BoxFuture<'static, Result<(), Problem>>>,
 }
 
 impl Pieces {

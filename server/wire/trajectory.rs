@@ -261,7 +261,8 @@ impl<'a> Trajectory<'a> {
             }
             last = Some((contact.n, contact.t));
             unknown += u64::from(!error_estimate.is_finite());
-            if predictable.is_none() && !(*error_estimate <= tolerance.unwrap_or(PREDICTABLE)) {
+            let lost = error_estimate.is_nan() || *error_estimate > tolerance.unwrap_or(PREDICTABLE);
+            if predictable.is_none() && lost {
                 predictable = Some(contact.n - 1);
             }
             !contact.n.is_multiple_of(256) || go_on()
