@@ -27,12 +27,20 @@ impl<const K: usize> Dual<K> {
 
     #[inline(always)]
     fn map(self, value: f64, slope: f64) -> Self {
-        Self { value, partials: self.partials.map(|partial| slope * partial) }
+        let mut partials = self.partials;
+        for partial in &mut partials {
+            *partial *= slope;
+        }
+        Self { value, partials }
     }
 
     #[inline(always)]
     fn combine(self, other: Self, value: f64, left: f64, right: f64) -> Self {
-        Self { value, partials: std::array::from_fn(|i| left * self.partials[i] + right * other.partials[i]) }
+        let mut partials = self.partials;
+        for (partial, other) in partials.iter_mut().zip(other.partials) {
+            *partial = left * *partial + right * other;
+        }
+        Self { value, partials }
     }
 }
 
