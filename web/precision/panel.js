@@ -217,9 +217,10 @@ export class PrecisionPanel {
     if (last < 0 || event.ctrlKey || event.altKey || event.metaKey) return;
     const at = this.#pointed;
     const turns = [...this.#drawn.keys()].filter((index) => index === 0 || this.#drawn[index].method !== this.#drawn[index - 1].method);
+    const own = turns.findLast((index) => index <= (at ?? 0)) ?? 0;
     const to = {
       ArrowRight: at === null ? 0 : Math.min(last, at + 1), ArrowLeft: at === null ? last : Math.max(0, at - 1),
-      ArrowDown: at === null ? 0 : turns.find((index) => index > at) ?? at, ArrowUp: at === null ? last : turns.findLast((index) => index < at) ?? 0,
+      ArrowDown: at === null ? 0 : turns.find((index) => index > at) ?? at, ArrowUp: at === null ? last : turns.findLast((index) => index < own) ?? 0,
       Home: 0, End: last, Escape: null,
     }[event.key];
     if (to === undefined) return;
