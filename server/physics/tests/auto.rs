@@ -80,8 +80,7 @@ fn the_choice_holds_and_is_nearly_always_the_cheapest() {
             let cheaper = |method: &Method| cost(*method) < cost(choice.method);
             let would_do =
                 |method: &Method| error(&scene, *method, impacts, &exact).is_some_and(|off| off <= tolerance);
-            cheapest +=
-                usize::from(!Method::ALL.iter().filter(|method| cheaper(method)).any(|method| would_do(method)));
+            cheapest += usize::from(!Method::ALL.iter().filter(|method| cheaper(method)).any(would_do));
         }
     }
     let all: usize = chosen.iter().sum();
