@@ -1,5 +1,7 @@
 //! What one bounce costs on one core: `cargo bench --bench bounce`. Each sample is 1000 bounces; read ns per item.
 
+mod case_1;
+
 use std::hint::black_box;
 
 use divan::counter::ItemsCount;
@@ -8,7 +10,7 @@ use equipoise_physics::dispatch::Path;
 use equipoise_physics::extended;
 use equipoise_physics::impact::{Rod, State};
 use equipoise_physics::jacobian::jacobian;
-use equipoise_physics::map::{Orbit, Release, Rules, run};
+use equipoise_physics::map::{Orbit, Release, run};
 use equipoise_physics::method::Method;
 use equipoise_physics::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -16,18 +18,6 @@ use equipoise_physics::sweep::{Start, sweep_on};
 
 const BOUNCES: u64 = 1000;
 
-/// The paper's case 1.
-const CASE_1: Rod = Rod {
-    contact_distance: 0.4 / 3.0,
-    radius_of_gyration: 0.094_280_904_158_206_35,
-    gravity: 9.81,
-    restitution: 1.0,
-    tilt_gain: 1.1,
-    strike_gain: 2.0,
-    strike_gain_per_energy: 0.0,
-    target_energy: 0.0,
-};
-const RULES: Rules = Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true };
 const RELEASE: Release =
     Release { x: 0.0, height: 0.2, state: State { theta: 0.3, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 } };
 
@@ -39,7 +29,7 @@ fn main() {
 #[divan::bench]
 fn one_orbit(bencher: Bencher) {
     bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
-        let mut orbit = Orbit::new(black_box(CASE_1), RULES, &RELEASE).ok()?;
+        let mut orbit = Orbit::new(black_box(case_1::ROD), case_1::RULES, &RELEASE).ok()?;
         run(&mut orbit, BOUNCES, |_| true)
     });
 }
@@ -48,7 +38,7 @@ fn one_orbit(bencher: Bencher) {
 #[divan::bench]
 fn strike_and_flight(bencher: Bencher) {
     bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
-        let rod = black_box(CASE_1);
+        let rod = black_box(case_1::ROD);
         let mut state = State { theta: 0.3, x_dot: 0.0, y_dot: -1.193_666_513_079_518, theta_dot: 0.0 };
         for _ in 0..BOUNCES {
             let strike = rod.strike(&state);
@@ -64,9 +54,9 @@ fn strike_and_flight(bencher: Bencher) {
 fn case_1() -> Scene {
     let mut draft = Draft::default();
     for (name, number) in [
-        (Name::ContactDistance, CASE_1.contact_distance),
-        (Name::RadiusOfGyration, CASE_1.radius_of_gyration),
-        (Name::TiltGain, CASE_1.tilt_gain),
+        (Name::ContactDistance, case_1::ROD.contact_distance),
+        (Name::RadiusOfGyration, case_1::ROD.radius_of_gyration),
+        (Name::TiltGain, case_1::ROD.tilt_gain),
         (Name::Height, RELEASE.height),
         (Name::Theta, RELEASE.state.theta),
     ] {
@@ -100,7 +90,7 @@ fn jacobian_product(bencher: Bencher) {
     let state = State { theta: 0.3, x_dot: 0.0, y_dot: -1.193_666_513_079_518, theta_dot: 0.0 };
     bencher
         .counter(ItemsCount::new(BOUNCES))
-        .bench(|| jacobian(&Model::Rod(black_box(CASE_1)), &state, BOUNCES).map(|it| it.flight_time));
+        .bench(|| jacobian(&Model::Rod(black_box(case_1::ROD)), &state, BOUNCES).map(|it| it.flight_time));
 }
 
 /// Sine and cosine, ours and the platform's, one after the other.
@@ -124,8 +114,8 @@ fn lanes(bencher: Bencher, path: Path) {
         let mut left = RUNS;
         let next = || {
             left = left.checked_sub(1)?;
-            let rod = Rod { tilt_gain: black_box(1.1 + 0.01 * left as f64), ..CASE_1 };
-            Some((0, Start { rod, rules: RULES, state: state(0.002 * left as f64) }))
+            let rod = Rod { tilt_gain: black_box(1.1 + 0.01 * left as f64), ..case_1::ROD };
+            Some((0, Start { rod, rules: case_1::RULES, state: state(0.002 * left as f64) }))
         };
         let mut survived = 0;
         sweep_on(path, BOUNCES, next, |_, end| survived += end.impacts, || true);

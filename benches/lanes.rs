@@ -1,35 +1,25 @@
 //! What outcomes, energy and bookkeeping cost beside a bare loop of lanes, and how two threads share a region:
 //! `cargo bench --bench lanes`. All in one run and in turns, so that ratios hold on a machine that others use.
 
+mod case_1;
+
 use std::hint::black_box;
 use std::thread;
 use std::time::Instant;
 
+use case_1::{ROD, RULES};
 use equipoise_physics::dispatch::{Path, Work, dispatch_on};
 use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::map::Rules;
 use equipoise_physics::sweep::{Start, sweep_on};
 
 const RUNS: usize = 64;
 const BOUNCES: u64 = 2000;
 const ROUNDS: usize = 25;
 
-/// The paper's case 1, and a little of everything around it.
-const ROD: Rod = Rod {
-    contact_distance: 0.4 / 3.0,
-    radius_of_gyration: 0.094_280_904_158_206_35,
-    gravity: 9.81,
-    restitution: 1.0,
-    tilt_gain: 1.1,
-    strike_gain: 2.0,
-    strike_gain_per_energy: 0.0,
-    target_energy: 0.0,
-};
-
 fn start(run: usize, wide: f64) -> Start {
     Start {
         rod: Rod { tilt_gain: 1.05 + 0.004 * run as f64, ..ROD },
-        rules: Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true },
+        rules: RULES,
         state: State { theta: wide * (1 + run % 32) as f64, x_dot: 0.0, y_dot: -1.15, theta_dot: 0.0 },
     }
 }
