@@ -201,8 +201,6 @@ async fn every_range_of_the_contract_is_kept() {
 async fn what_is_not_there_yet_says_so() {
     let server = Server::start();
     for (query, pointer) in [
-        ("scene.contact.friction=0.3", "/scene/contact/friction"),
-        ("scene.table.slide=matched", "/scene/table/slide"),
         ("scene.table.assumed_restitution=0.9", "/scene/table/assumed_restitution"),
         ("scene.table.feedback.theta=-1", "/scene/table/feedback"),
         ("scene.noise.timing_sd=0.01", "/scene/noise"),

@@ -126,10 +126,11 @@ fn built(draft: Draft) -> Scene {
     draft.build().expect("a test builds every case")
 }
 
-/// The rod of a scene: there are no point masses in the gallery.
+/// The rod of a scene: there are no point masses and no friction in the gallery.
 fn rod_of(scene: &Scene) -> Rod {
     match scene.model() {
         Model::Rod(rod) => rod,
         Model::Point(point) => *point.parameters(),
+        Model::Rough(rough) => rough.rod,
     }
 }

@@ -212,7 +212,7 @@ impl Impact {
             energy: body.energy(&contact.state),
             contact_speed: body.contact_speed(&contact.state),
             impulse_normal: struck.map(|strike| strike.impulse_normal),
-            contact_mode: contact.strike.map(|_| "frictionless"),
+            contact_mode: contact.strike.map(|_| body.contact(&contact.state).0.name()),
         }
     }
 

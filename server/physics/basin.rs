@@ -57,6 +57,9 @@ impl Scene {
     /// [`NoBasin`].
     pub fn basin(&self, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<Basin, NoBasin> {
         let because = |why: String| NoBasin::Because(why);
+        if let Some(error) = self.roughness() {
+            return Err(because(error.detail));
+        }
         let Model::Rod(rod) = self.model() else {
             return Err(because("a point mass has no angle to be released at".to_owned()));
         };

@@ -75,6 +75,7 @@ impl Scene {
         let (rod, is_point) = match self.model() {
             Model::Rod(rod) => (rod, false),
             Model::Point(point) => (*point.parameters(), true),
+            Model::Rough(rough) => (rough.rod, false),
         };
         let mut lifted: Rod<Number8> = rod.lift();
         // Parameters that are rounded. Other factors of the strike, such as 1 − κ, act as the radius of gyration does.
@@ -100,7 +101,8 @@ impl Scene {
             energy: None,
             unit,
             rounding: unit,
-            lost: false,
+            // Not derived with friction.
+            lost: self.is_rough(),
         };
         if first > 0.0 {
             let (sin, cos) = start.theta.sincos();

@@ -4,7 +4,7 @@
 //! of that paper. Not here: requests, JSON, clocks and threads; those live in the server.
 //!
 //! Where to look: [`scene`] is what a user may say; [`model`] chooses the smallest model that is exact for it;
-//! [`impact`], [`flight`] and [`contact_time`] are the three parts of one bounce; [`map`] puts them together and ends
+//! [`impact`] (or [`friction`]), [`flight`] and [`contact_time`] are the three parts of one bounce; [`map`] puts them together and ends
 //! a run; [`jacobian`] differentiates it, [`stability`] and [`regularity`] look at it from near and far, [`basin`] asks how far
 //! aside it may start, and [`verdict`] concludes. [`periodic_orbits`] finds what comes back; [`sweep`] runs many at once, for
 //! a [`region`]. [`extended`] is the map with 31 digits, to hold the others against; [`error_estimate`] says how far doubles
@@ -18,6 +18,7 @@ pub mod dual;
 pub mod error_estimate;
 pub mod extended;
 pub mod flight;
+pub mod friction;
 pub mod impact;
 pub mod jacobian;
 mod lanes;

@@ -174,6 +174,9 @@ impl Scene {
         mut visit: impl FnMut(&Impact<'_>) -> bool,
     ) -> Result<Option<Ending>, String> {
         let lost = |_| "the first contact is not found".to_owned();
+        if let Some(error) = self.roughness().filter(|_| method != Method::Map) {
+            return Err(error.detail);
+        }
         match method {
             Method::Linear => {
                 let solution = self.linear_solution()?;

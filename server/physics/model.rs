@@ -1,11 +1,12 @@
 //! Chooses the smallest model that is exact for a scene, and says why.
 
 use crate::contact_time::TooManyPieces;
+use crate::friction::{Mode, RoughRod, Slide};
 use crate::impact::{Rod, State, Strike};
 use crate::map::{Body, Orbit, Release, Rules};
 use crate::number::Number;
 use crate::point::Point;
-use crate::scene::{BodyShape, Scene, Striking};
+use crate::scene::{BodyShape, FieldError, Name, Scene, Striking};
 
 /// The rungs of the ladder of models, from the least.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +19,8 @@ pub enum Rung {
     RodStill,
     /// The rod with feedback of its energy.
     RodEnergy,
+    /// The rod on a table with friction, or that moves along itself.
+    Friction,
 }
 
 impl Rung {
@@ -28,6 +31,7 @@ impl Rung {
             Self::Rod => "rod",
             Self::RodStill => "rod_still",
             Self::RodEnergy => "rod_energy",
+            Self::Friction => "friction",
         }
     }
 }
@@ -39,12 +43,33 @@ pub enum Model {
     Rod(Rod),
     /// A point mass.
     Point(Point),
+    /// A rod with friction.
+    Rough(RoughRod),
+}
+
+impl Model {
+    /// What the contact does along the table in a strike at this state, and the impulse per unit mass there, m/s.
+    pub fn contact(&self, before: &State) -> (Mode, f64) {
+        match self {
+            Self::Rod(_) | Self::Point(_) => (Mode::Frictionless, 0.0),
+            Self::Rough(rough) => {
+                let (_, impulse) = rough.strike_with_impulse(before);
+                (impulse.mode, impulse.tangential)
+            }
+        }
+    }
 }
 
 impl Scene {
     /// The smallest model that is exact for this scene.
     pub fn model(&self) -> Model {
         match self.body {
+            BodyShape::Rod { .. } if self.is_rough() => Model::Rough(RoughRod {
+                rod: self.parameters(),
+                friction: self.friction,
+                law: self.law,
+                slide: self.slide,
+            }),
             BodyShape::Rod { .. } => Model::Rod(self.parameters()),
             BodyShape::Point => Model::Point(Point::new(self.parameters())),
         }
@@ -84,13 +109,32 @@ impl Scene {
                 BodyShape::Point => f64::INFINITY,
             },
             settles: self.is_lossy(),
-            holds_energy: !self.is_lossy(),
+            holds_energy: !self.is_lossy() && !self.is_rough(),
         }
     }
 
     /// Whether bounces lose energy that nothing gives back.
     pub fn is_lossy(&self) -> bool {
         self.strike == Striking::Still && self.restitution < 1.0
+    }
+
+    /// Whether the contact has friction or the table moves along itself.
+    pub fn is_rough(&self) -> bool {
+        self.friction != 0.0 || self.slide != Slide::None
+    }
+
+    /// Why what is derived for frictionless contacts does not hold, with the field that makes it so; none where it does.
+    pub fn roughness(&self) -> Option<FieldError> {
+        let name = if self.friction != 0.0 { Name::Friction } else { Name::Slide };
+        let path = name.row().path;
+        self.is_rough().then(|| FieldError {
+            path,
+            detail: format!("{path} is {}; this is not available with friction in this version", self.shown(name)),
+        })
+    }
+
+    fn shown(&self, name: Name) -> String {
+        self.value(name).map_or_else(String::new, |value| value.to_string())
     }
 
     /// A run of the scene from its release.
@@ -105,6 +149,7 @@ impl Scene {
     pub fn rung(&self) -> Rung {
         match self.body {
             BodyShape::Point => Rung::Point,
+            BodyShape::Rod { .. } if self.is_rough() => Rung::Friction,
             BodyShape::Rod { .. } if self.energy_gain != 0.0 => Rung::RodEnergy,
             BodyShape::Rod { .. } if self.is_lossy() => Rung::RodStill,
             BodyShape::Rod { .. } => Rung::Rod,
@@ -116,6 +161,15 @@ impl Scene {
         let e = self.restitution;
         match self.rung() {
             Rung::Point => "the body is a point: its table follows the angle of its velocity (eq. 3)".to_owned(),
+            Rung::Friction if self.friction == 0.0 => {
+                "slide is `matched`, so the table moves along itself, and friction is 0".to_owned()
+            }
+            Rung::Friction => format!(
+                "friction is {}, so the impulse has a part along the table (law `{}`, slide `{}`)",
+                self.friction,
+                self.shown(Name::Law),
+                self.shown(Name::Slide)
+            ),
             Rung::RodEnergy => {
                 format!(
                     "energy_gain is {} s²/m², so the table's speed depends on the energy (eq. 28)",
@@ -141,6 +195,7 @@ macro_rules! either {
         match $model {
             Model::Rod($body) => $call,
             Model::Point($body) => $call,
+            Model::Rough($body) => $call,
         }
     };
 }

@@ -123,6 +123,9 @@ impl Scene {
     /// c = ẋ − κρ²θ̇/((κ − 1)l): the mean horizontal speed of a balanced run, m/s. None where κ = 1, which drifts off in
     /// angle instead, and for a point mass, whose drift dies out.
     pub fn drift_speed(&self) -> Option<f64> {
+        if self.is_rough() {
+            return None;
+        }
         let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
         let start = self.start();
         let excess = self.tilt_gain - 1.0;
@@ -140,6 +143,9 @@ impl Scene {
     /// # Errors
     /// Why there is none, in a sentence.
     pub fn fixed_point(&self) -> Result<FixedPoint, String> {
+        if let Some(error) = self.roughness() {
+            return Err(error.detail);
+        }
         if self.is_lossy() {
             return Err(format!(
                 "the table stands still and restitution is {}: every bounce loses energy, so no bounce repeats",

@@ -77,6 +77,7 @@ impl<'a> Subject<'a> {
         let rho = match self.model {
             Model::Rod(rod) => rod.radius_of_gyration,
             Model::Point(_) => 0.0,
+            Model::Rough(rough) => rough.rod.radius_of_gyration,
         };
         let parts = [rho * theta, x_dot, y_dot, rho * theta_dot].map(f64::abs);
         if parts.iter().any(|part| part.is_nan()) { f64::NAN } else { parts.into_iter().fold(0.0, f64::max) }
@@ -141,6 +142,7 @@ impl<'a> Subject<'a> {
         let parameters = match &self.model {
             Model::Rod(rod) => rod,
             Model::Point(point) => point.parameters(),
+            Model::Rough(rough) => &rough.rod,
         };
         let mut evaluations = 0;
         let last = self.bounce(rules, |contact| {

@@ -22,7 +22,7 @@ pub fn routes() -> Router<App> {
 
 async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, at, period, method) = ask.read(|reader| {
-        let scene = scene::read(reader);
+        let scene = scene::read_frictionless(reader);
         let at = At::read(reader);
         let period = reader.integer("period", 1..=limits::PERIOD).unwrap_or(1);
         let method = reader

@@ -23,7 +23,7 @@ pub fn routes() -> Router<App> {
 
 async fn precision(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, request) = ask.read(|reader| {
-        let scene = scene::read(reader);
+        let scene = scene::read_frictionless(reader);
         let request = Request::read(reader);
         Some((scene?, request?))
     })?;

@@ -71,10 +71,11 @@ impl Contacts {
         }
         self.theta_dot.push(self.has_angle.then_some(theta_dot));
         let (table_x, table_y) = strike.table_velocity;
-        for (column, value) in self.strikes.iter_mut().zip([table_x, table_y, strike.impulse_normal, 0.0]) {
+        let (mode, tangential) = self.body.contact(&contact.state);
+        for (column, value) in self.strikes.iter_mut().zip([table_x, table_y, strike.impulse_normal, tangential]) {
             column.push(struck(value));
         }
-        self.contact_mode.push(contact.strike.map(|_| "frictionless"));
+        self.contact_mode.push(contact.strike.map(|_| mode.name()));
         self.flight_time.push(contact.flight_time);
         self.error_estimate.push(Some(impact.error_estimate).filter(|bound| bound.is_finite()));
         if let Some((orbit, contact)) = impact.extended {

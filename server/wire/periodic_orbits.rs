@@ -2,7 +2,7 @@
 
 use equipoise_physics::periodic_orbits::branch::{Branch, Point, Start, Sweep, follow};
 use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
-use equipoise_physics::scene::{Kind, Name, Scene, Value, field};
+use equipoise_physics::scene::{Field, Kind, Name, Scene, Value, field};
 use serde::{Serialize, Serializer};
 
 use super::jacobian::{Eigenvalue, read_state};
@@ -111,10 +111,11 @@ impl Request {
 
 impl Range {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let row = reader.text("parameter").and_then(field).filter(|row| matches!(row.kind, Kind::Number { .. }));
+        let sweeps = |row: &&Field| matches!(row.kind, Kind::Number { .. }) && row.name != Name::Friction;
+        let row = reader.text("parameter").and_then(field).filter(sweeps);
         if row.is_none() && reader.has("parameter") {
             reader
-                .refuse("parameter", "parameter must be the dotted name of a number of the scene, as table.tilt_gain");
+                .refuse("parameter", "parameter must be the dotted name of a number of the scene, as table.tilt_gain, and not contact.friction");
         }
         let (from, to) = (reader.number("from", -1e4..=1e4, ""), reader.number("to", -1e4..=1e4, ""));
         let points = reader.integer("points", 2..=limits::BRANCH_POINTS).unwrap_or(200);

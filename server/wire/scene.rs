@@ -22,6 +22,17 @@ pub fn read(reader: &mut Reader<'_, '_>) -> Option<Scene> {
     build(draft, &pointer, reader.errors())
 }
 
+/// [`read`] for what is derived for frictionless contacts only.
+pub fn read_frictionless(reader: &mut Reader<'_, '_>) -> Option<Scene> {
+    let scene = read(reader)?;
+    let pointer = reader.pointer_to("scene");
+    if let Some(error) = scene.roughness() {
+        reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
+        return None;
+    }
+    Some(scene)
+}
+
 /// What a request says of its scene, not yet built: something else may still set a field of it.
 pub fn read_draft(reader: &mut Reader<'_, '_>) -> Option<Draft> {
     let (preset, changes) = (reader.text("preset"), reader.value("scene"));

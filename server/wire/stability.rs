@@ -164,6 +164,8 @@ impl<'a> Stability<'a> {
                         mass has no angle of its own, and its drift dies out"
                     .to_owned(),
             );
+        } else if scene.is_rough() {
+            notes.push("drift_speed is null: it is not available with friction in this version".to_owned());
         } else if answer.drift_speed.is_none() {
             notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
         }

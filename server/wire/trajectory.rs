@@ -192,6 +192,9 @@ impl MethodChoice {
     fn of(scene: &Scene, request: &Request, go_on: &mut impl FnMut() -> bool) -> Result<(Method, Self), Refused> {
         let Request { impacts, method, tolerance, .. } = *request;
         if let (None, Some(tolerance)) = (method, tolerance) {
+            if let Some(error) = scene.roughness() {
+                return Err(Some(("/tolerance", format!("no method bounds its error: {}", error.detail))));
+            }
             let choice = scene
                 .choose_method(impacts, tolerance, go_on)
                 .ok_or(None)?
@@ -270,7 +273,12 @@ impl<'a> Trajectory<'a> {
         let ending = run.map_err(|why| Some(("/method", format!("{} does not apply: {why}", choice.name))))?;
         let ((contacts_made, t), ending) = last.zip(ending).ok_or(None)?;
         let mut notes = Vec::new();
-        if unknown > 0 {
+        if scene.is_rough() {
+            notes.push(
+                "error_estimate is null and predictable_impacts 0: no bound is derived with friction in this version"
+                    .to_owned(),
+            );
+        } else if unknown > 0 {
             notes.push(format!(
                 "error_estimate is null at {unknown} impacts: past a graze, or once rounding has grown to the size of the \
                  run, no bound is known"

@@ -39,6 +39,9 @@ impl Setting {
     /// # Errors
     /// Why the scene has no periodic orbits, in a sentence.
     pub fn of(scene: &Scene) -> Result<Self, String> {
+        if let Some(error) = scene.roughness() {
+            return Err(error.detail);
+        }
         let Model::Rod(rod) = scene.model() else {
             return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
         };

@@ -2,6 +2,7 @@
 
 use super::field::{Availability, FIELDS, Name, Value};
 use super::{BodyShape, Scene, Striking};
+use crate::friction::{Law, Slide};
 use crate::impact::State;
 use crate::map::Release;
 use crate::trig;
@@ -112,12 +113,28 @@ impl Draft {
                 errors.push(FieldError::new(Name::TargetHeight, detail));
             }
         }
+        let friction = self.required(Name::Friction, &mut errors);
+        let matched = self.get(Name::Slide) == Some(Value::Choice("matched"));
+        let slide = if matched { Slide::Matched } else { Slide::None };
+        for (name, said) in [(Name::Friction, friction != 0.0), (Name::Slide, matched)] {
+            if said && body == BodyShape::Point {
+                let detail = format!("{} is for a body with an angle; a point mass has none here", name.row().key());
+                errors.push(FieldError::new(name, detail));
+            }
+        }
         let scene = Scene {
             body,
             gravity: full_gravity * trig::sin_cos(incline).0,
             full_gravity,
             incline,
             restitution: self.required(Name::Restitution, &mut errors),
+            friction,
+            law: match self.get(Name::Law) {
+                Some(Value::Choice("newton")) => Law::Newton,
+                Some(Value::Choice("stronge")) => Law::Stronge,
+                _ => Law::Poisson,
+            },
+            slide,
             tilt_gain: self.required(Name::TiltGain, &mut errors),
             energy_gain,
             target_height: if energy_gain == 0.0 { None } else { self.number(Name::TargetHeight) },
@@ -251,9 +268,9 @@ mod tests {
     #[test]
     fn what_is_not_there_yet_is_refused() {
         let mut draft = Draft::default();
-        draft.set(Name::Friction, Some(Value::Number(0.0))).unwrap();
-        let error = draft.set(Name::Friction, Some(Value::Number(0.1))).unwrap_err();
-        assert_eq!(error.detail, "friction other than 0 is not available in this version");
+        draft.set(Name::TimingSd, Some(Value::Number(0.0))).unwrap();
+        let error = draft.set(Name::TimingSd, Some(Value::Number(0.1))).unwrap_err();
+        assert_eq!(error.detail, "timing_sd other than 0 is not available in this version");
         assert!(draft.set(Name::FeedbackX, Some(Value::Number(1.0))).is_err());
     }
 }

@@ -8,6 +8,7 @@ mod field;
 pub use draft::{Draft, FieldError};
 pub use field::{Availability, FIELDS, Field, Kind, Name, Value, field};
 
+use crate::friction::{Law, Slide};
 use crate::impact::State;
 use crate::map::Release;
 
@@ -45,6 +46,10 @@ pub struct Scene {
     /// φ, rad.
     pub(crate) incline: f64,
     pub(crate) restitution: f64,
+    /// μ.
+    pub(crate) friction: f64,
+    pub(crate) law: Law,
+    pub(crate) slide: Slide,
     pub(crate) tilt_gain: f64,
     pub(crate) energy_gain: f64,
     /// Only with an energy gain.

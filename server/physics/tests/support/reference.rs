@@ -14,8 +14,9 @@ pub(crate) fn frictionless() -> Vec<(String, Scene, Json)> {
         let name = file.file_stem().unwrap().to_string_lossy().into_owned();
         let reference: Json = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
         match draft(&reference["scene"]) {
-            Some(draft) => found.push((name, draft.build().unwrap(), reference)),
-            None => assert!(name.starts_with("friction"), "{name} was refused"),
+            Some(draft) if !name.starts_with("friction") => found.push((name, draft.build().unwrap(), reference)),
+            Some(_) => {}
+            None => panic!("{name} was refused"),
         }
     }
     found

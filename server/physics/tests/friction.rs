@@ -1,0 +1,136 @@
+//! Friction: the worked example, the energy of random impacts under each law, and runs with and without a matched table.
+
+use equipoise_physics::friction::{Law, Mobility, Mode};
+use equipoise_physics::impact::Rod;
+use equipoise_physics::map::{Orbit, run};
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::trig;
+
+#[path = "support/random.rs"]
+mod random;
+
+const LAWS: [Law; 3] = [Law::Poisson, Law::Newton, Law::Stronge];
+
+const ROD: Rod = Rod {
+    contact_distance: 0.4 / 3.0,
+    radius_of_gyration: 0.094_280_904_158_206_35,
+    gravity: 9.81,
+    restitution: 1.0,
+    tilt_gain: 1.1,
+    strike_gain: 2.0,
+    strike_gain_per_energy: 0.0,
+    target_energy: 0.0,
+};
+
+/// Kinetic energy before and after an impact at velocities in the axes of a table at rest, and what the contact did.
+fn energies(
+    rod: &Rod,
+    beta: f64,
+    [x_dot, y_dot, theta_dot]: [f64; 3],
+    friction: f64,
+    law: Law,
+    e: f64,
+) -> Option<(f64, f64, Mode)> {
+    let (sin, cos) = trig::sin_cos(beta);
+    let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
+    let tangential = x_dot + l * cos * theta_dot;
+    let normal = y_dot + l * sin * theta_dot;
+    let energy = |[x, y, spin]: [f64; 3]| 0.5 * (x * x + y * y + rho * rho * spin * spin);
+    (normal < 0.0).then(|| {
+        let impulse = Mobility::new(rod, sin, cos).impulse(tangential, normal, friction, law, e);
+        assert!(impulse.tangential.abs() <= friction * impulse.normal * (1.0 + 1e-12));
+        let spin = theta_dot + l * (cos * impulse.tangential + sin * impulse.normal) / (rho * rho);
+        let after = [x_dot + impulse.tangential, y_dot + impulse.normal, spin];
+        (energy([x_dot, y_dot, theta_dot]), energy(after), impulse.mode)
+    })
+}
+
+#[test]
+fn the_worked_example_has_its_energies() {
+    for (law, expected) in LAWS.into_iter().zip([1.218, 2.008, 1.342]) {
+        // The inputs are printed with two digits.
+        let (before, after, _) = energies(&ROD, -0.70, [-0.2, -1.2, 13.3], 0.68, law, 1.0).unwrap();
+        assert!((before - 1.526).abs() < 1e-3 && (after - expected).abs() < 1e-3, "{law:?}: {before}, {after}");
+    }
+}
+
+#[test]
+fn poisson_and_stronge_never_gain_energy_and_newton_does() {
+    let mut random = random::Random(7);
+    let mut gains = [0; 3];
+    let mut seen = Vec::new();
+    let mut impacts = 0;
+    while impacts < 100_000 {
+        let beta = random.between(-1.5, 1.5);
+        let (friction, e) = (random.between(0.0, 1.5), random.between(0.0, 1.0));
+        let spin = random.size(0.1, 20.0);
+        let mut velocities = [random.between(-2.0, 2.0), random.between(-2.0, 1.0), spin];
+        if impacts % 4 == 0 {
+            // At rest along the table, as where it is matched.
+            let along = ROD.contact_distance * trig::sin_cos(beta).1 * spin;
+            velocities[0] = -along;
+        }
+        if energies(&ROD, beta, velocities, friction, Law::Poisson, e).is_none() {
+            continue;
+        }
+        impacts += 1;
+        for (gained, law) in gains.iter_mut().zip(LAWS) {
+            let (before, after, mode) = energies(&ROD, beta, velocities, friction, law, e).unwrap();
+            *gained += u32::from(after > before * (1.0 + 1e-12));
+            if !seen.contains(&mode) {
+                seen.push(mode);
+            }
+        }
+    }
+    println!("of {impacts} impacts gained energy: {gains:?} by {LAWS:?}; modes {seen:?}");
+    assert!(gains[0] == 0 && gains[2] == 0 && gains[1] > 100, "{gains:?}");
+    for mode in [Mode::Slide, Mode::Stick, Mode::ReverseSlide, Mode::SlideOff] {
+        assert!(seen.contains(&mode), "{mode:?}");
+    }
+}
+
+fn scene(friction: f64, slide: &'static str, kappa: f64) -> Scene {
+    let mut draft = Draft::default();
+    for (name, number) in [
+        (Name::ContactDistance, ROD.contact_distance),
+        (Name::RadiusOfGyration, ROD.radius_of_gyration),
+        (Name::Friction, friction),
+        (Name::TiltGain, kappa),
+        (Name::Height, 0.2),
+        (Name::Theta, 0.05),
+    ] {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
+    draft.build().unwrap()
+}
+
+#[test]
+fn a_matched_table_balances_and_one_that_only_tilts_does_not() {
+    let outcome = |scene: Scene| {
+        let mut orbit: Orbit<_> = scene.orbit().unwrap();
+        let ending = run(&mut orbit, 20_000, |_| true).unwrap();
+        (ending.name(), orbit.contacts())
+    };
+    assert_eq!(outcome(scene(0.3, "matched", 2.4)), ("completed", 20_000));
+    let (_, contacts) = outcome(scene(0.05, "none", 1.1));
+    assert!(contacts <= 10, "{contacts}");
+    // Outside the stick cone.
+    assert_eq!(outcome(scene(0.05, "matched", 2.0)).1, 16);
+}
+
+#[test]
+fn without_friction_it_is_the_frictionless_strike() {
+    use equipoise_physics::map::Body;
+    let (plain, matched) = (scene(0.0, "none", 1.1).model(), scene(0.0, "matched", 1.1).model());
+    let state = *scene(0.0, "none", 1.1).orbit().unwrap().state();
+    let (plain, matched) = (plain.strike(&state), matched.strike(&state));
+    for (one, other) in [
+        (plain.after.x_dot, matched.after.x_dot),
+        (plain.after.y_dot, matched.after.y_dot),
+        (plain.after.theta_dot, matched.after.theta_dot),
+        (plain.contact_rise, matched.contact_rise),
+    ] {
+        assert!((one - other).abs() < 1e-14, "{one} {other}");
+    }
+}
