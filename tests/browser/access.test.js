@@ -73,12 +73,13 @@ test('nothing is wider than 320 px', async () => {
 test('a whole session needs no pointer', async () => {
   const { page, clean } = await stage.page('');
   await verdict(page);
-  const reached = new Set();
-  for (let k = 0; k < 160; k += 1) {
+  // Panels that load later are passed before they are there; the next round reaches what is in them.
+  const missing = new Set(['share', 'keys-open', 'case', 'run', 'gain', 'speed', 'field-table-tilt_gain', 'map-box', 'map-compute', 'field-release-theta']);
+  for (let k = 0; k < 1000 && missing.size > 0; k += 1) {
     await page.keyboard.press('Tab');
-    reached.add(await page.evaluate(() => document.activeElement?.id ?? ''));
+    missing.delete(await page.evaluate(() => document.activeElement?.id ?? ''));
   }
-  for (const id of ['share', 'keys-open', 'case', 'run', 'gain', 'speed', 'field-table-tilt_gain', 'map-box', 'map-compute', 'field-release-theta']) assert.ok(reached.has(id), `Tab reaches ${id}`);
+  assert.deepEqual([...missing], [], 'Tab reaches all');
   await page.locator('#case').focus();
   await page.keyboard.press('ArrowDown');
   await page.waitForFunction(() => document.querySelector('#case').selectedIndex === 2);
