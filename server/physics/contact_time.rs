@@ -1,5 +1,5 @@
 //! When a flight ends: the first time at which the contact point comes down to y = 0, found with a certificate and
-//! without sampling.
+//! without sampling. The same for any point of the body, from above or below.
 //!
 //! Where l θ̇² ≤ G the gap is concave and Newton falls onto its one root from the right. A faster spin is cut at the
 //! inflections of the gap into convex and concave pieces, on each of which a down-crossing is found or excluded.
@@ -30,6 +30,46 @@ pub struct TooManyPieces;
 #[inline(always)]
 pub fn first_contact(flight: &Flight) -> Result<f64, TooManyPieces> {
     look_for_contact(flight, Uncounted)
+}
+
+/// When a point first comes *down* through y = 0, s from the start of its flight; none where it never does.
+///
+/// It may start at any height. From below (h₀ < 0, or h₀ = 0 moving down) it has to rise through y = 0 first; one that
+/// rises no further than to y = 0 does not come down through it.
+///
+/// # Errors
+/// [`TooManyPieces`] where the work limit is passed.
+pub fn first_descent(flight: &Flight) -> Result<Option<f64>, TooManyPieces> {
+    first_descent_before(flight, f64::INFINITY)
+}
+
+/// [`first_descent`], if it is up to a time `limit`, s: what lies beyond costs nothing.
+///
+/// # Errors
+/// As [`first_descent`].
+pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, TooManyPieces> {
+    let start = flight.gap(0.0);
+    let rises = start.slope > 0.0 || (start.slope == 0.0 && start.bend > 0.0);
+    let above = start.value > 0.0 || (start.value == 0.0 && rises);
+    if flight.bulge() > flight.gravity {
+        return first_descent_spinning(*flight, Uncounted, above, limit);
+    }
+    if !above && start.slope <= 0.0 {
+        return Ok(None);
+    }
+    let end = latest_contact(flight).min(limit);
+    if end <= 0.0 {
+        return Ok(None);
+    }
+    let at_end = flight.gap(end);
+    if at_end.value > 0.0 {
+        // At the latest contact only rounding leaves it above.
+        return Ok((end < limit).then_some(end));
+    }
+    if above {
+        return look_for_contact(flight, Uncounted).map(|t| Some(t.min(limit)));
+    }
+    Ok(last_root(flight, Uncounted, 0.0, end, at_end))
 }
 
 /// How many times [`first_contact`] evaluates the gap of a flight. It is done for that, so it is not for loops in a hurry.
@@ -140,6 +180,30 @@ fn newton(flight: &Flight, eye: impl Eye, mut t: f64, mut gap: Gap) -> f64 {
     t
 }
 
+/// The last root of a gap that is concave from `from` to `t` and at or below zero there, where it is `gap`; none if it is
+/// below zero all the way.
+///
+/// As [`newton`], which never passes the last root: passing the top proves that there is none, and so does passing `from`,
+/// since the tangent lies above the gap.
+fn last_root(flight: &Flight, eye: impl Eye, from: f64, mut t: f64, mut gap: Gap) -> Option<f64> {
+    for steps in 0..MAX_STEPS {
+        // Above zero at or before the top is a double root to rounding.
+        if gap.slope >= 0.0 || t < from {
+            return (gap.value > 0.0 && t >= from).then_some(t);
+        }
+        let step = Step::new(flight, t, &gap);
+        if step.left_out <= step.negligible {
+            return Some(step.refined);
+        }
+        if steps > 0 && step.newton >= 0.0 {
+            return Some(t);
+        }
+        t += step.newton;
+        gap = eye.gap(flight, t);
+    }
+    None
+}
+
 /// One step from `t`: Newton's, and one that uses the second derivative too.
 pub(crate) struct Step<N> {
     /// What Newton adds to t.
@@ -175,12 +239,26 @@ impl<N: Real> Step<N> {
 #[cold]
 #[inline(never)]
 fn first_contact_spinning(flight: Flight, eye: impl Eye) -> Result<f64, TooManyPieces> {
+    let t = first_descent_spinning(flight, eye, true, f64::INFINITY)?;
+    Ok(t.unwrap_or_else(|| latest_contact(&flight)))
+}
+
+/// [`first_descent_before`] where l θ̇² > G, of a point that starts `above` y = 0 or below it.
+#[cold]
+#[inline(never)]
+fn first_descent_spinning(
+    flight: Flight,
+    eye: impl Eye,
+    mut above: bool,
+    limit: f64,
+) -> Result<Option<f64>, TooManyPieces> {
     let pieces = Pieces::new(&flight, eye);
-    let end = latest_contact(&flight);
+    let latest = latest_contact(&flight);
+    let end = latest.min(limit);
     // While the centre of gravity is higher than l, the rod cannot reach the table.
     let State { y_dot, .. } = flight.start;
-    let above = flight.clearance + flight.contact_distance * (flight.sin_cos_theta.1 - 1.0);
-    let reach = y_dot * y_dot + 2.0 * flight.gravity * above;
+    let height = flight.clearance + flight.contact_distance * (flight.sin_cos_theta.1 - 1.0);
+    let reach = y_dot * y_dot + 2.0 * flight.gravity * height;
     let (leaves, returns) = if reach > 0.0 {
         let root = reach.sqrt();
         ((y_dot - root) / flight.gravity, (y_dot + root) / flight.gravity)
@@ -189,13 +267,14 @@ fn first_contact_spinning(flight: Flight, eye: impl Eye) -> Result<f64, TooManyP
     };
     let mut budget = MAX_PIECES;
     for (from, to) in [(0.0, leaves.min(end)), (returns.max(0.0), end)] {
+        above |= reach > 0.0 && from > 0.0;
         if from < to
-            && let Some(t) = pieces.first_down_crossing(from, to, &mut budget)?
+            && let Some(t) = pieces.first_down_crossing(from, to, &mut above, &mut budget)?
         {
-            return Ok(t);
+            return Ok(Some(t));
         }
     }
-    Ok(end)
+    Ok((above && latest < limit).then_some(latest))
 }
 
 /// The pieces between the inflections of the gap, at cos(θ + θ̇t) = G/(l θ̇²).
@@ -230,7 +309,14 @@ impl<'a, E: Eye> Pieces<'a, E> {
         (angle - self.angle) / self.spin
     }
 
-    fn first_down_crossing(&self, from: f64, to: f64, budget: &mut u32) -> Result<Option<f64>, TooManyPieces> {
+    /// `above` is whether the point has been above y = 0, before and after.
+    fn first_down_crossing(
+        &self,
+        from: f64,
+        to: f64,
+        above: &mut bool,
+        budget: &mut u32,
+    ) -> Result<Option<f64>, TooManyPieces> {
         let angle = self.angle + self.spin * from;
         let mut turn = ((angle + self.half_width) / TAU).floor();
         let mut convex = angle - TAU * turn < self.half_width;
@@ -245,7 +331,14 @@ impl<'a, E: Eye> Pieces<'a, E> {
             };
             let b = self.time_of(boundary).clamp(a, to);
             let at_b = self.gap(b);
-            let crossing = if convex { self.in_convex(a, at_a, b, at_b) } else { self.in_concave(a, at_a, b, at_b) };
+            let crossing = match (*above, convex) {
+                (true, true) => self.in_convex(a, at_a, b, at_b),
+                (true, false) => self.in_concave(a, at_a, b, at_b),
+                // What is convex and starts below may rise, and no more.
+                (false, true) => None,
+                (false, false) => self.in_concave_from_below(a, at_a, b, at_b),
+            };
+            *above |= at_b.value > 0.0;
             if crossing.is_some() || b >= to {
                 return Ok(crossing);
             }
@@ -262,6 +355,14 @@ impl<'a, E: Eye> Pieces<'a, E> {
             return None;
         }
         Some(if at_b.slope < 0.0 { newton(self.flight, self.eye, b, at_b) } else { b })
+    }
+
+    /// A concave gap that starts below zero and ends there crosses twice or not at all.
+    fn in_concave_from_below(&self, a: f64, at_a: Gap, b: f64, at_b: Gap) -> Option<f64> {
+        if at_a.slope <= 0.0 || at_b.value > 0.0 || at_b.slope >= 0.0 || b <= a {
+            return None;
+        }
+        last_root(self.flight, self.eye, a, b, at_b)
     }
 
     /// A convex gap falls towards its first zero, if it has one, and Newton from the left never passes it; past the lowest
