@@ -8,7 +8,8 @@
 //! a run; [`jacobian`] differentiates it, [`stability`] and [`regularity`] look at it from near and far, [`basin`] asks how far
 //! aside it may start, and [`verdict`] concludes. [`periodic_orbits`] finds what comes back; [`sweep`] runs many at once, for
 //! a [`region`]. [`extended`] is the map with 31 digits, to hold the others against; [`error_estimate`] says how far doubles
-//! may be off it, [`linear`] gives any impact in closed form, and [`method`] chooses among the three.
+//! may be off it, [`linear`] gives any impact in closed form, and [`method`] chooses among the three. [`noise`] is what a
+//! table's clock and its sense of angle get wrong.
 
 pub mod basin;
 pub mod contact_time;
@@ -26,6 +27,7 @@ pub mod linear;
 pub mod map;
 pub mod method;
 pub mod model;
+pub mod noise;
 pub mod number;
 pub mod outcome;
 pub mod periodic_orbits;
