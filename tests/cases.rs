@@ -97,8 +97,8 @@ async fn the_lowest_exact_rung_is_chosen_and_named() {
         ("preset=case-1", "rod"),
         // The table makes up the loss exactly: e drops out.
         ("preset=case-1&scene.contact.restitution=0.3", "rod"),
-        ("preset=case-4", "rod_energy"),
-        ("preset=still-lossy", "rod_still"),
+        ("preset=case-4", "rod"),
+        ("preset=still-lossy", "rod"),
         ("preset=still-lossy&scene.contact.restitution=1", "rod"),
         ("preset=point-mass", "point"),
     ] {

@@ -241,7 +241,6 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
             compare("symbol", &field["symbol"], schema.get("x-symbol"));
         }
         compare("choices", &field["choices"], schema.get("enum"));
-        compare("available", &field["available"], schema.get("x-available"));
         let kind = match schema["type"].as_str().unwrap() {
             "string" => "choice",
             other => other,

@@ -17,7 +17,6 @@
  * @property {boolean} required
  * @property {string[] | null} choices
  * @property {boolean} live may be changed during a run
- * @property {boolean} available
  *
  * @typedef {{quantity: string, symbol: string, unit: string, value: number | string | null, where: string, why?: string | null}} PaperValue
  * @typedef {{name: string, title: string, shows: string, scene: Scene, printed: PaperValue[], computed: PaperValue[]}} Case

@@ -85,12 +85,8 @@ export class Form {
     this.#onEdit = onEdit;
     for (const title of new Set(fields.map(groupOf))) {
       const members = fields.filter((field) => groupOf(field) === title);
-      const missing = members.filter((field) => !field.available);
       const fieldset = h('fieldset', {}, h('legend', {}, title));
-      for (const field of members) if (field.available) fieldset.append(this.#row(field));
-      if (missing.length > 0) {
-        fieldset.append(h('p', { class: 'muted unavailable' }, 'Not in this version: ', missing.map((field) => field.title.toLowerCase()).join(', '), '.'));
-      }
+      for (const field of members) fieldset.append(this.#row(field));
       root.append(fieldset);
     }
     root.addEventListener('submit', (event) => event.preventDefault());

@@ -83,10 +83,6 @@ const shown = (text) => (text.length > 40 ? `${text.slice(0, 40)}…` : text);
 function readField(path, text, fields, changes) {
   const field = fields.find((one) => one.path === path);
   if (!field) return `“scene.${shown(path)}”, which is no field of a scene`;
-  if (!field.available) {
-    if (text === String(field.default)) return null;
-    return `${field.title.toLowerCase()} “${shown(text)}”, which this version does not have`;
-  }
   /** @type {unknown} */
   let value = text;
   if (field.kind === 'number' || field.kind === 'integer') {
@@ -181,10 +177,9 @@ export function merged(preset, changes) {
  */
 export function sceneQuery(scene, preset, fields) {
   const query = new URLSearchParams();
-  const known = fields.filter((field) => field.available);
-  const covered = preset && known.every((field) => playedAt(preset.scene, field) === undefined || playedAt(scene, field) !== undefined);
+  const covered = preset && fields.every((field) => playedAt(preset.scene, field) === undefined || playedAt(scene, field) !== undefined);
   if (covered) query.set('preset', preset.name);
-  for (const field of known) {
+  for (const field of fields) {
     const value = playedAt(scene, field);
     if (value === undefined || value === (covered ? playedAt(preset.scene, field) : field.default)) continue;
     query.set(`scene.${field.path}`, String(value));

@@ -96,7 +96,7 @@ function typedQuery() {
 function unplayed() {
   const typed = form?.read().scene;
   const { asked } = run;
-  return typed && asked ? fields.filter((field) => field.available && playedAt(typed, field) !== playedAt(asked, field)) : [];
+  return typed && asked ? fields.filter((field) => playedAt(typed, field) !== playedAt(asked, field)) : [];
 }
 
 /** The page's address says what is shown: the run while there is one, else what is typed. */
@@ -316,7 +316,7 @@ async function begin() {
   const root = byId('parameters');
   root.replaceChildren();
   form = new Form(root, fields, edited);
-  controls.knowGain(fields.find((field) => field.path === GAIN && field.available) ?? null);
+  controls.knowGain(fields.find((field) => field.path === GAIN) ?? null);
   chooser.replaceChildren(h('option', { value: '', hidden: true }, 'A scene of your own'), ...cases.map(({ name, title }) => h('option', { value: name }, plain(title))));
   chooser.disabled = false;
   chooser.addEventListener('change', () => { const one = cases.find(({ name }) => name === chooser.value); if (one) choose(one); });

@@ -3,7 +3,7 @@
 use super::course::{Course, upright};
 use super::{Case, Says, Seen, built, rod, rod_of, with};
 use crate::picture::{Chart, Curve, Look, Plot, Side};
-use equipoise_physics::map::{Body, Ending, Orbit, Release, Rules, run};
+use equipoise_physics::map::{Ending, Orbit, Release, Rules, run};
 use equipoise_physics::regularity::TOLERANCE;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::sweep::{Start, sweep_all};

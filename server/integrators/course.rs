@@ -3,7 +3,7 @@
 //! Not here: how they move the rod.
 
 use equipoise_physics::impact::{Rod, State, Strike};
-use equipoise_physics::map::{self, Body, Release, Rules, SETTLED_SHARE, SPEED_LIMIT};
+use equipoise_physics::map::{self, Release, Rules, SETTLED_SHARE, SPEED_LIMIT};
 
 use super::motion::Motion;
 use super::{Ending, Impact, Work};

@@ -29,11 +29,17 @@ pub struct Course {
 }
 
 impl Course {
-    /// A run at its release. None for a first flight that cannot be computed, which the ranges of a scene exclude.
-    pub fn new(run: &Run) -> Option<Self> {
+    /// A run at its release; at its end, where there is not even a first contact.
+    pub fn new(run: &Run) -> Self {
         let scene = *run.scene();
-        let orbit = scene.orbit().ok()?;
-        Some(Self { orbit, scene: Arc::new(scene), has_angle: has_angle(&scene), outcome: None })
+        let (orbit, outcome) = match scene.orbit() {
+            Ok(orbit) => (orbit, None),
+            Err(none) => {
+                let nowhere = Orbit::at(scene.model(), scene.rules(), *scene.start());
+                (nowhere, Some(Arc::new(Outcome::new(none.ending(0.0, 0.0), 0, 0.0))))
+            }
+        };
+        Self { orbit, scene: Arc::new(scene), has_angle: has_angle(&scene), outcome }
     }
 
     /// When the coming impact is, s; none after the end.
@@ -114,8 +120,6 @@ pub enum NotCaughtUp {
     OverBudget(OverBudget),
     /// Nobody waits for it.
     Cancelled,
-    /// There is no run.
-    NoRun,
 }
 
 /// The run where the telling begins: before the impact that was asked for or, if none was, the last one so far. It is
@@ -125,7 +129,7 @@ pub enum NotCaughtUp {
 /// Where that costs more than `limit`.
 pub fn catch_up(asked: &Asked, until: f64, limit: &Limit, cancel: &Cancel) -> Result<Course, NotCaughtUp> {
     let Asked { run, from } = asked;
-    let mut course = Course::new(run).ok_or(NotCaughtUp::NoRun)?;
+    let mut course = Course::new(run);
     let mut begin = None;
     let (mut spent, mut looked) = (Price::bounces(0), 0);
     while let (Some(t), Some(n)) = (course.next_t(), course.next_n())
@@ -152,7 +156,6 @@ impl From<NotCaughtUp> for Problem {
         match error {
             NotCaughtUp::OverBudget(over) => over.into(),
             NotCaughtUp::Cancelled => Cancelled.into(),
-            NotCaughtUp::NoRun => Problem::internal(),
         }
     }
 }
@@ -167,7 +170,7 @@ mod tests {
     const PLENTY: Limit = Limit { name: "work", most: 1_000_000, unit: "bounces" };
 
     fn contacts(run: &Run, count: usize) -> Vec<Contact> {
-        let mut course = Course::new(run).unwrap();
+        let mut course = Course::new(run);
         std::iter::from_fn(|| course.next_n().map(|_| course.advance(run).0)).take(count).collect()
     }
 

@@ -118,7 +118,7 @@ impl<'a> Hello<'a> {
                 y_dot: release.state.y_dot,
                 theta_dot: angle(release.state.theta_dot),
             },
-            flight_time: Course::new(run).and_then(|course| course.next_t()),
+            flight_time: Course::new(run).next_t(),
             build: BUILD,
         }
     }
@@ -158,7 +158,9 @@ pub struct Impact {
     energy: f64,
     contact_speed: f64,
     impulse_normal: Option<f64>,
+    impulse_tangential: Option<f64>,
     contact_mode: Option<&'static str>,
+    clearance: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -188,8 +190,6 @@ impl Impact {
     pub fn new(body: &Model, has_angle: bool, contact: &Contact) -> Self {
         let State { theta, x_dot, y_dot, theta_dot } = contact.state;
         let angle = |value| has_angle.then_some(value);
-        // A table that does not strike tilts all the same.
-        let strike = contact.strike.unwrap_or_else(|| body.strike(&contact.state));
         // What a run that diverged has overflown to does not exist.
         let struck = contact.strike.filter(|strike| {
             let State { x_dot, y_dot, theta_dot, .. } = strike.after;
@@ -206,13 +206,15 @@ impl Impact {
                 y_dot: strike.after.y_dot,
                 theta_dot: angle(strike.after.theta_dot),
             }),
-            alpha: strike.alpha,
+            alpha: contact.alpha,
             table_velocity: struck.map(|strike| Velocity { x: strike.table_velocity.0, y: strike.table_velocity.1 }),
             flight_time: contact.flight_time,
-            energy: body.energy(&contact.state),
+            energy: body.energy(&contact.state) + body.rod().gravity * contact.clearance,
             contact_speed: body.contact_speed(&contact.state),
             impulse_normal: struck.map(|strike| strike.impulse_normal),
-            contact_mode: contact.strike.map(|_| body.contact(&contact.state).0.name()),
+            impulse_tangential: struck.map(|strike| strike.impulse_tangential),
+            contact_mode: contact.strike.map(|strike| strike.mode.name()),
+            clearance: contact.clearance,
         }
     }
 
@@ -247,6 +249,7 @@ impl Serialize for Columns {
             flight_time: Vec<Option<f64>>,
             energy: Vec<f64>,
             contact_speed: Vec<f64>,
+            clearance: Vec<f64>,
         }
         let all = &self.0;
         let named = Named {
@@ -264,6 +267,7 @@ impl Serialize for Columns {
             flight_time: column(all, |impact| impact.flight_time),
             energy: column(all, |impact| impact.energy),
             contact_speed: column(all, |impact| impact.contact_speed),
+            clearance: column(all, |impact| impact.clearance),
         };
         named.serialize(serializer)
     }

@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn a_slow_client_is_told_what_it_misses() {
         let run = case("case-1");
-        let mut course = Course::new(&run).unwrap();
+        let mut course = Course::new(&run);
         let mut outbox = Outbox::new(4);
         outbox.push_impact(course.tell(&run).0);
         assert_eq!(pop(&mut outbox)["n"], 1);

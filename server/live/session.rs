@@ -344,7 +344,7 @@ impl Session {
             Order::Restart => {
                 let reached = self.course.next_n().or(self.course.outcome().map(|outcome| outcome.impacts));
                 self.run = run.restarted(now, reached.unwrap_or_default());
-                self.course = Course::new(&self.run).ok_or_else(Problem::internal)?;
+                self.course = Course::new(&self.run);
                 (self.first, self.catching_up, self.next_pump) = (1, false, Instant::now());
                 self.outbox.forget_impacts();
                 self.greet(now);

@@ -4,7 +4,7 @@
 //! narrow hole stays unseen.
 
 use crate::impact::State;
-use crate::map::{Body, Release};
+use crate::map::Release;
 use crate::model::Model;
 use crate::scene::Scene;
 use crate::sweep::{Outcome, Start, sweep};

@@ -72,11 +72,8 @@ impl Scene {
     }
 
     fn estimate(&self, first: f64, unit: f64) -> ErrorEstimate {
-        let (rod, is_point) = match self.model() {
-            Model::Rod(rod) => (rod, false),
-            Model::Point(point) => (*point.parameters(), true),
-            Model::Rough(rough) => (rough.rod, false),
-        };
+        let model = self.model();
+        let rod = *model.rod();
         let mut lifted: Rod<Number8> = rod.lift();
         // Parameters that are rounded. Other factors of the strike, such as 1 − κ, act as the radius of gyration does.
         let sloped = self.incline != std::f64::consts::FRAC_PI_2;
@@ -87,22 +84,23 @@ impl Scene {
             lifted.target_energy.partials[OF_GAIN] = unit * (2.0 * rod.target_energy.abs() + weight);
             lifted.target_energy.partials[OF_GRAVITY] =
                 lifted.gravity.partials[OF_GRAVITY] * self.target_height.unwrap_or(0.0);
-        } else if rod.strike_gain != 2.0 {
-            lifted.strike_gain.partials[OF_GAIN] = unit * rod.strike_gain;
+        }
+        if rod.strike_gain != 2.0 {
+            lifted.strike_gain.partials[OF_GAIN] = 2.0 * unit * rod.strike_gain;
         }
         let release = self.release();
         let exact = Number8::from_f64;
         let start = release.state.map(exact);
         let mut estimate = ErrorEstimate {
             rod: lifted,
-            is_point,
+            is_point: matches!(model, Model::Point(_)),
             holds_energy: self.rules().holds_energy,
             state: start,
             energy: None,
             unit,
             rounding: unit,
-            // Not derived with friction.
-            lost: self.is_rough(),
+            // Not derived for more than the plain rod.
+            lost: matches!(model, Model::Rig(_)),
         };
         if first > 0.0 {
             let (sin, cos) = start.theta.sincos();

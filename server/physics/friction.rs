@@ -1,12 +1,11 @@
 //! The strike with Coulomb friction: Routh's impulse in the plane, followed along its normal part through sliding, sticking and
 //! slip reversal, with restitution by Poisson, Newton or Stronge.
 //!
-//! A body of its own, so that the rod without friction pays nothing for it. Flights are the rod's. Not here: derivatives, error
-//! bounds and linear verdicts of it.
+//! Flights are the rod's, and what else a contact needs is in [`crate::rig`]. Not here: derivatives, error bounds and linear
+//! verdicts.
 
-use crate::contact_time::TooManyPieces;
-use crate::impact::{Rod, State, Strike};
-use crate::map::{Body, Release};
+use crate::impact::{Rod, State, Strike, Tilt};
+use crate::map::Plan;
 
 /// Law of restitution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -157,39 +156,41 @@ impl Mobility {
     }
 }
 
-/// A rod whose contact has friction.
+/// A contact with friction, and how the table moves along itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RoughRod {
-    /// The rod and its table without it.
-    pub rod: Rod,
+pub struct Friction {
     /// μ.
-    pub friction: f64,
+    pub coefficient: f64,
     /// Law of restitution.
     pub law: Law,
     /// How the table moves along itself.
     pub slide: Slide,
 }
 
-impl RoughRod {
-    /// The strike, and its impulse.
+impl Friction {
+    /// The strike of a rod over a table tilted like this, which moves as it was planned if it was.
     // Out of the loop of the frictionless bounce, which shares its code with this one.
     #[inline(never)]
-    pub fn strike_with_impulse(&self, before: &State) -> (Strike, Impulse) {
-        let rod = &self.rod;
-        let tilt = rod.tilt(before.theta);
-        let mut strike = rod.strike_with(before, &tilt, rod.leverage());
-        let (sin_alpha, cos_alpha, sin_beta) = (tilt.sin_alpha, tilt.cos_alpha, tilt.sin_beta);
-        let (_, cos_beta) = crate::trig::sin_cos((1.0 - rod.tilt_gain) * before.theta);
-        let along = rod.contact_distance * cos_beta;
-        let velocity = cos_alpha * before.x_dot + sin_alpha * before.y_dot + along * before.theta_dot;
-        let (table, relative) = match self.slide {
-            Slide::None => (0.0, velocity),
-            Slide::Matched => (velocity, 0.0),
+    pub(crate) fn strike(&self, rod: &Rod, before: &State, tilt: &Tilt<f64>, plan: Option<&Plan>) -> Strike {
+        let mut strike = rod.strike_with(before, tilt, rod.leverage());
+        let Tilt { sin_alpha, cos_alpha, sin_beta, .. } = *tilt;
+        let (_, cos_beta) = crate::trig::sin_cos(tilt.beta);
+        let (across, along) = (rod.contact_distance * sin_beta, rod.contact_distance * cos_beta);
+        let velocity = tangential_velocity(rod, before, tilt, cos_beta);
+        if let Some(plan) = plan {
+            strike.approach = strike.normal_velocity - plan.normal_velocity;
+            strike.push = (1.0 + rod.restitution) * strike.approach;
+            strike.table_velocity = (-plan.normal_velocity * sin_alpha, plan.normal_velocity * cos_alpha);
+        }
+        let (table, relative) = match (self.slide, plan) {
+            (Slide::None, _) => (0.0, velocity),
+            // Set, not computed: a difference of rounding would slide.
+            (Slide::Matched, None) => (velocity, 0.0),
+            (Slide::Matched, Some(plan)) => (plan.tangential_velocity, velocity - plan.tangential_velocity),
         };
         let mobility = Mobility::new(rod, sin_beta, cos_beta);
-        let impulse = mobility.impulse(relative, strike.approach, self.friction, self.law, rod.restitution);
-        let Impulse { normal, tangential, .. } = impulse;
-        let across = rod.contact_distance * sin_beta;
+        let Impulse { normal, tangential, mode } =
+            mobility.impulse(relative, strike.approach, self.coefficient, self.law, rod.restitution);
         let after = State {
             theta: before.theta,
             x_dot: before.x_dot + (tangential * cos_alpha - normal * sin_alpha),
@@ -200,45 +201,24 @@ impl RoughRod {
         let speed_squared = after.x_dot * after.x_dot + after.y_dot * after.y_dot + spin * spin;
         strike.table_velocity.0 += table * cos_alpha;
         strike.table_velocity.1 += table * sin_alpha;
-        strike.impulse_normal = normal;
-        strike.contact_rise = after.y_dot + rod.contact_distance * after.theta_dot * tilt.sin_theta;
+        (strike.impulse_normal, strike.impulse_tangential, strike.mode) = (normal, tangential, mode);
+        strike.contact_rise = rod.contact_rise(&after, tilt.sin_theta);
         strike.energy_gain = 0.5 * (speed_squared - strike.speed_squared);
         strike.after = after;
-        (strike, impulse)
+        strike
+    }
+
+    /// The table's velocity along itself where nothing delays it, m/s.
+    pub(crate) fn table_speed(&self, rod: &Rod, before: &State, tilt: &Tilt<f64>) -> f64 {
+        match self.slide {
+            Slide::None => 0.0,
+            Slide::Matched => tangential_velocity(rod, before, tilt, crate::trig::sin_cos(tilt.beta).1),
+        }
     }
 }
 
-impl Body for RoughRod {
-    fn fall(&self, release: &Release) -> Result<(f64, State), TooManyPieces> {
-        self.rod.fall(release)
-    }
-
-    fn strike(&self, before: &State) -> Strike {
-        self.strike_with_impulse(before).0
-    }
-
-    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
-        self.rod.hold_energy(strike, energy)
-    }
-
-    #[inline(always)]
-    fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
-        self.rod.fly(strike)
-    }
-
-    fn contact_distance(&self) -> f64 {
-        self.rod.contact_distance
-    }
-
-    fn contact_height(&self, state: &State) -> f64 {
-        self.rod.contact_height(state)
-    }
-
-    fn energy(&self, state: &State) -> f64 {
-        self.rod.energy(state)
-    }
-
-    fn contact_speed(&self, state: &State) -> f64 {
-        self.rod.contact_speed(state)
-    }
+/// Velocity of the contact point along the table, m/s.
+fn tangential_velocity(rod: &Rod, before: &State, tilt: &Tilt<f64>, cos_beta: f64) -> f64 {
+    let along = rod.contact_distance * cos_beta;
+    tilt.cos_alpha * before.x_dot + tilt.sin_alpha * before.y_dot + along * before.theta_dot
 }

@@ -2,6 +2,7 @@
 //!
 //! Not here: when contacts happen ([`crate::contact_time`]) and whether a run goes on after one ([`crate::map`]).
 
+use crate::friction::Mode;
 use crate::number::Number;
 
 /// Angle and velocities of the rod just before a contact; the horizontal place is carried beside it, since nothing
@@ -48,6 +49,8 @@ pub struct Rod<N = f64> {
 pub(crate) struct Tilt<N> {
     /// α, table tilt, rad.
     pub(crate) alpha: N,
+    /// β = θ − α, the rod's angle from the table's normal, rad.
+    pub(crate) beta: N,
     /// sin θ.
     pub(crate) sin_theta: N,
     /// 1 − cos θ.
@@ -56,7 +59,7 @@ pub(crate) struct Tilt<N> {
     pub(crate) sin_alpha: N,
     /// cos α.
     pub(crate) cos_alpha: N,
-    /// sin β of β = θ − α, the rod's angle from the table's normal.
+    /// sin β.
     pub(crate) sin_beta: N,
 }
 
@@ -80,6 +83,10 @@ pub struct Strike<N = f64> {
     pub table_velocity: (N, N),
     /// P_n, m/s.
     pub impulse_normal: N,
+    /// P_t, m/s.
+    pub impulse_tangential: N,
+    /// What the contact does along the table.
+    pub mode: Mode,
     /// ẏ_c⁺, vertical velocity of the contact point just after, m/s.
     pub contact_rise: N,
     /// |v|² = ẋ² + ẏ² + ρ²θ̇² just before, m²/s².
@@ -89,6 +96,17 @@ pub struct Strike<N = f64> {
     pub energy: N,
     /// What the strike adds to it, ½γ(γ − 2) v_nc²/B: nothing where the strike gain is 2.
     pub energy_gain: N,
+}
+
+impl<N: Number> Tilt<N> {
+    /// Of a rod at θ = `theta` over a table at α = `alpha`, `beta` apart.
+    #[inline(always)]
+    pub(crate) fn new(theta: N, alpha: N, beta: N) -> Self {
+        let (sin_theta, versine_theta) = theta.sin_versine();
+        let (sin_alpha, cos_alpha) = alpha.sincos();
+        let (sin_beta, _) = beta.sincos();
+        Self { alpha, beta, sin_theta, versine_theta, sin_alpha, cos_alpha, sin_beta }
+    }
 }
 
 impl<N: Number> Rod<N> {
@@ -101,12 +119,8 @@ impl<N: Number> Rod<N> {
     /// The table's tilt at an angle of the rod.
     #[inline(always)]
     pub(crate) fn tilt(&self, theta: N) -> Tilt<N> {
-        let alpha = self.tilt_gain * theta;
-        let (sin_theta, versine_theta) = theta.sin_versine();
-        let (sin_alpha, cos_alpha) = alpha.sincos();
         // Without the rounding of α: the strike turns the rod by sin β, which is small beside θ.
-        let (sin_beta, _) = ((N::from_f64(1.0) - self.tilt_gain) * theta).sincos();
-        Tilt { alpha, sin_theta, versine_theta, sin_alpha, cos_alpha, sin_beta }
+        Tilt::new(theta, self.tilt_gain * theta, (N::from_f64(1.0) - self.tilt_gain) * theta)
     }
 
     /// 1/ρ², 1/m²: of all that a strike needs, what depends on the rod alone and costs a division.
@@ -121,7 +135,7 @@ impl<N: Number> Rod<N> {
         let one = N::from_f64(1.0);
         let half = N::from_f64(0.5);
         let State { theta, x_dot, y_dot, theta_dot } = *before;
-        let Tilt { alpha, sin_theta, versine_theta, sin_alpha, cos_alpha, sin_beta } = *tilt;
+        let Tilt { alpha, sin_theta, versine_theta, sin_alpha, cos_alpha, sin_beta, .. } = *tilt;
         let cos_theta = one - versine_theta;
         // Eq. (32) in the plane's axes.
         let arm = self.contact_distance * sin_beta;
@@ -154,6 +168,8 @@ impl<N: Number> Rod<N> {
             approach: share * normal_velocity,
             table_velocity: (-(table * sin_alpha), table * cos_alpha),
             impulse_normal: impulse,
+            impulse_tangential: N::from_f64(0.0),
+            mode: Mode::Frictionless,
             contact_rise: self.contact_rise(&after, sin_theta),
             speed_squared,
             energy: half * speed_squared - weight * versine_theta,
@@ -195,7 +211,7 @@ impl<N: Copy> State<N> {
 impl<N: Number> Rod<N> {
     /// ẏ_c = ẏ + l θ̇ sin θ, m/s.
     #[inline(always)]
-    fn contact_rise(&self, state: &State<N>, sin_theta: N) -> N {
+    pub(crate) fn contact_rise(&self, state: &State<N>, sin_theta: N) -> N {
         state.y_dot + self.contact_distance * state.theta_dot * sin_theta
     }
 

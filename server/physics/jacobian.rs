@@ -5,12 +5,12 @@
 
 use crate::dual::Dual;
 use crate::flight::Flight;
-use crate::friction::RoughRod;
 use crate::impact::{Rod, State};
 use crate::map::{Body, Contact, Orbit, Rules};
 use crate::model::Model;
 use crate::number::Number;
 use crate::point::Point;
+use crate::rig::Rig;
 use nalgebra::{Complex, DMatrix, Schur};
 
 /// The map linearized about one orbit segment.
@@ -30,7 +30,7 @@ pub struct Linearization {
 /// Names of the components of a state, in the order of a matrix's rows and columns.
 pub fn state_order(model: &Model) -> &'static [&'static str] {
     match model {
-        Model::Rod(_) | Model::Rough(_) => &["rho_theta", "x_dot", "y_dot", "rho_theta_dot"],
+        Model::Rod(_) | Model::Rig(_) => &["rho_theta", "x_dot", "y_dot", "rho_theta_dot"],
         Model::Point(_) => &["x_dot", "y_dot"],
     }
 }
@@ -44,7 +44,7 @@ pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearizati
         Model::Rod(rod) => rod_jacobian(rod, state),
         Model::Point(point) => point_jacobian(point, state),
         // Not derived, and nobody is to take anything else for it.
-        Model::Rough(_) => Some(DMatrix::from_element(4, 4, f64::NAN)),
+        Model::Rig(_) => Some(DMatrix::from_element(4, 4, f64::NAN)),
     })
 }
 
@@ -147,7 +147,7 @@ fn rows<const K: usize>(components: &[Dual<K>; K]) -> DMatrix<f64> {
 
 fn to_vector(model: &Model, state: &State) -> DMatrix<f64> {
     match model {
-        Model::Rod(rod) | Model::Rough(RoughRod { rod, .. }) => {
+        Model::Rod(rod) | Model::Rig(Rig { rod, .. }) => {
             let rho = rod.radius_of_gyration;
             DMatrix::from_column_slice(4, 1, &[rho * state.theta, state.x_dot, state.y_dot, rho * state.theta_dot])
         }
@@ -157,7 +157,7 @@ fn to_vector(model: &Model, state: &State) -> DMatrix<f64> {
 
 fn from_vector(model: &Model, vector: &DMatrix<f64>) -> State {
     match model {
-        Model::Rod(rod) | Model::Rough(RoughRod { rod, .. }) => {
+        Model::Rod(rod) | Model::Rig(Rig { rod, .. }) => {
             let rho = rod.radius_of_gyration;
             State { theta: vector[0] / rho, x_dot: vector[1], y_dot: vector[2], theta_dot: vector[3] / rho }
         }

@@ -13,6 +13,7 @@
 
 pub mod basin;
 pub mod contact_time;
+pub mod demand;
 pub mod dispatch;
 pub mod double_double;
 pub mod dual;
@@ -34,6 +35,7 @@ pub mod periodic_orbits;
 pub mod point;
 pub mod region;
 pub mod regularity;
+pub mod rig;
 pub mod scene;
 pub mod stability;
 pub mod sweep;

@@ -3,6 +3,7 @@
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
 use crate::contact_time::{self, TooManyPieces};
+use crate::demand::{Excess, Limits, Pose};
 use crate::dispatch::{Work, dispatch};
 use crate::flight::Flight;
 use crate::impact::{Rod, State, Strike};
@@ -37,65 +38,179 @@ pub struct Kick {
     pub theta_dot: f64,
 }
 
+/// Where a flight ends: just before a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// Time since the flight began, s.
+    pub t: f64,
+    /// Angle and velocities.
+    pub state: State,
+    /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
+    pub clearance: f64,
+    /// What the table has set out to do, where it planned ahead.
+    pub plan: Option<Plan>,
+}
+
+impl From<(f64, State)> for Arrival {
+    #[inline(always)]
+    fn from((t, state): (f64, State)) -> Self {
+        Self { t, state, clearance: 0.0, plan: None }
+    }
+}
+
+/// A table that moves as it was planned before the contact, whatever it then meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// α, rad.
+    pub alpha: f64,
+    /// The table's velocity along its normal, m/s.
+    pub normal_velocity: f64,
+    /// The table's velocity along itself, m/s.
+    pub tangential_velocity: f64,
+}
+
+/// A contact that is about to happen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coming {
+    /// Its number, from 1.
+    pub n: u64,
+    /// Where the centre of gravity is, m.
+    pub x: f64,
+    /// Angle and velocities just before it.
+    pub state: State,
+    /// As in [`Arrival`], m.
+    pub clearance: f64,
+    /// As in [`Arrival`].
+    pub plan: Option<Plan>,
+}
+
+impl Coming {
+    /// A contact at y = 0, on a table that has planned nothing.
+    #[inline(always)]
+    pub fn at(n: u64, x: f64, state: State) -> Self {
+        Self { n, x, state, clearance: 0.0, plan: None }
+    }
+}
+
+/// Why a flight ends without a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoContact {
+    /// The contact time passed its work limit.
+    TooManyPieces,
+    /// The contact point does not come up to y = 0 again.
+    Sinking,
+    /// The planned table is never met.
+    Missed,
+    /// Another vertex comes down first.
+    OtherVertex(Touch),
+}
+
+impl From<TooManyPieces> for NoContact {
+    fn from(_: TooManyPieces) -> Self {
+        Self::TooManyPieces
+    }
+}
+
+/// A vertex of the body, other than the one that bounces, on the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Its place among the vertices, from 0.
+    pub vertex: usize,
+    /// Time since the last contact, or since the release, s.
+    pub t: f64,
+}
+
 /// A body that bounces: its strike and its flights.
 pub trait Body: Copy {
-    /// Time of the first contact (0 if it is on the table already and does not rise), and the state just before it.
+    /// The first contact; at t = 0 if it is on the table already and does not rise.
     ///
     /// # Errors
-    /// [`TooManyPieces`] where the contact time passed its work limit; likewise in [`Body::fly`].
-    fn fall(&self, release: &Release) -> Result<(f64, State), TooManyPieces>;
+    /// Why there is none; likewise in [`Body::fly`].
+    fn fall(&self, release: &Release) -> Result<Arrival, NoContact>;
 
     /// The strike at a contact.
-    fn strike(&self, before: &State) -> Strike;
+    fn strike(&self, coming: &Coming) -> Strike;
+
+    /// Another vertex that is below the table's line at a strike.
+    #[inline(always)]
+    fn touches(&self, _: &Coming, _: &Strike) -> Option<Touch> {
+        None
+    }
 
     /// Keeps rounding off the energy of a strike: as [`Rod::hold_energy`].
     fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64;
 
-    /// Length of the flight after a strike, s, and the state at its end.
+    /// The flight after the strike of a contact.
     ///
     /// # Errors
     /// As [`Body::fall`].
-    fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces>;
+    fn fly(&self, from: &Coming, strike: &Strike) -> Result<Arrival, NoContact>;
 
     /// l, m: how far the contact point is from the centre of gravity.
     fn contact_distance(&self) -> f64;
 
-    /// Height of the centre of gravity at a contact, m.
+    /// Height of the centre of gravity above that of the contact point, m.
     fn contact_height(&self, state: &State) -> f64;
 
-    /// Energy per unit mass ½|v|² + Gy at a contact, m²/s².
+    /// Energy per unit mass ½|v|² + Gy with the contact point at y = 0, m²/s².
     fn energy(&self, state: &State) -> f64;
 
     /// Vertical velocity of the contact point, m/s.
     fn contact_speed(&self, state: &State) -> f64;
 }
 
-impl Body for Rod {
-    fn fall(&self, release: &Release) -> Result<(f64, State), TooManyPieces> {
-        let sin_cos_theta = crate::trig::sin_cos(release.state.theta);
-        let height = self.contact_distance * sin_cos_theta.1;
-        let clearance = release.height - height;
-        // A height typed as l cos θ means a contact, whatever the last digit.
-        let clearance =
-            if clearance <= 4.0 * f64::EPSILON * release.height.abs().max(height.abs()) { 0.0 } else { clearance };
-        let flight = Flight {
-            start: release.state,
-            sin_cos_theta,
-            clearance,
-            contact_distance: self.contact_distance,
-            gravity: self.gravity,
-        };
+impl Rod {
+    /// Time of the first contact (0 if it is on the table already and does not rise), s, and the state just before it.
+    ///
+    /// # Errors
+    /// [`TooManyPieces`] where the contact time passed its work limit; likewise in [`Rod::fly`].
+    pub fn fall(&self, release: &Release) -> Result<(f64, State), TooManyPieces> {
+        let flight = self.flight_from(release);
         let gap = flight.gap(0.0);
-        if clearance == 0.0 && (gap.slope < 0.0 || (gap.slope == 0.0 && gap.bend <= 0.0)) {
+        if flight.clearance == 0.0 && (gap.slope < 0.0 || (gap.slope == 0.0 && gap.bend <= 0.0)) {
             return Ok((0.0, release.state));
         }
         let t = contact_time::first_contact(&flight)?;
         Ok((t, flight.end(t)))
     }
 
+    /// The flight that begins at a release.
+    pub(crate) fn flight_from(&self, release: &Release) -> Flight {
+        let sin_cos_theta = crate::trig::sin_cos(release.state.theta);
+        let height = self.contact_distance * sin_cos_theta.1;
+        let clearance = release.height - height;
+        // A height typed as l cos θ means a contact, whatever the last digit.
+        let clearance =
+            if clearance <= 4.0 * f64::EPSILON * release.height.abs().max(height.abs()) { 0.0 } else { clearance };
+        Flight {
+            start: release.state,
+            sin_cos_theta,
+            clearance,
+            contact_distance: self.contact_distance,
+            gravity: self.gravity,
+        }
+    }
+
+    /// Length of the flight after a strike, s, and the state at its end.
+    ///
+    /// # Errors
+    /// As [`Rod::fall`].
     #[inline(always)]
-    fn strike(&self, before: &State) -> Strike {
-        Rod::strike(self, before)
+    pub fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
+        let flight = self.flight(strike);
+        let t = contact_time::first_contact(&flight)?;
+        Ok((t, flight.end(t)))
+    }
+}
+
+impl Body for Rod {
+    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
+        Ok(Rod::fall(self, release)?.into())
+    }
+
+    #[inline(always)]
+    fn strike(&self, coming: &Coming) -> Strike {
+        Rod::strike(self, &coming.state)
     }
 
     #[inline(always)]
@@ -104,10 +219,8 @@ impl Body for Rod {
     }
 
     #[inline(always)]
-    fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
-        let flight = self.flight(strike);
-        let t = contact_time::first_contact(&flight)?;
-        Ok((t, flight.end(t)))
+    fn fly(&self, _: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+        Ok(Rod::fly(self, strike)?.into())
     }
 
     fn contact_distance(&self) -> f64 {
@@ -130,6 +243,8 @@ impl Body for Rod {
 /// Why a run ended, with the number that decided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending {
+    /// Another vertex than the one that bounces meets the table.
+    OtherVertex(Touch),
     /// |θ| reached the topple angle; both in rad.
     Toppled {
         /// θ at the contact.
@@ -137,16 +252,20 @@ pub enum Ending {
         /// The topple angle.
         limit: f64,
     },
+    /// The strike asks more of the table than its limits allow.
+    BeyondLimits(Excess),
     /// The contact point does not approach the moving table: it could only pull.
     Separating {
         /// Velocity relative to the table along its normal, m/s, ≥ 0.
         approach: f64,
     },
-    /// The contact point does not rise after the strike, so there is no next contact from above.
+    /// There is no next contact from above: the contact point does not rise after the strike, or not up to y = 0.
     Sinking {
-        /// Its vertical velocity after the strike, m/s, ≤ 0.
+        /// Its vertical velocity after the strike, m/s; ≤ 0 unless it started below y = 0.
         contact_rise: f64,
     },
+    /// The planned table is never met.
+    Missed,
     /// Flights have shrunk to nothing (Zeno).
     Settled {
         /// The flight that was too short, s.
@@ -161,6 +280,18 @@ pub enum Ending {
     },
     /// It went on to the last contact asked for.
     Completed,
+}
+
+impl NoContact {
+    /// Why a run ends that flies on at this vertical velocity of the contact point and this speed, m/s.
+    pub fn ending(self, contact_rise: f64, speed: f64) -> Ending {
+        match self {
+            Self::TooManyPieces => Ending::Diverged { speed },
+            Self::Sinking => Ending::Sinking { contact_rise },
+            Self::Missed => Ending::Missed,
+            Self::OtherVertex(touch) => Ending::OtherVertex(touch),
+        }
+    }
 }
 
 impl Ending {
@@ -179,11 +310,13 @@ pub struct Rules {
     pub settles: bool,
     /// Whether rounding is kept off the energy ([`Orbit`]); not where a settling run loses it to G l (1 − cos θ).
     pub holds_energy: bool,
+    /// What the table can do, if that is limited.
+    pub limits: Option<Limits>,
 }
 
 impl Rules {
     /// The map alone: nothing but what the physics itself forbids ends a run, and nothing is corrected.
-    pub const BARE_MAP: Self = Self { topple_angle: f64::INFINITY, settles: false, holds_energy: false };
+    pub const BARE_MAP: Self = Self { topple_angle: f64::INFINITY, settles: false, holds_energy: false, limits: None };
 }
 
 /// One contact of a run.
@@ -197,6 +330,10 @@ pub struct Contact {
     pub x: f64,
     /// Angle and velocities just before it.
     pub state: State,
+    /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
+    pub clearance: f64,
+    /// α, table tilt, rad; of a table that does not strike too.
+    pub alpha: f64,
     /// The strike, unless the run ended before it.
     pub strike: Option<Strike>,
     /// Time to the next contact, s; none where the run ended.
@@ -230,6 +367,8 @@ pub struct Orbit<B> {
     rules: Rules,
     /// Just before the coming contact.
     state: State,
+    clearance: f64,
+    plan: Option<Plan>,
     n: u64,
     t: Sum,
     x: Sum,
@@ -238,17 +377,18 @@ pub struct Orbit<B> {
     last_flight: f64,
     /// Energy that the run should have at the coming contact; known from its first one.
     energy: Option<f64>,
+    /// The last strike, where the table is limited.
+    last: Option<Pose>,
 }
 
 impl<B: Body> Orbit<B> {
     /// A run from its release.
     ///
     /// # Errors
-    /// [`TooManyPieces`] where not even the first contact can be found within the work limit; the ranges of a scene
-    /// exclude it.
-    pub fn new(body: B, rules: Rules, release: &Release) -> Result<Self, TooManyPieces> {
-        let (t, state) = body.fall(release)?;
-        let mut orbit = Self::at(body, rules, state);
+    /// Why there is not even a first contact.
+    pub fn new(body: B, rules: Rules, release: &Release) -> Result<Self, NoContact> {
+        let Arrival { t, state, clearance, plan } = body.fall(release)?;
+        let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
         orbit.t.add(t);
         orbit.x.add(release.x);
         orbit.x.add(state.x_dot * t);
@@ -261,12 +401,15 @@ impl<B: Body> Orbit<B> {
             body,
             rules,
             state,
+            clearance: 0.0,
+            plan: None,
             n: 0,
             t: Sum::default(),
             x: Sum::default(),
             first_flight: 0.0,
             last_flight: 0.0,
             energy: None,
+            last: None,
         }
     }
 
@@ -321,21 +464,34 @@ impl<B: Body> Orbit<B> {
     #[inline(always)]
     fn advance_disturbed(&mut self, disturb: impl FnOnce(&mut Self, &mut Strike)) -> Contact {
         self.n += 1;
-        let state = self.state;
+        let Self { n, state, clearance, plan, .. } = *self;
+        let coming = Coming { n, x: self.x.value, state, clearance, plan };
+        let mut strike = self.body.strike(&coming);
         let mut contact = Contact {
-            n: self.n,
+            n,
             t: self.t.value,
-            x: self.x.value,
+            x: coming.x,
             state,
+            clearance,
+            alpha: strike.alpha,
             strike: None,
             flight_time: None,
             ending: None,
         };
+        if let Some(touch) = self.body.touches(&coming, &strike) {
+            contact.ending = Some(Ending::OtherVertex(touch));
+            return contact;
+        }
         if state.theta.abs() >= self.rules.topple_angle {
             contact.ending = Some(Ending::Toppled { theta: state.theta, limit: self.rules.topple_angle });
             return contact;
         }
-        let mut strike = self.body.strike(&state);
+        if let Some(limits) = self.rules.limits
+            && let Some(excess) = self.exceeds(&limits, &strike)
+        {
+            contact.ending = Some(Ending::BeyondLimits(excess));
+            return contact;
+        }
         if strike.push >= 0.0 {
             contact.ending = Some(Ending::Separating { approach: strike.approach });
             return contact;
@@ -359,10 +515,14 @@ impl<B: Body> Orbit<B> {
             contact.ending = Some(Ending::Sinking { contact_rise: strike.contact_rise });
             return contact;
         }
-        let Ok((flight_time, next)) = self.body.fly(&strike) else {
-            contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
-            return contact;
+        let arrival = match self.body.fly(&coming, &strike) {
+            Ok(arrival) => arrival,
+            Err(none) => {
+                contact.ending = Some(none.ending(strike.contact_rise, speed_squared.sqrt()));
+                return contact;
+            }
         };
+        let flight_time = arrival.t;
         if self.rules.settles {
             if let Some(ending) = self.settle(flight_time) {
                 contact.ending = Some(ending);
@@ -372,9 +532,17 @@ impl<B: Body> Orbit<B> {
         }
         contact.flight_time = Some(flight_time);
         self.t.add(flight_time);
-        self.x.add(next.x_dot * flight_time);
-        self.state = next;
+        self.x.add(arrival.state.x_dot * flight_time);
+        (self.state, self.clearance, self.plan) = (arrival.state, arrival.clearance, arrival.plan);
         contact
+    }
+
+    /// What a strike asks of the table beyond its limits.
+    #[inline(never)]
+    fn exceeds(&mut self, limits: &Limits, strike: &Strike) -> Option<Excess> {
+        let pose = Pose { t: self.t.value, alpha: strike.alpha, velocity: strike.table_velocity };
+        let demand = pose.demand(self.last.replace(pose).as_ref());
+        limits.exceeded(&demand)
     }
 
     fn settle(&mut self, flight_time: f64) -> Option<Ending> {

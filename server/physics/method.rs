@@ -8,7 +8,7 @@ use crate::double_double::DoubleDouble;
 use crate::extended;
 use crate::impact::State;
 use crate::linear::LinearSolution;
-use crate::map::{self, Body, Contact, Ending};
+use crate::map::{self, Body, Coming, Contact, Ending};
 use crate::scene::Scene;
 use crate::stability::Class;
 
@@ -173,9 +173,13 @@ impl Scene {
         impacts: u64,
         mut visit: impl FnMut(&Impact<'_>) -> bool,
     ) -> Result<Option<Ending>, String> {
-        let lost = |_| "the first contact is not found".to_owned();
-        if let Some(error) = self.roughness().filter(|_| method != Method::Map) {
-            return Err(error.detail);
+        if method != Method::Map {
+            if let Some(error) = self.roughness() {
+                return Err(error.detail);
+            }
+            if self.limits.is_some() {
+                return Err("the limits of the table are looked at by the map alone".to_owned());
+            }
         }
         match method {
             Method::Linear => {
@@ -183,7 +187,10 @@ impl Scene {
                 Ok(self.run_linear(&solution, impacts, visit))
             }
             Method::Map => {
-                let mut orbit = self.orbit().map_err(lost)?;
+                let mut orbit = match self.orbit() {
+                    Ok(orbit) => orbit,
+                    Err(none) => return Ok(Some(none.ending(0.0, 0.0))),
+                };
                 let mut estimate = self.error_estimate(orbit.t());
                 Ok(map::run(&mut orbit, impacts, |contact| {
                     let error_estimate = estimate.bound();
@@ -192,19 +199,22 @@ impl Scene {
                 }))
             }
             Method::Extended => {
-                let mut orbit = self.extended_orbit().map_err(lost)?;
+                let mut orbit = self.extended_orbit().map_err(|_| "the first contact is not found".to_owned())?;
                 let (rod, body) = (orbit, self.model());
                 let mut estimate = self.extended_error_estimate(orbit.t().to_f64());
                 Ok(extended::run(&mut orbit, impacts, |contact| {
                     let error_estimate = estimate.bound();
                     estimate.pass_extended(contact);
-                    let state = extended::in_doubles(&contact.state);
+                    let coming = Coming::at(contact.n, contact.x.to_f64(), extended::in_doubles(&contact.state));
+                    let strike = body.strike(&coming);
                     let rounded = Contact {
                         n: contact.n,
                         t: contact.t.to_f64(),
-                        x: contact.x.to_f64(),
-                        state,
-                        strike: contact.strike.map(|_| body.strike(&state)),
+                        x: coming.x,
+                        state: coming.state,
+                        clearance: 0.0,
+                        alpha: strike.alpha,
+                        strike: contact.strike.map(|_| strike),
                         flight_time: contact.flight_time.map(DoubleDouble::to_f64),
                         ending: contact.ending,
                     };
@@ -227,7 +237,7 @@ impl Scene {
             let here = next;
             next = solution.impact(n + 1);
             let State { theta, .. } = here.state;
-            let strike = body.strike(&here.state);
+            let strike = body.strike(&Coming::at(n, here.x, here.state));
             let ending = if theta.abs() >= self.topple_angle {
                 Some(Ending::Toppled { theta, limit: self.topple_angle })
             } else if strike.push >= 0.0 {
@@ -245,6 +255,8 @@ impl Scene {
                 t: here.t,
                 x: here.x,
                 state: here.state,
+                clearance: 0.0,
+                alpha: strike.alpha,
                 strike: (strike.push < 0.0 && theta.abs() < self.topple_angle).then_some(strike),
                 flight_time: ending.is_none().then_some(next.t - here.t),
                 ending,

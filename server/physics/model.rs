@@ -1,26 +1,29 @@
 //! Chooses the smallest model that is exact for a scene, and says why.
 
-use crate::contact_time::TooManyPieces;
-use crate::friction::{Mode, RoughRod, Slide};
+use crate::friction::{Friction, Slide};
 use crate::impact::{Rod, State, Strike};
-use crate::map::{Body, Orbit, Release, Rules};
+use crate::map::{Arrival, Body, Coming, NoContact, Orbit, Release, Rules, Touch};
+use crate::noise::Noise;
 use crate::number::Number;
 use crate::point::Point;
+use crate::rig::{Rig, Steering};
 use crate::scene::{BodyShape, FieldError, Name, Scene, Striking};
 
 /// The rungs of the ladder of models, from the least.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rung {
-    /// A point mass.
+    /// A point mass: a ladder of its own.
     Point,
-    /// The rod that loses nothing, or whose table makes up just what it loses.
+    /// The angle block of the linearized rod, in closed form.
+    Linear,
+    /// The rod without friction, on a table that looks at its angle and velocities.
     Rod,
-    /// The rod on a table that stands still and takes energy away.
-    RodStill,
-    /// The rod with feedback of its energy.
-    RodEnergy,
+    /// The same on a table that looks at its place too.
+    RodWithX,
     /// The rod on a table with friction, or that moves along itself.
     Friction,
+    /// On a table that errs in time or in the angle that it senses.
+    Noise,
 }
 
 impl Rung {
@@ -28,12 +31,24 @@ impl Rung {
     pub fn name(self) -> &'static str {
         match self {
             Self::Point => "point",
+            Self::Linear => "linear",
             Self::Rod => "rod",
-            Self::RodStill => "rod_still",
-            Self::RodEnergy => "rod_energy",
+            Self::RodWithX => "rod_with_x",
             Self::Friction => "friction",
+            Self::Noise => "noise",
         }
     }
+}
+
+/// A step of the ladder that a scene asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Forced {
+    /// The rung.
+    pub rung: Rung,
+    /// The field that asked for it.
+    pub path: &'static str,
+    /// Why it takes that rung, in a sentence.
+    pub detail: String,
 }
 
 /// The model that runs a scene.
@@ -43,19 +58,17 @@ pub enum Model {
     Rod(Rod),
     /// A point mass.
     Point(Point),
-    /// A rod with friction.
-    Rough(RoughRod),
+    /// A rod with more than that.
+    Rig(Rig),
 }
 
 impl Model {
-    /// What the contact does along the table in a strike at this state, and the impulse per unit mass there, m/s.
-    pub fn contact(&self, before: &State) -> (Mode, f64) {
+    /// The rod in it, or what a point mass has of one.
+    pub fn rod(&self) -> &Rod {
         match self {
-            Self::Rod(_) | Self::Point(_) => (Mode::Frictionless, 0.0),
-            Self::Rough(rough) => {
-                let (_, impulse) = rough.strike_with_impulse(before);
-                (impulse.mode, impulse.tangential)
-            }
+            Self::Rod(rod) => rod,
+            Self::Point(point) => point.parameters(),
+            Self::Rig(rig) => &rig.rod,
         }
     }
 }
@@ -63,16 +76,20 @@ impl Model {
 impl Scene {
     /// The smallest model that is exact for this scene.
     pub fn model(&self) -> Model {
-        match self.body {
-            BodyShape::Rod { .. } if self.is_rough() => Model::Rough(RoughRod {
-                rod: self.parameters(),
-                friction: self.friction,
-                law: self.law,
-                slide: self.slide,
-            }),
-            BodyShape::Rod { .. } => Model::Rod(self.parameters()),
-            BodyShape::Point => Model::Point(Point::new(self.parameters())),
+        self.model_of(self.noise)
+    }
+
+    fn model_of(&self, noise: Option<Noise>) -> Model {
+        let rod = self.parameters();
+        if self.body == BodyShape::Point {
+            return Model::Point(Point::new(rod));
         }
+        let friction =
+            self.is_rough().then_some(Friction { coefficient: self.friction, law: self.law, slide: self.slide });
+        if friction.is_none() && self.steering == Steering::TiltGain && noise.is_none() {
+            return Model::Rod(rod);
+        }
+        Model::Rig(Rig { rod, steering: self.steering, friction, noise })
     }
 
     /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
@@ -93,7 +110,13 @@ impl Scene {
             restitution,
             tilt_gain: number(self.tilt_gain),
             strike_gain: match self.strike {
-                Striking::Compensated => number(2.0),
+                Striking::Compensated => match self.assumed_restitution {
+                    // P = −(1 + e)(v_nc − v_table)/B with the table's velocity by ê.
+                    Some(assumed) if assumed != self.restitution => {
+                        number(2.0) * one_and_restitution / (number(1.0) + number(assumed))
+                    }
+                    _ => number(2.0),
+                },
                 Striking::Still => one_and_restitution,
             },
             strike_gain_per_energy: one_and_restitution * number(self.energy_gain),
@@ -109,13 +132,23 @@ impl Scene {
                 BodyShape::Point => f64::INFINITY,
             },
             settles: self.is_lossy(),
-            holds_energy: !self.is_lossy() && !self.is_rough(),
+            holds_energy: !self.is_lossy() && !self.is_rough() && self.noise.is_none(),
+            limits: self.limits,
         }
+    }
+
+    /// What the table believes the restitution to be.
+    pub fn assumed_restitution(&self) -> f64 {
+        self.assumed_restitution.unwrap_or(self.restitution)
     }
 
     /// Whether bounces lose energy that nothing gives back.
     pub fn is_lossy(&self) -> bool {
-        self.strike == Striking::Still && self.restitution < 1.0
+        let lost = match self.strike {
+            Striking::Still => self.restitution < 1.0,
+            Striking::Compensated => self.assumed_restitution() > self.restitution,
+        };
+        lost && self.energy_gain == 0.0
     }
 
     /// Whether the contact has friction or the table moves along itself.
@@ -123,68 +156,106 @@ impl Scene {
         self.friction != 0.0 || self.slide != Slide::None
     }
 
-    /// Why what is derived for frictionless contacts does not hold, with the field that makes it so; none where it does.
+    /// Why what is derived for the plain rod does not hold, with the field that makes it so; none where it does.
     pub fn roughness(&self) -> Option<FieldError> {
-        let name = if self.friction != 0.0 { Name::Friction } else { Name::Slide };
-        let path = name.row().path;
-        self.is_rough().then(|| FieldError {
-            path,
-            detail: format!("{path} is {}; this is not available with friction in this version", self.shown(name)),
-        })
+        let Forced { rung, path, .. } = self.forced().into_iter().next()?;
+        let shown = crate::scene::field(path).map_or_else(String::new, |row| self.shown(row.name));
+        let what = match rung {
+            Rung::Friction => "with friction",
+            Rung::Noise => "with noise",
+            _ => "with state feedback",
+        };
+        Some(FieldError { path, detail: format!("{path} is {shown}; this is not available {what} in this version") })
     }
 
     fn shown(&self, name: Name) -> String {
         self.value(name).map_or_else(String::new, |value| value.to_string())
     }
 
-    /// A run of the scene from its release.
+    /// A run of the scene from its release: run 0 of its ensemble, if it has noise.
     ///
     /// # Errors
-    /// [`TooManyPieces`], which the ranges of a scene exclude.
-    pub fn orbit(&self) -> Result<Orbit<Model>, TooManyPieces> {
-        Orbit::new(self.model(), self.rules(), &self.release)
+    /// Why there is not even a first contact.
+    pub fn orbit(&self) -> Result<Orbit<Model>, NoContact> {
+        self.orbit_of(0)
     }
 
-    /// Which rung of the ladder the scene needs.
+    /// Run `run` of the scene's ensemble; all are the same without noise.
+    ///
+    /// # Errors
+    /// As [`Scene::orbit`].
+    pub fn orbit_of(&self, run: u64) -> Result<Orbit<Model>, NoContact> {
+        let noise = self.noise.map(|noise| Noise { run, ..noise });
+        Orbit::new(self.model_of(noise), self.rules(), &self.release)
+    }
+
+    /// The rung of the ladder that the scene needs.
     pub fn rung(&self) -> Rung {
         match self.body {
             BodyShape::Point => Rung::Point,
-            BodyShape::Rod { .. } if self.is_rough() => Rung::Friction,
-            BodyShape::Rod { .. } if self.energy_gain != 0.0 => Rung::RodEnergy,
-            BodyShape::Rod { .. } if self.is_lossy() => Rung::RodStill,
-            BodyShape::Rod { .. } => Rung::Rod,
+            BodyShape::Rod { .. } => self.forced().last().map_or(Rung::Rod, |forced| forced.rung),
         }
     }
 
-    /// What in the scene asked for this rung, in a sentence.
+    /// What of the scene asked for the rungs above the plain rod, from the least.
+    pub fn forced(&self) -> Vec<Forced> {
+        let mut steps = Vec::new();
+        let mut step = |rung, name: Name, detail| steps.push(Forced { rung, path: name.row().path, detail });
+        if let Steering::Feedback(gains) = self.steering {
+            let (rung, name, seen) = if gains.x == 0.0 {
+                (Rung::Rod, Name::FeedbackTheta, "angle and velocities")
+            } else {
+                (Rung::RodWithX, Name::FeedbackX, "place, angle and velocities")
+            };
+            step(rung, name, format!("feedback tilts the table by {seen} (α = −K·state), in place of α = κθ"));
+        }
+        let (friction, slide) = (self.friction, self.shown(Name::Slide));
+        if friction != 0.0 {
+            let law = self.shown(Name::Law);
+            let detail = format!(
+                "friction is {friction}, so the impulse has a part along the table (law `{law}`, slide `{slide}`)"
+            );
+            step(Rung::Friction, Name::Friction, detail);
+        } else if self.slide != Slide::None {
+            let detail = format!("slide is `{slide}`, so the table moves along itself, and friction is 0");
+            step(Rung::Friction, Name::Slide, detail);
+        }
+        if let Some(Noise { timing_sd, angle_sd, seed, .. }) = self.noise {
+            let name = if timing_sd == 0.0 { Name::AngleSd } else { Name::TimingSd };
+            let detail = format!(
+                "the table errs by {timing_sd} s in time and {angle_sd} rad in angle (standard deviations; seed {seed},                  model `{}`)",
+                self.shown(Name::NoiseModel)
+            );
+            step(Rung::Noise, name, detail);
+        }
+        steps
+    }
+
+    /// Why the scene needs its rung, in a sentence.
     pub fn rung_reason(&self) -> String {
         let e = self.restitution;
-        match self.rung() {
-            Rung::Point => "the body is a point: its table follows the angle of its velocity (eq. 3)".to_owned(),
-            Rung::Friction if self.friction == 0.0 => {
-                "slide is `matched`, so the table moves along itself, and friction is 0".to_owned()
-            }
-            Rung::Friction => format!(
-                "friction is {}, so the impulse has a part along the table (law `{}`, slide `{}`)",
-                self.friction,
-                self.shown(Name::Law),
-                self.shown(Name::Slide)
-            ),
-            Rung::RodEnergy => {
-                format!(
-                    "energy_gain is {} s²/m², so the table's speed depends on the energy (eq. 28)",
-                    self.energy_gain
-                )
-            }
-            Rung::RodStill => {
-                format!("the table stands still and restitution is {e}, so every bounce loses energy (eq. 24)")
-            }
-            Rung::Rod if e == 1.0 => "nothing is lost at a bounce (eq. 1), and nothing else was asked for".to_owned(),
-            Rung::Rod => {
-                format!(
-                    "the table makes up all that restitution {e} loses (eq. 25), so the run is that of restitution 1"
-                )
-            }
+        if self.body == BodyShape::Point {
+            return "the body is a point: its table follows the angle of its velocity (eq. 3)".to_owned();
+        }
+        if let Some(forced) = self.forced().pop() {
+            return forced.detail;
+        }
+        if self.energy_gain != 0.0 {
+            return format!(
+                "energy_gain is {} s²/m², so the table's speed depends on the energy (eq. 28)",
+                self.energy_gain
+            );
+        }
+        let assumed = self.assumed_restitution();
+        if self.strike == Striking::Still && e < 1.0 {
+            format!("the table stands still and restitution is {e}, so every bounce loses energy (eq. 24)")
+        } else if assumed != e {
+            let way = if assumed > e { "loses" } else { "gains" };
+            format!("the table believes restitution {assumed} and meets {e}, so every bounce {way} energy")
+        } else if e == 1.0 {
+            "nothing is lost at a bounce (eq. 1), and nothing else was asked for".to_owned()
+        } else {
+            format!("the table makes up all that restitution {e} loses (eq. 25), so the run is that of restitution 1")
         }
     }
 }
@@ -195,19 +266,24 @@ macro_rules! either {
         match $model {
             Model::Rod($body) => $call,
             Model::Point($body) => $call,
-            Model::Rough($body) => $call,
+            Model::Rig($body) => $call,
         }
     };
 }
 
 impl Body for Model {
-    fn fall(&self, release: &Release) -> Result<(f64, State), TooManyPieces> {
-        either!(self, body => body.fall(release))
+    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
+        either!(self, body => Body::fall(body, release))
     }
 
     #[inline(always)]
-    fn strike(&self, before: &State) -> Strike {
-        either!(self, body => Body::strike(body, before))
+    fn strike(&self, coming: &Coming) -> Strike {
+        either!(self, body => Body::strike(body, coming))
+    }
+
+    #[inline(always)]
+    fn touches(&self, coming: &Coming, strike: &Strike) -> Option<Touch> {
+        either!(self, body => body.touches(coming, strike))
     }
 
     #[inline(always)]
@@ -216,8 +292,8 @@ impl Body for Model {
     }
 
     #[inline(always)]
-    fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
-        either!(self, body => body.fly(strike))
+    fn fly(&self, from: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+        either!(self, body => Body::fly(body, from, strike))
     }
 
     fn contact_distance(&self) -> f64 {

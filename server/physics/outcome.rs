@@ -13,16 +13,38 @@ pub enum Outcome {
     Sinking,
     Settled,
     Diverged,
+    OtherVertex,
+    Missed,
+    BeyondLimits,
 }
 
 impl Outcome {
     /// All of them, each at the place of its number.
-    pub const ALL: [Self; 6] =
-        [Self::Completed, Self::Toppled, Self::Separating, Self::Sinking, Self::Settled, Self::Diverged];
+    pub const ALL: [Self; 9] = [
+        Self::Completed,
+        Self::Toppled,
+        Self::Separating,
+        Self::Sinking,
+        Self::Settled,
+        Self::Diverged,
+        Self::OtherVertex,
+        Self::Missed,
+        Self::BeyondLimits,
+    ];
 
     /// Its name in answers.
     pub fn name(self) -> &'static str {
-        ["completed", "toppled", "separating", "sinking", "settled", "diverged"][self as usize]
+        [
+            "completed",
+            "toppled",
+            "separating",
+            "sinking",
+            "settled",
+            "diverged",
+            "other_vertex",
+            "missed",
+            "beyond_limits",
+        ][self as usize]
     }
 }
 
@@ -35,6 +57,9 @@ impl From<Ending> for Outcome {
             Ending::Sinking { .. } => Self::Sinking,
             Ending::Settled { .. } => Self::Settled,
             Ending::Diverged { .. } => Self::Diverged,
+            Ending::OtherVertex(_) => Self::OtherVertex,
+            Ending::Missed => Self::Missed,
+            Ending::BeyondLimits(_) => Self::BeyondLimits,
         }
     }
 }

@@ -4,9 +4,8 @@
 //! A body of its own, never a cheaper rung of a rod: a rod's table follows the rod's angle. Its arithmetic is that of a
 //! rod whose contact point is its centre of gravity.
 
-use crate::contact_time::TooManyPieces;
 use crate::impact::{Rod, State, Strike};
-use crate::map::{Body, Release};
+use crate::map::{Arrival, Body, Coming, NoContact, Release};
 
 /// A point mass. In its states `theta` is the angle of the velocity from straight down, counter-clockwise, and
 /// `theta_dot` is 0.
@@ -31,26 +30,26 @@ impl Point {
         State { theta: crate::trig::atan2(x_dot, -y_dot), x_dot, y_dot, theta_dot: 0.0 }
     }
 
-    fn turned((t, arrival): (f64, State)) -> (f64, State) {
-        (t, Self::state(arrival.x_dot, arrival.y_dot))
+    fn turned((t, arrival): (f64, State)) -> Arrival {
+        (t, Self::state(arrival.x_dot, arrival.y_dot)).into()
     }
 }
 
 impl Body for Point {
-    fn fall(&self, release: &Release) -> Result<(f64, State), TooManyPieces> {
-        self.rod.fall(release).map(Self::turned)
+    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
+        Ok(Self::turned(self.rod.fall(release)?))
     }
 
-    fn strike(&self, before: &State) -> Strike {
-        self.rod.strike(before)
+    fn strike(&self, coming: &Coming) -> Strike {
+        self.rod.strike(&coming.state)
     }
 
     fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
         self.rod.hold_energy(strike, energy)
     }
 
-    fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
-        self.rod.fly(strike).map(Self::turned)
+    fn fly(&self, _: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+        Ok(Self::turned(self.rod.fly(strike)?))
     }
 
     fn contact_distance(&self) -> f64 {

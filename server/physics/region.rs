@@ -2,7 +2,7 @@
 //!
 //! Not here: which threads do it, and how it is drawn.
 
-use crate::map::{Body, run};
+use crate::map::run;
 use crate::model::Model;
 use crate::scene::{Draft, Name, Scene, Value};
 use crate::stability::Linear;

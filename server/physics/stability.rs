@@ -6,7 +6,7 @@
 
 use crate::jacobian::{modulus, sort_eigenvalues};
 use crate::map::{Ending, run};
-use crate::scene::{BodyShape, Scene};
+use crate::scene::{BodyShape, Scene, Striking};
 use crate::trig;
 use nalgebra::Complex;
 
@@ -123,7 +123,7 @@ impl Scene {
     /// c = ẋ − κρ²θ̇/((κ − 1)l): the mean horizontal speed of a balanced run, m/s. None where κ = 1, which drifts off in
     /// angle instead, and for a point mass, whose drift dies out.
     pub fn drift_speed(&self) -> Option<f64> {
-        if self.is_rough() {
+        if self.roughness().is_some() {
             return None;
         }
         let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
@@ -148,18 +148,29 @@ impl Scene {
         }
         if self.is_lossy() {
             return Err(format!(
-                "the table stands still and restitution is {}: every bounce loses energy, so no bounce repeats",
-                self.restitution
+                "{}: every bounce loses energy, so no bounce repeats",
+                match self.strike {
+                    Striking::Still => format!("the table stands still and restitution is {}", self.restitution),
+                    Striking::Compensated => self.belief(),
+                }
             ));
+        }
+        if self.energy_gain == 0.0 && self.assumed_restitution() < self.restitution {
+            return Err(format!("{}: every bounce gains energy, so no bounce repeats", self.belief()));
         }
         let (contact_distance, radius_of_gyration) = match self.body {
             BodyShape::Rod { contact_distance, radius_of_gyration } => (contact_distance, radius_of_gyration),
             BodyShape::Point => (0.0, 0.0),
         };
         let speed_squared = if let Some(height) = self.target_height {
-            let room = height - contact_distance;
+            let settled = height + self.height_error();
+            let room = settled - contact_distance;
             if room <= 0.0 {
-                return Err(format!("target_height {height} m is not above contact_distance {contact_distance} m"));
+                let why =
+                    if settled == height { String::new() } else { format!(", where {} holds it,", self.belief()) };
+                return Err(format!(
+                    "target_height {settled} m{why} is not above contact_distance {contact_distance} m"
+                ));
             }
             2.0 * self.gravity * room
         } else {
@@ -183,6 +194,20 @@ impl Scene {
             flight_time: 2.0 * speed / self.gravity,
             apex_height: contact_distance + speed_squared / (2.0 * self.gravity),
         })
+    }
+
+    fn belief(&self) -> String {
+        format!("the table believes restitution {} and meets {}", self.assumed_restitution(), self.restitution)
+    }
+
+    /// How far above the target height the energy feedback comes to rest, m: where the strike gain is 2 for an assumed restitution
+    /// ê, κ_E(η* − η) = 2(ê − e)/((1 + e)(1 + ê)). Nothing without feedback, or where ê is e.
+    pub fn height_error(&self) -> f64 {
+        let (e, assumed) = (self.restitution, self.assumed_restitution());
+        if self.energy_gain == 0.0 || e == assumed {
+            return 0.0;
+        }
+        2.0 * (e - assumed) / ((1.0 + e) * (1.0 + assumed) * self.energy_gain * self.gravity)
     }
 
     /// The linear verdict about a fixed point, in closed form: eq. (14) with the energy term.
@@ -299,9 +324,12 @@ impl Scene {
 
     /// Runs the scene for up to `impacts` contacts; `go_on` is asked now and then, and a `false` gives none.
     pub fn nonlinear(&self, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<Nonlinear> {
-        let Ok(mut orbit) = self.orbit() else {
-            let ending = Ending::Diverged { speed: 0.0 };
-            return Some(Nonlinear { ending, impacts: 0, t: 0.0, max_theta: self.start().theta.abs() });
+        let mut orbit = match self.orbit() {
+            Ok(orbit) => orbit,
+            Err(none) => {
+                let (ending, t) = (none.ending(0.0, 0.0), 0.0);
+                return Some(Nonlinear { ending, impacts: 0, t, max_theta: self.start().theta.abs() });
+            }
         };
         let mut max_theta: f64 = 0.0;
         let mut t = 0.0;

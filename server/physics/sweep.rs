@@ -38,7 +38,7 @@ impl Start {
 
     /// Whether it can run in lanes: a run that settles goes alone.
     pub fn fits(&self) -> bool {
-        self.rules.holds_energy && !self.rules.settles
+        self.rules.holds_energy && !self.rules.settles && self.rules.limits.is_none()
     }
 }
 
@@ -167,7 +167,7 @@ const IDLE: Start = Start {
         strike_gain_per_energy: 0.0,
         target_energy: 0.0,
     },
-    rules: Rules { topple_angle: 1.0, settles: false, holds_energy: true },
+    rules: Rules { topple_angle: 1.0, settles: false, holds_energy: true, limits: None },
     state: State { theta: 0.0, x_dot: 0.0, y_dot: -1.0, theta_dot: 0.0 },
 };
 

@@ -77,7 +77,7 @@ impl<'a> Subject<'a> {
         let rho = match self.model {
             Model::Rod(rod) => rod.radius_of_gyration,
             Model::Point(_) => 0.0,
-            Model::Rough(rough) => rough.rod.radius_of_gyration,
+            Model::Rig(rig) => rig.rod.radius_of_gyration,
         };
         let parts = [rho * theta, x_dot, y_dot, rho * theta_dot].map(f64::abs);
         if parts.iter().any(|part| part.is_nan()) { f64::NAN } else { parts.into_iter().fold(0.0, f64::max) }
@@ -139,11 +139,7 @@ impl<'a> Subject<'a> {
     }
 
     fn map(&self, rules: Rules) -> Result<Done, String> {
-        let parameters = match &self.model {
-            Model::Rod(rod) => rod,
-            Model::Point(point) => point.parameters(),
-            Model::Rough(rough) => &rough.rod,
-        };
+        let parameters = self.model.rod();
         let mut evaluations = 0;
         let last = self.bounce(rules, |contact| {
             let flight = contact.strike.filter(|strike| strike.contact_rise > 0.0);

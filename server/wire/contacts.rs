@@ -4,7 +4,7 @@
 
 use equipoise_physics::double_double::DoubleDouble;
 use equipoise_physics::extended;
-use equipoise_physics::impact::State;
+use equipoise_physics::impact::{State, Strike};
 use equipoise_physics::map::Body;
 use equipoise_physics::method::Impact;
 use equipoise_physics::model::Model;
@@ -17,12 +17,14 @@ use super::table::{Cells, Column, Table};
 #[derive(Debug)]
 pub(super) struct Contacts {
     body: Model,
+    gravity: f64,
     has_angle: bool,
     n: Vec<u64>,
     numbers: [Vec<f64>; 8],
     theta_dot: Vec<Option<f64>>,
     strikes: [Vec<Option<f64>>; 4],
     contact_mode: Vec<Option<&'static str>>,
+    clearance: Vec<f64>,
     flight_time: Vec<Option<f64>>,
     error_estimate: Vec<Option<f64>>,
     /// Of the columns that are not counts, words or bounds, where the method has more digits than doubles.
@@ -35,12 +37,14 @@ impl Contacts {
         let room = expected.min(1 << 16);
         Self {
             body: scene.model(),
+            gravity: scene.gravity(),
             has_angle: has_angle(scene),
             n: Vec::with_capacity(room),
             numbers: std::array::from_fn(|_| Vec::with_capacity(room)),
             theta_dot: Vec::with_capacity(room),
             strikes: std::array::from_fn(|_| Vec::with_capacity(room)),
             contact_mode: Vec::with_capacity(room),
+            clearance: Vec::with_capacity(room),
             flight_time: Vec::with_capacity(room),
             error_estimate: Vec::with_capacity(room),
             digits: None,
@@ -51,18 +55,18 @@ impl Contacts {
     pub(super) fn push(&mut self, impact: &Impact<'_>) {
         let contact = &impact.contact;
         let State { theta, x_dot, y_dot, theta_dot } = contact.state;
-        // A table that does not strike tilts all the same.
-        let strike = contact.strike.unwrap_or_else(|| self.body.strike(&contact.state));
         // + 0.0: a table at rest moves by 0, not by −0.
-        let struck = |value: f64| contact.strike.is_some().then_some(value + 0.0).filter(|value| value.is_finite());
+        let struck = |value: &dyn Fn(&Strike) -> f64| {
+            contact.strike.map(|strike| value(&strike) + 0.0).filter(|value| value.is_finite())
+        };
         let numbers = [
             contact.t,
             contact.x,
             theta,
             x_dot,
             y_dot,
-            strike.alpha,
-            self.body.energy(&contact.state),
+            contact.alpha,
+            self.body.energy(&contact.state) + self.gravity * contact.clearance,
             self.body.contact_speed(&contact.state),
         ];
         self.n.push(contact.n);
@@ -70,12 +74,17 @@ impl Contacts {
             column.push(value);
         }
         self.theta_dot.push(self.has_angle.then_some(theta_dot));
-        let (table_x, table_y) = strike.table_velocity;
-        let (mode, tangential) = self.body.contact(&contact.state);
-        for (column, value) in self.strikes.iter_mut().zip([table_x, table_y, strike.impulse_normal, tangential]) {
+        let values: [&dyn Fn(&Strike) -> f64; 4] = [
+            &|strike| strike.table_velocity.0,
+            &|strike| strike.table_velocity.1,
+            &|strike| strike.impulse_normal,
+            &|strike| strike.impulse_tangential,
+        ];
+        for (column, value) in self.strikes.iter_mut().zip(values) {
             column.push(struck(value));
         }
-        self.contact_mode.push(contact.strike.map(|_| mode.name()));
+        self.contact_mode.push(contact.strike.map(|strike| strike.mode.name()));
+        self.clearance.push(contact.clearance);
         self.flight_time.push(contact.flight_time);
         self.error_estimate.push(Some(impact.error_estimate).filter(|bound| bound.is_finite()));
         if let Some((orbit, contact)) = impact.extended {
@@ -104,6 +113,7 @@ impl Contacts {
             ("energy", "m2_per_s2", energy),
             ("flight_time", "s", Cells::Sparse(self.flight_time)),
             ("contact_speed", "m_per_s", contact_speed),
+            ("clearance", "m", Cells::Numbers(self.clearance)),
             ("error_estimate", "m_per_s", Cells::Sparse(self.error_estimate)),
         ];
         let mut digits = self.digits;

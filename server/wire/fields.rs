@@ -1,6 +1,6 @@
 //! The table of scene fields as clients see it: forms and checkers of their own can be made from it.
 
-use equipoise_physics::scene::{Availability, FIELDS, Field, Kind};
+use equipoise_physics::scene::{FIELDS, Field, Kind};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -28,7 +28,6 @@ struct Row {
     required: bool,
     choices: Option<&'static [&'static str]>,
     live: bool,
-    available: bool,
 }
 
 impl Fields {
@@ -60,7 +59,6 @@ impl Row {
             required: row.required,
             choices,
             live: row.live,
-            available: row.availability == Availability::Full,
         }
     }
 }

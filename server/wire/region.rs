@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use equipoise_physics::region::{Axis, Cell, Quantity, Region};
-use equipoise_physics::scene::{Availability, Kind, Name, Scene, field};
+use equipoise_physics::scene::{Kind, Name, Scene, field};
 use equipoise_physics::sweep::Outcome;
 use serde::{Serialize, Serializer};
 
@@ -78,7 +78,8 @@ impl Request {
             }
             return None;
         };
-        if let Some(error) = scene.roughness() {
+        let linear = matches!(region.quantity, Quantity::Residue | Quantity::SpectralRadius);
+        if let Some(error) = scene.roughness().filter(|_| linear) {
             let pointer = reader.pointer_to("scene");
             reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
             return None;
@@ -138,7 +139,7 @@ fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Axis> {
     reader.within(name, |axis| {
         axis.require(&["parameter", "from", "to", "count"]);
         let path = axis.text("parameter");
-        let row = path.and_then(field).filter(|row| row.availability == Availability::Full);
+        let row = path.and_then(field);
         let range = match row.map(|row| row.kind) {
             Some(Kind::Number { minimum, maximum }) => Some(minimum..=maximum),
             _ => None,

@@ -1,7 +1,9 @@
 //! The answer of `trajectories`: the contacts of a run as a table, how it ended, and its flights where they are asked for.
 
-use equipoise_physics::map::{Body, Ending};
+use equipoise_physics::demand::{Demand, Excess, Pose};
+use equipoise_physics::map::{Body, Ending, Touch};
 use equipoise_physics::method::{self, Impact, Method};
+use equipoise_physics::model::{Forced, Rung};
 use equipoise_physics::scene::{Name, Scene};
 use serde::{Serialize, Serializer};
 
@@ -19,12 +21,38 @@ pub struct Choice {
     pub name: &'static str,
     /// The reason, in a sentence.
     pub reason: String,
+    /// What of the scene asked for the rungs above the rod.
+    pub forced: Vec<ForcedAnswer>,
+}
+
+/// [`Forced`] as it is written.
+#[derive(Debug, Clone, Serialize)]
+pub struct ForcedAnswer {
+    rung: &'static str,
+    field: &'static str,
+    detail: String,
+}
+
+impl From<Forced> for ForcedAnswer {
+    fn from(Forced { rung, path, detail }: Forced) -> Self {
+        Self { rung: rung.name(), field: path, detail }
+    }
 }
 
 impl Choice {
     /// The model of a scene.
     pub fn model(scene: &Scene) -> Self {
-        Self { name: scene.rung().name(), reason: scene.rung_reason() }
+        let forced = scene.forced().into_iter().map(ForcedAnswer::from).collect();
+        Self { name: scene.rung().name(), reason: scene.rung_reason(), forced }
+    }
+
+    /// The model that a method needs of it.
+    fn model_by(scene: &Scene, method: Method) -> Self {
+        if method != Method::Linear {
+            return Self::model(scene);
+        }
+        let reason = "the linear solution is accurate enough here, or was asked for: the angle block in closed form";
+        Self { name: Rung::Linear.name(), reason: reason.to_owned(), forced: Vec::new() }
     }
 }
 
@@ -56,6 +84,23 @@ impl Outcome {
     pub fn new(ending: Ending, impacts: u64, t: f64) -> Self {
         let at = format!("at contact {impacts}, t = {t} s");
         let (detail, decided) = match ending {
+            Ending::OtherVertex(Touch { vertex, t: 0.0 }) => (
+                format!("{at}, vertex {vertex} of the body was below the table's line: another one would have struck"),
+                None,
+            ),
+            Ending::OtherVertex(Touch { vertex, t: since }) => (
+                format!("{since} s after contact {impacts}, vertex {vertex} came down before the one that bounces"),
+                None,
+            ),
+            Ending::BeyondLimits(Excess { quantity, value, limit, unit }) => (
+                format!(
+                    "{at}, the strike asks for a {quantity} of {value} {unit}; table.limits.{quantity} is {limit} {unit}"
+                ),
+                Some((quantity, value, limit, unit)),
+            ),
+            Ending::Missed => {
+                (format!("after contact {impacts}, the body never meets the table as it was planned"), None)
+            }
             Ending::Completed => (format!("all {impacts} contacts were computed, up to t = {t} s"), None),
             Ending::Toppled { theta, limit } => (
                 format!("{at}, the angle {theta} rad had reached topple_angle {limit} rad"),
@@ -66,6 +111,12 @@ impl Outcome {
                     "{at}, the contact point left the table at {approach} m/s along its normal: it could only pull"
                 ),
                 Some(("approach", approach, 0.0, "m/s")),
+            ),
+            Ending::Sinking { contact_rise } if contact_rise > 0.0 => (
+                format!(
+                    "{at}, below y = 0, the contact point left at {contact_rise} m/s: it does not rise up to y = 0 again"
+                ),
+                Some(("contact_rise", contact_rise, 0.0, "m/s")),
             ),
             Ending::Sinking { contact_rise } => (
                 format!(
@@ -100,6 +151,30 @@ impl Outcome {
     }
 }
 
+/// The body and the law of its table, in a few words.
+fn law(scene: &Scene) -> String {
+    let body = if has_angle(scene) { "a rod" } else { "a point" };
+    match scene.number(Name::TiltGain) {
+        Some(gain) => format!("{body} with κ = {gain}"),
+        None => format!("{body} with state feedback"),
+    }
+}
+
+/// [`Demand`] as it is written.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct DemandAnswer {
+    tilt: f64,
+    tilt_rate: f64,
+    speed: f64,
+    stroke: f64,
+}
+
+impl From<Demand> for DemandAnswer {
+    fn from(Demand { tilt, tilt_rate, speed, stroke }: Demand) -> Self {
+        Self { tilt, tilt_rate, speed, stroke }
+    }
+}
+
 /// What is asked for beside the scene.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Request {
@@ -125,7 +200,7 @@ const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-30..=1.0;
 const PREDICTABLE: f64 = 1e-3;
 
 /// Numbers in a row of contacts, and in one of flight samples.
-const CONTACT_NUMBERS: u64 = 17;
+const CONTACT_NUMBERS: u64 = 18;
 const SAMPLE_NUMBERS: u64 = 8;
 
 /// What a row costs beside its bounce, and what each method costs an impact with its error estimate, in bounces.
@@ -231,10 +306,10 @@ pub struct Trajectory<'a> {
     /// Samples of its flights.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flights: Option<Table>,
+    /// The most that it asked of the table.
+    pub demand: DemandAnswer,
     /// Reasons for what is null.
     pub notes: Vec<String>,
-    #[serde(skip)]
-    tilt_gain: f64,
 }
 
 impl<'a> Trajectory<'a> {
@@ -249,6 +324,7 @@ impl<'a> Trajectory<'a> {
         let mut flights = (samples > 0).then(Flights::default);
         let body = scene.model();
         let (mut last, mut unknown, mut predictable) = (None, 0, None);
+        let (mut pose, mut demand) = (None::<Pose>, Demand::default());
         let run = scene.run_by(method, impacts, |impact| {
             let Impact { contact, error_estimate, .. } = impact;
             contacts.push(impact);
@@ -258,9 +334,13 @@ impl<'a> Trajectory<'a> {
                     flights.push(scene, 0, 0.0, release.x, release.height, &release.state, contact.t, samples);
                 }
                 if let (Some(strike), Some(length)) = (contact.strike, contact.flight_time) {
-                    let y = body.contact_height(&contact.state);
+                    let y = body.contact_height(&contact.state) + contact.clearance;
                     flights.push(scene, contact.n, contact.t, contact.x, y, &strike.after, length, samples);
                 }
+            }
+            if let Some(strike) = contact.strike {
+                let here = Pose { t: contact.t, alpha: contact.alpha, velocity: strike.table_velocity };
+                demand = demand.or(here.demand(pose.replace(here).as_ref()));
             }
             last = Some((contact.n, contact.t));
             unknown += u64::from(!error_estimate.is_finite());
@@ -271,13 +351,14 @@ impl<'a> Trajectory<'a> {
             !contact.n.is_multiple_of(256) || go_on()
         });
         let ending = run.map_err(|why| Some(("/method", format!("{} does not apply: {why}", choice.name))))?;
-        let ((contacts_made, t), ending) = last.zip(ending).ok_or(None)?;
+        let ending = ending.ok_or(None)?;
+        let (contacts_made, t) = last.unwrap_or((0, 0.0));
         let mut notes = Vec::new();
-        if scene.is_rough() {
-            notes.push(
-                "error_estimate is null and predictable_impacts 0: no bound is derived with friction in this version"
-                    .to_owned(),
-            );
+        if let Some(error) = scene.roughness() {
+            notes.push(format!(
+                "error_estimate is null and predictable_impacts 0, since no bound is derived: {}",
+                error.detail
+            ));
         } else if unknown > 0 {
             notes.push(format!(
                 "error_estimate is null at {unknown} impacts: past a graze, or once rounding has grown to the size of the \
@@ -293,14 +374,14 @@ impl<'a> Trajectory<'a> {
         }
         Ok(Self {
             scene: Resolved(scene),
-            model: Choice::model(scene),
+            model: Choice::model_by(scene, method),
             method: choice,
             outcome: Outcome::new(ending, contacts_made, t),
             impacts: contacts.into_table(),
             predictable_impacts: predictable,
             flights: flights.map(Flights::into_table),
             notes,
-            tilt_gain: scene.number(Name::TiltGain).unwrap_or_default(),
+            demand: demand.into(),
         })
     }
 
@@ -310,7 +391,7 @@ impl<'a> Trajectory<'a> {
         let numbers = |name| column(name).unwrap_or_default();
         let theta_dot = column("theta_dot");
         phase_planes(&PhasePlanes {
-            title: &format!("Contacts of a {} with κ = {}", self.model.name.replace('_', " "), self.tilt_gain),
+            title: &format!("Contacts of {}", law(self.scene.0)),
             subtitle: &format!("{}: {}", self.outcome.kind, self.outcome.detail),
             theta: &numbers("theta"),
             theta_dot: theta_dot.as_deref(),
@@ -326,10 +407,11 @@ impl<'a> Trajectory<'a> {
             outcome: Outcome,
             method: MethodChoice,
             predictable_impacts: Option<u64>,
+            demand: DemandAnswer,
             notes: Vec<String>,
         }
-        let Self { outcome, method, predictable_impacts, notes, .. } = self;
+        let Self { outcome, method, predictable_impacts, demand, notes, .. } = self;
         let (outcome, method, notes) = (outcome.clone(), method.clone(), notes.clone());
-        End { outcome, method, predictable_impacts: *predictable_impacts, notes }
+        End { outcome, method, predictable_impacts: *predictable_impacts, demand: *demand, notes }
     }
 }

@@ -25,7 +25,7 @@ export const MOST_IMPACTS = 100_000;
 export const rowsOf = (columns) => columns * 2 / 3;
 
 /** Fields whose values are numbers, which a map can vary. @param {Field[]} fields */
-export const sidesOf = (fields) => fields.filter(({ kind, available }) => kind === 'number' && available);
+export const sidesOf = (fields) => fields.filter(({ kind }) => kind === 'number');
 
 /**
  * The map of a link; what is wrong with it gives way to the default.

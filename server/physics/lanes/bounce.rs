@@ -124,6 +124,8 @@ fn strike<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mu
         let rod = rods.rod(lane).lift::<L>();
         let tilt = Tilt {
             alpha: number(scratch.alpha[lane]),
+            // Nothing in this strike needs it.
+            beta: number(0.0),
             sin_theta: number(scratch.sin_theta[lane]),
             versine_theta: number(scratch.versine_theta[lane]),
             sin_alpha: number(scratch.sin_alpha[lane]),

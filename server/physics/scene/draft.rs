@@ -1,10 +1,13 @@
 //! Collects the values of a scene one by one, each checked against its row, and builds the scene from them.
 
-use super::field::{Availability, FIELDS, Name, Value};
+use super::field::{FIELDS, Name, Value};
 use super::{BodyShape, Scene, Striking};
+use crate::demand::Limits;
 use crate::friction::{Law, Slide};
 use crate::impact::State;
 use crate::map::Release;
+use crate::noise::{Noise, Reading};
+use crate::rig::{Gains, Steering};
 use crate::trig;
 
 /// What is wrong with a field, in words with numbers, limits and units.
@@ -23,32 +26,27 @@ impl FieldError {
 }
 
 /// The values said so far, one slot for each row of [`FIELDS`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draft {
     values: [Option<Value>; FIELDS.len()],
+}
+
+impl Default for Draft {
+    fn default() -> Self {
+        Self { values: [None; FIELDS.len()] }
+    }
 }
 
 impl Draft {
     /// Says a value, or takes what was said back.
     ///
     /// # Errors
-    /// Where the value is not of the field's kind, out of its range, or asks for what this version cannot compute.
+    /// Where the value is not of the field's kind or out of its range.
     pub fn set(&mut self, name: Name, value: Option<Value>) -> Result<(), FieldError> {
         let row = name.row();
         if let Some(value) = value {
             if !row.admits(value) {
                 return Err(FieldError::new(name, format!("{} is {value}; it must be {}", row.key(), row.limits())));
-            }
-            match row.availability {
-                Availability::Full => {}
-                Availability::Only(only) if only == value => {}
-                Availability::Only(only) => {
-                    let detail = format!("{} other than {only} is not available in this version", row.key());
-                    return Err(FieldError::new(name, detail));
-                }
-                Availability::None => {
-                    return Err(FieldError::new(name, format!("{} is not available in this version", row.path)));
-                }
             }
         }
         self.values[name as usize] = value;
@@ -113,12 +111,26 @@ impl Draft {
                 errors.push(FieldError::new(Name::TargetHeight, detail));
             }
         }
+        let assumed_restitution = self.number(Name::AssumedRestitution);
+        if strike == Striking::Still && assumed_restitution.is_some() {
+            let detail =
+                "assumed_restitution moves the table and strike says `still`; leave one of them out".to_owned();
+            errors.push(FieldError::new(Name::AssumedRestitution, detail));
+        }
+        let steering = self.steering(&mut errors);
         let friction = self.required(Name::Friction, &mut errors);
         let matched = self.get(Name::Slide) == Some(Value::Choice("matched"));
         let slide = if matched { Slide::Matched } else { Slide::None };
-        for (name, said) in [(Name::Friction, friction != 0.0), (Name::Slide, matched)] {
+        let noise = self.noise();
+        for (name, said) in [
+            (Name::Friction, friction != 0.0),
+            (Name::Slide, matched),
+            (Name::FeedbackTheta, steering != Steering::TiltGain),
+            (Name::TimingSd, noise.is_some()),
+        ] {
             if said && body == BodyShape::Point {
-                let detail = format!("{} is for a body with an angle; a point mass has none here", name.row().key());
+                let path = name.row().path;
+                let detail = format!("{path} is for a body with an angle; a point mass has none here");
                 errors.push(FieldError::new(name, detail));
             }
         }
@@ -135,15 +147,70 @@ impl Draft {
                 _ => Law::Poisson,
             },
             slide,
-            tilt_gain: self.required(Name::TiltGain, &mut errors),
+            steering,
+            tilt_gain: self.number(Name::TiltGain).unwrap_or(0.0),
+            assumed_restitution,
             energy_gain,
             target_height: if energy_gain == 0.0 { None } else { self.number(Name::TargetHeight) },
             strike,
             release: self.release(body, &mut errors),
             topple_angle: self.required(Name::ToppleAngle, &mut errors),
+            limits: self.limits(),
+            noise,
             draft: self,
         };
         if errors.is_empty() { Ok(scene) } else { Err(errors) }
+    }
+
+    /// By a tilt gain or by feedback of the state, where gains that are not said are 0.
+    fn steering(&mut self, errors: &mut Vec<FieldError>) -> Steering {
+        let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+        let Some(said) = names.into_iter().find(|&name| self.get(name).is_some()) else {
+            self.required(Name::TiltGain, errors);
+            return Steering::TiltGain;
+        };
+        if self.get(Name::TiltGain).is_some() {
+            let detail = format!(
+                "tilt_gain and {} both say how the table tilts; leave one of them out (null takes a preset's back)",
+                said.row().path
+            );
+            errors.push(FieldError::new(Name::TiltGain, detail));
+        }
+        let [x, theta, x_dot, theta_dot] = names.map(|name| {
+            let gain = self.number(name).unwrap_or(0.0);
+            self.values[name as usize] = Some(Value::Number(gain));
+            gain
+        });
+        Steering::Feedback(Gains { x, theta, x_dot, theta_dot })
+    }
+
+    /// None where both standard deviations are 0; where not, what is not said of it takes its default.
+    fn noise(&mut self) -> Option<Noise> {
+        let [timing_sd, angle_sd] = [Name::TimingSd, Name::AngleSd].map(|name| self.number(name).unwrap_or(0.0));
+        if timing_sd == 0.0 && angle_sd == 0.0 {
+            return None;
+        }
+        let model = match self.values[Name::NoiseModel as usize].get_or_insert(Value::Choice("strike")) {
+            Value::Choice("plan") => Reading::Plan,
+            _ => Reading::Strike,
+        };
+        let seed = match self.values[Name::Seed as usize].get_or_insert(Value::Integer(0)) {
+            Value::Integer(seed) => *seed,
+            _ => 0,
+        };
+        Some(Noise { timing_sd, angle_sd, model, seed, run: 0 })
+    }
+
+    fn limits(&self) -> Option<Limits> {
+        let names = [Name::TiltLimit, Name::TiltRateLimit, Name::SpeedLimit, Name::StrokeLimit];
+        let [tilt, tilt_rate, speed, stroke] = names.map(|name| self.number(name));
+        let most = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
+        names.iter().any(|&name| self.get(name).is_some()).then(|| Limits {
+            tilt: most(tilt),
+            tilt_rate: most(tilt_rate),
+            speed: most(speed),
+            stroke: most(stroke),
+        })
     }
 
     fn body(&self, errors: &mut Vec<FieldError>) -> BodyShape {
@@ -266,11 +333,21 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_yet_is_refused() {
-        let mut draft = Draft::default();
-        draft.set(Name::TimingSd, Some(Value::Number(0.0))).unwrap();
-        let error = draft.set(Name::TimingSd, Some(Value::Number(0.1))).unwrap_err();
-        assert_eq!(error.detail, "timing_sd other than 0 is not available in this version");
-        assert!(draft.set(Name::FeedbackX, Some(Value::Number(1.0))).is_err());
+    fn feedback_takes_the_place_of_the_tilt_gain() {
+        let mut both = draft(&ROD);
+        both.set(Name::FeedbackX, Some(Value::Number(1.0))).unwrap();
+        assert_eq!(paths(both), ["table.tilt_gain"]);
+        both.set(Name::TiltGain, None).unwrap();
+        let scene = both.build().unwrap();
+        assert_eq!(scene.value(Name::FeedbackThetaDot), Some(Value::Number(0.0)));
+    }
+
+    #[test]
+    fn noise_has_a_model_and_a_seed_where_there_is_any() {
+        let quiet = draft(&[&ROD[..], &[(Name::TimingSd, 0.0)]].concat()).build().unwrap();
+        assert_eq!(quiet.value(Name::Seed), None);
+        let noisy = draft(&[&ROD[..], &[(Name::AngleSd, 0.01)]].concat()).build().unwrap();
+        assert_eq!(noisy.value(Name::Seed), Some(Value::Integer(0)));
+        assert_eq!(noisy.value(Name::NoiseModel), Some(Value::Choice("strike")));
     }
 }

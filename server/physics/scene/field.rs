@@ -29,6 +29,10 @@ pub enum Name {
     FeedbackXDot,
     FeedbackThetaDot,
     AssumedRestitution,
+    TiltLimit,
+    TiltRateLimit,
+    SpeedLimit,
+    StrokeLimit,
     Height,
     Theta,
     ThetaDot,
@@ -37,6 +41,7 @@ pub enum Name {
     YDot,
     ToppleAngle,
     TimingSd,
+    AngleSd,
     NoiseModel,
     Seed,
 }
@@ -86,17 +91,6 @@ pub enum Kind {
     Flag,
 }
 
-/// Whether this version can compute with a field.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Availability {
-    /// Any value.
-    Full,
-    /// Only this value, which stands for its absence.
-    Only(Value),
-    /// Not at all.
-    None,
-}
-
 /// One row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
@@ -120,8 +114,6 @@ pub struct Field {
     pub required: bool,
     /// Whether it may be changed while a run is live.
     pub live: bool,
-    /// Whether this version computes with it.
-    pub availability: Availability,
 }
 
 impl Field {
@@ -189,12 +181,11 @@ const BLANK: Field = Field {
     default: None,
     required: false,
     live: false,
-    availability: Availability::Full,
 };
 
 /// Every field of a scene.
 #[rustfmt::skip]
-pub const FIELDS: [Field; 28] = [
+pub const FIELDS: [Field; 33] = [
     Field { name: Name::ContactDistance, path: "body.contact_distance", symbol: "l", title: "Contact distance",
         about: "Centre of gravity to contact point", unit: "m", kind: number(1e-3, 10.0), required: true, ..BLANK },
     Field { name: Name::RadiusOfGyration, path: "body.radius_of_gyration", symbol: "ρ", title: "Radius of gyration",
@@ -228,20 +219,25 @@ pub const FIELDS: [Field; 28] = [
         about: "Whether the table also moves along itself with the contact point",
         kind: Kind::Choice(&["none", "matched"]), default: Some(Value::Choice("none")), ..BLANK },
     Field { name: Name::FeedbackX, path: "table.feedback.x", symbol: "K_x", title: "Gain of x",
-        about: "State feedback α = −K·(x, θ, ẋ, θ̇) in place of the tilt gain", unit: "rad/m", kind: number(-1e4, 1e4),
-        availability: Availability::None, ..BLANK },
+        about: "State feedback α = −K·(x, θ, ẋ, θ̇) in place of the tilt gain", unit: "rad/m", kind: number(-1e4, 1e4), live: true, ..BLANK },
     Field { name: Name::FeedbackTheta, path: "table.feedback.theta", symbol: "K_θ", title: "Gain of θ",
-        about: "State feedback on the angle", unit: "1", kind: number(-1e4, 1e4),
-        availability: Availability::None, ..BLANK },
+        about: "State feedback on the angle", unit: "1", kind: number(-1e4, 1e4), live: true, ..BLANK },
     Field { name: Name::FeedbackXDot, path: "table.feedback.x_dot", symbol: "K_ẋ", title: "Gain of ẋ",
-        about: "State feedback on the horizontal velocity", unit: "rad·s/m", kind: number(-1e4, 1e4),
-        availability: Availability::None, ..BLANK },
+        about: "State feedback on the horizontal velocity", unit: "rad·s/m", kind: number(-1e4, 1e4), live: true, ..BLANK },
     Field { name: Name::FeedbackThetaDot, path: "table.feedback.theta_dot", symbol: "K_θ̇", title: "Gain of θ̇",
-        about: "State feedback on the angular velocity", unit: "s", kind: number(-1e4, 1e4),
-        availability: Availability::None, ..BLANK },
+        about: "State feedback on the angular velocity", unit: "s", kind: number(-1e4, 1e4), live: true, ..BLANK },
     Field { name: Name::AssumedRestitution, path: "table.assumed_restitution", symbol: "ê", title: "Assumed restitution",
-        about: "What the table believes the restitution to be", kind: number(0.0, 1.0),
-        availability: Availability::None, ..BLANK },
+        about: "What the table believes the restitution to be", kind: number(0.0, 1.0), live: true, ..BLANK },
+    Field { name: Name::TiltLimit, path: "table.limits.tilt", symbol: "α_max", title: "Tilt limit",
+        about: "Largest tilt that the table can take; a strike that asks for more ends the run", unit: "rad",
+        kind: number(0.0, PI), live: true, ..BLANK },
+    Field { name: Name::TiltRateLimit, path: "table.limits.tilt_rate", symbol: "α̇_max", title: "Tilt rate limit",
+        about: "Largest mean tilt rate from strike to strike", unit: "rad/s", kind: number(0.0, 1e6), live: true, ..BLANK },
+    Field { name: Name::SpeedLimit, path: "table.limits.speed", symbol: "v_max", title: "Speed limit",
+        about: "Largest speed of the table at a strike", unit: "m/s", kind: number(0.0, 1e6), live: true, ..BLANK },
+    Field { name: Name::StrokeLimit, path: "table.limits.stroke", symbol: "s_max", title: "Stroke limit",
+        about: "Longest vertical way of the table from strike to strike, along the cubic between their velocities",
+        unit: "m", kind: number(0.0, 1e3), live: true, ..BLANK },
     Field { name: Name::Height, path: "release.height", symbol: "y₀", title: "Height",
         about: "Height of the centre of gravity at release", unit: "m", kind: number(0.0, 100.0), required: true, ..BLANK },
     Field { name: Name::Theta, path: "release.theta", symbol: "θ₀", title: "Angle", about: "Angle from upright at release",
@@ -261,12 +257,14 @@ pub const FIELDS: [Field; 28] = [
         default: default(FRAC_PI_2), live: true, ..BLANK },
     Field { name: Name::TimingSd, path: "noise.timing_sd", symbol: "σ_t", title: "Timing noise",
         about: "Standard deviation of the impact time on which the table acts", unit: "s", kind: number(0.0, 1.0),
-        availability: Availability::Only(Value::Number(0.0)), ..BLANK },
+        ..BLANK },
+    Field { name: Name::AngleSd, path: "noise.angle_sd", symbol: "σ_θ", title: "Angle noise",
+        about: "Standard deviation of the angle that the table senses", unit: "rad", kind: number(0.0, 1.0), ..BLANK },
     Field { name: Name::NoiseModel, path: "noise.model", title: "Noise model",
         about: "Whether the table meets the object early or late, or carries out a plan made for another time",
-        kind: Kind::Choice(&["strike", "plan"]), availability: Availability::None, ..BLANK },
+        kind: Kind::Choice(&["strike", "plan"]), ..BLANK },
     Field { name: Name::Seed, path: "noise.seed", title: "Seed", about: "Seed of the noise",
-        kind: Kind::Integer { maximum: (1 << 53) - 1 }, availability: Availability::None, ..BLANK },
+        kind: Kind::Integer { maximum: (1 << 53) - 1 }, ..BLANK },
 ];
 
 #[cfg(test)]

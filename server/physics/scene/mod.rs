@@ -6,11 +6,14 @@ mod draft;
 mod field;
 
 pub use draft::{Draft, FieldError};
-pub use field::{Availability, FIELDS, Field, Kind, Name, Value, field};
+pub use field::{FIELDS, Field, Kind, Name, Value, field};
 
+use crate::demand::Limits;
 use crate::friction::{Law, Slide};
 use crate::impact::State;
 use crate::map::Release;
+use crate::noise::Noise;
+use crate::rig::Steering;
 
 /// Which body bounces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,13 +53,19 @@ pub struct Scene {
     pub(crate) friction: f64,
     pub(crate) law: Law,
     pub(crate) slide: Slide,
+    pub(crate) steering: Steering,
+    /// 0 with state feedback.
     pub(crate) tilt_gain: f64,
+    /// ê, where it is said.
+    pub(crate) assumed_restitution: Option<f64>,
     pub(crate) energy_gain: f64,
     /// Only with an energy gain.
     pub(crate) target_height: Option<f64>,
     pub(crate) strike: Striking,
     pub(crate) release: Release,
     pub(crate) topple_angle: f64,
+    pub(crate) limits: Option<Limits>,
+    pub(crate) noise: Option<Noise>,
     draft: Draft,
 }
 

@@ -2,7 +2,7 @@
 
 use equipoise_physics::friction::{Law, Mobility, Mode};
 use equipoise_physics::impact::Rod;
-use equipoise_physics::map::{Orbit, run};
+use equipoise_physics::map::{Body, Coming, Orbit, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::trig;
 
@@ -121,10 +121,9 @@ fn a_matched_table_balances_and_one_that_only_tilts_does_not() {
 
 #[test]
 fn without_friction_it_is_the_frictionless_strike() {
-    use equipoise_physics::map::Body;
     let (plain, matched) = (scene(0.0, "none", 1.1).model(), scene(0.0, "matched", 1.1).model());
-    let state = *scene(0.0, "none", 1.1).orbit().unwrap().state();
-    let (plain, matched) = (plain.strike(&state), matched.strike(&state));
+    let coming = Coming::at(1, 0.0, *scene(0.0, "none", 1.1).orbit().unwrap().state());
+    let (plain, matched) = (plain.strike(&coming), matched.strike(&coming));
     for (one, other) in [
         (plain.after.x_dot, matched.after.x_dot),
         (plain.after.y_dot, matched.after.y_dot),

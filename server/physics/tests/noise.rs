@@ -1,0 +1,57 @@
+//! Noise in runs: case 1 with a table that errs by 10 ms, under both readings.
+
+use equipoise_physics::map::run;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+fn case_1(model: &'static str, timing_sd: f64, theta: f64) -> Scene {
+    let mut draft = Draft::default();
+    for (name, number) in [
+        (Name::ContactDistance, 0.4 / 3.0),
+        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
+        (Name::TiltGain, 1.1),
+        (Name::Height, 0.2),
+        (Name::Theta, theta),
+        (Name::TimingSd, timing_sd),
+    ] {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft.set(Name::NoiseModel, Some(Value::Choice(model))).unwrap();
+    draft.build().unwrap()
+}
+
+/// Contacts of each of `runs` runs, and how they ended.
+fn ends(scene: &Scene, runs: u64, impacts: u64) -> Vec<(u64, &'static str)> {
+    (0..runs)
+        .map(|number| match scene.orbit_of(number) {
+            Ok(mut orbit) => {
+                let ending = run(&mut orbit, impacts, |_| true).unwrap();
+                (orbit.contacts(), ending.name())
+            }
+            Err(none) => (0, none.ending(0.0, 0.0).name()),
+        })
+        .collect()
+}
+
+fn survival(ends: &[(u64, &str)]) -> f64 {
+    ends.iter().filter(|(_, outcome)| *outcome == "completed").count() as f64 / ends.len() as f64
+}
+
+#[test]
+fn survival_is_that_of_the_readings() {
+    let count = |ends: &[(u64, &'static str)]| {
+        let mut names: Vec<_> = ends.iter().map(|(_, name)| *name).collect();
+        names.sort_unstable();
+        names.dedup();
+        names.iter().map(|name| (*name, ends.iter().filter(|(_, other)| other == name).count())).collect::<Vec<_>>()
+    };
+    let strike = ends(&case_1("strike", 0.01, 0.3), 1000, 400);
+    let plan = ends(&case_1("plan", 0.01, 0.3), 1000, 400);
+    let early = plan.iter().filter(|(n, _)| *n <= 10).count();
+    println!("strike {} {:?}", survival(&strike), count(&strike));
+    println!("plan {} {:?}; {early} within 10", survival(&plan), count(&plan));
+    let narrow = ends(&case_1("strike", 0.01, 0.1), 400, 400);
+    println!("strike from 0.1: {}", survival(&narrow));
+    assert!((survival(&strike) - 0.45).abs() < 0.08);
+    assert!((survival(&plan) - 0.07).abs() < 0.03);
+    assert_eq!(survival(&narrow), 1.0);
+}
