@@ -17,6 +17,7 @@ pub mod demand;
 pub mod dispatch;
 pub mod double_double;
 pub mod dual;
+pub mod ensemble;
 pub mod error_estimate;
 pub mod extended;
 pub mod flight;
