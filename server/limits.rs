@@ -73,6 +73,20 @@ pub const REGION_BLOCK_CELLS: std::ops::RangeInclusive<u64> = 64..=2048;
 /// Nodes along a side of the grid on which the linear boundary of a region is found.
 pub const REGION_BOUNDARY_NODES: usize = 49;
 
+/// Runs of one ensemble. The interval about a share of them is then within 0.7 % of it.
+pub const ENSEMBLE_RUNS: u64 = 20_000;
+
+/// Work of one ensemble, in bounces, which with noise take three times as long as plain ones: some 12 s of two cores. It is
+/// stopped as soon as its client is gone.
+pub const ENSEMBLE_WORK: Limit = Limit { name: "work of this ensemble", most: 100_000_000, unit: "bounces" };
+
+/// Work of one block of an ensemble, the runs that a thread takes at a time: some 10 ms, as for regions. One run may be more.
+pub const ENSEMBLE_BLOCK_WORK: u64 = 50_000;
+
+/// Contacts at which an ensemble keeps the angle of each run, to sort them for quantiles: with `ENSEMBLE_RUNS` 4 million
+/// numbers, as many as an answer. A picture shows no more.
+pub const ENSEMBLE_ANGLE_CONTACTS: u64 = 200;
+
 /// Contacts over which methods are charted. Errors of chaotic runs say nothing long before, and fine steps take too long.
 pub const PRECISION_IMPACTS: u64 = 1000;
 

@@ -6,10 +6,11 @@ use axum::http::Method;
 use serde_json::json;
 use support::Server;
 
-const TARGETS: [&str; 6] = [
+const TARGETS: [&str; 7] = [
     "/v1/trajectories?preset=case-1",
     "/v1/jacobians?preset=case-1",
     "/v1/stability?preset=case-1&impacts=100",
+    "/v1/ensembles?preset=case-1-noise&runs=20&impacts=50",
     "/v1/scenes",
     "/v1/scenes/case-1",
     "/v1/fields",

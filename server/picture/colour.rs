@@ -23,6 +23,9 @@ pub(super) const PURPLE: &str = "#cc79a7";
 pub(super) const VERMILLION: &str = "#d55e00";
 /// Blue so light that everything reads on it.
 pub(super) const PALE_BLUE: &str = "#e3f0f8";
+/// Green for an area, and one on which it still stands out.
+pub(super) const LIGHT_GREEN: &str = "#9fd8c4";
+pub(super) const PALE_GREEN: &str = "#dff2eb";
 
 /// Under the hatching of what has no value.
 pub(super) const PALE_GREY: &str = "#eff0f2";

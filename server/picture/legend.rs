@@ -1,7 +1,7 @@
 //! A legend: one row of samples with their meaning.
 
 use super::colour::SOFT_INK;
-use super::marks::{arrow, cased, disc, dots, hatched, hollow, line, ring, square};
+use super::marks::{arrow, band, cased, disc, dots, hatched, hollow, line, ring, square};
 use super::panel::Frame;
 use super::svg::{Svg, Type, fixed};
 use super::text::{sentence, width};
@@ -19,6 +19,7 @@ pub(super) enum Sample {
     Square(&'static str),
     Line { colour: &'static str, dashes: Option<&'static str> },
     Cased { dashes: Option<&'static str> },
+    Area(&'static str),
     Hatched,
     Arrow(&'static str),
 }
@@ -27,7 +28,7 @@ impl Sample {
     fn width(self) -> f64 {
         match self {
             Self::Line { .. } | Self::Cased { .. } => 26.0,
-            Self::Hatched => 18.0,
+            Self::Hatched | Self::Area(_) => 18.0,
             _ => 12.0,
         }
     }
@@ -42,6 +43,7 @@ impl Sample {
             Self::Square(colour) => square(svg, middle, 5.0, colour),
             Self::Line { colour, dashes } => line(svg, &[(x, y), (x + 26.0, y)], colour, 3.0, dashes),
             Self::Cased { dashes } => cased(svg, &format!("M{} {}h26", fixed(x), fixed(y)), dashes),
+            Self::Area(colour) => band(svg, Frame { left: x, top: y - 6.0, width: 18.0, height: 12.0 }, colour),
             Self::Hatched => hatched(svg, Frame { left: x, top: y - 6.0, width: 18.0, height: 12.0 }),
             Self::Arrow(colour) => arrow(svg, (x + 11.0, y), (1.0, 0.0), 11.0, colour),
         }

@@ -92,6 +92,17 @@ pub(super) fn band(svg: &mut Svg, area: Frame, colour: &str) {
     tag.number("height", area.height).word("fill", colour).end();
 }
 
+/// The filled area between two lines, both from left to right.
+pub(super) fn area(svg: &mut Svg, upper: &[Point], lower: &[Point], colour: &str) {
+    let mut path = String::new();
+    for (x, y) in upper.iter().chain(lower.iter().rev()) {
+        let _ = write!(path, "{}{} {}", if path.is_empty() { "M" } else { "L" }, fixed(*x), fixed(*y));
+    }
+    if !path.is_empty() {
+        svg.tag("path").word("d", &format!("{path}Z")).word("fill", colour).end();
+    }
+}
+
 /// A path drawn dark on a casing of paper, so that it shows on any colour; only the dark is dashed.
 pub(super) fn cased(svg: &mut Svg, path: &str, dashes: Option<&str>) {
     for (stroke, width, dashes) in [(PAPER, 4.6, None), (INK, 2.0, dashes)] {

@@ -21,6 +21,7 @@ mod pixels;
 mod scale;
 mod sheet;
 mod speed_accuracy;
+mod survival;
 mod svg;
 mod text;
 mod trail;
@@ -33,6 +34,7 @@ pub use number::significant;
 pub use phase_planes::{PhasePlanes, phase_planes};
 pub use pixels::{NoPixels, png};
 pub use speed_accuracy::{Series, SpeedAccuracy, speed_accuracy};
+pub use survival::{AnglesAt, SurvivalAt, SurvivalCurve, survival_curve};
 
 #[cfg(test)]
 mod heat_map_tests;

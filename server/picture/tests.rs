@@ -141,6 +141,37 @@ fn no_numbers_break_speed_against_accuracy() {
     }
 }
 
+fn ensemble(curve: &[SurvivalAt], angles: &[AnglesAt]) -> String {
+    let subtitle = "12 completed, 8 toppled";
+    survival_curve(&SurvivalCurve { title: "Survival", subtitle, caption: "Wilson", curve, angles })
+}
+
+#[test]
+fn a_survival_curve_says_how_many_were_there() {
+    let at = |n: u64| SurvivalAt { at_risk: 2001 - n, share: 1.0 - n as f64 / 2000.0, interval: (0.0, 1.0) };
+    let curve: Vec<_> = (1..=1000).map(at).collect();
+    let angles = [1, 500, 1000].map(|n| AnglesAt { n, quantiles: [0.0, 0.1, 0.2, 0.3, 0.4] });
+    let text = sound(&ensemble(&curve, &angles));
+    for wanted in ["at risk", "2000", "1801", "1001", "runs still going", "|θ|", " (rad)", "95 % interval", "5 to 95 %"]
+    {
+        assert!(text.contains(wanted), "{wanted} is not in {text}");
+    }
+    let long: Vec<_> = (0..100_000).map(|_| at(1)).collect();
+    let falling: Vec<_> = (0..100_000).map(|n| SurvivalAt { share: 1.0 - n as f64 * 1e-5, ..at(1) }).collect();
+    assert!(ensemble(&long, &[]).len() < 20_000 && ensemble(&falling, &angles).len() < 100_000);
+}
+
+#[test]
+fn no_numbers_break_a_survival_curve() {
+    for a in AWKWARD {
+        for b in AWKWARD {
+            let curve = [SurvivalAt { at_risk: u64::MAX, share: a, interval: (b, a) }; 3];
+            sound(&ensemble(&curve, &[AnglesAt { n: u64::MAX, quantiles: [a, b, a, b, a] }]));
+        }
+    }
+    sound(&ensemble(&[], &[]));
+}
+
 #[test]
 fn text_is_escaped_and_bounded() {
     let nasty = "<script>&\"'\u{0}\u{ffff}]]>\n".to_owned() + &"x".repeat(5000);

@@ -5,6 +5,7 @@
 
 pub mod assets;
 pub mod contract;
+pub mod ensembles;
 pub mod failures;
 pub mod health;
 pub mod jacobians;
@@ -86,6 +87,7 @@ pub fn all() -> Router<App> {
         .merge(precision::routes())
         .merge(stability::routes())
         .merge(regions::routes())
+        .merge(ensembles::routes())
 }
 
 /// An answer as JSON.

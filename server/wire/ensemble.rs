@@ -1,0 +1,242 @@
+//! The request and the answer of `ensembles`: many runs of a scene, and what became of them.
+
+use equipoise_physics::ensemble::{Ensemble, Runs, SHARES, Survival, late_half_life, median_impacts};
+use equipoise_physics::model::Rung;
+use equipoise_physics::outcome::Outcome;
+use equipoise_physics::scene::{Kind, Name, Scene, Value};
+use serde::{Serialize, Serializer};
+
+use super::scene::{Resolved, build, has_angle, read_draft};
+use super::table::{Cells, Column, Table};
+use super::trajectory::Choice;
+use crate::http::Reader;
+use crate::limits;
+use crate::picture::{AnglesAt, SurvivalAt, SurvivalCurve, significant, survival_curve};
+
+/// Reads a request.
+pub fn read(reader: &mut Reader<'_, '_>) -> Option<Ensemble> {
+    let draft = read_draft(reader);
+    let runs = reader.integer("runs", 1..=limits::ENSEMBLE_RUNS).unwrap_or(200);
+    let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(400);
+    let Kind::Integer { maximum } = Name::Seed.row().kind else { return None };
+    let seed = reader.integer("seed", 0..=maximum);
+    let mut draft = draft?;
+    if let Some(seed) = seed
+        && let Err(error) = draft.set(Name::Seed, Some(Value::Integer(seed)))
+    {
+        reader.refuse("seed", error.detail);
+        return None;
+    }
+    let pointer = reader.pointer_to("scene");
+    let scene = build(draft, &pointer, reader.errors())?;
+    Some(Ensemble { scene, runs, impacts, angle_contacts: limits::ENSEMBLE_ANGLE_CONTACTS })
+}
+
+/// The answer.
+#[derive(Debug, Serialize)]
+pub struct Answer<'a> {
+    scene: Resolved<'a>,
+    model: Choice,
+    runs: u64,
+    impacts: u64,
+    seed: u64,
+    #[serde(flatten)]
+    summary: Summary,
+    survival: Table,
+    quantiles: Table,
+    #[serde(skip)]
+    curve: Vec<Survival>,
+    #[serde(skip)]
+    angles: Vec<AnglesAt>,
+}
+
+/// What the runs have in common, and what ends an answer as NDJSON.
+#[derive(Debug, Serialize)]
+pub struct Summary {
+    survived: Survived,
+    mean_impacts: f64,
+    median_impacts: Option<u64>,
+    half_life: Option<f64>,
+    #[serde(serialize_with = "by_name")]
+    counts: [u64; Outcome::ALL.len()],
+    notes: Vec<String>,
+}
+
+/// Those that outlasted all contacts.
+#[derive(Debug, Serialize)]
+struct Survived {
+    runs: u64,
+    share: f64,
+    lower: f64,
+    upper: f64,
+}
+
+fn by_name<S: Serializer>(counts: &[u64; Outcome::ALL.len()], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(Outcome::ALL.into_iter().map(Outcome::name).zip(counts))
+}
+
+impl<'a> Answer<'a> {
+    /// From all runs of an ensemble, and the quantiles of |θ| at the contacts it watched.
+    pub fn new(ensemble: &'a Ensemble, runs: &Runs, quantiles: &[Option<[f64; SHARES.len()]>]) -> Self {
+        let Ensemble { scene, impacts, .. } = ensemble;
+        let curve = runs.survival(*impacts);
+        let watched = ensemble.watched();
+        let alive = watched.iter().map(|n| &curve[(n - 1) as usize]).map(|at| at.at_risk - at.ended).collect();
+        let angles = watched.iter().zip(quantiles).filter_map(|(&n, found)| Some(AnglesAt { n, quantiles: (*found)? }));
+        let angles = angles.collect();
+        let summary = Summary::new(ensemble, runs, &curve);
+        let seed = match scene.value(Name::Seed) {
+            Some(Value::Integer(seed)) => seed,
+            _ => 0,
+        };
+        Self {
+            scene: Resolved(scene),
+            model: Choice::model(scene),
+            runs: ensemble.runs,
+            impacts: *impacts,
+            seed,
+            summary,
+            survival: survival_table(&curve),
+            quantiles: quantile_table(watched, alive, quantiles),
+            curve,
+            angles,
+        }
+    }
+
+    /// The curve as rows of CSV or NDJSON, with the quantiles at those contacts that have them.
+    pub fn rows(&self) -> Table {
+        let Table(mut columns) = self.survival.clone();
+        for (which, name) in QUANTILES.iter().enumerate() {
+            let mut cells = vec![None; self.curve.len()];
+            for at in &self.angles {
+                cells[(at.n - 1) as usize] = Some(at.quantiles[which]);
+            }
+            columns.push(Column { name: name.1, unit: "rad", cells: Cells::Sparse(cells) });
+        }
+        Table(columns)
+    }
+
+    /// What stands beside the rows.
+    pub fn summary(&self) -> &Summary {
+        &self.summary
+    }
+
+    /// The survival curve and the quantiles, as SVG.
+    pub fn to_picture(&self) -> String {
+        let Survived { runs, share, lower, upper } = self.summary.survived;
+        let percent = |share: f64| significant(100.0 * share, 3);
+        let counts = Outcome::ALL.into_iter().zip(self.summary.counts).filter(|(_, count)| *count > 0);
+        let counts: Vec<_> = counts.map(|(outcome, count)| format!("{count} {}", outcome.name())).collect();
+        let median = match self.summary.median_impacts {
+            Some(median) => format!("half have ended by contact {median}"),
+            None => "more than half outlast them all".to_owned(),
+        };
+        let caption = format!(
+            "{runs} of {} runs outlast {} contacts: {} %, with 95 % confidence {} to {} % (Wilson, at each contact by \
+             itself); {median}. Angles are those of the runs still going.",
+            self.runs,
+            self.impacts,
+            percent(share),
+            percent(lower),
+            percent(upper),
+        );
+        let points =
+            self.curve.iter().map(|at| SurvivalAt { at_risk: at.at_risk, share: at.share, interval: at.interval });
+        survival_curve(&SurvivalCurve {
+            title: &format!("Survival of {} runs {}", self.runs, noise_in_words(self.scene.0)),
+            subtitle: &format!("seed {}; {}", self.seed, counts.join(", ")),
+            caption: &caption,
+            curve: &points.collect::<Vec<_>>(),
+            angles: &self.angles,
+        })
+    }
+}
+
+/// What noise a scene has, for a title.
+fn noise_in_words(scene: &Scene) -> String {
+    let Some(Value::Choice(model)) = scene.value(Name::NoiseModel).filter(|_| is_noisy(scene)) else {
+        return "without noise".to_owned();
+    };
+    let said = |name| scene.number(name).filter(|sd| *sd > 0.0);
+    let timing = said(Name::TimingSd).map(|sd| format!(", σ_t = {} ms", significant(1e3 * sd, 3)));
+    let angle = said(Name::AngleSd).map(|sd| format!(", σ_θ = {} rad", significant(sd, 3)));
+    format!("with {model} noise{}{}", timing.unwrap_or_default(), angle.unwrap_or_default())
+}
+
+fn is_noisy(scene: &Scene) -> bool {
+    scene.forced().iter().any(|forced| forced.rung == Rung::Noise)
+}
+
+impl Summary {
+    fn new(ensemble: &Ensemble, runs: &Runs, curve: &[Survival]) -> Self {
+        let impacts = ensemble.impacts;
+        let survived = runs.count(Outcome::Completed);
+        let (share, (lower, upper)) = curve.last().map_or((1.0, (0.0, 1.0)), |last| (last.share, last.interval));
+        let (median, half_life) = (median_impacts(curve), late_half_life(curve));
+        let mut notes = vec![
+            "intervals are those of Wilson, 95 % at each contact by itself; quantiles of |θ| are over the runs that went on"
+                .to_owned(),
+        ];
+        if !is_noisy(&ensemble.scene) {
+            let detail = "the scene has no noise, so all runs are alike: give noise.timing_sd or noise.angle_sd";
+            notes.push(detail.to_owned());
+        }
+        if survived > 0 {
+            notes.push(format!(
+                "mean_impacts counts runs that outlast all contacts as {impacts}, so it is a lower bound"
+            ));
+        }
+        if median.is_none() {
+            notes.push(format!("median_impacts is null: more than half of the runs outlast all {impacts} contacts"));
+        }
+        if half_life.is_none() {
+            notes.push(
+                "half_life is null: it is from the second half of the contacts, where no run ended or all at once"
+                    .to_owned(),
+            );
+        }
+        if !has_angle(&ensemble.scene) {
+            notes.push(
+                "quantiles are of the angle of the velocity from straight down: a point mass has no other".to_owned(),
+            );
+        }
+        Self {
+            survived: Survived { runs: survived, share, lower, upper },
+            mean_impacts: runs.mean_impacts(),
+            median_impacts: median,
+            half_life,
+            counts: Outcome::ALL.map(|outcome| runs.count(outcome)),
+            notes,
+        }
+    }
+}
+
+/// The names of quantiles in JSON, and in CSV and NDJSON.
+const QUANTILES: [(&str, &str); SHARES.len()] =
+    [("q05", "theta_q05"), ("q25", "theta_q25"), ("q50", "theta_q50"), ("q75", "theta_q75"), ("q95", "theta_q95")];
+
+fn survival_table(curve: &[Survival]) -> Table {
+    let counts = |count: &dyn Fn(&Survival) -> u64| Cells::Counts(curve.iter().map(count).collect());
+    let numbers = |number: &dyn Fn(&Survival) -> f64| Cells::Numbers(curve.iter().map(number).collect());
+    let columns = [
+        ("n", Cells::Counts((1..=curve.len() as u64).collect())),
+        ("at_risk", counts(&|at| at.at_risk)),
+        ("ended", counts(&|at| at.ended)),
+        ("survival", numbers(&|at| at.share)),
+        ("lower", numbers(&|at| at.interval.0)),
+        ("upper", numbers(&|at| at.interval.1)),
+    ];
+    Table(columns.into_iter().map(|(name, cells)| Column { name, unit: "", cells }).collect())
+}
+
+fn quantile_table(watched: Vec<u64>, alive: Vec<u64>, quantiles: &[Option<[f64; SHARES.len()]>]) -> Table {
+    let mut columns = vec![
+        Column { name: "n", unit: "", cells: Cells::Counts(watched) },
+        Column { name: "alive", unit: "", cells: Cells::Counts(alive) },
+    ];
+    columns.extend(QUANTILES.iter().enumerate().map(|(which, (name, _))| {
+        let cells = quantiles.iter().map(|found| found.map(|found| found[which])).collect();
+        Column { name, unit: "rad", cells: Cells::Sparse(cells) }
+    }));
+    Table(columns)
+}

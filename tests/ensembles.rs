@@ -1,0 +1,297 @@
+//! Ensembles: what noise does to the paper's cases, run by run the same whatever the threads, and every number beside its doubt.
+
+mod support;
+
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+use support::Server;
+use support::csv::Table;
+use support::socket::start;
+use tokio::io::AsyncWriteExt;
+use tokio::net::TcpStream;
+
+const CASE_1: &str = "/v1/ensembles?preset=case-1-noise";
+
+fn numbers(values: &Value) -> Vec<f64> {
+    values.as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
+}
+
+/// The share that outlasts all contacts and its interval.
+fn survived(ensemble: &Value) -> [f64; 3] {
+    ["lower", "share", "upper"].map(|name| ensemble["survived"][name].as_f64().unwrap())
+}
+
+/// Case 1 with σ_t = 10 ms over 400 bounces: some 45 % survive where the table meets the object early or late, some 7 % where it
+/// carries out the plan for the wrong time.
+#[tokio::test]
+async fn readings_of_the_noise_survive_as_they_should() {
+    let server = Server::start();
+    let ask = async |rest: &str| server.get(&format!("{CASE_1}&runs=400{rest}")).await.expect(200).json();
+    let strike = ask("").await;
+    let [lower, share, upper] = survived(&strike);
+    assert!(lower < 0.45 && 0.45 < upper && upper - lower < 0.1, "{lower} {share} {upper}");
+    let plan = ask("&scene.noise.model=plan").await;
+    let [lower, share, upper] = survived(&plan);
+    assert!(lower < 0.07 && 0.07 < upper && upper - lower < 0.07, "{lower} {share} {upper}");
+    let median = plan["median_impacts"].as_u64().unwrap();
+    assert!((4..=10).contains(&median), "half fall by contact {median}");
+    for ensemble in [&strike, &plan] {
+        let [lower, share, upper] = survived(ensemble);
+        assert!(lower < share && share < upper);
+        assert_eq!(ensemble["model"]["name"], "noise");
+    }
+    let narrow = ask("&scene.release.theta=0.1").await;
+    assert_eq!((&narrow["survived"]["runs"], &narrow["survived"]["share"]), (&json!(400), &json!(1.0)));
+    assert!(survived(&narrow)[0] > 0.99 && narrow["median_impacts"].is_null() && narrow["half_life"].is_null());
+    let narrow_plan = ask("&scene.release.theta=0.1&scene.noise.model=plan").await;
+    assert!(survived(&narrow_plan)[2] < 0.9, "{}", narrow_plan["survived"]);
+}
+
+/// The lossy case that is steered to a height; the figures are those of a simulation by other means.
+#[tokio::test]
+async fn case_4_with_noise() {
+    let server = Server::start();
+    let strike = server.get("/v1/ensembles?preset=case-4-noise&runs=400").await.expect(200).json();
+    assert!(survived(&strike)[1] > 0.0, "{}", strike["survived"]);
+}
+
+/// What the columns of a survival curve have to do with each other and with what stands beside them.
+#[tokio::test]
+async fn the_curve_adds_up() {
+    let server = Server::start();
+    for rest in ["&runs=150", "&runs=150&scene.noise.model=plan&impacts=1000", "&runs=1&impacts=1", "&runs=3&impacts=2"]
+    {
+        let ensemble = server.get(&format!("{CASE_1}{rest}")).await.expect(200).json();
+        let (runs, impacts) = (ensemble["runs"].as_f64().unwrap(), ensemble["impacts"].as_u64().unwrap());
+        let [n, at_risk, ended, survival, lower, upper] =
+            ["n", "at_risk", "ended", "survival", "lower", "upper"].map(|name| numbers(&ensemble["survival"][name]));
+        assert_eq!(n, (1..=impacts).map(|n| n as f64).collect::<Vec<_>>());
+        assert_eq!(at_risk[0], runs);
+        for row in 0..n.len() {
+            let left = at_risk[row] - ended[row];
+            assert!(at_risk.get(row + 1).is_none_or(|next| *next == left), "{rest} {row}");
+            assert_eq!(survival[row], left / runs);
+            assert!(
+                0.0 <= lower[row] && lower[row] <= survival[row] && survival[row] <= upper[row] && upper[row] <= 1.0
+            );
+        }
+        let last = n.len() - 1;
+        assert_eq!(survived(&ensemble), [lower[last], survival[last], upper[last]]);
+        let counts = ensemble["counts"].as_object().unwrap();
+        assert_eq!(counts.values().map(|count| count.as_f64().unwrap()).sum::<f64>(), runs);
+        assert_eq!(counts["completed"], ensemble["survived"]["runs"]);
+        // The area under the curve, from before the first contact, is the mean.
+        let mean = ensemble["mean_impacts"].as_f64().unwrap();
+        let area = 1.0 + survival[..last].iter().sum::<f64>();
+        assert!((mean - area).abs() < 1e-9 * mean, "{rest}: {mean} {area}");
+        if let Some(median) = ensemble["median_impacts"].as_u64() {
+            let place = median as usize - 1;
+            assert!(survival[place] <= 0.5 && (place == 0 || survival[place - 1] > 0.5), "{rest}: {median}");
+        }
+        let quantiles = &ensemble["quantiles"];
+        for (place, n) in numbers(&quantiles["n"]).into_iter().enumerate() {
+            let row = n as usize - 1;
+            assert_eq!(quantiles["alive"][place], at_risk[row] as u64 - ended[row] as u64);
+            let found: Vec<Option<f64>> =
+                ["q05", "q25", "q50", "q75", "q95"].iter().map(|name| quantiles[name][place].as_f64()).collect();
+            assert!(
+                found.is_sorted() && found.iter().all(|at| at.is_some() == (at_risk[row] > ended[row])),
+                "{found:?}"
+            );
+        }
+    }
+}
+
+/// More runs add to those before, and run 0 is the run of the scene.
+#[tokio::test]
+async fn a_run_depends_on_its_seed_and_its_number_alone() {
+    let server = Server::start();
+    let ask = async |runs: u64, rest: &str| server.get(&format!("{CASE_1}&runs={runs}{rest}")).await.expect(200).json();
+    let mut before: Option<Vec<f64>> = None;
+    for runs in 10..16 {
+        let ended = numbers(&ask(runs, "").await["survival"]["ended"]);
+        if let Some(before) = before {
+            let added: Vec<f64> =
+                ended.iter().zip(before).map(|(now, before)| now - before).filter(|at| *at != 0.0).collect();
+            assert!(added.is_empty() || added == [1.0], "{runs}: {added:?}");
+        }
+        before = Some(ended);
+    }
+    for seed in 0..5 {
+        let ensemble = ask(1, &format!("&seed={seed}")).await;
+        assert_eq!((&ensemble["seed"], &ensemble["scene"]["noise"]["seed"]), (&json!(seed), &json!(seed)));
+        let run =
+            server.post("/v1/trajectories", &json!({"scene": ensemble["scene"], "impacts": 400})).await.expect(200);
+        assert_eq!(ensemble["mean_impacts"], run.json()["outcome"]["impacts"].as_f64().unwrap(), "{seed}");
+        assert_eq!(ensemble["counts"][run.json()["outcome"]["kind"].as_str().unwrap()], 1, "{seed}");
+        let angles = numbers(&run.json()["impacts"]["theta"]);
+        for (n, median) in
+            numbers(&ensemble["quantiles"]["n"]).iter().zip(ensemble["quantiles"]["q50"].as_array().unwrap())
+        {
+            if let Some(median) = median.as_f64() {
+                assert_eq!(median, angles[*n as usize - 1].abs(), "{seed} {n}");
+            }
+        }
+    }
+    assert_ne!(ask(50, "&seed=1").await["survival"], ask(50, "&seed=2").await["survival"]);
+}
+
+/// The seed beside the scene is that of the scene: the same answer, and the same tag.
+#[tokio::test]
+async fn a_seed_is_said_in_either_place() {
+    let server = Server::start();
+    let inside = server.get(&format!("{CASE_1}&runs=20&scene.noise.seed=9007199254740991")).await.expect(200);
+    let beside = server.get(&format!("{CASE_1}&runs=20&seed=9007199254740991")).await.expect(200);
+    let both = server.get(&format!("{CASE_1}&runs=20&seed=9007199254740991&scene.noise.seed=1")).await.expect(200);
+    assert_eq!((&inside.raw, inside.etag()), (&beside.raw, beside.etag()));
+    assert_eq!((&inside.raw, inside.etag()), (&both.raw, both.etag()));
+    let again = json!({"scene": inside.json()["scene"], "runs": 20});
+    assert_eq!(server.post("/v1/ensembles", &again).await.expect(200).raw, inside.raw);
+}
+
+#[tokio::test]
+async fn without_noise_all_runs_are_alike() {
+    let server = Server::start();
+    let ensemble = server.get("/v1/ensembles?preset=case-3&runs=30&seed=5").await.expect(200).json();
+    assert_eq!((&ensemble["mean_impacts"], &ensemble["median_impacts"]), (&json!(49.0), &json!(49)));
+    assert_eq!(ensemble["survival"]["ended"][48], 30);
+    assert_eq!(ensemble["quantiles"]["q05"], ensemble["quantiles"]["q95"]);
+    let notes = ensemble["notes"].to_string();
+    assert!(notes.contains("no noise, so all runs are alike"), "{notes}");
+    assert!(!server.get(CASE_1).await.json()["notes"].to_string().contains("alike"));
+}
+
+#[tokio::test]
+async fn every_format_says_the_same() {
+    let server = Server::start();
+    let target = format!("{CASE_1}&scene.noise.model=plan&runs=60&impacts=300");
+    let whole = server.get(&target).await.expect(200).json();
+    let csv = Table::parse(server.get(&format!("{target}&format=csv")).await.expect(200).text()).unwrap();
+    let ndjson = server.get(&format!("{target}&format=ndjson")).await.expect(200);
+    let lines: Vec<Value> = ndjson.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!((csv.rows.len(), lines.len()), (300, 301));
+    for name in ["survived", "mean_impacts", "median_impacts", "half_life", "counts", "notes"] {
+        assert_eq!(lines[300]["end"][name], whole[name], "{name}");
+    }
+    let value = |cell: &str| if cell.is_empty() { Value::Null } else { serde_json::from_str(cell).unwrap() };
+    for name in ["n", "at_risk", "ended", "survival", "lower", "upper"] {
+        for (row, cell) in csv.column(name).into_iter().enumerate() {
+            assert_eq!(value(cell), whole["survival"][name][row], "{name} {row}");
+            assert_eq!(lines[row][name], whole["survival"][name][row], "{name} {row}");
+        }
+    }
+    for name in ["q05", "q25", "q50", "q75", "q95"] {
+        let mut expected = vec![Value::Null; 300];
+        for (place, n) in numbers(&whole["quantiles"]["n"]).into_iter().enumerate() {
+            expected[n as usize - 1] = whole["quantiles"][name][place].clone();
+        }
+        assert!(expected.iter().any(Value::is_number), "{name}");
+        for (row, cell) in csv.column(&format!("theta_{name}_rad")).into_iter().enumerate() {
+            assert_eq!(
+                (&value(cell), &lines[row][format!("theta_{name}")]),
+                (&expected[row], &expected[row]),
+                "{name} {row}"
+            );
+        }
+    }
+}
+
+#[tokio::test]
+async fn the_picture_says_what_noise_and_how_many() {
+    let server = Server::start();
+    let text = server.get(&format!("{CASE_1}&runs=70&format=svg")).await.expect(200).text().to_owned();
+    for said in [
+        "Survival of 70 runs with strike noise, σ_t = 10 ms",
+        "at risk",
+        "95 % interval",
+        "seed 0",
+        "of 70 runs outlast",
+    ] {
+        assert!(text.contains(said), "{said}");
+    }
+    let angle = server
+        .get("/v1/ensembles?preset=case-1&runs=5&scene.noise.angle_sd=0.01&scene.noise.model=plan&format=svg")
+        .await;
+    assert!(angle.expect(200).text().contains("plan noise, σ_θ = 0.01 rad"));
+    let quiet = server.get("/v1/ensembles?preset=case-1&runs=5&format=svg").await.expect(200).text().to_owned();
+    assert!(quiet.contains("Survival of 5 runs without noise"), "{quiet}");
+}
+
+/// The bytes of an ensemble of many blocks on 1, 2 and 3 threads.
+#[tokio::test]
+async fn threads_do_not_show() {
+    for rest in ["", "&scene.noise.model=plan", "&format=ndjson", "&format=csv", "&format=svg"] {
+        for headers in [&[][..], &[("accept-encoding", "gzip")]] {
+            let target = format!("{CASE_1}&runs=400{rest}");
+            let one = Server::with_permits(1).get_with(&target, headers).await.expect(200);
+            for permits in [2, 3] {
+                let other = Server::with_permits(permits).get_with(&target, headers).await.expect(200);
+                assert_eq!(one.raw, other.raw, "{rest}: {permits} threads");
+            }
+        }
+    }
+}
+
+#[tokio::test]
+async fn what_cannot_be_asked_is_named() {
+    let server = Server::start();
+    for (body, pointers) in [
+        (json!({}), &[""][..]),
+        (json!({"preset": "case-1", "runs": 0}), &["/runs"]),
+        (json!({"preset": "case-1", "runs": 20_001, "impacts": 100_001}), &["/runs", "/impacts"]),
+        (json!({"preset": "case-1", "seed": -1}), &["/seed"]),
+        (json!({"preset": "case-1", "seed": 9_007_199_254_740_992_u64}), &["/seed"]),
+        (json!({"preset": "case-1", "seed": 0.5, "threads": 2}), &["/seed", "/threads"]),
+        (json!({"preset": "case-1", "scene": {"noise": {"timing_sd": -0.1}}}), &["/scene/noise/timing_sd"]),
+    ] {
+        assert_eq!(server.post("/v1/ensembles", &body).await.expect(422).pointers(), pointers, "{body}");
+    }
+    let dear = server.get(&format!("{CASE_1}&runs=20000&impacts=10000")).await.expect(422);
+    assert!(dear.text().contains("would be 200000000 bounces; the limit is 100000000 bounces"), "{}", dear.text());
+}
+
+/// Whoever leaves frees the cores, be it in the midst of one long run.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn an_ensemble_ends_with_its_reader() {
+    let (app, address) = start().await;
+    for size in ["runs=20000&impacts=5000", "runs=1000&impacts=100000"] {
+        let mut socket = TcpStream::connect(address).await.unwrap();
+        let target = format!("{CASE_1}&scene.release.theta=0.1&{size}");
+        socket.write_all(format!("GET {target} HTTP/1.1\r\nhost: x\r\n\r\n").as_bytes()).await.unwrap();
+        while app.pool.running().get() == 0 {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+        tokio::time::sleep(Duration::from_millis(100)).await;
+        assert_eq!(app.pool.running().get(), 1, "{size}: it is long work");
+        drop(socket);
+        let left = Instant::now();
+        while app.pool.running().get() > 0 {
+            assert!(left.elapsed() < Duration::from_millis(50), "{size}: the work goes on for nobody");
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+    }
+}
+
+/// Noise far beyond what any table has: an answer, and no number that is none.
+#[tokio::test]
+async fn wild_noise_has_an_answer_too() {
+    let server = Server::start();
+    for preset in ["case-1", "case-3", "case-4", "still-lossy", "point-mass"] {
+        for (timing, angle) in [(1e-12, 0.0), (0.05, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+            for model in ["strike", "plan"] {
+                let noise = json!({"timing_sd": timing, "angle_sd": angle, "model": model});
+                let body = json!({"preset": preset, "scene": {"noise": noise}, "runs": 40, "impacts": 200});
+                let answer = server.post("/v1/ensembles", &body).await;
+                // A point mass may have no noise.
+                if answer.status == 422 && preset == "point-mass" {
+                    continue;
+                }
+                let ensemble = answer.expect(200).json();
+                let total: u64 = ensemble["counts"].as_object().unwrap().values().filter_map(Value::as_u64).sum();
+                assert_eq!(total, 40, "{body}");
+                server.post("/v1/ensembles?format=svg", &body).await.expect(200);
+            }
+        }
+    }
+}
