@@ -92,6 +92,17 @@ impl<const K: usize> Number for Dual<K> {
     }
 
     #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.map(root, 0.5 / root)
+    }
+
+    #[inline(always)]
     fn sincos(self) -> (Self, Self) {
         let (sin, cos) = crate::trig::sin_cos(self.value);
         (self.map(sin, cos), self.map(cos, -sin))

@@ -1,11 +1,12 @@
 //! The strike with Coulomb friction: Routh's impulse in the plane, followed along its normal part through sliding, sticking and
 //! slip reversal, with restitution by Poisson, Newton or Stronge.
 //!
-//! Flights are the rod's, and what else a contact needs is in [`crate::rig`]. Not here: derivatives, error bounds and linear
-//! verdicts.
+//! One formula in any kind of number; which way it takes is decided in `f64`, by whoever asks. Flights are the rod's, and what else
+//! a contact needs is in [`crate::rig`]. Not here: error bounds and linear verdicts.
 
 use crate::impact::{Rod, State, Strike, Tilt};
 use crate::map::Plan;
+use crate::number::Number;
 
 /// Law of restitution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +40,7 @@ pub enum Mode {
     /// It came to rest and slid on the other way.
     ReverseSlide,
     /// It was at rest and friction could not hold it.
-    SlideOff,
+    SlideThrough,
 }
 
 impl Mode {
@@ -50,109 +51,8 @@ impl Mode {
             Self::Slide => "slide",
             Self::Stick => "stick",
             Self::ReverseSlide => "reverse_slide",
-            Self::SlideOff => "slide_off",
+            Self::SlideThrough => "slide_through",
         }
-    }
-}
-
-/// How the contact point's velocity answers to an impulse at it: ∂v_t/∂P_t, ∂v_n/∂P_n and, of either by the other, C.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mobility {
-    /// A = 1 + l² cos²β/ρ².
-    pub tangential: f64,
-    /// B = 1 + l² sin²β/ρ².
-    pub normal: f64,
-    /// C = l² sin β cos β/ρ².
-    pub cross: f64,
-}
-
-/// An impulse per unit mass, m/s, and how it came about.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Impulse {
-    /// P_n.
-    pub normal: f64,
-    /// P_t.
-    pub tangential: f64,
-    /// What the contact did.
-    pub mode: Mode,
-}
-
-/// The normal velocity as the normal impulse grows: straight up to the end of the first sliding, and straight after it.
-struct Course {
-    /// Before, < 0.
-    start: f64,
-    /// dv_n/dP_n of the first stretch; not always positive.
-    first: f64,
-    /// P_n at its end; infinite where it has none.
-    turn: f64,
-    /// dv_n/dP_n beyond, always positive.
-    second: f64,
-}
-
-impl Course {
-    /// P_n at which the velocity comes up to `velocity`.
-    fn reach(&self, velocity: f64) -> f64 {
-        let rise = velocity - self.start;
-        if self.first * self.turn >= rise {
-            rise / self.first
-        } else {
-            self.turn + (rise - self.first * self.turn) / self.second
-        }
-    }
-
-    /// P_n at which restitution has done e² of the work of compression, which ends at `compression`.
-    fn reach_work(&self, compression: f64, restitution: f64) -> f64 {
-        let Self { start, first, turn, second } = *self;
-        let share = restitution * restitution;
-        if compression >= turn {
-            let middle = start + first * turn;
-            let work = 0.5 * ((start + middle) * turn + middle * (compression - turn));
-            return compression + (-2.0 * share * work / second).sqrt();
-        }
-        let work = -0.5 * share * start * compression;
-        let alone = compression + (2.0 * work / first).sqrt();
-        if alone <= turn {
-            return alone;
-        }
-        let velocity = first * (turn - compression);
-        let rest = work - 0.5 * velocity * (turn - compression);
-        // Not the difference of the root and the velocity, which would cancel.
-        turn + 2.0 * rest / (velocity + (velocity * velocity + 2.0 * second * rest).sqrt())
-    }
-}
-
-impl Mobility {
-    /// Of a contact point l from the centre of gravity, at sine and cosine of β.
-    pub fn new(rod: &Rod, sin_beta: f64, cos_beta: f64) -> Self {
-        let lever = rod.contact_distance / rod.radius_of_gyration;
-        let (across, along) = (lever * sin_beta, lever * cos_beta);
-        Self { tangential: 1.0 + along * along, normal: 1.0 + across * across, cross: across * along }
-    }
-
-    /// Routh's impulse: at velocities relative to the table just before (along it, and along its normal, the latter < 0).
-    pub fn impulse(&self, tangential: f64, normal: f64, friction: f64, law: Law, restitution: f64) -> Impulse {
-        let Self { tangential: a, normal: b, cross: c } = *self;
-        let holds = c.abs() <= friction * a;
-        // From rest it slides the way the normal impulse drives it; the slope dP_t/dP_n is against the sliding.
-        let beyond = if holds { -c / a } else { -friction.copysign(c) };
-        let (slope, turn, mode, after) = if tangential == 0.0 {
-            (beyond, 0.0, Mode::Frictionless, if holds { Mode::Stick } else { Mode::SlideOff })
-        } else {
-            let slope = -friction.copysign(tangential);
-            let slowing = -(c + a * slope) * tangential.signum();
-            let turn = if slowing > 0.0 { tangential.abs() / slowing } else { f64::INFINITY };
-            (slope, turn, Mode::Slide, if holds { Mode::Stick } else { Mode::ReverseSlide })
-        };
-        let course = Course { start: normal, first: b + c * slope, turn, second: b + c * beyond };
-        let compression = course.reach(0.0);
-        let end = match law {
-            Law::Poisson => (1.0 + restitution) * compression,
-            Law::Newton => course.reach(-restitution * normal),
-            Law::Stronge => course.reach_work(compression, restitution),
-        };
-        let (tangential, mode) =
-            if end <= turn { (slope * end, mode) } else { (slope * turn + beyond * (end - turn), after) };
-        Impulse { normal: end, tangential, mode: if friction == 0.0 { Mode::Frictionless } else { mode } }
     }
 }
 
@@ -167,43 +67,208 @@ pub struct Friction {
     pub slide: Slide,
 }
 
+/// How the contact point's velocity answers to an impulse at it: ∂v_t/∂P_t, ∂v_n/∂P_n and, of either by the other, C.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mobility<N = f64> {
+    /// A = 1 + l² cos²β/ρ².
+    pub tangential: N,
+    /// B = 1 + l² sin²β/ρ².
+    pub normal: N,
+    /// C = l² sin β cos β/ρ².
+    pub cross: N,
+}
+
+/// An impulse per unit mass, m/s, and how it came about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impulse<N = f64> {
+    /// P_n.
+    pub normal: N,
+    /// P_t.
+    pub tangential: N,
+    /// What the contact did.
+    pub mode: Mode,
+}
+
+/// What has to be known of an impact to say which formula holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fork {
+    /// Whether the contact point slides forwards at first: v_t ≥ 0.
+    Forward,
+    /// Whether it comes to rest before the end.
+    Rests,
+    /// Whether friction can hold it then: |C| ≤ μA.
+    Holds,
+    /// Whether it comes to rest while still compressed.
+    RestsEarly,
+}
+
+/// An answer to a [`Fork`], and how far it is from the other: a number that changes its sign there, beside its scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decision {
+    /// Which question.
+    pub fork: Fork,
+    /// The answer that holds.
+    pub answer: bool,
+    /// How far it is from the other answer.
+    pub margin: f64,
+    /// What the margin is small beside, > 0.
+    pub scale: f64,
+}
+
+/// Takes every answer that holds.
+#[inline(always)]
+pub fn as_it_is(decision: Decision) -> bool {
+    decision.answer
+}
+
+impl<N: Number> Mobility<N> {
+    /// Of a contact point l from the centre of gravity, at sine and cosine of β.
+    #[inline(always)]
+    pub fn new(rod: &Rod<N>, sin_beta: N, cos_beta: N) -> Self {
+        let one = N::from_f64(1.0);
+        let lever = rod.contact_distance / rod.radius_of_gyration;
+        let (across, along) = (lever * sin_beta, lever * cos_beta);
+        Self { tangential: one + along * along, normal: one + across * across, cross: across * along }
+    }
+}
+
 impl Friction {
+    /// Routh's impulse at velocities relative to the table just before, along it and along its normal, the latter < 0.
+    ///
+    /// As P_n grows, v_n goes from v_n0 with one slope up to where the sliding ends, and with another beyond. As long as it
+    /// slides, all laws are the same.
+    #[inline(always)]
+    pub fn impulse<N: Number>(
+        &self,
+        mobility: &Mobility<N>,
+        tangential: N,
+        normal: N,
+        restitution: N,
+        mut decide: impl FnMut(Decision) -> bool,
+    ) -> Impulse<N> {
+        let Mobility { tangential: a, normal: b, cross: c } = *mobility;
+        let friction = N::from_f64(self.coefficient);
+        let one = N::from_f64(1.0);
+        let bounced = (one + restitution) * -normal;
+        let (v_t, v_n, cross) = (tangential.to_f64(), normal.to_f64(), c.to_f64());
+        // From rest it goes the way the normal impulse drives it.
+        let forward = if v_t == 0.0 { cross >= 0.0 } else { v_t > 0.0 };
+        let forward = decide(Decision { fork: Fork::Forward, answer: forward, margin: v_t, scale: -v_n });
+        // Friction acts against the sliding.
+        let (slope, driven, speed) = if forward { (-friction, c, tangential) } else { (friction, -c, -tangential) };
+        let first = b + c * slope;
+        let slowing = a * friction - driven;
+        let (end_of_sliding, push) = (first * speed, bounced * slowing);
+        let margin = push.to_f64() - end_of_sliding.to_f64();
+        let mut rests = (slowing.to_f64() > 0.0) & (self.coefficient != 0.0);
+        if rests {
+            rests = decide(Decision { fork: Fork::Rests, answer: margin > 0.0, margin, scale: push.to_f64() });
+        }
+        // Where compression would end if it slid for ever.
+        let alone = -normal / first;
+        if !rests {
+            let end = (one + restitution) * alone;
+            let mode = if self.coefficient == 0.0 {
+                Mode::Frictionless
+            } else if v_t == 0.0 {
+                Mode::SlideThrough
+            } else {
+                Mode::Slide
+            };
+            return Impulse { normal: end, tangential: slope * end, mode };
+        }
+        let hold = (friction * a).to_f64();
+        let margin = hold - cross.abs();
+        let holds = decide(Decision { fork: Fork::Holds, answer: margin >= 0.0, margin, scale: hold });
+        let beyond = if holds {
+            -c / a
+        } else if cross >= 0.0 {
+            -friction
+        } else {
+            friction
+        };
+        let second = b + c * beyond;
+        let turn = speed / slowing;
+        // v_n as the sliding ends.
+        let middle = normal + first * turn;
+        let end = match self.law {
+            Law::Newton => turn + (restitution * -normal - middle) / second,
+            Law::Poisson | Law::Stronge => {
+                let margin = middle.to_f64();
+                let early = decide(Decision { fork: Fork::RestsEarly, answer: margin < 0.0, margin, scale: -v_n });
+                let compression = if early { turn - middle / second } else { alone };
+                match (self.law, early) {
+                    (Law::Stronge, true) => {
+                        // −2 of the work of compression.
+                        let work = middle * middle / second - (normal + middle) * turn;
+                        compression + restitution * (work / second).sqrt()
+                    }
+                    (Law::Stronge, false) => {
+                        // 2 of the work of restitution that is left.
+                        let bounce = restitution * normal;
+                        let rest = (bounce * bounce - middle * middle) / first;
+                        // Not the difference of the root and the velocity, which would cancel.
+                        turn + rest / (middle + (middle * middle + second * rest).sqrt())
+                    }
+                    _ => (one + restitution) * compression,
+                }
+            }
+        };
+        let mode = match (holds, v_t == 0.0) {
+            (true, _) => Mode::Stick,
+            (false, true) => Mode::SlideThrough,
+            (false, false) => Mode::ReverseSlide,
+        };
+        Impulse { normal: end, tangential: slope * turn + beyond * (end - turn), mode }
+    }
+
     /// The strike of a rod over a table tilted like this, which moves as it was planned if it was.
-    // Out of the loop of the frictionless bounce, which shares its code with this one.
-    #[inline(never)]
-    pub(crate) fn strike(&self, rod: &Rod, before: &State, tilt: &Tilt<f64>, plan: Option<&Plan>) -> Strike {
-        let mut strike = rod.strike_with(before, tilt, rod.leverage());
+    #[inline(always)]
+    pub(crate) fn strike<N: Number>(
+        &self,
+        rod: &Rod<N>,
+        before: &State<N>,
+        tilt: &Tilt<N>,
+        plan: Option<&Plan>,
+        leverage: N,
+        decide: impl FnMut(Decision) -> bool,
+    ) -> Strike<N> {
+        let (zero, one) = (N::from_f64(0.0), N::from_f64(1.0));
+        let mut strike = rod.strike_with(before, tilt, leverage);
         let Tilt { sin_alpha, cos_alpha, sin_beta, .. } = *tilt;
-        let (_, cos_beta) = crate::trig::sin_cos(tilt.beta);
-        let (across, along) = (rod.contact_distance * sin_beta, rod.contact_distance * cos_beta);
-        let velocity = tangential_velocity(rod, before, tilt, cos_beta);
+        let (across, along) = (rod.contact_distance * sin_beta, rod.contact_distance * tilt.cos_beta());
+        let velocity = tangential_velocity(rod, before, tilt);
         if let Some(plan) = plan {
-            strike.approach = strike.normal_velocity - plan.normal_velocity;
-            strike.push = (1.0 + rod.restitution) * strike.approach;
-            strike.table_velocity = (-plan.normal_velocity * sin_alpha, plan.normal_velocity * cos_alpha);
+            let speed = N::from_f64(plan.normal_velocity);
+            strike.approach = strike.normal_velocity - speed;
+            strike.push = (one + rod.restitution) * strike.approach;
+            strike.table_velocity = (-(speed * sin_alpha), speed * cos_alpha);
         }
         let (table, relative) = match (self.slide, plan) {
-            (Slide::None, _) => (0.0, velocity),
+            (Slide::None, _) => (zero, velocity),
             // Set, not computed: a difference of rounding would slide.
-            (Slide::Matched, None) => (velocity, 0.0),
-            (Slide::Matched, Some(plan)) => (plan.tangential_velocity, velocity - plan.tangential_velocity),
+            (Slide::Matched, None) => (velocity, zero),
+            (Slide::Matched, Some(plan)) => {
+                let speed = N::from_f64(plan.tangential_velocity);
+                (speed, velocity - speed)
+            }
         };
-        let mobility = Mobility::new(rod, sin_beta, cos_beta);
-        let Impulse { normal, tangential, mode } =
-            mobility.impulse(relative, strike.approach, self.coefficient, self.law, rod.restitution);
+        let mobility = Mobility::new(rod, sin_beta, tilt.cos_beta());
+        let impulse = self.impulse(&mobility, relative, strike.approach, rod.restitution, decide);
+        let Impulse { normal, tangential, mode } = impulse;
         let after = State {
             theta: before.theta,
             x_dot: before.x_dot + (tangential * cos_alpha - normal * sin_alpha),
             y_dot: before.y_dot + (tangential * sin_alpha + normal * cos_alpha),
-            theta_dot: before.theta_dot + (tangential * along + normal * across) * rod.leverage(),
+            theta_dot: before.theta_dot + (tangential * along + normal * across) * leverage,
         };
         let spin = rod.radius_of_gyration * after.theta_dot;
         let speed_squared = after.x_dot * after.x_dot + after.y_dot * after.y_dot + spin * spin;
-        strike.table_velocity.0 += table * cos_alpha;
-        strike.table_velocity.1 += table * sin_alpha;
+        let (table_x, table_y) = strike.table_velocity;
+        strike.table_velocity = (table_x + table * cos_alpha, table_y + table * sin_alpha);
         (strike.impulse_normal, strike.impulse_tangential, strike.mode) = (normal, tangential, mode);
         strike.contact_rise = rod.contact_rise(&after, tilt.sin_theta);
-        strike.energy_gain = 0.5 * (speed_squared - strike.speed_squared);
+        strike.energy_gain = N::from_f64(0.5) * (speed_squared - strike.speed_squared);
         strike.after = after;
         strike
     }
@@ -212,13 +277,14 @@ impl Friction {
     pub(crate) fn table_speed(&self, rod: &Rod, before: &State, tilt: &Tilt<f64>) -> f64 {
         match self.slide {
             Slide::None => 0.0,
-            Slide::Matched => tangential_velocity(rod, before, tilt, crate::trig::sin_cos(tilt.beta).1),
+            Slide::Matched => tangential_velocity(rod, before, tilt),
         }
     }
 }
 
 /// Velocity of the contact point along the table, m/s.
-fn tangential_velocity(rod: &Rod, before: &State, tilt: &Tilt<f64>, cos_beta: f64) -> f64 {
-    let along = rod.contact_distance * cos_beta;
+#[inline(always)]
+fn tangential_velocity<N: Number>(rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
+    let along = rod.contact_distance * tilt.cos_beta();
     tilt.cos_alpha * before.x_dot + tilt.sin_alpha * before.y_dot + along * before.theta_dot
 }

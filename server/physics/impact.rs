@@ -49,8 +49,6 @@ pub struct Rod<N = f64> {
 pub(crate) struct Tilt<N> {
     /// α, table tilt, rad.
     pub(crate) alpha: N,
-    /// β = θ − α, the rod's angle from the table's normal, rad.
-    pub(crate) beta: N,
     /// sin θ.
     pub(crate) sin_theta: N,
     /// 1 − cos θ.
@@ -59,7 +57,7 @@ pub(crate) struct Tilt<N> {
     pub(crate) sin_alpha: N,
     /// cos α.
     pub(crate) cos_alpha: N,
-    /// sin β.
+    /// sin β of β = θ − α, the rod's angle from the table's normal.
     pub(crate) sin_beta: N,
 }
 
@@ -105,7 +103,13 @@ impl<N: Number> Tilt<N> {
         let (sin_theta, versine_theta) = theta.sin_versine();
         let (sin_alpha, cos_alpha) = alpha.sincos();
         let (sin_beta, _) = beta.sincos();
-        Self { alpha, beta, sin_theta, versine_theta, sin_alpha, cos_alpha, sin_beta }
+        Self { alpha, sin_theta, versine_theta, sin_alpha, cos_alpha, sin_beta }
+    }
+
+    /// cos β. Unlike the sine it loses nothing to a difference of angles.
+    #[inline(always)]
+    pub(crate) fn cos_beta(&self) -> N {
+        self.cos_alpha * (N::from_f64(1.0) - self.versine_theta) + self.sin_alpha * self.sin_theta
     }
 }
 

@@ -3,14 +3,16 @@
 //!
 //! States here are (ρθ, ẋ, ẏ, ρθ̇) just before a contact, in this order; (ẋ, ẏ) for a point mass.
 
+use crate::contact_time::first_contact;
 use crate::dual::Dual;
 use crate::flight::Flight;
-use crate::impact::{Rod, State};
+use crate::friction::{Fork, Friction, Law, Mode, Slide, as_it_is};
+use crate::impact::{Rod, State, Strike};
 use crate::map::{Body, Contact, Orbit, Rules};
 use crate::model::Model;
 use crate::number::Number;
 use crate::point::Point;
-use crate::rig::Rig;
+use crate::rig::{Rig, Steering};
 use nalgebra::{Complex, DMatrix, Schur};
 
 /// The map linearized about one orbit segment.
@@ -25,7 +27,27 @@ pub struct Linearization {
     pub flight_time: f64,
     /// ẏ_c just before the contact nearest to grazing, m/s: derivatives grow without bound as it goes to 0.
     pub contact_speed: f64,
+    /// What the first contact did along the table.
+    pub contact_mode: Mode,
+    /// Where the map has a kink, its derivatives on all sides of it; else none.
+    pub one_sided: Vec<Side>,
 }
+
+/// A derivative of the map on one side of a kink.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    /// What the contact does along the table on that side.
+    pub contact_mode: Mode,
+    /// As [`Linearization::matrix`].
+    pub matrix: DMatrix<f64>,
+}
+
+/// What decides on the formula of an impact with friction is taken both ways where it is nearer than this share to the other
+/// answer, some thousands of roundings.
+pub const TIED: f64 = 1e-12;
+
+/// Most sides that are told: each contact on a kink doubles them.
+pub const MOST_SIDES: usize = 16;
 
 /// Names of the components of a state, in the order of a matrix's rows and columns.
 pub fn state_order(model: &Model) -> &'static [&'static str] {
@@ -40,11 +62,15 @@ pub fn state_order(model: &Model) -> &'static [&'static str] {
 /// # Errors
 /// The contact at which the run ends before that, which has no derivative.
 pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
+    let smooth = |matrix| vec![Side { contact_mode: Mode::Frictionless, matrix }];
     along(model, start, period, |state| match model {
-        Model::Rod(rod) => rod_jacobian(rod, state),
-        Model::Point(point) => point_jacobian(point, state),
+        Model::Rod(rod) => rod_jacobian(rod, state).map(smooth),
+        Model::Point(point) => Some(smooth(point_jacobian(point, state))),
+        Model::Rig(Rig { rod, friction: Some(friction), steering: Steering::TiltGain, noise: None }) => {
+            rough_jacobians(rod, friction, state)
+        }
         // Not derived, and nobody is to take anything else for it.
-        Model::Rig(_) => Some(DMatrix::from_element(4, 4, f64::NAN)),
+        Model::Rig(_) => Some(smooth(DMatrix::from_element(4, 4, f64::NAN))),
     })
 }
 
@@ -53,7 +79,7 @@ pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearizati
 /// # Errors
 /// As [`jacobian`]; also where a run that starts one step aside ends.
 pub fn finite_difference(model: &Model, start: &State, period: u64, step: f64) -> Result<Linearization, Box<Contact>> {
-    let mut linearization = along(model, start, period, |_| None)?;
+    let mut linearization = jacobian(model, start, period)?;
     let size = state_order(model).len();
     let mut matrix = DMatrix::zeros(size, size);
     for column in 0..size {
@@ -94,41 +120,118 @@ fn along(
     model: &Model,
     start: &State,
     period: u64,
-    derivative: impl Fn(&State) -> Option<DMatrix<f64>>,
+    derivatives: impl Fn(&State) -> Option<Vec<Side>>,
 ) -> Result<Linearization, Box<Contact>> {
     let size = state_order(model).len();
     let mut orbit = Orbit::at(*model, Rules::BARE_MAP, *start);
-    let mut matrix = DMatrix::identity(size, size);
+    let mut sides = vec![Side { contact_mode: Mode::Frictionless, matrix: DMatrix::identity(size, size) }];
+    let mut contact_mode = None;
     let (mut flight_time, mut contact_speed) = (0.0, f64::NEG_INFINITY);
     for _ in 0..period {
         let contact = orbit.advance();
         let Some(flight) = contact.flight_time else { return Err(Box::new(contact)) };
-        if let Some(factor) = derivative(&contact.state) {
-            matrix = factor * matrix;
+        contact_mode = contact_mode.or(contact.strike.map(|strike| strike.mode));
+        if let Some(factors) = derivatives(&contact.state) {
+            sides = multiply(&factors, &sides);
         }
         flight_time += flight;
         contact_speed = f64::max(contact_speed, model.contact_speed(orbit.state()));
     }
-    Ok(Linearization { matrix, end: *orbit.state(), flight_time, contact_speed })
+    Ok(Linearization {
+        matrix: sides[0].matrix.clone(),
+        end: *orbit.state(),
+        flight_time,
+        contact_speed,
+        contact_mode: contact_mode.unwrap_or(Mode::Frictionless),
+        one_sided: if sides.len() > 1 { sides } else { Vec::new() },
+    })
+}
+
+/// Every derivative of a contact after every one of those before it, the main one of both first.
+fn multiply(factors: &[Side], sides: &[Side]) -> Vec<Side> {
+    let pairs = factors.iter().flat_map(|factor| sides.iter().map(move |side| (factor, side)));
+    let product = |(factor, side): (&Side, &Side)| Side {
+        contact_mode: if factors.len() > 1 { factor.contact_mode } else { side.contact_mode },
+        matrix: &factor.matrix * &side.matrix,
+    };
+    pairs.take(MOST_SIDES).map(product).collect()
 }
 
 fn rod_jacobian(rod: &Rod, state: &State) -> Option<DMatrix<f64>> {
-    let strike = rod.strike(state);
-    let (root, _) = rod.fly(&strike).ok()?;
-    let per_length = 1.0 / rod.radius_of_gyration;
+    let root = first_contact(&rod.flight(&rod.strike(state))).ok()?;
     let lifted: Rod<Dual<4>> = rod.lift();
-    let flight: Flight<Dual<4>> = lifted.flight(&lifted.strike(&State {
+    Some(after_flight(&lifted, &lifted.strike(&along_all(rod, state)), root))
+}
+
+/// The derivative as the impact went, and those on the other sides of a kink that it lies on.
+///
+/// Coming to rest at once, v_t = 0, is no kink where friction holds: the impulse depends on the sliding before only by where it
+/// ends, and there in the same way from both sides.
+fn rough_jacobians(rod: &Rod, friction: &Friction, state: &State) -> Option<Vec<Side>> {
+    let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched);
+    let strike = friction.strike(rod, state, &rod.tilt(state.theta), None, rod.leverage(), |decision| {
+        let is_tied = decision.margin.abs() <= TIED * decision.scale;
+        held |= decision.fork == Fork::Holds && decision.answer && !is_tied;
+        if is_tied {
+            tied.push(decision.fork);
+        }
+        as_it_is(decision)
+    });
+    // Without restitution the impact ends where compression does.
+    let ends_early = [Fork::Rests, Fork::RestsEarly].iter().all(|fork| tied.contains(fork));
+    tied.retain(|fork| match fork {
+        Fork::Forward => !held,
+        // The work of compression has no kink where the sliding ends.
+        Fork::RestsEarly => friction.law == Law::Poisson && !ends_early,
+        Fork::Rests | Fork::Holds => true,
+    });
+    let root = first_contact(&rod.flight(&strike)).ok()?;
+    let lifted: Rod<Dual<4>> = rod.lift();
+    let (start, leverage) = (along_all(rod, state), lifted.leverage());
+    let mut sides: Vec<Side> = Vec::new();
+    for flipped in 0..1_u32 << tied.len() {
+        let mut rests = false;
+        let strike = friction.strike(&lifted, &start, &lifted.tilt(start.theta), None, leverage, |decision| {
+            let at = tied.iter().position(|fork| *fork == decision.fork);
+            let mut answer = decision.answer ^ at.is_some_and(|at| flipped >> at & 1 == 1);
+            answer |= decision.fork == Fork::RestsEarly && ends_early;
+            rests |= decision.fork == Fork::Rests && answer;
+            answer
+        });
+        let contact_mode = match strike.mode {
+            Mode::SlideThrough if !tied.contains(&Fork::Forward) => Mode::SlideThrough,
+            Mode::SlideThrough if rests => Mode::ReverseSlide,
+            Mode::SlideThrough => Mode::Slide,
+            mode => mode,
+        };
+        let side = Side { contact_mode, matrix: after_flight(&lifted, &strike, root) };
+        if !sides.contains(&side) {
+            sides.push(side);
+        }
+    }
+    Some(sides)
+}
+
+/// A state that moves along each of its components.
+fn along_all(rod: &Rod, state: &State) -> State<Dual<4>> {
+    let per_length = 1.0 / rod.radius_of_gyration;
+    State {
         theta: Dual::along(state.theta, 0, per_length),
         x_dot: Dual::along(state.x_dot, 1, 1.0),
         y_dot: Dual::along(state.y_dot, 2, 1.0),
         theta_dot: Dual::along(state.theta_dot, 3, per_length),
-    }));
-    let end = flight.end(flight.lift_root(root));
-    let rho = lifted.radius_of_gyration;
-    Some(rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot]))
+    }
 }
 
-fn point_jacobian(point: &Point, state: &State) -> Option<DMatrix<f64>> {
+/// The derivative of the state at the end of a flight that takes `root`, s.
+fn after_flight(lifted: &Rod<Dual<4>>, strike: &Strike<Dual<4>>, root: f64) -> DMatrix<f64> {
+    let flight: Flight<Dual<4>> = lifted.flight(strike);
+    let end = flight.end(flight.lift_root(root));
+    let rho = lifted.radius_of_gyration;
+    rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot])
+}
+
+fn point_jacobian(point: &Point, state: &State) -> DMatrix<f64> {
     let State { theta, x_dot, y_dot, .. } = *state;
     let speed_squared = x_dot * x_dot + y_dot * y_dot;
     let lifted: Rod<Dual<2>> = point.parameters().lift();
@@ -138,7 +241,7 @@ fn point_jacobian(point: &Point, state: &State) -> Option<DMatrix<f64>> {
         y_dot: Dual::along(y_dot, 1, 1.0),
         theta_dot: Dual::from_f64(0.0),
     });
-    Some(rows(&[strike.after.x_dot, -strike.after.y_dot]))
+    rows(&[strike.after.x_dot, -strike.after.y_dot])
 }
 
 fn rows<const K: usize>(components: &[Dual<K>; K]) -> DMatrix<f64> {

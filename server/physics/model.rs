@@ -158,7 +158,12 @@ impl Scene {
 
     /// Why what is derived for the plain rod does not hold, with the field that makes it so; none where it does.
     pub fn roughness(&self) -> Option<FieldError> {
-        let Forced { rung, path, .. } = self.forced().into_iter().next()?;
+        self.beyond(&[])
+    }
+
+    /// The same for what is derived for some rungs above it as well.
+    pub fn beyond(&self, known: &[Rung]) -> Option<FieldError> {
+        let Forced { rung, path, .. } = self.forced().into_iter().find(|forced| !known.contains(&forced.rung))?;
         let shown = crate::scene::field(path).map_or_else(String::new, |row| self.shown(row.name));
         let what = match rung {
             Rung::Friction => "with friction",

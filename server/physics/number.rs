@@ -5,12 +5,18 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Arithmetic, sine and cosine: enough for the strike, the gap of a flight and its slope.
+/// Arithmetic, root, sine and cosine: enough for the strike, the gap of a flight and its slope.
 pub trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The number that stands for a constant.
     fn from_f64(value: f64) -> Self;
+
+    /// The nearest double, to decide by.
+    fn to_f64(self) -> f64;
+
+    /// Its square root.
+    fn sqrt(self) -> Self;
 
     /// Sine and cosine of an angle in rad. Not `sin_cos`, which on `f64` is the platform's.
     fn sincos(self) -> (Self, Self);
@@ -36,6 +42,16 @@ impl Number for f64 {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@
 
 use crate::contact_time::{first_contact, first_descent};
 use crate::flight::Flight;
-use crate::friction::{Friction, Law, Slide};
+use crate::friction::{Friction, Law, Slide, as_it_is};
 use crate::impact::{Rod, State, Strike, Tilt};
 use crate::map::{Arrival, Body, Coming, NoContact, Plan, Release};
 use crate::noise::{Draw, Noise, Reading};
@@ -166,7 +166,10 @@ impl Body for Rig {
         };
         match (&self.friction, plan) {
             (None, None) => rod.strike_with(state, &tilt, rod.leverage()),
-            (friction, plan) => friction.as_ref().unwrap_or(&SMOOTH).strike(&rod, state, &tilt, plan.as_ref()),
+            (friction, plan) => {
+                let friction = friction.as_ref().unwrap_or(&SMOOTH);
+                friction.strike(&rod, state, &tilt, plan.as_ref(), rod.leverage(), as_it_is)
+            }
         }
     }
 

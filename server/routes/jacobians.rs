@@ -6,6 +6,8 @@ use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
 
+use equipoise_physics::model::Rung;
+
 use super::App;
 use crate::compute::{Cancel, Price};
 use crate::http::{Ask, Format, Problem, Resource};
@@ -22,7 +24,7 @@ pub fn routes() -> Router<App> {
 
 async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, at, period, method) = ask.read(|reader| {
-        let scene = scene::read_frictionless(reader);
+        let scene = scene::read_within(reader, &[Rung::Friction]);
         let at = At::read(reader);
         let period = reader.integer("period", 1..=limits::PERIOD).unwrap_or(1);
         let method = reader

@@ -1,13 +1,13 @@
 //! The request and the answer of `jacobians`: where the map is differentiated, and its derivative there.
 
 use equipoise_physics::impact::State;
-use equipoise_physics::jacobian::{self, Linearization};
+use equipoise_physics::jacobian::{self, Linearization, MOST_SIDES, TIED};
 use equipoise_physics::map::run;
 use equipoise_physics::model::Model;
 use equipoise_physics::point::Point;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::Class;
-use nalgebra::Complex;
+use nalgebra::{Complex, DMatrix};
 use serde::{Serialize, Serializer};
 
 use super::scene::{Resolved, has_angle};
@@ -134,7 +134,16 @@ pub struct Jacobian<'a> {
     contact_speed: f64,
     contact_mode: &'static str,
     smooth: bool,
+    one_sided: Vec<OneSided>,
     notes: Vec<String>,
+}
+
+/// The derivative on one side of a kink.
+#[derive(Debug, Clone, Serialize)]
+struct OneSided {
+    contact_mode: &'static str,
+    matrix: Vec<Vec<f64>>,
+    eigenvalues: Vec<Eigenvalue>,
 }
 
 impl<'a> Jacobian<'a> {
@@ -154,12 +163,14 @@ impl<'a> Jacobian<'a> {
             At::State(_) => "/at/state",
             At::Impact(_) => "/at/impact",
         };
-        let Linearization { matrix, flight_time, contact_speed, .. } = derivative.map_err(|contact| {
+        let derivative = derivative.map_err(|contact| {
             let why =
                 contact.ending.map_or_else(String::new, |ending| Outcome::new(ending, contact.n, contact.t).detail);
             (pointer, format!("the map has no derivative here: it does not reach the next contact ({why})"))
         })?;
-        if !matrix.iter().all(|entry| entry.is_finite()) {
+        let Linearization { matrix, flight_time, contact_speed, contact_mode, one_sided, .. } = derivative;
+        let matrices = || std::iter::once(&matrix).chain(one_sided.iter().map(|side| &side.matrix));
+        if !matrices().flat_map(|matrix| matrix.iter()).all(|entry| entry.is_finite()) {
             return Err((pointer, format!("the derivative over {period} contacts is beyond double precision")));
         }
         let mut notes = vec![format!(
@@ -176,10 +187,22 @@ impl<'a> Jacobian<'a> {
             (values, residue, Some(linear.class == Class::Parabolic))
         } else {
             notes.push("residue and defective are null: they belong to a fixed point".to_owned());
-            let values = jacobian::eigenvalues(&matrix)
-                .ok_or((pointer, "the eigenvalues of this derivative did not converge".to_owned()))?;
-            (values, None, None)
+            (eigenvalues_of(&matrix, pointer)?, None, None)
         };
+        if !one_sided.is_empty() {
+            notes.push(format!(
+                "smooth is false: what the contact does along the table changes here, or when; the quantity that decides is \
+                 within {TIED} of its scale. matrix is the first of one_sided, which has at most {MOST_SIDES}"
+            ));
+        }
+        let one_sided = one_sided.iter().map(|side| {
+            Ok(OneSided {
+                contact_mode: side.contact_mode.name(),
+                matrix: rows(&side.matrix),
+                eigenvalues: eigenvalues_of(&side.matrix, pointer)?.into_iter().map(Eigenvalue::from).collect(),
+            })
+        });
+        let one_sided = one_sided.collect::<Result<Vec<_>, _>>()?;
         if linear.is_some() && residue.is_none() {
             notes.push("residue is null: a point mass has no angle to circle".to_owned());
         }
@@ -210,14 +233,15 @@ impl<'a> Jacobian<'a> {
             },
             state_order: jacobian::state_order(&model),
             determinant: matrix.determinant(),
-            matrix: matrix.row_iter().map(|row| row.iter().copied().collect()).collect(),
+            matrix: rows(&matrix),
             eigenvalues: eigenvalues.into_iter().map(Eigenvalue::from).collect(),
             residue,
             defective,
             flight_time,
             contact_speed,
-            contact_mode: "frictionless",
-            smooth: true,
+            contact_mode: contact_mode.name(),
+            smooth: one_sided.is_empty(),
+            one_sided,
             notes,
         })
     }
@@ -271,12 +295,20 @@ fn place(scene: &Scene, at: At) -> Result<State, (&'static str, String)> {
     }
 }
 
+fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+}
+
+fn eigenvalues_of(matrix: &DMatrix<f64>, pointer: &'static str) -> Result<Vec<Complex<f64>>, (&'static str, String)> {
+    jacobian::eigenvalues(matrix).ok_or((pointer, "the eigenvalues of this derivative did not converge".to_owned()))
+}
+
 fn power(value: Complex<f64>, exponent: u64) -> Complex<f64> {
     (1..exponent).fold(value, |product, _| product * value)
 }
 
 /// (2 − trace)/4 of the angle's block, which at a fixed point stands alone.
-fn block_residue(matrix: &nalgebra::DMatrix<f64>) -> Option<f64> {
+fn block_residue(matrix: &DMatrix<f64>) -> Option<f64> {
     (matrix.nrows() == 4).then(|| 0.25 * (2.0 - matrix[(0, 0)] - matrix[(3, 3)]))
 }
 
@@ -291,6 +323,6 @@ pub fn price(model: &Model, at: At, period: u64, method: Method) -> u64 {
         + period
             * match method {
                 Method::Exact => 12,
-                Method::FiniteDifference => 2 * columns + 1,
+                Method::FiniteDifference => 2 * columns + 12,
             }
 }

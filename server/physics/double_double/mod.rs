@@ -58,15 +58,15 @@ impl DoubleDouble {
         Self { high, low }
     }
 
-    #[inline(always)]
-    fn normalized((high, low): (f64, f64)) -> Self {
-        Self { high, low }
-    }
-
     /// The nearest double.
     #[inline(always)]
     pub fn to_f64(self) -> f64 {
         self.high
+    }
+
+    #[inline(always)]
+    fn normalized((high, low): (f64, f64)) -> Self {
+        Self { high, low }
     }
 
     #[inline(always)]
@@ -141,6 +141,22 @@ impl Number for DoubleDouble {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self { high: value, low: 0.0 }
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.high
+    }
+
+    /// One step of Newton from the root of the leading double, which doubles its digits.
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let near = self.high.sqrt();
+        if near == 0.0 {
+            return Self::from_f64(near);
+        }
+        let rest = self - Self::from_f64(near).squared();
+        Self::normalized(fast_two_sum(near, rest.high / (2.0 * near)))
     }
 
     #[inline(always)]

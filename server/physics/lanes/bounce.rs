@@ -101,15 +101,15 @@ fn tilt<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut 
     let mut near = true;
     for lane in 0..WIDTH {
         let tilt = rods.rod(lane).lift::<L>().tilt(L::from_f64(moving.theta[lane]));
-        scratch.alpha[lane] = tilt.alpha.value();
-        scratch.sin_theta[lane] = tilt.sin_theta.value();
-        scratch.versine_theta[lane] = tilt.versine_theta.value();
-        scratch.sin_alpha[lane] = tilt.sin_alpha.value();
-        scratch.cos_alpha[lane] = tilt.cos_alpha.value();
-        scratch.sin_beta[lane] = tilt.sin_beta.value();
+        scratch.alpha[lane] = tilt.alpha.to_f64();
+        scratch.sin_theta[lane] = tilt.sin_theta.to_f64();
+        scratch.versine_theta[lane] = tilt.versine_theta.to_f64();
+        scratch.sin_alpha[lane] = tilt.sin_alpha.to_f64();
+        scratch.cos_alpha[lane] = tilt.cos_alpha.to_f64();
+        scratch.sin_beta[lane] = tilt.sin_beta.to_f64();
         let size = moving.theta[lane].abs();
         next.max_theta[lane] = if size > moving.max_theta[lane] { size } else { moving.max_theta[lane] };
-        let largest = size + tilt.alpha.magnitude().value();
+        let largest = size + tilt.alpha.magnitude().to_f64();
         near &= largest <= Near::REACH;
         scratch.apart[lane] = unless((largest <= L::REACH) & (size < rods.topple_angle[lane]));
     }
@@ -125,7 +125,6 @@ fn strike<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mu
         let tilt = Tilt {
             alpha: number(scratch.alpha[lane]),
             // Nothing in this strike needs it.
-            beta: number(0.0),
             sin_theta: number(scratch.sin_theta[lane]),
             versine_theta: number(scratch.versine_theta[lane]),
             sin_alpha: number(scratch.sin_alpha[lane]),
@@ -134,14 +133,14 @@ fn strike<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mu
         };
         let mut strike = rod.strike_with(&moving.state(lane).map(number), &tilt, number(rods.leverage[lane]));
         let energy = rod.hold_energy(&mut strike, number(moving.energy[lane]));
-        let after = strike.after.map(L::value);
-        next.set(lane, &after, energy.value());
+        let after = strike.after.map(L::to_f64);
+        next.set(lane, &after, energy.to_f64());
         scratch.y_dot[lane] = after.y_dot;
         scratch.apart[lane] |= unless(
-            (strike.push.value() < 0.0)
+            (strike.push.to_f64() < 0.0)
                 & (after.x_dot.abs() <= 0.5 * SPEED_LIMIT)
                 & (after.y_dot.abs() <= 0.5 * SPEED_LIMIT)
-                & (strike.contact_rise.value() > 0.0),
+                & (strike.contact_rise.to_f64() > 0.0),
         );
     }
 }
@@ -151,8 +150,8 @@ fn strike<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mu
 fn guess<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &mut Scratch) {
     for lane in 0..WIDTH {
         let flight = flight::<L>(rods, moving, next, scratch, lane);
-        scratch.t[lane] = contact_time::guess(&flight).value();
-        scratch.apart[lane] |= unless(flight.bulge().value() <= rods.gravity[lane]);
+        scratch.t[lane] = contact_time::guess(&flight).to_f64();
+        scratch.apart[lane] |= unless(flight.bulge().to_f64() <= rods.gravity[lane]);
     }
 }
 
@@ -173,23 +172,23 @@ fn fall<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut 
         let step = Step::new(&flight, L::from_f64(t), &gap);
         let turned = (next.theta_dot[lane] * t).abs();
         near &= turned <= Near::REACH;
-        let refined = step.left_out.value() <= step.negligible.value();
-        let better = if refined { step.refined.value() } else { t + step.newton.value() };
-        let apart = scratch.apart[lane] | unless((turned <= L::REACH) & (gap.slope.value() < 0.0));
+        let refined = step.left_out.to_f64() <= step.negligible.to_f64();
+        let better = if refined { step.refined.to_f64() } else { t + step.newton.to_f64() };
+        let apart = scratch.apart[lane] | unless((turned <= L::REACH) & (gap.slope.to_f64() < 0.0));
         if first {
             scratch.t[lane] = better;
             scratch.found[lane] = u64::from(refined);
         } else {
             // In the order of `contact_time::newton`.
-            let back = !refined & (step.newton.value() >= 0.0);
+            let back = !refined & (step.newton.to_f64() >= 0.0);
             scratch.t[lane] = if (scratch.found[lane] == 1) | back { t } else { better };
             scratch.found[lane] |= u64::from(refined | back);
         }
         scratch.apart[lane] = apart;
         all &= scratch.found[lane] | apart;
         let end = flight.end(L::from_f64(scratch.t[lane]));
-        next.theta[lane] = end.theta.value();
-        next.y_dot[lane] = end.y_dot.value();
+        next.theta[lane] = end.theta.to_f64();
+        next.y_dot[lane] = end.y_dot.to_f64();
     }
     Fallen { near, all: all == 1 }
 }

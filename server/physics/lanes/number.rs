@@ -8,9 +8,6 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub(crate) trait Lane: Real {
     /// Largest angle, rad; beyond it they are wrong, and the caller has to look.
     const REACH: f64;
-
-    /// The plain number.
-    fn value(self) -> f64;
 }
 
 macro_rules! lane {
@@ -36,6 +33,16 @@ macro_rules! lane {
             }
 
             #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self.0
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                Self(self.0.sqrt())
+            }
+
+            #[inline(always)]
             fn sincos(self) -> (Self, Self) {
                 let (sin, cos) = $sincos(self.0);
                 (Self(sin), Self(cos))
@@ -57,11 +64,6 @@ macro_rules! lane {
 
         impl Lane for $name {
             const REACH: f64 = $reach;
-
-            #[inline(always)]
-            fn value(self) -> f64 {
-                self.0
-            }
         }
     };
     ($name:ident, $($trait:ident $method:ident $operator:tt),*) => {

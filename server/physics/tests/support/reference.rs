@@ -1,11 +1,17 @@
-//! The reference runs of `tests/reference` that have no friction, as scenes.
+//! The reference runs of `tests/reference`, as scenes.
 
 use equipoise_physics::scene::{Draft, FIELDS, Kind, Scene, Value};
 use serde_json::Value as Json;
 use std::path::{Path, PathBuf};
 
-/// Name, scene and what was computed with 60 digits.
+/// Name, scene and what was computed with 60 digits, of those without friction.
+#[allow(dead_code)]
 pub(crate) fn frictionless() -> Vec<(String, Scene, Json)> {
+    all().into_iter().filter(|(name, ..)| !name.starts_with("friction")).collect()
+}
+
+/// The same of all.
+pub(crate) fn all() -> Vec<(String, Scene, Json)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/reference");
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
@@ -14,8 +20,7 @@ pub(crate) fn frictionless() -> Vec<(String, Scene, Json)> {
         let name = file.file_stem().unwrap().to_string_lossy().into_owned();
         let reference: Json = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
         match draft(&reference["scene"]) {
-            Some(draft) if !name.starts_with("friction") => found.push((name, draft.build().unwrap(), reference)),
-            Some(_) => {}
+            Some(draft) => found.push((name, draft.build().unwrap(), reference)),
             None => panic!("{name} was refused"),
         }
     }
