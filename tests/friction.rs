@@ -1,4 +1,4 @@
-//! Friction over HTTP: derivatives with their sides.
+//! Friction over HTTP: derivatives with their sides, verdicts with their reasons, regions.
 
 mod support;
 
@@ -45,4 +45,51 @@ async fn on_a_kink_both_sides_are_told() {
     assert_eq!(answer["matrix"], sides[0]["matrix"]);
     assert_ne!(sides[0]["matrix"], sides[1]["matrix"]);
     assert_eq!(sides[1]["eigenvalues"].as_array().unwrap().len(), 4);
+}
+
+#[tokio::test]
+async fn a_matched_table_is_judged_by_its_own_boundary() {
+    let server = Server::start();
+    let scene = |friction: f64, kappa: f64, theta: f64| {
+        format!(
+            "preset=case-1&scene.contact.friction={friction}&scene.table.slide=matched&scene.table.tilt_gain={kappa}&scene.release.theta={theta}"
+        )
+    };
+    let wide = scene(0.3, 2.4, 0.05);
+    let answer = server.get(&format!("/v1/stability?{wide}")).await.json();
+    assert_eq!(answer["verdict"], "elliptic, 2000 bounces survived", "{answer}");
+    // 1 + G(ρ² + l²)/(V²l) of the paper's body at its height; without friction it is 1.5.
+    let critical = answer["linear"]["tilt_gain"]["critical"].as_f64().unwrap();
+    assert!((critical - 2.5).abs() < 1e-12, "{critical}");
+    let notes = answer["notes"].to_string();
+    assert!(notes.contains("stick cone") && notes.contains("boundary is null"), "{notes}");
+    assert!(answer["boundary"].is_null() && answer["rotation_number"]["measured"].is_number());
+    let jacobian = server.get(&format!("/v1/jacobians?{wide}")).await.json();
+    assert_eq!((&jacobian["smooth"], &jacobian["contact_mode"]), (&json!(true), &json!("stick")));
+    assert_eq!(jacobian["residue"], answer["linear"]["residue"]);
+    // Near the edge of the stick cone, 0.075 rad, it begins to slide and falls; outside the reason names the cone.
+    let answer = server.get(&format!("/v1/stability?{}", scene(0.05, 2.0, 0.05))).await.json();
+    assert_eq!((&answer["verdict"], &answer["nonlinear"]["impacts"]), (&json!("unstable"), &json!(16)));
+    let answer = server.get(&format!("/v1/stability?{}", scene(0.05, 2.0, 0.1))).await.json();
+    assert!(answer["reason"].as_str().unwrap().contains("outside the stick cone"), "{}", answer["reason"]);
+}
+
+#[tokio::test]
+async fn a_table_that_only_tilts_is_unstable_for_any_friction() {
+    let server = Server::start();
+    let rough = "preset=case-1&scene.contact.friction=0.05&scene.release.theta=0.05";
+    let answer = server.get(&format!("/v1/stability?{rough}")).await.json();
+    assert_eq!((&answer["verdict"], &answer["decided_by"]), (&json!("unstable"), &json!("linear")));
+    assert!(answer["nonlinear"]["impacts"].as_u64().unwrap() <= 10);
+    assert!(answer["reason"].as_str().unwrap().contains("sticks for any friction above 0"), "{}", answer["reason"]);
+    let linear = &answer["linear"];
+    assert!(linear["tilt_gain"].is_null() && linear["residue"].is_null() && answer["drift_speed"].is_null());
+    let eigenvalues = linear["eigenvalues"].as_array().unwrap();
+    assert!(eigenvalues[0]["re"].as_f64().unwrap() > 1.0 && eigenvalues.len() == 4);
+    let jacobian = server.get(&format!("/v1/jacobians?{rough}")).await.json();
+    assert_eq!(jacobian["eigenvalues"], linear["eigenvalues"]);
+    assert!(jacobian["residue"].is_null() && jacobian["contact_mode"] == "stick");
+    for format in ["svg", "csv"] {
+        assert_eq!(server.get(&format!("/v1/stability?{rough}&format={format}")).await.status, 200);
+    }
 }

@@ -113,7 +113,6 @@ async fn what_cannot_be_mapped_is_named() {
     for (x, y, pointer) in [
         (kappa.clone(), kappa.clone(), "/y"),
         (kappa.clone(), side("table.strike", 1.5), "/y/parameter"),
-        (kappa.clone(), side("contact.friction", 1.5), "/y/parameter"),
         (side("table.tilt_gain", 1e4), side("release.height", 2.0), "/x/to"),
         (json!({"parameter": "table.tilt_gain"}), side("release.height", 2.0), "/x/count"),
     ] {

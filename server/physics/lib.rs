@@ -22,6 +22,7 @@ pub mod error_estimate;
 pub mod extended;
 pub mod flight;
 pub mod friction;
+pub mod grip;
 pub mod impact;
 pub mod jacobian;
 mod lanes;

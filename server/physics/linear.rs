@@ -92,6 +92,9 @@ impl Scene {
     /// # Errors
     /// Why there is none, in a sentence.
     pub fn linear_solution(&self) -> Result<LinearSolution, String> {
+        if let Some(error) = self.roughness() {
+            return Err(error.detail);
+        }
         let fixed_point = self.fixed_point()?;
         let linear = self.linear(&fixed_point);
         let (Model::Rod(rod), Some(residue)) = (self.model(), linear.residue) else {

@@ -137,8 +137,10 @@ impl Scene {
 
     /// Whether small deviations circle: elsewhere the linear solution is soon off, and its bound costs as much as a run.
     fn circles(&self) -> bool {
-        self.fixed_point()
-            .is_ok_and(|point| self.linear(&point).class == Class::Elliptic && self.linear(&point).residue.is_some())
+        self.roughness().is_none()
+            && self.fixed_point().is_ok_and(|point| {
+                self.linear(&point).class == Class::Elliptic && self.linear(&point).residue.is_some()
+            })
     }
 
     fn reach(&self, method: Method, impacts: u64, tolerance: f64, go_on: &mut impl FnMut() -> bool) -> Option<Reach> {

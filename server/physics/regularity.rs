@@ -4,8 +4,10 @@
 //! Not here: what is concluded from it ([`crate::verdict`]).
 
 use crate::dual::Dual;
+use crate::friction::{Friction, as_it_is};
 use crate::impact::{Rod, State};
 use crate::model::Model;
+use crate::rig::{Rig, Steering};
 use crate::scene::Scene;
 use crate::stability::{FixedPoint, Linear};
 use crate::trig;
@@ -91,10 +93,14 @@ impl Regularity {
 impl Scene {
     /// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. None for a body without an angle.
     pub fn regularity(&self, fixed_point: &FixedPoint, linear: &Linear, impacts: u64) -> Option<Regularity> {
-        let Model::Rod(rod) = self.model() else { return None };
+        let (rod, friction) = match self.model() {
+            Model::Rod(rod) => (rod, None),
+            Model::Rig(Rig { rod, steering: Steering::TiltGain, friction, noise: None }) => (rod, friction),
+            _ => return None,
+        };
         let mut orbit = self.orbit().ok()?;
         let undisturbed = orbit.state().theta == 0.0 && orbit.state().theta_dot == 0.0;
-        let mut tangents = Tangents::new(&rod, fixed_point.flight_time);
+        let mut tangents = Tangents::new(&rod, friction, fixed_point.flight_time);
         let mut turns = Turns::new(fixed_point, linear);
         let (mut advances, mut growth) = (Vec::new(), Vec::new());
         // MEGNO: Y(n) = (2/n) Σ k ln(δ_k/δ_{k−1}), and its mean over n.
@@ -198,6 +204,7 @@ impl Turns {
 #[derive(Clone, Copy, Debug)]
 pub struct Tangents {
     lifted: Rod<Dual<4>>,
+    friction: Option<Friction>,
     /// ρ/τ and ρ, which bring angles and spins to m/s beside the velocities.
     scales: [f64; 4],
     /// θ, ẋ, ẏ and θ̇ of the four, divided by e^growth.
@@ -207,7 +214,7 @@ pub struct Tangents {
 
 impl Tangents {
     /// The deviations by 1 m/s in each component, for flights of some `flight_time`, s.
-    pub fn new(rod: &Rod, flight_time: f64) -> Self {
+    pub fn new(rod: &Rod, friction: Option<Friction>, flight_time: f64) -> Self {
         let rho = rod.radius_of_gyration;
         let scales = [rho / flight_time, 1.0, 1.0, rho];
         let mut rows = [[0.0; 4]; 4];
@@ -215,7 +222,7 @@ impl Tangents {
             // Half of 1 m/s each, so that the norm of all is 1 m/s.
             row[index] = 0.5 / scales[index];
         }
-        Self { lifted: rod.lift(), scales, rows, growth: 0.0 }
+        Self { lifted: rod.lift(), friction, scales, rows, growth: 0.0 }
     }
 
     /// ln of how much the largest has grown, by the Frobenius norm of the product.
@@ -233,7 +240,12 @@ impl Tangents {
             y_dot: dual(y_dot, 2),
             theta_dot: dual(theta_dot, 3),
         };
-        let flight = self.lifted.flight(&self.lifted.strike(&state));
+        let rod = &self.lifted;
+        let strike = match self.friction {
+            None => rod.strike(&state),
+            Some(friction) => friction.strike(rod, &state, &rod.tilt(state.theta), None, rod.leverage(), as_it_is),
+        };
+        let flight = rod.flight(&strike);
         let end = flight.end(flight.lift_root(flight_time));
         self.rows = [end.theta, end.x_dot, end.y_dot, end.theta_dot].map(|component| component.partials);
         let mut norm_squared = 0.0;

@@ -4,8 +4,10 @@
 //! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
 //! off by the square root of rounding.
 
+use crate::grip::Grip;
 use crate::jacobian::{modulus, sort_eigenvalues};
 use crate::map::{Ending, run};
+use crate::model::Rung;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::trig;
 use nalgebra::Complex;
@@ -54,15 +56,16 @@ impl Class {
 pub struct Linear {
     /// How the angle moves.
     pub class: Class,
-    /// R = (κ − 1)V²l/(Gρ²); none for a point mass.
+    /// R = (κ − 1)V²l/(Gρ²), with ρ² + l² for ρ² where a matched contact sticks; none for a point mass, and where the contact sticks to
+    /// a table that only tilts.
     pub residue: Option<f64>,
     /// σ, rad per bounce, cos σ = 1 − 2R; where it is elliptic or parabolic.
     pub rotation: Option<f64>,
     /// Eigenvalues of the whole map, largest modulus first.
     pub eigenvalues: Vec<Complex<f64>>,
-    /// Least κ that balances.
+    /// Least κ that balances; infinite where none does.
     pub lower_tilt_gain: f64,
-    /// κ_c, greatest κ that balances: 1 + Gρ²/(V²l), eq. (18), for every e and κ_E.
+    /// κ_c, greatest κ that balances: 1 + Gρ²/(V²l), eq. (18), for every e and κ_E, with ρ² as in the residue; −∞ where none does.
     pub critical_tilt_gain: f64,
     /// Greatest κ_E that holds the energy, 2/((1 + e)V²), s²/m².
     pub upper_energy_gain: f64,
@@ -120,10 +123,11 @@ pub struct Nonlinear {
 }
 
 impl Scene {
-    /// c = ẋ − κρ²θ̇/((κ − 1)l): the mean horizontal speed of a balanced run, m/s. None where κ = 1, which drifts off in
-    /// angle instead, and for a point mass, whose drift dies out.
+    /// c = ẋ − κρ²θ̇/((κ − 1)l), or ẋ − (κρ² + l²)θ̇/((κ − 1)l) where a matched contact sticks: the mean horizontal speed of a balanced
+    /// run, m/s. None where κ = 1, which drifts off in angle instead, where friction holds the contact, and for a point mass, whose
+    /// drift dies out.
     pub fn drift_speed(&self) -> Option<f64> {
-        if self.roughness().is_some() {
+        if self.beyond(&[Rung::Friction]).is_some() || self.grip() == Grip::Held {
             return None;
         }
         let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
@@ -131,19 +135,21 @@ impl Scene {
         let excess = self.tilt_gain - 1.0;
         (excess != 0.0).then(|| {
             let lever = radius_of_gyration * radius_of_gyration / contact_distance;
-            start.x_dot - self.tilt_gain * lever * start.theta_dot / excess
+            let stuck = if self.grip() == Grip::Matched { contact_distance } else { 0.0 };
+            start.x_dot - (self.tilt_gain * lever + stuck) * start.theta_dot / excess
         })
     }
 
     /// The fixed point on the energy surface of the release, or that of the target height with energy feedback.
     ///
     /// V² = |v₀|² + 2G(y₀ − l) − c²: drift energy never comes back, and what counts is the height above l, not above
-    /// l cos θ as in eq. (10).
+    /// l cos θ as in eq. (10). A matched table with friction lends some more. Friction on one that only tilts takes the
+    /// energy of sideways motion and spin, so there V² = ẏ₀² + 2G(y₀ − l).
     ///
     /// # Errors
     /// Why there is none, in a sentence.
     pub fn fixed_point(&self) -> Result<FixedPoint, String> {
-        if let Some(error) = self.roughness() {
+        if let Some(error) = self.beyond(&[Rung::Friction]) {
             return Err(error.detail);
         }
         if self.is_lossy() {
@@ -177,7 +183,10 @@ impl Scene {
             let start = self.start();
             let spin = radius_of_gyration * start.theta_dot;
             let drift = self.drift_speed().unwrap_or(0.0);
-            let kinetic = start.x_dot * start.x_dot + start.y_dot * start.y_dot + spin * spin;
+            let mut kinetic = start.y_dot * start.y_dot;
+            if self.grip() != Grip::Held {
+                kinetic += start.x_dot * start.x_dot + spin * spin + self.lent(drift);
+            }
             let available = kinetic + 2.0 * self.gravity * (self.release.height - contact_distance);
             if available - drift * drift <= 0.0 {
                 return Err(format!(
@@ -234,8 +243,24 @@ impl Scene {
                 energy_eigenvalue,
             };
         };
+        if self.grip() == Grip::Held {
+            let mut eigenvalues = self.held_eigenvalues(fixed_point.speed).to_vec();
+            eigenvalues.push(real(energy_eigenvalue));
+            sort_eigenvalues(&mut eigenvalues);
+            return Linear {
+                class: Class::Hyperbolic,
+                residue: None,
+                rotation: None,
+                eigenvalues,
+                lower_tilt_gain: f64::INFINITY,
+                critical_tilt_gain: f64::NEG_INFINITY,
+                upper_energy_gain,
+                energy_eigenvalue,
+            };
+        }
+        let turning = self.turning_radius_squared(contact_distance, radius_of_gyration);
         // a = κ_c − 1.
-        let width = self.gravity * radius_of_gyration * radius_of_gyration / (speed_squared * contact_distance);
+        let width = self.gravity * turning / (speed_squared * contact_distance);
         let residue = (self.tilt_gain - 1.0) / width;
         let class = class(residue);
         let half_trace = 1.0 - 2.0 * residue;
@@ -267,8 +292,12 @@ impl Scene {
     }
 
     /// The boundary coefficient C at κ_c, with a = κ_c − 1 and γ = Gl/V²: (1+a)²/2 + a²/6 − (1−a)γ, and with a positive
-    /// energy gain, which holds η and not the energy, −(1+a)²/2 + a²/6 − γ. None for a point mass.
+    /// energy gain, which holds η and not the energy, −(1+a)²/2 + a²/6 − γ. None for a point mass, and with friction, for which it
+    /// is not derived.
     pub fn boundary(&self, fixed_point: &FixedPoint) -> Option<Boundary> {
+        if self.grip() != Grip::Smooth {
+            return None;
+        }
         let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
         let gamma = self.gravity * contact_distance / (fixed_point.speed * fixed_point.speed);
         let lever = radius_of_gyration / contact_distance;
@@ -284,8 +313,11 @@ impl Scene {
     /// where there is none within the topple angle.
     ///
     /// Its states are (±θ, ±V tan κθ, −V, ±Gθ/V) with V² = Gρ²θ cos κθ / (l sin((κ − 1)θ)); with energy feedback η is held in
-    /// place of the energy.
+    /// place of the energy. None with friction, for which it is not derived.
     pub fn period_two(&self, fixed_point: &FixedPoint) -> Option<f64> {
+        if self.grip() != Grip::Smooth {
+            return None;
+        }
         let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
         let (kappa, gravity) = (self.tilt_gain, self.gravity);
         let weight = gravity * contact_distance;

@@ -2,6 +2,7 @@
 //!
 //! Not here: how any of them comes about ([`crate::stability`], [`crate::regularity`]).
 
+use crate::grip::Grip;
 use crate::map::Ending;
 use crate::regularity::{CHAOTIC, Chaos};
 use crate::scene::Scene;
@@ -81,8 +82,24 @@ impl Scene {
         }
         let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
         if !survived && linear.class != Class::Hyperbolic && linear.class != Class::Parabolic {
-            let reason = format!("{fell}, although the linear analysis is stable: the start is outside the basin");
+            let cone = self.stick_cone().filter(|cone| start.theta.abs() > *cone).map_or_else(String::new, |cone| {
+                format!(", and theta {} rad outside the stick cone, |θ| up to about {cone} rad", start.theta)
+            });
+            let reason =
+                format!("{fell}, although the linear analysis is stable: the start is outside the basin{cone}");
             return judgement(Verdict::Unstable, DecidedBy::Nonlinear, reason);
+        }
+        if self.grip() == Grip::Held {
+            let largest = linear.eigenvalues.iter().map(|value| value.re).fold(1.0, f64::max);
+            let reason = format!(
+                "friction is {} and slide is `none`: at the fixed point the contact sticks for any friction above 0, and the \
+                 derivative there has the characteristic polynomial −4lV²/(G(l² + ρ²)) = {} < 0 at 1, so for every tilt_gain one \
+                 eigenvalue is beyond 1 ({largest} here); {}",
+                self.friction,
+                self.held_polynomial_at_one(fixed_point.speed),
+                if survived { "this run has not left yet" } else { fell.as_str() }
+            );
+            return judgement(Verdict::Unstable, DecidedBy::Linear, reason);
         }
         match linear.class {
             Class::Attracting => {
@@ -115,7 +132,15 @@ impl Scene {
                     DecidedBy::Nonlinear,
                     format!("tilt_gain is κ_c and C = {coefficient} > 0 is soft for small starts, but {fell}"),
                 ),
-                _ => judgement(
+                None => judgement(
+                    if survived { Verdict::BoundedBeyondBoundary } else { Verdict::Unstable },
+                    DecidedBy::Nonlinear,
+                    format!(
+                        "tilt_gain is κ_c, where eigenvalues are silent, and C is not derived with friction; {}",
+                        if survived { "the run survived" } else { fell.as_str() }
+                    ),
+                ),
+                Some(_) => judgement(
                     Verdict::Unstable,
                     DecidedBy::Boundary,
                     format!(

@@ -52,7 +52,8 @@ pub fn eigenvalues(judged: &Eigenvalues<'_>) -> String {
     let verdict = judged.verdict.unwrap_or("no verdict");
     let Some(spectrum) = judged.linear else {
         let description = format!("There is no linear analysis to draw: {}", judged.reason);
-        let caption = "There is no fixed point, so there are no eigenvalues to draw.";
+        let caption =
+            "There is no fixed point that some tilt gain balances, so there is no way of eigenvalues over κ to draw.";
         let subtitle = format!("{verdict}: {}", judged.reason);
         let words = Words { title: judged.title, subtitle: &subtitle, caption, description: &description };
         return Sheet::new(620.0, 0.0, words).svg.finish();

@@ -5,7 +5,6 @@ use axum::body::Body;
 use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
-
 use equipoise_physics::model::Rung;
 
 use super::App;

@@ -183,7 +183,7 @@ impl<'a> Jacobian<'a> {
         let (eigenvalues, residue, defective) = if let Some(linear) = &linear {
             let values = linear.eigenvalues.iter().map(|&value| power(value, period)).collect::<Vec<_>>();
             // Greene's residue of the angle's block over the whole period; 1 − 2R = cos σ at period 1.
-            let residue = linear.residue.filter(|_| period == 1).or_else(|| block_residue(&matrix));
+            let residue = linear.residue.and_then(|one| if period == 1 { Some(one) } else { block_residue(&matrix) });
             (values, residue, Some(linear.class == Class::Parabolic))
         } else {
             notes.push("residue and defective are null: they belong to a fixed point".to_owned());
@@ -204,7 +204,12 @@ impl<'a> Jacobian<'a> {
         });
         let one_sided = one_sided.collect::<Result<Vec<_>, _>>()?;
         if linear.is_some() && residue.is_none() {
-            notes.push("residue is null: a point mass has no angle to circle".to_owned());
+            let why = if has_angle(scene) {
+                "the contact sticks to a table that only tilts, so the angle has no block of its own"
+            } else {
+                "a point mass has no angle to circle"
+            };
+            notes.push(format!("residue is null: {why}"));
         }
         Ok(Self {
             scene: Resolved(scene),

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use equipoise_physics::model::Rung;
 use equipoise_physics::region::{Axis, Cell, Quantity, Region};
-use equipoise_physics::scene::{Kind, Name, Scene, field};
+use equipoise_physics::scene::{Kind, Scene, field};
 use equipoise_physics::sweep::Outcome;
 use serde::{Serialize, Serializer};
 
@@ -79,7 +80,7 @@ impl Request {
             return None;
         };
         let linear = matches!(region.quantity, Quantity::Residue | Quantity::SpectralRadius);
-        if let Some(error) = scene.roughness().filter(|_| linear) {
+        if let Some(error) = scene.beyond(&[Rung::Friction]).filter(|_| linear) {
             let pointer = reader.pointer_to("scene");
             reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
             return None;
@@ -144,9 +145,6 @@ fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Axis> {
             Some(Kind::Number { minimum, maximum }) => Some(minimum..=maximum),
             _ => None,
         };
-        if row.is_some_and(|row| row.name == Name::Friction) {
-            axis.refuse("parameter", "parameter is contact.friction; regions are not available with friction in this version".to_owned());
-        }
         if let (Some(path), None) = (path, &range) {
             axis.refuse("parameter", format!("parameter is {path:?}; it must be a field of a scene whose values are numbers, such as table.tilt_gain"));
         }

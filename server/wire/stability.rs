@@ -1,6 +1,7 @@
 //! The answer of `stability`: the verdict, and everything it rests on.
 
 use equipoise_physics::basin::{self, NoBasin};
+use equipoise_physics::grip::Grip;
 use equipoise_physics::regularity::WATCHED;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::{Linear, Nonlinear};
@@ -48,7 +49,7 @@ struct LinearPart {
     rotation: Option<f64>,
     spectral_radius: f64,
     eigenvalues: Vec<Eigenvalue>,
-    tilt_gain: TiltGain,
+    tilt_gain: Option<TiltGain>,
     energy_gain: EnergyGain,
 }
 
@@ -110,13 +111,13 @@ impl LinearPart {
             rotation: linear.rotation,
             spectral_radius: linear.spectral_radius(),
             eigenvalues: linear.eigenvalues.iter().map(|&value| value.into()).collect(),
-            tilt_gain: TiltGain {
+            tilt_gain: linear.lower_tilt_gain.is_finite().then(|| TiltGain {
                 value: kappa,
                 lower: linear.lower_tilt_gain,
                 critical: linear.critical_tilt_gain,
                 margin_below: kappa - linear.lower_tilt_gain,
                 margin_above: linear.critical_tilt_gain - kappa,
-            },
+            }),
             energy_gain: EnergyGain {
                 value: energy_gain,
                 upper: linear.upper_energy_gain,
@@ -164,8 +165,12 @@ impl<'a> Stability<'a> {
                         mass has no angle of its own, and its drift dies out"
                     .to_owned(),
             );
-        } else if scene.is_rough() {
-            notes.push("drift_speed is null: it is not available with friction in this version".to_owned());
+        } else if scene.grip() == Grip::Held {
+            notes.push(
+                "drift_speed, linear.residue, linear.rotation and linear.tilt_gain are null: the contact sticks to a table that only \
+                 tilts, so nothing drifts, the angle has no block of its own, and no tilt_gain balances"
+                    .to_owned(),
+            );
         } else if answer.drift_speed.is_none() {
             notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
         }
@@ -184,9 +189,19 @@ impl<'a> Stability<'a> {
                 answer.decided_by = Some(decided_by.name());
                 answer.agree = Some(agree);
                 answer.reason = reason;
+                if scene.grip() != Grip::Smooth {
+                    notes.push("boundary is null: its coefficient is not derived with friction".to_owned());
+                }
+                if let Some(cone) = scene.stick_cone() {
+                    notes.push(format!(
+                        "stick cone: the linear analysis holds where the matched contact sticks, for |θ| up to about {cone} rad \
+                         (μ(ρ² + l²)/(l²|κ − 1|)); this run came to {} rad",
+                        run.max_theta
+                    ));
+                }
                 answer.boundary =
                     boundary.map(|boundary| Boundary { coefficient: boundary.coefficient, kind: boundary.kind() });
-                if answer.boundary.is_some() && linear.rotation.is_none() {
+                if linear.residue.is_some() && linear.rotation.is_none() {
                     notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
                 }
                 answer.bounces += evidence.bounces();
@@ -231,13 +246,16 @@ impl<'a> Stability<'a> {
             title: &format!("Eigenvalues of a {}", self.model.name.replace('_', " ")),
             verdict: self.verdict.as_deref(),
             reason: &self.reason,
-            linear: self.linear.as_ref().map(|linear| Spectrum {
-                eigenvalues: &values,
-                tilt_gain: linear.tilt_gain.value,
-                lower: linear.tilt_gain.lower,
-                critical: linear.tilt_gain.critical,
-                residue: linear.residue,
-                rotation: linear.rotation,
+            linear: self.linear.as_ref().and_then(|linear| {
+                let tilt_gain = linear.tilt_gain.as_ref()?;
+                Some(Spectrum {
+                    eigenvalues: &values,
+                    tilt_gain: tilt_gain.value,
+                    lower: tilt_gain.lower,
+                    critical: tilt_gain.critical,
+                    residue: linear.residue,
+                    rotation: linear.rotation,
+                })
             }),
         })
     }
@@ -267,6 +285,7 @@ impl<'a> Stability<'a> {
     pub fn to_table(&self) -> Table {
         let linear = self.linear.as_ref();
         let fixed_point = self.fixed_point.as_ref();
+        let tilt_gain = linear.and_then(|it| it.tilt_gain.as_ref());
         let rotation = self.rotation_number.as_ref();
         let word = |name, word| Column { name, unit: "", cells: Cells::Words(vec![word]) };
         let number = |name, unit, value| Column { name, unit, cells: Cells::Sparse(vec![value]) };
@@ -278,9 +297,9 @@ impl<'a> Stability<'a> {
             number("residue", "", linear.and_then(|it| it.residue)),
             number("rotation", "rad", linear.and_then(|it| it.rotation)),
             number("spectral_radius", "", linear.map(|it| it.spectral_radius)),
-            number("tilt_gain", "", linear.map(|it| it.tilt_gain.value)),
-            number("tilt_gain_lower", "", linear.map(|it| it.tilt_gain.lower)),
-            number("tilt_gain_critical", "", linear.map(|it| it.tilt_gain.critical)),
+            number("tilt_gain", "", tilt_gain.map(|it| it.value)),
+            number("tilt_gain_lower", "", tilt_gain.map(|it| it.lower)),
+            number("tilt_gain_critical", "", tilt_gain.map(|it| it.critical)),
             number("energy_gain", "s2_per_m2", linear.map(|it| it.energy_gain.value)),
             number("energy_gain_upper", "s2_per_m2", linear.map(|it| it.energy_gain.upper)),
             number("boundary_coefficient", "", self.boundary.as_ref().map(|it| it.coefficient)),
@@ -290,8 +309,8 @@ impl<'a> Stability<'a> {
             Column { name: "impacts", unit: "", cells: Cells::Counts(vec![self.nonlinear.impacts]) },
             number("t", "s", Some(self.nonlinear.t)),
             number("max_theta", "rad", Some(self.nonlinear.max_theta)),
-            number("tilt_gain_margin_below", "", linear.map(|it| it.tilt_gain.margin_below)),
-            number("tilt_gain_margin_above", "", linear.map(|it| it.tilt_gain.margin_above)),
+            number("tilt_gain_margin_below", "", tilt_gain.map(|it| it.margin_below)),
+            number("tilt_gain_margin_above", "", tilt_gain.map(|it| it.margin_above)),
             number("energy_gain_eigenvalue", "", linear.map(|it| it.energy_gain.eigenvalue)),
             number("energy_gain_margin", "s2_per_m2", linear.map(|it| it.energy_gain.margin)),
             number("fixed_point_y_dot", "m_per_s", fixed_point.map(|it| it.y_dot)),

@@ -1,0 +1,143 @@
+//! Stability with friction: eigenvalues against the derivative, drift and energy against long runs, the stick cone, and a table
+//! that only tilts.
+
+use equipoise_physics::friction::Mode;
+use equipoise_physics::grip::Grip;
+use equipoise_physics::impact::State;
+use equipoise_physics::jacobian::{eigenvalues, jacobian};
+use equipoise_physics::map::{Body, Ending, run};
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::Class;
+use equipoise_physics::verdict::Verdict;
+
+const L: f64 = 0.4 / 3.0;
+const RHO: f64 = 0.094_280_904_158_206_35;
+/// ρ² + l².
+const TURNING: f64 = RHO * RHO + L * L;
+
+fn scene(slide: &'static str, values: &[(Name, f64)]) -> Scene {
+    let mut draft = Draft::default();
+    let plain = [(Name::ContactDistance, L), (Name::RadiusOfGyration, RHO), (Name::Friction, 0.3), (Name::Height, 0.2)];
+    for &(name, number) in plain.iter().chain(values) {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
+    draft.build().unwrap()
+}
+
+#[test]
+fn the_closed_form_has_the_eigenvalues_of_the_derivative() {
+    for slide in ["matched", "none"] {
+        for law in ["poisson", "newton", "stronge"] {
+            for kappa in [-1.0, 0.5, 1.1, 1.8, 2.3, 2.9, 6.0] {
+                for energy_gain in [0.0, 0.2] {
+                    let values = [
+                        (Name::TiltGain, kappa),
+                        (Name::Restitution, 0.6),
+                        (Name::EnergyGain, energy_gain),
+                        (Name::TargetHeight, 0.25),
+                    ];
+                    let mut draft = scene(slide, &values).draft();
+                    draft.set(Name::Law, Some(Value::Choice(law))).unwrap();
+                    let scene = draft.build().unwrap();
+                    let point = scene.fixed_point().unwrap();
+                    let state = State { theta: 0.0, x_dot: 0.0, y_dot: -point.speed, theta_dot: 0.0 };
+                    let linear = scene.linear(&point);
+                    let exact = eigenvalues(&jacobian(&scene.model(), &state, 1).unwrap().matrix).unwrap();
+                    // Each has one near it: their order is not certain where moduli are equal.
+                    for value in &linear.eigenvalues {
+                        let near = exact.iter().map(|other| (other - value).norm()).fold(f64::INFINITY, f64::min);
+                        assert!(near < 1e-6, "{slide} {law} {kappa} {energy_gain}: {exact:?} {linear:?}");
+                    }
+                    let critical = 1.0 + scene.gravity() * TURNING / (point.speed * point.speed * L);
+                    if slide == "matched" {
+                        assert!((linear.critical_tilt_gain - critical).abs() < 1e-12);
+                        assert_eq!(linear.class == Class::Elliptic, kappa > 1.0 && kappa < critical);
+                    } else {
+                        assert!(linear.spectral_radius() > 1.0 && linear.residue.is_none());
+                        let at_one: f64 = linear
+                            .eigenvalues
+                            .iter()
+                            .filter(|value| value.re != linear.energy_eigenvalue)
+                            .map(|value| 1.0 - value.re)
+                            .product();
+                        assert!((at_one - scene.held_polynomial_at_one(point.speed)).abs() < 1e-12 && at_one < 0.0);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_boundary_is_where_runs_begin_to_leave() {
+    // Half-way between bounces: how far a deviation of 1e-7 gets.
+    let reach = |kappa: f64| {
+        let mut orbit = scene("matched", &[(Name::TiltGain, kappa), (Name::Theta, 1e-7)]).orbit().unwrap();
+        let mut largest: f64 = 0.0;
+        run(&mut orbit, 300, |contact| {
+            largest = largest.max(contact.state.theta.abs());
+            true
+        });
+        largest
+    };
+    let still = scene("matched", &[(Name::TiltGain, 2.0)]);
+    let critical = still.linear(&still.fixed_point().unwrap()).critical_tilt_gain;
+    assert!((critical - 2.5).abs() < 1e-12, "{critical}");
+    assert!(reach(critical - 0.01) < 1e-5 && reach(critical + 0.01) > 1e-3);
+    assert!(reach(1.01) < 1e-5 && reach(0.99) > 1e-3);
+}
+
+#[test]
+fn a_matched_run_drifts_as_said_and_takes_back_what_it_lends() {
+    for kappa in [1.2, 1.7, 2.2] {
+        let values = [(Name::TiltGain, kappa), (Name::Theta, 0.01), (Name::ThetaDot, 0.05), (Name::XDot, 0.02)];
+        let scene = scene("matched", &values);
+        let drift = scene.drift_speed().unwrap();
+        let speed = scene.fixed_point().unwrap().speed;
+        let mut orbit = scene.orbit().unwrap();
+        let body = orbit.body;
+        let kept = |state: &State| {
+            let spin = state.theta_dot;
+            body.energy(state) + L * drift * spin + 0.5 * kappa * TURNING * spin * spin / (kappa - 1.0)
+        };
+        let expected = 0.5 * speed * speed + 0.5 * drift * drift + scene.gravity() * L;
+        let (mut off, mut swing, mut last) = (0.0_f64, 0.0_f64, (0.0, 0.0));
+        let ending = run(&mut orbit, 20_000, |contact| {
+            off = off.max((kept(&contact.state) - expected).abs());
+            swing = swing.max((body.energy(&contact.state) - 0.5 * speed * speed - scene.gravity() * L).abs());
+            last = (contact.t, contact.x);
+            true
+        });
+        assert_eq!(ending, Some(Ending::Completed));
+        println!("κ = {kappa}: off by {off:.1e}, energy by {swing:.1e}; drift {} said {drift}", last.1 / last.0);
+        assert!(off < 1e-3 * swing, "{off:e} {swing:e}");
+        assert!((last.1 / last.0 - drift).abs() < 1e-2 * drift.abs().max(0.02), "{} {drift}", last.1 / last.0);
+    }
+}
+
+#[test]
+fn the_stick_cone_is_where_a_matched_contact_begins_to_slide() {
+    for (friction, kappa) in [(0.01, 2.0), (0.02, 0.4), (0.05, 2.4)] {
+        let cone = scene("matched", &[(Name::Friction, friction), (Name::TiltGain, kappa)]).stick_cone().unwrap();
+        assert!((cone - friction * TURNING / (L * L * (kappa - 1.0_f64).abs())).abs() < 1e-15);
+        for (share, mode) in [(0.99, Mode::Stick), (1.01, Mode::SlideThrough)] {
+            let values = [(Name::Friction, friction), (Name::TiltGain, kappa), (Name::Theta, share * cone)];
+            let strike = scene("matched", &values).orbit().unwrap().advance().strike.unwrap();
+            assert_eq!(strike.mode, mode, "{friction} {kappa} {share}");
+        }
+    }
+}
+
+#[test]
+fn a_table_that_only_tilts_falls_and_the_verdict_says_why() {
+    let scene = scene("none", &[(Name::Friction, 0.05), (Name::TiltGain, 1.1), (Name::Theta, 0.05)]);
+    assert_eq!(scene.grip(), Grip::Held);
+    let nonlinear = scene.nonlinear(1000, || true).unwrap();
+    assert!(nonlinear.impacts <= 10, "{nonlinear:?}");
+    let point = scene.fixed_point().unwrap();
+    let judgement = scene.judge(&point, &scene.linear(&point), scene.boundary(&point), &nonlinear, None);
+    assert_eq!(judgement.verdict, Verdict::Unstable);
+    assert!(judgement.agree && judgement.reason.contains("sticks for any friction above 0"), "{}", judgement.reason);
+    assert!(scene.drift_speed().is_none() && scene.boundary(&point).is_none());
+}
