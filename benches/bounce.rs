@@ -65,6 +65,43 @@ fn case_1() -> Scene {
     draft.build().expect("a scene")
 }
 
+/// The scene on each rung of the ladder of models, outcomes checked.
+#[divan::bench(args = ["rod", "rod_with_x", "friction", "noise"])]
+fn rungs(bencher: Bencher, rung: &str) {
+    let mut draft = case_1().draft();
+    let mut set = |name, value| draft.set(name, Some(value)).expect("a value in its range");
+    match rung {
+        "rod_with_x" => {
+            for (name, gain) in [
+                (Name::FeedbackX, 0.1),
+                (Name::FeedbackTheta, -1.2),
+                (Name::FeedbackXDot, 0.1),
+                (Name::FeedbackThetaDot, -0.05),
+            ] {
+                set(name, Value::Number(gain));
+            }
+            let _ = draft.set(Name::TiltGain, None);
+        }
+        "friction" => {
+            set(Name::Friction, Value::Number(0.3));
+            set(Name::Slide, Value::Choice("matched"));
+            set(Name::Theta, Value::Number(0.05));
+        }
+        "noise" => {
+            set(Name::TimingSd, Value::Number(1e-3));
+            set(Name::Theta, Value::Number(0.1));
+        }
+        _ => {}
+    }
+    let scene = draft.build().expect("a scene");
+    bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
+        let mut orbit = black_box(&scene).orbit().ok()?;
+        let ending = run(&mut orbit, BOUNCES, |_| true);
+        assert_eq!(orbit.contacts(), BOUNCES, "a run that ended early would look fast");
+        ending
+    });
+}
+
 /// With 31 digits, outcomes checked, energy held.
 #[divan::bench]
 fn extended(bencher: Bencher) {

@@ -16,4 +16,5 @@ pub(crate) const ROD: Rod = Rod {
 };
 
 /// When its runs end.
-pub(crate) const RULES: Rules = Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true };
+pub(crate) const RULES: Rules =
+    Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None };

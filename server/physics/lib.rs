@@ -25,6 +25,7 @@ pub mod friction;
 pub mod grip;
 pub mod impact;
 pub mod jacobian;
+pub mod ladder;
 mod lanes;
 pub mod linear;
 pub mod map;

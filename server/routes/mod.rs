@@ -9,6 +9,7 @@ pub mod ensembles;
 pub mod failures;
 pub mod health;
 pub mod jacobians;
+pub mod ladder;
 pub mod live;
 pub mod metrics;
 pub mod periodic_orbits;
@@ -82,6 +83,7 @@ pub fn all() -> Router<App> {
         .merge(scenes::routes())
         .merge(trajectories::routes())
         .merge(jacobians::routes())
+        .merge(ladder::routes())
         .merge(live::routes())
         .merge(periodic_orbits::routes())
         .merge(precision::routes())

@@ -8,6 +8,7 @@ mod evidence;
 pub mod failure;
 pub mod fields;
 pub mod jacobian;
+pub mod ladder;
 pub mod periodic_orbits;
 pub mod precision;
 pub mod presets;

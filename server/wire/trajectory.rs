@@ -33,6 +33,13 @@ pub struct ForcedAnswer {
     detail: String,
 }
 
+impl ForcedAnswer {
+    /// The field that asked for it.
+    pub fn field(&self) -> &'static str {
+        self.field
+    }
+}
+
 impl From<Forced> for ForcedAnswer {
     fn from(Forced { rung, path, detail }: Forced) -> Self {
         Self { rung: rung.name(), field: path, detail }

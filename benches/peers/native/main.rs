@@ -20,7 +20,7 @@ const CASE_1: Rod = Rod {
     strike_gain_per_energy: 0.0,
     target_energy: 0.0,
 };
-const RULES: Rules = Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true };
+const RULES: Rules = Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None };
 const RELEASE: Release =
     Release { x: 0.0, height: 0.2, state: State { theta: 0.3, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 } };
 const IMPACTS: usize = 100;

@@ -14,7 +14,7 @@ const CASE_1: Rod = Rod {
     target_energy: 0.0,
 };
 
-const HOLDING: Rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true };
+const HOLDING: Rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None };
 
 fn at_contact_20() -> Orbit<Rod> {
     let state = equipoise_physics::impact::State { theta: 0.05, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };

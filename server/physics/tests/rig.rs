@@ -1,0 +1,149 @@
+//! What a scene may ask beyond the plain rod: feedback, beliefs, limits, and the ladder of models that tells what each was good for.
+
+use equipoise_physics::map::{Ending, run};
+use equipoise_physics::model::Rung;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+fn draft(values: &[(Name, f64)]) -> Draft {
+    let mut draft = Draft::default();
+    let case_1 = [
+        (Name::ContactDistance, 0.4 / 3.0),
+        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
+        (Name::TiltGain, 1.1),
+        (Name::Height, 0.2),
+        (Name::Theta, 0.3),
+    ];
+    for &(name, number) in case_1.iter().chain(values) {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft
+}
+
+fn scene(values: &[(Name, f64)]) -> Scene {
+    draft(values).build().unwrap()
+}
+
+/// The states at the first contacts.
+fn states(scene: &Scene, impacts: u64) -> Vec<[f64; 6]> {
+    let mut states = Vec::new();
+    run(&mut scene.orbit().unwrap(), impacts, |contact| {
+        let state = contact.state;
+        states.push([contact.t, contact.x, state.theta, state.x_dot, state.y_dot, state.theta_dot]);
+        true
+    });
+    states
+}
+
+#[test]
+fn feedback_of_the_angle_alone_is_the_tilt_gain() {
+    let mut draft = draft(&[(Name::FeedbackTheta, -1.1)]);
+    draft.set(Name::TiltGain, None).unwrap();
+    let (by_gain, by_feedback) = (states(&scene(&[]), 50), states(&draft.build().unwrap(), 50));
+    for (one, other) in by_gain.iter().zip(&by_feedback) {
+        for (one, other) in one.iter().zip(other) {
+            assert!((one - other).abs() < 1e-12, "{one} {other}");
+        }
+    }
+}
+
+#[test]
+fn a_wrong_belief_shifts_the_height_that_the_energy_feedback_holds() {
+    let wanted = 0.25;
+    let values = |assumed| {
+        vec![
+            (Name::Restitution, 0.5),
+            (Name::AssumedRestitution, assumed),
+            (Name::EnergyGain, 0.165),
+            (Name::TargetHeight, wanted),
+            (Name::Theta, 0.02),
+        ]
+    };
+    for assumed in [0.5, 0.48, 0.53] {
+        let scene = scene(&values(assumed));
+        let fixed_point = scene.fixed_point().unwrap();
+        let end = states(&scene, 3000).pop().unwrap();
+        // Of second order in the angle, which goes on circling.
+        assert!(
+            (end[4] + fixed_point.speed).abs() < 1e-3 * fixed_point.speed,
+            "ê = {assumed}: {} {}",
+            end[4],
+            fixed_point.speed
+        );
+        assert!((fixed_point.apex_height - wanted - scene.height_error()).abs() < 1e-12);
+        assert_eq!(assumed == 0.5, scene.height_error() == 0.0);
+    }
+    assert!(scene(&values(0.48)).height_error() > 0.0);
+}
+
+#[test]
+fn without_energy_feedback_a_wrong_belief_lets_the_height_drift_away() {
+    let sinks = scene(&[(Name::Restitution, 0.5), (Name::AssumedRestitution, 0.55), (Name::Theta, 0.0)]);
+    assert!(sinks.fixed_point().unwrap_err().contains("loses energy"));
+    let mut orbit = sinks.orbit().unwrap();
+    let ending = run(&mut orbit, 100_000, |_| true).unwrap();
+    assert!(matches!(ending, Ending::Settled { .. }), "{ending:?}");
+    let grows = scene(&[(Name::Restitution, 0.5), (Name::AssumedRestitution, 0.45), (Name::Theta, 0.0)]);
+    assert!(grows.fixed_point().unwrap_err().contains("gains energy"));
+    let speeds: Vec<f64> = states(&grows, 20).iter().map(|state| -state[4]).collect();
+    // Upright: each strike multiplies the speed by γ − 1 with γ = 2(1 + e)/(1 + ê).
+    let factor = 2.0 * 1.5 / 1.45 - 1.0;
+    assert!(speeds.windows(2).all(|pair| (pair[1] / pair[0] - factor).abs() < 1e-12));
+    // Beliefs have no part in a table that stands still.
+    let mut still = draft(&[(Name::Restitution, 0.5), (Name::AssumedRestitution, 0.55)]);
+    still.set(Name::Strike, Some(Value::Choice("still"))).unwrap();
+    assert_eq!(still.build().unwrap_err()[0].path, "table.assumed_restitution");
+}
+
+#[test]
+fn a_strike_beyond_the_limits_ends_the_run() {
+    let free = scene(&[]);
+    let mut tilts = Vec::new();
+    run(&mut free.orbit().unwrap(), 200, |contact| {
+        tilts.push(contact.alpha.abs());
+        true
+    });
+    let largest = tilts.iter().copied().fold(0.0, f64::max);
+    let ending = |limit: f64| {
+        let scene = scene(&[(Name::TiltLimit, limit)]);
+        let mut orbit = scene.orbit().unwrap();
+        (run(&mut orbit, 200, |_| true).unwrap(), orbit.contacts())
+    };
+    assert_eq!(ending(largest), (Ending::Completed, 200));
+    let limit = 0.9 * largest;
+    let (ended, at) = ending(limit);
+    assert_eq!(at as usize, 1 + tilts.iter().position(|&tilt| tilt > limit).unwrap());
+    let Ending::BeyondLimits(excess) = ended else { panic!("{ended:?}") };
+    assert_eq!((excess.quantity, excess.limit, excess.value), ("tilt", limit, tilts[at as usize - 1]));
+}
+
+#[test]
+fn a_ladder_tells_what_was_needed() {
+    let ladder = |scene: Scene| scene.ladder(50, || true).unwrap();
+    let plain = ladder(scene(&[(Name::Theta, 1e-6)]));
+    assert_eq!(plain.iter().map(|step| step.rung).collect::<Vec<_>>(), [Rung::Linear, Rung::Rod]);
+    let change = plain[1].run.as_ref().unwrap().change.unwrap();
+    assert!(change.same_outcome && change.state.value < 1e-9 && change.impacts == 50, "{change:?}");
+
+    let mut draft = draft(&[
+        (Name::FeedbackX, 0.05),
+        (Name::FeedbackTheta, -1.2),
+        (Name::Friction, 0.05),
+        (Name::TimingSd, 1e-3),
+        (Name::Theta, 0.05),
+    ]);
+    draft.set(Name::TiltGain, None).unwrap();
+    let steps = ladder(draft.build().unwrap());
+    let rungs = [Rung::Linear, Rung::Rod, Rung::RodWithX, Rung::Friction, Rung::Noise];
+    assert_eq!(steps.iter().map(|step| step.rung).collect::<Vec<_>>(), rungs);
+    assert!(steps[0].run.is_err(), "no linear solution of a feedback in closed form");
+    let paths: Vec<_> = steps.iter().map(|step| step.forced.as_ref().map(|forced| forced.path)).collect();
+    assert_eq!(paths, [None, None, Some("table.feedback.x"), Some("contact.friction"), Some("noise.timing_sd")]);
+    // Each rung's scene is of that rung, and the last one is the scene itself.
+    assert_eq!(steps[1].scene.rung(), Rung::Rod);
+    for step in &steps[2..] {
+        assert_eq!(step.scene.rung(), step.rung);
+    }
+    // Friction on a table that only tilts makes the rod fall.
+    let friction = steps[3].run.as_ref().unwrap();
+    assert!(!friction.change.unwrap().same_outcome && friction.ending != Ending::Completed, "{friction:?}");
+}

@@ -1,0 +1,42 @@
+//! `ladder`: the same scene on each rung of the ladder of models up to its own.
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::State;
+use axum::http::Response;
+use axum::routing::get;
+
+use super::App;
+use crate::compute::{Cancel, Cancelled, Price};
+use crate::http::{Ask, Format, Problem, Resource};
+use crate::limits;
+use crate::wire::ladder::{Ladder, Request};
+use crate::wire::scene;
+
+const RESOURCE: Resource = Resource { name: "ladder", formats: &[Format::Json, Format::Csv, Format::Ndjson] };
+
+/// Its path.
+pub fn routes() -> Router<App> {
+    Router::new().route("/v1/ladder", get(ladder).post(ladder))
+}
+
+async fn ladder(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+    let (scene, request) = ask.read(|reader| {
+        let scene = scene::read(reader);
+        let request = Request::read(reader);
+        Some((scene?, request))
+    })?;
+    let price = Price::bounces(request.price()).within(&limits::WORK)?;
+    let canonical = super::canonical(&scene, &request);
+    let metrics = app.metrics.clone();
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
+        let ladder = Ladder::compute(&scene, &request, || !cancel.is_set()).ok_or(Cancelled)?;
+        metrics.bounces.inc_by(ladder.bounces());
+        match format {
+            Format::Csv => Ok(ladder.to_table().to_csv()),
+            Format::Ndjson => Ok(ladder.to_table().to_ndjson(&ladder.end())),
+            _ => super::json(&ladder),
+        }
+    })
+    .await
+}

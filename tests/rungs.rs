@@ -1,0 +1,101 @@
+//! No more model than a scene needs: rungs, demands, limits and noise, as a client sees them.
+
+mod support;
+
+use serde_json::{Value, json};
+use support::Server;
+
+#[tokio::test]
+async fn a_ladder_says_what_was_needed() {
+    let server = Server::start();
+    let ask = async |query: &str| server.get(&format!("/v1/ladder?{query}")).await.expect(200).json();
+    let small = ask("preset=case-1&scene.release.theta=0.0001").await;
+    assert_eq!((&small["rung"], &small["enough"]), (&json!("rod"), &json!("linear")));
+    let wide = ask("preset=case-1").await;
+    assert_eq!((&wide["rung"], &wide["enough"]), (&json!("rod"), &json!("rod")));
+    let rough = ask("preset=case-1&scene.contact.friction=0.05&scene.release.theta=0.05").await;
+    assert_eq!((&rough["rung"], &rough["enough"]), (&json!("friction"), &json!("friction")));
+    let step = rough["rungs"].as_array().unwrap().last().unwrap().clone();
+    assert_eq!(
+        (&step["forced"]["field"], &step["change"]["same_outcome"]),
+        (&json!("contact.friction"), &json!(false))
+    );
+    // Friction that the table matches changes the law only in scale, yet it changes it.
+    let noisy = ask("preset=case-1&scene.noise.timing_sd=1e-9&tolerance=0.01").await;
+    assert_eq!((&noisy["rung"], &noisy["enough"]), (&json!("noise"), &json!("rod")));
+    // Every scene of a rung can be asked for as it stands.
+    for step in rough["rungs"].as_array().unwrap() {
+        let run =
+            server.post("/v1/trajectories", &json!({"scene": step["scene"], "impacts": 100})).await.expect(200).json();
+        if step["name"] != "linear" {
+            assert_eq!(run["outcome"], step["outcome"]);
+        }
+    }
+    let point = ask("preset=point-mass").await;
+    assert_eq!(point["rungs"].as_array().unwrap().len(), 1);
+}
+
+#[tokio::test]
+async fn a_run_says_what_it_asked_of_the_table() {
+    let server = Server::start();
+    let run = server.get("/v1/trajectories?preset=case-4&impacts=60").await.expect(200).json();
+    let column =
+        |name: &str| run["impacts"][name].as_array().unwrap().iter().filter_map(Value::as_f64).collect::<Vec<_>>();
+    let largest = |values: Vec<f64>| values.into_iter().map(f64::abs).fold(0.0, f64::max);
+    assert_eq!(run["demand"]["tilt"], json!(largest(column("alpha"))));
+    let speeds = column("table_velocity_x").iter().zip(column("table_velocity_y")).map(|(x, y)| x.hypot(y)).collect();
+    let speed = run["demand"]["speed"].as_f64().unwrap();
+    assert!((speed - largest(speeds)).abs() < 1e-12);
+    let (alpha, t) = (column("alpha"), column("t"));
+    let rates = (1..60).map(|n| (alpha[n] - alpha[n - 1]) / (t[n] - t[n - 1])).collect();
+    assert!((run["demand"]["tilt_rate"].as_f64().unwrap() - largest(rates)).abs() < 1e-9);
+    let stroke = run["demand"]["stroke"].as_f64().unwrap();
+    assert!(stroke > 0.0 && stroke < speed * 1.0, "{stroke}");
+
+    let limited = format!("/v1/trajectories?preset=case-4&impacts=60&scene.table.limits.stroke={}", 0.99 * stroke);
+    let ended = server.get(&limited).await.expect(200).json();
+    assert_eq!((&ended["outcome"]["kind"], &ended["outcome"]["quantity"]), (&json!("beyond_limits"), &json!("stroke")));
+    assert_eq!(ended["outcome"]["unit"], "m");
+    let within = limited.replace(&(0.99 * stroke).to_string(), &(1.01 * stroke).to_string());
+    assert_eq!(server.get(&within).await.json()["outcome"]["kind"], "completed");
+    let refused = server.get(&format!("{limited}&method=linear")).await.expect(422);
+    assert!(refused.text().contains("limits"), "{}", refused.text());
+}
+
+#[tokio::test]
+async fn noise_depends_on_its_seed_and_is_off_at_zero() {
+    let server = Server::start();
+    let run = async |query: &str| {
+        server.get(&format!("/v1/trajectories?preset=case-1&impacts=40&{query}")).await.expect(200).json()
+    };
+    let (first, again) = (
+        run("scene.noise.timing_sd=0.003&scene.noise.seed=7").await,
+        run("scene.noise.seed=7&scene.noise.timing_sd=0.003").await,
+    );
+    assert_eq!(first, again);
+    assert_eq!(first["model"]["name"], "noise");
+    let other = run("scene.noise.timing_sd=0.003&scene.noise.seed=8").await;
+    assert_ne!(first["impacts"]["theta"], other["impacts"]["theta"]);
+    let off = run("scene.noise.timing_sd=0&scene.noise.seed=7").await;
+    let plain = run("").await;
+    assert_eq!((&off["impacts"], &off["model"]["name"]), (&plain["impacts"], &json!("rod")));
+    // The strike is where the contact point then is.
+    let cells = |name: &str| first["impacts"][name].as_array().unwrap().clone();
+    assert!(cells("clearance").iter().all(|cell| cell.as_f64().unwrap() != 0.0));
+    let sensed = run("scene.noise.angle_sd=0.01&scene.noise.model=plan").await;
+    let (alpha, theta) = (&sensed["impacts"]["alpha"][0], &sensed["impacts"]["theta"][0]);
+    let error = alpha.as_f64().unwrap() / 1.1 - theta.as_f64().unwrap();
+    assert!(error != 0.0 && error.abs() < 0.06, "{error}");
+}
+
+#[tokio::test]
+async fn two_ways_of_tilting_are_an_error_that_says_how_to_mend_it() {
+    let server = Server::start();
+    let both = json!({"preset": "case-1", "scene": {"table": {"feedback": {"theta": -1.1}}}});
+    let answer = server.post("/v1/trajectories", &both).await.expect(422);
+    assert_eq!(answer.pointers(), ["/scene/table/tilt_gain"]);
+    assert!(answer.text().contains("null takes"), "{}", answer.text());
+    let one = json!({"preset": "case-1", "scene": {"table": {"feedback": {"theta": -1.1}, "tilt_gain": null}}});
+    let run = server.post("/v1/trajectories", &one).await.expect(200).json();
+    assert_eq!(run["scene"]["table"]["feedback"], json!({"x": 0.0, "theta": -1.1, "x_dot": 0.0, "theta_dot": 0.0}));
+}
