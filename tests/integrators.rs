@@ -4,7 +4,8 @@ use equipoise::integrators::{Impact, Location, Method, Simulation, Work, simulat
 use equipoise_physics::impact::{Rod, State};
 use equipoise_physics::map::{Contact, Orbit, Release, Rules, run};
 
-const RULES: Rules = Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true };
+const RULES: Rules =
+    Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None };
 
 /// A rod of the paper's length and its release at rest in x and y.
 #[derive(Clone, Copy, Debug)]

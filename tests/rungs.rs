@@ -99,3 +99,28 @@ async fn two_ways_of_tilting_are_an_error_that_says_how_to_mend_it() {
     let run = server.post("/v1/trajectories", &one).await.expect(200).json();
     assert_eq!(run["scene"]["table"]["feedback"], json!({"x": 0.0, "theta": -1.1, "x_dot": 0.0, "theta_dot": 0.0}));
 }
+
+#[tokio::test]
+async fn margins_hold_for_every_body_within_the_tolerances() {
+    let server = Server::start();
+    let ask = async |query: &str| server.get(&format!("/v1/stability?impacts=50&{query}")).await.expect(200).json();
+    let tolerances = "tolerances.contact_distance=0.01&tolerances.radius_of_gyration=0.004";
+    let margins = ask(&format!("preset=case-1&{tolerances}")).await["margins"].clone();
+    assert_eq!(margins["holds"], true);
+    let (least, worst) = (margins["tilt_gain"]["critical"]["least"].as_f64().unwrap(), &margins["tilt_gain"]["worst"]);
+    let (l, rho) = (&worst["contact_distance"], &worst["radius_of_gyration"]);
+    let there =
+        ask(&format!("preset=case-1&scene.body.contact_distance={l}&scene.body.radius_of_gyration={rho}")).await;
+    assert_eq!(there["linear"]["tilt_gain"]["critical"], json!(least));
+    assert!(there.get("margins").is_none());
+    // A lossy contact whose restitution is not known needs energy feedback.
+    let open = ask("preset=case-1&scene.contact.restitution=0.5&tolerances.restitution=0.01").await["margins"].clone();
+    assert!(open["holds"].is_null() && open["reason"].as_str().unwrap().contains("no bounce repeats"), "{open}");
+    let held = ask("preset=case-4&tolerances.restitution=0.01").await["margins"].clone();
+    assert_eq!(held["holds"], true);
+    assert!(
+        held["apex_height"]["least"].as_f64().unwrap() < 0.25 && held["apex_height"]["most"].as_f64().unwrap() > 0.25
+    );
+    let refused = server.get("/v1/stability?preset=case-1&tolerances.restitution=-1").await.expect(422);
+    assert_eq!(refused.pointers(), ["/tolerances/restitution"]);
+}

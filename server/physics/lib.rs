@@ -29,6 +29,7 @@ pub mod ladder;
 mod lanes;
 pub mod linear;
 pub mod map;
+pub mod margins;
 pub mod method;
 pub mod model;
 pub mod noise;

@@ -11,7 +11,7 @@ use crate::compute::{Cancel, Cancelled, Price};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::limits;
 use crate::wire::scene;
-use crate::wire::stability::Stability;
+use crate::wire::stability::{Request, Stability};
 
 const RESOURCE: Resource =
     Resource { name: "stability", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png] };
@@ -22,17 +22,16 @@ pub fn routes() -> Router<App> {
 }
 
 async fn stability(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
-    let (scene, impacts, basin) = ask.read(|reader| {
+    let (scene, request) = ask.read(|reader| {
         let scene = scene::read(reader);
-        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(2000);
-        let basin = reader.boolean("basin").unwrap_or(false);
-        Some((scene?, impacts, basin))
+        let request = Request::read(reader);
+        Some((scene?, request))
     })?;
-    let price = Price::bounces(Stability::price(impacts, basin)).within(&limits::WORK)?;
-    let canonical = super::canonical(&scene, &(impacts, basin));
+    let price = Price::bounces(Stability::price(&request)).within(&limits::WORK)?;
+    let canonical = super::canonical(&scene, &request.canonical());
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
-        let stability = Stability::compute(&scene, impacts, basin, || !cancel.is_set()).ok_or(Cancelled)?;
+        let stability = Stability::compute(&scene, &request, || !cancel.is_set()).ok_or(Cancelled)?;
         metrics.bounces.inc_by(stability.bounces());
         match format {
             Format::Csv => Ok(stability.to_table().to_csv()),

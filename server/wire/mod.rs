@@ -9,6 +9,7 @@ pub mod failure;
 pub mod fields;
 pub mod jacobian;
 pub mod ladder;
+pub mod margins;
 pub mod periodic_orbits;
 pub mod precision;
 pub mod presets;

@@ -2,6 +2,7 @@
 
 use equipoise_physics::basin::{self, NoBasin};
 use equipoise_physics::grip::Grip;
+use equipoise_physics::margins::Tolerances;
 use equipoise_physics::regularity::WATCHED;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::{Linear, Nonlinear};
@@ -10,9 +11,12 @@ use serde::Serialize;
 
 use super::evidence::{Basin, Chaos, Evidence, RotationNumber};
 use super::jacobian::Eigenvalue;
+use super::margins::{self, Margins};
 use super::scene::{Resolved, has_angle};
 use super::table::{Cells, Column, Table};
 use super::trajectory::{Choice, Outcome};
+use crate::http::Reader;
+use crate::limits;
 use crate::picture::{Eigenvalues, Spectrum, eigenvalues};
 
 #[derive(Debug, Clone, Serialize)]
@@ -86,9 +90,40 @@ pub struct Stability<'a> {
     chaos: Option<Chaos>,
     predictable_impacts: Option<u64>,
     basin: Option<Basin>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    margins: Option<Margins>,
     notes: Vec<String>,
     #[serde(skip)]
     bounces: u64,
+}
+
+/// What is asked for beside the scene.
+#[derive(Debug, Clone, Copy)]
+pub struct Request {
+    /// How many contacts to watch the run for.
+    pub impacts: u64,
+    /// Whether to look for the basin.
+    pub basin: bool,
+    /// How far the body may be off, to know the margins.
+    pub tolerances: Option<Tolerances>,
+}
+
+/// Work of the margins, in bounces: some ten thousand linear verdicts.
+const MARGINS_PRICE: u64 = 200_000;
+
+impl Request {
+    /// Reads everything but the scene.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Self {
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(2000);
+        let basin = reader.boolean("basin").unwrap_or(false);
+        Self { impacts, basin, tolerances: margins::read(reader) }
+    }
+
+    /// Everything that determines the answer beside the scene.
+    pub fn canonical(&self) -> impl Serialize {
+        let off = self.tolerances.map(|off| (off.contact_distance, off.radius_of_gyration, off.restitution));
+        (self.impacts, self.basin, off)
+    }
 }
 
 /// The verdict in words; what a run showed stands in it with its length.
@@ -131,7 +166,8 @@ impl LinearPart {
 impl<'a> Stability<'a> {
     /// Judges a scene by its linear verdict and a run of up to `impacts` contacts, and looks for its basin if asked to;
     /// `go_on` is asked now and then, and a `false` gives none.
-    pub fn compute(scene: &'a Scene, impacts: u64, basin: bool, mut go_on: impl FnMut() -> bool) -> Option<Self> {
+    pub fn compute(scene: &'a Scene, request: &Request, mut go_on: impl FnMut() -> bool) -> Option<Self> {
+        let Request { impacts, basin, tolerances } = *request;
         let run = scene.nonlinear(impacts, &mut go_on)?;
         let mut notes = Vec::new();
         let mut answer = Self {
@@ -156,6 +192,9 @@ impl<'a> Stability<'a> {
             chaos: None,
             predictable_impacts: None,
             basin: None,
+            margins: tolerances.map(|tolerances| {
+                Margins::compute(scene, &tolerances, scene.number(Name::TiltGain).unwrap_or_default())
+            }),
             notes: Vec::new(),
             bounces: run.impacts,
         };
@@ -267,8 +306,10 @@ impl<'a> Stability<'a> {
 
     /// What it costs at most, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs go
     /// in lanes for a quarter of that each.
-    pub fn price(impacts: u64, basin: bool) -> u64 {
-        impacts + 4 * impacts.min(WATCHED) + if basin { basin::RUNS * impacts / 4 } else { 0 }
+    pub fn price(request: &Request) -> u64 {
+        let Request { impacts, basin, tolerances } = *request;
+        let basin = if basin { basin::RUNS * impacts / 4 } else { 0 };
+        impacts + 4 * impacts.min(WATCHED) + basin + if tolerances.is_some() { MARGINS_PRICE } else { 0 }
     }
 
     /// What ends it as NDJSON: the reason and the notes, which are no scalars.

@@ -1,0 +1,164 @@
+//! How far a scene is from the edge of stability when its body is not quite what it is said to be: the linear verdict over a box
+//! of contact distances, radii of gyration and restitutions.
+//!
+//! The table keeps to what it was told: its gains, and the restitution that it believes in.
+
+use crate::scene::{Name, Scene, Value};
+
+/// How far off each may be, either way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tolerances {
+    /// Of l, m.
+    pub contact_distance: f64,
+    /// Of ρ, m.
+    pub radius_of_gyration: f64,
+    /// Of e; what would be below 0 or above 1 is left out.
+    pub restitution: f64,
+}
+
+/// A body in the box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// l, m.
+    pub contact_distance: f64,
+    /// ρ, m.
+    pub radius_of_gyration: f64,
+    /// e.
+    pub restitution: f64,
+}
+
+/// The least and the most of a quantity over the box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// The least.
+    pub least: f64,
+    /// The most.
+    pub most: f64,
+}
+
+/// What holds over the whole box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margins {
+    /// κ_c.
+    pub critical_tilt_gain: Span,
+    /// Where κ_c is least.
+    pub worst: Sample,
+    /// Height of the centre of gravity at the top of the bounce in place, m.
+    pub apex_height: Span,
+    /// Eigenvalue of the energy.
+    pub energy_eigenvalue: Span,
+    /// Whether the linear verdict is stable for every body in the box.
+    pub holds: bool,
+}
+
+/// Points along each side of the box to begin with, and then of ever smaller boxes about the best of them.
+const POINTS: usize = 9;
+const ROUNDS: usize = 24;
+
+impl Scene {
+    /// The linear verdict over a box of bodies.
+    ///
+    /// # Errors
+    /// Why there is none for one of them, in a sentence.
+    pub fn margins(&self, tolerances: &Tolerances) -> Result<Margins, String> {
+        let number = |name| self.number(name).unwrap_or(f64::NAN);
+        let middle = [Name::ContactDistance, Name::RadiusOfGyration, Name::Restitution].map(number);
+        if middle.iter().any(|value| value.is_nan()) {
+            return Err("only a rod has lengths to be off".to_owned());
+        }
+        let off = [tolerances.contact_distance, tolerances.radius_of_gyration, tolerances.restitution];
+        let (mut low, mut high) = (middle, middle);
+        for side in 0..3 {
+            low[side] -= off[side];
+            high[side] += off[side];
+        }
+        (low[2], high[2]) = (low[2].max(0.0), high[2].min(1.0));
+        let lower = self.linear(&self.fixed_point()?).lower_tilt_gain;
+        let extreme = |of: fn(&Looked) -> f64| search(low, high, |at| Ok(of(&self.look(at)?)));
+        let (critical, worst) = extreme(|looked| looked.critical)?;
+        let (most, _) = extreme(|looked| -looked.critical)?;
+        let span = |of: fn(&Looked) -> f64, negative: fn(&Looked) -> f64| {
+            Ok::<_, String>(Span { least: extreme(of)?.0, most: -extreme(negative)?.0 })
+        };
+        let energy_eigenvalue = span(|looked| looked.energy, |looked| -looked.energy)?;
+        let kappa = self.tilt_gain;
+        Ok(Margins {
+            critical_tilt_gain: Span { least: critical, most: -most },
+            worst: Sample { contact_distance: worst[0], radius_of_gyration: worst[1], restitution: worst[2] },
+            apex_height: span(|looked| looked.apex, |looked| -looked.apex)?,
+            energy_eigenvalue,
+            holds: kappa > lower && kappa < critical && energy_eigenvalue.least > -1.0 && energy_eigenvalue.most <= 1.0,
+        })
+    }
+
+    fn look(&self, [contact_distance, radius_of_gyration, restitution]: [f64; 3]) -> Result<Looked, String> {
+        let mut draft = self.draft();
+        let told = self.assumed_restitution();
+        let mut values = vec![
+            (Name::ContactDistance, contact_distance),
+            (Name::RadiusOfGyration, radius_of_gyration),
+            (Name::Restitution, restitution),
+        ];
+        if restitution != told && !self.is_lossy() {
+            values.push((Name::AssumedRestitution, told));
+        }
+        for (name, value) in values {
+            draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail)?;
+        }
+        let scene =
+            draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))?;
+        let of = |why: String| {
+            format!(
+                "at contact_distance {contact_distance} m, radius_of_gyration {radius_of_gyration} m and restitution {restitution}: {why}"
+            )
+        };
+        let fixed_point = scene.fixed_point().map_err(of)?;
+        let linear = scene.linear(&fixed_point);
+        Ok(Looked {
+            critical: linear.critical_tilt_gain,
+            apex: fixed_point.apex_height,
+            energy: linear.energy_eigenvalue,
+        })
+    }
+}
+
+struct Looked {
+    critical: f64,
+    apex: f64,
+    energy: f64,
+}
+
+/// The least value of a smooth function over a box, and where: the best point of a grid, then of smaller ones about it.
+fn search(
+    low: [f64; 3],
+    high: [f64; 3],
+    value: impl Fn([f64; 3]) -> Result<f64, String>,
+) -> Result<(f64, [f64; 3]), String> {
+    let (mut from, mut to) = (low, high);
+    let mut best = (f64::INFINITY, low);
+    for round in 0..ROUNDS {
+        let points = if round == 0 { POINTS } else { 3 };
+        let places = |side: usize| {
+            let (from, to) = (from[side], to[side]);
+            let count = if from == to { 1 } else { points };
+            (0..count)
+                .map(move |k| if k + 1 == count { to } else { from + (to - from) * k as f64 / (count - 1) as f64 })
+        };
+        for l in places(0) {
+            for rho in places(1) {
+                for e in places(2) {
+                    let found = value([l, rho, e])?;
+                    if found < best.0 {
+                        best = (found, [l, rho, e]);
+                    }
+                }
+            }
+        }
+        let shrink = if round == 0 { 1.0 / (POINTS - 1) as f64 } else { 0.25 };
+        for side in 0..3 {
+            let reach = (to[side] - from[side]) * shrink;
+            (from[side], to[side]) = ((best.1[side] - reach).max(low[side]), (best.1[side] + reach).min(high[side]));
+        }
+    }
+    Ok(best)
+}
