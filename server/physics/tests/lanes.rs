@@ -24,7 +24,7 @@ prop_compose! {
                 strike_gain_per_energy: (1.0 + restitution) * energy_gain,
                 target_energy: 9.81 * length * above,
             },
-            rules: Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true },
+            rules: Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None },
             state: State { theta: theta * scale, x_dot: x_dot * scale, y_dot, theta_dot: theta_dot * scale },
         }
     }
@@ -72,7 +72,7 @@ fn every_kind_of_instructions_gives_the_same_bits() {
                 strike_gain_per_energy: 0.0,
                 target_energy: 0.0,
             };
-            let rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true };
+            let rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None };
             let state = State { theta: row * 0.0175, x_dot: 0.0, y_dot: -1.15, theta_dot: 0.0 };
             Start { rod, rules, state }
         })
@@ -104,7 +104,7 @@ fn every_outcome_of_a_lane_occurs_and_a_sweep_can_be_stopped() {
         strike_gain_per_energy: 0.0,
         target_energy: 0.0,
     };
-    let rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true };
+    let rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None };
     let state = |theta, y_dot, theta_dot| State { theta, x_dot: 0.0, y_dot, theta_dot };
     let start = |rod, state| Start { rod, rules, state };
     let wild = Rod { strike_gain_per_energy: 1e8, target_energy: 1e8, ..rod };
