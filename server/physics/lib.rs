@@ -3,7 +3,8 @@
 //! It starts from Zumel and Erdmann, "Balancing of a Planar Bouncing Object"; "eq. (n)" in these pages is an equation
 //! of that paper. Not here: requests, JSON, clocks and threads; those live in the server.
 //!
-//! Where to look: [`scene`] is what a user may say; [`model`] chooses the smallest model that is exact for it;
+//! Where to look: [`scene`] is what a user may say; [`model`] chooses the smallest model that is exact for it; [`polygon`] is
+//! a body given by its vertices;
 //! [`impact`] (or [`friction`]), [`flight`] and [`contact_time`] are the three parts of one bounce; [`map`] puts them together and ends
 //! a run; [`jacobian`] differentiates it, [`stability`] and [`regularity`] look at it from near and far, [`basin`] asks how far
 //! aside it may start, and [`verdict`] concludes. [`periodic_orbits`] finds what comes back; [`sweep`] runs many at once, for
@@ -37,6 +38,7 @@ pub mod number;
 pub mod outcome;
 pub mod periodic_orbits;
 pub mod point;
+pub mod polygon;
 pub mod region;
 pub mod regularity;
 pub mod rig;

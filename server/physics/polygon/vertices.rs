@@ -1,0 +1,161 @@
+//! The vertices of a polygon: whether they are one, and what an even sheet of that shape weighs where.
+
+use super::{FARTHEST, MAX_VERTICES, PolygonError};
+
+/// Least area as a share of the diagonal squared. The centre of gravity of a thinner polygon has too few digits.
+const THINNEST: f64 = 1e-9;
+
+/// The vertices of a polygon as they were given, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertices {
+    pub(super) places: [[f64; 2]; MAX_VERTICES],
+    pub(super) count: usize,
+}
+
+impl Vertices {
+    /// Vertices in counter-clockwise order, m, wherever the polygon may lie.
+    ///
+    /// # Errors
+    /// Where there are too few or too many of them, or one lies too far out. Whether they are a polygon is found with
+    /// its contact vertex ([`Outline::new`]).
+    pub fn new(places: &[[f64; 2]]) -> Result<Self, PolygonError> {
+        let count = places.len();
+        if count < 3 {
+            return Err(PolygonError::TooFew(count));
+        }
+        if count > MAX_VERTICES {
+            return Err(PolygonError::TooMany(count));
+        }
+        for (vertex, place) in places.iter().enumerate() {
+            if let Some(&coordinate) = place.iter().find(|it| !(-FARTHEST..=FARTHEST).contains(*it)) {
+                return Err(PolygonError::TooFar { vertex, coordinate });
+            }
+        }
+        let mut vertices = Self { places: [[0.0; 2]; MAX_VERTICES], count };
+        vertices.places[..count].copy_from_slice(places);
+        Ok(vertices)
+    }
+
+    /// Each as x and y.
+    pub fn places(&self) -> &[[f64; 2]] {
+        &self.places[..self.count]
+    }
+
+    /// The lowest, which is the contact unless another is said.
+    ///
+    /// # Errors
+    /// [`PolygonError::NoLowest`] where there are two.
+    pub fn lowest(&self) -> Result<usize, PolygonError> {
+        let height = |vertex: usize| self.places[vertex][1];
+        let lowest = (1..self.count).fold(0, |best, it| if height(it) < height(best) { it } else { best });
+        match (lowest + 1..self.count).find(|&it| height(it) == height(lowest)) {
+            Some(other) => Err(PolygonError::NoLowest(lowest, other)),
+            None => Ok(lowest),
+        }
+    }
+
+    /// Each edge: its number and its two ends.
+    fn edges(&self) -> impl Iterator<Item = (usize, [f64; 2], [f64; 2])> {
+        let places = self.places();
+        (0..self.count).map(move |edge| (edge, places[edge], places[(edge + 1) % places.len()]))
+    }
+
+    /// Whether they are a polygon whose outline does not meet itself, in counter-clockwise order.
+    pub(super) fn check(&self) -> Result<(), PolygonError> {
+        let places = self.places();
+        for (b, place) in places.iter().enumerate() {
+            if let Some(a) = places[..b].iter().position(|it| it == place) {
+                return Err(PolygonError::Repeated(a, b));
+            }
+        }
+        let origin = places[0];
+        let least = THINNEST * spread_squared(places);
+        let double_areas = || self.edges().map(|(_, a, b)| cross(minus(a, origin), minus(b, origin)));
+        let on_a_line = 0.5 * double_areas().map(f64::abs).sum::<f64>();
+        if on_a_line < least {
+            return Err(PolygonError::Flat { area: on_a_line, least });
+        }
+        for (i, a, b) in self.edges() {
+            for (j, c, d) in self.edges().skip(i + 1) {
+                let meet = if j == i + 1 {
+                    runs_back(a, b, d)
+                } else if (j + 1) % self.count == i {
+                    runs_back(c, a, b)
+                } else {
+                    cross_or_touch(a, b, c, d)
+                };
+                if meet {
+                    return Err(PolygonError::Crossing(i, j));
+                }
+            }
+        }
+        let area = 0.5 * double_areas().sum::<f64>();
+        if area.abs() < least {
+            return Err(PolygonError::Flat { area: area.abs(), least });
+        }
+        if area < 0.0 { Err(PolygonError::Clockwise) } else { Ok(()) }
+    }
+
+    /// The centre of gravity of an even sheet, and ρ about it, m.
+    ///
+    /// Both are sums over the triangles between the edges and a point; that is a vertex and then the centre itself, so
+    /// that neither depends on where the polygon lies.
+    pub(super) fn centre_and_radius(&self) -> ([f64; 2], f64) {
+        let origin = self.places[0];
+        let (mut double_area, mut moment) = (0.0, [0.0; 2]);
+        for (_, a, b) in self.edges() {
+            let (a, b) = (minus(a, origin), minus(b, origin));
+            let part = cross(a, b);
+            double_area += part;
+            moment = [moment[0] + part * (a[0] + b[0]), moment[1] + part * (a[1] + b[1])];
+        }
+        let centre = moment.map(|it| it / (3.0 * double_area));
+        let centre = [origin[0] + centre[0], origin[1] + centre[1]];
+        let mut inertia = 0.0;
+        for (_, a, b) in self.edges() {
+            let (a, b) = (minus(a, centre), minus(b, centre));
+            inertia += cross(a, b) * (dot(a, a) + dot(a, b) + dot(b, b));
+        }
+        (centre, (inertia / (6.0 * double_area)).sqrt())
+    }
+}
+
+pub(super) fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+pub(super) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// The diagonal of the upright rectangle about them, squared.
+fn spread_squared(places: &[[f64; 2]]) -> f64 {
+    let spread = |axis: usize| {
+        let all = || places.iter().map(|it| it[axis]);
+        all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
+    };
+    spread(0) * spread(0) + spread(1) * spread(1)
+}
+
+/// On which side of the line through a and b the point c lies; 0 where rounding does not tell, as on it.
+fn side(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    let (along, to) = (minus(b, a), minus(c, a));
+    let (one, other) = (along[0] * to[1], along[1] * to[0]);
+    let value = one - other;
+    if value.abs() <= 4.0 * f64::EPSILON * (one.abs() + other.abs()) { 0.0 } else { value.signum() }
+}
+
+fn cross_or_touch(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
+    let apart =
+        |axis: usize| a[axis].max(b[axis]) < c[axis].min(d[axis]) || c[axis].max(d[axis]) < a[axis].min(b[axis]);
+    side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0 && !apart(0) && !apart(1)
+}
+
+/// Whether the edge from b to c lies on that from a to b.
+fn runs_back(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> bool {
+    side(a, b, c) == 0.0 && dot(minus(b, a), minus(c, b)) < 0.0
+}
