@@ -35,7 +35,7 @@ impl Course {
         let (orbit, outcome) = match scene.orbit() {
             Ok(orbit) => (orbit, None),
             Err(none) => {
-                let nowhere = Orbit::at(scene.model(), scene.rules(), *scene.start());
+                let nowhere = Orbit::at(scene.running_model(), scene.rules(), *scene.start());
                 (nowhere, Some(Arc::new(Outcome::new(none.ending(0.0, 0.0), 0, 0.0))))
             }
         };
@@ -100,7 +100,7 @@ impl Course {
             let _ = draft.set(name, Some(value));
         }
         if let Ok(scene) = draft.build() {
-            self.orbit.replace(scene.model(), scene.rules());
+            self.orbit.replace(scene.running_model(), scene.rules());
             self.scene = Arc::new(scene);
         }
     }

@@ -60,6 +60,11 @@ impl Scene {
         if let Some(error) = self.roughness() {
             return Err(because(error.detail));
         }
+        if self.outline().is_some() {
+            return Err(because(
+                "it is looked for in lanes of rods, which do not see the vertices of a polygon".to_owned(),
+            ));
+        }
         let Model::Rod(rod) = self.model() else {
             return Err(because("a point mass has no angle to be released at".to_owned()));
         };

@@ -182,6 +182,9 @@ impl Scene {
             if self.limits.is_some() {
                 return Err("the limits of the table are looked at by the map alone".to_owned());
             }
+            if self.outline.is_some() {
+                return Err("the vertices of a polygon are looked at by the map alone".to_owned());
+            }
         }
         match method {
             Method::Linear => {

@@ -6,8 +6,9 @@ use crate::map::{Arrival, Body, Coming, NoContact, Orbit, Release, Rules, Touch}
 use crate::noise::Noise;
 use crate::number::Number;
 use crate::point::Point;
+use crate::polygon::Outline;
 use crate::rig::{Rig, Steering};
-use crate::scene::{BodyShape, FieldError, Name, Scene, Striking};
+use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
 
 /// The rungs of the ladder of models, from the least.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,6 +25,8 @@ pub enum Rung {
     Friction,
     /// On a table that errs in time or in the angle that it senses.
     Noise,
+    /// With the vertices of a polygon, any of which may touch the table.
+    Polygon,
 }
 
 impl Rung {
@@ -36,6 +39,7 @@ impl Rung {
             Self::RodWithX => "rod_with_x",
             Self::Friction => "friction",
             Self::Noise => "noise",
+            Self::Polygon => "polygon",
         }
     }
 
@@ -49,6 +53,7 @@ impl Rung {
             Self::RodWithX => 75.0,
             Self::Friction => 100.0,
             Self::Noise => 160.0,
+            Self::Polygon => 110.0,
         }
     }
 }
@@ -87,22 +92,29 @@ impl Model {
 }
 
 impl Scene {
-    /// The smallest model that is exact for this scene.
+    /// The smallest model that is exact for the bounces of this scene.
+    ///
+    /// The outline of a polygon is not in it: it ends runs and changes no bounce, so that what is derived for one holds.
     pub fn model(&self) -> Model {
-        self.model_of(self.noise)
+        self.model_of(self.noise, None)
     }
 
-    fn model_of(&self, noise: Option<Noise>) -> Model {
+    /// The smallest model that is exact for the runs of this scene, and for where they end.
+    pub fn running_model(&self) -> Model {
+        self.model_of(self.noise, self.outline)
+    }
+
+    fn model_of(&self, noise: Option<Noise>, outline: Option<Outline>) -> Model {
         let rod = self.parameters();
         if self.body == BodyShape::Point {
             return Model::Point(Point::new(rod));
         }
         let friction =
             self.is_rough().then_some(Friction { coefficient: self.friction, law: self.law, slide: self.slide });
-        if friction.is_none() && self.steering == Steering::TiltGain && noise.is_none() {
+        if friction.is_none() && self.steering == Steering::TiltGain && noise.is_none() && outline.is_none() {
             return Model::Rod(rod);
         }
-        Model::Rig(Rig { rod, steering: self.steering, friction, noise })
+        Model::Rig(Rig { rod, steering: self.steering, friction, noise, outline })
     }
 
     /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
@@ -176,7 +188,8 @@ impl Scene {
 
     /// The same for what is derived for some rungs above it as well.
     pub fn beyond(&self, known: &[Rung]) -> Option<FieldError> {
-        let Forced { rung, path, .. } = self.forced().into_iter().find(|forced| !known.contains(&forced.rung))?;
+        let beyond = |rung| rung != Rung::Polygon && !known.contains(&rung);
+        let Forced { rung, path, .. } = self.forced().into_iter().find(|forced| beyond(forced.rung))?;
         let shown = crate::scene::field(path).map_or_else(String::new, |row| self.shown(row.name));
         let what = match rung {
             Rung::Friction => "with friction",
@@ -204,7 +217,7 @@ impl Scene {
     /// As [`Scene::orbit`].
     pub fn orbit_of(&self, run: u64) -> Result<Orbit<Model>, NoContact> {
         let noise = self.noise.map(|noise| Noise { run, ..noise });
-        Orbit::new(self.model_of(noise), self.rules(), &self.release)
+        Orbit::new(self.model_of(noise, self.outline), self.rules(), &self.release)
     }
 
     /// The rung of the ladder that the scene needs.
@@ -245,6 +258,13 @@ impl Scene {
                 self.shown(Name::NoiseModel)
             );
             step(Rung::Noise, name, detail);
+        }
+        if let Some(vertices) = self.vertices() {
+            let detail = format!(
+                "the body is a polygon of {} vertices, and each of them is looked at in every flight and at every contact",
+                vertices.places().len()
+            );
+            steps.push(Forced { rung: Rung::Polygon, path: VERTICES, detail });
         }
         steps
     }

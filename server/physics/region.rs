@@ -200,7 +200,7 @@ fn cross(mut low: [f64; 2], mut high: [f64; 2], function: impl Fn([f64; 2]) -> O
 
 /// The start of a run that can go in a lane.
 fn start_of(scene: &Scene) -> Option<Start> {
-    let Model::Rod(rod) = scene.model() else { return None };
+    let Model::Rod(rod) = scene.running_model() else { return None };
     let (_, state) = rod.fall(scene.release()).ok()?;
     let start = Start { rod, rules: scene.rules(), state };
     start.fits().then_some(start)

@@ -8,9 +8,11 @@ use crate::contact_time::{first_contact, first_descent};
 use crate::flight::Flight;
 use crate::friction::{Friction, Law, Slide, as_it_is};
 use crate::impact::{Rod, State, Strike, Tilt};
-use crate::map::{Arrival, Body, Coming, NoContact, Plan, Release};
+use crate::map::{Arrival, Body, Coming, NoContact, Plan, Release, Touch};
 use crate::noise::{Draw, Noise, Reading};
 use crate::number::Number;
+use crate::polygon::Outline;
+use crate::trig;
 
 /// Least time, s, from one strike to the next: a table that is timed too early strikes then.
 pub const LEAST_FLIGHT: f64 = 1e-6;
@@ -56,6 +58,8 @@ pub struct Rig {
     pub friction: Option<Friction>,
     /// Timing and sensing errors.
     pub noise: Option<Noise>,
+    /// The vertices of a polygon.
+    pub outline: Option<Outline>,
 }
 
 /// A contact without friction, for a table that moves as planned.
@@ -90,6 +94,17 @@ impl Rig {
         } else {
             first_contact(flight)?
         };
+        let arrival = self.meet_timed(flight, t, n, x)?;
+        if let Some(outline) = &self.outline
+            && let Some(touch) = outline.first_touch(flight, t.min(arrival.t))?
+        {
+            return Err(NoContact::OtherVertex(touch));
+        }
+        Ok(arrival)
+    }
+
+    /// Where a table that strikes about the time `t`, when the contact point is at y = 0, meets the body.
+    fn meet_timed(&self, flight: &Flight, t: f64, n: u64, x: f64) -> Result<Arrival, NoContact> {
         let Some(noise) = self.noise else { return Ok((t, flight.end(t)).into()) };
         let Draw { timing, angle } = noise.draw(n);
         let struck = if timing == 0.0 { t } else { (t + timing).max(LEAST_FLIGHT) };
@@ -171,6 +186,11 @@ impl Body for Rig {
                 friction.strike(&rod, state, &tilt, plan.as_ref(), rod.leverage(), as_it_is)
             }
         }
+    }
+
+    fn touches(&self, coming: &Coming, strike: &Strike) -> Option<Touch> {
+        let nearest = self.outline.as_ref()?.below_table(trig::sin_cos(coming.state.theta - strike.alpha))?;
+        Some(Touch { vertex: nearest.vertex, t: 0.0 })
     }
 
     fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {

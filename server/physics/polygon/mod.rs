@@ -12,6 +12,7 @@ pub use vertices::Vertices;
 use crate::contact_time::{TooManyPieces, first_descent_before};
 use crate::flight::Flight;
 use crate::impact::State;
+use crate::map::Touch;
 use crate::trig;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -52,15 +53,6 @@ pub struct Nearest {
     pub vertex: usize,
     /// Its distance from the table, m; negative below it.
     pub clearance: f64,
-}
-
-/// A vertex that comes down to y = 0 in flight.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
-    /// Its place in the order in which the vertices were given, from 0.
-    pub vertex: usize,
-    /// When, s from the start of the flight.
-    pub t: f64,
 }
 
 impl Outline {

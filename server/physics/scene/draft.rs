@@ -7,6 +7,7 @@ use crate::friction::{Law, Slide};
 use crate::impact::State;
 use crate::map::Release;
 use crate::noise::{Noise, Reading};
+use crate::polygon::{FLUSH, Outline, PolygonError, Vertices};
 use crate::rig::{Gains, Steering};
 use crate::trig;
 
@@ -25,15 +26,19 @@ impl FieldError {
     }
 }
 
+/// Path of the vertices of a polygon.
+pub const VERTICES: &str = "body.vertices";
+
 /// The values said so far, one slot for each row of [`FIELDS`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draft {
     values: [Option<Value>; FIELDS.len()],
+    vertices: Option<Vertices>,
 }
 
 impl Default for Draft {
     fn default() -> Self {
-        Self { values: [None; FIELDS.len()] }
+        Self { values: [None; FIELDS.len()], vertices: None }
     }
 }
 
@@ -56,6 +61,16 @@ impl Draft {
     /// What was said, or the default after [`Draft::build`].
     pub fn get(&self, name: Name) -> Option<Value> {
         self.values[name as usize]
+    }
+
+    /// Says the vertices of a polygon, or takes them back.
+    pub fn set_vertices(&mut self, vertices: Option<Vertices>) {
+        self.vertices = vertices;
+    }
+
+    /// The vertices of a polygon, where the body is said to be one.
+    pub fn vertices(&self) -> Option<&Vertices> {
+        self.vertices.as_ref()
     }
 
     /// Whether the body is said to be a point mass.
@@ -89,7 +104,7 @@ impl Draft {
             let slot = &mut self.values[row.name as usize];
             *slot = slot.or(row.default);
         }
-        let body = self.body(&mut errors);
+        let (body, outline) = self.body(&mut errors);
         let full_gravity = self.required(Name::Gravity, &mut errors);
         let incline = self.required(Name::Incline, &mut errors);
         let strike = if self.get(Name::Strike) == Some(Value::Choice("still")) {
@@ -136,6 +151,7 @@ impl Draft {
         }
         let scene = Scene {
             body,
+            outline,
             gravity: full_gravity * trig::sin_cos(incline).0,
             full_gravity,
             incline,
@@ -153,7 +169,7 @@ impl Draft {
             energy_gain,
             target_height: if energy_gain == 0.0 { None } else { self.number(Name::TargetHeight) },
             strike,
-            release: self.release(body, &mut errors),
+            release: self.release(body, outline.as_ref(), &mut errors),
             topple_angle: self.required(Name::ToppleAngle, &mut errors),
             limits: self.limits(),
             noise,
@@ -213,31 +229,67 @@ impl Draft {
         })
     }
 
-    fn body(&self, errors: &mut Vec<FieldError>) -> BodyShape {
+    fn body(&mut self, errors: &mut Vec<FieldError>) -> (BodyShape, Option<Outline>) {
         let lengths = [Name::ContactDistance, Name::RadiusOfGyration];
-        if !self.is_point() {
-            if lengths.iter().all(|&name| self.get(name).is_none()) {
-                let detail = "body is missing: give contact_distance and radius_of_gyration in m, or {\"point\": true}";
-                errors.push(FieldError { path: "body", detail: detail.to_owned() });
-                return BodyShape::Point;
+        let said = |name: &Name| self.get(*name).is_some();
+        if self.is_point() {
+            for name in lengths.into_iter().chain([Name::ContactVertex]).filter(said) {
+                let key = name.row().key();
+                errors.push(FieldError::new(name, format!("a point mass has no {key}; leave one of them out")));
             }
-            return BodyShape::Rod {
-                contact_distance: self.required(Name::ContactDistance, errors),
-                radius_of_gyration: self.required(Name::RadiusOfGyration, errors),
-            };
-        }
-        for name in lengths {
-            if self.get(name).is_some() {
-                errors.push(FieldError::new(
-                    name,
-                    format!("a point mass has no {}; leave one of them out", name.row().key()),
-                ));
+            if self.vertices.is_some() {
+                let detail = "a point mass has no vertices; leave one of them out".to_owned();
+                errors.push(FieldError { path: VERTICES, detail });
             }
+            return (BodyShape::Point, None);
         }
-        BodyShape::Point
+        if let Some(vertices) = self.vertices {
+            for name in lengths.into_iter().filter(said) {
+                let key = name.row().key();
+                let detail = format!("{key} follows from vertices, which are given too; leave one of them out");
+                errors.push(FieldError::new(name, detail));
+            }
+            return self.polygon(&vertices, errors).map_or((BodyShape::Point, None), |outline| {
+                let (contact_distance, radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
+                (BodyShape::Rod { contact_distance, radius_of_gyration }, Some(outline))
+            });
+        }
+        if said(&Name::ContactVertex) {
+            let detail =
+                "contact_vertex is one of a polygon's vertices, and there are none; give vertices, or leave it out";
+            errors.push(FieldError::new(Name::ContactVertex, detail.to_owned()));
+        }
+        if !lengths.iter().any(said) {
+            let detail =
+                "body is missing: give contact_distance and radius_of_gyration in m, vertices, or {\"point\": true}";
+            errors.push(FieldError { path: "body", detail: detail.to_owned() });
+            return (BodyShape::Point, None);
+        }
+        let body = BodyShape::Rod {
+            contact_distance: self.required(Name::ContactDistance, errors),
+            radius_of_gyration: self.required(Name::RadiusOfGyration, errors),
+        };
+        (body, None)
     }
 
-    fn release(&mut self, body: BodyShape, errors: &mut Vec<FieldError>) -> Release {
+    /// None where it is no body; the contact vertex is the lowest, where none is said.
+    fn polygon(&mut self, vertices: &Vertices, errors: &mut Vec<FieldError>) -> Option<Outline> {
+        let contact_vertex = match self.get(Name::ContactVertex) {
+            Some(Value::Integer(vertex)) => Ok(vertex as usize),
+            _ => vertices.lowest(),
+        };
+        let outline = contact_vertex.and_then(|vertex| {
+            self.values[Name::ContactVertex as usize] = Some(Value::Integer(vertex as u64));
+            Outline::new(vertices, vertex)
+        });
+        let path = |error: &PolygonError| match error.is_of_contact_vertex() {
+            true => Name::ContactVertex.row().path,
+            false => VERTICES,
+        };
+        outline.map_err(|error| errors.push(FieldError { path: path(&error), detail: error.to_string() })).ok()
+    }
+
+    fn release(&mut self, body: BodyShape, outline: Option<&Outline>, errors: &mut Vec<FieldError>) -> Release {
         let height = self.required(Name::Height, errors);
         let state = State {
             theta: self.required(Name::Theta, errors),
@@ -265,6 +317,17 @@ impl Draft {
                          least {contact_height} m",
                         contact_height - height,
                         state.theta
+                    );
+                    errors.push(FieldError::new(Name::Height, detail));
+                } else if let Some(nearest) = outline.map(|outline| outline.nearest(trig::sin_cos(state.theta)))
+                    && height - contact_height + nearest.clearance < -FLUSH * contact_distance
+                {
+                    let detail = format!(
+                        "height is {height} m, which puts vertex {} {} m below the table; at theta {} rad it must be at least {} m",
+                        nearest.vertex,
+                        contact_height - nearest.clearance - height,
+                        state.theta,
+                        contact_height - nearest.clearance
                     );
                     errors.push(FieldError::new(Name::Height, detail));
                 }

@@ -1,8 +1,10 @@
-//! The table of scene fields: path, unit, range, default and meaning of everything a scene may say.
+//! The table of scene fields: path, unit, range, default and meaning of everything a scene may say but the vertices of a
+//! polygon, which are no single value.
 //!
 //! Parsers, query strings, live changes, error texts and forms are derived from these rows; nothing else lists them.
 //! The ranges are generous for a lab and bound the work of one flight (at most 25,000 convex pieces).
 
+use crate::polygon::MAX_VERTICES;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
@@ -14,6 +16,7 @@ pub enum Name {
     ContactDistance,
     RadiusOfGyration,
     PointMass,
+    ContactVertex,
     Gravity,
     Incline,
     Restitution,
@@ -185,13 +188,16 @@ const BLANK: Field = Field {
 
 /// Every field of a scene.
 #[rustfmt::skip]
-pub const FIELDS: [Field; 33] = [
+pub const FIELDS: [Field; 34] = [
     Field { name: Name::ContactDistance, path: "body.contact_distance", symbol: "l", title: "Contact distance",
         about: "Centre of gravity to contact point", unit: "m", kind: number(1e-3, 10.0), required: true, ..BLANK },
     Field { name: Name::RadiusOfGyration, path: "body.radius_of_gyration", symbol: "ρ", title: "Radius of gyration",
         about: "Radius of gyration about the centre of gravity", unit: "m", kind: number(1e-3, 10.0), required: true, ..BLANK },
     Field { name: Name::PointMass, path: "body.point", title: "Point mass",
         about: "A body without an angle; its table tilts by κ times the angle of its velocity", ..BLANK },
+    Field { name: Name::ContactVertex, path: "body.contact_vertex", title: "Contact vertex",
+        about: "Which vertex of a polygon bounces, counted from 0; the lowest, if it is not said",
+        kind: Kind::Integer { maximum: MAX_VERTICES as u64 - 1 }, ..BLANK },
     Field { name: Name::Gravity, path: "gravity", symbol: "g", title: "Gravity", about: "Acceleration of gravity",
         unit: "m/s²", kind: number(0.1, 100.0), default: default(9.81), ..BLANK },
     Field { name: Name::Incline, path: "incline", symbol: "φ", title: "Incline",

@@ -5,7 +5,7 @@
 mod draft;
 mod field;
 
-pub use draft::{Draft, FieldError};
+pub use draft::{Draft, FieldError, VERTICES};
 pub use field::{FIELDS, Field, Kind, Name, Value, field};
 
 use crate::demand::Limits;
@@ -13,6 +13,7 @@ use crate::friction::{Law, Slide};
 use crate::impact::State;
 use crate::map::Release;
 use crate::noise::Noise;
+use crate::polygon::{Outline, Vertices};
 use crate::rig::Steering;
 
 /// Which body bounces.
@@ -42,6 +43,8 @@ pub enum Striking {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
     pub(crate) body: BodyShape,
+    /// Of a polygon.
+    pub(crate) outline: Option<Outline>,
     /// G = g sin φ, m/s².
     pub(crate) gravity: f64,
     /// g, m/s².
@@ -91,6 +94,16 @@ impl Scene {
     /// Which body bounces.
     pub fn body(&self) -> BodyShape {
         self.body
+    }
+
+    /// Its outline, where it is a polygon.
+    pub fn outline(&self) -> Option<&Outline> {
+        self.outline.as_ref()
+    }
+
+    /// The vertices of a polygon as they were given.
+    pub fn vertices(&self) -> Option<&Vertices> {
+        self.draft.vertices()
     }
 
     /// G = g sin φ, gravity in the plane of motion, m/s².
