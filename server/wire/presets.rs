@@ -149,10 +149,13 @@ impl Quantity {
             Self::UpperEnergyGain => (linear.upper_energy_gain, "2/((1 + e)V²)"),
             // E = ½V² + Gl = G y*, from the top of the bounce.
             Self::TargetEnergy => (scene.gravity() * fixed_point.apex_height, "G y*"),
-            Self::RadiusOfGyration => {
-                // Isosceles triangle of base b and height h: ρ² = b²/24 + h²/18.
-                ((0.1_f64 * 0.1 / 24.0 + 0.2 * 0.2 / 18.0).sqrt(), "b²/24 + h²/18 = ρ², base 0.1 m, height 0.2 m")
-            }
+            Self::RadiusOfGyration => match scene.outline() {
+                Some(outline) => (outline.radius_of_gyration(), "the vertices"),
+                None => {
+                    // Isosceles triangle of base b and height h: ρ² = b²/24 + h²/18.
+                    ((0.1_f64 * 0.1 / 24.0 + 0.2 * 0.2 / 18.0).sqrt(), "b²/24 + h²/18 = ρ², base 0.1 m, height 0.2 m")
+                }
+            },
             Self::CriticalEigenvalue => (-1.0, "R = 1: period doubling, with one Jordan block"),
         })
     }

@@ -1,8 +1,9 @@
-//! Scenes as JSON or as dotted query parameters: read field by field from the table of fields, written back with all
-//! defaults filled in.
+//! Scenes as JSON or as dotted query parameters: read field by field from the table of fields, and the vertices of a polygon
+//! beside it; written back with all defaults filled in.
 
 use equipoise_physics::model::Rung;
-use equipoise_physics::scene::{Draft, FIELDS, Field, Kind, Name, Scene, Value as FieldValue, field};
+use equipoise_physics::polygon::{FARTHEST, MAX_VERTICES, Vertices};
+use equipoise_physics::scene::{Draft, FIELDS, Field, Kind, Name, Scene, VERTICES, Value as FieldValue, field};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
@@ -10,9 +11,6 @@ use super::presets;
 use crate::http::leaf::{self, Source};
 use crate::http::reader::join;
 use crate::http::{Errors, Reader};
-
-/// Parts of the contract that are not in the table, since they are no single values, and not computed yet.
-const NOT_AVAILABLE: [&str; 2] = ["body.vertices", "body.contact_vertex"];
 
 /// The scene of a request: `preset`, with `scene` merged onto it (RFC 7396), or either of them alone.
 ///
@@ -120,8 +118,8 @@ impl Walk<'_> {
                 } else {
                     self.object(value, &path, &pointer);
                 }
-            } else if NOT_AVAILABLE.contains(&path.as_str()) {
-                self.errors.push(pointer, format!("{path} is not available in this version"));
+            } else if path == VERTICES {
+                self.vertices(value, &pointer);
             } else {
                 let known = known_beside(&path).join(", ");
                 self.errors.push(pointer, format!("unknown field `{path}`; known here: {known}"));
@@ -143,11 +141,51 @@ impl Walk<'_> {
     /// A body of another kind replaces the preset's body whole; one of the same kind is merged onto it.
     fn replace_other_kind_of_body(&mut self, fields: &Map<String, Value>) {
         let says = |key: &str| fields.get(key).is_some_and(|value| !value.is_null());
-        let to_point = says("point") && !self.draft.is_point();
-        let to_rod =
-            self.draft.is_point() && !says("point") && (says("contact_distance") || says("radius_of_gyration"));
-        if to_point || to_rod {
+        let (point, polygon) = (says("point"), says("vertices"));
+        let rod = says("contact_distance") || says("radius_of_gyration");
+        let another = match (self.draft.is_point(), self.draft.vertices().is_some()) {
+            (true, _) => !point && (polygon || rod),
+            (false, true) => !polygon && (point || rod),
+            (false, false) => point || polygon,
+        };
+        if another {
             self.forget("body");
+        }
+    }
+
+    /// An array of [x, y], replaced whole.
+    fn vertices(&mut self, value: &Value, pointer: &str) {
+        let wanted = format!("an array of 3 to {MAX_VERTICES} points [x, y] in m, counter-clockwise");
+        if value.is_null() {
+            return self.draft.set_vertices(None);
+        }
+        let Some(items) = value.as_array().filter(|items| items.len() <= MAX_VERTICES) else {
+            return self.errors.push(pointer, format!("vertices is {}; it must be {wanted}", leaf::shown(value)));
+        };
+        let before = self.errors.len();
+        let mut places = Vec::with_capacity(items.len());
+        for (index, item) in items.iter().enumerate() {
+            let pointer = format!("{pointer}/{index}");
+            let Some([x, y]) = item.as_array().map(Vec::as_slice) else {
+                self.errors.push(pointer, format!("vertex {index} is {}; it must be [x, y] in m", leaf::shown(item)));
+                continue;
+            };
+            let mut coordinate = |axis: usize, value| {
+                let read = leaf::number_within(value, self.source, &(-FARTHEST..=FARTHEST), "m");
+                let name = ["x", "y"][axis];
+                read.map_err(|error| {
+                    self.errors.push(format!("{pointer}/{axis}"), format!("{name} of vertex {index} {error}"))
+                })
+                .unwrap_or_default()
+            };
+            places.push([coordinate(0, x), coordinate(1, y)]);
+        }
+        if self.errors.len() > before {
+            return;
+        }
+        match Vertices::new(&places) {
+            Ok(vertices) => self.draft.set_vertices(Some(vertices)),
+            Err(error) => self.errors.push(pointer, error.to_string()),
         }
     }
 
@@ -155,6 +193,9 @@ impl Walk<'_> {
         for row in FIELDS.iter().filter(|row| row.path.strip_prefix(group).is_some_and(|rest| rest.starts_with('.'))) {
             // Taking a value back is always admitted.
             let _ = self.draft.set(row.name, None);
+        }
+        if VERTICES.strip_prefix(group).is_some_and(|rest| rest.starts_with('.')) {
+            self.draft.set_vertices(None);
         }
     }
 }
@@ -183,13 +224,22 @@ fn known_beside(path: &str) -> Vec<&'static str> {
     let group = path.rsplit_once('.').map_or("", |(group, _)| group);
     let mut names: Vec<_> = FIELDS
         .iter()
-        .filter_map(|row| match group {
-            "" => Some(row.path),
-            group => row.path.strip_prefix(group)?.strip_prefix('.'),
+        .map(|row| row.path)
+        .chain([VERTICES])
+        .filter_map(|path| match group {
+            "" => Some(path),
+            group => path.strip_prefix(group)?.strip_prefix('.'),
         })
         .filter_map(|rest| rest.split('.').next())
         .collect();
-    names.dedup();
+    // In the order in which they come first.
+    let mut seen = Vec::new();
+    names.retain(|name| {
+        !seen.contains(name) && {
+            seen.push(*name);
+            true
+        }
+    });
     names
 }
 
@@ -205,14 +255,17 @@ impl Serialize for Resolved<'_> {
 
 /// [`Resolved`] as a JSON value.
 pub fn to_json(scene: &Scene) -> Value {
+    let vertices = scene
+        .vertices()
+        .map(|vertices| (VERTICES, Value::from_iter(vertices.places().iter().map(|place| Value::from_iter(*place)))));
+    let values = FIELDS.iter().filter_map(|row| Some((row.path, value_to_json(scene.value(row.name)?))));
     let mut root = Map::new();
-    for row in &FIELDS {
-        let Some(value) = scene.value(row.name) else { continue };
-        let mut parts = row.path.split('.').peekable();
+    for (path, value) in values.chain(vertices) {
+        let mut parts = path.split('.').peekable();
         let mut at = &mut root;
         while let Some(part) = parts.next() {
             if parts.peek().is_none() {
-                at.insert(part.to_owned(), value_to_json(value));
+                at.insert(part.to_owned(), value);
                 break;
             }
             let group = at.entry(part).or_insert_with(|| Value::Object(Map::new()));
@@ -239,7 +292,13 @@ pub fn to_query(scene: &Scene) -> Vec<(String, String)> {
         Value::String(text) => text,
         other => other.to_string(),
     };
-    FIELDS.iter().filter_map(|row| Some((format!("scene.{}", row.path), written(scene.value(row.name)?)))).collect()
+    let places = scene.vertices().map_or(&[][..], |vertices| vertices.places());
+    let vertices = places.iter().enumerate().flat_map(|(vertex, place)| {
+        let name = move |axis: usize| format!("scene.{VERTICES}.{vertex}.{axis}");
+        [0, 1].map(|axis| (name(axis), written(FieldValue::Number(place[axis]))))
+    });
+    let values = FIELDS.iter().filter_map(|row| Some((format!("scene.{}", row.path), written(scene.value(row.name)?))));
+    values.chain(vertices).collect()
 }
 
 /// The angle fields of a body, which a point mass does not have.
@@ -307,7 +366,7 @@ mod tests {
                  assumed_restitution",
             ),
             ("/scene/gravity", "gravity is \"9.81\"; it must be a number from 0.1 to 100 m/s², not text"),
-            ("/scene/body/vertices", "body.vertices is not available in this version"),
+            ("/scene/body/vertices", "vertices are 0; a polygon has from 3 to 32"),
             ("/scene/release", "release is 3; it must be an object"),
         ];
         for (pointer, detail) in expected {

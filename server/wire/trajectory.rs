@@ -4,7 +4,9 @@ use equipoise_physics::demand::{Demand, Excess, Pose};
 use equipoise_physics::map::{Body, Ending, Touch};
 use equipoise_physics::method::{self, Impact, Method};
 use equipoise_physics::model::{Forced, Rung};
+use equipoise_physics::polygon::Nearest;
 use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::trig::sin_cos;
 use serde::{Serialize, Serializer};
 
 use super::contacts::{Contacts, Flights};
@@ -70,7 +72,7 @@ pub struct Outcome {
     pub kind: &'static str,
     /// Contacts, the last included.
     pub impacts: u64,
-    /// When the last one was, s.
+    /// When the last one was, s, or when another vertex touched the table after it.
     pub t: f64,
     /// A sentence with the numbers.
     pub detail: String,
@@ -90,13 +92,17 @@ impl Outcome {
     /// Of a run that ended so at contact `impacts`, at time `t`.
     pub fn new(ending: Ending, impacts: u64, t: f64) -> Self {
         let at = format!("at contact {impacts}, t = {t} s");
+        let t = if let Ending::OtherVertex(touch) = ending { t + touch.t } else { t };
         let (detail, decided) = match ending {
             Ending::OtherVertex(Touch { vertex, t: 0.0 }) => (
                 format!("{at}, vertex {vertex} of the body was below the table's line: another one would have struck"),
                 None,
             ),
             Ending::OtherVertex(Touch { vertex, t: since }) => (
-                format!("{since} s after contact {impacts}, vertex {vertex} came down before the one that bounces"),
+                format!(
+                    "{since} s after {}, vertex {vertex} of the body came down to y = 0 before the one that bounces",
+                    if impacts == 0 { "the release".to_owned() } else { format!("contact {impacts}") }
+                ),
                 None,
             ),
             Ending::BeyondLimits(Excess { quantity, value, limit, unit }) => (
@@ -180,6 +186,15 @@ impl From<Demand> for DemandAnswer {
     fn from(Demand { tilt, tilt_rate, speed, stroke }: Demand) -> Self {
         Self { tilt, tilt_rate, speed, stroke }
     }
+}
+
+/// The vertex of a polygon, other than the one that bounces, that was nearest to the table at any contact of a run.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct NearestVertex {
+    vertex: usize,
+    clearance: f64,
+    impact: u64,
+    t: f64,
 }
 
 /// What is asked for beside the scene.
@@ -315,6 +330,9 @@ pub struct Trajectory<'a> {
     pub flights: Option<Table>,
     /// The most that it asked of the table.
     pub demand: DemandAnswer,
+    /// Of a polygon: how near any other vertex came to the table at a contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest_vertex: Option<NearestVertex>,
     /// Reasons for what is null.
     pub notes: Vec<String>,
 }
@@ -332,6 +350,7 @@ impl<'a> Trajectory<'a> {
         let body = scene.model();
         let (mut last, mut unknown, mut predictable) = (None, 0, None);
         let (mut pose, mut demand) = (None::<Pose>, Demand::default());
+        let mut nearest_vertex: Option<NearestVertex> = None;
         let run = scene.run_by(method, impacts, |impact| {
             let Impact { contact, error_estimate, .. } = impact;
             contacts.push(impact);
@@ -348,6 +367,12 @@ impl<'a> Trajectory<'a> {
             if let Some(strike) = contact.strike {
                 let here = Pose { t: contact.t, alpha: contact.alpha, velocity: strike.table_velocity };
                 demand = demand.or(here.demand(pose.replace(here).as_ref()));
+            }
+            if let Some(outline) = scene.outline() {
+                let Nearest { vertex, clearance } = outline.nearest(sin_cos(contact.state.theta - contact.alpha));
+                if nearest_vertex.is_none_or(|least| clearance < least.clearance) {
+                    nearest_vertex = Some(NearestVertex { vertex, clearance, impact: contact.n, t: contact.t });
+                }
             }
             last = Some((contact.n, contact.t));
             unknown += u64::from(!error_estimate.is_finite());
@@ -389,6 +414,7 @@ impl<'a> Trajectory<'a> {
             flights: flights.map(Flights::into_table),
             notes,
             demand: demand.into(),
+            nearest_vertex,
         })
     }
 
@@ -415,10 +441,13 @@ impl<'a> Trajectory<'a> {
             method: MethodChoice,
             predictable_impacts: Option<u64>,
             demand: DemandAnswer,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            nearest_vertex: Option<NearestVertex>,
             notes: Vec<String>,
         }
-        let Self { outcome, method, predictable_impacts, demand, notes, .. } = self;
+        let Self { outcome, method, predictable_impacts, demand, nearest_vertex, notes, .. } = self;
         let (outcome, method, notes) = (outcome.clone(), method.clone(), notes.clone());
-        End { outcome, method, predictable_impacts: *predictable_impacts, demand: *demand, notes }
+        let (predictable_impacts, demand, nearest_vertex) = (*predictable_impacts, *demand, *nearest_vertex);
+        End { outcome, method, predictable_impacts, demand, nearest_vertex, notes }
     }
 }
