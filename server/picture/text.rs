@@ -11,15 +11,19 @@ pub(super) enum Span<'a> {
     Below(&'a str),
 }
 
-/// The pieces of a sentence, in which κ_c is set as κ with the subscript c.
+/// Symbols with a subscript, as sentences write them.
+const SUBSCRIPTED: [&str; 3] = ["κ_c", "σ_t", "σ_θ"];
+
+/// The pieces of a sentence, in which κ_c is set as κ with the subscript c, and so on.
 pub(super) fn sentence(text: &str) -> Vec<Span<'_>> {
-    let mut spans = Vec::new();
-    for (n, piece) in text.split("κ_c").enumerate() {
-        if n > 0 {
-            spans.extend([Span::Plain("κ"), Span::Below("c")]);
-        }
-        spans.push(Span::Plain(piece));
+    let (mut spans, mut rest) = (Vec::new(), text);
+    let next = |rest: &str| SUBSCRIPTED.iter().filter_map(|symbol| Some((rest.find(symbol)?, *symbol))).min();
+    while let Some((at, symbol)) = next(rest) {
+        let (letter, below) = symbol.split_once('_').unwrap_or((symbol, ""));
+        spans.extend([Span::Plain(&rest[..at]), Span::Plain(letter), Span::Below(below)]);
+        rest = &rest[at + symbol.len()..];
     }
+    spans.push(Span::Plain(rest));
     spans
 }
 
@@ -102,6 +106,19 @@ fn fitting(text: &str, size: f64, room: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn symbols_have_their_subscripts() {
+        let set: String = sentence("σ_t = 10 ms, σ_θ and κ_c")
+            .into_iter()
+            .map(|span| match span {
+                Span::Plain(text) => text.to_owned(),
+                Span::Symbol(text) | Span::Below(text) => format!("[{text}]"),
+            })
+            .collect();
+        assert_eq!(set, "σ[t] = 10 ms, σ[θ] and κ[c]");
+        assert_eq!(sentence("max_theta").len(), 1);
+    }
 
     #[test]
     fn lines_fit_and_nothing_is_lost_but_what_the_ellipsis_says() {
