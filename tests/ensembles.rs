@@ -22,38 +22,41 @@ fn survived(ensemble: &Value) -> [f64; 3] {
     ["lower", "share", "upper"].map(|name| ensemble["survived"][name].as_f64().unwrap())
 }
 
-/// Case 1 with σ_t = 10 ms over 400 bounces: some 45 % survive where the table meets the object early or late, some 7 % where it
-/// carries out the plan for the wrong time.
+/// σ_t = 10 ms over 400 bounces, under both readings. The figures are the shares of 4000 runs of a simulation by other means
+/// (time scanned on a grid, another generator), good to 0.8 %; those of the paper's case 1 had been known as some 45 and 7 %.
 #[tokio::test]
 async fn readings_of_the_noise_survive_as_they_should() {
     let server = Server::start();
-    let ask = async |rest: &str| server.get(&format!("{CASE_1}&runs=400{rest}")).await.expect(200).json();
-    let strike = ask("").await;
-    let [lower, share, upper] = survived(&strike);
-    assert!(lower < 0.45 && 0.45 < upper && upper - lower < 0.1, "{lower} {share} {upper}");
-    let plan = ask("&scene.noise.model=plan").await;
-    let [lower, share, upper] = survived(&plan);
-    assert!(lower < 0.07 && 0.07 < upper && upper - lower < 0.07, "{lower} {share} {upper}");
-    let median = plan["median_impacts"].as_u64().unwrap();
-    assert!((4..=10).contains(&median), "half fall by contact {median}");
-    for ensemble in [&strike, &plan] {
-        let [lower, share, upper] = survived(ensemble);
-        assert!(lower < share && share < upper);
+    let ask = async |rest: &str| server.get(&format!("/v1/ensembles?runs=400&{rest}")).await.expect(200).json();
+    for (preset, model, known, median) in [
+        ("case-1-noise", "strike", 0.451, 300..=400),
+        ("case-1-noise", "plan", 0.0855, 8..=12),
+        ("case-4-noise", "strike", 0.916, 0..=0),
+        ("case-4-noise", "plan", 0.1115, 14..=22),
+    ] {
+        let ensemble = ask(&format!("preset={preset}&scene.noise.model={model}")).await;
+        let [lower, share, upper] = survived(&ensemble);
+        assert!(lower < known && known < upper, "{preset} {model}: {known} is not from {lower} to {upper}");
+        assert!(lower < share && share < upper && upper - lower < 0.1);
+        let found = ensemble["median_impacts"].as_u64().unwrap_or(0);
+        assert!(median.contains(&found), "{preset} {model}: half fall by contact {found}");
         assert_eq!(ensemble["model"]["name"], "noise");
     }
-    let narrow = ask("&scene.release.theta=0.1").await;
-    assert_eq!((&narrow["survived"]["runs"], &narrow["survived"]["share"]), (&json!(400), &json!(1.0)));
-    assert!(survived(&narrow)[0] > 0.99 && narrow["median_impacts"].is_null() && narrow["half_life"].is_null());
-    let narrow_plan = ask("&scene.release.theta=0.1&scene.noise.model=plan").await;
-    assert!(survived(&narrow_plan)[2] < 0.9, "{}", narrow_plan["survived"]);
+    let [lower, share, upper] = survived(&ask("preset=case-1-noise&scene.noise.model=plan").await);
+    assert!(lower < 0.07 && 0.07 < upper, "{lower} {share} {upper}");
 }
 
-/// The lossy case that is steered to a height; the figures are those of a simulation by other means.
 #[tokio::test]
-async fn case_4_with_noise() {
+async fn from_a_small_angle_all_survive_where_the_object_is_met() {
     let server = Server::start();
-    let strike = server.get("/v1/ensembles?preset=case-4-noise&runs=400").await.expect(200).json();
-    assert!(survived(&strike)[1] > 0.0, "{}", strike["survived"]);
+    let ask = async |rest: &str| {
+        server.get(&format!("{CASE_1}&runs=400&scene.release.theta=0.1{rest}")).await.expect(200).json()
+    };
+    let strike = ask("").await;
+    assert_eq!(strike["survived"]["runs"], 400);
+    assert!(survived(&strike)[0] > 0.99 && strike["median_impacts"].is_null() && strike["half_life"].is_null());
+    let plan = ask("&scene.noise.model=plan").await;
+    assert!(survived(&plan)[2] < 0.5, "{}", plan["survived"]);
 }
 
 /// What the columns of a survival curve have to do with each other and with what stands beside them.

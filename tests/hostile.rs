@@ -61,6 +61,30 @@ impl Draw {
             _ => json!(true),
         }
     }
+
+    /// A scene that says some of its fields.
+    fn scene(&mut self, fields: &[Value]) -> Value {
+        let mut scene = json!({});
+        for field in fields {
+            let path = field["path"].as_str().unwrap();
+            let wanted = match (field["required"] == json!(true), path) {
+                (_, "body.point") => 0.05,
+                (true, _) => 0.99,
+                // In place of the tilt gain: one or the other is mostly an error.
+                _ if path.starts_with("table.feedback") => 0.01,
+                _ if path.starts_with("table.limits") => 0.05,
+                _ => 0.4,
+            };
+            if self.chance(wanted) {
+                put(&mut scene, path, self.value(field));
+            }
+        }
+        // Most random releases would lie below the table.
+        if self.chance(0.8) && scene.pointer("/body/contact_distance").is_some() {
+            put(&mut scene, "release.height", json!(10.0 + 20.0 * self.unit()));
+        }
+        scene
+    }
 }
 
 fn put(scene: &mut Value, path: &str, value: Value) {
@@ -78,25 +102,7 @@ async fn ten_thousand_random_scenes_are_answered() {
     let mut draw = Draw(1);
     let mut answered = std::collections::BTreeMap::<String, u64>::new();
     for _ in 0..SCENES {
-        let mut scene = json!({});
-        for field in &fields {
-            let path = field["path"].as_str().unwrap();
-            let wanted = match (field["required"] == json!(true), path) {
-                (_, "body.point") => 0.05,
-                (true, _) => 0.99,
-                // In place of the tilt gain: one or the other is mostly an error.
-                _ if path.starts_with("table.feedback") => 0.01,
-                _ if path.starts_with("table.limits") => 0.05,
-                _ => 0.4,
-            };
-            if draw.chance(wanted) {
-                put(&mut scene, path, draw.value(field));
-            }
-        }
-        // Most random releases would lie below the table.
-        if draw.chance(0.8) && scene.pointer("/body/contact_distance").is_some() {
-            put(&mut scene, "release.height", json!(10.0 + 20.0 * draw.unit()));
-        }
+        let scene = draw.scene(&fields);
         let request = json!({"scene": scene, "impacts": 1 + draw.below(300)});
         let answer = tokio::time::timeout(Duration::from_secs(60), server.post("/v1/trajectories", &request)).await;
         let answer = answer.unwrap_or_else(|_| panic!("no answer to {request}"));
@@ -120,4 +126,27 @@ async fn ten_thousand_random_scenes_are_answered() {
     for outcome in outcomes {
         assert!(answered.contains_key(outcome), "no scene ended as {outcome}: {answered:?}");
     }
+}
+
+#[tokio::test]
+async fn ensembles_of_random_scenes_are_answered() {
+    let server = Server::start();
+    let fields = server.get("/v1/fields").await.json()["fields"].as_array().unwrap().clone();
+    let mut draw = Draw(2);
+    let mut outcomes = std::collections::BTreeSet::new();
+    for _ in 0..SCENES / 5 {
+        let (runs, impacts) = (1 + draw.below(6), 1 + draw.below(200));
+        let request =
+            json!({"scene": draw.scene(&fields), "runs": runs, "impacts": impacts, "seed": draw.below(1 << 53)});
+        let answer = tokio::time::timeout(Duration::from_secs(60), server.post("/v1/ensembles", &request)).await;
+        let answer = answer.unwrap_or_else(|_| panic!("no answer to {request}"));
+        assert!(matches!(answer.status.as_u16(), 200 | 422), "{} to {request}", answer.status);
+        if answer.status == 200 {
+            let counts = answer.json()["counts"].as_object().unwrap().clone();
+            assert_eq!(counts.values().filter_map(Value::as_u64).sum::<u64>(), runs, "{request}");
+            outcomes.extend(counts.into_iter().filter(|(_, count)| *count != json!(0)).map(|(name, _)| name));
+        }
+    }
+    println!("{outcomes:?}");
+    assert!(["completed", "toppled", "separating", "sinking", "missed"].iter().all(|name| outcomes.contains(*name)));
 }
