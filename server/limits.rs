@@ -76,8 +76,8 @@ pub const REGION_BOUNDARY_NODES: usize = 49;
 /// Runs of one ensemble. The interval about a share of them is then within 0.7 % of it.
 pub const ENSEMBLE_RUNS: u64 = 20_000;
 
-/// Work of one ensemble, in bounces, which with noise take three times as long as plain ones: some 12 s of two cores. It is
-/// stopped as soon as its client is gone.
+/// Work of one ensemble, in bounces, which with noise take three to four times as long as plain ones: some 15 s of two cores.
+/// It is stopped as soon as its client is gone.
 pub const ENSEMBLE_WORK: Limit = Limit { name: "work of this ensemble", most: 100_000_000, unit: "bounces" };
 
 /// Work of one block of an ensemble, the runs that a thread takes at a time: some 10 ms, as for regions. One run may be more.
