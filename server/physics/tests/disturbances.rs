@@ -76,7 +76,7 @@ fn another_table_is_in_force_from_the_coming_contact_on() {
 fn a_run_that_begins_to_lose_energy_settles() {
     let mut orbit = at_contact_20();
     let still = Rod { restitution: 0.5, tilt_gain: 0.0, strike_gain: 1.5, ..CASE_1 };
-    orbit.replace(still, Rules { topple_angle: 1.5, settles: true, holds_energy: false });
+    orbit.replace(still, Rules { topple_angle: 1.5, settles: true, holds_energy: false, limits: None });
     let ending = (0..10_000).find_map(|_| orbit.advance().ending);
     assert!(matches!(ending, Some(Ending::Settled { .. } | Ending::Toppled { .. })), "{ending:?}");
 }
