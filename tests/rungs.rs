@@ -31,6 +31,15 @@ async fn a_ladder_says_what_was_needed() {
             assert_eq!(run["outcome"], step["outcome"]);
         }
     }
+    let wedge = json!({"scene": {
+        "body": {"vertices": [[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]]}, "contact": {"friction": 0.2},
+        "table": {"tilt_gain": 1.1, "slide": "matched"}, "release": {"height": 0.2, "theta": 0.02},
+    }});
+    let wedge = server.post("/v1/ladder", &wedge).await.expect(200).json();
+    let names: Vec<_> = wedge["rungs"].as_array().unwrap().iter().map(|step| step["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["linear", "rod", "friction", "polygon"]);
+    assert_eq!(wedge["enough"], "friction");
+    assert!(wedge["rungs"][2]["scene"]["body"]["contact_distance"].is_number(), "{wedge}");
     let point = ask("preset=point-mass").await;
     assert_eq!(point["rungs"].as_array().unwrap().len(), 1);
 }

@@ -100,7 +100,7 @@ impl Scene {
             unit,
             rounding: unit,
             // Not derived for more than the plain rod.
-            lost: matches!(model, Model::Rig(_)),
+            lost: self.roughness().is_some(),
         };
         if first > 0.0 {
             let (sin, cos) = start.theta.sincos();

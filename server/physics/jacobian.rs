@@ -66,9 +66,11 @@ pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearizati
     along(model, start, period, |state| match model {
         Model::Rod(rod) => rod_jacobian(rod, state).map(smooth),
         Model::Point(point) => Some(smooth(point_jacobian(point, state))),
-        Model::Rig(Rig { rod, friction: Some(friction), steering: Steering::TiltGain, noise: None }) => {
-            rough_jacobians(rod, friction, state)
-        }
+        // The outline of a polygon ends runs and changes no bounce.
+        Model::Rig(Rig { rod, friction, steering: Steering::TiltGain, noise: None, outline: _ }) => match friction {
+            Some(friction) => rough_jacobians(rod, friction, state),
+            None => rod_jacobian(rod, state).map(smooth),
+        },
         // Not derived, and nobody is to take anything else for it.
         Model::Rig(_) => Some(smooth(DMatrix::from_element(4, 4, f64::NAN))),
     })

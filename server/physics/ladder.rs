@@ -142,6 +142,16 @@ impl Scene {
         };
         without(Rung::Noise, &[Name::TimingSd, Name::AngleSd, Name::NoiseModel, Name::Seed]);
         without(Rung::Friction, &[Name::Friction, Name::Slide]);
+        if let (true, Some(outline)) = (rung < Rung::Polygon, self.outline()) {
+            draft.set_vertices(None);
+            for (name, value) in [
+                (Name::ContactVertex, None),
+                (Name::ContactDistance, Some(Value::Number(outline.contact_distance()))),
+                (Name::RadiusOfGyration, Some(Value::Number(outline.radius_of_gyration()))),
+            ] {
+                let _ = draft.set(name, value);
+            }
+        }
         if rung < Rung::RodWithX && self.number(Name::FeedbackX).is_some() {
             let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));
         }

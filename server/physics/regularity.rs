@@ -95,7 +95,7 @@ impl Scene {
     pub fn regularity(&self, fixed_point: &FixedPoint, linear: &Linear, impacts: u64) -> Option<Regularity> {
         let (rod, friction) = match self.model() {
             Model::Rod(rod) => (rod, None),
-            Model::Rig(Rig { rod, steering: Steering::TiltGain, friction, noise: None }) => (rod, friction),
+            Model::Rig(Rig { rod, steering: Steering::TiltGain, friction, noise: None, outline: _ }) => (rod, friction),
             _ => return None,
         };
         let mut orbit = self.orbit().ok()?;

@@ -24,7 +24,7 @@ pub struct Request {
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-15..=10.0;
 
 /// Rungs of the tallest ladder, and the work of one impact on one of them, in bounces of the plain rod: the linear one costs most.
-const RUNGS: u64 = 6;
+const RUNGS: u64 = 7;
 const RUNG_PRICE: u64 = 20;
 
 impl Request {
