@@ -22,6 +22,8 @@ const TOP = 'World';
 
 /** @param {Field} field */
 function groupOf({ path, group }) {
+  if (path.startsWith('table.feedback.')) return 'State feedback';
+  if (path.startsWith('table.limits.')) return 'Limits of the table';
   return path.includes('.') ? group[0].toUpperCase() + group.slice(1) : TOP;
 }
 
@@ -32,6 +34,9 @@ const COMFORTABLE = {
   'body.contact_distance': [0.02, 0.4], 'body.radius_of_gyration': [0.02, 0.4],
   'release.height': [0.1, 0.6], 'release.theta': [-0.6, 0.6], 'release.theta_dot': [-3, 3],
   'release.x': [-1, 1], 'release.x_dot': [-1, 1], 'release.y_dot': [-2, 2], gravity: [1, 20], incline: [0.1, 1.5708],
+  'contact.friction': [0, 1], 'noise.timing_sd': [0, 0.05], 'noise.angle_sd': [0, 0.1],
+  'table.feedback.x': [-1, 1], 'table.feedback.theta': [-2, 2], 'table.feedback.x_dot': [-1, 1], 'table.feedback.theta_dot': [-1, 1],
+  'table.limits.tilt': [0, 1.57], 'table.limits.tilt_rate': [0, 20], 'table.limits.speed': [0, 2], 'table.limits.stroke': [0, 0.5],
 };
 
 /** A step of 1, 2 or 5 that parts the span into some two hundred. @param {number} span */
