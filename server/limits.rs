@@ -76,7 +76,7 @@ pub const REGION_BOUNDARY_NODES: usize = 49;
 /// Runs of one ensemble. The interval about a share of them is then within 0.7 % of it.
 pub const ENSEMBLE_RUNS: u64 = 20_000;
 
-/// Work of one ensemble, in bounces, which with noise take three to four times as long as plain ones: some 15 s of two cores.
+/// Work of one ensemble, in bounces, which with noise take two to four times as long as plain ones: some 10 s of two cores.
 /// It is stopped as soon as its client is gone.
 pub const ENSEMBLE_WORK: Limit = Limit { name: "work of this ensemble", most: 100_000_000, unit: "bounces" };
 
