@@ -5,6 +5,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use equipoise_physics::demand::{Demand, Meter};
 use equipoise_physics::map::{Contact, Ending, Orbit};
 use equipoise_physics::model::Model;
 use equipoise_physics::scene::Scene;
@@ -26,6 +27,7 @@ pub struct Course {
     scene: Arc<Scene>,
     has_angle: bool,
     outcome: Option<Arc<Outcome>>,
+    meter: Meter,
 }
 
 impl Course {
@@ -39,7 +41,7 @@ impl Course {
                 (nowhere, Some(Arc::new(Outcome::new(none.ending(0.0, 0.0), 0, 0.0))))
             }
         };
-        Self { orbit, scene: Arc::new(scene), has_angle: has_angle(&scene), outcome }
+        Self { orbit, scene: Arc::new(scene), has_angle: has_angle(&scene), outcome, meter: Meter::default() }
     }
 
     /// When the coming impact is, s; none after the end.
@@ -55,6 +57,11 @@ impl Course {
     /// How the run ended, if it did.
     pub fn outcome(&self) -> Option<&Outcome> {
         self.outcome.as_deref()
+    }
+
+    /// The most that the run has asked of the table so far.
+    pub fn demand(&self) -> Demand {
+        self.meter.most
     }
 
     /// The scene in force.
@@ -78,6 +85,7 @@ impl Course {
             contact.ending = Some(Ending::Completed);
             contact.flight_time = None;
         }
+        self.meter.look(&contact);
         if let Some(ending) = contact.ending {
             self.outcome = Some(Arc::new(Outcome::new(ending, n, contact.t)));
         }

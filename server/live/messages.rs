@@ -13,7 +13,7 @@ use super::run::Run;
 use crate::BUILD;
 use crate::http::{FieldError, Problem};
 use crate::wire::scene::{Resolved, has_angle};
-use crate::wire::trajectory::{Choice, Outcome};
+use crate::wire::trajectory::{Choice, DemandAnswer, Outcome};
 
 /// A message of the server's.
 #[derive(Debug, Serialize)]
@@ -39,6 +39,8 @@ pub enum Said<'a> {
     End {
         /// How.
         outcome: &'a Outcome,
+        /// The most that it asked of the table.
+        demand: DemandAnswer,
     },
     /// Something is wrong with a message, or with the whole run.
     Problem {

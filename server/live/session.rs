@@ -199,7 +199,7 @@ impl Session {
         let hello = Hello::new(&self.run, &self.course, now);
         self.outbox.say(Said::Hello(Box::new(hello)).to_text());
         if let Some(outcome) = self.course.outcome() {
-            self.outbox.say(Said::End { outcome }.to_text());
+            self.outbox.say(Said::End { outcome, demand: self.course.demand().into() }.to_text());
         }
     }
 
@@ -218,7 +218,7 @@ impl Session {
                 self.outbox.push_impact(impact);
             }
             if let Some(outcome) = self.course.outcome() {
-                self.outbox.say(Said::End { outcome }.to_text());
+                self.outbox.say(Said::End { outcome, demand: self.course.demand().into() }.to_text());
             }
         }
         self.place.bounces.inc_by(told as u64);

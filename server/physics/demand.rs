@@ -3,6 +3,8 @@
 //! Between two strikes nothing of the table touches the body, so how it gets from one to the next is the rig's affair; what is
 //! told here is the least that any rig needs.
 
+use crate::map::Contact;
+
 /// The table at a strike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -72,6 +74,24 @@ fn stroke(v0: f64, v1: f64, time: f64) -> f64 {
         }
     }
     high - low
+}
+
+/// What a run has demanded so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Meter {
+    /// The most of each.
+    pub most: Demand,
+    last: Option<Pose>,
+}
+
+impl Meter {
+    /// Looks at a contact of the run, one after the other; at one without a strike nothing is asked of the table.
+    #[inline(always)]
+    pub fn look(&mut self, contact: &Contact) {
+        let Some(strike) = &contact.strike else { return };
+        let pose = Pose { t: contact.t, alpha: strike.alpha, velocity: strike.table_velocity };
+        self.most = self.most.or(pose.demand(self.last.replace(pose).as_ref()));
+    }
 }
 
 impl Demand {

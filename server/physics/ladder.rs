@@ -2,6 +2,7 @@
 //!
 //! What a rung leaves out is left out of the scene itself, so each runs as it would if it had been asked for alone.
 
+use crate::demand::{Demand, Meter};
 use crate::impact::State;
 use crate::map::Ending;
 use crate::method::Method;
@@ -30,6 +31,8 @@ pub struct Run {
     pub impacts: u64,
     /// When, s.
     pub t: f64,
+    /// The most that it asked of the table.
+    pub demand: Demand,
     /// What this rung changed against the next lower one that applies.
     pub change: Option<Change>,
 }
@@ -91,9 +94,10 @@ impl Scene {
         for (rung, forced) in self.rungs() {
             let scene = self.on(rung);
             let method = if rung == Rung::Linear { Method::Linear } else { Method::Map };
-            let mut course = Vec::new();
+            let (mut course, mut meter) = (Vec::new(), Meter::default());
             let run = scene.run_by(method, impacts, |impact| {
                 let contact = &impact.contact;
+                meter.look(contact);
                 course.push(Here { t: contact.t, x: contact.x, state: contact.state });
                 !contact.n.is_multiple_of(1024) || go_on()
             });
@@ -108,6 +112,7 @@ impl Scene {
                         ending,
                         impacts: course.len() as u64,
                         t: course.last().map_or(0.0, |here| here.t),
+                        demand: meter.most,
                         change,
                     };
                     below = Some((course, ending));

@@ -13,6 +13,7 @@
 //! table's clock and its sense of angle get wrong.
 
 pub mod basin;
+pub mod body;
 pub mod contact_time;
 pub mod demand;
 pub mod dispatch;

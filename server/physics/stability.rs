@@ -4,6 +4,7 @@
 //! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
 //! off by the square root of rounding.
 
+use crate::demand::{Demand, Meter};
 use crate::grip::Grip;
 use crate::jacobian::{modulus, sort_eigenvalues};
 use crate::map::{Ending, run};
@@ -120,6 +121,8 @@ pub struct Nonlinear {
     pub t: f64,
     /// Largest |θ| at a contact, rad.
     pub max_theta: f64,
+    /// The most that it asked of the table.
+    pub demand: Demand,
 }
 
 impl Scene {
@@ -360,17 +363,20 @@ impl Scene {
             Ok(orbit) => orbit,
             Err(none) => {
                 let (ending, t) = (none.ending(0.0, 0.0), 0.0);
-                return Some(Nonlinear { ending, impacts: 0, t, max_theta: self.start().theta.abs() });
+                let max_theta = self.start().theta.abs();
+                return Some(Nonlinear { ending, impacts: 0, t, max_theta, demand: Demand::default() });
             }
         };
         let mut max_theta: f64 = 0.0;
         let mut t = 0.0;
+        let mut meter = Meter::default();
         let ending = run(&mut orbit, impacts, |contact| {
+            meter.look(contact);
             max_theta = max_theta.max(contact.state.theta.abs());
             t = contact.t;
             !contact.n.is_multiple_of(1024) || go_on()
         })?;
-        Some(Nonlinear { ending, impacts: orbit.contacts(), t, max_theta })
+        Some(Nonlinear { ending, impacts: orbit.contacts(), t, max_theta, demand: meter.most })
     }
 }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::scene::Resolved;
 use super::table::{Cells, Column, Table};
-use super::trajectory::{ForcedAnswer, Outcome};
+use super::trajectory::{DemandAnswer, ForcedAnswer, Outcome};
 use crate::http::Reader;
 use crate::limits;
 
@@ -65,6 +65,7 @@ struct RungAnswer {
     /// Why it does not apply, where it does not.
     reason: Option<String>,
     outcome: Option<Outcome>,
+    demand: Option<DemandAnswer>,
     cost_ns_per_impact: f64,
     change: Option<ChangeAnswer>,
     needed: Option<bool>,
@@ -122,10 +123,11 @@ impl<'a> Ladder<'a> {
         let (mut rungs, mut bounces) = (Vec::new(), 0);
         let (mut below, mut enough) = (None::<Rung>, None::<Rung>);
         for Step { rung, scene, forced, run } in steps {
-            let (mut reason, mut outcome, mut change, mut needed) = (None, None, None, None);
+            let (mut reason, mut outcome, mut demand, mut change, mut needed) = (None, None, None, None, None);
             match run {
                 Err(why) => reason = Some(why),
-                Ok(Run { ending, impacts, t, change: found }) => {
+                Ok(Run { ending, impacts, t, demand: found_demand, change: found }) => {
+                    demand = Some(found_demand.into());
                     bounces += impacts;
                     outcome = Some(Outcome::new(ending, impacts, t));
                     needed = found.map(|found| !found.same_outcome || found.state.value > tolerance);
@@ -143,6 +145,7 @@ impl<'a> Ladder<'a> {
                 scene: super::scene::to_json(&scene),
                 reason,
                 outcome,
+                demand,
                 cost_ns_per_impact: rung.cost_ns(),
                 change,
                 needed,

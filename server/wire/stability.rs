@@ -14,7 +14,7 @@ use super::jacobian::Eigenvalue;
 use super::margins::{self, Margins};
 use super::scene::{Resolved, has_angle};
 use super::table::{Cells, Column, Table};
-use super::trajectory::{Choice, Outcome};
+use super::trajectory::{Choice, DemandAnswer, Outcome};
 use crate::http::Reader;
 use crate::limits;
 use crate::picture::{Eigenvalues, Spectrum, eigenvalues};
@@ -69,6 +69,7 @@ struct NonlinearPart {
     impacts: u64,
     t: f64,
     max_theta: f64,
+    demand: DemandAnswer,
     detail: String,
 }
 
@@ -184,6 +185,7 @@ impl<'a> Stability<'a> {
                 impacts: run.impacts,
                 t: run.t,
                 max_theta: run.max_theta,
+                demand: run.demand.into(),
                 detail: Outcome::new(run.ending, run.impacts, run.t).detail,
             },
             drift_speed: scene.drift_speed(),
@@ -248,6 +250,15 @@ impl<'a> Stability<'a> {
                 answer.predictable_impacts = evidence.predictable_impacts();
                 answer.chaos = evidence.chaos().map(Chaos::from);
                 answer.rotation_number = evidence.rotation().map(RotationNumber::from);
+                let off = scene.height_error();
+                if off != 0.0 {
+                    notes.push(format!(
+                        "the table believes restitution {} and meets {}: the height settles at {} m, {off} m above target_height",
+                        scene.assumed_restitution(),
+                        scene.number(Name::Restitution).unwrap_or_default(),
+                        fixed_point.apex_height
+                    ));
+                }
                 answer.linear = Some(LinearPart::new(scene, &linear));
                 answer.fixed_point = Some(FixedPoint {
                     theta: 0.0,

@@ -1,6 +1,6 @@
 //! The answer of `trajectories`: the contacts of a run as a table, how it ended, and its flights where they are asked for.
 
-use equipoise_physics::demand::{Demand, Excess, Pose};
+use equipoise_physics::demand::{Demand, Excess, Meter};
 use equipoise_physics::map::{Body, Ending, Touch};
 use equipoise_physics::method::{self, Impact, Method};
 use equipoise_physics::model::{Forced, Rung};
@@ -349,7 +349,7 @@ impl<'a> Trajectory<'a> {
         let mut flights = (samples > 0).then(Flights::default);
         let body = scene.model();
         let (mut last, mut unknown, mut predictable) = (None, 0, None);
-        let (mut pose, mut demand) = (None::<Pose>, Demand::default());
+        let mut meter = Meter::default();
         let mut nearest_vertex: Option<NearestVertex> = None;
         let run = scene.run_by(method, impacts, |impact| {
             let Impact { contact, error_estimate, .. } = impact;
@@ -364,10 +364,7 @@ impl<'a> Trajectory<'a> {
                     flights.push(scene, contact.n, contact.t, contact.x, y, &strike.after, length, samples);
                 }
             }
-            if let Some(strike) = contact.strike {
-                let here = Pose { t: contact.t, alpha: contact.alpha, velocity: strike.table_velocity };
-                demand = demand.or(here.demand(pose.replace(here).as_ref()));
-            }
+            meter.look(contact);
             if let Some(outline) = scene.outline() {
                 let Nearest { vertex, clearance } = outline.nearest(sin_cos(contact.state.theta - contact.alpha));
                 if nearest_vertex.is_none_or(|least| clearance < least.clearance) {
@@ -413,7 +410,7 @@ impl<'a> Trajectory<'a> {
             predictable_impacts: predictable,
             flights: flights.map(Flights::into_table),
             notes,
-            demand: demand.into(),
+            demand: meter.most.into(),
             nearest_vertex,
         })
     }

@@ -5,7 +5,6 @@ use equipoise_physics::contact_time::first_contact;
 use equipoise_physics::flight::Flight;
 use equipoise_physics::impact::{Rod, State};
 use equipoise_physics::jacobian::{finite_difference, jacobian};
-use equipoise_physics::map::Body;
 use equipoise_physics::model::Model;
 use equipoise_physics::trig;
 use nalgebra::DMatrix;

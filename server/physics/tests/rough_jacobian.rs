@@ -22,7 +22,7 @@ struct RoughRod {
 
 impl RoughRod {
     fn rig(&self) -> Rig {
-        Rig { rod: self.rod, steering: Steering::TiltGain, friction: Some(self.friction), noise: None }
+        Rig { rod: self.rod, steering: Steering::TiltGain, friction: Some(self.friction), noise: None, outline: None }
     }
 
     fn strike(&self, state: &State) -> Strike {
