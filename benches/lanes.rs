@@ -9,8 +9,10 @@ use std::time::Instant;
 
 use case_1::{ROD, RULES};
 use equipoise_physics::dispatch::{Path, Work, dispatch_on};
+use equipoise_physics::friction::{Law, Slide};
 use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::sweep::{Start, sweep_on};
+use equipoise_physics::map::Rules;
+use equipoise_physics::sweep::{Start, sweep_on, sweep_rough_on};
 
 const RUNS: usize = 64;
 const BOUNCES: u64 = 2000;
@@ -30,6 +32,18 @@ fn ours(path: Path, wide: f64) -> f64 {
     let mut bounces = 0;
     let clock = Instant::now();
     sweep_on(path, BOUNCES, || runs.next(), |_, end| bounces += end.impacts, || true);
+    clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
+}
+
+/// ns a bounce of the same with friction.
+fn rough(path: Path, contact: (Law, Slide), wide: f64) -> f64 {
+    let mut runs = (0..RUNS).map(|run| {
+        let start = start(black_box(run), wide);
+        (run, Start { rules: Rules { holds_energy: false, ..start.rules }, ..start }, 0.3)
+    });
+    let mut bounces = 0;
+    let clock = Instant::now();
+    sweep_rough_on(path, contact, BOUNCES, || runs.next(), |_, end| bounces += end.impacts, || true);
     clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
 }
 
@@ -135,6 +149,12 @@ fn main() {
         for (name, wide) in [("|θ| ≤ 0.03", 0.001), ("|θ| ≤ 0.13", 0.004)] {
             let [ours, bare, ratio] = compare(|| ours(path, wide), || bare(path, wide));
             println!("{path:?}, {name}: sweep {ours:.2}, bare loop {bare:.2}, ratio {ratio:.2}");
+        }
+    }
+    for path in Path::ALL.into_iter().filter(|path| path.is_there()) {
+        for law in [Law::Poisson, Law::Newton, Law::Stronge] {
+            let [with, without, ratio] = compare(|| rough(path, (law, Slide::Matched), 0.001), || ours(path, 0.001));
+            println!("{path:?}, matched, {law:?}: {with:.2}, without friction {without:.2}, ratio {ratio:.2}");
         }
     }
     let best = Path::ALL.into_iter().find(|path| path.is_there()).unwrap_or(Path::Portable);

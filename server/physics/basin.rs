@@ -3,11 +3,12 @@
 //! A scan in lanes and a search of its edges. Not a map over two fields, and no proof: between two angles of the scan a
 //! narrow hole stays unseen.
 
+use crate::friction::Friction;
 use crate::impact::State;
 use crate::map::Release;
-use crate::model::Model;
+use crate::model::Rung;
 use crate::scene::Scene;
-use crate::sweep::{Outcome, Start, sweep};
+use crate::sweep::{End, Outcome, Start, sweep, sweep_rough};
 use std::cell::Cell;
 
 /// Angles of the rough scan, over all there are, and of the fine one, over those that matter.
@@ -57,15 +58,20 @@ impl Scene {
     /// [`NoBasin`].
     pub fn basin(&self, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<Basin, NoBasin> {
         let because = |why: String| NoBasin::Because(why);
-        if let Some(error) = self.roughness() {
+        if let Some(error) = self.beyond(&[Rung::Friction]) {
             return Err(because(error.detail));
+        }
+        if self.rules().limits.is_some() {
+            return Err(because(
+                "it is looked for in lanes of rods, which do not see the limits of a table".to_owned(),
+            ));
         }
         if self.outline().is_some() {
             return Err(because(
                 "it is looked for in lanes of rods, which do not see the vertices of a polygon".to_owned(),
             ));
         }
-        let Model::Rod(rod) = self.model() else {
+        let Some((rod, friction)) = self.model().in_lanes() else {
             return Err(because("a point mass has no angle to be released at".to_owned()));
         };
         if self.is_lossy() {
@@ -89,18 +95,21 @@ impl Scene {
             let mut survivors = vec![false; angles.len()];
             let mut stopped = false;
             let mut starts = angles.iter().enumerate().filter_map(|(index, theta)| Some((index, start(*theta)?)));
-            sweep(
-                impacts,
-                || starts.next(),
-                |index, end| {
-                    survivors[index] = end.outcome == Outcome::Completed;
-                    bounces.set(bounces.get() + end.impacts);
-                },
-                || {
-                    stopped = !go_on();
-                    !stopped
-                },
-            );
+            let done = |index: usize, end: End| {
+                survivors[index] = end.outcome == Outcome::Completed;
+                bounces.set(bounces.get() + end.impacts);
+            };
+            let go_on = || {
+                stopped = !go_on();
+                !stopped
+            };
+            match friction {
+                None => sweep(impacts, || starts.next(), done, go_on),
+                Some(Friction { coefficient, law, slide }) => {
+                    let next = || starts.next().map(|(index, start)| (index, start, coefficient));
+                    sweep_rough((law, slide), impacts, next, done, go_on);
+                }
+            }
             if stopped { Err(NoBasin::Stopped) } else { Ok(survivors) }
         };
         let grid = |count: usize, span: f64| -> Vec<f64> {

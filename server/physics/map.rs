@@ -272,7 +272,7 @@ impl<B: Body> Orbit<B> {
 
 /// One contact in the midst of a run, with the energy that it should have there, and the flight after it: the state just
 /// before the next contact and the energy there, or why the run ends.
-pub(crate) fn contact(body: Rod, rules: Rules, state: State, energy: f64) -> Result<(State, f64), Ending> {
+pub(crate) fn contact<B: Body>(body: B, rules: Rules, state: State, energy: f64) -> Result<(State, f64), Ending> {
     let mut orbit = Orbit { energy: Some(energy), ..Orbit::at(body, rules, state) };
     match orbit.advance().ending {
         None => Ok((orbit.state, orbit.energy.unwrap_or(energy))),

@@ -91,6 +91,23 @@ impl Model {
     }
 }
 
+impl Model {
+    /// The rod in it and its friction, if that is all there is.
+    pub(crate) fn in_lanes(&self) -> Option<(Rod, Option<Friction>)> {
+        match *self {
+            Self::Rod(rod) => Some((rod, None)),
+            Self::Rig(Rig {
+                rod,
+                steering: Steering::TiltGain,
+                friction: Some(friction),
+                noise: None,
+                outline: None,
+            }) => Some((rod, Some(friction))),
+            _ => None,
+        }
+    }
+}
+
 impl Scene {
     /// The smallest model that is exact for the bounces of this scene.
     ///

@@ -2,11 +2,11 @@
 //!
 //! Not here: which threads do it, and how it is drawn.
 
+use crate::friction::Friction;
 use crate::map::run;
-use crate::model::Model;
 use crate::scene::{Draft, Name, Scene, Value};
 use crate::stability::Linear;
-use crate::sweep::{End, Outcome, Start, sweep};
+use crate::sweep::{End, Outcome, Start, sweep, sweep_rough};
 use std::ops::Range;
 
 /// One side of a region: a field and the values it takes.
@@ -99,7 +99,8 @@ impl Region {
             }
             return Some(cells);
         }
-        let (mut next, mut alone, mut stopped) = (0, Vec::new(), false);
+        let (mut next, mut rough, mut alone, mut stopped) = (0, Vec::new(), Vec::new(), false);
+        let mut contact = None;
         let count = cells.len();
         let start = || {
             while next < count {
@@ -108,7 +109,11 @@ impl Region {
                 let (column, row) = ((first + index) % self.x.count, (first + index) / self.x.count);
                 let Some(scene) = self.scene(column, row) else { continue };
                 match start_of(&scene) {
-                    Some(start) => return Some((index, start)),
+                    Some((start, None)) => return Some((index, start)),
+                    Some((start, Some(friction))) => {
+                        contact = Some((friction.law, friction.slide));
+                        rough.push((index, start, friction.coefficient));
+                    }
                     None => alone.push((index, scene)),
                 }
             }
@@ -123,6 +128,21 @@ impl Region {
                 !stopped
             },
         );
+        if let (Some(contact), false) = (contact, stopped) {
+            // All of one law and one way to slide: a region is over numbers.
+            let mut rough = rough.into_iter();
+            let done = |index: usize, end| cells[index] = self.cell(&end);
+            sweep_rough(
+                contact,
+                self.impacts,
+                || rough.next(),
+                done,
+                || {
+                    stopped = !go_on();
+                    !stopped
+                },
+            );
+        }
         for (index, scene) in alone {
             let end = if stopped { None } else { run_alone(&scene, self.impacts, go_on) };
             stopped |= end.is_none();
@@ -198,12 +218,12 @@ fn cross(mut low: [f64; 2], mut high: [f64; 2], function: impl Fn([f64; 2]) -> O
     middle(low, high)
 }
 
-/// The start of a run that can go in a lane.
-fn start_of(scene: &Scene) -> Option<Start> {
-    let Model::Rod(rod) = scene.running_model() else { return None };
+/// The start of a run that can go in a lane, with its friction.
+fn start_of(scene: &Scene) -> Option<(Start, Option<Friction>)> {
+    let (rod, friction) = scene.running_model().in_lanes()?;
     let (_, state) = rod.fall(scene.release()).ok()?;
     let start = Start { rod, rules: scene.rules(), state };
-    start.fits().then_some(start)
+    start.fits().then_some((start, friction))
 }
 
 fn run_alone(scene: &Scene, impacts: u64, go_on: &mut dyn FnMut() -> bool) -> Option<End> {

@@ -4,9 +4,10 @@
 //! rod at once, so that dead cells cost nothing; a bounce that is not a common one is done alone, by the map itself.
 
 use crate::dispatch::{Path, Work, dispatch, dispatch_on};
+use crate::friction::{Law, Slide};
 use crate::impact::{Rod, State};
-use crate::lanes::{Bounced, Far, Moving, Near, Rods, Scratch, WIDTH, bounce};
-use crate::map::{Rules, contact};
+use crate::lanes::{Bounced, Far, Moving, Near, Rods, Rough, Scratch, Smooth, Surface, WIDTH, bounce};
+use crate::map::Rules;
 pub use crate::outcome::Outcome;
 
 /// One run to be made.
@@ -38,7 +39,7 @@ impl Start {
 
     /// Whether it can run in lanes: a run that settles goes alone.
     pub fn fits(&self) -> bool {
-        self.rules.holds_energy && !self.rules.settles && self.rules.limits.is_none()
+        !self.rules.settles && self.rules.limits.is_none()
     }
 }
 
@@ -48,11 +49,23 @@ impl Start {
 /// Every start has to [fit](Start::fits).
 pub fn sweep(
     impacts: u64,
-    next: impl FnMut() -> Option<(usize, Start)>,
+    mut next: impl FnMut() -> Option<(usize, Start)>,
     done: impl FnMut(usize, End),
     go_on: impl FnMut() -> bool,
 ) {
-    dispatch(Sweep { impacts, next, done, go_on });
+    let next = || next().map(|(number, start)| (number, start, ()));
+    dispatch(Sweep { surface: Smooth, impacts, next, done, go_on });
+}
+
+/// [`sweep`] with friction of one law and one way to slide: `next` gives its coefficient too.
+pub fn sweep_rough(
+    (law, slide): (Law, Slide),
+    impacts: u64,
+    next: impl FnMut() -> Option<(usize, Start, f64)>,
+    done: impl FnMut(usize, End),
+    go_on: impl FnMut() -> bool,
+) {
+    dispatch(Sweep { surface: Rough::new(law, slide), impacts, next, done, go_on });
 }
 
 /// [`sweep`] over all of `starts`: their ends, in the same order. None once `go_on` said `false`.
@@ -67,14 +80,28 @@ pub fn sweep_all(impacts: u64, starts: &[Start], go_on: &mut dyn FnMut() -> bool
 pub fn sweep_on(
     path: Path,
     impacts: u64,
-    next: impl FnMut() -> Option<(usize, Start)>,
+    mut next: impl FnMut() -> Option<(usize, Start)>,
     done: impl FnMut(usize, End),
     go_on: impl FnMut() -> bool,
 ) {
-    dispatch_on(path, Sweep { impacts, next, done, go_on });
+    let next = || next().map(|(number, start)| (number, start, ()));
+    dispatch_on(path, Sweep { surface: Smooth, impacts, next, done, go_on });
 }
 
-struct Sweep<Next, Done, GoOn> {
+/// [`sweep_rough`] with one kind of instructions.
+pub fn sweep_rough_on(
+    path: Path,
+    (law, slide): (Law, Slide),
+    impacts: u64,
+    next: impl FnMut() -> Option<(usize, Start, f64)>,
+    done: impl FnMut(usize, End),
+    go_on: impl FnMut() -> bool,
+) {
+    dispatch_on(path, Sweep { surface: Rough::new(law, slide), impacts, next, done, go_on });
+}
+
+struct Sweep<S, Next, Done, GoOn> {
+    surface: S,
     impacts: u64,
     next: Next,
     done: Done,
@@ -84,9 +111,10 @@ struct Sweep<Next, Done, GoOn> {
 /// How often `go_on` is asked, in bounces of all lanes.
 const LOOK: u64 = 1024;
 
-impl<Next, Done, GoOn> Work for Sweep<Next, Done, GoOn>
+impl<S, Next, Done, GoOn> Work for Sweep<S, Next, Done, GoOn>
 where
-    Next: FnMut() -> Option<(usize, Start)>,
+    S: Surface,
+    Next: FnMut() -> Option<(usize, Start, S::Of)>,
     Done: FnMut(usize, End),
     GoOn: FnMut() -> bool,
 {
@@ -94,7 +122,7 @@ where
 
     #[inline(always)]
     fn call(mut self) {
-        let mut orbits = Orbits::idle(self.impacts);
+        let mut orbits = Orbits::idle(self.surface, self.impacts);
         for lane in 0..WIDTH {
             orbits.load(lane, (self.next)());
         }
@@ -137,7 +165,8 @@ fn bits(mut mask: Mask) -> impl Iterator<Item = usize> {
 }
 
 /// Orbits side by side.
-struct Orbits {
+struct Orbits<S> {
+    surface: S,
     rods: Rods,
     moving: Moving,
     /// Contacts of each run.
@@ -171,9 +200,10 @@ const IDLE: Start = Start {
     state: State { theta: 0.0, x_dot: 0.0, y_dot: -1.0, theta_dot: 0.0 },
 };
 
-impl Orbits {
-    fn idle(impacts: u64) -> Self {
+impl<S: Surface> Orbits<S> {
+    fn idle(surface: S, impacts: u64) -> Self {
         Self {
+            surface,
             rods: Rods::all(&IDLE.rod, IDLE.rules.topple_angle),
             moving: Moving::all(&IDLE.state, IDLE.energy()),
             impacts,
@@ -188,19 +218,20 @@ impl Orbits {
     }
 
     /// Gives a lane its next run, or none.
-    fn load(&mut self, lane: usize, next: Option<(usize, Start)>) {
-        let (start, last) = match next {
-            Some((number, start)) => {
+    fn load(&mut self, lane: usize, next: Option<(usize, Start, S::Of)>) {
+        let (start, of, last) = match next {
+            Some((number, start, of)) => {
                 self.number[lane] = number;
                 self.busy |= 1 << lane;
-                (start, self.turn.saturating_add(self.impacts))
+                (start, of, self.turn.saturating_add(self.impacts))
             }
             None => {
                 self.busy &= !(1 << lane);
-                (IDLE, u64::MAX)
+                (IDLE, S::IDLE, u64::MAX)
             }
         };
         self.rods.set(lane, &start.rod, start.rules.topple_angle);
+        self.surface.set(lane, of);
         self.moving.set(lane, &start.state, start.energy());
         self.moving.max_theta[lane] = 0.0;
         (self.first[lane], self.last[lane]) = (self.turn, last);
@@ -230,11 +261,11 @@ impl Orbits {
             self.turn += 1;
             let mut bounced = Bounced { near: false, common: false };
             if !self.far {
-                bounced = bounce::<Near>(&self.rods, &self.moving, &mut next, &mut scratch);
+                bounced = bounce::<Near, S>(&self.surface, &self.rods, &self.moving, &mut next, &mut scratch);
                 self.far = !bounced.near;
             }
             if self.far {
-                bounced = bounce::<Far>(&self.rods, &self.moving, &mut next, &mut scratch);
+                bounced = bounce::<Far, S>(&self.surface, &self.rods, &self.moving, &mut next, &mut scratch);
                 self.far = !bounced.near;
             }
             if !bounced.common {
@@ -259,11 +290,10 @@ impl Orbits {
     #[cold]
     #[inline(never)]
     fn alone(&mut self, lane: usize) -> Option<Outcome> {
-        let (rod, state) = (self.rods.rod(lane), self.moving.state(lane));
+        let theta = self.moving.state(lane).theta;
         let max_theta = &mut self.moving.max_theta[lane];
-        *max_theta = max_theta.max(state.theta.abs());
-        let rules = Rules { topple_angle: self.rods.topple_angle(lane), ..IDLE.rules };
-        match contact(rod, rules, state, self.moving.energy[lane]) {
+        *max_theta = max_theta.max(theta.abs());
+        match self.surface.contact(&self.rods, &self.moving, lane) {
             Ok((state, energy)) => {
                 self.moving.set(lane, &state, energy);
                 None

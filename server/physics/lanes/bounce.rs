@@ -4,10 +4,11 @@
 //! chains of neighbours only where they fit into its window together.
 
 use super::number::{Lane, Near};
+use super::surface::Surface;
 use super::{Lanes, WIDTH};
 use crate::contact_time::{self, Step};
 use crate::flight::Flight;
-use crate::impact::{Rod, State, Tilt};
+use crate::impact::{Rod, State, Strike, Tilt};
 use crate::map::SPEED_LIMIT;
 
 /// What bounces, and how far it may tilt.
@@ -74,9 +75,15 @@ pub(crate) struct Bounced {
 /// The bounce of all lanes from `moving` to `next`, but not of those that it sets apart: their run may end here, an angle may
 /// be beyond the reach of `L`, or their contact time is not a common one.
 #[inline(always)]
-pub(crate) fn bounce<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) -> Bounced {
+pub(crate) fn bounce<L: Lane, S: Surface>(
+    surface: &S,
+    rods: &Rods,
+    moving: &Moving,
+    next: &mut Moving,
+    scratch: &mut Scratch,
+) -> Bounced {
     let tilted_near = tilt::<L>(rods, moving, next, scratch);
-    strike::<L>(rods, moving, next, scratch);
+    surface.strike::<L>(rods, moving, next, scratch);
     guess::<L>(rods, moving, next, scratch);
     let mut fallen = fall::<L>(rods, moving, next, scratch, true);
     for _ in 1..STEPS {
@@ -114,35 +121,6 @@ fn tilt<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut 
         scratch.apart[lane] = unless((largest <= L::REACH) & (size < rods.topple_angle[lane]));
     }
     near
-}
-
-/// The velocities after the strike.
-#[inline(always)]
-fn strike<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) {
-    let number = L::from_f64;
-    for lane in 0..WIDTH {
-        let rod = rods.rod(lane).lift::<L>();
-        let tilt = Tilt {
-            alpha: number(scratch.alpha[lane]),
-            // Nothing in this strike needs it.
-            sin_theta: number(scratch.sin_theta[lane]),
-            versine_theta: number(scratch.versine_theta[lane]),
-            sin_alpha: number(scratch.sin_alpha[lane]),
-            cos_alpha: number(scratch.cos_alpha[lane]),
-            sin_beta: number(scratch.sin_beta[lane]),
-        };
-        let mut strike = rod.strike_with(&moving.state(lane).map(number), &tilt, number(rods.leverage[lane]));
-        let energy = rod.hold_energy(&mut strike, number(moving.energy[lane]));
-        let after = strike.after.map(L::to_f64);
-        next.set(lane, &after, energy.to_f64());
-        scratch.y_dot[lane] = after.y_dot;
-        scratch.apart[lane] |= unless(
-            (strike.push.to_f64() < 0.0)
-                & (after.x_dot.abs() <= 0.5 * SPEED_LIMIT)
-                & (after.y_dot.abs() <= 0.5 * SPEED_LIMIT)
-                & (strike.contact_rise.to_f64() > 0.0),
-        );
-    }
 }
 
 /// Where to start on the time of flight.
@@ -263,6 +241,12 @@ impl Rods {
         }
     }
 
+    /// 1/ρ² of the one in a lane, 1/m².
+    #[inline(always)]
+    pub(super) fn leverage(&self, lane: usize) -> f64 {
+        self.leverage[lane]
+    }
+
     /// How far the one in a lane may tilt, rad.
     pub(crate) fn topple_angle(&self, lane: usize) -> f64 {
         self.topple_angle[lane]
@@ -304,6 +288,21 @@ impl Moving {
         self.energy[lane] = energy;
     }
 
+    /// Puts what a strike gives into a lane, with the energy that the run should have after it; sets it apart where the run may end
+    /// there.
+    #[inline(always)]
+    pub(super) fn struck<L: Lane>(&mut self, lane: usize, strike: &Strike<L>, energy: f64, scratch: &mut Scratch) {
+        let after = strike.after.map(L::to_f64);
+        self.set(lane, &after, energy);
+        scratch.y_dot[lane] = after.y_dot;
+        scratch.apart[lane] |= unless(
+            (strike.push.to_f64() < 0.0)
+                & (after.x_dot.abs() <= 0.5 * SPEED_LIMIT)
+                & (after.y_dot.abs() <= 0.5 * SPEED_LIMIT)
+                & (strike.contact_rise.to_f64() > 0.0),
+        );
+    }
+
     /// Takes a lane from another.
     pub(crate) fn take(&mut self, lane: usize, other: &Self) {
         self.set(lane, &other.state(lane), other.energy[lane]);
@@ -312,6 +311,20 @@ impl Moving {
 }
 
 impl Scratch {
+    /// The tilt in a lane.
+    #[inline(always)]
+    pub(super) fn tilt<L: Lane>(&self, lane: usize) -> Tilt<L> {
+        let number = L::from_f64;
+        Tilt {
+            alpha: number(self.alpha[lane]),
+            sin_theta: number(self.sin_theta[lane]),
+            versine_theta: number(self.versine_theta[lane]),
+            sin_alpha: number(self.sin_alpha[lane]),
+            cos_alpha: number(self.cos_alpha[lane]),
+            sin_beta: number(self.sin_beta[lane]),
+        }
+    }
+
     /// Nothing in it.
     pub(crate) fn new() -> Self {
         let zero = [0.0; WIDTH];

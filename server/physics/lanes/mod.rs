@@ -5,9 +5,11 @@
 
 mod bounce;
 mod number;
+mod surface;
 
 pub(crate) use bounce::{Bounced, Moving, Rods, Scratch, bounce};
 pub(crate) use number::{Far, Near};
+pub(crate) use surface::{Rough, Smooth, Surface};
 
 /// How many rods bounce side by side: two vectors of eight, or four of four, which the CPU overlaps.
 pub(crate) const WIDTH: usize = 16;

@@ -1,9 +1,11 @@
 //! Lanes and one orbit alone are the same: outcome, number of contacts and largest angle, bit for bit, over random rods.
 
 use equipoise_physics::dispatch::Path;
+use equipoise_physics::friction::{Friction, Law, Slide};
 use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::map::{Orbit, Rules, run};
-use equipoise_physics::sweep::{End, Outcome, Start, sweep, sweep_on};
+use equipoise_physics::map::{Body, Orbit, Rules, run};
+use equipoise_physics::rig::{Rig, Steering};
+use equipoise_physics::sweep::{End, Outcome, Start, sweep, sweep_on, sweep_rough, sweep_rough_on};
 use proptest::prelude::*;
 
 prop_compose! {
@@ -31,7 +33,11 @@ prop_compose! {
 }
 
 fn alone(start: &Start, impacts: u64) -> End {
-    let mut orbit = Orbit::at(start.rod, start.rules, start.state);
+    alone_as(start.rod, start, impacts)
+}
+
+fn alone_as(body: impl Body, start: &Start, impacts: u64) -> End {
+    let mut orbit = Orbit::at(body, start.rules, start.state);
     let mut max_theta: f64 = 0.0;
     let ending = run(&mut orbit, impacts, |contact| {
         max_theta = max_theta.max(contact.state.theta.abs());
@@ -52,6 +58,23 @@ proptest! {
             prop_assert_eq!(end, Some(alone(start, impacts)), "{:?}", start);
         }
     }
+
+    #[test]
+    fn lanes_with_friction_are_orbits(
+        starts in prop::collection::vec((starts(), 0.0..1.0), 1..60), impacts in 1..400_u64,
+        law in prop_oneof![Just(Law::Poisson), Just(Law::Newton), Just(Law::Stronge)],
+        slide in prop_oneof![Just(Slide::None), Just(Slide::Matched)],
+    ) {
+        let starts: Vec<_> = starts.into_iter().map(|(start, friction)| (without_held_energy(start), friction)).collect();
+        let mut ends = vec![None; starts.len()];
+        let mut next = starts.iter().enumerate().map(|(number, (start, friction))| (number, *start, *friction));
+        sweep_rough((law, slide), impacts, || next.next(), |number, end| ends[number] = Some(end), || true);
+        for ((start, coefficient), end) in starts.iter().zip(ends) {
+            let friction = Some(Friction { coefficient: *coefficient, law, slide });
+            let rig = Rig { rod: start.rod, steering: Steering::TiltGain, friction, noise: None, outline: None };
+            prop_assert_eq!(end, Some(alone_as(rig, start, impacts)), "{:?} {:?}", start, friction);
+        }
+    }
 }
 
 /// A map of the paper's body, hashed (FNV-1a over contacts, outcome and the bits of the largest angle): the same number on
@@ -59,6 +82,11 @@ proptest! {
 #[test]
 fn every_kind_of_instructions_gives_the_same_bits() {
     const GOLDEN: u64 = 0xa2a1_67e7_f2f6_edcd;
+    const GOLDEN_ROUGH: [(Law, [u64; 2]); 3] = [
+        (Law::Poisson, [0x53c3_617b_a069_69e0, 0x2a29_45e5_4fc0_b45d]),
+        (Law::Newton, [0xffbc_2451_2047_aa8c, 0xbc08_a5b3_c2af_c52a]),
+        (Law::Stronge, [0xec71_3c15_df2a_6b0f, 0x04a4_66ca_7b5a_b01b]),
+    ];
     let starts: Vec<Start> = (0..40 * 30)
         .map(|cell| {
             let (column, row) = (f64::from(cell % 40), f64::from(cell / 40));
@@ -82,14 +110,41 @@ fn every_kind_of_instructions_gives_the_same_bits() {
         let mut ends = vec![None; starts.len()];
         let mut next = starts.iter().copied().enumerate();
         sweep_on(path, 300, || next.next(), |number, end| ends[number] = Some(end), || true);
-        let words = ends.iter().flatten().flat_map(|end| [end.impacts, end.outcome as u64, end.max_theta.to_bits()]);
-        let hash = words
-            .flat_map(u64::to_le_bytes)
-            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
+        let hash = hash(&ends);
         assert_eq!(hash, GOLDEN, "{path:?}: {hash:#x}");
+        for (law, golden) in GOLDEN_ROUGH {
+            for (slide, golden) in [Slide::Matched, Slide::None].into_iter().zip(golden) {
+                let mut next = starts.iter().enumerate().map(|(number, start)| {
+                    let rod = Rod { restitution: 0.7, ..start.rod };
+                    (number, without_held_energy(Start { rod, ..*start }), 0.01 * (number % 20) as f64)
+                });
+                let mut ends = vec![None; starts.len()];
+                sweep_rough_on(
+                    path,
+                    (law, slide),
+                    300,
+                    || next.next(),
+                    |number, end| ends[number] = Some(end),
+                    || true,
+                );
+                let hash = self::hash(&ends);
+                assert_eq!(hash, golden, "{path:?}, {law:?}, {slide:?}: {hash:#x}");
+            }
+        }
         tried += 1;
     }
     assert!(tried > 0);
+}
+
+fn hash(ends: &[Option<End>]) -> u64 {
+    let words = ends.iter().flatten().flat_map(|end| [end.impacts, end.outcome as u64, end.max_theta.to_bits()]);
+    words
+        .flat_map(u64::to_le_bytes)
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+}
+
+fn without_held_energy(start: Start) -> Start {
+    Start { rules: Rules { holds_energy: false, ..start.rules }, ..start }
 }
 
 #[test]

@@ -6,8 +6,10 @@ use equipoise_physics::grip::Grip;
 use equipoise_physics::impact::State;
 use equipoise_physics::jacobian::{eigenvalues, jacobian};
 use equipoise_physics::map::{Body, Ending, run};
+use equipoise_physics::region::{Axis, Quantity, Region};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::Class;
+use equipoise_physics::sweep::Outcome;
 use equipoise_physics::verdict::Verdict;
 
 const L: f64 = 0.4 / 3.0;
@@ -140,4 +142,43 @@ fn a_table_that_only_tilts_falls_and_the_verdict_says_why() {
     assert_eq!(judgement.verdict, Verdict::Unstable);
     assert!(judgement.agree && judgement.reason.contains("sticks for any friction above 0"), "{}", judgement.reason);
     assert!(scene.drift_speed().is_none() && scene.boundary(&point).is_none());
+}
+
+/// Beyond the κ_c without friction, 1.5, a run falls where its release is outside of the stick cone, and survives where its swing,
+/// θ₀/√(1 − R), stays inside.
+#[test]
+fn the_stick_cone_shows_in_a_region_over_friction_and_tilt_gain() {
+    let theta = 0.02;
+    let region = Region {
+        scene: scene("matched", &[(Name::Theta, theta), (Name::TiltGain, 2.0)]).draft(),
+        x: Axis { name: Name::Friction, from: 0.001, to: 0.06, count: 40 },
+        y: Axis { name: Name::TiltGain, from: 1.6, to: 2.4, count: 25 },
+        impacts: 1000,
+        quantity: Quantity::Survival,
+    };
+    let cells = region.cells(0..40 * 25, &mut || true).unwrap();
+    let (mut inside, mut outside) = (0, 0);
+    for (index, cell) in cells.iter().enumerate() {
+        let scene = region.scene(index % 40, index / 40).unwrap();
+        let cone = scene.stick_cone().unwrap();
+        let residue = scene.linear(&scene.fixed_point().unwrap()).residue.unwrap();
+        let survived = cell.outcome == Some(Outcome::Completed);
+        if theta / (1.0 - residue).sqrt() < cone {
+            inside += 1;
+            assert!(survived, "{index} {cell:?} {cone}");
+        } else if theta > cone {
+            outside += 1;
+            assert!(!survived, "{index} {cell:?} {cone}");
+        }
+    }
+    assert!(inside > 100 && outside > 100, "{inside} {outside}");
+    // The boundary of the linear verdict is that of a matched table, for any friction.
+    let residues = Region { quantity: Quantity::Residue, y: Axis { from: 2.0, to: 3.0, ..region.y }, ..region };
+    let ends = residues.boundary(9);
+    assert!(
+        !ends.is_empty()
+            && ends
+                .iter()
+                .all(|(level, from, to)| *level == 1.0 && (from[1] - 2.5).abs() < 1e-9 && (to[1] - 2.5).abs() < 1e-9)
+    );
 }
