@@ -93,3 +93,25 @@ async fn a_table_that_only_tilts_is_unstable_for_any_friction() {
         assert_eq!(server.get(&format!("/v1/stability?{rough}&format={format}")).await.status, 200);
     }
 }
+
+#[tokio::test]
+async fn a_region_may_have_friction_as_a_side() {
+    let server = Server::start();
+    let target = "/v1/regions?preset=case-1&scene.table.slide=matched&scene.release.theta=0.02&impacts=400\
+        &x.parameter=contact.friction&x.from=0&x.to=0.06&x.count=13&y.parameter=table.tilt_gain&y.from=1.2&y.to=2.4&y.count=5";
+    let map = server.get(target).await.json();
+    let (mut survived, mut fell) = (0, 0);
+    for (row, kappa) in map["y"].as_array().unwrap().iter().enumerate() {
+        for (column, friction) in map["x"].as_array().unwrap().iter().enumerate() {
+            let run = format!(
+                "/v1/trajectories?preset=case-1&scene.table.slide=matched&scene.release.theta=0.02&impacts=400\
+                 &scene.contact.friction={friction}&scene.table.tilt_gain={kappa}"
+            );
+            let run = server.get(&run).await.json();
+            let cell = &map["values"][row][column];
+            assert_eq!(cell, &run["outcome"]["impacts"], "μ = {friction}, κ = {kappa}");
+            if *cell == 400 { survived += 1 } else { fell += 1 }
+        }
+    }
+    assert!(survived > 10 && fell > 10, "{survived} {fell}");
+}

@@ -5,7 +5,7 @@
 pub use crate::body::{Arrival, Body, Coming, Kick, NoContact, Plan, Release, Touch};
 use crate::demand::{Excess, Limits, Pose};
 use crate::dispatch::{Work, dispatch};
-use crate::impact::{Rod, State, Strike};
+use crate::impact::{State, Strike};
 pub use crate::outcome::Ending;
 
 /// Fastest speed, m/s, of the centre of gravity or of the contact point about it, that a run may reach: beyond it

@@ -182,3 +182,10 @@ fn the_stick_cone_shows_in_a_region_over_friction_and_tilt_gain() {
                 .all(|(level, from, to)| *level == 1.0 && (from[1] - 2.5).abs() < 1e-9 && (to[1] - 2.5).abs() < 1e-9)
     );
 }
+
+#[test]
+fn a_matched_table_has_a_basin_and_one_that_only_tilts_has_none() {
+    let basin = |slide| scene(slide, &[(Name::TiltGain, 1.3)]).basin(300, || true).unwrap();
+    let (matched, held) = (basin("matched"), basin("none"));
+    assert!(matched.unbroken > 0.1 && held.theta < 1e-3, "{matched:?} {held:?}");
+}
