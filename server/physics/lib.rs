@@ -10,11 +10,12 @@
 //! aside it may start, and [`verdict`] concludes. [`periodic_orbits`] finds what comes back; [`sweep`] runs many at once, for
 //! a [`region`]. [`extended`] is the map with 31 digits, to hold the others against; [`error_estimate`] says how far doubles
 //! may be off it, [`linear`] gives any impact in closed form, and [`method`] chooses among the three. [`noise`] is what a
-//! table's clock and its sense of angle get wrong.
+//! table's clock and its sense of angle get wrong, and [`control`] designs a law for it.
 
 pub mod basin;
 pub mod body;
 pub mod contact_time;
+pub mod control;
 pub mod demand;
 pub mod dispatch;
 pub mod double_double;
