@@ -50,6 +50,9 @@ pub const ORBIT_PERIOD: u64 = 64;
 /// Points of one branch of periodic orbits. A picture shows no more.
 pub const BRANCH_POINTS: u64 = 2000;
 
+/// Work of designing a law, in bounces: the picture follows its eigenvalues over a hundred and more gains, some 1.5 ms.
+pub const CONTROLLER_PRICE: u64 = 20_000;
+
 /// Samples of one flight. A canvas is no wider.
 pub const SAMPLES_PER_FLIGHT: u64 = 256;
 

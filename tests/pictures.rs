@@ -8,10 +8,11 @@ use support::Server;
 const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.6&x.to=1.4&x.count=8\
                    &y.parameter=release.theta&y.from=0.02&y.to=0.08&y.count=4&impacts=300";
 
-const TARGETS: [&str; 6] = [
+const TARGETS: [&str; 7] = [
     MAP,
     "/v1/trajectories?preset=case-1",
     "/v1/stability?preset=case-4",
+    "/v1/controllers?preset=case-1",
     "/v1/periodic-orbits?preset=case-1&family=symmetric&theta=0.05&sweep.parameter=table.tilt_gain&sweep.from=1.4\
      &sweep.to=1.7&sweep.points=20",
     "/v1/failures/order-three",

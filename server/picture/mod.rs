@@ -9,6 +9,7 @@ mod branches;
 mod cells;
 mod chart;
 mod cividis;
+mod closed_loop;
 mod colour;
 mod eigenvalues;
 mod heat_map;
@@ -28,6 +29,7 @@ mod trail;
 
 pub use branches::{Branches, Change, branches};
 pub use chart::{Chart, Curve, Look, Plot, Side, chart};
+pub use closed_loop::{Loop, closed_loop};
 pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use number::significant;

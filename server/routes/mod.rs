@@ -5,6 +5,7 @@
 
 pub mod assets;
 pub mod contract;
+pub mod controllers;
 pub mod ensembles;
 pub mod failures;
 pub mod health;
@@ -83,6 +84,7 @@ pub fn all() -> Router<App> {
         .merge(scenes::routes())
         .merge(trajectories::routes())
         .merge(jacobians::routes())
+        .merge(controllers::routes())
         .merge(ladder::routes())
         .merge(live::routes())
         .merge(periodic_orbits::routes())

@@ -3,6 +3,7 @@
 //! Not the physics' own types, so that these can change without breaking a client; and no HTTP.
 
 mod contacts;
+pub mod controller;
 pub mod ensemble;
 mod evidence;
 pub mod failure;

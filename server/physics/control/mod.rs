@@ -7,9 +7,10 @@
 pub mod margin;
 pub mod riccati;
 
-use crate::friction::Slide;
+use crate::grip::Grip;
 use crate::impact::Rod;
 use crate::jacobian::{eigenvalues, modulus};
+use crate::rig::{Gains, Steering};
 use crate::scene::{BodyShape, Scene};
 use crate::stability::FixedPoint;
 use margin::{Margin, margin};
@@ -23,15 +24,6 @@ pub const STABLE: f64 = 1.0 - 1e-9;
 
 /// Residual of the Riccati equation above which its solution has no digits to be trusted.
 pub const RESIDUAL: f64 = 1e-8;
-
-/// What the contact point does along the table near the fixed point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Contact {
-    /// Nothing holds it.
-    Frictionless,
-    /// It sticks: at the fixed point with any friction, whatever the law of restitution.
-    Stick,
-}
 
 /// One bounce about the fixed point: s ↦ As + Bα, s just before a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,9 +80,17 @@ impl ClosedLoop {
 }
 
 impl Scene {
+    /// K, where the table feeds the state back, in the order of [`STATE`].
+    pub fn feedback(&self) -> Option<[f64; 4]> {
+        match self.steering {
+            Steering::TiltGain => None,
+            Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) => Some([x, theta, x_dot, theta_dot]),
+        }
+    }
+
     /// The upright bounce in place that a law with feedback comes to: where the strike neither takes energy nor gives any, on the
-    /// energy of the release where that holds at any height. No drift is left, which is what sets it apart from
-    /// [`Scene::fixed_point`]. With friction, and without a height to steer to, small deviations cost some of it on their way.
+    /// energy of the release where that holds at any height. No drift is left, which is what sets it apart from that of a
+    /// proportional tilt. Friction takes the energy of sideways motion and spin.
     ///
     /// # Errors
     /// Why there is none, in a sentence.
@@ -110,7 +110,10 @@ impl Scene {
         } else {
             let start = self.start();
             let spin = rod.radius_of_gyration * start.theta_dot;
-            let kinetic = start.x_dot * start.x_dot + start.y_dot * start.y_dot + spin * spin;
+            let mut kinetic = start.y_dot * start.y_dot;
+            if self.grip() == Grip::Smooth {
+                kinetic += start.x_dot * start.x_dot + spin * spin;
+            }
             kinetic + 2.0 * (rod.gravity * self.release().height - weight)
         };
         if !speed_squared.is_finite() || speed_squared <= 0.0 {
@@ -130,24 +133,24 @@ impl BounceModel {
     ///
     /// To first order the normal impulse is 2V, whatever e and the law of restitution; so with friction the contact sticks in the
     /// end, and its impulse P_t along the table brings the contact point's relative velocity ẋ + lθ̇ − Vα to rest. On a table
-    /// that slides along (`Slide::Matched`) it is at rest already.
-    pub fn new(rod: &Rod, speed: f64, contact: Contact, slide: Slide) -> Self {
+    /// that slides along ([`Grip::Matched`]) it is at rest already.
+    pub fn new(rod: &Rod, speed: f64, grip: Grip) -> Self {
         let (l, rho_squared) = (rod.contact_distance, rod.radius_of_gyration * rod.radius_of_gyration);
         // Inertia about the contact point, which is what a sticking contact turns the rod about.
         let about_contact = rho_squared + l * l;
         let (light, heavy) = (rho_squared / about_contact, l * l / about_contact);
         let kick = 2.0 * speed;
         // ẋ⁺ and θ̇⁺ by (θ, ẋ, θ̇) and by α.
-        let (x_dot, theta_dot) = match (contact, slide) {
-            (Contact::Frictionless, _) => {
+        let (x_dot, theta_dot) = match grip {
+            Grip::Smooth => {
                 let turn = kick * l / rho_squared;
                 (([0.0, 1.0, 0.0], -kick), ([turn, 0.0, 1.0], -turn))
             }
-            (Contact::Stick, Slide::Matched) => {
+            Grip::Matched => {
                 let turn = kick * l / about_contact;
                 (([-kick * heavy, 1.0, 0.0], -kick * light), ([turn, 0.0, 1.0], -turn))
             }
-            (Contact::Stick, Slide::None) => {
+            Grip::Held => {
                 let lever = l / about_contact;
                 (([-kick * heavy, heavy, -light * l], -speed * light), ([kick * lever, -lever, light], -speed * lever))
             }

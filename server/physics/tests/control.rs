@@ -1,8 +1,8 @@
 //! State feedback: the linear model against the bounce itself, the Riccati equation against its plain iteration, margins
 //! against eigenvalues, and laws that have to hold.
 
-use equipoise_physics::control::{BounceModel, Contact, NoDesign, RESIDUAL, STABLE};
-use equipoise_physics::friction::Slide;
+use equipoise_physics::control::{BounceModel, NoDesign, RESIDUAL, STABLE};
+use equipoise_physics::grip::Grip;
 use equipoise_physics::impact::{Rod, State};
 use equipoise_physics::map::{Body, Coming, Ending, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -19,7 +19,7 @@ const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
 const FEEDBACK: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
 /// The paper's rod with this law, contact and further fields.
-fn scene(gain: [f64; 4], slide: Slide, law: &'static str, values: &[(Name, f64)]) -> Scene {
+fn scene(gain: [f64; 4], grip: Grip, law: &'static str, values: &[(Name, f64)]) -> Scene {
     let mut draft = Draft::default();
     let rod =
         [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 0.094_280_904_158_206_35), (Name::Height, 0.2)];
@@ -27,14 +27,14 @@ fn scene(gain: [f64; 4], slide: Slide, law: &'static str, values: &[(Name, f64)]
         draft.set(name, Some(Value::Number(number))).unwrap();
     }
     draft.set(Name::Law, Some(Value::Choice(law))).unwrap();
-    let slide = if slide == Slide::Matched { "matched" } else { "none" };
+    let slide = if grip == Grip::Matched { "matched" } else { "none" };
     draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
     draft.build().unwrap()
 }
 
 /// The paper's rod with this restitution.
 fn rod(restitution: f64) -> Rod {
-    scene([0.0; 4], Slide::None, "poisson", &[(Name::Restitution, restitution)]).parameters()
+    scene([0.0; 4], Grip::Smooth, "poisson", &[(Name::Restitution, restitution)]).parameters()
 }
 
 /// V of the paper's cases.
@@ -51,29 +51,24 @@ fn bounce(scene: &Scene, [x, theta, x_dot, theta_dot]: [f64; 4], y_dot: f64) -> 
     [x + arrival.t * end.x_dot, end.theta, end.x_dot, end.theta_dot]
 }
 
-fn contacts() -> [(Contact, Slide, f64); 3] {
-    [
-        (Contact::Frictionless, Slide::None, 0.0),
-        (Contact::Stick, Slide::None, 0.3),
-        (Contact::Stick, Slide::Matched, 0.3),
-    ]
-}
+const GRIPS: [Grip; 3] = [Grip::Smooth, Grip::Held, Grip::Matched];
 
 /// With the gain of one state after the other, A − BK gives both A and B.
 #[test]
 fn the_model_is_the_derivative_of_the_bounce() {
     let gains = [[0.0; 4], [1.0, 0.0, 0.0, 0.0], [0.0, -2.0, 0.0, 0.0], [0.0, 0.0, 0.5, 0.0], [0.3, -1.0, 0.1, -0.1]];
-    for (contact, slide, friction) in contacts() {
+    for grip in GRIPS {
+        let friction = if grip == Grip::Smooth { 0.0 } else { 0.3 };
         for restitution in [1.0, 0.5, 0.0] {
             for (law, gain) in
                 ["poisson", "newton", "stronge"].into_iter().flat_map(|law| gains.map(|gain| (law, gain)))
             {
                 let values = [(Name::Restitution, restitution), (Name::Friction, friction)];
-                let scene = scene(gain, slide, law, &values);
+                let scene = scene(gain, grip, law, &values);
                 let rod: Rod = scene.parameters();
                 let v = speed(&rod);
                 assert!((scene.bounce_in_place().unwrap().speed - v).abs() < 1e-15);
-                let model = BounceModel::new(&rod, v, contact, slide);
+                let model = BounceModel::new(&rod, v, grip);
                 let closed = model.a - model.b * RowVector4::from(gain);
                 let step = 1e-6;
                 for column in 0..4 {
@@ -87,7 +82,7 @@ fn the_model_is_the_derivative_of_the_bounce() {
                         let expected = closed[(row, column)];
                         assert!(
                             (measured - expected).abs() < 1e-8 * (1.0 + closed.norm()),
-                            "{contact:?} {slide:?} {law} e = {restitution}: [{row}, {column}] is {expected}, not {measured}"
+                            "{grip:?} {law} e = {restitution}: [{row}, {column}] is {expected}, not {measured}"
                         );
                     }
                 }
@@ -101,14 +96,14 @@ fn proportional_tilt_on_a_matched_table_turns_at_its_own_critical_gain() {
     let rod = rod(1.0);
     let v = speed(&rod);
     let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
-    let model = BounceModel::new(&rod, v, Contact::Stick, Slide::Matched);
+    let model = BounceModel::new(&rod, v, Grip::Matched);
     let critical = 1.0 + rod.gravity * (rho * rho + l * l) / (v * v * l);
     for (factor, grows) in [(0.999, false), (1.001, true)] {
         let radius = model.closed_loop([0.0, -critical * factor, 0.0, 0.0], false).unwrap().spectral_radius;
         assert_eq!(radius > 1.001, grows, "{radius}");
     }
     // Without it, and with any friction, no proportional gain holds.
-    let stuck = BounceModel::new(&rod, v, Contact::Stick, Slide::None);
+    let stuck = BounceModel::new(&rod, v, Grip::Held);
     for kappa in (-40..=80).map(|tenth| 0.1 * f64::from(tenth)) {
         let radius = stuck.closed_loop([0.0, -kappa, 0.0, 0.0], false).unwrap().spectral_radius;
         assert!(radius > 1.0, "κ = {kappa}: {radius}");
@@ -131,13 +126,13 @@ fn iterate(model: &BounceModel, state: [f64; 4], input: f64, bounces: u32) -> Ro
 
 #[test]
 fn doubling_finds_what_plain_iteration_finds() {
-    for (contact, slide, _) in contacts() {
+    for grip in GRIPS {
         let rod = rod(0.5);
-        let model = BounceModel::new(&rod, speed(&rod), contact, slide);
+        let model = BounceModel::new(&rod, speed(&rod), grip);
         let design = model.design(WEIGHTS.0, WEIGHTS.1).unwrap();
         let plain = iterate(&model, WEIGHTS.0, WEIGHTS.1, 3000);
         for (value, expected) in design.gain.into_iter().zip(plain.iter()) {
-            assert!((value - expected).abs() < 1e-10 * plain.norm(), "{contact:?}: {value}, not {expected}");
+            assert!((value - expected).abs() < 1e-10 * plain.norm(), "{grip:?}: {value}, not {expected}");
         }
         assert!(design.residual < 1e-13 && design.iterations <= 10, "{design:?}");
     }
@@ -146,7 +141,7 @@ fn doubling_finds_what_plain_iteration_finds() {
 #[test]
 fn without_a_weight_on_x_there_is_no_gain_on_x() {
     let rod = rod(1.0);
-    let model = BounceModel::new(&rod, speed(&rod), Contact::Frictionless, Slide::None);
+    let model = BounceModel::new(&rod, speed(&rod), Grip::Smooth);
     let design = model.design([0.0, 10.0, 0.1, 0.1], 10.0).unwrap();
     assert_eq!(design.gain[0], 0.0);
     // It is what the law with x comes to as x matters less and less.
@@ -159,7 +154,7 @@ fn without_a_weight_on_x_there_is_no_gain_on_x() {
 #[test]
 fn a_mode_that_no_weight_sees_is_not_called_stable() {
     let rod = rod(1.0);
-    let model = BounceModel::new(&rod, speed(&rod), Contact::Frictionless, Slide::None);
+    let model = BounceModel::new(&rod, speed(&rod), Grip::Smooth);
     for state in [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0; 4]] {
         assert!(matches!(model.design(state, 1.0), Err(NoDesign::Diverging | NoDesign::Unseen(_))), "{state:?}");
     }
@@ -168,10 +163,10 @@ fn a_mode_that_no_weight_sees_is_not_called_stable() {
 #[test]
 fn margins_are_where_eigenvalues_cross_the_circle() {
     let mut random = Random(11);
-    for (contact, slide, _) in contacts() {
+    for grip in GRIPS {
         for _ in 0..50 {
             let rod = rod(random.between(0.0, 1.0));
-            let model = BounceModel::new(&rod, speed(&rod) * random.between(0.5, 2.0), contact, slide);
+            let model = BounceModel::new(&rod, speed(&rod) * random.between(0.5, 2.0), grip);
             let state = [1.0, 1.0, 1.0, 1.0].map(|_| random.size(0.01, 100.0).abs());
             let gain = model.design(state, random.size(0.1, 100.0).abs()).unwrap().gain;
             let margin = model.closed_loop(gain, true).unwrap().margin.unwrap();
@@ -179,12 +174,12 @@ fn margins_are_where_eigenvalues_cross_the_circle() {
             let (lower, upper) = (margin.lower.unwrap(), margin.upper.unwrap());
             assert!((0.0..1.0).contains(&lower) && upper > 1.0, "{margin:?}");
             for end in [lower, upper] {
-                assert!((radius(end) - 1.0).abs() < 1e-4, "{contact:?} {margin:?}: {}", radius(end));
+                assert!((radius(end) - 1.0).abs() < 1e-4, "{grip:?} {margin:?}: {}", radius(end));
             }
             assert!(radius(lower * 0.99) > 1.0 && radius(upper * 1.01) > 1.0, "{margin:?}");
             for step in 1..100 {
                 let factor = lower + (upper - lower) * 0.01 * f64::from(step);
-                assert!(radius(factor) < 1.0, "{contact:?} {margin:?}: {factor}");
+                assert!(radius(factor) < 1.0, "{grip:?} {margin:?}: {factor}");
             }
         }
     }
@@ -199,8 +194,8 @@ fn whatever_the_rod_and_the_weights_a_law_is_good_or_there_is_none() {
         rod.contact_distance = random.size(1e-3, 10.0).abs();
         rod.radius_of_gyration = random.size(1e-3, 10.0).abs();
         rod.gravity = random.size(1e-3, 100.0).abs();
-        let (contact, slide, _) = contacts()[(random.between(0.0, 3.0) as usize).min(2)];
-        let model = BounceModel::new(&rod, random.size(1e-3, 100.0).abs(), contact, slide);
+        let grip = GRIPS[(random.between(0.0, 3.0) as usize).min(2)];
+        let model = BounceModel::new(&rod, random.size(1e-3, 100.0).abs(), grip);
         let weight = |random: &mut Random| {
             if random.between(0.0, 1.0) < 0.1 { 0.0 } else { random.size(1e-9, 1e9).abs() }
         };
@@ -232,9 +227,9 @@ fn settle(scene: &Scene, small: f64, contacts: u64) -> Option<u64> {
 #[test]
 fn it_comes_to_rest_in_place() {
     let rod = rod(1.0);
-    let model = BounceModel::new(&rod, speed(&rod), Contact::Frictionless, Slide::None);
+    let model = BounceModel::new(&rod, speed(&rod), Grip::Smooth);
     let gain = model.design(WEIGHTS.0, WEIGHTS.1).unwrap().gain;
-    let scene = scene(gain, Slide::None, "poisson", &[(Name::Theta, 0.3), (Name::X, 0.2)]);
+    let scene = scene(gain, Grip::Smooth, "poisson", &[(Name::Theta, 0.3), (Name::X, 0.2)]);
     let contacts = settle(&scene, 1e-9, 20_000).unwrap();
     assert!(contacts <= 100, "{contacts}");
 }
@@ -244,13 +239,13 @@ fn a_law_for_the_sticking_contact_holds_with_friction() {
     let values = [(Name::Theta, 0.05), (Name::Friction, 0.2), (Name::Restitution, 0.5)];
     for law in ["poisson", "newton", "stronge"] {
         let rod = rod(0.5);
-        let gain_for = |contact| {
-            let model = BounceModel::new(&rod, speed(&rod), contact, Slide::None);
+        let gain_for = |grip| {
+            let model = BounceModel::new(&rod, speed(&rod), grip);
             model.design(WEIGHTS.0, WEIGHTS.1).unwrap().gain
         };
-        let contacts = settle(&scene(gain_for(Contact::Stick), Slide::None, law, &values), 1e-9, 20_000).unwrap();
+        let contacts = settle(&scene(gain_for(Grip::Held), Grip::Held, law, &values), 1e-9, 20_000).unwrap();
         assert!(contacts <= 250, "{law}: {contacts}");
         // The law for a contact without friction does not hold here.
-        assert_eq!(settle(&scene(gain_for(Contact::Frictionless), Slide::None, law, &values), 1e-9, 2000), None);
+        assert_eq!(settle(&scene(gain_for(Grip::Smooth), Grip::Held, law, &values), 1e-9, 2000), None);
     }
 }

@@ -1,0 +1,38 @@
+//! `controllers`: state feedback that balances in place.
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::State;
+use axum::http::Response;
+use axum::routing::get;
+
+use super::App;
+use crate::compute::{Cancel, Price};
+use crate::http::{Ask, Format, Problem, Resource};
+use crate::limits;
+use crate::wire::controller::{Controller, Request};
+
+const RESOURCE: Resource =
+    Resource { name: "controllers", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png] };
+
+/// Its path.
+pub fn routes() -> Router<App> {
+    Router::new().route("/v1/controllers", get(controllers).post(controllers))
+}
+
+async fn controllers(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+    let request = ask.read(Request::read)?;
+    let price = Price::bounces(limits::CONTROLLER_PRICE).within(&limits::WORK)?;
+    let canonical = super::canonical(&request.scene, &request.rest());
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
+        let controller =
+            Controller::compute(&request).map_err(|(pointer, detail)| Problem::invalid_at(pointer, detail))?;
+        match format {
+            Format::Csv => Ok(controller.to_table().to_csv()),
+            Format::Ndjson => Ok(controller.to_table().to_ndjson(&controller.end())),
+            Format::Svg | Format::Png => super::picture(controller.to_picture(), format, cancel),
+            _ => super::json(&controller),
+        }
+    })
+    .await
+}

@@ -1,0 +1,196 @@
+//! Laws for the table: what is designed holds when it is run, what was typed by hand is judged, and what cannot be says why.
+
+mod support;
+
+use serde_json::{Value, json};
+use support::Server;
+use support::contract::{self, DOCUMENT};
+
+/// Place and angle at each contact of a run of `scene` from a release.
+async fn run(server: &Server, scene: &Value, release: Value, impacts: u64) -> (String, Vec<(f64, f64)>) {
+    let mut scene = scene.clone();
+    for (name, value) in release.as_object().unwrap() {
+        scene["release"][name] = value.clone();
+    }
+    let answer = server.post("/v1/trajectories", &json!({"scene": scene, "impacts": impacts})).await.expect(200).json();
+    let column = |name: &str| -> Vec<f64> {
+        answer["impacts"][name].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
+    };
+    let states = column("x").into_iter().zip(column("theta")).collect();
+    (answer["outcome"]["kind"].as_str().unwrap().to_owned(), states)
+}
+
+/// The contact from which on |x| and |θ| stay below 1e-9.
+fn at_rest(states: &[(f64, f64)]) -> usize {
+    states.iter().rposition(|(x, theta)| x.abs().max(theta.abs()) >= 1e-9).map_or(1, |last| last + 2)
+}
+
+fn number(answer: &Value, pointer: &str) -> f64 {
+    answer.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} is no number: {answer}"))
+}
+
+#[tokio::test]
+async fn a_law_brings_the_body_to_rest_in_place() {
+    let server = Server::start();
+    let law = server.get("/v1/controllers?preset=case-1").await.expect(200).json();
+    assert!(number(&law, "/residual") < 1e-13 && number(&law, "/spectral_radius") < 0.8, "{law}");
+    assert_eq!(law["state_order"], json!(["x", "theta", "x_dot", "theta_dot"]));
+    assert!(law["scene"]["table"].get("tilt_gain").is_none_or(Value::is_null), "{}", law["scene"]["table"]);
+    assert_eq!(law["scene"]["table"]["feedback"], law["gain"]);
+    assert!(law["applied"].is_null() && law["given"].is_null());
+    let (outcome, states) = run(&server, &law["scene"], json!({"theta": 0.3, "x": 0.2}), 400).await;
+    assert_eq!(outcome, "completed");
+    assert!(at_rest(&states) <= 100, "{}", at_rest(&states));
+    // In the long run the deviation shrinks as the largest eigenvalue says.
+    let fall = states[20].1.hypot(states[20].0) / states[50].1.hypot(states[50].0);
+    let decades = 30.0 / number(&law, "/bounces_per_decade");
+    assert!((fall.log10() - decades).abs() < 0.7, "{fall} {decades}");
+}
+
+#[tokio::test]
+async fn a_law_for_the_sticking_contact_holds_where_proportional_tilt_falls() {
+    let server = Server::start();
+    let rough = "preset=case-1&scene.contact.friction=0.2&scene.contact.restitution=0.5&scene.release.theta=0.05";
+    let law = server.get(&format!("/v1/controllers?{rough}")).await.expect(200).json();
+    assert_eq!(law["contact"], "stick");
+    let (outcome, states) = run(&server, &law["scene"], json!({"theta": 0.05}), 5000).await;
+    assert_eq!(outcome, "completed");
+    assert!(at_rest(&states) <= 250, "{}", at_rest(&states));
+    let proportional = server.get(&format!("/v1/trajectories?{rough}&impacts=5000")).await.expect(200).json();
+    assert!(number(&proportional, "/outcome/impacts") < 10.0);
+    // A law for another contact is said to fail on this one, and does.
+    let other = server.get(&format!("/v1/controllers?{rough}&contact=frictionless")).await.expect(200).json();
+    assert_eq!((&other["contact"], &other["applied"]["contact"]), (&json!("frictionless"), &json!("stick")));
+    assert_eq!(other["applied"]["stable"], false);
+    let (outcome, states) = run(&server, &other["scene"], json!({"theta": 0.05}), 1000).await;
+    assert!(outcome != "completed" || at_rest(&states) > 1000, "{outcome}");
+}
+
+#[tokio::test]
+async fn without_a_weight_on_x_it_comes_to_rest_anywhere() {
+    let server = Server::start();
+    let law = server.get("/v1/controllers?preset=case-1&weights.state.x=0").await.expect(200).json();
+    assert_eq!((&law["gain"]["x"], law["eigenvalues"].as_array().unwrap().len()), (&json!(0.0), 3));
+    assert_eq!((law["linear"]["a"].as_array().unwrap().len(), law["linear"]["b"].as_array().unwrap().len()), (3, 3));
+    let (_, states) = run(&server, &law["scene"], json!({"theta": 0.2, "x": 5.0}), 300).await;
+    let (x, theta) = states[299];
+    assert!(theta.abs() < 1e-9 && (x - 5.0).abs() < 1.0 && (x - states[298].0).abs() < 1e-9, "{x} {theta}");
+}
+
+#[tokio::test]
+async fn gains_typed_by_hand_are_judged() {
+    let server = Server::start();
+    let designed = server.get("/v1/controllers?preset=case-1").await.json();
+    let ask = async |feedback: Value| {
+        let scene = json!({"table": {"tilt_gain": null, "feedback": feedback}});
+        server.post("/v1/controllers", &json!({"preset": "case-1", "scene": scene})).await.expect(200).json()
+    };
+    let same = ask(designed["gain"].clone()).await;
+    assert_eq!(same["given"]["eigenvalues"], designed["eigenvalues"]);
+    assert_eq!((&same["gain"], &same["given"]["stable"]), (&designed["gain"], &json!(true)));
+    // α = κθ in other words: it circles, which is not dying out. And the wrong sign falls.
+    for (theta, radius) in [(-1.1, 1.0), (1.0, 2.0)] {
+        let given = ask(json!({"theta": theta})).await["given"].clone();
+        assert_eq!((&given["stable"], &given["gain_margin"]), (&json!(false), &Value::Null));
+        assert!(number(&given, "/spectral_radius") > radius - 1e-6, "{given}");
+    }
+}
+
+#[tokio::test]
+async fn a_scene_needs_no_law_to_be_given_one() {
+    let server = Server::start();
+    let scene =
+        json!({"body": {"contact_distance": 0.2, "radius_of_gyration": 0.1}, "release": {"height": 0.3, "theta": 0.1}});
+    let law = server.post("/v1/controllers", &json!({"scene": scene})).await.expect(200).json();
+    let (outcome, states) = run(&server, &law["scene"], json!({}), 400).await;
+    assert_eq!((outcome.as_str(), at_rest(&states) <= 200), ("completed", true), "{}", at_rest(&states));
+}
+
+#[tokio::test]
+async fn basins_are_a_request_away() {
+    let server = Server::start();
+    let law = server.get("/v1/controllers?preset=case-1").await.expect(200).json();
+    let mut survivors = Vec::new();
+    for name in ["designed", "proportional"] {
+        let target = law["regions"][name].as_str().unwrap().replace("count=81", "count=15");
+        let map = server.get(&target).await.expect(200).json();
+        survivors.push(number(&map, "/counts/completed"));
+        assert_eq!(number(&map, "/values/7/7"), 300.0, "{name}: upright and at rest it stays");
+    }
+    // Nearly half of them against those close to upright.
+    assert!(survivors[0] > 80.0 && survivors[1] > 5.0 && survivors[1] < 30.0, "{survivors:?}");
+    // Of both gains of a law, as a map: without enough of the angle's it falls.
+    let gains = format!(
+        "/v1/regions?{}&x.parameter=table.feedback.theta&x.from=-1.3&x.to=-1&x.count=7&y.parameter=table.feedback.theta_dot\
+         &y.from=-0.06&y.to=0&y.count=3&impacts=200",
+        law["regions"]["designed"].as_str().unwrap().split_once('?').unwrap().1.split_once("&x.parameter").unwrap().0
+    );
+    let map = server.get(&gains).await.expect(200).json();
+    assert_eq!((number(&map, "/values/1/3"), number(&map, "/values/1/6") < 20.0), (200.0, true), "{map}");
+}
+
+#[tokio::test]
+async fn what_cannot_be_designed_says_why() {
+    let server = Server::start();
+    for (query, pointer, words) in [
+        ("preset=point-mass", "/scene", "point mass"),
+        ("preset=still-lossy", "/scene", "no bounce repeats"),
+        ("preset=case-1&scene.release.height=0.13333333333333333&scene.release.theta=0", "/scene", "no upright bounce"),
+        ("preset=case-1&weights.state.theta=-1", "/weights/state/theta", "from 0"),
+        ("preset=case-1&weights.input=0", "/weights/input", "from 0.000001"),
+        ("preset=case-1&weights.state.psi=1", "/weights/state/psi", "unknown"),
+        ("preset=case-1&weights=1", "/weights", "object"),
+        ("preset=case-1&contact=glue", "/contact", "frictionless"),
+        ("preset=case-1&weights.state.x=0&weights.state.x_dot=0", "/weights", "without a weight does not die out"),
+        (
+            "preset=case-1&weights.state.x=0&weights.state.theta=0&weights.state.x_dot=0&weights.state.theta_dot=0",
+            "/weights",
+            "weight",
+        ),
+    ] {
+        let answer = server.get(&format!("/v1/controllers?{query}")).await.expect(422);
+        assert_eq!(answer.pointers(), [pointer], "{query}");
+        assert!(answer.text().contains(words), "{query}: {}", answer.text());
+    }
+    for body in [json!({"preset": "case-1", "weights": {"input": 0}}), json!({"preset": "case-1", "contact": "glue"})] {
+        assert!(!contract::faults(&DOCUMENT["components"]["schemas"]["ControllerRequest"], &body).is_empty(), "{body}");
+    }
+}
+
+/// Weights over many powers of ten, and rods of many kinds.
+#[tokio::test]
+async fn no_weights_break_it() {
+    let server = Server::start();
+    let (mut laws, mut refused) = (0, 0);
+    for number in 0..600_u32 {
+        // A digit of the number in base 7 for each, spread over the range.
+        let power = |place: u32| f64::from(number.wrapping_mul(2_654_435_761) / 7_u32.pow(place) % 13) - 6.0;
+        let weight = |place| 10_f64.powf(power(place));
+        let scene = json!({
+            "body": {"contact_distance": 10_f64.powf(power(1) / 4.0), "radius_of_gyration": 10_f64.powf(power(2) / 4.0)},
+            "contact": {"friction": f64::from(number % 3), "restitution": f64::from(number % 2)},
+            "table": {"slide": if number % 5 == 0 { "matched" } else { "none" }},
+            "release": {"height": 10_f64.powf(power(1) / 4.0) + weight(3).min(50.0)},
+        });
+        let state = json!({"x": weight(4), "theta": weight(5), "x_dot": weight(6), "theta_dot": weight(7)});
+        let body = json!({"scene": scene, "weights": {"state": state, "input": weight(8)}});
+        let answer = server.post("/v1/controllers", &body).await;
+        match answer.status.as_u16() {
+            200 => {
+                laws += 1;
+                let law = answer.json();
+                assert!(law["spectral_radius"].as_f64().unwrap() < 1.0 && law["residual"].as_f64().unwrap() < 1e-8);
+                for format in ["svg", "csv", "ndjson"] {
+                    let headers = [("content-type", "application/json")];
+                    let target = format!("/v1/controllers?format={format}");
+                    if number % 20 == 0 {
+                        server.send(axum::http::Method::POST, &target, &headers, &body.to_string()).await.expect(200);
+                    }
+                }
+            }
+            422 => refused += 1,
+            other => panic!("{other} to {body}: {}", answer.text()),
+        }
+    }
+    assert!(laws > 300 && refused > 0, "{laws} laws, {refused} refused");
+}
