@@ -7,8 +7,7 @@ use serde_json::{Value, json};
 use support::Server;
 use support::contract::{self, DOCUMENT};
 
-const COMPUTE: [&str; 5] =
-    ["/v1/trajectories", "/v1/jacobians", "/v1/stability", "/v1/ensembles", "/v1/controllers"];
+const COMPUTE: [&str; 5] = ["/v1/trajectories", "/v1/jacobians", "/v1/stability", "/v1/ensembles", "/v1/controllers"];
 
 #[tokio::test]
 async fn what_is_not_json_is_400() {

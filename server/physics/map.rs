@@ -127,6 +127,13 @@ impl<B: Body> Orbit<B> {
         }
     }
 
+    /// The same run, `x` (m) farther on.
+    #[must_use]
+    pub fn moved(mut self, x: f64) -> Self {
+        self.x.add(x);
+        self
+    }
+
     /// Angle and velocities just before the coming contact.
     pub fn state(&self) -> &State {
         &self.state

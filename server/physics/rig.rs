@@ -47,6 +47,16 @@ impl<N: Number> Gains<N> {
     }
 }
 
+impl Steering {
+    /// The table's tilt at a place and a state, in any kind of number.
+    pub(crate) fn tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>) -> Tilt<N> {
+        let Self::Feedback(gains) = self else { return rod.tilt(state.theta) };
+        let [x_gain, theta, x_dot, theta_dot] = [gains.x, gains.theta, gains.x_dot, gains.theta_dot].map(N::from_f64);
+        let alpha = Gains { x: x_gain, theta, x_dot, theta_dot }.tilt(x, state);
+        Tilt::new(state.theta, alpha, state.theta - alpha)
+    }
+}
+
 /// A rod with what a scene asks for beyond the plain one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rig {

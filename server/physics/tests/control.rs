@@ -4,6 +4,7 @@
 use equipoise_physics::control::{BounceModel, NoDesign, RESIDUAL, STABLE};
 use equipoise_physics::grip::Grip;
 use equipoise_physics::impact::{Rod, State};
+use equipoise_physics::jacobian::{finite_difference_at, jacobian_at};
 use equipoise_physics::map::{Body, Coming, Ending, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use nalgebra::{Matrix4, RowVector4, Vector4};
@@ -88,6 +89,69 @@ fn the_model_is_the_derivative_of_the_bounce() {
                 }
             }
         }
+    }
+}
+
+/// In the order (ρθ, ẋ, ẏ, ρθ̇, x), from that of the linear model.
+const PLACES: [usize; 4] = [4, 0, 1, 3];
+
+#[test]
+fn the_derivative_by_duals_is_the_closed_loop() {
+    for grip in GRIPS {
+        let values = [(Name::Friction, if grip == Grip::Smooth { 0.0 } else { 0.3 }), (Name::Restitution, 0.5)];
+        let gain = BounceModel::new(&rod(0.5), speed(&rod(0.5)), grip).design(WEIGHTS.0, WEIGHTS.1).unwrap().gain;
+        let scene = scene(gain, grip, "poisson", &values);
+        let rod: Rod = scene.parameters();
+        let v = speed(&rod);
+        let upright = State { theta: 0.0, x_dot: 0.0, y_dot: -v, theta_dot: 0.0 };
+        let exact = jacobian_at(&scene.model(), 0.0, &upright, 1).unwrap().matrix;
+        assert_eq!(exact.shape(), (5, 5));
+        let model = BounceModel::new(&rod, v, grip);
+        let closed = model.a - model.b * RowVector4::from(gain);
+        let unit = [1.0, rod.radius_of_gyration, 1.0, rod.radius_of_gyration];
+        for row in 0..4 {
+            for column in 0..4 {
+                let expected = closed[(row, column)] * unit[row] / unit[column];
+                let found = exact[(PLACES[row], PLACES[column])];
+                assert!(
+                    (found - expected).abs() < 1e-12 * closed.norm(),
+                    "{grip:?} [{row}, {column}]: {found} {expected}"
+                );
+            }
+        }
+        assert!((exact[(2, 2)] - 1.0).abs() < 1e-14, "the height stays");
+    }
+}
+
+#[test]
+fn the_derivative_by_duals_is_that_of_the_bounce_anywhere() {
+    let mut random = Random(5);
+    for grip in GRIPS {
+        let mut compared = 0;
+        for _ in 0..300 {
+            let friction = if grip == Grip::Smooth { 0.0 } else { random.between(0.05, 1.0) };
+            let gain =
+                [random.size(0.01, 0.5), -random.between(1.0, 3.0), random.size(0.01, 0.5), random.size(0.01, 0.1)];
+            let scene = scene(gain, grip, "stronge", &[(Name::Friction, friction), (Name::Restitution, 0.7)]);
+            let state = State {
+                theta: random.between(-0.3, 0.3),
+                x_dot: random.between(-0.3, 0.3),
+                y_dot: -random.between(0.7, 2.0),
+                theta_dot: random.between(-1.0, 1.0),
+            };
+            let (model, x) = (scene.model(), random.between(-0.5, 0.5));
+            let Ok(exact) = jacobian_at(&model, x, &state, 1) else { continue };
+            let measured =
+                [1e-5, 1e-6].map(|step| finite_difference_at(&model, x, &state, 1, step).map(|it| it.matrix));
+            let [Ok(coarse), Ok(fine)] = measured else { continue };
+            // Not where the steps straddle a kink, or grazing makes them useless.
+            if (&coarse - &fine).norm() > 1e-6 * fine.norm() {
+                continue;
+            }
+            compared += 1;
+            assert!((&exact.matrix - &fine).norm() < 1e-6 * fine.norm(), "{grip:?}: {} {fine}", exact.matrix);
+        }
+        assert!(compared > 200, "{grip:?}: {compared}");
     }
 }
 
