@@ -69,6 +69,8 @@ impl Draw {
             let path = field["path"].as_str().unwrap();
             let wanted = match (field["required"] == json!(true), path) {
                 (_, "body.point") => 0.05,
+                // Without vertices it is an error.
+                (_, "body.contact_vertex") => 0.01,
                 (true, _) => 0.99,
                 // In place of the tilt gain: one or the other is mostly an error.
                 _ if path.starts_with("table.feedback") => 0.01,
@@ -83,7 +85,31 @@ impl Draw {
         if self.chance(0.8) && scene.pointer("/body/contact_distance").is_some() {
             put(&mut scene, "release.height", json!(10.0 + 20.0 * self.unit()));
         }
+        if self.chance(0.15) {
+            scene["body"] = self.polygon();
+        }
         scene
+    }
+
+    /// Mostly one that is a body, seen whole from a point within; and now and then any points at all.
+    fn polygon(&mut self) -> Value {
+        let count = 3 + self.below(30);
+        let size = 10_f64.powf(-3.0 * self.unit());
+        let wild = self.chance(0.3);
+        let places: Vec<Value> = (0..count)
+            .map(|vertex| {
+                if wild {
+                    return json!([20.0 * self.unit() - 10.0, 20.0 * self.unit() - 10.0]);
+                }
+                let angle = std::f64::consts::TAU * (vertex as f64 + 0.9 * self.unit()) / count as f64;
+                let radius = size * (0.2 + self.unit());
+                json!([radius * angle.cos(), radius * angle.sin()])
+            })
+            .collect();
+        if self.chance(0.5) {
+            return json!({"vertices": places});
+        }
+        json!({"vertices": places, "contact_vertex": self.below(count + 1)})
     }
 }
 
@@ -122,7 +148,7 @@ async fn ten_thousand_random_scenes_are_answered() {
         }
     }
     println!("{answered:?}");
-    let outcomes = ["completed", "toppled", "separating", "sinking", "settled", "diverged", "422"];
+    let outcomes = ["completed", "toppled", "separating", "sinking", "settled", "diverged", "other_vertex", "422"];
     for outcome in outcomes {
         assert!(answered.contains_key(outcome), "no scene ended as {outcome}: {answered:?}");
     }

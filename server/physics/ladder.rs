@@ -136,7 +136,7 @@ impl Scene {
 
     /// The scene without what a rung leaves out.
     pub fn on(&self, rung: Rung) -> Self {
-        let mut draft = self.draft();
+        let mut draft = if rung < Rung::Polygon { self.as_rod() } else { *self }.draft();
         let mut without = |least: Rung, names: &[Name]| {
             if rung < least {
                 for &name in names {
@@ -147,16 +147,6 @@ impl Scene {
         };
         without(Rung::Noise, &[Name::TimingSd, Name::AngleSd, Name::NoiseModel, Name::Seed]);
         without(Rung::Friction, &[Name::Friction, Name::Slide]);
-        if let (true, Some(outline)) = (rung < Rung::Polygon, self.outline()) {
-            draft.set_vertices(None);
-            for (name, value) in [
-                (Name::ContactVertex, None),
-                (Name::ContactDistance, Some(Value::Number(outline.contact_distance()))),
-                (Name::RadiusOfGyration, Some(Value::Number(outline.radius_of_gyration()))),
-            ] {
-                let _ = draft.set(name, value);
-            }
-        }
         if rung < Rung::RodWithX && self.number(Name::FeedbackX).is_some() {
             let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));
         }

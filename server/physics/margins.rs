@@ -61,6 +61,9 @@ impl Scene {
     /// # Errors
     /// Why there is none for one of them, in a sentence.
     pub fn margins(&self, tolerances: &Tolerances) -> Result<Margins, String> {
+        if self.outline().is_some() {
+            return self.as_rod().margins(tolerances);
+        }
         let number = |name| self.number(name).unwrap_or(f64::NAN);
         let middle = [Name::ContactDistance, Name::RadiusOfGyration, Name::Restitution].map(number);
         if middle.iter().any(|value| value.is_nan()) {

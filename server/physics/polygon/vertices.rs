@@ -44,8 +44,9 @@ impl Vertices {
     /// The lowest, which is the contact unless another is said.
     ///
     /// # Errors
-    /// [`PolygonError::NoLowest`] where there are two.
+    /// Where they are no polygon, or two are the lowest.
     pub fn lowest(&self) -> Result<usize, PolygonError> {
+        self.check()?;
         let height = |vertex: usize| self.places[vertex][1];
         let lowest = (1..self.count).fold(0, |best, it| if height(it) < height(best) { it } else { best });
         match (lowest + 1..self.count).find(|&it| height(it) == height(lowest)) {

@@ -29,6 +29,9 @@ impl FieldError {
 /// Path of the vertices of a polygon.
 pub const VERTICES: &str = "body.vertices";
 
+/// Stands in for a body that cannot be told until the errors are returned.
+const UNKNOWN: BodyShape = BodyShape::Rod { contact_distance: f64::NAN, radius_of_gyration: f64::NAN };
+
 /// The values said so far, one slot for each row of [`FIELDS`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draft {
@@ -249,7 +252,7 @@ impl Draft {
                 let detail = format!("{key} follows from vertices, which are given too; leave one of them out");
                 errors.push(FieldError::new(name, detail));
             }
-            return self.polygon(&vertices, errors).map_or((BodyShape::Point, None), |outline| {
+            return self.polygon(&vertices, errors).map_or((UNKNOWN, None), |outline| {
                 let (contact_distance, radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
                 (BodyShape::Rod { contact_distance, radius_of_gyration }, Some(outline))
             });
@@ -263,7 +266,7 @@ impl Draft {
             let detail =
                 "body is missing: give contact_distance and radius_of_gyration in m, vertices, or {\"point\": true}";
             errors.push(FieldError { path: "body", detail: detail.to_owned() });
-            return (BodyShape::Point, None);
+            return (UNKNOWN, None);
         }
         let body = BodyShape::Rod {
             contact_distance: self.required(Name::ContactDistance, errors),

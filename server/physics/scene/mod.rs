@@ -101,6 +101,23 @@ impl Scene {
         self.outline.as_ref()
     }
 
+    /// The same with the rod of its l and ρ in place of a polygon.
+    pub fn as_rod(&self) -> Self {
+        let Some(outline) = self.outline else { return *self };
+        let mut draft = self.draft;
+        draft.set_vertices(None);
+        let (contact_distance, radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
+        for (name, value) in [
+            (Name::ContactVertex, None),
+            (Name::ContactDistance, Some(Value::Number(contact_distance))),
+            (Name::RadiusOfGyration, Some(Value::Number(radius_of_gyration))),
+        ] {
+            // Both are in their ranges, or it would be no polygon.
+            let _ = draft.set(name, value);
+        }
+        draft.build().unwrap_or(*self)
+    }
+
     /// The vertices of a polygon as they were given.
     pub fn vertices(&self) -> Option<&Vertices> {
         self.draft.vertices()

@@ -1,6 +1,7 @@
 //! Runs of polygons: those of the rod with the same l and ρ, bit for bit, until another vertex touches the table.
 
 use equipoise_physics::map::{Ending, Kick, Orbit, Touch, run};
+use equipoise_physics::model::Rung;
 use equipoise_physics::polygon::Vertices;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
@@ -122,6 +123,20 @@ fn a_kicked_polygon_is_looked_at_too() {
     };
     assert_eq!(kicked(&rod), None);
     assert!(matches!(kicked(&polygon), Some(Ending::OtherVertex(_))));
+}
+
+#[test]
+fn the_ladder_leaves_the_other_vertices_out_below_the_last_rung() {
+    let numbers = [(Name::Height, 0.1), (Name::TiltGain, 1.3), (Name::Theta, 0.3)];
+    let (polygon, rod) = pair(&WIDE, &numbers);
+    assert_eq!(polygon.as_rod(), rod);
+    let steps = polygon.ladder(100, || true).unwrap();
+    let rungs: Vec<_> = steps.iter().map(|step| step.rung).collect();
+    assert_eq!(rungs, [Rung::Linear, Rung::Rod, Rung::Polygon]);
+    assert_eq!(steps[1].scene, rod);
+    let (as_rod, own) = (steps[1].run.as_ref().unwrap(), steps[2].run.as_ref().unwrap());
+    assert_eq!(as_rod.ending, Ending::Completed);
+    assert!(matches!(own.ending, Ending::OtherVertex(_)) && own.impacts == 3, "{own:?}");
 }
 
 #[test]
