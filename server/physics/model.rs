@@ -71,6 +71,7 @@ pub struct Forced {
 
 /// The model that runs a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a run has one, and it is Copy: the vertices of a polygon stand in it")]
 pub enum Model {
     /// A rod; its strike gain says which of the rungs it stands on.
     Rod(Rod),

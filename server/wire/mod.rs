@@ -11,6 +11,7 @@ pub mod fields;
 pub mod jacobian;
 pub mod ladder;
 pub mod margins;
+pub mod nearest_vertex;
 pub mod periodic_orbits;
 pub mod precision;
 pub mod presets;

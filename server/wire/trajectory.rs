@@ -4,12 +4,11 @@ use equipoise_physics::demand::{Demand, Excess, Meter};
 use equipoise_physics::map::{Body, Ending, Touch};
 use equipoise_physics::method::{self, Impact, Method};
 use equipoise_physics::model::{Forced, Rung};
-use equipoise_physics::polygon::Nearest;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::trig::sin_cos;
 use serde::{Serialize, Serializer};
 
 use super::contacts::{Contacts, Flights};
+use super::nearest_vertex::NearestVertex;
 use super::scene::{Resolved, has_angle};
 use super::table::Table;
 use crate::http::Reader;
@@ -188,15 +187,6 @@ impl From<Demand> for DemandAnswer {
     }
 }
 
-/// The vertex of a polygon, other than the one that bounces, that was nearest to the table at any contact of a run.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct NearestVertex {
-    vertex: usize,
-    clearance: f64,
-    impact: u64,
-    t: f64,
-}
-
 /// What is asked for beside the scene.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Request {
@@ -350,7 +340,7 @@ impl<'a> Trajectory<'a> {
         let body = scene.model();
         let (mut last, mut unknown, mut predictable) = (None, 0, None);
         let mut meter = Meter::default();
-        let mut nearest_vertex: Option<NearestVertex> = None;
+        let mut nearest_vertex = None;
         let run = scene.run_by(method, impacts, |impact| {
             let Impact { contact, error_estimate, .. } = impact;
             contacts.push(impact);
@@ -366,10 +356,7 @@ impl<'a> Trajectory<'a> {
             }
             meter.look(contact);
             if let Some(outline) = scene.outline() {
-                let Nearest { vertex, clearance } = outline.nearest(sin_cos(contact.state.theta - contact.alpha));
-                if nearest_vertex.is_none_or(|least| clearance < least.clearance) {
-                    nearest_vertex = Some(NearestVertex { vertex, clearance, impact: contact.n, t: contact.t });
-                }
+                nearest_vertex = Some(NearestVertex::or(nearest_vertex, outline, contact));
             }
             last = Some((contact.n, contact.t));
             unknown += u64::from(!error_estimate.is_finite());

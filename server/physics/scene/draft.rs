@@ -52,10 +52,8 @@ impl Draft {
     /// Where the value is not of the field's kind or out of its range.
     pub fn set(&mut self, name: Name, value: Option<Value>) -> Result<(), FieldError> {
         let row = name.row();
-        if let Some(value) = value {
-            if !row.admits(value) {
-                return Err(FieldError::new(name, format!("{} is {value}; it must be {}", row.key(), row.limits())));
-            }
+        if let Some(value) = value.filter(|&value| !row.admits(value)) {
+            return Err(FieldError::new(name, format!("{} is {value}; it must be {}", row.key(), row.limits())));
         }
         self.values[name as usize] = value;
         Ok(())
