@@ -363,7 +363,7 @@ mod tests {
             (
                 "/scene/table/tilt",
                 "unknown field `table.tilt`; known here: tilt_gain, energy_gain, target_height, strike, slide, feedback, \
-                 assumed_restitution",
+                 assumed_restitution, limits",
             ),
             ("/scene/gravity", "gravity is \"9.81\"; it must be a number from 0.1 to 100 m/s², not text"),
             ("/scene/body/vertices", "vertices are 0; a polygon has from 3 to 32"),
