@@ -145,7 +145,7 @@ impl Scene {
                 }
             }
         };
-        without(Rung::Noise, &[Name::TimingSd, Name::AngleSd, Name::NoiseModel, Name::Seed]);
+        without(Rung::Noise, &[Name::TimingSd, Name::AngleSd, Name::NoiseModel, Name::Seed, Name::NoiseRun]);
         without(Rung::Friction, &[Name::Friction, Name::Slide]);
         if rung < Rung::RodWithX && self.number(Name::FeedbackX).is_some() {
             let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));

@@ -221,15 +221,15 @@ impl Scene {
         self.value(name).map_or_else(String::new, |value| value.to_string())
     }
 
-    /// A run of the scene from its release: run 0 of its ensemble, if it has noise.
+    /// The run of the scene from its release.
     ///
     /// # Errors
     /// Why there is not even a first contact.
     pub fn orbit(&self) -> Result<Orbit<Model>, NoContact> {
-        self.orbit_of(0)
+        Orbit::new(self.model(), self.rules(), &self.release)
     }
 
-    /// Run `run` of the scene's ensemble; all are the same without noise.
+    /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.
     ///
     /// # Errors
     /// As [`Scene::orbit`].

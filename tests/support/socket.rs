@@ -154,7 +154,7 @@ fn held(text: &str) -> Value {
 
 fn row(impact: &Value) -> Row {
     let mut row = Row::new();
-    for name in ["n", "t", "alpha", "flight_time", "energy", "contact_speed"] {
+    for name in ["n", "t", "alpha", "flight_time", "energy", "contact_speed", "clearance"] {
         row.insert(name.to_owned(), impact[name].clone());
     }
     for name in ["x", "theta", "x_dot", "y_dot", "theta_dot"] {

@@ -211,11 +211,13 @@ impl Draft {
             Value::Choice("plan") => Reading::Plan,
             _ => Reading::Strike,
         };
-        let seed = match self.values[Name::Seed as usize].get_or_insert(Value::Integer(0)) {
-            Value::Integer(seed) => *seed,
-            _ => 0,
-        };
-        Some(Noise { timing_sd, angle_sd, model, seed, run: 0 })
+        let [seed, run] = [Name::Seed, Name::NoiseRun].map(|name| {
+            match self.values[name as usize].get_or_insert(Value::Integer(0)) {
+                Value::Integer(number) => *number,
+                _ => 0,
+            }
+        });
+        Some(Noise { timing_sd, angle_sd, model, seed, run })
     }
 
     fn limits(&self) -> Option<Limits> {

@@ -47,6 +47,7 @@ pub enum Name {
     AngleSd,
     NoiseModel,
     Seed,
+    NoiseRun,
 }
 
 /// The value of a field.
@@ -188,7 +189,7 @@ const BLANK: Field = Field {
 
 /// Every field of a scene.
 #[rustfmt::skip]
-pub const FIELDS: [Field; 34] = [
+pub const FIELDS: [Field; 35] = [
     Field { name: Name::ContactDistance, path: "body.contact_distance", symbol: "l", title: "Contact distance",
         about: "Centre of gravity to contact point", unit: "m", kind: number(1e-3, 10.0), required: true, ..BLANK },
     Field { name: Name::RadiusOfGyration, path: "body.radius_of_gyration", symbol: "ρ", title: "Radius of gyration",
@@ -270,6 +271,8 @@ pub const FIELDS: [Field; 34] = [
         about: "Whether the table meets the object early or late, or carries out a plan made for another time",
         kind: Kind::Choice(&["strike", "plan"]), ..BLANK },
     Field { name: Name::Seed, path: "noise.seed", title: "Seed", about: "Seed of the noise",
+        kind: Kind::Integer { maximum: (1 << 53) - 1 }, ..BLANK },
+    Field { name: Name::NoiseRun, path: "noise.run", title: "Run", about: "Which run of an ensemble with this seed",
         kind: Kind::Integer { maximum: (1 << 53) - 1 }, ..BLANK },
 ];
 

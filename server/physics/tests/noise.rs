@@ -55,3 +55,18 @@ fn survival_is_that_of_the_readings() {
     assert!((survival(&plan) - 0.07).abs() < 0.03);
     assert_eq!(survival(&narrow), 1.0);
 }
+
+#[test]
+fn a_scene_may_be_any_run_of_its_ensemble() {
+    let scene = case_1("plan", 0.002, 0.1);
+    let mut draft = scene.draft();
+    draft.set(Name::NoiseRun, Some(Value::Integer(3))).unwrap();
+    let mut ends = [scene.orbit_of(3), draft.build().unwrap().orbit(), scene.orbit()].map(|orbit| {
+        let mut orbit = orbit.unwrap();
+        run(&mut orbit, 20, |_| true);
+        *orbit.state()
+    });
+    assert_eq!(ends[0], ends[1]);
+    ends.rotate_left(1);
+    assert_ne!(ends[0], ends[1]);
+}
