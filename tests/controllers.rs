@@ -127,6 +127,8 @@ async fn basins_are_a_request_away() {
     );
     let map = server.get(&gains).await.expect(200).json();
     assert_eq!((number(&map, "/values/1/3"), number(&map, "/values/1/6") < 20.0), (200.0, true), "{map}");
+    let map = server.get(&format!("{gains}&quantity=spectral_radius")).await.expect(200).json();
+    assert!(number(&map, "/values/1/3") < 0.9 && number(&map, "/values/1/6") > 1.1, "{map}");
 }
 
 #[tokio::test]
@@ -193,4 +195,70 @@ async fn no_weights_break_it() {
         }
     }
     assert!(laws > 300 && refused > 0, "{laws} laws, {refused} refused");
+}
+
+#[tokio::test]
+async fn a_law_is_differentiated_and_judged_like_any_table() {
+    let server = Server::start();
+    for contact in ["", "&scene.contact.friction=0.2&scene.contact.restitution=0.5&scene.release.theta=0.05"] {
+        let law = server.get(&format!("/v1/controllers?preset=case-1{contact}")).await.expect(200).json();
+        let scene = &law["scene"];
+        let verdict = server.post("/v1/stability", &json!({"scene": scene})).await.expect(200).json();
+        assert_eq!((&verdict["verdict"], &verdict["agree"]), (&json!("stable in place"), &json!(true)), "{verdict}");
+        assert_eq!(verdict["linear"]["eigenvalues"], law["eigenvalues"]);
+        assert_eq!(verdict["linear"]["spectral_radius"], law["spectral_radius"]);
+        let order = json!(["rho_theta", "x_dot", "y_dot", "rho_theta_dot", "x"]);
+        for at in
+            [json!("fixed_point"), json!({"state": {"x": 0.1, "theta": 0.02, "y_dot": -1.1}}), json!({"impact": 4})]
+        {
+            let ask = async |method: &str| {
+                let body = json!({"scene": scene, "at": at, "method": method});
+                server.post("/v1/jacobians", &body).await.expect(200).json()
+            };
+            let (exact, measured) = (ask("exact").await, ask("finite_difference").await);
+            assert_eq!((&exact["state_order"], exact["eigenvalues"].as_array().unwrap().len()), (&order, 5));
+            for row in 0..5 {
+                for column in 0..5 {
+                    let place = format!("/matrix/{row}/{column}");
+                    let (left, right) = (number(&exact, &place), number(&measured, &place));
+                    assert!((left - right).abs() < 1e-6 * (1.0 + left.abs()), "{at} {place}: {left} {right}");
+                }
+            }
+            if at == "fixed_point" {
+                // The closed loop, and the height that nothing steers.
+                for value in law["eigenvalues"].as_array().unwrap() {
+                    let near = |other: &Value| {
+                        (number(other, "/re") - number(value, "/re")).hypot(number(other, "/im") - number(value, "/im"))
+                    };
+                    assert!(exact["eigenvalues"].as_array().unwrap().iter().any(|other| near(other) < 1e-9), "{value}");
+                }
+            }
+        }
+        for format in ["svg", "csv", "ndjson"] {
+            let headers = [("content-type", "application/json")];
+            let body = json!({"scene": scene}).to_string();
+            let target = format!("/v1/stability?format={format}");
+            server.send(axum::http::Method::POST, &target, &headers, &body).await.expect(200);
+        }
+    }
+    // The wrong sign, and a start outside of the basin.
+    let law = server.get("/v1/controllers?preset=case-1").await.json()["scene"].clone();
+    for (feedback, release, decided_by) in
+        [(json!({"theta": 1.0}), json!({}), "linear"), (json!({}), json!({"theta": 1.2}), "nonlinear")]
+    {
+        let mut scene = law.clone();
+        for (group, changes) in [("feedback", feedback), ("release", release)] {
+            let target = if group == "feedback" { &mut scene["table"]["feedback"] } else { &mut scene["release"] };
+            for (name, value) in changes.as_object().unwrap() {
+                target[name] = value.clone();
+            }
+        }
+        let verdict = server.post("/v1/stability", &json!({"scene": scene, "tolerances": {"restitution": 0.0}})).await;
+        let verdict = verdict.expect(200).json();
+        assert_eq!(
+            (&verdict["verdict"], &verdict["decided_by"]),
+            (&json!("unstable"), &json!(decided_by)),
+            "{verdict}"
+        );
+    }
 }

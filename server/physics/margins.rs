@@ -76,6 +76,9 @@ impl Scene {
             high[side] += off[side];
         }
         (low[2], high[2]) = (low[2].max(0.0), high[2].min(1.0));
+        if self.feedback().is_some() {
+            return Err("margins over tolerances are of a tilt gain; the table has state feedback".to_owned());
+        }
         let lower = self.linear(&self.fixed_point()?).lower_tilt_gain;
         let extreme = |of: fn(&Looked) -> f64| search(low, high, |at| Ok(of(&self.look(at)?)));
         let (critical, worst) = extreme(|looked| looked.critical)?;

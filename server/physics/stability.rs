@@ -4,6 +4,7 @@
 //! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
 //! off by the square root of rounding.
 
+use crate::control::ClosedLoop;
 use crate::demand::{Demand, Meter};
 use crate::grip::Grip;
 use crate::jacobian::{modulus, sort_eigenvalues};
@@ -15,6 +16,9 @@ use nalgebra::Complex;
 
 /// |R| or |R − 1| up to which the angle is called parabolic; likewise for the energy eigenvalue at ±1.
 pub const PARABOLIC: f64 = 1e-9;
+
+/// The rungs above the plain rod that can be judged linearly.
+pub const JUDGED: [Rung; 3] = [Rung::Rod, Rung::RodWithX, Rung::Friction];
 
 /// The upright bounce in place that a scene is to be balanced on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +66,7 @@ pub struct Linear {
     pub residue: Option<f64>,
     /// σ, rad per bounce, cos σ = 1 − 2R; where it is elliptic or parabolic.
     pub rotation: Option<f64>,
-    /// Eigenvalues of the whole map, largest modulus first.
+    /// Eigenvalues of the whole map, largest modulus first; with state feedback those of the closed loop, without the energy's.
     pub eigenvalues: Vec<Complex<f64>>,
     /// Least κ that balances; infinite where none does.
     pub lower_tilt_gain: f64,
@@ -72,11 +76,17 @@ pub struct Linear {
     pub upper_energy_gain: f64,
     /// 1 − (1 + e)κ_E V².
     pub energy_eigenvalue: f64,
+    /// What the state feedback does, where the table has one.
+    pub closed_loop: Option<ClosedLoop>,
 }
 
 impl Linear {
-    /// Largest modulus of an eigenvalue; exactly 1 where the angle circles, whatever rounding says.
+    /// Largest modulus of an eigenvalue; exactly 1 where the angle circles, whatever rounding says. With state feedback a height that
+    /// nothing steers is left out, which would always be 1.
     pub fn spectral_radius(&self) -> f64 {
+        if let Some(closed) = self.closed_loop.as_ref().filter(|_| self.energy_eigenvalue == 1.0) {
+            return closed.spectral_radius;
+        }
         let angle = match self.class {
             Class::Elliptic | Class::Parabolic => 1.0,
             Class::Attracting | Class::Hyperbolic => self.eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max),
@@ -152,8 +162,11 @@ impl Scene {
     /// # Errors
     /// Why there is none, in a sentence.
     pub fn fixed_point(&self) -> Result<FixedPoint, String> {
-        if let Some(error) = self.beyond(&[Rung::Friction]) {
+        if let Some(error) = self.beyond(&JUDGED) {
             return Err(error.detail);
+        }
+        if self.feedback().is_some() {
+            return self.bounce_in_place();
         }
         if self.is_lossy() {
             return Err(format!(
@@ -229,6 +242,19 @@ impl Scene {
         let energy_eigenvalue = 1.0 - self.energy_gain * loop_gain;
         let upper_energy_gain = 2.0 / loop_gain;
         let real = |value: f64| Complex::new(value, 0.0);
+        if let Some(closed) = self.steered(fixed_point) {
+            return Linear {
+                class: if closed.is_stable() { Class::Attracting } else { Class::Hyperbolic },
+                residue: None,
+                rotation: None,
+                eigenvalues: closed.eigenvalues.clone(),
+                lower_tilt_gain: f64::INFINITY,
+                critical_tilt_gain: f64::NEG_INFINITY,
+                upper_energy_gain,
+                energy_eigenvalue,
+                closed_loop: Some(closed),
+            };
+        }
         let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else {
             // Eq. (4): the angle of the velocity is multiplied by 1 − 2κ.
             let angle = 1.0 - 2.0 * self.tilt_gain;
@@ -244,6 +270,7 @@ impl Scene {
                 critical_tilt_gain: 1.0,
                 upper_energy_gain,
                 energy_eigenvalue,
+                closed_loop: None,
             };
         };
         if self.grip() == Grip::Held {
@@ -259,6 +286,7 @@ impl Scene {
                 critical_tilt_gain: f64::NEG_INFINITY,
                 upper_energy_gain,
                 energy_eigenvalue,
+                closed_loop: None,
             };
         }
         let turning = self.turning_radius_squared(contact_distance, radius_of_gyration);
@@ -291,6 +319,7 @@ impl Scene {
             critical_tilt_gain: 1.0 + width,
             upper_energy_gain,
             energy_eigenvalue,
+            closed_loop: None,
         }
     }
 
@@ -298,7 +327,7 @@ impl Scene {
     /// energy gain, which holds η and not the energy, −(1+a)²/2 + a²/6 − γ. None for a point mass, and with friction, for which it
     /// is not derived.
     pub fn boundary(&self, fixed_point: &FixedPoint) -> Option<Boundary> {
-        if self.grip() != Grip::Smooth {
+        if self.grip() != Grip::Smooth || self.feedback().is_some() {
             return None;
         }
         let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
@@ -318,7 +347,7 @@ impl Scene {
     /// Its states are (±θ, ±V tan κθ, −V, ±Gθ/V) with V² = Gρ²θ cos κθ / (l sin((κ − 1)θ)); with energy feedback η is held in
     /// place of the energy. None with friction, for which it is not derived.
     pub fn period_two(&self, fixed_point: &FixedPoint) -> Option<f64> {
-        if self.grip() != Grip::Smooth {
+        if self.grip() != Grip::Smooth || self.feedback().is_some() {
             return None;
         }
         let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };

@@ -80,6 +80,9 @@ impl Scene {
             );
             return judgement(Verdict::Unstable, DecidedBy::Linear, reason);
         }
+        if let Some(closed) = &linear.closed_loop {
+            return self.judge_law(closed, run);
+        }
         let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
         if !survived && linear.class != Class::Hyperbolic && linear.class != Class::Parabolic {
             let cone = self.stick_cone().filter(|cone| start.theta.abs() > *cone).map_or_else(String::new, |cone| {

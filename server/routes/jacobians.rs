@@ -5,7 +5,7 @@ use axum::body::Body;
 use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
-use equipoise_physics::model::Rung;
+use equipoise_physics::stability::JUDGED;
 
 use super::App;
 use crate::compute::{Cancel, Price};
@@ -23,7 +23,7 @@ pub fn routes() -> Router<App> {
 
 async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, at, period, method) = ask.read(|reader| {
-        let scene = scene::read_within(reader, &[Rung::Friction]);
+        let scene = scene::read_within(reader, &JUDGED);
         let at = At::read(reader);
         let period = reader.integer("period", 1..=limits::PERIOD).unwrap_or(1);
         let method = reader

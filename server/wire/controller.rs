@@ -337,37 +337,42 @@ impl Controller {
 
     /// The eigenvalues on the unit circle, and their way as the gain is scaled, as SVG.
     pub fn to_picture(&self) -> String {
-        let margin = self.law.gain_margin.as_ref();
-        let (lower, upper) = (margin.and_then(|it| it.lower), margin.and_then(|it| it.upper));
-        let high = upper.map_or(2.0, |upper| 1.0 + 1.4 * (upper - 1.0)).min(10.0);
-        let low = lower.map_or(0.0, |lower| 1.0 - 1.4 * (1.0 - lower)).max(0.0);
-        let with_x = self.state_order.len() == STATE.len();
-        let pairs = |values: &[Eigenvalue]| values.iter().map(|value| (value.re, value.im)).collect::<Vec<_>>();
-        let way = (0..=FACTORS).filter_map(|step| {
-            let factor = low + (high - low) * step as f64 / FACTORS as f64;
-            let closed = self.linear_model.closed_loop(self.design.gain.map(|gain| gain * factor), with_x)?;
-            Some((factor, closed.eigenvalues.iter().map(|value| (value.re, value.im)).collect()))
-        });
-        let number = |value: f64| significant(value, 4);
-        let ByState { x, theta, x_dot, theta_dot } = self.law.gain;
-        let subtitle = format!(
-            "α = −K·(x, θ, ẋ, θ̇) with K = ({}, {}, {}, {}); largest |λ| = {}",
-            number(x),
-            number(theta),
-            number(x_dot),
-            number(theta_dot),
-            number(self.law.spectral_radius)
-        );
-        closed_loop(&Loop {
-            title: &format!("Closed loop on a {} contact", self.law.contact),
-            subtitle: &subtitle,
-            caption: &self.notes.join(". ").replace('`', ""),
-            closed: &pairs(&self.law.eigenvalues),
-            open: &pairs(&self.open_loop),
-            way: &way.collect::<Vec<_>>(),
-            margin: (lower, upper),
-        })
+        let title = format!("Closed loop on a {} contact", self.law.contact);
+        picture(&title, &self.notes.join("; "), &self.linear_model, self.design.gain)
     }
+}
+
+/// A law's loop as SVG.
+pub(super) fn picture(title: &str, caption: &str, model: &BounceModel, gain: [f64; 4]) -> String {
+    let with_x = gain[0] != 0.0;
+    let eigenvalues = |factor: f64| -> Vec<(f64, f64)> {
+        let closed = model.closed_loop(gain.map(|gain| gain * factor), with_x);
+        closed.iter().flat_map(|closed| &closed.eigenvalues).map(|value| (value.re, value.im)).collect()
+    };
+    let closed = model.closed_loop(gain, with_x);
+    let margin = closed.as_ref().and_then(|closed| closed.margin);
+    let (lower, upper) = (margin.and_then(|it| it.lower), margin.and_then(|it| it.upper));
+    let high = upper.map_or(2.0, |upper| 1.0 + 1.4 * (upper - 1.0)).min(10.0);
+    let low = lower.map_or(0.0, |lower| 1.0 - 1.4 * (1.0 - lower)).max(0.0);
+    let way = (0..=FACTORS).map(|step| {
+        let factor = low + (high - low) * step as f64 / FACTORS as f64;
+        (factor, eigenvalues(factor))
+    });
+    let number = |value: f64| significant(value, 4);
+    let [x, theta, x_dot, theta_dot] = gain.map(number);
+    let subtitle = format!(
+        "α = −K·(x, θ, ẋ, θ̇) with K = ({x}, {theta}, {x_dot}, {theta_dot}); largest |λ| = {}",
+        number(closed.map_or(f64::NAN, |closed| closed.spectral_radius))
+    );
+    closed_loop(&Loop {
+        title,
+        subtitle: &subtitle,
+        caption,
+        closed: &eigenvalues(1.0),
+        open: &eigenvalues(0.0),
+        way: &way.collect::<Vec<_>>(),
+        margin: (lower, upper),
+    })
 }
 
 /// Why there is no law, in a sentence.

@@ -21,8 +21,8 @@ use crate::limits;
 pub enum At {
     /// At the scene's fixed point.
     FixedPoint,
-    /// At a state just before a contact.
-    State(#[serde(serialize_with = "components")] State),
+    /// At a place x, m, and a state just before a contact.
+    State(f64, #[serde(serialize_with = "components")] State),
     /// At a contact of the scene's run.
     Impact(u64),
 }
@@ -50,7 +50,10 @@ impl At {
         reader.within("at", |at| {
             if at.has("state") {
                 kinds += 1;
-                found = at.within("state", read_state).map(Self::State);
+                let state = at.within("state", |state| {
+                    (state.number("x", -1000.0..=1000.0, "m").unwrap_or(0.0), read_state(state))
+                });
+                found = state.map(|(x, state)| Self::State(x, state));
             }
             if at.has("impact") {
                 kinds += 1;
@@ -110,6 +113,8 @@ struct Place {
 
 #[derive(Debug, Clone, Serialize)]
 struct PlaceState {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    x: Option<f64>,
     theta: f64,
     x_dot: f64,
     y_dot: f64,
@@ -153,14 +158,14 @@ impl<'a> Jacobian<'a> {
     /// Why there is no derivative, as a JSON pointer and a sentence.
     pub fn compute(scene: &'a Scene, at: At, period: u64, method: Method) -> Result<Self, (&'static str, String)> {
         let model = scene.model();
-        let state = place(scene, at)?;
+        let (x, state) = place(scene, at)?;
         let derivative = match method {
-            Method::Exact => jacobian::jacobian(&model, &state, period),
-            Method::FiniteDifference => jacobian::finite_difference(&model, &state, period, STEP),
+            Method::Exact => jacobian::jacobian_at(&model, x, &state, period),
+            Method::FiniteDifference => jacobian::finite_difference_at(&model, x, &state, period, STEP),
         };
         let pointer = match at {
             At::FixedPoint => "/at",
-            At::State(_) => "/at/state",
+            At::State(..) => "/at/state",
             At::Impact(_) => "/at/impact",
         };
         let derivative = derivative.map_err(|contact| {
@@ -176,8 +181,9 @@ impl<'a> Jacobian<'a> {
         let mut notes = vec![format!(
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
         )];
+        let fed_back = scene.feedback().is_some();
         let linear = match at {
-            At::FixedPoint => scene.fixed_point().ok().map(|fixed_point| scene.linear(&fixed_point)),
+            At::FixedPoint if !fed_back => scene.fixed_point().ok().map(|fixed_point| scene.linear(&fixed_point)),
             _ => None,
         };
         let (eigenvalues, residue, defective) = if let Some(linear) = &linear {
@@ -186,7 +192,8 @@ impl<'a> Jacobian<'a> {
             let residue = linear.residue.and_then(|one| if period == 1 { Some(one) } else { block_residue(&matrix) });
             (values, residue, Some(linear.class == Class::Parabolic))
         } else {
-            notes.push("residue and defective are null: they belong to a fixed point".to_owned());
+            let whose = if fed_back { "a table without state feedback" } else { "a fixed point" };
+            notes.push(format!("residue and defective are null: they belong to {whose}"));
             (eigenvalues_of(&matrix, pointer)?, None, None)
         };
         if !one_sided.is_empty() {
@@ -217,7 +224,7 @@ impl<'a> Jacobian<'a> {
             at: Place {
                 kind: match at {
                     At::FixedPoint => "fixed_point",
-                    At::State(_) => "state",
+                    At::State(..) => "state",
                     At::Impact(_) => "impact",
                 },
                 impact: match at {
@@ -225,6 +232,7 @@ impl<'a> Jacobian<'a> {
                     _ => None,
                 },
                 state: PlaceState {
+                    x: fed_back.then_some(x),
                     theta: state.theta,
                     x_dot: state.x_dot,
                     y_dot: state.y_dot,
@@ -267,25 +275,25 @@ impl<'a> Jacobian<'a> {
 }
 
 /// The state at which to differentiate.
-fn place(scene: &Scene, at: At) -> Result<State, (&'static str, String)> {
+fn place(scene: &Scene, at: At) -> Result<(f64, State), (&'static str, String)> {
     match at {
         At::FixedPoint => {
             let fixed_point =
                 scene.fixed_point().map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
-            Ok(State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 })
+            Ok((0.0, State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 }))
         }
-        At::State(state) if has_angle(scene) => Ok(state),
-        At::State(State { theta, x_dot, y_dot, theta_dot }) => {
+        At::State(x, state) if has_angle(scene) => Ok((x, state)),
+        At::State(x, State { theta, x_dot, y_dot, theta_dot }) => {
             if theta != 0.0 || theta_dot != 0.0 {
                 return Err(("/at/state", "a point mass has no theta and no theta_dot; leave them out".to_owned()));
             }
-            Ok(Point::state(x_dot, y_dot))
+            Ok((x, Point::state(x_dot, y_dot)))
         }
         At::Impact(impact) => {
             let mut orbit = scene.orbit().map_err(|_| ("/at/impact", "the run has no contact".to_owned()))?;
-            let mut last = *orbit.state();
+            let mut last = (orbit.x(), *orbit.state());
             let ending = run(&mut orbit, impact, |contact| {
-                last = contact.state;
+                last = (contact.x, contact.state);
                 true
             });
             if orbit.contacts() < impact {

@@ -78,7 +78,8 @@ impl Margins {
                 Self {
                     tolerances: said,
                     holds: Some(margins.holds),
-                    tilt_gain: Some(TiltGain {
+                    // None where no tilt gain balances.
+                    tilt_gain: critical.least.is_finite().then_some(TiltGain {
                         value: tilt_gain,
                         critical: critical.into(),
                         margin_above: critical.least - tilt_gain,

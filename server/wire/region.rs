@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use equipoise_physics::model::Rung;
 use equipoise_physics::region::{Axis, Cell, Quantity, Region};
 use equipoise_physics::scene::{Kind, Scene, field};
+use equipoise_physics::stability::JUDGED;
 use equipoise_physics::sweep::Outcome;
 use serde::{Serialize, Serializer};
 
@@ -80,7 +80,7 @@ impl Request {
             return None;
         };
         let linear = matches!(region.quantity, Quantity::Residue | Quantity::SpectralRadius);
-        if let Some(error) = scene.beyond(&[Rung::Friction]).filter(|_| linear) {
+        if let Some(error) = scene.beyond(&JUDGED).filter(|_| linear) {
             let pointer = reader.pointer_to("scene");
             reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
             return None;

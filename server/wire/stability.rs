@@ -1,6 +1,7 @@
 //! The answer of `stability`: the verdict, and everything it rests on.
 
 use equipoise_physics::basin::{self, NoBasin};
+use equipoise_physics::control::BounceModel;
 use equipoise_physics::grip::Grip;
 use equipoise_physics::margins::Tolerances;
 use equipoise_physics::regularity::WATCHED;
@@ -9,6 +10,7 @@ use equipoise_physics::stability::{Linear, Nonlinear};
 use equipoise_physics::verdict::{Judgement, Verdict};
 use serde::Serialize;
 
+use super::controller;
 use super::evidence::{Basin, Chaos, Evidence, RotationNumber};
 use super::jacobian::Eigenvalue;
 use super::margins::{self, Margins};
@@ -147,7 +149,7 @@ impl LinearPart {
             rotation: linear.rotation,
             spectral_radius: linear.spectral_radius(),
             eigenvalues: linear.eigenvalues.iter().map(|&value| value.into()).collect(),
-            tilt_gain: linear.lower_tilt_gain.is_finite().then(|| TiltGain {
+            tilt_gain: linear.lower_tilt_gain.is_finite().then_some(TiltGain {
                 value: kappa,
                 lower: linear.lower_tilt_gain,
                 critical: linear.critical_tilt_gain,
@@ -206,6 +208,12 @@ impl<'a> Stability<'a> {
                         mass has no angle of its own, and its drift dies out"
                     .to_owned(),
             );
+        } else if scene.feedback().is_some() {
+            notes.push(
+                "drift_speed, linear.residue, linear.rotation, linear.tilt_gain, boundary, rotation_number, chaos and \
+                 predictable_impacts are null: with state feedback nothing drifts or circles for ever, and the last two are not derived"
+                    .to_owned(),
+            );
         } else if scene.grip() == Grip::Held {
             notes.push(
                 "drift_speed, linear.residue, linear.rotation and linear.tilt_gain are null: the contact sticks to a table that only \
@@ -230,7 +238,7 @@ impl<'a> Stability<'a> {
                 answer.decided_by = Some(decided_by.name());
                 answer.agree = Some(agree);
                 answer.reason = reason;
-                if scene.grip() != Grip::Smooth {
+                if scene.grip() != Grip::Smooth && linear.closed_loop.is_none() {
                     notes.push("boundary is null: its coefficient is not derived with friction".to_owned());
                 }
                 if let Some(cone) = scene.stick_cone() {
@@ -246,7 +254,9 @@ impl<'a> Stability<'a> {
                     notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
                 }
                 answer.bounces += evidence.bounces();
-                evidence.explain(&linear, &mut notes);
+                if linear.closed_loop.is_none() {
+                    evidence.explain(&linear, &mut notes);
+                }
                 answer.predictable_impacts = evidence.predictable_impacts();
                 answer.chaos = evidence.chaos().map(Chaos::from);
                 answer.rotation_number = evidence.rotation().map(RotationNumber::from);
@@ -290,6 +300,11 @@ impl<'a> Stability<'a> {
 
     /// The eigenvalues on the unit circle against κ, as SVG.
     pub fn to_picture(&self) -> String {
+        if let (Some(gain), Some(place)) = (self.scene.0.feedback(), &self.fixed_point) {
+            let model = BounceModel::new(&self.scene.0.parameters(), -place.y_dot, self.scene.0.grip());
+            let title = format!("Closed loop: {}", self.verdict.as_deref().unwrap_or("no verdict"));
+            return controller::picture(&title, &self.reason, &model, gain);
+        }
         let values: Vec<(f64, f64)> =
             self.linear.iter().flat_map(|linear| &linear.eigenvalues).map(|value| (value.re, value.im)).collect();
         eigenvalues(&Eigenvalues {

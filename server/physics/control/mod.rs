@@ -10,9 +10,11 @@ pub mod riccati;
 use crate::grip::Grip;
 use crate::impact::Rod;
 use crate::jacobian::{eigenvalues, modulus};
+use crate::map::Ending;
 use crate::rig::{Gains, Steering};
 use crate::scene::{BodyShape, Scene};
-use crate::stability::FixedPoint;
+use crate::stability::{FixedPoint, Nonlinear};
+use crate::verdict::{DecidedBy, Judgement, Verdict};
 use margin::{Margin, margin};
 use nalgebra::{Complex, DMatrix, Matrix3, Matrix4, RowVector4, Vector3, Vector4};
 
@@ -125,6 +127,50 @@ impl Scene {
             flight_time: 2.0 * speed / rod.gravity,
             apex_height: rod.contact_distance + speed_squared / (2.0 * rod.gravity),
         })
+    }
+}
+
+impl Scene {
+    /// What the state feedback of the scene does near a bounce in place; none where it has none.
+    pub fn steered(&self, fixed_point: &FixedPoint) -> Option<ClosedLoop> {
+        let gain = self.feedback()?;
+        let model = BounceModel::new(&self.parameters(), fixed_point.speed, self.grip());
+        model.closed_loop(gain, gain[0] != 0.0)
+    }
+
+    /// Whether a law with feedback is stable in place, by its closed loop and a run.
+    pub(crate) fn judge_law(&self, closed: &ClosedLoop, run: &Nonlinear) -> Judgement {
+        let survived = run.ending == Ending::Completed;
+        let (stable, radius) = (closed.is_stable(), closed.spectral_radius);
+        let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
+        let what = if closed.eigenvalues.len() == STATE.len() {
+            "x, theta, x_dot and theta_dot"
+        } else {
+            "theta, x_dot and theta_dot"
+        };
+        let (verdict, decided_by, reason) = match (stable, survived) {
+            (true, true) => (
+                Verdict::StableInPlace,
+                DecidedBy::Linear,
+                format!("every small deviation of {what} dies out: the closed loop has spectral radius {radius}"),
+            ),
+            (true, false) => (
+                Verdict::Unstable,
+                DecidedBy::Nonlinear,
+                format!(
+                    "{fell}, although the closed loop has spectral radius {radius}: the start is outside the basin"
+                ),
+            ),
+            (false, _) => (
+                Verdict::Unstable,
+                DecidedBy::Linear,
+                format!(
+                    "a small deviation does not die out: the closed loop has spectral radius {radius}, which must be below 1; {}",
+                    if survived { "this run has not left yet".to_owned() } else { fell }
+                ),
+            ),
+        };
+        Judgement { verdict, decided_by, agree: stable == survived, reason }
     }
 }
 
