@@ -2,14 +2,15 @@
 
 import { line } from './axes.js';
 import { SANS, theme } from './theme.js';
-import { contactDistance } from './flight.js';
+import { contactDistance, corners } from './flight.js';
 import { fixed } from './numbers.js';
 
 /** @typedef {CanvasRenderingContext2D} Context */
 /** @typedef {{x: (x: number) => number, y: (y: number) => number, metre: number, right: number}} Scale metres to pixels, and where the picture ends */
 
 /**
- * The rod from its contact point through its centre of gravity, with marks at ±ρ: two half masses there would turn like it.
+ * The rod from its contact point through its centre of gravity, with marks at ±ρ: two half masses there would turn like it; or the
+ * outline of a polygon.
  * @param {Context} context
  * @param {Scale} scale
  * @param {import('./api.js').Scene} scene
@@ -30,12 +31,17 @@ export function drawRod(context, scale, scene, pose) {
   const bottom = l * scale.metre;
   const top = -Math.max(l, rho) * scale.metre;
   const half = Math.max(2.5, Math.min(6, 0.0075 * scale.metre));
+  const polygon = corners(scene);
   context.beginPath();
-  context.moveTo(0, bottom);
-  context.lineTo(half, bottom - 2.4 * half);
-  context.lineTo(half, top + half);
-  context.arc(0, top + half, half, 0, Math.PI, true);
-  context.lineTo(-half, bottom - 2.4 * half);
+  if (polygon) {
+    for (const [x, y] of polygon) context.lineTo(x * scale.metre, -y * scale.metre);
+  } else {
+    context.moveTo(0, bottom);
+    context.lineTo(half, bottom - 2.4 * half);
+    context.lineTo(half, top + half);
+    context.arc(0, top + half, half, 0, Math.PI, true);
+    context.lineTo(-half, bottom - 2.4 * half);
+  }
   context.closePath();
   context.fillStyle = colours.surface;
   context.fill();
@@ -47,7 +53,7 @@ export function drawRod(context, scale, scene, pose) {
   context.strokeStyle = colours.ink;
   context.stroke();
   context.lineWidth = 1.5;
-  for (const at of [-rho, rho]) {
+  for (const at of polygon ? [] : [-rho, rho]) {
     if (at <= l) line(context, colours.ink, -half - 3, at * scale.metre, half + 3, at * scale.metre);
   }
   context.rotate(pose.theta);

@@ -29,7 +29,33 @@
 export const effectiveGravity = (scene) => (scene.gravity ?? 9.81) * Math.sin(scene.incline ?? Math.PI / 2);
 
 /** Centre of gravity to contact point; a point mass is its own contact point. @param {Scene} scene @returns {number} */
-export const contactDistance = (scene) => scene.body?.contact_distance ?? 0;
+export const contactDistance = (scene) => scene.body?.contact_distance ?? Math.abs(corners(scene)?.[scene.body.contact_vertex ?? 0][1] ?? 0);
+
+/**
+ * The vertices of a polygon about its centre of gravity, that straight above the contact vertex; of no polygon, null.
+ * @param {Scene} scene
+ * @returns {[number, number][] | null}
+ */
+export function corners(scene) {
+  /** @type {[number, number][] | undefined} */
+  const vertices = scene.body?.vertices;
+  if (!vertices) return null;
+  const [[left, low]] = vertices;
+  const places = vertices.map(([x, y]) => [x - left, y - low]);
+  let area = 0;
+  let [x, y] = [0, 0];
+  places.forEach(([ax, ay], index) => {
+    const [bx, by] = places[(index + 1) % places.length];
+    const part = ax * by - ay * bx;
+    area += 3 * part;
+    x += part * (ax + bx);
+    y += part * (ay + by);
+  });
+  const about = places.map(([px, py]) => [px - x / area, py - y / area]);
+  const [dx, dy] = about[scene.body.contact_vertex ?? 0];
+  const l = Math.hypot(dx, dy);
+  return about.map(([px, py]) => [(dx * py - dy * px) / l, -(dx * px + dy * py) / l]);
+}
 
 /**
  * The flight after an impact.

@@ -80,6 +80,8 @@ export class Form {
   /** @type {Map<string, Row>} */
   #rows = new Map();
   #onEdit;
+  /** @type {[number, number][] | null} */
+  #vertices = null;
 
   /**
    * @param {HTMLElement} root
@@ -193,6 +195,7 @@ export class Form {
 
   /** Fills in a scene; what it leaves open shows its default. @param {Scene} scene */
   fill(scene) {
+    this.#vertices = scene.body?.vertices ?? null;
     for (const row of this.#rows.values()) {
       const value = valueAt(scene, row.field.path);
       this.#put(row, value === row.field.default ? null : value);
@@ -242,6 +245,9 @@ export class Form {
       if (problem) complete = false;
       else if (value !== undefined) setAt(scene, row.field.path, value);
     }
+    // No control types the vertices of a polygon: they stay until its contact vertex is cleared or another body is typed.
+    const { contact_vertex, contact_distance, radius_of_gyration } = scene.body ?? {};
+    if (this.#vertices && contact_vertex !== undefined && contact_distance === undefined && radius_of_gyration === undefined) scene.body.vertices = this.#vertices;
     return { scene, complete };
   }
 

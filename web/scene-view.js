@@ -4,7 +4,7 @@ import { h } from './dom.js';
 import { drawRod, drawStrike, drawTable } from './bodies.js';
 import { line, roundStep } from './axes.js';
 import { SANS, onThemeChange, theme } from './theme.js';
-import { contactDistance, effectiveGravity, poseOn, strikeAfter, tableBetween } from './flight.js';
+import { contactDistance, corners, effectiveGravity, poseOn, strikeAfter, tableBetween } from './flight.js';
 import { invalidate, surfaces } from './surface.js';
 import { fixed, number, unbroken } from './numbers.js';
 
@@ -157,7 +157,7 @@ export class SceneView {
 
   /** Room for the highest point of the rod on this flight; it grows when it must and never shrinks in a run. @param {Scene} scene @param {number} apex */
   #frame(scene, apex) {
-    const above = scene.body?.point ? 0.03 : Math.max(contactDistance(scene), scene.body?.radius_of_gyration ?? 0);
+    const above = scene.body?.point ? 0.03 : Math.max(contactDistance(scene), scene.body?.radius_of_gyration ?? Math.max(0, ...(corners(scene) ?? []).map(([x, y]) => Math.hypot(x, y))));
     const wanted = (Math.max(apex, scene.table?.target_height ?? 0) + above) * 1.08;
     if (wanted > this.#top && Number.isFinite(wanted)) this.#top = wanted;
   }

@@ -84,3 +84,18 @@ test('the copied curl gives the page’s verdict', async () => {
   assert.equal((await verdict(page)).replace(/^\W+/, '').toLowerCase(), answer.verdict.toLowerCase());
   clean();
 });
+
+test('a polygon stays with what is typed beside it, until another body is', async () => {
+  const { page, clean } = await stage.page('?preset=triangle-polygon');
+  assert.match(await verdict(page), /\S/);
+  await page.locator('#field-table-tilt_gain').fill('1.05');
+  await page.waitForFunction(() => new URLSearchParams(location.search).get('scene.table.tilt_gain') === '1.05');
+  assert.equal(new URL(page.url()).searchParams.get('preset'), 'triangle-polygon');
+  await page.click('#run');
+  await page.waitForFunction(() => /impact\s[1-9]/.test(document.body.innerText));
+  assert.match(page.url(), /preset=triangle-polygon/);
+  await page.locator('#field-body-contact_distance').fill('0.1');
+  await page.locator('#field-body-radius_of_gyration').fill('0.1');
+  assert.match(await verdict(page), /\S/);
+  clean();
+});
