@@ -226,7 +226,7 @@ impl Scene {
     /// # Errors
     /// Why there is not even a first contact.
     pub fn orbit(&self) -> Result<Orbit<Model>, NoContact> {
-        Orbit::new(self.model(), self.rules(), &self.release)
+        Orbit::new(self.running_model(), self.rules(), &self.release)
     }
 
     /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.
