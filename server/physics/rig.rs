@@ -198,6 +198,7 @@ impl Body for Rig {
         }
     }
 
+    #[inline(never)]
     fn touches(&self, coming: &Coming, strike: &Strike) -> Option<Touch> {
         let nearest = self.outline.as_ref()?.below_table(trig::sin_cos(coming.state.theta - strike.alpha))?;
         Some(Touch { vertex: nearest.vertex, t: 0.0 })
