@@ -48,6 +48,7 @@ pub struct Excess {
 
 impl Pose {
     /// What this strike asks for, after `last` if there was one.
+    #[inline(never)]
     pub fn demand(&self, last: Option<&Self>) -> Demand {
         let (x, y) = self.velocity;
         let (tilt_rate, stroke) = last.map_or((0.0, 0.0), |last| {
@@ -116,6 +117,7 @@ impl Demand {
     }
 
     /// The first of these limits that `demand` goes beyond.
+    #[inline(never)]
     pub fn exceeded(&self, demand: &Demand) -> Option<Excess> {
         let pairs = demand.quantities().into_iter().zip(self.quantities());
         pairs

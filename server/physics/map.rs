@@ -207,11 +207,13 @@ impl<B: Body> Orbit<B> {
             contact.ending = Some(Ending::Toppled { theta: state.theta, limit: self.rules.topple_angle });
             return contact;
         }
-        if let Some(limits) = self.rules.limits
-            && let Some(excess) = self.exceeds(&limits, &strike)
-        {
-            contact.ending = Some(Ending::BeyondLimits(excess));
-            return contact;
+        if let Some(limits) = &self.rules.limits {
+            let pose = Pose { t: contact.t, alpha: strike.alpha, velocity: strike.table_velocity };
+            let demand = pose.demand(self.last.replace(pose).as_ref());
+            if let Some(excess) = limits.exceeded(&demand) {
+                contact.ending = Some(Ending::BeyondLimits(excess));
+                return contact;
+            }
         }
         if strike.push >= 0.0 {
             contact.ending = Some(Ending::Separating { approach: strike.approach });
@@ -256,14 +258,6 @@ impl<B: Body> Orbit<B> {
         self.x.add(arrival.state.x_dot * flight_time);
         (self.state, self.clearance, self.plan) = (arrival.state, arrival.clearance, arrival.plan);
         contact
-    }
-
-    /// What a strike asks of the table beyond its limits.
-    #[inline(never)]
-    fn exceeds(&mut self, limits: &Limits, strike: &Strike) -> Option<Excess> {
-        let pose = Pose { t: self.t.value, alpha: strike.alpha, velocity: strike.table_velocity };
-        let demand = pose.demand(self.last.replace(pose).as_ref());
-        limits.exceeded(&demand)
     }
 
     fn settle(&mut self, flight_time: f64) -> Option<Ending> {
