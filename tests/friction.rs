@@ -115,3 +115,15 @@ async fn a_region_may_have_friction_as_a_side() {
     }
     assert!(survived > 10 && fell > 10, "{survived} {fell}");
 }
+
+#[tokio::test]
+async fn a_tolerance_is_held_with_friction_too() {
+    let server = Server::start();
+    let rough =
+        "preset=case-1&scene.contact.friction=0.3&scene.table.slide=matched&scene.release.theta=0.05&impacts=100";
+    for (tolerance, method) in [(1e-9, "map"), (1e-20, "extended")] {
+        let run = server.get(&format!("/v1/trajectories?{rough}&tolerance={tolerance:e}")).await.json();
+        assert_eq!(run["method"]["name"], method, "{}", run["method"]);
+        assert!(run["impacts"]["error_estimate"][99].as_f64().unwrap() <= tolerance);
+    }
+}

@@ -9,9 +9,10 @@ use crate::double_double::DoubleDouble;
 use crate::dual::Dual;
 use crate::extended;
 use crate::flight::Flight;
+use crate::friction::{Friction, Slide};
 use crate::impact::{Rod, State, Strike};
 use crate::map::Contact;
-use crate::model::Model;
+use crate::model::{Model, Rung};
 use crate::number::Number;
 use crate::scene::Scene;
 
@@ -46,6 +47,7 @@ type Number8 = Dual<DIRECTIONS>;
 #[derive(Clone, Copy, Debug)]
 pub struct ErrorEstimate {
     rod: Rod<Number8>,
+    friction: Option<Friction>,
     is_point: bool,
     holds_energy: bool,
     /// One standard deviation in each direction, as partials beside the values they belong to.
@@ -93,14 +95,15 @@ impl Scene {
         let start = release.state.map(exact);
         let mut estimate = ErrorEstimate {
             rod: lifted,
+            friction: self.contact_friction(),
             is_point: matches!(model, Model::Point(_)),
             holds_energy: self.rules().holds_energy,
             state: start,
             energy: None,
             unit,
             rounding: unit,
-            // Not derived for more than the plain rod.
-            lost: self.roughness().is_some(),
+            // Not derived for more than friction.
+            lost: self.beyond(&[Rung::Friction]).is_some(),
         };
         if first > 0.0 {
             let (sin, cos) = start.theta.sincos();
@@ -184,7 +187,10 @@ impl ErrorEstimate {
         ] {
             number.value = value;
         }
-        let mut strike = self.rod.strike(&self.state);
+        let mut strike = match self.friction {
+            None => self.rod.strike(&self.state),
+            Some(friction) => friction.strike_by_tilt_gain(&self.rod, &self.state),
+        };
         let mut energy = Number8::from_f64(0.0);
         if self.holds_energy {
             let held = self.energy.map(|held| Dual { value: strike.energy.value, ..held });
@@ -230,10 +236,22 @@ impl ErrorEstimate {
             self.rounding * (2.0 * theta_dot.value.abs() + 3.0 * (impulse * turn).abs()),
             self.rounding * energy_parts,
         ];
-        let directions = [
+        let mut directions = [
             [0.0, -sin_alpha * along, cos_alpha * along, turn * along, 0.0],
             [0.0, x_dot.value * stretch, y_dot.value * stretch, theta_dot.value * stretch, 0.0],
         ];
+        if let Some(friction) = self.friction {
+            // The impulse along the table takes the place of the energy, which is not held with friction. It follows the normal one, and
+            // the sliding, a sum, unless the table matches that.
+            let (sin, cos) = (sin_alpha * strike.sin_cos_theta.0.value, cos_alpha * strike.sin_cos_theta.1.value);
+            let (arm, tangential) = (l * (cos + sin), strike.impulse_tangential.value);
+            let terms = (cos_alpha * before.x_dot.value).abs()
+                + (sin_alpha * before.y_dot.value).abs()
+                + (arm * before.theta_dot.value).abs();
+            let terms = if friction.slide == Slide::Matched { 0.0 } else { terms };
+            let aside = self.rounding * (2.0 * terms + 3.0 * tangential.abs()) + along * (tangential / impulse).abs();
+            directions[1] = [0.0, cos_alpha * aside, sin_alpha * aside, arm / (rho * rho) * aside, 0.0];
+        }
         add([theta, x_dot, y_dot, theta_dot, energy], &sums, &directions);
         let (sin, cos) = &mut strike.sin_cos_theta;
         sin.partials = strike.after.theta.partials.map(|partial| cos.value * partial);

@@ -7,6 +7,7 @@
 use crate::contact_time::{self, TooManyPieces};
 use crate::double_double::DoubleDouble;
 use crate::flight::Flight;
+use crate::friction::Friction;
 use crate::impact::{Rod, State, Strike};
 use crate::map::{Ending, Rules, SETTLED_SHARE, SPEED_LIMIT};
 use crate::number::Number;
@@ -42,6 +43,7 @@ pub struct Contact {
 #[derive(Clone, Copy, Debug)]
 pub struct Orbit {
     rod: Rod<DoubleDouble>,
+    friction: Option<Friction>,
     is_point: bool,
     rules: Rules,
     state: State<DoubleDouble>,
@@ -69,6 +71,7 @@ impl Orbit {
         let release = scene.release();
         let mut orbit = Self {
             rod: scene.parameters(),
+            friction: scene.contact_friction(),
             is_point: scene.body() == BodyShape::Point,
             rules: scene.rules(),
             state: release.state.map(DoubleDouble::from),
@@ -146,7 +149,10 @@ impl Orbit {
             contact.ending = Some(Ending::Toppled { theta, limit: rules.topple_angle });
             return contact;
         }
-        let mut strike = self.rod.strike(&state);
+        let mut strike = match self.friction {
+            None => self.rod.strike(&state),
+            Some(friction) => friction.strike_by_tilt_gain(&self.rod, &state),
+        };
         if strike.push >= zero {
             contact.ending = Some(Ending::Separating { approach: strike.approach.to_f64() });
             return contact;

@@ -273,6 +273,12 @@ impl Friction {
         strike
     }
 
+    /// The same over a table that tilts by α = κθ, as it is.
+    #[inline(always)]
+    pub(crate) fn strike_by_tilt_gain<N: Number>(&self, rod: &Rod<N>, before: &State<N>) -> Strike<N> {
+        self.strike(rod, before, &rod.tilt(before.theta), None, rod.leverage(), as_it_is)
+    }
+
     /// The table's velocity along itself where nothing delays it, m/s.
     pub(crate) fn table_speed(&self, rod: &Rod, before: &State, tilt: &Tilt<f64>) -> f64 {
         match self.slide {

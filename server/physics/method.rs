@@ -9,6 +9,7 @@ use crate::extended;
 use crate::impact::State;
 use crate::linear::LinearSolution;
 use crate::map::{self, Body, Coming, Contact, Ending};
+use crate::model::Rung;
 use crate::scene::Scene;
 use crate::stability::Class;
 
@@ -176,7 +177,8 @@ impl Scene {
         mut visit: impl FnMut(&Impact<'_>) -> bool,
     ) -> Result<Option<Ending>, String> {
         if method != Method::Map {
-            if let Some(error) = self.roughness() {
+            let known: &[Rung] = if method == Method::Extended { &[Rung::Friction] } else { &[] };
+            if let Some(error) = self.beyond(known) {
                 return Err(error.detail);
             }
             if self.limits.is_some() {

@@ -127,8 +127,7 @@ impl Scene {
         if self.body == BodyShape::Point {
             return Model::Point(Point::new(rod));
         }
-        let friction =
-            self.is_rough().then_some(Friction { coefficient: self.friction, law: self.law, slide: self.slide });
+        let friction = self.contact_friction();
         if friction.is_none() && self.steering == Steering::TiltGain && noise.is_none() && outline.is_none() {
             return Model::Rod(rod);
         }
@@ -192,6 +191,11 @@ impl Scene {
             Striking::Compensated => self.assumed_restitution() > self.restitution,
         };
         lost && self.energy_gain == 0.0
+    }
+
+    /// Its friction, where the contact has some or the table moves along itself.
+    pub(crate) fn contact_friction(&self) -> Option<Friction> {
+        self.is_rough().then_some(Friction { coefficient: self.friction, law: self.law, slide: self.slide })
     }
 
     /// Whether the contact has friction or the table moves along itself.

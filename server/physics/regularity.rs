@@ -4,7 +4,7 @@
 //! Not here: what is concluded from it ([`crate::verdict`]).
 
 use crate::dual::Dual;
-use crate::friction::{Friction, as_it_is};
+use crate::friction::Friction;
 use crate::impact::{Rod, State};
 use crate::model::Model;
 use crate::rig::{Rig, Steering};
@@ -243,7 +243,7 @@ impl Tangents {
         let rod = &self.lifted;
         let strike = match self.friction {
             None => rod.strike(&state),
-            Some(friction) => friction.strike(rod, &state, &rod.tilt(state.theta), None, rod.leverage(), as_it_is),
+            Some(friction) => friction.strike_by_tilt_gain(rod, &state),
         };
         let flight = rod.flight(&strike);
         let end = flight.end(flight.lift_root(flight_time));

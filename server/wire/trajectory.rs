@@ -279,7 +279,7 @@ impl MethodChoice {
     fn of(scene: &Scene, request: &Request, go_on: &mut impl FnMut() -> bool) -> Result<(Method, Self), Refused> {
         let Request { impacts, method, tolerance, .. } = *request;
         if let (None, Some(tolerance)) = (method, tolerance) {
-            if let Some(error) = scene.roughness() {
+            if let Some(error) = scene.beyond(&[Rung::Friction]) {
                 return Err(Some(("/tolerance", format!("no method bounds its error: {}", error.detail))));
             }
             let choice = scene
@@ -370,7 +370,7 @@ impl<'a> Trajectory<'a> {
         let ending = ending.ok_or(None)?;
         let (contacts_made, t) = last.unwrap_or((0, 0.0));
         let mut notes = Vec::new();
-        if let Some(error) = scene.roughness() {
+        if let Some(error) = scene.beyond(&[Rung::Friction]) {
             notes.push(format!(
                 "error_estimate is null and predictable_impacts 0, since no bound is derived: {}",
                 error.detail
