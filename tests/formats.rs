@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use support::csv::Table;
 use support::{Answer, Server};
 
-const COLUMNS: [(&str, &str); 17] = [
+const COLUMNS: [(&str, &str); 18] = [
     ("n", "n"),
     ("t", "t_s"),
     ("x", "x_m"),
@@ -23,6 +23,7 @@ const COLUMNS: [(&str, &str); 17] = [
     ("energy", "energy_m2_per_s2"),
     ("flight_time", "flight_time_s"),
     ("contact_speed", "contact_speed_m_per_s"),
+    ("clearance", "clearance_m"),
     ("error_estimate", "error_estimate_m_per_s"),
 ];
 

@@ -133,3 +133,15 @@ async fn margins_hold_for_every_body_within_the_tolerances() {
     let refused = server.get("/v1/stability?preset=case-1&tolerances.restitution=-1").await.expect(422);
     assert_eq!(refused.pointers(), ["/tolerances/restitution"]);
 }
+
+#[tokio::test]
+async fn a_query_can_take_a_value_back() {
+    let server = Server::start();
+    let query = "preset=case-1&impacts=20&scene.table.tilt_gain=null&scene.table.feedback.theta=-1.1";
+    let run = server.get(&format!("/v1/trajectories?{query}")).await.expect(200).json();
+    assert!(run["scene"]["table"].get("tilt_gain").is_none());
+    assert_eq!(run["outcome"]["kind"], "completed");
+    // In a body the word is a word.
+    let body = json!({"preset": "case-1", "scene": {"table": {"tilt_gain": "null"}}});
+    assert_eq!(server.post("/v1/trajectories", &body).await.expect(422).pointers(), ["/scene/table/tilt_gain"]);
+}

@@ -3,7 +3,7 @@
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
 pub use crate::body::{Arrival, Body, Coming, Kick, NoContact, Plan, Release, Touch};
-use crate::demand::{Excess, Limits, Pose};
+use crate::demand::{Limits, Pose};
 use crate::dispatch::{Work, dispatch};
 use crate::impact::{State, Strike};
 pub use crate::outcome::Ending;

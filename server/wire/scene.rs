@@ -205,6 +205,8 @@ impl Walk<'_> {
 pub fn read_value(row: &'static Field, value: &Value, source: Source) -> Result<Option<FieldValue>, String> {
     match (row.kind, value) {
         (_, Value::Null) => Ok(None),
+        // The only way to take a value back in a query.
+        (_, Value::String(text)) if source == Source::Query && text == "null" => Ok(None),
         (Kind::Number { minimum, maximum }, _) => {
             leaf::number_within(value, source, &(minimum..=maximum), row.unit).map(FieldValue::Number).map(Some)
         }
