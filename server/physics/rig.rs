@@ -97,13 +97,8 @@ impl Rig {
         self.noise.map_or(Draw { timing: 0.0, angle: 0.0 }, |noise| noise.draw(n))
     }
 
-    /// The contact number `n` that ends a flight from `x`.
-    fn arrive(&self, flight: &Flight, n: u64, x: f64) -> Result<Arrival, NoContact> {
-        let t = if flight.clearance < 0.0 {
-            first_descent(flight)?.ok_or(NoContact::Sinking)?
-        } else {
-            first_contact(flight)?
-        };
+    /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`.
+    fn arrive(&self, flight: &Flight, t: f64, n: u64, x: f64) -> Result<Arrival, NoContact> {
         let arrival = self.meet_timed(flight, t, n, x)?;
         if let Some(outline) = &self.outline
             && let Some(touch) = outline.first_touch(flight, t.min(arrival.t))?
@@ -124,7 +119,11 @@ impl Rig {
                 let clearance = if timing == 0.0 { 0.0 } else { flight.gap(struck).value };
                 Ok(Arrival { t: struck, state, clearance, plan: None })
             }
-            Reading::Plan => self.meet(flight, struck, &state, x + state.x_dot * struck, angle),
+            Reading::Plan => match self.meet(flight, struck, &state, x + state.x_dot * struck, angle) {
+                // Released onto the table: it is on the plane, whatever was planned for later.
+                Err(NoContact::Missed) if t == 0.0 => Ok((LEAST_FLIGHT, flight.end(LEAST_FLIGHT)).into()),
+                met => met,
+            },
         }
     }
 
@@ -173,11 +172,8 @@ impl Rig {
 
 impl Body for Rig {
     fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
-        let (t, state) = self.rod.fall(release)?;
-        if t == 0.0 && self.noise.is_none() {
-            return Ok((t, state).into());
-        }
-        self.arrive(&self.rod.flight_from(release), 1, release.x)
+        let (t, _) = self.rod.fall(release)?;
+        self.arrive(&self.rod.flight_from(release), t, 1, release.x)
     }
 
     // Out of the loop of the plain rod, which shares its code with this one; likewise below.
@@ -210,7 +206,13 @@ impl Body for Rig {
 
     #[inline(never)]
     fn fly(&self, from: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
-        self.arrive(&self.flight(from, strike), from.n + 1, from.x)
+        let flight = self.flight(from, strike);
+        let t = if flight.clearance < 0.0 {
+            first_descent(&flight)?.ok_or(NoContact::Sinking)?
+        } else {
+            first_contact(&flight)?
+        };
+        self.arrive(&flight, t, from.n + 1, from.x)
     }
 
     fn contact_distance(&self) -> f64 {

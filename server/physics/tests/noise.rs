@@ -70,3 +70,18 @@ fn a_scene_may_be_any_run_of_its_ensemble() {
     ends.rotate_left(1);
     assert_ne!(ends[0], ends[1]);
 }
+
+#[test]
+fn a_release_on_the_table_is_struck_about_then() {
+    for model in ["strike", "plan"] {
+        let mut draft = case_1(model, 0.002, 0.0).draft();
+        for (name, number) in [(Name::Height, 0.4 / 3.0), (Name::YDot, -1.0)] {
+            draft.set(name, Some(Value::Number(number))).unwrap();
+        }
+        let scene = draft.build().unwrap();
+        for number in 0..50 {
+            let orbit = scene.orbit_of(number).unwrap();
+            assert!(orbit.t() > 0.0 && orbit.t() < 0.01, "{model}: {}", orbit.t());
+        }
+    }
+}
