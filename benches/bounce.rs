@@ -13,6 +13,7 @@ use equipoise_physics::jacobian::jacobian;
 use equipoise_physics::map::{Orbit, Release, run};
 use equipoise_physics::method::Method;
 use equipoise_physics::model::Model;
+use equipoise_physics::polygon::Vertices;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::sweep::{Start, sweep_on};
 
@@ -66,9 +67,37 @@ fn case_1() -> Scene {
 }
 
 /// The scene on each rung of the ladder of models, outcomes checked.
-#[divan::bench(args = ["rod", "rod_with_x", "friction", "noise"])]
+#[divan::bench(args = ["point", "linear", "rod", "rod_with_x", "friction", "noise", "polygon"])]
 fn rungs(bencher: Bencher, rung: &str) {
     let mut draft = case_1().draft();
+    let bencher = bencher.counter(ItemsCount::new(BOUNCES));
+    match rung {
+        "linear" => {
+            draft.set(Name::Theta, Some(Value::Number(1e-3))).expect("a value in its range");
+            let scene = draft.build().expect("a scene");
+            return bencher
+                .bench(|| black_box(&scene).run_by(Method::Linear, BOUNCES, |impact| impact.error_estimate < 1.0));
+        }
+        "point" => {
+            for name in [Name::ContactDistance, Name::RadiusOfGyration, Name::Theta] {
+                let _ = draft.set(name, None);
+            }
+            for (name, value) in [
+                (Name::PointMass, Value::Flag(true)),
+                (Name::TiltGain, Value::Number(0.2)),
+                (Name::XDot, Value::Number(0.1)),
+            ] {
+                draft.set(name, Some(value)).expect("a value in its range");
+            }
+        }
+        "polygon" => {
+            for name in [Name::ContactDistance, Name::RadiusOfGyration] {
+                let _ = draft.set(name, None);
+            }
+            draft.set_vertices(Vertices::new(&[[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]]).ok());
+        }
+        _ => {}
+    }
     let mut set = |name, value| draft.set(name, Some(value)).expect("a value in its range");
     match rung {
         "rod_with_x" => {
@@ -94,7 +123,7 @@ fn rungs(bencher: Bencher, rung: &str) {
         _ => {}
     }
     let scene = draft.build().expect("a scene");
-    bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
+    bencher.bench(|| {
         let mut orbit = black_box(&scene).orbit().ok()?;
         let ending = run(&mut orbit, BOUNCES, |_| true);
         assert_eq!(orbit.contacts(), BOUNCES, "a run that ended early would look fast");

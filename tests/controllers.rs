@@ -262,3 +262,19 @@ async fn a_law_is_differentiated_and_judged_like_any_table() {
         );
     }
 }
+
+#[tokio::test]
+async fn weights_may_be_the_diagonal_of_a_matrix() {
+    let server = Server::start();
+    let ask =
+        async |weights: Value| server.post("/v1/controllers", &json!({"preset": "case-1", "weights": weights})).await;
+    let named =
+        ask(json!({"state": {"x": 2, "theta": 20, "x_dot": 0.1, "theta_dot": 0.2}, "input": 5})).await.expect(200);
+    let listed = ask(json!({"state": [2, 20, 0.1, 0.2], "input": 5})).await.expect(200);
+    assert_eq!(named.json(), listed.json());
+    assert_eq!(ask(json!({"state": [2, 20, 0.1]})).await.expect(422).pointers(), ["/weights/state"]);
+    assert_eq!(ask(json!({"state": [2, -20, 0.1, 0.2]})).await.expect(422).pointers(), ["/weights/state/1"]);
+    let query =
+        "preset=case-1&weights.state.0=2&weights.state.1=20&weights.state.2=0.1&weights.state.3=0.2&weights.input=5";
+    assert_eq!(server.get(&format!("/v1/controllers?{query}")).await.expect(200).json()["gain"], listed.json()["gain"]);
+}

@@ -164,6 +164,29 @@ impl<'v, 'e> Reader<'v, 'e> {
         })
     }
 
+    /// Numbers with names: an object of some of them, or an array of all, in this order. What is not said stays as it is.
+    pub fn numbers(&mut self, name: &'v str, names: &[&'v str], range: &RangeInclusive<f64>, into: &mut [f64]) {
+        if !self.fields.get(name).is_some_and(Value::is_array) {
+            self.within(name, |reader| {
+                for (number, name) in into.iter_mut().zip(names) {
+                    *number = reader.number(name, range.clone(), "").unwrap_or(*number);
+                }
+            });
+            return;
+        }
+        let (source, pointer) = (self.source, self.pointer_to(name));
+        let items = self.array(name, names.len()).filter(|items| items.len() == names.len());
+        let Some(items) = items else {
+            return self.refuse(name, format!("{name} must have a number for each of {}", names.join(", ")));
+        };
+        for (index, (number, item)) in into.iter_mut().zip(items).enumerate() {
+            match leaf::number_within(item, source, range, "") {
+                Ok(value) => *number = value,
+                Err(error) => self.errors.push(format!("{pointer}/{index}"), format!("{} {error}", names[index])),
+            }
+        }
+    }
+
     /// An array of at most `limit` objects: calls `each` with a reader for every one, and finishes it.
     pub fn objects(&mut self, name: &'v str, limit: usize, mut each: impl FnMut(usize, &mut Reader<'v, '_>)) {
         for (index, item) in self.array(name, limit).unwrap_or_default().iter().enumerate() {

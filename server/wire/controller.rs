@@ -44,11 +44,7 @@ impl Request {
         let sticks = reader.choice("contact", &[("frictionless", false), ("stick", true)]);
         let (mut state, mut input) = WEIGHTS;
         reader.within("weights", |weights| {
-            weights.within("state", |it| {
-                for (weight, name) in state.iter_mut().zip(STATE) {
-                    *weight = it.number(name, 0.0..=1e6, "").unwrap_or(*weight);
-                }
-            });
+            weights.numbers("state", &STATE, &(0.0..=1e6), &mut state);
             input = weights.number("input", 1e-6..=1e6, "").unwrap_or(input);
         });
         let mut draft = draft?;
