@@ -40,6 +40,8 @@ let mapLink = new URLSearchParams();
 let map = null;
 /** @type {import('./precision/panel.js').PrecisionPanel | null} */
 let precision = null;
+/** @type {import('./survival/panel.js').SurvivalPanel | null} */
+let survival = null;
 /** What the newest verdict belongs to. @type {{answer: import('./api.js').Stability, scene: URLSearchParams} | null} */
 let judged = null;
 /** @type {import('./branch/branch.js').Branch | null} */
@@ -112,6 +114,11 @@ function addressNow() {
 }
 const address = settled(150, addressNow);
 
+/** To the panels that show a scene. */
+function sceneChanged() {
+  for (const panel of [map, precision, survival]) panel?.sceneChanged();
+}
+
 /** @type {AbortController | null} */
 let asking = null;
 const askSoon = settled(120, async () => {
@@ -170,8 +177,7 @@ function edited(path, final) {
   if (final && run.active && fields.find((field) => field.path === path)?.live) sendChanges();
   view.draft(scene);
   plots[2].redraw();
-  map?.sceneChanged();
-  precision?.sceneChanged();
+  sceneChanged();
   ask();
   if (run.phase === 'idle') address();
   else showRun();
@@ -241,8 +247,7 @@ function present(scene) {
   showPaper(byId('paper'), chosen);
   plots[2].redraw();
   view.draft(scene);
-  map?.sceneChanged();
-  precision?.sceneChanged();
+  sceneChanged();
   ask();
 }
 
@@ -254,8 +259,7 @@ function launch(values) {
   controls.setGain(valueAt(scene, GAIN) ?? null);
   circle.preview(valueAt(scene, GAIN) ?? null);
   view.draft(scene);
-  map?.sceneChanged();
-  precision?.sceneChanged();
+  sceneChanged();
   ask();
   start();
 }
@@ -325,6 +329,9 @@ async function begin() {
   showRun();
   lazily(byId('map-body'), 'map/map.css', () => import('./map/panel.js'), ({ MapPanel }) => {
     map = new MapPanel(byId('map-body'), { fields, query: typedQuery, scene: () => form?.read().scene ?? {}, launch, changed: address }, mapLink);
+  });
+  lazily(byId('survival-body'), 'survival/survival.css', () => import('./survival/panel.js'), ({ SurvivalPanel }) => {
+    survival = new SurvivalPanel(byId('survival-body'), { query: typedQuery, scene: () => form?.read().scene ?? {}, play });
   });
   lazily(byId('branch-body'), 'branch/branch.css', () => import('./branch/branch.js'), ({ Branch }) => {
     branch = new Branch(byId('branch-body'));

@@ -50,8 +50,8 @@ export const unitAfter = (unit) => (unit === null || unit === '1' || unit === ''
  */
 export const quantity = (value, unit, digits = 4) => number(value, digits) + (value == null ? '' : unitAfter(unit));
 
-/** A readout that breaks between its quantities only, which three spaces part. @param {string} text */
-export const unbroken = (text) => text.replace(/(?<! ) (?! )/g, '\u00a0');
+/** A readout that breaks between its quantities only, which three spaces part; a sentence is none. @param {string} text */
+export const unbroken = (text) => text.split('   ').map((part) => (part.length > 48 ? part : part.replaceAll(' ', '\u00a0'))).join('   ');
 
 /**
  * What somebody typed, as a number: decimal comma, typographic minus, `45°` and `pi/4` included; null when it is none.

@@ -4,7 +4,7 @@ import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, impacts, ink, measure, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, impacts, ink, loadAll, reachImpact, reachPhase, verdict } from './stage.js';
 
 const stage = await Stage.open();
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
@@ -28,11 +28,7 @@ for (const colorScheme of ['light', 'dark']) {
       await page.locator('#field-release-theta').blur();
       assert.deepEqual(await violations(page), [], 'running, with tables open and an error');
       await page.locator('#field-release-theta').fill('0.3');
-      for (const id of ['map-body', 'branch-body', 'precision-body', 'gallery-body']) {
-        await page.locator(`#${id}`).scrollIntoViewIfNeeded();
-        await page.locator(`#${id} :is(#map-links a, .changes, #precision-measure, article)`).first().waitFor();
-      }
-      await measure(page);
+      await loadAll(page);
       await page.fill('#map-x-from', '9');
       await page.locator('#map-x-from').blur();
       assert.deepEqual(await violations(page), [], 'with all that loads later, and an error there');
@@ -61,11 +57,7 @@ test('nothing is wider than 320 px', async () => {
   await reachImpact(page, 3);
   for (const summary of await page.locator('summary').all()) await summary.click();
   assert.equal(await excess(), 0);
-  for (const id of ['map-body', 'branch-body', 'precision-body', 'gallery-body']) {
-    await page.locator(`#${id}`).scrollIntoViewIfNeeded();
-    await page.locator(`#${id} :is(#map-links a, .changes, #precision-measure, article)`).first().waitFor();
-  }
-  await measure(page);
+  await loadAll(page);
   assert.equal(await excess(), 0);
   clean();
 });

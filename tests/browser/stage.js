@@ -142,3 +142,20 @@ export async function measure(page, impacts = 10) {
   await page.click('#precision-measure');
   await page.locator('#precision-told', { hasText: 'Measured over' }).waitFor();
 }
+
+/** What a panel below the fold shows once it is whole. */
+const LATER = {
+  'map-body': '#map-links a', 'survival-body': '#survival-start', 'branch-body': '.changes', 'precision-body': '#precision-measure', 'gallery-body': 'article',
+};
+
+/** Brings all panels that load later, those that are asked for included. */
+export async function loadAll(page) {
+  for (const [id, sign] of Object.entries(LATER)) {
+    await page.locator(`#${id}`).scrollIntoViewIfNeeded();
+    await page.locator(`#${id} ${sign}`).first().waitFor();
+  }
+  await measure(page);
+  await page.fill('#survival-runs', '30');
+  await page.click('#survival-start');
+  await page.locator('#survival-told', { hasText: 'outlast' }).waitFor();
+}

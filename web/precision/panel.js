@@ -1,10 +1,11 @@
 // Speed against accuracy of every method on the scene of the page: asked for when somebody wants it, since it keeps a core busy. Not for drawing.
 
-import { Plot, mark, svg } from './plot.js';
+import { Plot, mark } from './plot.js';
 import { Problem, get } from '../api.js';
 import { h, marked } from '../dom.js';
 import { lookOf } from './looks.js';
 import { number, parse, quantity, unbroken } from '../numbers.js';
+import { svg } from '../svg.js';
 
 /**
  * @typedef {object} Point

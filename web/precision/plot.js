@@ -1,8 +1,8 @@
 // Error over cost, both logarithmic, as SVG, so that the style sheet colours it in both schemes. Not for what the points mean.
 
 import { outline } from './looks.js';
+import { svg } from '../svg.js';
 
-const NAMESPACE = 'http://www.w3.org/2000/svg';
 const MARGIN = { left: 58, right: 16, top: 26, bottom: 40 };
 /** Half the width of a symbol, px. */
 const SIZE = 5;
@@ -19,18 +19,6 @@ const APART = { x: 52, y: 26 };
  * @property {number} index its place in the answer
  */
 /** @typedef {{low: number, high: number}} Range of powers of ten */
-
-/**
- * @param {string} tag
- * @param {Record<string, string | number>} [attributes]
- * @param {...(Node | string)} children
- */
-export function svg(tag, attributes = {}, ...children) {
-  const element = document.createElementNS(NAMESPACE, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, typeof value === 'number' ? String(Math.round(value * 100) / 100) : value);
-  element.append(...children);
-  return element;
-}
 
 /** A symbol about a point. @param {number} method @param {number} x @param {number} y @param {number} [size] */
 export const mark = (method, x, y, size = SIZE) => svg('path', { class: `mark look-${method}`, d: outline(method).map(([right, down], n) => `${n ? 'L' : 'M'}${(x + size * right).toFixed(1)} ${(y + size * down).toFixed(1)}`).join('') + 'Z' });

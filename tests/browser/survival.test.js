@@ -1,0 +1,148 @@
+// Survival under noise on the page: run when asked, the server's numbers as a curve and as a table, by pointer and by keys.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, reachImpact, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+async function open(query, options) {
+  const opened = await stage.page(query, options);
+  const answers = [];
+  opened.page.on('response', (response) => { if (response.url().includes('v1/ensembles?')) answers.push(response.json().catch(() => null)); });
+  await verdict(opened.page);
+  await opened.page.locator('#survival-body').scrollIntoViewIfNeeded();
+  await opened.page.locator('#survival-start').waitFor();
+  return { ...opened, answers };
+}
+
+async function runAll(page, runs, impacts) {
+  await page.fill('#survival-runs', String(runs));
+  await page.fill('#survival-impacts', String(impacts));
+  await page.click('#survival-start');
+  await page.locator('#survival-told', { hasText: 'outlast' }).waitFor();
+}
+
+const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
+
+test('a scene without noise is tried with some, by either reading', async () => {
+  const { page, answers, clean } = await open('?preset=case-1');
+  assert.equal(answers.length, 0);
+  assert.ok(await page.locator('.survival-sheet').isHidden());
+  assert.ok(await page.locator('#survival-offer').isVisible());
+  await runAll(page, 60, 120);
+  await page.selectOption('#survival-reading', 'plan');
+  await page.fill('#survival-timing', '5');
+  await page.click('#survival-start');
+  await page.waitForFunction(() => /noise\.model=plan/.test(document.querySelector('#survival-links a').href));
+  const [strike, plan] = await Promise.all(answers);
+  assert.deepEqual([strike.scene.noise.timing_sd, strike.scene.noise.model, plan.scene.noise.timing_sd, plan.scene.noise.model], [0.01, 'strike', 0.005, 'plan']);
+  assert.equal(await page.inputValue('#field-noise-timing_sd'), '', 'the scene of the page is left as it is');
+  clean();
+});
+
+test('curve, numbers at risk, table and figures are the server’s', async () => {
+  const { page, answers } = await open('?preset=case-1-noise');
+  assert.ok(await page.locator('#survival-offer').isHidden());
+  assert.match(plain(await page.locator('#survival-noise').innerText()), /10 ms/);
+  await runAll(page, 80, 300);
+  const { survival, quantiles, survived, counts, runs, impacts } = await answers[0];
+  assert.ok(survived.runs > 0 && survived.runs < runs, 'a curve that falls, but not to the ground');
+  assert.match(plain(await page.locator('#survival-told').innerText()), new RegExp(`^${survived.runs} of 80 runs outlast 300`));
+  const risk = await page.locator('#survival-box .risk').allTextContents();
+  assert.equal(risk[0], String(runs));
+  assert.equal(risk.at(-1), String(survival.at_risk[impacts - 1]));
+  // Where the curve ends on the screen is where the numbers end, between its band's edges.
+  const heights = await page.locator('#survival-box').evaluate((box) => {
+    const last = (path) => Number(path.getAttribute('d').split('L').at(-1).replace('Z', '').split(' ')[1]);
+    const edge = box.querySelector('.edge');
+    const [top, height] = ['y', 'height'].map((name) => Number(edge.getAttribute(name)));
+    const band = box.querySelector('.band').getAttribute('d').slice(1, -1).split('L').map((pair) => pair.split(' ').map(Number));
+    const right = Math.max(...band.map(([x]) => x));
+    const share = (y) => 1 - (y - top) / height;
+    return { curve: share(last(box.querySelector('.curve'))), band: band.filter(([x]) => x === right).map(([, y]) => share(y)) };
+  });
+  const near = (one, other) => assert.ok(Math.abs(one - other) < 0.003, `${one} is not ${other}`);
+  near(heights.curve, survived.share);
+  near(Math.max(...heights.band), survived.upper);
+  near(Math.min(...heights.band), survived.lower);
+  await page.locator('.survival-sheet summary', { hasText: 'Numbers' }).click();
+  const rows = await page.locator('.survival-sheet tbody tr').evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  assert.equal(rows.length, quantiles.n.length);
+  for (const [index, row] of rows.entries()) {
+    const at = quantiles.n[index] - 1;
+    assert.deepEqual(row.slice(0, 3).map(Number), [quantiles.n[index], survival.at_risk[at], survival.ended[at]]);
+    near(Number(row[3]), survival.survival[at]);
+    if (quantiles.q50[index] !== null) near(Number(row[8]), quantiles.q50[index]);
+  }
+  const ends = await page.locator('#survival-numbers').innerText();
+  for (const [name, count] of Object.entries(counts)) if (name !== 'completed' && count > 0) assert.ok(ends.includes(`${count} ${name.replaceAll('_', ' ')}`), ends);
+});
+
+test('pointer and keys read the curve', async () => {
+  const { page, answers, clean } = await open('?preset=case-1');
+  await runAll(page, 50, 200);
+  const { survival } = await answers[0];
+  const readout = async () => plain(await page.locator('#survival-readout').innerText());
+  await page.focus('#survival-box');
+  await page.keyboard.press('End');
+  assert.ok((await readout()).startsWith('contact 200') && (await readout()).includes(`at risk ${survival.at_risk[199]}`), await readout());
+  await page.keyboard.press('ArrowLeft');
+  assert.match(await readout(), /^contact 199 /);
+  await page.keyboard.press('PageDown');
+  assert.match(await readout(), /^contact 179 /);
+  await page.keyboard.press('Home');
+  assert.match(await page.locator('.survival-sheet .unseen').innerText(), /^contact 1 /);
+  await page.keyboard.press('Escape');
+  assert.equal(await readout(), '');
+  const box = await page.locator('#survival-box .edge').first().boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  assert.match(await readout(), /^contact (99|100|101) /);
+  clean();
+});
+
+test('its links answer, and the first run can be watched', async () => {
+  const { page, answers, clean } = await open('?preset=case-1');
+  await page.fill('#survival-timing', '8');
+  await runAll(page, 20, 40);
+  for (const href of await page.locator('#survival-links a').evaluateAll((links) => links.map((link) => link.href))) assert.ok((await fetch(href)).ok, href);
+  await page.click('#survival-links button');
+  const call = await page.evaluate(() => navigator.clipboard.readText());
+  assert.deepEqual(await (await fetch(/^curl '(.+)'$/.exec(call)[1])).json(), await answers[0]);
+  await page.click('#survival-first');
+  await reachImpact(page, 2);
+  const query = new URL(page.url()).searchParams;
+  assert.equal(query.get('scene.noise.timing_sd'), '0.008');
+  assert.equal(await page.inputValue('#field-noise-model'), 'strike');
+  clean();
+});
+
+test('what is wrong is said beside it, and a long answer can be cancelled', async () => {
+  const { page } = await open('?preset=case-1', { prepare: () => {
+    const real = globalThis.fetch;
+    globalThis.hold = true;
+    globalThis.fetch = (input, init) => (globalThis.hold && String(input).includes('v1/ensembles')
+      ? new Promise((_, reject) => { init.signal.addEventListener('abort', () => reject(new DOMException('aborted', 'AbortError'))); }) : real(input, init));
+  } });
+  await page.fill('#survival-runs', '20001');
+  await page.click('#survival-start');
+  assert.match(plain(await page.locator('#survival-runs-error').innerText()), /1 to 20 000/);
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'survival-runs');
+  await page.fill('#survival-runs', '50');
+  await page.fill('#survival-timing', 'some');
+  await page.click('#survival-start');
+  assert.match(await page.locator('#survival-timing-error').innerText(), /1000 ms/);
+  await page.fill('#survival-timing', '10');
+  await page.click('#survival-start');
+  assert.ok(await page.locator('#survival-told progress').isVisible());
+  await page.click('#survival-cancel');
+  await page.locator('#survival-told', { hasText: 'Cancelled' }).waitFor();
+  await page.evaluate(() => { globalThis.hold = false; });
+  await runAll(page, 50, 50);
+  await page.fill('#survival-runs', '20000');
+  await page.fill('#survival-impacts', '100000');
+  await page.click('#survival-start');
+  await page.locator('#survival-told', { hasText: 'limit' }).waitFor();
+  await page.fill('#field-release-theta', '0.2');
+  await page.locator('#survival-told', { hasText: 'changed' }).waitFor();
+});

@@ -1,0 +1,234 @@
+// How long runs of the page's scene last when the table errs: many runs, asked for when somebody wants them. Not for drawing.
+
+import { Plot } from './plot.js';
+import { Problem, get } from '../api.js';
+import { copy, h, marked, prose } from '../dom.js';
+import { curl } from '../calls.js';
+import { number, parse, quantity, unbroken } from '../numbers.js';
+
+/** @typedef {import('../api.js').Scene} Scene */
+/**
+ * @typedef {object} Ensemble
+ * @property {Scene} scene of run 0
+ * @property {number} runs
+ * @property {number} impacts
+ * @property {number} seed
+ * @property {{runs: number, share: number, lower: number, upper: number}} survived
+ * @property {number} mean_impacts
+ * @property {number | null} median_impacts
+ * @property {number | null} half_life
+ * @property {Record<string, number>} counts
+ * @property {string[]} notes
+ * @property {{n: number[], at_risk: number[], ended: number[], survival: number[], lower: number[], upper: number[]}} survival
+ * @property {{n: number[], alive: number[], q05: (number | null)[], q25: (number | null)[], q50: (number | null)[], q75: (number | null)[], q95: (number | null)[]}} quantiles
+ */
+
+const QUANTILES = /** @type {const} */ (['q05', 'q25', 'q50', 'q75', 'q95']);
+/** What a table without noise of its own is tried with, s. */
+const TIMING_SD_S = 0.01;
+const READINGS = { strike: 'It strikes early or late', plan: 'It carries out the plan for a wrong time' };
+const LIMITS = { runs: 20_000, impacts: 100_000 };
+
+/** @param {Scene} scene */
+const hasNoise = ({ noise }) => (noise?.timing_sd ?? 0) > 0 || (noise?.angle_sd ?? 0) > 0;
+
+/** @param {string} id @param {string} value */
+const typed = (id, value) => h('input', { id, type: 'text', inputmode: 'decimal', autocomplete: 'off', value, 'aria-describedby': `${id}-error` });
+
+export class SurvivalPanel {
+  #page;
+  #inputs = { runs: typed('survival-runs', '200'), impacts: typed('survival-impacts', '400'), timing: typed('survival-timing', '10') };
+  #errors = { runs: h('p', { class: 'error', id: 'survival-runs-error' }), impacts: h('p', { class: 'error', id: 'survival-impacts-error' }), timing: h('p', { class: 'error', id: 'survival-timing-error' }) };
+  #reading = h('select', { id: 'survival-reading' }, ...Object.entries(READINGS).map(([value, words]) => h('option', { value }, words)));
+  #offered;
+  #own = h('p', { class: 'muted', id: 'survival-noise' });
+  #start = h('button', { type: 'submit', id: 'survival-start' }, 'Run them all');
+  #cancel = h('button', { type: 'button', id: 'survival-cancel', disabled: true, click: () => this.#stop('Cancelled.') }, 'Cancel');
+  #told = h('div', { class: 'survival-told', id: 'survival-told', role: 'status' });
+  #box = h('div', { class: 'survival-box', id: 'survival-box', tabindex: 0, role: 'application', 'aria-roledescription': 'chart', 'aria-label': 'Survival', 'aria-describedby': 'survival-hint' });
+  #readout = h('output', { class: 'readout', id: 'survival-readout', 'aria-live': 'off' });
+  // Spoken when keys move; a pointer's way over the chart is not.
+  #spoken = h('p', { class: 'unseen', role: 'status' });
+  #numbers = h('dl', { class: 'numbers', id: 'survival-numbers' });
+  #body = h('tbody');
+  #notes = h('div');
+  #links = h('p', { class: 'actions', id: 'survival-links' });
+  #sheet;
+  #plot;
+  /** @type {{answer: Ensemble, path: string} | null} */
+  #shown = null;
+  /** @type {number | null} */
+  #pointed = null;
+  /** @type {AbortController | null} */
+  #asking = null;
+
+  /**
+   * @param {HTMLElement} root
+   * @param {{query: () => URLSearchParams | null, scene: () => Scene, play: (scene: Scene) => void}} page the scene that is typed, and how one is run
+   */
+  constructor(root, page) {
+    this.#page = page;
+    const row = (/** @type {'runs' | 'impacts' | 'timing'} */ name, /** @type {string} */ label) => [h('p', { class: 'survival-row' }, h('label', { for: `survival-${name}` }, label), this.#inputs[name]), this.#errors[name]];
+    this.#offered = h('div', { id: 'survival-offer' }, h('p', { class: 'muted' }, 'The scene has no noise; this one is tried.'), ...row('timing', 'σ_t / ms'),
+      h('p', { class: 'survival-wide' }, h('label', { for: 'survival-reading' }, 'A table that errs in time:'), this.#reading));
+    this.#offered.querySelector('label')?.replaceChildren(...marked('σ_t / ms'));
+    const head = ['Contact', 'at risk', 'ended', 'going on', '95 % from', 'to', ...QUANTILES.map((name) => `|θ| ${Number(name.slice(1))} %`)];
+    this.#sheet = h('div', { class: 'survival-sheet', hidden: true }, this.#box, this.#readout, this.#spoken,
+      h('p', { class: 'muted small', id: 'survival-hint' }, 'Above: the share of runs going on after each contact, in its 95 % interval. Below: |θ| of those that go on, its median, middle half and middle 90 %. With keys: left and right go from contact to contact, page up and page down by a tenth.'),
+      this.#numbers,
+      h('details', {}, h('summary', {}, 'Numbers'), h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: survival' },
+        h('table', {}, h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))), this.#body))),
+      h('details', {}, h('summary', {}, 'How it was counted'), this.#notes), this.#links);
+    root.append(h('form', { novalidate: true, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.#ask(); } },
+      ...row('runs', 'Runs'), ...row('impacts', 'Contacts'), this.#own, this.#offered,
+      h('p', { class: 'buttons' }, this.#start, this.#cancel), this.#told), this.#sheet);
+    this.#plot = new Plot(this.#box);
+    this.#box.addEventListener('pointermove', (event) => this.#point(this.#plot.nearest(event), false));
+    this.#box.addEventListener('pointerleave', () => this.#point(null, false));
+    this.#box.addEventListener('keydown', (event) => this.#key(event));
+    this.#offer();
+  }
+
+  /** The scene of the page is another one. */
+  sceneChanged() {
+    this.#offer();
+    if (this.#asking) this.#stop('The scene has changed; run them again.');
+    else if (this.#shown) this.#told.replaceChildren('The scene has changed since.');
+  }
+
+  /** Noise to try with, where the scene has none. */
+  #offer() {
+    const scene = this.#page.scene();
+    const own = hasNoise(scene);
+    this.#offered.hidden = own;
+    this.#own.hidden = !own;
+    const { timing_sd: timing, angle_sd: angle, model = 'strike' } = scene.noise ?? {};
+    const parts = [timing && `σ_t = ${quantity(timing * 1000, 'ms')}`, angle && `σ_α = ${quantity(angle, 'rad')}`].filter((part) => part);
+    this.#own.replaceChildren('Noise of the scene: ', ...marked(parts.join(', ')), timing ? `. ${READINGS[/** @type {'strike'} */ (model)] ?? model}.` : '.');
+  }
+
+  /** @param {string} words */
+  #stop(words) {
+    this.#asking?.abort();
+    this.#busy(null);
+    this.#told.replaceChildren(words);
+  }
+
+  /** @param {AbortController | null} asking */
+  #busy(asking) {
+    this.#asking = asking;
+    this.#start.disabled = asking !== null;
+    this.#cancel.disabled = asking === null;
+  }
+
+  /** @param {'runs' | 'impacts' | 'timing'} name @param {string} words */
+  #blame(name, words) {
+    this.#errors[name].textContent = words;
+    this.#inputs[name].setAttribute('aria-invalid', String(words !== ''));
+  }
+
+  /** What is asked for; null where something typed is wrong, which is said beside it. */
+  #request() {
+    const request = this.#page.query();
+    /** @type {HTMLInputElement[]} */
+    const wrong = [];
+    for (const name of /** @type {const} */ (['runs', 'impacts'])) {
+      const value = parse(this.#inputs[name].value, '1');
+      const right = value !== null && Number.isInteger(value) && value >= 1 && value <= LIMITS[name];
+      this.#blame(name, right ? '' : `It must be a whole number from 1 to ${number(LIMITS[name], 7)}.`);
+      if (right) request?.set(name, String(value));
+      else wrong.push(this.#inputs[name]);
+    }
+    if (!this.#offered.hidden) {
+      const value = parse(this.#inputs.timing.value, 'ms');
+      const right = value !== null && value > 0 && value <= 1000;
+      this.#blame('timing', right ? '' : 'It must be a number above 0 and up to 1000 ms.');
+      if (!right) wrong.push(this.#inputs.timing);
+      request?.set('scene.noise.timing_sd', String(right ? Number((value / 1000).toPrecision(12)) : TIMING_SD_S));
+      request?.set('scene.noise.model', this.#reading.value);
+    }
+    wrong[0]?.focus();
+    if (wrong.length > 0) return null;
+    if (!request) this.#told.replaceChildren('A parameter of the scene is not a number; it is marked among them.');
+    return request;
+  }
+
+  async #ask() {
+    const request = this.#request();
+    if (!request) return;
+    const asking = new AbortController();
+    this.#busy(asking);
+    this.#told.replaceChildren(`${number(Number(request.get('runs')), 6)} runs…`, h('progress', { 'aria-label': 'Running' }));
+    const path = `v1/ensembles?${request}`;
+    try {
+      const answer = await get(path, asking.signal);
+      if (asking.signal.aborted) return;
+      this.#shown = { answer, path };
+      this.#busy(null);
+      this.#sheet.hidden = false;
+      this.#show();
+    } catch (error) {
+      if (asking.signal.aborted) return;
+      this.#busy(null);
+      this.#told.replaceChildren(...marked(error instanceof Problem ? error.errors.map(({ detail }) => detail).join(' ') || error.message : 'The server does not answer.'));
+    }
+  }
+
+  #show() {
+    if (!this.#shown) return;
+    const { answer, path } = this.#shown;
+    const { survived, runs, impacts, counts, survival, quantiles } = answer;
+    this.#told.replaceChildren(`${number(survived.runs, 6)} of ${number(runs, 6)} runs outlast ${number(impacts, 7)} contacts.`);
+    const ends = Object.entries(counts).filter(([name, count]) => name !== 'completed' && count > 0).map(([name, count]) => `${number(count, 6)} ${name.replaceAll('_', ' ')}`);
+    /** @type {[string, string, string][]} */
+    const rows = [['share', number(survived.share), `${number(survived.lower)} to ${number(survived.upper)} with 95 %`],
+      ['median', answer.median_impacts === null ? `> ${number(impacts, 7)}` : number(answer.median_impacts, 7), 'contacts of a run'],
+      ['mean', `${survived.runs > 0 ? '≥ ' : ''}${number(answer.mean_impacts)}`, 'contacts of a run'],
+      ['half-life', answer.half_life === null ? '–' : number(answer.half_life), 'contacts, late in the runs'],
+      ['ends', ends.join(', ') || 'none', 'of those that did not last']];
+    this.#numbers.replaceChildren(...rows.map(([name, value, meaning]) => h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning))));
+    this.#body.replaceChildren(...quantiles.n.map((contact, index) => {
+      const at = contact - 1;
+      const cells = [number(survival.at_risk[at], 6), number(survival.ended[at], 6), number(survival.survival[at]), number(survival.lower[at]), number(survival.upper[at]), ...QUANTILES.map((name) => number(quantiles[name][index]))];
+      return h('tr', {}, h('th', { scope: 'row' }, number(contact, 7)), ...cells.map((cell) => h('td', {}, cell)));
+    }));
+    this.#notes.replaceChildren(...answer.notes.map((note) => h('p', { class: 'muted' }, ...prose(note))));
+    this.#box.setAttribute('aria-label', `Survival: ${number(survived.share)} of the runs outlast ${number(impacts, 7)} contacts`);
+    this.#links.replaceChildren(...['svg', 'png', 'csv', 'json'].map((format) => h('a', { href: `${path}&format=${format}` }, format.toUpperCase())),
+      h('button', { type: 'button', 'aria-label': 'Copy curl: survival', click: (/** @type {Event} */ event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), curl(path)) }, 'Copy curl'),
+      h('button', { type: 'button', id: 'survival-first', click: () => this.#page.play(answer.scene) }, 'Watch the first run'));
+    this.#plot.show(answer);
+    this.#point(null, false);
+  }
+
+  /** @param {number | null} contact @param {boolean} byKey */
+  #point(contact, byKey) {
+    this.#pointed = contact;
+    this.#plot.point(contact);
+    const words = contact === null || !this.#shown ? '' : wordsAt(this.#shown.answer, contact);
+    this.#readout.textContent = unbroken(words);
+    if (byKey) this.#spoken.textContent = words;
+  }
+
+  /** @param {KeyboardEvent} event */
+  #key(event) {
+    if (!this.#shown || event.ctrlKey || event.altKey || event.metaKey) return;
+    const last = this.#shown.answer.impacts;
+    const at = this.#pointed;
+    const tenth = Math.max(1, Math.round(last / 10));
+    const by = (/** @type {number} */ step) => Math.max(1, Math.min(last, (at ?? (step > 0 ? 0 : last + 1)) + step));
+    const to = { ArrowRight: by(1), ArrowLeft: by(-1), PageUp: by(tenth), PageDown: by(-tenth), Home: 1, End: last, Escape: null }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    this.#point(to, true);
+  }
+}
+
+/** @param {Ensemble} answer @param {number} contact */
+function wordsAt({ survival, quantiles }, contact) {
+  const at = contact - 1;
+  const index = quantiles.n.findLastIndex((n) => n <= contact);
+  const median = quantiles.n[index] === contact ? quantiles.q50[index] : null;
+  return [`contact ${number(contact, 7)}`, `going on ${number(survival.survival[at])} (${number(survival.lower[at])} to ${number(survival.upper[at])})`, `at risk ${number(survival.at_risk[at], 6)}`,
+    median === null ? '' : `median |θ| ${quantity(median, 'rad')}`].filter((part) => part).join('   ');
+}
