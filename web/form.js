@@ -169,13 +169,18 @@ export class Form {
     }
   }
 
+  /** Whether a law of its own tilts the table, which then needs no tilt gain. */
+  #feedback() {
+    return [...this.#rows.values()].some(({ field, input }) => field.path.startsWith('table.feedback.') && input.value.trim() !== '');
+  }
+
   /** @param {Row} row @returns {{value: unknown, problem: string | null}} */
   #read({ field, input, exact }) {
     if (input.disabled) return { value: undefined, problem: null };
     if (field.kind === 'boolean') return { value: /** @type {HTMLInputElement} */ (input).checked || undefined, problem: null };
     if (field.kind === 'choice') return { value: input.value === (field.default ?? '') ? undefined : input.value, problem: null };
     if (input.value.trim() === '') {
-      if (field.required && !field.path.startsWith('body.')) return { value: undefined, problem: `${field.title} is needed.` };
+      if (field.required && !field.path.startsWith('body.') && !(field.path === 'table.tilt_gain' && this.#feedback())) return { value: undefined, problem: `${field.title} is needed.` };
       return { value: undefined, problem: null };
     }
     if (input.value === exact?.text) return { value: exact.value, problem: null };

@@ -85,6 +85,10 @@ function readField(path, text, fields, changes) {
   if (!field) return `“scene.${shown(path)}”, which is no field of a scene`;
   /** @type {unknown} */
   let value = text;
+  if (text === 'null' && path !== 'body.point') {
+    setAt(changes, path, null);
+    return null;
+  }
   if (field.kind === 'number' || field.kind === 'integer') {
     value = text.trim() === '' ? NaN : Number(text);
     const { minimum, maximum } = field;
@@ -161,7 +165,8 @@ export function merged(preset, changes) {
   /** @param {Scene} into @param {Scene} from */
   const lay = (into, from) => {
     for (const [key, value] of Object.entries(from)) {
-      if (value !== null && typeof value === 'object') lay(into[key] ??= {}, value);
+      if (value === null) delete into[key];
+      else if (typeof value === 'object') lay(into[key] ??= {}, value);
       else into[key] = value;
     }
     return into;
@@ -170,17 +175,19 @@ export function merged(preset, changes) {
 }
 
 /**
- * A scene as the shortest query that means it: the preset and what differs, or all of it where something of the preset is unset.
+ * A scene as the shortest query that means it: the preset and what differs, `null` where a value is taken back, or all of it where the
+ * body is another one.
  * @param {Scene} scene with what was set only, defaults left out
  * @param {Case | null} preset
  * @param {Field[]} fields
  */
 export function sceneQuery(scene, preset, fields) {
   const query = new URLSearchParams();
-  const covered = preset && fields.every((field) => playedAt(preset.scene, field) === undefined || playedAt(scene, field) !== undefined);
+  const covered = preset && fields.every((field) => !field.path.startsWith('body.') || playedAt(preset.scene, field) === undefined || playedAt(scene, field) !== undefined);
   if (covered) query.set('preset', preset.name);
   for (const field of fields) {
     const value = playedAt(scene, field);
+    if (value === undefined && covered && playedAt(preset.scene, field) !== undefined) query.set(`scene.${field.path}`, 'null');
     if (value === undefined || value === (covered ? playedAt(preset.scene, field) : field.default)) continue;
     query.set(`scene.${field.path}`, String(value));
   }
