@@ -40,7 +40,7 @@
  * @property {{theta: number, x_dot: number, y_dot: number, theta_dot: number | null, flight_time: number, apex_height: number} | null} fixed_point
  * @property {Linear | null} linear
  * @property {{coefficient: number, kind: string} | null} boundary
- * @property {{outcome: string, impacts: number, t: number, max_theta: number, detail: string} | null} nonlinear
+ * @property {{outcome: string, impacts: number, t: number, max_theta: number, demand: {tilt: number, tilt_rate: number, speed: number, stroke: number} | null, detail: string} | null} nonlinear
  * @property {number | null} drift_speed
  * @property {boolean | null} agree
  * @property {{measured: number | null, linear: number, resonance: {p: number, q: number, distance: number}} | null} rotation_number

@@ -42,6 +42,10 @@ let map = null;
 let precision = null;
 /** @type {import('./survival/panel.js').SurvivalPanel | null} */
 let survival = null;
+/** @type {import('./ladder/ladder.js').Ladder | null} */
+let ladder = null;
+/** @type {import('./design/panel.js').DesignPanel | null} */
+let design = null;
 /** What the newest verdict belongs to. @type {{answer: import('./api.js').Stability, scene: URLSearchParams} | null} */
 let judged = null;
 /** @type {import('./branch/branch.js').Branch | null} */
@@ -116,7 +120,7 @@ const address = settled(150, addressNow);
 
 /** To the panels that show a scene. */
 function sceneChanged() {
-  for (const panel of [map, precision, survival]) panel?.sceneChanged();
+  for (const panel of [map, precision, survival, ladder, design]) panel?.sceneChanged();
 }
 
 /** @type {AbortController | null} */
@@ -157,7 +161,9 @@ function ask() {
 const sendChanges = settled(100, () => {
   const typed = form?.read().scene;
   if (!typed || !run.active) return;
-  const changes = Object.fromEntries(unplayed().filter(({ live }) => live).map((field) => [field.path, playedAt(typed, field)]).filter(([, value]) => value !== undefined));
+  // One law for another is no change of a value: it is for a restart.
+  const swapped = Boolean(typed.table?.feedback) !== Boolean(run.asked?.table?.feedback);
+  const changes = Object.fromEntries(unplayed().filter(({ live, path }) => live && !(swapped && /^table\.(tilt_gain$|feedback)/.test(path))).map((field) => [field.path, playedAt(typed, field)]).filter(([, value]) => value !== undefined));
   if (Object.keys(changes).length === 0) return;
   lastSent = 'set';
   run.set(changes);
@@ -236,6 +242,9 @@ const plain = (text) => text.replaceAll('κ_', 'κ');
 /** The case that a scene is, if it is one. @param {Scene} scene */
 const caseOf = (scene) => cases.find((one) => fields.every((field) => playedAt(one.scene, field) === playedAt(scene, field))) ?? null;
 
+/** The case whose polygon it is, which no form types. @param {Scene} scene */
+const polygonOf = ({ body }) => cases.find((one) => body?.vertices && JSON.stringify(one.scene.body?.vertices) === JSON.stringify(body.vertices)) ?? null;
+
 /** Shows a scene without running it. @param {Scene} scene */
 function present(scene) {
   form?.fill(scene);
@@ -266,7 +275,7 @@ function launch(values) {
 
 /** Shows a scene from further below and runs it. @param {Scene} scene */
 function play(scene) {
-  chosen = caseOf(scene);
+  chosen = caseOf(scene) ?? polygonOf(scene);
   history.pushState(null, '', `?${new URLSearchParams([...sceneQuery(scene, chosen, fields), ...(map?.query() ?? mapLink)])}`);
   run.reset();
   present(scene);
@@ -332,6 +341,12 @@ async function begin() {
   });
   lazily(byId('survival-body'), 'survival/survival.css', () => import('./survival/panel.js'), ({ SurvivalPanel }) => {
     survival = new SurvivalPanel(byId('survival-body'), { query: typedQuery, scene: () => form?.read().scene ?? {}, play });
+  });
+  lazily(byId('ladder-body'), 'ladder/ladder.css', () => import('./ladder/ladder.js'), (modules) => {
+    ladder = new modules.Ladder(byId('ladder-body'), typedQuery);
+  });
+  lazily(byId('design-body'), 'design/design.css', () => import('./design/panel.js'), ({ DesignPanel }) => {
+    design = new DesignPanel(byId('design-body'), { query: typedQuery, play });
   });
   lazily(byId('branch-body'), 'branch/branch.css', () => import('./branch/branch.js'), ({ Branch }) => {
     branch = new Branch(byId('branch-body'));

@@ -66,6 +66,11 @@ export class Verdict {
     if (boundary?.coefficient != null) rows.push([symbol('C'), number(boundary.coefficient, 3), `boundary: ${boundary.kind}`]);
     if (drift != null) rows.push([symbol('c'), quantity(drift, 'm/s', 3), 'drift of the whole']);
     if (nonlinear) rows.push(['max |θ|', quantity(nonlinear.max_theta, 'rad'), `${number(nonlinear.impacts, 6)} impacts: ${nonlinear.outcome}`]);
+    const asked = nonlinear?.demand;
+    if (asked) {
+      rows.push(['table', `${quantity(asked.tilt, 'rad', 3)} · ${quantity(asked.tilt_rate, 'rad/s', 3)}`, 'most tilt · tilt rate asked']);
+      if (asked.speed > 0 || asked.stroke > 0) rows.push(['', `${quantity(asked.speed, 'm/s', 3)} · ${quantity(asked.stroke, 'm', 3)}`, 'most speed · stroke asked']);
+    }
     const open = [...this.#root.querySelectorAll('details[open]')].map(({ className }) => className);
     this.#root.replaceChildren(
       h('p', { class: `verdict-words ${manner}` }, h('span', { class: 'sign', 'aria-hidden': 'true' }, SIGNS[manner]), ` ${words}`),

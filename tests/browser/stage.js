@@ -145,7 +145,7 @@ export async function measure(page, impacts = 10) {
 
 /** What a panel below the fold shows once it is whole. */
 const LATER = {
-  'map-body': '#map-links a', 'survival-body': '#survival-start', 'branch-body': '.changes', 'precision-body': '#precision-measure', 'gallery-body': 'article',
+  'map-body': '#map-links a', 'survival-body': '#survival-start', 'ladder-body': '.rungs td', 'design-body': '#design-start', 'branch-body': '.changes', 'precision-body': '#precision-measure', 'gallery-body': 'article',
 };
 
 /** Brings all panels that load later, those that are asked for included. */
@@ -155,6 +155,8 @@ export async function loadAll(page) {
     await page.locator(`#${id} ${sign}`).first().waitFor();
   }
   await measure(page);
+  await page.click('#design-start');
+  await page.locator('#design-sheet img').waitFor();
   await page.fill('#survival-runs', '30');
   await page.click('#survival-start');
   await page.locator('#survival-told', { hasText: 'outlast' }).waitFor();
