@@ -1,6 +1,7 @@
 // The drawn things of a scene: rod, table and the signs of a strike. Where they are is said by who draws them.
 
 import { line } from './axes.js';
+import { MODES } from './impacts.js';
 import { SANS, theme } from './theme.js';
 import { contactDistance, corners } from './flight.js';
 import { fixed } from './numbers.js';
@@ -123,9 +124,11 @@ export function drawTable(context, scale, table, half, floor) {
 
 // Metres of arrow for each m/s of impulse, so that an usual strike has an arrow of some 10 cm.
 const ARROW_S = 0.04;
+// Friction is much the smaller part.
+const FRICTION_S = 0.2;
 
 /**
- * Normal and impulse where rod and table met.
+ * Normal, impulse and its part along the table, which is friction, where rod and table met.
  * @param {Context} context
  * @param {Scale} scale
  * @param {import('./impacts.js').Impact} impact
@@ -135,7 +138,7 @@ const ARROW_S = 0.04;
 export function drawStrike(context, scale, impact, strike, strength) {
   const colours = theme();
   const x = scale.x(strike.x);
-  const y = scale.y(0);
+  const y = scale.y(strike.y);
   const [nx, ny] = [-Math.sin(strike.alpha), -Math.cos(strike.alpha)];
   context.save();
   context.globalAlpha = strength;
@@ -151,10 +154,14 @@ export function drawStrike(context, scale, impact, strike, strength) {
     const length = Math.min(ARROW_S * impulse * scale.metre, y * 0.8);
     // Beside the rod, so that the arrow is seen along its whole length.
     const offset = dx > 0 ? -16 : 16;
+    const friction = dx * Math.cos(strike.alpha) + dy * Math.sin(strike.alpha);
+    const along = Math.sign(friction) * Math.min(FRICTION_S * Math.abs(friction) * scale.metre, 0.3 * scale.right);
+    const rubs = MODES[impact.mode] !== 'frictionless' && Math.abs(friction) > 1e-9 * impulse;
+    if (rubs && Math.abs(along) > 9) arrow(context, x, y, x + Math.cos(strike.alpha) * along, y - Math.sin(strike.alpha) * along, colours.good);
     if (length > 9) arrow(context, x + offset, y, x + offset + dx / impulse * length, y - dy / impulse * length, colours.strike);
     context.font = `11px ${SANS}`;
     context.fillStyle = colours.strike;
-    const words = [`impulse ${fixed(impulse, 2)}\u202fm/s`, `α ${fixed(strike.alpha, 3)}\u202frad`];
+    const words = [`impulse ${fixed(impulse, 2)}\u202fm/s`, `α ${fixed(strike.alpha, 3)}\u202frad`, rubs ? `friction ${fixed(friction, 2)}\u202fm/s` : ''];
     const widest = Math.max(...words.map((text) => context.measureText(text).width));
     const left = offset > 0 ? x + offset * 1.6 : x + offset * 1.6 - widest;
     const at = Math.max(34, Math.min(scale.right - widest - 6, left));
@@ -162,6 +169,8 @@ export function drawStrike(context, scale, impact, strike, strength) {
     context.textBaseline = 'top';
     context.fillText(words[0], at, y + 20);
     context.fillText(words[1], at, y + 34);
+    context.fillStyle = colours.good;
+    context.fillText(words[2], at, y + 48);
   }
   context.beginPath();
   context.arc(x, y, 4 + 10 * (1 - strength), 0, 2 * Math.PI);

@@ -21,6 +21,7 @@
  * @typedef {object} Strike the table as it meets the rod
  * @property {number} t
  * @property {number} x of the contact point
+ * @property {number} y of it, not 0 where the table strikes early or late
  * @property {number} alpha rad
  * @property {number} speed along the normal, m/s
  */
@@ -67,7 +68,7 @@ export function arcAfter(impact, scene) {
   const still = Number.isNaN(impact.y_dot_after);
   const point = contactDistance(scene) === 0;
   return {
-    t: impact.t, x: impact.x, theta: point ? 0 : impact.theta, y: contactDistance(scene) * Math.cos(point ? 0 : impact.theta),
+    t: impact.t, x: impact.x, theta: point ? 0 : impact.theta, y: contactDistance(scene) * Math.cos(point ? 0 : impact.theta) + (impact.clearance || 0),
     x_dot: still ? 0 : impact.x_dot_after, y_dot: still ? 0 : impact.y_dot_after,
     theta_dot: still || point ? 0 : impact.theta_dot_after, duration: still || Number.isNaN(impact.flight_time) ? 0 : impact.flight_time,
   };
@@ -120,7 +121,7 @@ export function strikeAfter(arc, scene) {
     const lack = (scene.table?.energy_gain ?? 0) * (gravity * (scene.table?.target_height ?? 0) - gravity * l * Math.cos(end.theta) - state.y_dot ** 2 / 2);
     speed = -((1 - e) / (1 + e) + lack) * normal;
   }
-  return { t: arc.t + arc.duration, x: end.x + l * Math.sin(end.theta), alpha, speed };
+  return { t: arc.t + arc.duration, x: end.x + l * Math.sin(end.theta), y: end.y - l * Math.cos(end.theta), alpha, speed };
 }
 
 /**
@@ -136,7 +137,7 @@ export function tableBetween(from, to, t) {
   const ease = u * u * (3 - 2 * u);
   return {
     x: from.x + (to.x - from.x) * ease,
-    y: span * (u * (1 - u) ** 2 * from.speed * Math.cos(from.alpha) - u * u * (1 - u) * to.speed * Math.cos(to.alpha)),
+    y: from.y + (to.y - from.y) * ease + span * (u * (1 - u) ** 2 * from.speed * Math.cos(from.alpha) - u * u * (1 - u) * to.speed * Math.cos(to.alpha)),
     alpha: from.alpha + (to.alpha - from.alpha) * ease,
   };
 }

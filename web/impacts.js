@@ -1,7 +1,7 @@
 // The impacts of a run in columns, the newest of them kept. Not for drawing or for the connection.
 
 export const COLUMNS = /** @type {const} */ (['n', 't', 'x', 'theta', 'x_dot', 'y_dot', 'theta_dot', 'x_dot_after', 'y_dot_after',
-  'theta_dot_after', 'alpha', 'flight_time', 'energy', 'contact_speed', 'table_speed', 'series']);
+  'theta_dot_after', 'alpha', 'flight_time', 'energy', 'contact_speed', 'table_speed', 'mode', 'clearance', 'series']);
 
 /** @typedef {(typeof COLUMNS)[number]} Column */
 /** @typedef {Record<Column, number>} Impact states just before the impact, `…_after` just after; what does not exist is NaN */
@@ -60,6 +60,9 @@ export class Impacts {
   }
 }
 
+/** What the contact did; its column has the place here, NaN where that was not told. */
+export const MODES = ['frictionless', 'slide', 'stick', 'reverse_slide', 'slide_through'];
+
 /** @param {unknown} value */
 const real = (value) => (typeof value === 'number' ? value : NaN);
 
@@ -73,7 +76,8 @@ export function fromMessage(message) {
     n: message.n, t: message.t, x: real(before.x), theta: real(before.theta), x_dot: real(before.x_dot), y_dot: real(before.y_dot),
     theta_dot: real(before.theta_dot), x_dot_after: real(after?.x_dot), y_dot_after: real(after?.y_dot), theta_dot_after: real(after?.theta_dot),
     alpha: real(alpha), flight_time: real(message.flight_time), energy: real(message.energy), contact_speed: real(message.contact_speed),
-    table_speed: table ? table.y * Math.cos(alpha) - table.x * Math.sin(alpha) : NaN, series: 0,
+    table_speed: table ? table.y * Math.cos(alpha) - table.x * Math.sin(alpha) : NaN, mode: MODES.includes(message.contact_mode) ? MODES.indexOf(message.contact_mode) : NaN,
+    clearance: real(message.clearance), series: 0,
   };
 }
 

@@ -2,6 +2,7 @@
 
 import { h } from './dom.js';
 import { drawRod, drawStrike, drawTable } from './bodies.js';
+import { MODES } from './impacts.js';
 import { line, roundStep } from './axes.js';
 import { SANS, onThemeChange, theme } from './theme.js';
 import { contactDistance, corners, effectiveGravity, poseOn, strikeAfter, tableBetween } from './flight.js';
@@ -128,7 +129,7 @@ export class SceneView {
     const scale = this.#scale();
     this.#wanted(scale, scene);
     this.#trail(scale, scene, place, t);
-    const last = strikeOf(impact, scene) ?? { t: 0, x: arc.x + contactDistance(scene) * Math.sin(arc.theta), alpha: 0, speed: 0 };
+    const last = strikeOf(impact, scene) ?? { t: 0, x: arc.x + contactDistance(scene) * Math.sin(arc.theta), y: 0, alpha: 0, speed: 0 };
     const next = arc.duration > 0 ? strikeAfter(arc, scene) : last;
     drawTable(context, scale, tableBetween(last, next, t), this.#plate(scene), this.#floor());
     drawRod(context, scale, scene, pose);
@@ -148,9 +149,9 @@ export class SceneView {
     if (moving && now_ms - this.#read_ms < 100) return;
     // What stands still can be read to the last digit that matters.
     const [seconds, rest] = moving ? [2, 3] : [4, 5];
-    this.#readout.textContent = unbroken(`t ${fixed(t, seconds)} s   impact ${impact?.n ?? 0}   θ ${fixed(pose.theta, rest)} rad   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m`);
+    this.#readout.textContent = unbroken(`t ${fixed(t, seconds)} s   impact ${impact?.n ?? 0}   θ ${fixed(pose.theta, rest)} rad   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m${contactWords(impact, rest)}`);
     if (!moving || now_ms - this.#read_ms > 2000 || this.#read_ms === -Infinity) {
-      this.#box.setAttribute('aria-label', `The rod and the table after impact ${impact?.n ?? 0}: tilted by ${fixed(pose.theta, 2)} rad at x = ${fixed(pose.x, 2)} m`);
+      this.#box.setAttribute('aria-label', `The rod and the table after impact ${impact?.n ?? 0}: tilted by ${fixed(pose.theta, 2)} rad at x = ${fixed(pose.x, 2)} m${contactWords(impact, 3).replace(/ {3}/g, ', ')}`);
     }
     this.#read_ms = now_ms;
   }
@@ -308,5 +309,12 @@ const poseless = (scene) => ({ t: 0, x: 0, y: contactDistance(scene), theta: 0, 
 function strikeOf(impact, scene) {
   if (!impact) return null;
   const theta = contactDistance(scene) === 0 ? 0 : impact.theta;
-  return { t: impact.t, x: impact.x + contactDistance(scene) * Math.sin(theta), alpha: impact.alpha, speed: Number.isNaN(impact.table_speed) ? 0 : impact.table_speed };
+  return { t: impact.t, x: impact.x + contactDistance(scene) * Math.sin(theta), y: impact.clearance || 0, alpha: impact.alpha, speed: Number.isNaN(impact.table_speed) ? 0 : impact.table_speed };
+}
+
+/** What the newest contact was like, where there is more to it than a strike at y = 0. @param {import('./impacts.js').Impact | null} impact @param {number} decimals */
+function contactWords(impact, decimals) {
+  if (!impact) return '';
+  const mode = MODES[impact.mode] ?? 'frictionless';
+  return (mode === 'frictionless' ? '' : `   contact: ${mode.replace('_', ' ')}`) + (impact.clearance ? `   struck at ${fixed(impact.clearance, decimals)} m` : '');
 }
