@@ -161,7 +161,7 @@ export function drawStrike(context, scale, impact, strike, strength) {
     if (length > 9) arrow(context, x + offset, y, x + offset + dx / impulse * length, y - dy / impulse * length, colours.strike);
     context.font = `11px ${SANS}`;
     context.fillStyle = colours.strike;
-    const words = [`impulse ${fixed(impulse, 2)}\u202fm/s`, `α ${fixed(strike.alpha, 3)}\u202frad`, rubs ? `friction ${fixed(friction, 2)}\u202fm/s` : ''];
+    const words = [`impulse ${fixed(impulse, 2)}\u202fm/s`, `α ${fixed(strike.alpha, 3)}\u202frad`];
     const widest = Math.max(...words.map((text) => context.measureText(text).width));
     const left = offset > 0 ? x + offset * 1.6 : x + offset * 1.6 - widest;
     const at = Math.max(34, Math.min(scale.right - widest - 6, left));
@@ -169,8 +169,14 @@ export function drawStrike(context, scale, impact, strike, strength) {
     context.textBaseline = 'top';
     context.fillText(words[0], at, y + 20);
     context.fillText(words[1], at, y + 34);
-    context.fillStyle = colours.good;
-    context.fillText(words[2], at, y + 48);
+    if (rubs) {
+      // On the other side of the table's foot.
+      const told = `friction ${fixed(friction, 2)}\u202fm/s`;
+      const width = context.measureText(told).width;
+      const start = offset > 0 ? x - offset * 1.6 - width : x - offset * 1.6;
+      context.fillStyle = colours.good;
+      context.fillText(told, Math.max(6, Math.min(scale.right - width - 6, start)), y + 20);
+    }
   }
   context.beginPath();
   context.arc(x, y, 4 + 10 * (1 - strength), 0, 2 * Math.PI);

@@ -68,8 +68,8 @@ export class Verdict {
     if (nonlinear) rows.push(['max |θ|', quantity(nonlinear.max_theta, 'rad'), `${number(nonlinear.impacts, 6)} impacts: ${nonlinear.outcome}`]);
     const asked = nonlinear?.demand;
     if (asked) {
-      rows.push(['table', `${quantity(asked.tilt, 'rad', 3)} · ${quantity(asked.tilt_rate, 'rad/s', 3)}`, 'most tilt · tilt rate asked']);
-      if (asked.speed > 0 || asked.stroke > 0) rows.push(['', `${quantity(asked.speed, 'm/s', 3)} · ${quantity(asked.stroke, 'm', 3)}`, 'most speed · stroke asked']);
+      rows.push(['tilt', `${quantity(asked.tilt, 'rad', 3)} · ${quantity(asked.tilt_rate, 'rad/s', 3)}`, 'most tilt · tilt rate asked']);
+      if (asked.speed > 0 || asked.stroke > 0) rows.push(['stroke', `${quantity(asked.stroke, 'm', 3)} · ${quantity(asked.speed, 'm/s', 3)}`, 'most stroke · speed asked']);
     }
     const open = [...this.#root.querySelectorAll('details[open]')].map(({ className }) => className);
     this.#root.replaceChildren(
