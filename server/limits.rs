@@ -136,7 +136,7 @@ pub const GZIP_STEP_BYTES: usize = 128 * 1024;
 
 // --- Connections ---
 
-/// Open connections; live runs are counted by `LIVE_SESSIONS` instead. Each buffers `HEAD_BYTES` at most while it waits
+/// Open connections; WebSockets are counted by `LIVE_SESSIONS` instead. Each buffers `HEAD_BYTES` at most while it waits
 /// for a request. Beyond it new ones wait in the kernel's queue.
 pub const CONNECTIONS: usize = 2048;
 
@@ -151,7 +151,8 @@ pub const GOODBYE_TIME: Duration = Duration::from_secs(1);
 
 // --- Live runs ---
 
-/// Live runs at a time. Each computes at most its own bounces, `speed` times real time.
+/// Live runs at a time, over WebSockets and as events together. Each computes at most its own bounces, `speed` times real
+/// time.
 pub const LIVE_SESSIONS: usize = 512;
 
 /// Bytes of one message from a live client. The longest valid one sets a few fields.
@@ -201,6 +202,13 @@ pub const LIVE_SILENCE_TIME: Duration = Duration::from_secs(60);
 
 /// Time that a live run which ended, or is paused, stays open without a message from its client.
 pub const LIVE_IDLE_TIME: Duration = Duration::from_secs(30 * 60);
+
+/// Time that a live run is told as events on one connection. Clients come back by themselves and miss nothing, perhaps to
+/// another server; what only a dead connection holds is freed.
+pub const LIVE_EVENTS_TIME: Duration = Duration::from_secs(60 * 60);
+
+/// Time after which a client of events that was cut off is told to come back.
+pub const LIVE_RETRY_TIME: Duration = Duration::from_secs(1);
 
 /// Work of writing one impact, in bounces.
 pub const LIVE_IMPACT_PRICE: u64 = 10;

@@ -115,7 +115,7 @@ async fn every_example_of_a_query_runs() {
 async fn every_example_of_a_parameter_runs() {
     let server = Server::start();
     for (template, method, operation) in contract::operations() {
-        if method != Method::GET || !template.starts_with("/v1/") || template == "/v1/live" {
+        if method != Method::GET || !template.starts_with("/v1/") || template.starts_with("/v1/live") {
             continue;
         }
         for parameter in operation["parameters"].as_array().into_iter().flatten().map(contract::resolved) {

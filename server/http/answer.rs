@@ -94,6 +94,11 @@ impl Ask {
         Ok(response)
     }
 
+    /// 406 if the client takes the resource in none of its formats.
+    pub fn accepts(&self, resource: &Resource) -> Result<(), Problem> {
+        self.negotiate(resource).map(drop)
+    }
+
     fn negotiate(&self, resource: &Resource) -> Result<(Format, Encoding), Problem> {
         let format = negotiate::format(self.format.as_deref(), &self.headers, resource.formats)?;
         let encoding = negotiate::encoding(&self.headers)?;

@@ -19,10 +19,12 @@ pub enum Format {
     Svg,
     /// A picture in pixels.
     Png,
+    /// Server-Sent Events.
+    Events,
 }
 
 impl Format {
-    const ALL: [Format; 5] = [Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png];
+    const ALL: [Format; 6] = [Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png, Format::Events];
 
     /// Its name in `?format=`.
     pub fn name(self) -> &'static str {
@@ -32,6 +34,7 @@ impl Format {
             Format::Ndjson => "ndjson",
             Format::Svg => "svg",
             Format::Png => "png",
+            Format::Events => "events",
         }
     }
 
@@ -43,6 +46,7 @@ impl Format {
             Format::Ndjson => "application/x-ndjson",
             Format::Svg => "image/svg+xml",
             Format::Png => "image/png",
+            Format::Events => "text/event-stream",
         }
     }
 
@@ -54,12 +58,13 @@ impl Format {
             Format::Ndjson => &[("application", "x-ndjson"), ("application", "ndjson"), ("application", "jsonl")],
             Format::Svg => &[("image", "svg+xml")],
             Format::Png => &[("image", "png")],
+            Format::Events => &[("text", "event-stream")],
         }
     }
 
     /// Whether its bytes shrink when compressed.
     pub fn is_compressible(self) -> bool {
-        self != Format::Png
+        !matches!(self, Format::Png | Format::Events)
     }
 }
 

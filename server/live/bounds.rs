@@ -14,10 +14,12 @@ pub struct Bounds {
     pub behind: Duration,
     /// Time between pings.
     pub ping: Duration,
-    /// Time without a word from the client, pongs included.
+    /// Time without a word from the client, pongs included; of one that cannot speak, all its time.
     pub silence: Duration,
     /// Time without a message, when the run has ended or is paused.
     pub idle: Duration,
+    /// Whether it stays when the run has ended, for a client that may begin it anew.
+    pub stays: bool,
     /// Messages a second.
     pub messages_per_s: u32,
     /// Work of catching up.
@@ -32,9 +34,17 @@ impl Default for Bounds {
             ping: limits::LIVE_PING_TIME,
             silence: limits::LIVE_SILENCE_TIME,
             idle: limits::LIVE_IDLE_TIME,
+            stays: true,
             messages_per_s: limits::LIVE_MESSAGES_PER_S,
             catch_up: limits::LIVE_CATCH_UP,
         }
+    }
+}
+
+impl Bounds {
+    /// Those of a client that only listens.
+    pub fn of_a_listener() -> Self {
+        Self { silence: limits::LIVE_EVENTS_TIME, stays: false, ..Self::default() }
     }
 }
 

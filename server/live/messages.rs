@@ -55,16 +55,53 @@ pub enum Said<'a> {
     Ack(Ack<'a>),
 }
 
+/// What goes to a client, whatever carries it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Frame {
+    /// A message of the server's.
+    Message {
+        /// Its type.
+        kind: &'static str,
+        /// How far the run has been told with it, if it tells of it.
+        mark: Option<Mark>,
+        /// As JSON.
+        text: String,
+    },
+    /// Nothing to say, but still here.
+    Ping,
+    /// Goodbye, with a code of RFC 6455 and why.
+    Close(u16, &'static str),
+}
+
+/// How far a run has been told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    /// Up to this impact.
+    Impact(u64),
+    /// To its end.
+    End,
+}
+
 impl Said<'_> {
     /// As it is sent.
-    pub fn to_text(&self) -> String {
-        serde_json::to_string(self).expect("messages are numbers and text under text keys")
+    pub fn to_frame(&self) -> Frame {
+        let (kind, mark) = match self {
+            Said::Hello(_) => ("hello", None),
+            Said::Impact(impact) => ("impact", Some(Mark::Impact(impact.n))),
+            Said::Impacts { columns } => ("impacts", columns.0.last().map(|impact| Mark::Impact(impact.n))),
+            Said::Gap { .. } => ("gap", None),
+            Said::End { .. } => ("end", Some(Mark::End)),
+            Said::Problem { .. } => ("problem", None),
+            Said::Ack(_) => ("ack", None),
+        };
+        let text = serde_json::to_string(self).expect("messages are numbers and text under text keys");
+        Frame::Message { kind, mark, text }
     }
 }
 
 /// A problem as a message.
-pub fn problem(problem: &Problem) -> String {
-    Said::Problem { title: problem.title(), detail: problem.detail(), errors: problem.errors() }.to_text()
+pub fn problem(problem: &Problem) -> Frame {
+    Said::Problem { title: problem.title(), detail: problem.detail(), errors: problem.errors() }.to_frame()
 }
 
 /// Which run it is and where it is.
@@ -280,12 +317,17 @@ mod tests {
     use super::*;
     use serde_json::{Value, json};
 
+    fn json_of(frame: Frame) -> Value {
+        let Frame::Message { kind, text, .. } = frame else { panic!("{frame:?}") };
+        let json: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(json["type"], kind);
+        json
+    }
+
     #[test]
     fn messages_have_their_type() {
-        let gap: Value = serde_json::from_str(&Said::Gap { from: 3, to: 9 }.to_text()).unwrap();
-        assert_eq!(gap, json!({"type": "gap", "from": 3, "to": 9}));
-        let wrong: Value = serde_json::from_str(&problem(&Problem::invalid_at("/a", "a is wrong"))).unwrap();
-        assert_eq!(wrong["type"], "problem");
+        assert_eq!(json_of(Said::Gap { from: 3, to: 9 }.to_frame()), json!({"type": "gap", "from": 3, "to": 9}));
+        let wrong = json_of(problem(&Problem::invalid_at("/a", "a is wrong")));
         assert_eq!(wrong["errors"], json!([{"pointer": "/a", "detail": "a is wrong"}]));
     }
 }

@@ -6,6 +6,7 @@ pub mod address;
 pub mod bounds;
 pub mod clock;
 pub mod course;
+pub mod events;
 pub mod messages;
 pub mod order;
 pub mod outbox;

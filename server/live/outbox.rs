@@ -4,15 +4,13 @@
 use std::collections::VecDeque;
 use std::time::Instant;
 
-use axum::extract::ws::Message;
-
-use super::messages::{Columns, Impact, Said};
+use super::messages::{Columns, Frame, Impact, Said};
 use crate::limits;
 
 #[derive(Debug)]
 enum Item {
     Impact(Box<Impact>),
-    Message(Message),
+    Frame(Frame),
 }
 
 /// The queue of one client.
@@ -46,14 +44,9 @@ impl Outbox {
         self.items.len() - self.impacts
     }
 
-    /// Adds a message.
-    pub fn push(&mut self, message: Message) {
-        self.add(Item::Message(message));
-    }
-
-    /// Adds a text.
-    pub fn say(&mut self, text: String) {
-        self.push(Message::text(text));
+    /// Adds anything but an impact.
+    pub fn push(&mut self, frame: Frame) {
+        self.add(Item::Frame(frame));
     }
 
     /// Adds an impact; the oldest one goes if there are too many.
@@ -71,28 +64,28 @@ impl Outbox {
 
     /// Forgets the impacts that wait: they are of a run that is over for the client.
     pub fn forget_impacts(&mut self) {
-        self.items.retain(|item| matches!(item, Item::Message(_)));
+        self.items.retain(|item| matches!(item, Item::Frame(_)));
         (self.impacts, self.gap) = (0, None);
         self.note_emptiness();
     }
 
-    /// The next message: impacts that wait one behind the other become one.
-    pub fn pop(&mut self) -> Option<Message> {
-        let message = match self.items.pop_front()? {
-            Item::Message(message) => message,
+    /// The next frame: impacts that wait one behind the other become one.
+    pub fn pop(&mut self) -> Option<Frame> {
+        let frame = match self.items.pop_front()? {
+            Item::Frame(frame) => frame,
             Item::Impact(impact) => match self.gap.take() {
                 Some((from, to)) => {
                     self.items.push_front(Item::Impact(impact));
-                    Message::text(Said::Gap { from, to }.to_text())
+                    Said::Gap { from, to }.to_frame()
                 }
                 None => self.impacts_from(*impact),
             },
         };
         self.note_emptiness();
-        Some(message)
+        Some(frame)
     }
 
-    fn impacts_from(&mut self, first: Impact) -> Message {
+    fn impacts_from(&mut self, first: Impact) -> Frame {
         let mut batch = vec![first];
         while batch.len() < limits::LIVE_BATCH
             && let Some(Item::Impact(_)) = self.items.front()
@@ -101,10 +94,10 @@ impl Outbox {
             batch.push(*impact);
         }
         self.impacts -= batch.len();
-        Message::text(match batch.as_slice() {
-            [one] => Said::Impact(one).to_text(),
-            _ => Said::Impacts { columns: Columns(batch) }.to_text(),
-        })
+        match batch.as_slice() {
+            [one] => Said::Impact(one).to_frame(),
+            _ => Said::Impacts { columns: Columns(batch) }.to_frame(),
+        }
     }
 
     fn add(&mut self, item: Item) {
@@ -127,7 +120,8 @@ mod tests {
     use serde_json::{Value, json};
 
     fn pop(outbox: &mut Outbox) -> Value {
-        serde_json::from_str(outbox.pop().unwrap().to_text().unwrap()).unwrap()
+        let Some(Frame::Message { text, .. }) = outbox.pop() else { panic!("nothing waits") };
+        serde_json::from_str(&text).unwrap()
     }
 
     #[test]
@@ -139,7 +133,7 @@ mod tests {
         assert_eq!(pop(&mut outbox)["n"], 1);
         assert!(outbox.waiting_since().is_none());
         outbox.push_impact(course.tell(&run).0);
-        outbox.say("1".to_owned());
+        outbox.push(Frame::Message { kind: "ack", mark: None, text: "1".to_owned() });
         for _ in 3..=12 {
             outbox.push_impact(course.tell(&run).0);
         }

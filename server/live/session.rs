@@ -1,12 +1,12 @@
 //! One live client: what it hears and when, and what it may ask for.
 //!
 //! A single loop over the clock, the client and the server's end. Impacts are computed when they are due, never ahead;
-//! what cannot be sent at once waits in the outbox. Not here: how a connection becomes a WebSocket.
+//! what cannot be sent at once waits in the outbox. Not here: what carries it, a WebSocket or Server-Sent Events.
 
 use std::pin::pin;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use axum::extract::ws::{CloseFrame, Message, close_code};
+use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, close_code};
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
 use prometheus_client::metrics::counter::Counter;
 use tokio::sync::mpsc;
@@ -15,7 +15,7 @@ use tokio::time::{sleep_until, timeout};
 use super::address::{self, Asked, NO_ANGLE};
 use super::bounds::{Allowance, Bounds};
 use super::course::{self, Course, NotCaughtUp};
-use super::messages::{self, Ack, Hello, Said};
+use super::messages::{self, Ack, Frame, Hello, Said};
 use super::order::Order;
 use super::outbox::Outbox;
 use super::run::Run;
@@ -44,11 +44,25 @@ pub fn wall_now() -> u64 {
     u64::try_from(since.as_millis()).unwrap_or_default()
 }
 
-/// Tells a client its run until it leaves, breaks a bound, or the server is `closing`.
+impl From<Frame> for Message {
+    fn from(frame: Frame) -> Self {
+        match frame {
+            Frame::Message { text, .. } => Message::text(text),
+            Frame::Ping => Message::Ping(axum::body::Bytes::new()),
+            Frame::Close(code, reason) => {
+                Message::Close(Some(CloseFrame { code, reason: Utf8Bytes::from_static(reason) }))
+            }
+        }
+    }
+}
+
+/// Tells a client its run until it leaves, breaks a bound, or the server is `closing`. What there is to tell first has been
+/// found by [`caught_up`].
 pub async fn serve<E: Send>(
     asked: Asked,
+    course: Result<Course, Problem>,
     mut incoming: impl Stream<Item = Result<Message, E>> + Unpin + Send,
-    outgoing: impl Sink<Message> + Unpin + Send + 'static,
+    outgoing: impl Sink<Frame> + Unpin + Send + 'static,
     place: Place,
     closing: impl Future<Output = ()> + Send,
 ) {
@@ -56,7 +70,7 @@ pub async fn serve<E: Send>(
     let (sender, receiver) = mpsc::channel(1);
     let mut writer = tokio::spawn(write(receiver, outgoing));
     let mut outbox = Outbox::new(place.bounds.queue);
-    let close = match caught_up(&asked, &place).await {
+    let close = match course {
         Ok(course) => {
             let mut session = Session::new(asked, course, outbox, place);
             let close = session.run(&mut incoming, &sender, closing).await;
@@ -64,18 +78,18 @@ pub async fn serve<E: Send>(
             close
         }
         Err(problem) => {
-            outbox.say(messages::problem(&problem));
+            outbox.push(messages::problem(&problem));
             let overloaded = problem.status().is_server_error();
             Some(if overloaded { (close_code::AGAIN, "busy") } else { (close_code::POLICY, "over budget") })
         }
     };
     outbox.forget_impacts();
     if let Some((code, reason)) = close {
-        outbox.push(Message::Close(Some(CloseFrame { code, reason: reason.into() })));
+        outbox.push(Frame::Close(code, reason));
     }
     let goodbye = async {
-        while let Some(message) = outbox.pop() {
-            if sender.send(message).await.is_err() {
+        while let Some(frame) = outbox.pop() {
+            if sender.send(frame).await.is_err() {
                 break;
             }
         }
@@ -88,9 +102,9 @@ pub async fn serve<E: Send>(
     writer.abort();
 }
 
-async fn write(mut receiver: mpsc::Receiver<Message>, mut outgoing: impl Sink<Message> + Unpin) {
-    while let Some(message) = receiver.recv().await {
-        if outgoing.send(message).await.is_err() {
+async fn write(mut receiver: mpsc::Receiver<Frame>, mut outgoing: impl Sink<Frame> + Unpin) {
+    while let Some(frame) = receiver.recv().await {
+        if outgoing.send(frame).await.is_err() {
             return;
         }
     }
@@ -98,7 +112,10 @@ async fn write(mut receiver: mpsc::Receiver<Message>, mut outgoing: impl Sink<Me
 }
 
 /// The run where the telling begins. Little work is done here, much in the pool.
-async fn caught_up(asked: &Asked, place: &Place) -> Result<Course, Problem> {
+///
+/// # Errors
+/// Where it is too far back, or the pool is busy.
+pub async fn caught_up(asked: &Asked, place: &Place) -> Result<Course, Problem> {
     let until = asked.run.clock.run_time(wall_now());
     let limit = place.bounds.catch_up;
     let little = Limit { most: limit.most.min(limits::INLINE_BOUNCES), ..limit };
@@ -154,7 +171,7 @@ impl Session {
     async fn run<E>(
         &mut self,
         incoming: &mut (impl Stream<Item = Result<Message, E>> + Unpin),
-        sender: &mpsc::Sender<Message>,
+        sender: &mpsc::Sender<Frame>,
         closing: impl Future<Output = ()>,
     ) -> Close {
         let mut closing = pin!(closing);
@@ -173,8 +190,8 @@ impl Session {
                 () = &mut closing => return Some((close_code::AWAY, "the server is shutting down")),
                 permit = sender.reserve(), if !self.outbox.is_empty() => {
                     let Ok(permit) = permit else { return None };
-                    if let Some(message) = self.outbox.pop() {
-                        permit.send(message);
+                    if let Some(frame) = self.outbox.pop() {
+                        permit.send(frame);
                     }
                 }
                 message = incoming.next() => {
@@ -197,9 +214,9 @@ impl Session {
     /// Says which run it is.
     fn greet(&mut self, now: u64) {
         let hello = Hello::new(&self.run, &self.course, now);
-        self.outbox.say(Said::Hello(Box::new(hello)).to_text());
+        self.outbox.push(Said::Hello(Box::new(hello)).to_frame());
         if let Some(outcome) = self.course.outcome() {
-            self.outbox.say(Said::End { outcome, demand: self.course.demand().into() }.to_text());
+            self.outbox.push(Said::End { outcome, demand: self.course.demand().into() }.to_frame());
         }
     }
 
@@ -218,7 +235,7 @@ impl Session {
                 self.outbox.push_impact(impact);
             }
             if let Some(outcome) = self.course.outcome() {
-                self.outbox.say(Said::End { outcome, demand: self.course.demand().into() }.to_text());
+                self.outbox.push(Said::End { outcome, demand: self.course.demand().into() }.to_frame());
             }
         }
         self.place.bounces.inc_by(told as u64);
@@ -244,11 +261,14 @@ impl Session {
     fn overdue(&mut self, now: Instant) -> Option<(u16, &'static str)> {
         let bounds = &self.place.bounds;
         if now >= self.next_ping {
-            self.outbox.push(Message::Ping(axum::body::Bytes::new()));
+            self.outbox.push(Frame::Ping);
             self.next_ping = now + bounds.ping;
         }
         if now >= self.last_heard + bounds.silence {
             return Some((close_code::POLICY, "no answer to pings"));
+        }
+        if !bounds.stays && self.course.outcome().is_some() && self.outbox.is_empty() {
+            return Some((close_code::NORMAL, "the run has ended"));
         }
         if self.is_idle() && now >= self.last_order + bounds.idle {
             return Some((close_code::NORMAL, "idle"));
@@ -281,7 +301,7 @@ impl Session {
         if !self.allowance.takes(now) {
             let most = self.place.bounds.messages_per_s;
             let detail = format!("more than {most} messages a second, which is the limit");
-            self.outbox.say(messages::problem(&Problem::invalid_at("", detail)));
+            self.outbox.push(messages::problem(&Problem::invalid_at("", detail)));
             return Some((close_code::POLICY, "too many messages"));
         }
         let done = match message {
@@ -293,7 +313,7 @@ impl Session {
             _ => Err(Problem::invalid_at("", "the message is binary; it must be JSON text")),
         };
         if let Err(problem) = done {
-            self.outbox.say(messages::problem(&problem));
+            self.outbox.push(messages::problem(&problem));
         }
         None
     }
@@ -368,7 +388,7 @@ impl Session {
             paused: self.run.clock.is_paused(),
             impact,
         };
-        self.outbox.say(Said::Ack(ack).to_text());
+        self.outbox.push(Said::Ack(ack).to_frame());
         Ok(())
     }
 

@@ -13,9 +13,10 @@ use tokio::time::{sleep, timeout};
 use super::address::Asked;
 use super::bounds::Bounds;
 use super::clock::Clock;
+use super::messages::Frame;
 use super::run::Run;
 use super::run::tests::case;
-use super::session::{Place, serve, wall_now};
+use super::session::{Place, caught_up, serve, wall_now};
 use crate::compute::Pool;
 
 /// The client's ends of a connection that takes one message at a time.
@@ -28,9 +29,13 @@ fn open(asked: Asked, bounds: Bounds) -> Client {
     let (says, incoming) = channel(1);
     let (outgoing, hears) = channel(1);
     let incoming = stream::unfold(incoming, async |mut from| from.recv().await.map(|message| (message, from)));
-    let outgoing = sink::unfold(outgoing, async |to: Sender<Message>, message| to.send(message).await.map(|()| to));
+    let outgoing =
+        sink::unfold(outgoing, async |to: Sender<Message>, frame: Frame| to.send(frame.into()).await.map(|()| to));
     let place = Place { pool: Pool::new(1), bounces: Counter::default(), bounds };
-    tokio::spawn(serve(asked, Box::pin(incoming), Box::pin(outgoing), place, std::future::pending()));
+    tokio::spawn(async move {
+        let course = caught_up(&asked, &place).await;
+        serve(asked, course, Box::pin(incoming), Box::pin(outgoing), place, std::future::pending()).await;
+    });
     Client { says, hears }
 }
 

@@ -1,28 +1,33 @@
-//! `live`: a run told as it happens, over a WebSocket.
+//! `live`: a run told as it happens, over a WebSocket, or as Server-Sent Events to a client that only listens.
+
+use std::future::ready;
 
 use axum::Router;
 use axum::extract::State;
-use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::ws::rejection::WebSocketUpgradeRejection;
+use axum::extract::ws::{Message, WebSocketUpgrade};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
-use axum::response::{IntoResponse, Response};
+use axum::response::{IntoResponse, Response, Sse};
 use axum::routing::get;
-use futures_util::StreamExt;
+use futures_util::{SinkExt, StreamExt};
 
 use super::App;
 use crate::compute::Counted;
 use crate::http::problem::shortened;
-use crate::http::{Ask, Problem};
+use crate::http::{Ask, Format, Problem, Resource};
 use crate::limits;
 use crate::live::address::{self, PATH};
 use crate::live::bounds::Bounds;
+use crate::live::events::{self, Wanted};
 use crate::live::session::{self, Place};
 
 const SUBPROTOCOL: &str = "equipoise.v1";
 
-/// Its path.
+const EVENTS: Resource = Resource { name: "live/events", formats: &[Format::Events] };
+
+/// Their paths.
 pub fn routes() -> Router<App> {
-    Router::new().route(PATH, get(live))
+    Router::new().route(PATH, get(live)).route("/v1/live/events", get(live_events))
 }
 
 type Upgrade = Result<WebSocketUpgrade, WebSocketUpgradeRejection>;
@@ -35,6 +40,36 @@ async fn live(State(app): State<App>, upgrade: Upgrade, ask: Ask) -> Result<Resp
         Err(rejection) => return Ok(not_a_websocket(&rejection, &ask.headers)),
     };
     check_origin(&ask.headers)?;
+    let (counted, place) = admit(&app, Bounds::default())?;
+    let upgrade = upgrade
+        .protocols([SUBPROTOCOL])
+        .max_message_size(limits::LIVE_FRAME_BYTES)
+        .max_frame_size(limits::LIVE_FRAME_BYTES);
+    Ok(upgrade.on_upgrade(async move |socket| {
+        let _counted = counted;
+        let (outgoing, incoming) = socket.split();
+        let outgoing = outgoing.with(|frame| ready(Ok::<_, axum::Error>(Message::from(frame))));
+        let course = session::caught_up(&asked, &place).await;
+        session::serve(asked, course, incoming, outgoing, place, app.closing()).await;
+    }))
+}
+
+/// Here a run that cannot be caught up with is refused at once: a client of events sees the status, and comes back only
+/// where it is 200.
+async fn live_events(State(app): State<App>, ask: Ask) -> Result<Response, Problem> {
+    let wanted = ask.read(|reader| events::read(reader, &ask.headers, session::wall_now()))?;
+    ask.accepts(&EVENTS)?;
+    check_origin(&ask.headers)?;
+    let Wanted::Run(asked) = wanted else { return Ok(StatusCode::NO_CONTENT.into_response()) };
+    let (counted, place) = admit(&app, Bounds::of_a_listener())?;
+    let course = session::caught_up(&asked, &place).await?;
+    let told = events::tell(*asked, course, place, async move { app.closing().await }, counted);
+    // A proxy that gathers bytes before it passes them on would make the run late.
+    Ok(([("x-accel-buffering", "no")], Sse::new(told)).into_response())
+}
+
+/// A place for one more live run, if there is one.
+fn admit(app: &App, bounds: Bounds) -> Result<(Counted, Place), Problem> {
     if app.is_closing() {
         return Err(Problem::overloaded("the server is shutting down"));
     }
@@ -43,16 +78,7 @@ async fn live(State(app): State<App>, upgrade: Upgrade, ask: Ask) -> Result<Resp
     if app.metrics.live_sessions.get() > most as i64 {
         return Err(Problem::overloaded(format!("{most} live runs are open, which is the limit")));
     }
-    let place = Place { pool: app.pool.clone(), bounces: app.metrics.bounces.clone(), bounds: Bounds::default() };
-    let upgrade = upgrade
-        .protocols([SUBPROTOCOL])
-        .max_message_size(limits::LIVE_FRAME_BYTES)
-        .max_frame_size(limits::LIVE_FRAME_BYTES);
-    Ok(upgrade.on_upgrade(async move |socket| {
-        let _counted = counted;
-        let (outgoing, incoming) = socket.split();
-        session::serve(asked, incoming, outgoing, place, app.closing()).await;
-    }))
+    Ok((counted, Place { pool: app.pool.clone(), bounces: app.metrics.bounces.clone(), bounds }))
 }
 
 fn not_a_websocket(rejection: &WebSocketUpgradeRejection, headers: &HeaderMap) -> Response {

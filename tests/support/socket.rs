@@ -113,11 +113,7 @@ impl Client {
     }
 
     fn keep(&mut self, message: &Value) {
-        if message["type"] == "impact" {
-            self.rows.push(row(message));
-        } else if message["type"] == "impacts" {
-            self.rows.extend(rows(message));
-        }
+        self.rows.extend(impacts_in(message));
     }
 
     /// So many impacts, however they come; fewer if the run ends.
@@ -144,12 +140,21 @@ impl Client {
 }
 
 /// A message that is as the contract says.
-fn held(text: &str) -> Value {
+pub(crate) fn held(text: &str) -> Value {
     let message: Value = serde_json::from_str(text).unwrap();
     let name = format!("#/components/schemas/live.{}", message["type"].as_str().unwrap());
     let faults = contract::faults(&json!({"$ref": name}), &message);
     assert!(faults.is_empty(), "{faults:?} in {text}");
     message
+}
+
+/// The impacts of a message, of which most have none.
+pub(crate) fn impacts_in(message: &Value) -> Vec<Row> {
+    match message["type"].as_str() {
+        Some("impact") => vec![row(message)],
+        Some("impacts") => rows(message),
+        _ => vec![],
+    }
 }
 
 fn row(impact: &Value) -> Row {
