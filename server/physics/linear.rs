@@ -92,7 +92,7 @@ impl Scene {
     /// # Errors
     /// Why there is none, in a sentence.
     pub fn linear_solution(&self) -> Result<LinearSolution, String> {
-        if let Some(error) = self.roughness() {
+        if let Some(error) = self.beyond(&[]) {
             return Err(error.detail);
         }
         let fixed_point = self.fixed_point()?;

@@ -47,13 +47,13 @@ impl Rung {
     /// bounce rungs`). Fixed, so that the same question gets the same answer.
     pub fn cost_ns(self) -> f64 {
         match self {
-            Self::Point => 40.0,
-            Self::Linear => 60.0,
-            Self::Rod => 63.0,
-            Self::RodWithX => 75.0,
-            Self::Friction => 100.0,
-            Self::Noise => 160.0,
-            Self::Polygon => 110.0,
+            Self::Point => 135.0,
+            Self::Linear => 120.0,
+            Self::Rod => 86.0,
+            Self::RodWithX => 112.0,
+            Self::Friction => 107.0,
+            Self::Noise => 195.0,
+            Self::Polygon => 130.0,
         }
     }
 }
@@ -203,12 +203,8 @@ impl Scene {
         self.friction != 0.0 || self.slide != Slide::None
     }
 
-    /// Why what is derived for the plain rod does not hold, with the field that makes it so; none where it does.
-    pub fn roughness(&self) -> Option<FieldError> {
-        self.beyond(&[])
-    }
-
-    /// The same for what is derived for some rungs above it as well.
+    /// Why what is derived for the plain rod, and for the rungs `known` above it, does not hold for this scene, with the field that
+    /// makes it so; none where it does.
     pub fn beyond(&self, known: &[Rung]) -> Option<FieldError> {
         let beyond = |rung| rung != Rung::Polygon && !known.contains(&rung);
         let Forced { rung, path, .. } = self.forced().into_iter().find(|forced| beyond(forced.rung))?;

@@ -39,7 +39,7 @@ impl Setting {
     /// # Errors
     /// Why the scene has no periodic orbits, in a sentence.
     pub fn of(scene: &Scene) -> Result<Self, String> {
-        if let Some(error) = scene.roughness() {
+        if let Some(error) = scene.beyond(&[]) {
             return Err(error.detail);
         }
         let Model::Rod(rod) = scene.model() else {
