@@ -2,14 +2,14 @@
 
 import { spawn } from 'node:child_process';
 import { createServer } from 'node:net';
-import { after } from 'node:test';
+import { after, afterEach } from 'node:test';
 import assert from 'node:assert/strict';
 import { chromium } from 'playwright-core';
 
 const PROGRAM = process.env.EQUIPOISE ?? new URL('../../target/release/equipoise', import.meta.url).pathname;
 const FLAGS = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
 /** How long a condition may take before a test gives up; no test measures speed by it. */
-export const PATIENCE_MS = 30_000;
+export const PATIENCE_MS = 60_000;
 
 async function freePort() {
   const probe = createServer().listen(0, '127.0.0.1');
@@ -22,12 +22,15 @@ async function freePort() {
 export class Stage {
   #server = null;
   #browser = null;
+  #contexts = [];
 
   static async open() {
     const stage = new Stage();
     stage.port = await freePort();
     stage.url = `http://127.0.0.1:${stage.port}/`;
     after(() => stage.close());
+    // A page that is left open goes on running beside the next test.
+    afterEach(() => Promise.all(stage.#contexts.splice(0).map((context) => context.close())));
     await stage.startServer();
     stage.#browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: FLAGS });
     return stage;
@@ -68,6 +71,7 @@ export class Stage {
    */
   async page(query = '', { prepare, ...options } = {}) {
     const context = await this.#browser.newContext({ viewport: { width: 1280, height: 860 }, ...options });
+    this.#contexts.push(context);
     await context.grantPermissions(['clipboard-read', 'clipboard-write']);
     const page = await context.newPage();
     page.setDefaultTimeout(PATIENCE_MS);
