@@ -1,21 +1,15 @@
 //! Margins over a box of bodies: closed forms at its corners, and no body inside that does worse.
 
 use equipoise_physics::margins::Tolerances;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene, Value};
 
+mod paper;
 #[path = "support/random.rs"]
 mod random;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
-    let mut draft = Draft::default();
-    let case_1 = [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
-        (Name::TiltGain, 1.1),
-        (Name::Height, 0.2),
-        (Name::Theta, 0.1),
-    ];
-    for &(name, number) in case_1.iter().chain(values) {
+    let mut draft = paper::scene(1.1, 0.1).draft();
+    for &(name, number) in values {
         draft.set(name, Some(Value::Number(number))).unwrap();
     }
     draft.build().unwrap()

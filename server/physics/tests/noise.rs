@@ -1,20 +1,13 @@
 //! Noise in runs: case 1 with a table that errs by 10 ms, under both readings.
 
 use equipoise_physics::map::run;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene, Value};
+
+mod paper;
 
 fn case_1(model: &'static str, timing_sd: f64, theta: f64) -> Scene {
-    let mut draft = Draft::default();
-    for (name, number) in [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
-        (Name::TiltGain, 1.1),
-        (Name::Height, 0.2),
-        (Name::Theta, theta),
-        (Name::TimingSd, timing_sd),
-    ] {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
+    let mut draft = paper::scene(1.1, theta).draft();
+    draft.set(Name::TimingSd, Some(Value::Number(timing_sd))).unwrap();
     draft.set(Name::NoiseModel, Some(Value::Choice(model))).unwrap();
     draft.build().unwrap()
 }

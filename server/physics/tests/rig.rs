@@ -4,16 +4,11 @@ use equipoise_physics::map::{Ending, run};
 use equipoise_physics::model::Rung;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
+mod paper;
+
 fn draft(values: &[(Name, f64)]) -> Draft {
-    let mut draft = Draft::default();
-    let case_1 = [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
-        (Name::TiltGain, 1.1),
-        (Name::Height, 0.2),
-        (Name::Theta, 0.3),
-    ];
-    for &(name, number) in case_1.iter().chain(values) {
+    let mut draft = paper::scene(1.1, 0.3).draft();
+    for &(name, number) in values {
         draft.set(name, Some(Value::Number(number))).unwrap();
     }
     draft
