@@ -10,6 +10,7 @@ use serde_json::Value as Json;
 
 use super::jacobian::Eigenvalue;
 use super::scene::{build, read_draft, to_json, to_query};
+use super::stability;
 use super::table::{Cells, Column, Table};
 use super::trajectory::Choice;
 use crate::http::Reader;
@@ -108,12 +109,8 @@ struct Linear {
 #[derive(Debug, Clone, Serialize)]
 struct Place {
     x: f64,
-    theta: f64,
-    x_dot: f64,
-    y_dot: f64,
-    theta_dot: f64,
-    flight_time: f64,
-    apex_height: f64,
+    #[serde(flatten)]
+    bounce: stability::FixedPoint,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -220,15 +217,7 @@ impl Controller {
             law: Judged::new(grip, design.gain, &closed),
             residual: design.residual,
             iterations: design.iterations,
-            fixed_point: Place {
-                x: 0.0,
-                theta: 0.0,
-                x_dot: 0.0,
-                y_dot: -place.speed,
-                theta_dot: 0.0,
-                flight_time: place.flight_time,
-                apex_height: place.apex_height,
-            },
+            fixed_point: Place { x: 0.0, bounce: place.into() },
             open_loop: open.eigenvalues.iter().map(|&value| value.into()).collect(),
             energy_eigenvalue,
             applied,
@@ -314,8 +303,8 @@ impl Controller {
             number("residual", "", Some(self.residual)),
             Column { name: "iterations", unit: "", cells: Cells::Counts(vec![self.iterations.into()]) },
             number("energy_eigenvalue", "", Some(self.energy_eigenvalue)),
-            number("fixed_point_y_dot", "m_per_s", Some(self.fixed_point.y_dot)),
-            number("fixed_point_flight_time", "s", Some(self.fixed_point.flight_time)),
+            number("fixed_point_y_dot", "m_per_s", Some(self.fixed_point.bounce.y_dot)),
+            number("fixed_point_flight_time", "s", Some(self.fixed_point.bounce.flight_time)),
             number("applied_spectral_radius", "", self.applied.as_ref().map(|it| it.spectral_radius)),
             number("given_spectral_radius", "", given.map(|it| it.spectral_radius)),
         ])

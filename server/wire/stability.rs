@@ -6,7 +6,7 @@ use equipoise_physics::grip::Grip;
 use equipoise_physics::margins::Tolerances;
 use equipoise_physics::regularity::WATCHED;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::{Linear, Nonlinear};
+use equipoise_physics::stability::{self, Linear, Nonlinear};
 use equipoise_physics::verdict::{Judgement, Verdict};
 use serde::Serialize;
 
@@ -21,14 +21,21 @@ use crate::http::Reader;
 use crate::limits;
 use crate::picture::{Eigenvalues, Spectrum, eigenvalues};
 
+/// The upright bounce in place, as a state just before an impact.
 #[derive(Debug, Clone, Serialize)]
-struct FixedPoint {
+pub(super) struct FixedPoint {
     theta: f64,
     x_dot: f64,
-    y_dot: f64,
+    pub(super) y_dot: f64,
     theta_dot: f64,
-    flight_time: f64,
+    pub(super) flight_time: f64,
     apex_height: f64,
+}
+
+impl From<stability::FixedPoint> for FixedPoint {
+    fn from(stability::FixedPoint { speed, flight_time, apex_height }: stability::FixedPoint) -> Self {
+        Self { theta: 0.0, x_dot: 0.0, y_dot: -speed, theta_dot: 0.0, flight_time, apex_height }
+    }
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -270,14 +277,7 @@ impl<'a> Stability<'a> {
                     ));
                 }
                 answer.linear = Some(LinearPart::new(scene, &linear));
-                answer.fixed_point = Some(FixedPoint {
-                    theta: 0.0,
-                    x_dot: 0.0,
-                    y_dot: -fixed_point.speed,
-                    theta_dot: 0.0,
-                    flight_time: fixed_point.flight_time,
-                    apex_height: fixed_point.apex_height,
-                });
+                answer.fixed_point = Some(fixed_point.into());
             }
         }
         if basin {
