@@ -42,16 +42,11 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<Asked> {
     let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
     // Of a run that begins with this request, nothing is missed.
     let from = reader.integer("from", 1..=limits::LIVE_IMPACTS).or(epoch.is_none().then_some(1));
-    let mut interventions = Vec::new();
-    reader.objects("interventions", limits::LIVE_INTERVENTIONS, |_, item| interventions.push(intervention(item)));
+    let interventions = read_interventions(reader);
     let mut entries = Vec::new();
     reader.objects("clock", limits::LIVE_CLOCK_ENTRIES, |_, item| entries.push(clock_entry(item)));
     let mut run = Run::new(scene?, Clock::new(epoch.unwrap_or(now), speed));
-    for (index, read) in interventions.into_iter().enumerate() {
-        let Some((impact, set, kick)) = read else { continue };
-        let pointer = format!("{}/{index}", reader.pointer_to("interventions"));
-        apply(&mut run, impact, &set, kick, &pointer, reader.errors());
-    }
+    apply_all(&mut run, interventions, reader);
     for (index, entry) in entries.into_iter().enumerate() {
         let Some(entry) = entry else { continue };
         let pushed = if entry.wall > now.saturating_add(CLOCK_SKEW_MS) {
@@ -65,6 +60,29 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<Asked> {
         }
     }
     Some(Asked { run, from })
+}
+
+/// Reads a run that has no clock: a scene and what is done to it. None if something is wrong; then it is in the errors.
+pub fn read_unclocked(reader: &mut Reader<'_, '_>) -> Option<Run> {
+    let scene = scene::read(reader);
+    let interventions = read_interventions(reader);
+    let mut run = Run::new(scene?, Clock::new(0, 1.0));
+    apply_all(&mut run, interventions, reader);
+    Some(run)
+}
+
+fn read_interventions(reader: &mut Reader<'_, '_>) -> Vec<Option<Read>> {
+    let mut interventions = Vec::new();
+    reader.objects("interventions", limits::LIVE_INTERVENTIONS, |_, item| interventions.push(intervention(item)));
+    interventions
+}
+
+fn apply_all(run: &mut Run, interventions: Vec<Option<Read>>, reader: &mut Reader<'_, '_>) {
+    for (index, read) in interventions.into_iter().enumerate() {
+        let Some((impact, set, kick)) = read else { continue };
+        let pointer = format!("{}/{index}", reader.pointer_to("interventions"));
+        apply(run, impact, &set, kick, &pointer, reader.errors());
+    }
 }
 
 fn apply(

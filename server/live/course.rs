@@ -16,8 +16,8 @@ use super::run::Run;
 use crate::compute::{Cancel, Cancelled, Limit, OverBudget, Price};
 use crate::http::Problem;
 use crate::limits;
+use crate::wire::outcome::Outcome;
 use crate::wire::scene::has_angle;
-use crate::wire::trajectory::Outcome;
 
 /// Where a run is: before its coming impact, or at its end. Cheap to clone.
 #[derive(Debug, Clone)]
@@ -28,11 +28,18 @@ pub struct Course {
     has_angle: bool,
     outcome: Option<Arc<Outcome>>,
     meter: Meter,
+    /// The impact after which it has completed.
+    last: u64,
 }
 
 impl Course {
     /// A run at its release; at its end, where there is not even a first contact.
     pub fn new(run: &Run) -> Self {
+        Self::up_to(run, limits::LIVE_IMPACTS)
+    }
+
+    /// The same, completed after so many impacts.
+    pub fn up_to(run: &Run, last: u64) -> Self {
         let scene = *run.scene();
         let (orbit, outcome) = match scene.orbit() {
             Ok(orbit) => (orbit, None),
@@ -41,7 +48,7 @@ impl Course {
                 (nowhere, Some(Arc::new(Outcome::new(none.ending(0.0, 0.0), 0, 0.0))))
             }
         };
-        Self { orbit, scene: Arc::new(scene), has_angle: has_angle(&scene), outcome, meter: Meter::default() }
+        Self { orbit, scene: Arc::new(scene), has_angle: has_angle(&scene), outcome, meter: Meter::default(), last }
     }
 
     /// When the coming impact is, s; none after the end.
@@ -81,7 +88,7 @@ impl Course {
             Some(kick) => self.orbit.advance_kicked(kick),
             None => self.orbit.advance(),
         };
-        if contact.ending.is_none() && n >= limits::LIVE_IMPACTS {
+        if contact.ending.is_none() && n >= self.last {
             contact.ending = Some(Ending::Completed);
             contact.flight_time = None;
         }

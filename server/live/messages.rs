@@ -12,8 +12,9 @@ use super::course::Course;
 use super::run::Run;
 use crate::BUILD;
 use crate::http::{FieldError, Problem};
+use crate::wire::outcome::Outcome;
 use crate::wire::scene::{Resolved, has_angle};
-use crate::wire::trajectory::{Choice, DemandAnswer, Outcome};
+use crate::wire::trajectory::{Choice, DemandAnswer};
 
 /// A message of the server's.
 #[derive(Debug, Serialize)]

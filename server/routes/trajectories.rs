@@ -5,12 +5,14 @@ use axum::body::Body;
 use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
+use equipoise_physics::map::Contact;
 
 use super::App;
 use crate::compute::{Cancel, Cancelled, Price};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::limits;
-use crate::wire::scene;
+use crate::live::address;
+use crate::live::course::Course;
 use crate::wire::trajectory::{Request, Trajectory};
 
 const RESOURCE: Resource =
@@ -22,17 +24,22 @@ pub fn routes() -> Router<App> {
 }
 
 async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
-    let (scene, request) = ask.read(|reader| {
-        let scene = scene::read(reader);
+    let (run, request) = ask.read(|reader| {
+        let run = address::read_unclocked(reader);
         let request = Request::read(reader);
-        Some((scene?, request))
+        Some((run?, request))
     })?;
     limits::ANSWER.admit(request.numbers())?;
     let price = Price::bounces(request.price()).within(&limits::WORK)?;
-    let canonical = super::canonical(&scene, &request);
+    let canonical = super::canonical(run.scene(), &(request, address::url(&run)));
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
-        let trajectory = match Trajectory::compute(&scene, &request, || !cancel.is_set()) {
+        let mut course = Course::up_to(&run, request.impacts);
+        let mut contacts = std::iter::from_fn(|| course.next_n().map(|_| course.advance(&run).0));
+        // What nobody changes, and what never meets the table, is the scene's own run.
+        let changed = (!run.interventions().is_empty() && run.scene().orbit().is_ok())
+            .then_some(&mut contacts as &mut dyn Iterator<Item = Contact>);
+        let trajectory = match Trajectory::compute(run.scene(), &request, changed, || !cancel.is_set()) {
             Ok(trajectory) => trajectory,
             Err(Some((pointer, detail))) => return Err(Problem::invalid_at(pointer, detail)),
             Err(None) => return Err(Cancelled.into()),

@@ -10,9 +10,10 @@ use equipoise_physics::stability::Class;
 use nalgebra::{Complex, DMatrix};
 use serde::{Serialize, Serializer};
 
+use super::outcome::Outcome;
 use super::scene::{Resolved, has_angle};
 use super::table::{Cells, Column, Table};
-use super::trajectory::{Choice, Outcome};
+use super::trajectory::Choice;
 use crate::http::Reader;
 use crate::limits;
 

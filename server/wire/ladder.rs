@@ -5,9 +5,10 @@ use equipoise_physics::model::Rung;
 use equipoise_physics::scene::Scene;
 use serde::Serialize;
 
+use super::outcome::Outcome;
 use super::scene::Resolved;
 use super::table::{Cells, Column, Table};
-use super::trajectory::{DemandAnswer, ForcedAnswer, Outcome};
+use super::trajectory::{DemandAnswer, ForcedAnswer};
 use crate::http::Reader;
 use crate::limits;
 

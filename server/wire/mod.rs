@@ -12,6 +12,7 @@ pub mod jacobian;
 pub mod ladder;
 pub mod margins;
 pub mod nearest_vertex;
+pub mod outcome;
 pub mod periodic_orbits;
 pub mod precision;
 pub mod presets;

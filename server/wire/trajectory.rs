@@ -1,7 +1,7 @@
 //! The answer of `trajectories`: the contacts of a run as a table, how it ended, and its flights where they are asked for.
 
-use equipoise_physics::demand::{Demand, Excess, Meter};
-use equipoise_physics::map::{Body, Ending, Touch};
+use equipoise_physics::demand::{Demand, Meter};
+use equipoise_physics::map::{Body, Contact};
 use equipoise_physics::method::{self, Impact, Method};
 use equipoise_physics::model::{Forced, Rung};
 use equipoise_physics::scene::{Name, Scene};
@@ -9,6 +9,7 @@ use serde::{Serialize, Serializer};
 
 use super::contacts::{Contacts, Flights};
 use super::nearest_vertex::NearestVertex;
+use super::outcome::Outcome;
 use super::scene::{Resolved, has_angle};
 use super::table::Table;
 use crate::http::Reader;
@@ -64,105 +65,6 @@ impl Choice {
     }
 }
 
-/// How a run ended.
-#[derive(Debug, Clone, Serialize)]
-pub struct Outcome {
-    /// Its kind.
-    pub kind: &'static str,
-    /// Contacts, the last included.
-    pub impacts: u64,
-    /// When the last one was, s, or when another vertex touched the table after it.
-    pub t: f64,
-    /// A sentence with the numbers.
-    pub detail: String,
-    /// What passed a limit, where something did.
-    pub quantity: Option<&'static str>,
-    /// Its value.
-    pub value: Option<f64>,
-    /// The limit.
-    pub limit: Option<f64>,
-    /// Unit of both.
-    pub unit: Option<&'static str>,
-    /// When a settling run comes to rest, s.
-    pub settle_time: Option<f64>,
-}
-
-impl Outcome {
-    /// Of a run that ended so at contact `impacts`, at time `t`.
-    pub fn new(ending: Ending, impacts: u64, t: f64) -> Self {
-        let at = format!("at contact {impacts}, t = {t} s");
-        let t = if let Ending::OtherVertex(touch) = ending { t + touch.t } else { t };
-        let (detail, decided) = match ending {
-            Ending::OtherVertex(Touch { vertex, t: 0.0 }) => (
-                format!("{at}, vertex {vertex} of the body was below the table's line: another one would have struck"),
-                None,
-            ),
-            Ending::OtherVertex(Touch { vertex, t: since }) => (
-                format!(
-                    "{since} s after {}, vertex {vertex} of the body came down to y = 0 before the one that bounces",
-                    if impacts == 0 { "the release".to_owned() } else { format!("contact {impacts}") }
-                ),
-                None,
-            ),
-            Ending::BeyondLimits(Excess { quantity, value, limit, unit }) => (
-                format!(
-                    "{at}, the strike asks for a {quantity} of {value} {unit}; table.limits.{quantity} is {limit} {unit}"
-                ),
-                Some((quantity, value, limit, unit)),
-            ),
-            Ending::Missed => {
-                (format!("after contact {impacts}, the body never meets the table as it was planned"), None)
-            }
-            Ending::Completed => (format!("all {impacts} contacts were computed, up to t = {t} s"), None),
-            Ending::Toppled { theta, limit } => (
-                format!("{at}, the angle {theta} rad had reached topple_angle {limit} rad"),
-                Some(("theta", theta, limit, "rad")),
-            ),
-            Ending::Separating { approach } => (
-                format!(
-                    "{at}, the contact point left the table at {approach} m/s along its normal: it could only pull"
-                ),
-                Some(("approach", approach, 0.0, "m/s")),
-            ),
-            Ending::Sinking { contact_rise } if contact_rise > 0.0 => (
-                format!(
-                    "{at}, below y = 0, the contact point left at {contact_rise} m/s: it does not rise up to y = 0 again"
-                ),
-                Some(("contact_rise", contact_rise, 0.0, "m/s")),
-            ),
-            Ending::Sinking { contact_rise } => (
-                format!(
-                    "{at}, the strike left the contact point at {contact_rise} m/s vertically: it does not rise again"
-                ),
-                Some(("contact_rise", contact_rise, 0.0, "m/s")),
-            ),
-            Ending::Settled { flight_time, settle_time } => (
-                format!("{at}, the next flight would take {flight_time} s; the bounces end at t = {settle_time} s"),
-                Some(("flight_time", flight_time, 0.0, "s")),
-            ),
-            Ending::Diverged { speed } => (
-                format!("{at}, the strike gave a speed of {speed} m/s, beyond what doubles resolve"),
-                Some(("speed", speed, equipoise_physics::map::SPEED_LIMIT, "m/s")),
-            ),
-        };
-        let settle_time = match ending {
-            Ending::Settled { settle_time, .. } => Some(settle_time),
-            _ => None,
-        };
-        Self {
-            kind: ending.name(),
-            impacts,
-            t,
-            detail,
-            quantity: decided.map(|(quantity, ..)| quantity),
-            value: decided.map(|(_, value, ..)| value).filter(|value| value.is_finite()),
-            limit: decided.map(|(_, _, limit, _)| limit),
-            unit: decided.map(|(.., unit)| unit),
-            settle_time,
-        }
-    }
-}
-
 /// The body and the law of its table, in a few words.
 fn law(scene: &Scene) -> String {
     let body = if has_angle(scene) { "a rod" } else { "a point" };
@@ -211,6 +113,9 @@ const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-30..=1.0;
 /// The tolerance, m/s, up to which impacts count as predictable where none is asked for.
 const PREDICTABLE: f64 = 1e-3;
 
+/// Why there are no bounds beside interventions.
+const NO_BOUND: &str = "no bound is derived for a run that is changed under way";
+
 /// Numbers in a row of contacts, and in one of flight samples.
 const CONTACT_NUMBERS: u64 = 18;
 const SAMPLE_NUMBERS: u64 = 8;
@@ -230,6 +135,15 @@ impl Request {
         let method = reader.choice("method", &[("auto", None), map, linear, extended]).flatten();
         let tolerance = reader.number("tolerance", TOLERANCES, "m/s");
         Self { impacts, samples_per_flight, method, tolerance }
+    }
+
+    /// Only the map runs on through a change, without a bound.
+    fn admits_changes(&self) -> Result<(), Refused> {
+        match (self.method, self.tolerance) {
+            (None | Some(Method::Map), None) => Ok(()),
+            (_, Some(_)) => Err(Some(("/tolerance", NO_BOUND.to_owned()))),
+            (Some(other), None) => Err(Some(("/method", format!("{} does not apply: {NO_BOUND}", other.name())))),
+        }
     }
 
     /// Numbers in its answer.
@@ -328,11 +242,20 @@ pub struct Trajectory<'a> {
 }
 
 impl<'a> Trajectory<'a> {
-    /// Runs a scene; `go_on` is asked now and then.
+    /// Runs a scene, or takes the contacts of a run of it that was `changed` under way; `go_on` is asked now and then.
     ///
     /// # Errors
     /// [`Refused`]: where `go_on` said no, where no method holds the tolerance, and where the method does not apply.
-    pub fn compute(scene: &'a Scene, request: &Request, mut go_on: impl FnMut() -> bool) -> Result<Self, Refused> {
+    pub fn compute(
+        scene: &'a Scene,
+        request: &Request,
+        changed: Option<&mut dyn Iterator<Item = Contact>>,
+        mut go_on: impl FnMut() -> bool,
+    ) -> Result<Self, Refused> {
+        if changed.is_some() {
+            request.admits_changes()?;
+        }
+        let was_changed = changed.is_some();
         let (method, choice) = MethodChoice::of(scene, request, &mut go_on)?;
         let Request { impacts, samples_per_flight: samples, tolerance, .. } = *request;
         let mut contacts = Contacts::new(scene, usize::try_from(impacts).unwrap_or(usize::MAX));
@@ -341,7 +264,7 @@ impl<'a> Trajectory<'a> {
         let (mut last, mut unknown, mut predictable) = (None, 0, None);
         let mut meter = Meter::default();
         let mut nearest_vertex = None;
-        let run = scene.run_by(method, impacts, |impact| {
+        let mut visit = |impact: &Impact<'_>| {
             let Impact { contact, error_estimate, .. } = impact;
             contacts.push(impact);
             if let Some(flights) = &mut flights {
@@ -365,12 +288,28 @@ impl<'a> Trajectory<'a> {
                 predictable = Some(contact.n - 1);
             }
             !contact.n.is_multiple_of(256) || go_on()
-        });
+        };
+        let run = match changed {
+            None => scene.run_by(method, impacts, visit),
+            Some(contacts) => {
+                let mut ending = None;
+                for contact in contacts {
+                    ending = contact.ending;
+                    if !visit(&Impact { contact, error_estimate: f64::INFINITY, extended: None }) {
+                        ending = None;
+                        break;
+                    }
+                }
+                Ok(ending)
+            }
+        };
         let ending = run.map_err(|why| Some(("/method", format!("{} does not apply: {why}", choice.name))))?;
         let ending = ending.ok_or(None)?;
         let (contacts_made, t) = last.unwrap_or((0, 0.0));
         let mut notes = Vec::new();
-        if let Some(error) = scene.beyond(&[Rung::Friction]) {
+        if was_changed {
+            notes.push(format!("error_estimate is null and predictable_impacts 0: {NO_BOUND}"));
+        } else if let Some(error) = scene.beyond(&[Rung::Friction]) {
             notes.push(format!(
                 "error_estimate is null and predictable_impacts 0, since no bound is derived: {}",
                 error.detail

@@ -1,0 +1,106 @@
+//! How a run ended, in words and numbers.
+//!
+//! Not here: what ends a run, which is physics.
+
+use equipoise_physics::demand::Excess;
+use equipoise_physics::map::{Ending, Touch};
+use serde::Serialize;
+
+/// How a run ended.
+#[derive(Debug, Clone, Serialize)]
+pub struct Outcome {
+    /// Its kind.
+    pub kind: &'static str,
+    /// Contacts, the last included.
+    pub impacts: u64,
+    /// When the last one was, s, or when another vertex touched the table after it.
+    pub t: f64,
+    /// A sentence with the numbers.
+    pub detail: String,
+    /// What passed a limit, where something did.
+    pub quantity: Option<&'static str>,
+    /// Its value.
+    pub value: Option<f64>,
+    /// The limit.
+    pub limit: Option<f64>,
+    /// Unit of both.
+    pub unit: Option<&'static str>,
+    /// When a settling run comes to rest, s.
+    pub settle_time: Option<f64>,
+}
+
+impl Outcome {
+    /// Of a run that ended so at contact `impacts`, at time `t`.
+    pub fn new(ending: Ending, impacts: u64, t: f64) -> Self {
+        let at = format!("at contact {impacts}, t = {t} s");
+        let t = if let Ending::OtherVertex(touch) = ending { t + touch.t } else { t };
+        let (detail, decided) = match ending {
+            Ending::OtherVertex(Touch { vertex, t: 0.0 }) => (
+                format!("{at}, vertex {vertex} of the body was below the table's line: another one would have struck"),
+                None,
+            ),
+            Ending::OtherVertex(Touch { vertex, t: since }) => (
+                format!(
+                    "{since} s after {}, vertex {vertex} of the body came down to y = 0 before the one that bounces",
+                    if impacts == 0 { "the release".to_owned() } else { format!("contact {impacts}") }
+                ),
+                None,
+            ),
+            Ending::BeyondLimits(Excess { quantity, value, limit, unit }) => (
+                format!(
+                    "{at}, the strike asks for a {quantity} of {value} {unit}; table.limits.{quantity} is {limit} {unit}"
+                ),
+                Some((quantity, value, limit, unit)),
+            ),
+            Ending::Missed => {
+                (format!("after contact {impacts}, the body never meets the table as it was planned"), None)
+            }
+            Ending::Completed => (format!("all {impacts} contacts were computed, up to t = {t} s"), None),
+            Ending::Toppled { theta, limit } => (
+                format!("{at}, the angle {theta} rad had reached topple_angle {limit} rad"),
+                Some(("theta", theta, limit, "rad")),
+            ),
+            Ending::Separating { approach } => (
+                format!(
+                    "{at}, the contact point left the table at {approach} m/s along its normal: it could only pull"
+                ),
+                Some(("approach", approach, 0.0, "m/s")),
+            ),
+            Ending::Sinking { contact_rise } if contact_rise > 0.0 => (
+                format!(
+                    "{at}, below y = 0, the contact point left at {contact_rise} m/s: it does not rise up to y = 0 again"
+                ),
+                Some(("contact_rise", contact_rise, 0.0, "m/s")),
+            ),
+            Ending::Sinking { contact_rise } => (
+                format!(
+                    "{at}, the strike left the contact point at {contact_rise} m/s vertically: it does not rise again"
+                ),
+                Some(("contact_rise", contact_rise, 0.0, "m/s")),
+            ),
+            Ending::Settled { flight_time, settle_time } => (
+                format!("{at}, the next flight would take {flight_time} s; the bounces end at t = {settle_time} s"),
+                Some(("flight_time", flight_time, 0.0, "s")),
+            ),
+            Ending::Diverged { speed } => (
+                format!("{at}, the strike gave a speed of {speed} m/s, beyond what doubles resolve"),
+                Some(("speed", speed, equipoise_physics::map::SPEED_LIMIT, "m/s")),
+            ),
+        };
+        let settle_time = match ending {
+            Ending::Settled { settle_time, .. } => Some(settle_time),
+            _ => None,
+        };
+        Self {
+            kind: ending.name(),
+            impacts,
+            t,
+            detail,
+            quantity: decided.map(|(quantity, ..)| quantity),
+            value: decided.map(|(_, value, ..)| value).filter(|value| value.is_finite()),
+            limit: decided.map(|(_, _, limit, _)| limit),
+            unit: decided.map(|(.., unit)| unit),
+            settle_time,
+        }
+    }
+}
