@@ -10,7 +10,7 @@
  * @property {string} title
  * @property {string} about
  * @property {string | null} unit
- * @property {'number' | 'integer' | 'choice' | 'boolean'} kind
+ * @property {'number' | 'integer' | 'choice' | 'boolean' | 'vertices'} kind
  * @property {number | null} minimum
  * @property {number | null} maximum
  * @property {number | string | boolean | null} default
@@ -52,6 +52,21 @@
  * @typedef {{kind: string, impacts: number, t: number, detail: string}} Outcome
  * @typedef {{pointer: string, detail: string}} FieldError
  */
+
+/** A polygon's vertices, the one part of a scene that is no single value. @type {Field} */
+const VERTICES = {
+  path: 'body.vertices', symbol: null, group: 'body', title: 'Vertices', about: 'Of a polygon, in place of the two lengths: x and y of one in a line, counter-clockwise.',
+  unit: 'm', kind: 'vertices', minimum: null, maximum: null, default: null, required: false, choices: null, live: false,
+};
+
+/** All that a scene is made of, group by group. @param {{fields: Field[]}} table @returns {Field[]} */
+export function fieldsOf({ fields }) {
+  const after = fields.findLastIndex(({ group }) => group === 'body') + 1;
+  return fields.toSpliced(after, 0, VERTICES);
+}
+
+/** Two values of a field, vertices included. @param {unknown} one @param {unknown} other */
+export const same = (one, other) => one === other || (Array.isArray(one) && String(one) === String(other));
 
 /** What the server refused, with the fields it blames. */
 export class Problem extends Error {

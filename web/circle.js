@@ -36,9 +36,12 @@ export class Circle {
       head: ['eigenvalue', 'real', 'imaginary', 'modulus'],
       rows: () => (this.#answer?.linear?.eigenvalues ?? []).map(({ re, im, modulus }, index) => [String(index + 1), fixed(re, 6), fixed(im, 6), fixed(modulus, 6)]),
     });
-    [this.#surface] = surfaces(this.figure.box, 1, () => invalidate(this));
-    onThemeChange(() => invalidate(this));
+    this.layers = surfaces(this.figure.box, 1, () => this.redraw());
+    [this.#surface] = this.layers;
+    onThemeChange(() => this.redraw());
   }
+
+  redraw() { invalidate(this); }
 
   /** @param {Stability | null} answer */
   show(answer) {

@@ -1,5 +1,6 @@
 // The frame around a chart: title, sentence, picture with a name, readout, table of its numbers. Not for the picture itself.
 
+import { enlarger } from './enlarger.js';
 import { h } from './dom.js';
 import { unbroken } from './numbers.js';
 
@@ -15,6 +16,7 @@ export class Figure {
   element;
   /** Where the canvases go. */
   box;
+  #head;
   #readout;
   #table;
   #body;
@@ -29,6 +31,8 @@ export class Figure {
    * @param {Table} table
    */
   constructor(id, title, about, table) {
+    this.id = id;
+    this.title = title;
     this.#table = table;
     this.box = h('div', { class: 'canvas-box', role: 'img', 'aria-label': 'Nothing to show yet' });
     this.#readout = h('output', { class: 'readout', 'aria-live': 'off' });
@@ -36,8 +40,14 @@ export class Figure {
     this.#disclosure = h('details', { toggle: () => this.list(Infinity) }, h('summary', {}, 'Numbers'),
       h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': `Numbers: ${title}` },
         h('table', {}, h('thead', {}, h('tr', {}, ...table.head.map((name) => h('th', { scope: 'col' }, name)))), this.#body)));
-    this.element = h('figure', { class: 'card chart', id }, h('figcaption', {}, h('h3', {}, title), h('p', { class: 'muted' }, about)),
+    this.#head = h('div', { class: 'card-head' }, h('h3', {}, title));
+    this.element = h('figure', { class: 'card chart', id }, h('figcaption', {}, this.#head, h('p', { class: 'muted' }, about)),
       this.box, this.#readout, this.#disclosure);
+  }
+
+  /** What of it can be taken away. @param {() => import('./save/actions.js').Saves} saves */
+  offer(saves) {
+    this.#head.append(enlarger(this.element, this.title, saves));
   }
 
   /** @param {string} text */

@@ -64,7 +64,8 @@ export class ImpactPlot {
     this.#meaning = meaning;
     this.figure = new Figure(meaning.id, meaning.title, meaning.about, { head: meaning.head, rows: () => this.#rows() });
     const { box } = this.figure;
-    [this.#plot, this.#mark] = surfaces(box, 2, () => this.redraw());
+    this.layers = surfaces(box, 2, () => this.redraw());
+    [this.#plot, this.#mark] = this.layers;
     onThemeChange(() => this.redraw());
     box.addEventListener('pointermove', (event) => this.onPoint(this.#nearest(event)));
     box.addEventListener('pointerleave', () => this.onPoint(null));

@@ -2,7 +2,7 @@
 
 import { byId, h } from './dom.js';
 
-/** @typedef {{key: string, label: string, name: string, act: () => void}} Key */
+/** @typedef {{keys: string[], label: string, name: string, act: (key: string) => void}} Key */
 
 const STORED = 'equipoise.keys';
 
@@ -19,18 +19,18 @@ export function listenToKeys(keys) {
   on.addEventListener('change', () => {
     try { localStorage.setItem(STORED, on.checked ? 'on' : 'off'); } catch { /* lasts for this visit only */ }
   });
-  const all = [...keys, { key: '?', label: '?', name: 'Show these keys', act: () => dialog.showModal() }];
+  const all = [...keys, { keys: ['?'], label: '?', name: 'Show these keys', act: () => dialog.showModal() }];
   byId('keys-list').append(...all.map(({ label, name }) => h('div', {}, h('dt', {}, h('kbd', {}, label)), h('dd', {}, name))));
   byId('keys-open').addEventListener('click', () => dialog.showModal());
   addEventListener('keydown', (event) => {
-    if (!on.checked || dialog.open || event.defaultPrevented || event.repeat || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!on.checked || document.querySelector('dialog[open]') || event.defaultPrevented || event.repeat || event.ctrlKey || event.metaKey || event.altKey) return;
     const target = event.target instanceof Element ? event.target : null;
     // Letters belong to where one types, and Space to whatever it presses.
     if (target?.closest('input:not([type=range]):not([type=checkbox]), select, textarea, [contenteditable]')) return;
     if (event.key === ' ' && target?.closest('button, a, summary, input, [tabindex]')) return;
-    const found = all.find(({ key }) => key === event.key);
+    const found = all.find(({ keys: known }) => known.includes(event.key));
     if (!found) return;
     event.preventDefault();
-    found.act();
+    found.act(event.key);
   });
 }

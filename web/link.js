@@ -1,12 +1,15 @@
 // The page's address: scene and run in the words of `/v1/live`, read with care, since links grow old. Not for sending anything.
 
 import { number, quantity } from './numbers.js';
-import { playedAt, setAt } from './api.js';
+import { playedAt, same, setAt } from './api.js';
 
 /** @typedef {import('./api.js').Field} Field */
 /** @typedef {import('./api.js').Case} Case */
 /** @typedef {import('./api.js').Scene} Scene */
 /** @typedef {{impact: number, set: Record<string, number | string>, kick: Record<string, number>}} Intervention */
+
+/** What belongs to a panel, by its name. */
+const PANEL_KEYS = /^(map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input)))$/;
 
 export const SLOWEST = 0.05;
 export const FASTEST = 20;
@@ -17,7 +20,7 @@ export const FASTEST = 20;
  * @property {Scene} changes to the preset, or the whole scene without one
  * @property {number} speed
  * @property {URLSearchParams | null} run epoch, interventions and clock of a run to join
- * @property {URLSearchParams} map what the stability map shows, read where it is drawn
+ * @property {URLSearchParams} panels what the panels show, read where each is drawn
  * @property {string[]} dropped what could not be kept, in words
  */
 
@@ -29,7 +32,7 @@ export const FASTEST = 20;
  */
 export function readLink(search, fields, cases) {
   /** @type {Link} */
-  const link = { preset: null, changes: {}, speed: 1, run: null, map: new URLSearchParams(), dropped: [] };
+  const link = { preset: null, changes: {}, speed: 1, run: null, panels: new URLSearchParams(), dropped: [] };
   const run = new URLSearchParams();
   const query = new URLSearchParams(search);
   let whole = true;
@@ -40,6 +43,10 @@ export function readLink(search, fields, cases) {
     if (key === 'preset') {
       if (cases.some((one) => one.name === text)) link.preset = text;
       else dropScene(`the case “${shown(text)}”, which is not known here`);
+    } else if (/^scene\.body\.vertices\.\d{1,2}\.[01]$/.test(key) && Number.isFinite(value)) {
+      const [index, axis] = key.split('.').slice(3).map(Number);
+      const body = link.changes.body ??= {};
+      ((body.vertices ??= [])[index] ??= [])[axis] = value;
     } else if (key.startsWith('scene.')) {
       const refused = readField(key.slice(6), text, fields, link.changes);
       if (refused) dropScene(refused);
@@ -52,11 +59,17 @@ export function readLink(search, fields, cases) {
     } else if (/^(interventions\.\d+\.(impact|(set|kick)\.[a-z_.]+)|clock\.\d+\.(wall|run|speed))$/.test(key)) {
       if (Number.isFinite(value) || isChoice(key, text, fields)) run.set(key, text);
       else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
-    } else if (/^map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)$/.test(key)) {
-      link.map.set(key, text);
+    } else if (PANEL_KEYS.test(key)) {
+      link.panels.set(key, text);
     } else if (key !== 'from') {
       link.dropped.push(`“${shown(key)}”, which has no meaning here`);
     }
+  }
+  /** @type {number[][] | undefined} */
+  const vertices = link.changes.body?.vertices;
+  if (vertices && Array.from(vertices).some((place) => place?.[0] === undefined || place[1] === undefined)) {
+    delete link.changes.body.vertices;
+    dropScene('the vertices, which are not whole');
   }
   if (run.has('epoch') && !whole) link.dropped.push('the run itself, since its scene is not whole');
   else if (run.has('epoch')) link.run = joined(run, fields, link.dropped);
@@ -161,12 +174,13 @@ export function interventionsOf(query) {
  */
 export function merged(preset, changes) {
   const base = structuredClone(preset);
-  if (changes.body && Boolean(changes.body.point) !== Boolean(base.body?.point)) delete base.body;
+  const kind = (/** @type {Scene} */ { body }) => (body?.point ? 'point' : body?.vertices ? 'polygon' : 'rod');
+  if (changes.body && kind(changes) !== kind(base) && (kind(changes) !== 'rod' || kind(base) === 'point')) delete base.body;
   /** @param {Scene} into @param {Scene} from */
   const lay = (into, from) => {
     for (const [key, value] of Object.entries(from)) {
       if (value === null) delete into[key];
-      else if (typeof value === 'object') lay(into[key] ??= {}, value);
+      else if (typeof value === 'object' && !Array.isArray(value)) lay(into[key] ??= {}, value);
       else into[key] = value;
     }
     return into;
@@ -188,8 +202,9 @@ export function sceneQuery(scene, preset, fields) {
   for (const field of fields) {
     const value = playedAt(scene, field);
     if (value === undefined && covered && playedAt(preset.scene, field) !== undefined) query.set(`scene.${field.path}`, 'null');
-    if (value === undefined || value === (covered ? playedAt(preset.scene, field) : field.default)) continue;
-    query.set(`scene.${field.path}`, String(value));
+    if (value === undefined || same(value, covered ? playedAt(preset.scene, field) : field.default)) continue;
+    if (field.kind === 'vertices') value.forEach((/** @type {number[]} */ place, /** @type {number} */ index) => place.forEach((coordinate, axis) => query.set(`scene.${field.path}.${index}.${axis}`, String(coordinate))));
+    else query.set(`scene.${field.path}`, String(value));
   }
   return query;
 }

@@ -39,7 +39,7 @@ export class Live {
   /** @param {string} url */
   #open(url) {
     this.#greeted = false;
-    const socket = new WebSocket(new URL(url, location.href.replace(/^http/, 'ws')), 'equipoise.v1');
+    const socket = new WebSocket(new URL(url, document.baseURI.replace(/^http/, 'ws')), 'equipoise.v1');
     this.#socket = socket;
     /** @type {Problem | null} */
     let problem = null;

@@ -1,6 +1,6 @@
 // The page: joins the form, the run and the panels. Not for what any of them does.
 
-import { Problem, get, pathOf, playedAt, server, setAt, valueAt } from './api.js';
+import { Problem, fieldsOf, get, pathOf, playedAt, same, server, setAt, valueAt } from './api.js';
 import { Circle } from './circle.js';
 import { Controls } from './controls.js';
 import { Form } from './form.js';
@@ -11,18 +11,19 @@ import { anglePlane, velocityPlane } from './plane.js';
 import { byId, copy, h, prose, settled } from './dom.js';
 import { clearNotice, connectionNotice, notice } from './notices.js';
 import { energyPlot } from './energy.js';
+import { enlarger } from './enlarger.js';
 import { invalidate } from './surface.js';
-import { listenToKeys } from './keys.js';
-import { interventionsOf, merged, readLink, sceneQuery } from './link.js';
-import { lazily } from './lazy.js';
-import { showCalls } from './calls.js';
-import { showPaper } from './paper.js';
+import { FASTEST, SLOWEST, interventionsOf, merged, readLink, sceneQuery } from './link.js';
 
 /** @typedef {import('./api.js').Field} Field */
 /** @typedef {import('./api.js').Case} Case */
 /** @typedef {import('./api.js').Scene} Scene */
 
 const GAIN = 'table.tilt_gain';
+/** What one answer of the server may have. */
+const MOST_IMPACTS = 100_000;
+/** What `[` and `]` go through. */
+const SPEEDS = [SLOWEST, 0.1, 0.2, 0.5, 1, 2, 5, 10, FASTEST];
 const chooser = byId('case', HTMLSelectElement);
 
 /** @type {Field[]} */
@@ -34,22 +35,12 @@ let chosen = null;
 /** @type {Form | null} */
 let form = null;
 let speed = 1;
-/** What the map shows by the link, until there is the map itself. */
-let mapLink = new URLSearchParams();
-/** @type {import('./map/panel.js').MapPanel | null} */
-let map = null;
-/** @type {import('./precision/panel.js').PrecisionPanel | null} */
-let precision = null;
-/** @type {import('./survival/panel.js').SurvivalPanel | null} */
-let survival = null;
-/** @type {import('./ladder/ladder.js').Ladder | null} */
-let ladder = null;
-/** @type {import('./design/panel.js').DesignPanel | null} */
-let design = null;
-/** What the newest verdict belongs to. @type {{answer: import('./api.js').Stability, scene: URLSearchParams} | null} */
+/** Those below the fold, which come after the first plot. @type {import('./panels.js').Panels | null} */
+let panels = null;
+/** What they show by the link, and the newest verdict, until they are there. */
+let panelLink = new URLSearchParams();
+/** @type {import('./panels.js').Judged | null} */
 let judged = null;
-/** @type {import('./branch/branch.js').Branch | null} */
-let branch = null;
 /** The last thing sent to the run, to know whose error comes back. @type {'kick' | 'set' | 'other'} */
 let lastSent = 'other';
 
@@ -80,16 +71,14 @@ const controls = new Controls(byId('controls'), {
   toggle,
   step: () => { lastSent = 'other'; run.step(); },
   restart,
-  speed: (value) => {
-    speed = value;
-    lastSent = 'other';
-    if (run.active) run.setSpeed(value);
-    else address();
-  },
+  speed: setSpeed,
   gain: (value, final) => { form?.put(GAIN, value); edited(GAIN, final); },
   kick: (velocities) => { lastSent = 'kick'; run.kick(velocities); },
 });
 byId('charts').append(plots[0].figure.element, plots[1].figure.element, circle.figure.element, plots[2].figure.element);
+for (const one of [...plots, circle]) one.figure.offer(() => savesOf(one.figure.id, one.figure.title, one));
+const sceneCard = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
+sceneCard.querySelector('.card-head')?.append(enlarger(sceneCard, 'Scene', () => savesOf('scene', 'Scene', view)));
 for (const plot of plots) plot.onPoint = (place) => { for (const other of plots) other.point(place); };
 
 /** What is typed, as a query; null while some of it is no value. */
@@ -98,11 +87,37 @@ function typedQuery() {
   return read?.complete ? sceneQuery(read.scene, chosen, fields) : null;
 }
 
+/** What the plots show, as a query: the run with what was done to it, else what is typed. */
+function playedQuery() {
+  if (!run.released) return typedQuery();
+  const query = sceneQuery(run.released, chosen, fields);
+  for (const [key, value] of run.query) if (key.startsWith('interventions.')) query.set(key, value);
+  return query;
+}
+
+/** The call that gives the impacts of the plots. */
+function impactsPath() {
+  const query = playedQuery();
+  return query && `v1/trajectories?${query}&impacts=${Math.min(MOST_IMPACTS, run.impacts.last?.n ?? 100)}`;
+}
+
+/**
+ * @param {string} id
+ * @param {string} title
+ * @param {import('./save/record.js').Layered} view
+ * @returns {import('./save/actions.js').Saves}
+ */
+function savesOf(id, title, view) {
+  addressNow();
+  const query = playedQuery();
+  return { id, title, view, formats: ['csv', 'json'], path: id === 'circle' ? query && `v1/stability?${typedQuery() ?? query}` : impactsPath() };
+}
+
 /** Fields whose typed value the run does not play. */
 function unplayed() {
   const typed = form?.read().scene;
   const { asked } = run;
-  return typed && asked ? fields.filter((field) => playedAt(typed, field) !== playedAt(asked, field)) : [];
+  return typed && asked ? fields.filter((field) => !same(playedAt(typed, field), playedAt(asked, field))) : [];
 }
 
 /** The page's address says what is shown: the run while there is one, else what is typed. */
@@ -113,15 +128,11 @@ function addressNow() {
     // The server spells the scene out; the name of the case says it shorter and for people.
     for (const [key, value] of run.query) if (key !== 'preset' && !key.startsWith('scene.')) query.set(key, value);
   } else if (speed !== 1) query.set('speed', String(speed));
-  for (const [key, value] of map?.query() ?? mapLink) query.set(key, value);
+  for (const [key, value] of panels?.query() ?? panelLink) query.set(key, value);
   history.replaceState(null, '', `?${query}`);
+  panels?.played();
 }
 const address = settled(150, addressNow);
-
-/** To the panels that show a scene. */
-function sceneChanged() {
-  for (const panel of [map, precision, survival, ladder, design]) panel?.sceneChanged();
-}
 
 /** @type {AbortController | null} */
 let asking = null;
@@ -136,8 +147,7 @@ const askSoon = settled(120, async () => {
     verdict.show(answer, () => get(`v1/stability?${query}&basin=true`, mine.signal));
     circle.show(answer);
     judged = { answer, scene: query };
-    branch?.show(judged);
-    showCalls(byId('calls'), query, run.interventions.length > 0);
+    panels?.judged(judged);
     byId('build').textContent = server.build;
   } catch (error) {
     if (mine.signal.aborted) return;
@@ -183,7 +193,7 @@ function edited(path, final) {
   if (final && run.active && fields.find((field) => field.path === path)?.live) sendChanges();
   view.draft(scene);
   plots[2].redraw();
-  sceneChanged();
+  panels?.sceneChanged();
   ask();
   if (run.phase === 'idle') address();
   else showRun();
@@ -215,6 +225,15 @@ function restart() {
   else run.restart();
 }
 
+/** @param {number} value */
+function setSpeed(value) {
+  speed = value;
+  controls.setSpeed(value);
+  lastSent = 'other';
+  if (run.active) run.setSpeed(value);
+  else address();
+}
+
 function showRun() {
   const { phase, outcome } = run;
   const words = { idle: 'Ready', connecting: 'Connecting…', running: 'Running', paused: 'Paused', lost: 'Connection lost', ended: `Ended: ${outcome?.kind.replaceAll('_', ' ')}` }[phase];
@@ -240,10 +259,7 @@ const sentence = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
 const plain = (text) => text.replaceAll('κ_', 'κ');
 
 /** The case that a scene is, if it is one. @param {Scene} scene */
-const caseOf = (scene) => cases.find((one) => fields.every((field) => playedAt(one.scene, field) === playedAt(scene, field))) ?? null;
-
-/** The case whose polygon it is, which no form types. @param {Scene} scene */
-const polygonOf = ({ body }) => cases.find((one) => body?.vertices && JSON.stringify(one.scene.body?.vertices) === JSON.stringify(body.vertices)) ?? null;
+const caseOf = (scene) => cases.find((one) => fields.every((field) => same(playedAt(one.scene, field), playedAt(scene, field)))) ?? null;
 
 /** Shows a scene without running it. @param {Scene} scene */
 function present(scene) {
@@ -253,10 +269,9 @@ function present(scene) {
   chooser.value = chosen?.name ?? '';
   byId('case-shows').replaceChildren(...prose(chosen?.shows ?? 'A scene of your own.'));
   document.title = chosen ? `${plain(chosen.title)} · equipoise` : 'equipoise';
-  showPaper(byId('paper'), chosen);
   plots[2].redraw();
   view.draft(scene);
-  sceneChanged();
+  panels?.sceneChanged();
   ask();
 }
 
@@ -268,20 +283,25 @@ function launch(values) {
   controls.setGain(valueAt(scene, GAIN) ?? null);
   circle.preview(valueAt(scene, GAIN) ?? null);
   view.draft(scene);
-  sceneChanged();
+  panels?.sceneChanged();
   ask();
   start();
 }
 
 /** Shows a scene from further below and runs it. @param {Scene} scene */
 function play(scene) {
-  chosen = caseOf(scene) ?? polygonOf(scene);
-  history.pushState(null, '', `?${new URLSearchParams([...sceneQuery(scene, chosen, fields), ...(map?.query() ?? mapLink)])}`);
+  chosen = caseOf(scene);
+  history.pushState(null, '', `?${new URLSearchParams([...sceneQuery(scene, chosen, fields), ...(panels?.query() ?? panelLink)])}`);
   run.reset();
   present(scene);
   start();
   chooser.focus({ preventScroll: true });
   scrollTo(0, 0);
+}
+
+/** @param {string} kind @param {string[]} dropped */
+function notWhole(kind, dropped) {
+  notice(kind, [h('strong', {}, 'This link was not whole. '), 'Dropped: ', h('ul', {}, ...dropped.map((what) => h('li', {}, what)))], { caution: true });
 }
 
 /** @param {string} search */
@@ -291,11 +311,10 @@ function restore(search) {
   chosen = cases.find((one) => one.name === (bare ? cases[0]?.name : link.preset)) ?? caseOf(link.changes);
   speed = link.speed;
   run.reset();
-  mapLink = link.map;
-  map?.restore(mapLink);
-  if (link.dropped.length > 0) {
-    notice('link', [h('strong', {}, 'This link was not whole. '), 'Dropped: ', h('ul', {}, ...link.dropped.map((what) => h('li', {}, what)))], { caution: true });
-  } else clearNotice('link');
+  panelLink = link.panels;
+  panels?.restore(panelLink);
+  if (link.dropped.length > 0) notWhole('link', link.dropped);
+  else clearNotice('link');
   const scene = merged(chosen?.scene ?? {}, link.changes);
   if (!link.run) return present(scene);
   const query = sceneQuery(scene, chosen, fields);
@@ -310,7 +329,7 @@ function restore(search) {
 function choose(one) {
   const going = run.phase !== 'idle';
   chosen = one;
-  history.pushState(null, '', `?${new URLSearchParams([['preset', one.name], ...(map?.query() ?? mapLink)])}`);
+  history.pushState(null, '', `?${new URLSearchParams([['preset', one.name], ...(panels?.query() ?? panelLink)])}`);
   run.reset();
   present(one.scene);
   if (going) start();
@@ -320,7 +339,7 @@ async function begin() {
   try {
     const [table, list] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
     clearNotice('server');
-    fields = table.fields;
+    fields = fieldsOf(table);
     cases = list.scenes;
   } catch {
     verdict.fail('The server does not answer.');
@@ -336,26 +355,15 @@ async function begin() {
   byId('build').textContent = server.build;
   restore(location.search);
   showRun();
-  lazily(byId('map-body'), 'map/map.css', () => import('./map/panel.js'), ({ MapPanel }) => {
-    map = new MapPanel(byId('map-body'), { fields, query: typedQuery, scene: () => form?.read().scene ?? {}, launch, changed: address }, mapLink);
-  });
-  lazily(byId('survival-body'), 'survival/survival.css', () => import('./survival/panel.js'), ({ SurvivalPanel }) => {
-    survival = new SurvivalPanel(byId('survival-body'), { query: typedQuery, scene: () => form?.read().scene ?? {}, play });
-  });
-  lazily(byId('ladder-body'), 'ladder/ladder.css', () => import('./ladder/ladder.js'), (modules) => {
-    ladder = new modules.Ladder(byId('ladder-body'), typedQuery);
-  });
-  lazily(byId('design-body'), 'design/design.css', () => import('./design/panel.js'), ({ DesignPanel }) => {
-    design = new DesignPanel(byId('design-body'), { query: typedQuery, play });
-  });
-  lazily(byId('branch-body'), 'branch/branch.css', () => import('./branch/branch.js'), ({ Branch }) => {
-    branch = new Branch(byId('branch-body'));
-    if (judged) branch.show(judged);
-  });
-  lazily(byId('precision-body'), 'precision/precision.css', () => import('./precision/panel.js'), ({ PrecisionPanel }) => {
-    precision = new PrecisionPanel(byId('precision-body'), typedQuery);
-  });
-  lazily(byId('gallery-body'), 'gallery/gallery.css', () => import('./gallery/gallery.js'), ({ showGallery }) => void showGallery(byId('gallery-body'), ({ scene }) => play(scene)));
+  // The plots of the first look are drawn in the next frame; what nobody sees yet comes after.
+  await new Promise((resolve) => requestAnimationFrame(resolve));
+  performance.mark('first plot');
+  const [{ Panels }, { listenToKeys }] = await Promise.all([import('./panels.js'), import('./keys.js')]);
+  listenToKeys(KEYS);
+  panels = new Panels(byId('main'), { fields, query: typedQuery, scene: () => form?.read().scene ?? {}, chosen: () => chosen, played: playedQuery, launch, play, changed: address },
+    (id, dropped) => (dropped.length > 0 ? notWhole(`link-${id}`, dropped) : clearNotice(`link-${id}`)));
+  panels.restore(panelLink);
+  if (judged) panels.judged(judged);
 }
 
 byId('share').addEventListener('click', (event) => {
@@ -363,11 +371,17 @@ byId('share').addEventListener('click', (event) => {
   void copy(/** @type {HTMLElement} */ (event.currentTarget), location.href);
 });
 addEventListener('popstate', () => restore(location.search));
-listenToKeys([
-  { key: ' ', label: 'Space', name: 'Run, pause, resume', act: toggle },
-  { key: '.', label: '.', name: 'Step to the next impact', act: () => { if (run.active) run.step(); } },
-  { key: 'r', label: 'r', name: 'Restart from the release', act: restart },
-  { key: 'k', label: 'k', name: 'Kick', act: () => { if (run.active) controls.kick(); } },
-]);
+/** @type {import('./keys.js').Key[]} */
+const KEYS = [
+  { keys: [' '], label: 'Space', name: 'Run, pause, resume', act: toggle },
+  { keys: ['.'], label: '.', name: 'Stop at the next strike', act: () => { if (run.active) run.step(); } },
+  { keys: ['r'], label: 'r', name: 'Restart from the release', act: restart },
+  { keys: ['k'], label: 'k', name: 'Kick', act: () => { if (run.active) controls.kick(); } },
+  { keys: ['1', '2', '3', '4', '5'], label: '1 – 5', name: 'Cases 1 to 5 of the paper', act: (key) => { const one = cases.find(({ name }) => name === `case-${key}`); if (one) choose(one); } },
+  { keys: ['[', ']'], label: '[ ]', name: 'Slower, faster', act: (key) => setSpeed((key === '[' ? SPEEDS.findLast((one) => one < speed) : SPEEDS.find((one) => one > speed)) ?? speed) },
+  { keys: ['m'], label: 'm', name: 'Go to the stability map', act: () => { byId('map').scrollIntoView(); /** @type {HTMLElement | null} */ (document.querySelector('#map-body :is(input, select, button)'))?.focus({ preventScroll: true }); } },
+  { keys: ['s'], label: 's', name: 'Copy the link', act: () => byId('share').click() },
+  { keys: ['e'], label: 'e', name: 'Save the impacts as CSV', act: () => { const path = impactsPath(); if (path) h('a', { href: `${path}&format=csv`, download: 'equipoise-impacts.csv' }).click(); } },
+];
 showRun();
 void begin();

@@ -48,7 +48,8 @@ export class SceneView {
     this.#readout = readout;
     box.setAttribute('role', 'img');
     box.setAttribute('aria-label', 'The scene');
-    [this.#surface] = surfaces(box, 1, () => this.redraw());
+    this.layers = surfaces(box, 1, () => this.redraw());
+    [this.#surface] = this.layers;
     onThemeChange(() => this.redraw());
     new IntersectionObserver(([entry]) => { this.#seen = entry.isIntersecting; this.redraw(); }).observe(box);
     const motion = h('input', { type: 'checkbox', change: () => { this.#moving = motion.checked; this.redraw(); } });

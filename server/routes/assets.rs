@@ -1,18 +1,28 @@
-//! The page and its files, embedded: `web/index.html` is `/`, `web/docs/index.html` is `/docs`, others are by name.
+//! The page and its files, embedded: `web/index.html` is `/`, `web/docs/index.html` is `/docs`,
+//! `web/embed/index.html` is `/embed/` and the name of a panel, others are by name.
 
 use std::sync::Arc;
 
 use axum::Router;
 use axum::extract::State;
-use axum::http::HeaderMap;
+use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::Redirect;
 use axum::routing::get;
+use tower_http::set_header::SetResponseHeaderLayer;
 
 use super::App;
 use crate::http::Problem;
 use crate::http::fixed::Fixed;
 
 include!(concat!(env!("OUT_DIR"), "/assets.rs"));
+
+/// The page of one panel alone, under every name: its script says which there are.
+const EMBED: &str = "embed/index.html";
+
+/// It may stand in a frame of any page: it shows what its address says, holds no secret and changes nothing. Its paths are
+/// relative to the page above it.
+const EMBED_POLICY: HeaderValue =
+    HeaderValue::from_static("default-src 'self'; base-uri 'self'; frame-ancestors *; object-src 'none'");
 
 /// One route for each file, so that a path is known or is not: nothing is looked up by what a client sends.
 pub fn routes() -> Router<App> {
@@ -26,12 +36,17 @@ pub fn routes() -> Router<App> {
                 Err(error) => Err(Problem::not_found(format!("{name}: {error}"))),
             },
         });
+        let handler = match name {
+            EMBED => handler.layer(SetResponseHeaderLayer::overriding(header::CONTENT_SECURITY_POLICY, EMBED_POLICY)),
+            _ => handler,
+        };
         router = router.route(&format!("/{name}"), handler.clone());
         router = match name {
             "index.html" => router.route("/", handler),
             "docs/index.html" => {
                 router.route("/docs", handler).route("/docs/", get(async || Redirect::permanent("/docs")))
             }
+            EMBED => router.route("/embed/{panel}", handler),
             _ => router,
         };
     }

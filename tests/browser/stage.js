@@ -67,9 +67,10 @@ export class Stage {
   /**
    * A page in a fresh browser profile, and what it did wrong so far.
    * @param {string} query
-   * @param {object} options of Playwright's context, and `prepare`, which the page runs before its own code
+   * @param {object} options of Playwright's context; `prepare`, which the page runs before its own code; another `path`, and the `sign`
+   * that it is there
    */
-  async page(query = '', { prepare, ...options } = {}) {
+  async page(query = '', { prepare, path = '', sign = '#case:enabled', ...options } = {}) {
     const context = await this.#browser.newContext({ viewport: { width: 1280, height: 860 }, ...options });
     this.#contexts.push(context);
     await context.grantPermissions(['clipboard-read', 'clipboard-write']);
@@ -82,8 +83,8 @@ export class Stage {
     page.on('websocket', (socket) => { if (!socket.url().startsWith(this.url.replace('http', 'ws'))) wrongs.push(`socket elsewhere: ${socket.url()}`); });
     await page.addInitScript(() => addEventListener('securitypolicyviolation', (event) => console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`)));
     if (prepare) await page.addInitScript(prepare);
-    await page.goto(this.url + query);
-    await page.locator('#case:enabled').waitFor();
+    await page.goto(this.url + path + query);
+    await page.locator(sign).first().waitFor();
     return { page, context, wrongs, clean: () => assert.deepEqual(wrongs, []) };
   }
 }
@@ -164,4 +165,22 @@ export async function loadAll(page) {
   await page.fill('#survival-runs', '30');
   await page.click('#survival-start');
   await page.locator('#survival-told', { hasText: 'outlast' }).waitFor();
+}
+
+/** A run with a change and a kick in it, paused. */
+export async function changedRun(stage) {
+  const opened = await stage.page('?preset=case-1&scene.release.theta=0.2');
+  const { page } = opened;
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 3);
+  await slide(page, '#gain', 1.2);
+  await page.waitForFunction(() => /tilt_gain=1\.2/.test(location.search));
+  await page.click('#kick');
+  await page.waitForFunction(() => /kick\.theta_dot/.test(location.search));
+  await reachImpact(page, 12);
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  await page.waitForFunction(() => /clock\.\d+\.speed=0/.test(location.search));
+  return opened;
 }

@@ -1,6 +1,7 @@
 // The orbits of period 2 about the critical gain: the server’s branch diagram with what happens on it. Not for finding them.
 
 import { Problem, get } from '../api.js';
+import { actions } from '../save/actions.js';
 import { h, marked, prose, settled, symbol } from '../dom.js';
 import { number, quantity } from '../numbers.js';
 
@@ -13,7 +14,10 @@ const SHOWN = 0.4;
 /** The orbit from which the branch is followed, rad: small, so that it is near κ_c. */
 const BEGIN = 0.02;
 
-export class Branch {
+/** @type {import('../panels.js').Module['mount']} */
+export const mount = (root) => new Branch(root);
+
+class Branch {
   #root;
   #near = false;
   /** @type {{answer: Stability, scene: URLSearchParams} | null} */
@@ -32,7 +36,7 @@ export class Branch {
   }
 
   /** @param {{answer: Stability, scene: URLSearchParams}} judged */
-  show(judged) {
+  judged(judged) {
     this.#wanted = judged;
     this.#soon();
   }
@@ -92,7 +96,7 @@ export class Branch {
         h('tbody', {}, ...changes.map(({ kind, parameter, theta, residue, detail }) => h('tr', {},
           h('th', { scope: 'row' }, kind.replaceAll('_', ' '), h('span', { class: 'muted' }, ...prose(detail))),
           ...[number(parameter, 5), quantity(tiny(theta), '1'), number(tiny(residue), 3)].map((text) => h('td', {}, text))))))),
-      h('p', { class: 'actions' }, 'The branch as ', ...['svg', 'png', 'csv', 'json'].map((format) => h('a', { href: `${path}&format=${format}` }, format.toUpperCase())))));
+      h('p', { class: 'actions' }, ...actions({ id: 'branch', title: 'Orbits of period 2', path, formats: ['svg', 'png', 'csv', 'json'] }))));
   }
 }
 

@@ -1,8 +1,8 @@
 // A law α = −K·(x, θ, ẋ, θ̇) for the page's scene by weights to choose: the server designs it, the page shows and runs it. Not for the design.
 
 import { Problem, get } from '../api.js';
-import { copy, h, marked, prose, symbol } from '../dom.js';
-import { curl } from '../calls.js';
+import { h, marked, prose, symbol } from '../dom.js';
+import { actions } from '../save/actions.js';
 import { number, parse, quantity } from '../numbers.js';
 
 /** @typedef {import('../api.js').Scene} Scene */
@@ -34,12 +34,15 @@ const here = (path) => path.replace(/^\//, '');
 /** @param {Eigenvalue} eigenvalue */
 const complex = ({ re, im }) => (im === 0 ? number(re) : `${number(re)} ${im < 0 ? '\u2212' : '+'} ${number(Math.abs(im))} i`);
 
-export class DesignPanel {
+/** @type {import('../panels.js').Module['mount']} */
+export const mount = (root, page) => new DesignPanel(root, page);
+
+class DesignPanel {
   #page;
   /** @type {Map<string, HTMLInputElement>} */
   #weights = new Map();
   #error = h('p', { class: 'error', id: 'design-error' });
-  #contact = h('select', { id: 'design-contact' }, ...Object.entries(CONTACTS).map(([value, words]) => h('option', { value }, words)));
+  #contact = h('select', { id: 'design-contact', change: () => this.#page.changed() }, ...Object.entries(CONTACTS).map(([value, words]) => h('option', { value }, words)));
   #told = h('div', { class: 'design-told', id: 'design-told', role: 'status' });
   #sheet = h('div', { class: 'design-sheet', id: 'design-sheet', hidden: true });
   /** @type {AbortController | null} */
@@ -47,12 +50,12 @@ export class DesignPanel {
 
   /**
    * @param {HTMLElement} root
-   * @param {{query: () => URLSearchParams | null, play: (scene: Scene) => void}} page the scene that is typed, and how one is run
+   * @param {import('../panels.js').Page} page
    */
   constructor(root, page) {
     this.#page = page;
     const row = (/** @type {string} */ name, /** @type {string} */ sign, /** @type {string} */ value) => {
-      const input = h('input', { id: `design-${name}`, type: 'text', inputmode: 'decimal', autocomplete: 'off', value, 'aria-describedby': 'design-error' });
+      const input = h('input', { id: `design-${name}`, type: 'text', inputmode: 'decimal', autocomplete: 'off', value, 'aria-describedby': 'design-error', change: () => page.changed() });
       this.#weights.set(name, input);
       return h('p', { class: 'design-row' }, h('label', { for: `design-${name}` }, 'of ', symbol(sign)), input);
     };
@@ -61,6 +64,28 @@ export class DesignPanel {
       this.#error, h('p', { class: 'design-row' }, h('label', { for: 'design-contact' }, 'Contact'), this.#contact),
       h('p', { class: 'buttons' }, h('button', { type: 'submit', id: 'design-start' }, 'Design')), this.#told), this.#sheet);
     this.#told.append('A tilt in proportion to the angle leaves the rod circling and drifting. A law that feeds back the whole state brings it to rest in place.');
+  }
+
+  /** Its part of the page’s address. */
+  query() {
+    const query = new URLSearchParams([...this.#weights].filter(([, input]) => input.value.trim() !== input.defaultValue).map(([name, input]) => [`design.weights.${name}`, input.value.trim()]));
+    if (this.#contact.value) query.set('design.contact', this.#contact.value);
+    return query;
+  }
+
+  /** @param {URLSearchParams} link */
+  restore(link) {
+    const dropped = [];
+    for (const [name, input] of this.#weights) {
+      const text = link.get(`design.weights.${name}`);
+      const right = text === null || parse(text, '1') !== null;
+      if (!right) dropped.push(`the weight “${text.slice(0, 40)}”, which is not a number`);
+      input.value = right && text !== null ? text : input.defaultValue;
+    }
+    const contact = link.get('design.contact') ?? '';
+    if (contact in CONTACTS) this.#contact.value = contact;
+    else dropped.push(`the contact “${contact.slice(0, 40)}”`);
+    return dropped;
   }
 
   /** The scene of the page is another one. */
@@ -130,8 +155,7 @@ export class DesignPanel {
             ...[eigenvalues[index], open[index]].flatMap((one) => (one ? [complex(one), number(one.modulus)] : ['–', '–'])).map((text, column) => (column === 0 ? h('th', { scope: 'row' }, text) : h('td', {}, text)))))))),
         ...notes.map((note) => h('p', { class: 'muted small' }, ...prose(note[0].toUpperCase() + note.slice(1)), '.')),
         (regions?.designed || regions?.proportional) && h('p', { class: 'actions', id: 'design-regions' }, 'What it survives: ', region('with the law', regions.designed), region('with the tilt gain', regions.proportional)),
-        h('p', { class: 'actions', id: 'design-links' }, ...['svg', 'png', 'csv', 'json'].map((format) => h('a', { href: `${path}&format=${format}` }, format.toUpperCase())),
-          h('button', { type: 'button', 'aria-label': 'Copy curl: controller', click: (/** @type {Event} */ event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), curl(path)) }, 'Copy curl'))));
+        h('p', { class: 'actions', id: 'design-links' }, ...actions({ id: 'design', title: 'Design a controller', path, formats: ['svg', 'png', 'csv', 'json'] }))));
     this.#sheet.hidden = false;
   }
 }

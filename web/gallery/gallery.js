@@ -1,6 +1,7 @@
 // The failure gallery: cards of scenes on which a usual method is wrong, each ready to run. Not for computing any of it.
 
 import { Problem, get } from '../api.js';
+import { actions } from '../save/actions.js';
 import { h, marked } from '../dom.js';
 import { number, quantity } from '../numbers.js';
 
@@ -58,18 +59,22 @@ function card(failure, play) {
       h('a', { href: here(ask), 'aria-label': `Ask the server: ${title}` }, 'Ask the server')));
 }
 
-/**
- * @param {HTMLElement} root
- * @param {(failure: Failure) => void} play loads a scene into the page and runs it
- */
-export async function showGallery(root, play) {
+/** @type {import('../panels.js').Module['mount']} */
+export function mount(root, { play }) {
+  void show(root, ({ scene }) => play(scene));
+  return {};
+}
+
+/** @param {HTMLElement} root @param {(failure: Failure) => void} play */
+async function show(root, play) {
   const told = h('p', { class: 'muted', role: 'status' }, 'Every method is being asked…');
   root.replaceChildren(told);
   try {
     const { failures } = await get('v1/failures');
-    root.replaceChildren(h('div', { class: 'failures' }, ...failures.map((/** @type {Failure} */ failure) => card(failure, play))));
+    root.replaceChildren(h('div', { class: 'failures' }, ...failures.map((/** @type {Failure} */ failure) => card(failure, play))),
+      h('p', { class: 'actions' }, ...actions({ id: 'gallery', title: 'Where usual methods fail', path: 'v1/failures?', formats: ['json'] })));
   } catch (error) {
     told.textContent = error instanceof Problem ? error.message : 'The server does not answer.';
-    root.append(h('button', { type: 'button', click: () => void showGallery(root, play) }, 'Try again'));
+    root.append(h('button', { type: 'button', click: () => void show(root, play) }, 'Try again'));
   }
 }

@@ -1,8 +1,8 @@
 // Which model the page's scene needs: the server's rungs, one row each, with what each changed. Not for deciding it.
 
 import { Problem, get } from '../api.js';
-import { copy, h, marked, prose, settled } from '../dom.js';
-import { curl } from '../calls.js';
+import { h, marked, prose, settled } from '../dom.js';
+import { actions } from '../save/actions.js';
 import { number, parse, quantity } from '../numbers.js';
 
 /** @typedef {{difference: number | null, impact: number | null}} Difference */
@@ -27,10 +27,16 @@ const MOST_DIFFERENCE = 10;
 /** @param {string} name */
 const words = (name) => name.replaceAll('_', ' ');
 
-export class Ladder {
-  #query;
-  #impacts = h('input', { id: 'ladder-impacts', type: 'text', inputmode: 'numeric', autocomplete: 'off', value: '100', 'aria-describedby': 'ladder-error', change: () => void this.#refresh() });
-  #tolerance = h('input', { id: 'ladder-tolerance', type: 'text', inputmode: 'decimal', autocomplete: 'off', value: '0.001', 'aria-describedby': 'ladder-error', change: () => void this.#refresh() });
+/** @type {import('../panels.js').Module['mount']} */
+export const mount = (root, page) => new Ladder(root, page);
+
+/** What is typed at first. */
+const USUAL = { impacts: '100', tolerance: '0.001' };
+
+class Ladder {
+  #page;
+  #impacts = h('input', { id: 'ladder-impacts', type: 'text', inputmode: 'numeric', autocomplete: 'off', value: USUAL.impacts, 'aria-describedby': 'ladder-error', change: () => this.#changed() });
+  #tolerance = h('input', { id: 'ladder-tolerance', type: 'text', inputmode: 'decimal', autocomplete: 'off', value: USUAL.tolerance, 'aria-describedby': 'ladder-error', change: () => this.#changed() });
   #error = h('p', { class: 'error', id: 'ladder-error' });
   #told = h('p', { id: 'ladder-told', role: 'status' });
   #body = h('tbody');
@@ -43,10 +49,10 @@ export class Ladder {
 
   /**
    * @param {HTMLElement} root
-   * @param {() => URLSearchParams | null} query the scene that is typed; null while some of it is no value
+   * @param {import('../panels.js').Page} page
    */
-  constructor(root, query) {
-    this.#query = query;
+  constructor(root, page) {
+    this.#page = page;
     const head = ['Model', 'asked for by', 'ns/impact', 'it ends', 'against the one below', 'most in the state', 'needed'];
     this.#sheet = h('div', { class: 'ladder-sheet', hidden: true }, h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Models, from the simplest up' },
       h('table', { class: 'rungs' }, h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))), this.#body)), this.#links);
@@ -57,6 +63,26 @@ export class Ladder {
       this.#near = entries.some(({ isIntersecting }) => isIntersecting);
       if (this.#near) void this.#refresh();
     }, { rootMargin: '100px 0px' }).observe(root);
+  }
+
+  #changed() {
+    this.#page.changed();
+    void this.#refresh();
+  }
+
+  /** Its part of the page’s address. */
+  query() {
+    const typed = { impacts: this.#impacts.value.trim(), tolerance: this.#tolerance.value.trim() };
+    return new URLSearchParams(/** @type {const} */ (['impacts', 'tolerance']).filter((name) => typed[name] !== USUAL[name]).map((name) => [`ladder.${name}`, typed[name]]));
+  }
+
+  /** What is wrong in it is said beside it. @param {URLSearchParams} link */
+  restore(link) {
+    this.#impacts.value = link.get('ladder.impacts') ?? USUAL.impacts;
+    this.#tolerance.value = link.get('ladder.tolerance') ?? USUAL.tolerance;
+    if (this.#near) void this.#refresh();
+    else this.#request();
+    return [];
   }
 
   /** The scene of the page is another one. */
@@ -71,7 +97,7 @@ export class Ladder {
     this.#impacts.setAttribute('aria-invalid', String(!counted));
     this.#tolerance.setAttribute('aria-invalid', String(!measured));
     if (!counted || !measured) return null;
-    const request = this.#query();
+    const request = this.#page.query();
     request?.set('impacts', String(impacts));
     request?.set('tolerance', String(tolerance));
     return request;
@@ -111,8 +137,7 @@ export class Ladder {
         h('td', {}, state?.difference == null ? '–' : `${quantity(state.difference, 'm/s', 3)}${state.impact === null ? '' : ` at ${number(state.impact)}`}`),
         h('td', {}, needed === null ? '–' : needed ? 'needed' : 'not needed'));
     }));
-    this.#links.replaceChildren(...['csv', 'json'].map((format) => h('a', { href: `${path}&format=${format}` }, format.toUpperCase())),
-      h('button', { type: 'button', 'aria-label': 'Copy curl: models', click: (/** @type {Event} */ event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), curl(path)) }, 'Copy curl'));
+    this.#links.replaceChildren(...actions({ id: 'ladder', title: 'Which model does it need', path, formats: ['csv', 'json'] }));
   }
 
   /** @param {NonNullable<Rung['change']>} change */

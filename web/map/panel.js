@@ -4,6 +4,7 @@ import { Controls } from './controls.js';
 import { Grid, lines } from './grid.js';
 import { Picture } from './picture.js';
 import { Problem, get, playedAt, problemOf } from '../api.js';
+import { actions } from '../save/actions.js';
 import { QUANTITIES, outlineQuery, readSettings, requestQuery, rowsOf, settingsQuery } from './settings.js';
 import { h, settled } from '../dom.js';
 import { listen } from './pointing.js';
@@ -13,21 +14,17 @@ import { number, quantity as withUnit, unbroken } from '../numbers.js';
 /** @typedef {import('./settings.js').Settings} Settings */
 /** @typedef {import('./picture.js').Cell} Cell */
 
-/**
- * @typedef {object} Page what the map needs of it
- * @property {Field[]} fields
- * @property {() => URLSearchParams | null} query what is typed; null while some of it is no value
- * @property {() => import('../api.js').Scene} scene
- * @property {(values: Record<string, number>) => void} launch releases the scene with these values
- * @property {() => void} changed the map’s part of the address is another one
- */
+/** @typedef {import('../panels.js').Page} Page */
 
 /** A map of more bounces than this waits until somebody asks for it: about a second of one core. */
 const UNASKED_BOUNCES = 1e8;
 /** Answers kept, to go back without asking again. */
 const KEPT = 8;
 
-export class MapPanel {
+/** @type {import('../panels.js').Module['mount']} */
+export const mount = (root, page, link) => new MapPanel(root, page, link);
+
+class MapPanel {
   #page;
   /** @type {Settings} */
   #settings;
@@ -80,7 +77,6 @@ export class MapPanel {
       this.#near = entries.some(({ isIntersecting }) => isIntersecting);
       if (this.#near) this.#refresh();
     }, { rootMargin: '100px 0px' }).observe(root);
-    this.restore(link);
   }
 
   /** The map’s part of the page’s address. */
@@ -88,7 +84,7 @@ export class MapPanel {
     return settingsQuery(this.#settings);
   }
 
-  /** @param {URLSearchParams} link */
+  /** What it drops, it says in its own place. @param {URLSearchParams} link @returns {string[]} */
   restore(link) {
     const { settings, dropped } = readSettings(link, this.#page.fields);
     this.#settings = settings;
@@ -98,6 +94,7 @@ export class MapPanel {
     this.#mark();
     this.#refresh();
     this.#notice.textContent = dropped.length > 0 ? `The map of this link was not whole. Dropped: ${dropped.join('; ')}.` : '';
+    return [];
   }
 
   /** The scene of the page is another one. */
@@ -183,7 +180,7 @@ export class MapPanel {
     this.#grid = grid;
     this.#picture.show(grid.settings, this.#names(grid.settings), grid);
     this.#mark();
-    this.#links.replaceChildren('This map as ', ...['svg', 'png', 'csv', 'json'].map((format) => h('a', { href: `v1/regions?${request}&format=${format}` }, format.toUpperCase())));
+    this.#links.replaceChildren(...actions({ id: 'map', title: 'Stability map', path: `v1/regions?${request}`, formats: ['svg', 'png', 'csv', 'json'] }));
     const swatch = (/** @type {string} */ kind, /** @type {string} */ words) => h('span', {}, h('span', { class: `swatch ${kind}`, 'aria-hidden': 'true' }), words);
     const has = (/** @type {number} */ residue) => grid.boundary.some((segment) => segment.residue === residue);
     this.#legend.replaceChildren(...[swatch('scene', 'the scene'), has(1) && swatch('whole', 'linear boundary, R = 1'), has(0) && swatch('broken', 'linear boundary, R = 0'), grid.lacks && swatch('none', QUANTITIES[grid.settings.quantity].runs ? 'no such scene' : 'no fixed point')].filter((one) => one !== false));

@@ -2,6 +2,7 @@
 
 import { Plot, mark } from './plot.js';
 import { Problem, get } from '../api.js';
+import { actions } from '../save/actions.js';
 import { h, marked } from '../dom.js';
 import { lookOf } from './looks.js';
 import { number, parse, quantity, unbroken } from '../numbers.js';
@@ -48,7 +49,10 @@ const each = ({ impacts }, count) => (impacts > 0 && count !== null ? count / im
 /** @param {Point} point */
 const setting = ({ setting: told }) => (told ? `${told.name} ${quantity(told.value, told.unit, 2)}` : '');
 
-export class PrecisionPanel {
+/** @type {import('../panels.js').Module['mount']} */
+export const mount = (root, { query }) => new PrecisionPanel(root, query);
+
+class PrecisionPanel {
   #query;
   #impacts = h('input', { id: 'precision-impacts', type: 'text', inputmode: 'numeric', autocomplete: 'off', value: '100', 'aria-describedby': 'precision-error' });
   #error = h('p', { class: 'error', id: 'precision-error' });
@@ -190,8 +194,7 @@ export class PrecisionPanel {
     // A picture is of a measurement of its own: no two of them are the same.
     const picture = new URLSearchParams(request);
     picture.set('axis', this.#axis.value);
-    const link = (/** @type {string} */ format, /** @type {URLSearchParams} */ query) => h('a', { href: `v1/precision?${query}&format=${format}` }, format.toUpperCase());
-    this.#links.replaceChildren('Measured anew as ', link('csv', request), link('json', request), ...(axis.front ? [link('svg', picture), link('png', picture)] : []));
+    this.#links.replaceChildren('Measured anew as ', ...actions({ id: 'precision', title: 'Speed against accuracy', path: `v1/precision?${axis.front ? picture : request}`, formats: axis.front ? ['svg', 'png', 'csv', 'json'] : ['csv', 'json'] }));
     this.#point(null, false);
   }
 

@@ -2,8 +2,8 @@
 
 import { Plot } from './plot.js';
 import { Problem, get } from '../api.js';
-import { copy, h, marked, prose } from '../dom.js';
-import { curl } from '../calls.js';
+import { h, marked, prose } from '../dom.js';
+import { actions } from '../save/actions.js';
 import { number, parse, quantity, unbroken } from '../numbers.js';
 
 /** @typedef {import('../api.js').Scene} Scene */
@@ -35,7 +35,10 @@ const hasNoise = ({ noise }) => (noise?.timing_sd ?? 0) > 0 || (noise?.angle_sd 
 /** @param {string} id @param {string} value */
 const typed = (id, value) => h('input', { id, type: 'text', inputmode: 'decimal', autocomplete: 'off', value, 'aria-describedby': `${id}-error` });
 
-export class SurvivalPanel {
+/** @type {import('../panels.js').Module['mount']} */
+export const mount = (root, page) => new SurvivalPanel(root, page);
+
+class SurvivalPanel {
   #page;
   #inputs = { runs: typed('survival-runs', '200'), impacts: typed('survival-impacts', '400'), timing: typed('survival-timing', '10') };
   #errors = { runs: h('p', { class: 'error', id: 'survival-runs-error' }), impacts: h('p', { class: 'error', id: 'survival-impacts-error' }), timing: h('p', { class: 'error', id: 'survival-timing-error' }) };
@@ -194,8 +197,7 @@ export class SurvivalPanel {
     }));
     this.#notes.replaceChildren(...answer.notes.map((note) => h('p', { class: 'muted' }, ...prose(note))));
     this.#box.setAttribute('aria-label', `Survival: ${number(survived.share)} of the runs outlast ${number(impacts, 7)} contacts`);
-    this.#links.replaceChildren(...['svg', 'png', 'csv', 'json'].map((format) => h('a', { href: `${path}&format=${format}` }, format.toUpperCase())),
-      h('button', { type: 'button', 'aria-label': 'Copy curl: survival', click: (/** @type {Event} */ event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), curl(path)) }, 'Copy curl'),
+    this.#links.replaceChildren(...actions({ id: 'survival', title: 'Survival under noise', path, formats: ['svg', 'png', 'csv', 'json'] }),
       h('button', { type: 'button', id: 'survival-first', click: () => this.#page.play(answer.scene) }, 'Watch the first run'));
     this.#plot.show(answer);
     this.#point(null, false);

@@ -1,9 +1,9 @@
 // The paper's printed values beside the computed ones. Not for computing either.
 
-import { h, prose, symbol } from './dom.js';
-import { quantity } from './numbers.js';
+import { h, prose, symbol } from '../dom.js';
+import { quantity } from '../numbers.js';
 
-/** @typedef {import('./api.js').PaperValue} PaperValue */
+/** @typedef {import('../api.js').PaperValue} PaperValue */
 
 /** Whether the print is the computed value to its own digits. @param {PaperValue['value']} printed @param {PaperValue['value']} computed */
 function same(printed, computed) {
@@ -13,11 +13,15 @@ function same(printed, computed) {
   return Math.abs(printed - computed) <= 0.5000001 * 10 ** -decimals;
 }
 
-/**
- * @param {HTMLElement} root
- * @param {import('./api.js').Case | null} chosen
- */
-export function showPaper(root, chosen) {
+/** @type {import('../panels.js').Module['mount']} */
+export function mount(root, { chosen }) {
+  const sceneChanged = () => show(root, chosen());
+  sceneChanged();
+  return { sceneChanged };
+}
+
+/** @param {HTMLElement} root @param {import('../api.js').Case | null} chosen */
+function show(root, chosen) {
   if (!chosen || chosen.computed.length === 0) {
     root.replaceChildren(h('p', { class: 'muted' }, chosen ? 'The paper prints no number for this case.' : 'Choose a case to compare it with the paper.'));
     return;

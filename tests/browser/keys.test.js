@@ -1,0 +1,73 @@
+// Single keys: what each does, and that they can be turned off for good.
+
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { test } from 'node:test';
+import { Stage, impacts, reachImpact, reachPhase, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+test('every key does what the list says', async () => {
+  const { page, clean } = await stage.page('');
+  await verdict(page);
+  await page.locator('#keys-list dt').first().waitFor({ state: 'attached' });
+  const press = (key) => page.keyboard.press(key);
+  for (const number of [3, 5, 1]) {
+    await press(String(number));
+    await page.waitForFunction((wanted) => document.querySelector('#case').value === wanted, `case-${number}`);
+  }
+  await press('[');
+  await page.waitForFunction(() => /speed=0\.5/.test(location.search));
+  await press(']');
+  await press(']');
+  await page.waitForFunction(() => /speed=2/.test(location.search));
+  await press(' ');
+  await reachImpact(page, 2);
+  await press('[');
+  await page.waitForFunction(() => /clock\.\d+\.speed=1/.test(location.search));
+  await press('.');
+  await reachPhase(page, 'paused');
+  const held = await impacts(page);
+  await press('.');
+  await reachImpact(page, held + 1);
+  const saved = page.waitForEvent('download');
+  await press('e');
+  const download = await saved;
+  assert.equal(download.suggestedFilename(), 'equipoise-impacts.csv');
+  assert.match(await readFile(await download.path(), 'utf8'), /^n,t_s,/);
+  await press('s');
+  await page.waitForFunction(() => document.querySelector('#share').textContent === 'Copied');
+  assert.equal(await page.evaluate(() => navigator.clipboard.readText()), page.url());
+  await press('m');
+  await page.locator('#map-body select').first().waitFor();
+  await page.waitForFunction(() => document.querySelector('#map').getBoundingClientRect().top < innerHeight / 2);
+  await page.evaluate(() => document.activeElement.blur());
+  await press('r');
+  await reachPhase(page, 'running');
+  await press('?');
+  assert.ok(await page.locator('#keys').isVisible());
+  const listed = await page.locator('#keys-list kbd').allInnerTexts();
+  assert.deepEqual(listed, ['Space', '.', 'r', 'k', '1 – 5', '[ ]', 'm', 's', 'e', '?']);
+  clean();
+});
+
+test('keys that are turned off stay off, and typing is no key', async () => {
+  const { page, context, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  await page.locator('#field-gravity').focus();
+  await page.keyboard.type('3.s');
+  assert.equal(await page.locator('#case').inputValue(), 'case-1');
+  await page.locator('#keys-open').click();
+  await page.locator('#keys-on').uncheck();
+  await page.keyboard.press('Escape');
+  const again = await context.newPage();
+  await again.goto(`${stage.url}?preset=case-1`);
+  await verdict(again);
+  await again.locator('#keys-list dt').first().waitFor({ state: 'attached' });
+  await again.keyboard.press('3');
+  await again.keyboard.press('?');
+  await again.waitForTimeout(200);
+  assert.equal(await again.locator('#case').inputValue(), 'case-1');
+  assert.ok(!(await again.locator('#keys').isVisible()));
+  clean();
+});

@@ -1,0 +1,139 @@
+// What can be taken away from a panel: it is the panel's own, and what the server gives for the same.
+
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { readFile } from 'node:fs/promises';
+import { promisify } from 'node:util';
+import { test } from 'node:test';
+import { Stage, changedRun, impacts, loadAll, numbers, verdict } from './stage.js';
+
+const stage = await Stage.open();
+const shell = promisify(execFile);
+
+async function saved(page, name) {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.locator('dialog.large').getByRole(name === 'CSV' || name === 'JSON' ? 'link' : 'button', { name: `Save as ${name}` }).click()]);
+  return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
+}
+
+const open = (page, id) => page.click(`#${id} .enlarge`);
+
+test('the CSV of a plot is the API’s, bit for bit, and has the impacts that the plot shows', async () => {
+  const { page, clean } = await changedRun(stage);
+  const shown = await numbers(page, 'plane-angle');
+  const last = await impacts(page);
+  await open(page, 'plane-angle');
+  const { name, bytes } = await saved(page, 'CSV');
+  assert.equal(name, 'equipoise-plane-angle.csv');
+  const href = await page.locator('dialog.large').getByRole('link', { name: 'Save as CSV' }).getAttribute('href');
+  assert.deepEqual(bytes, Buffer.from(await (await fetch(stage.url + href)).arrayBuffer()));
+  const [head, ...rows] = bytes.toString().trim().split('\r\n').map((line) => line.split(','));
+  assert.equal(rows.length, last);
+  const cell = (row, column, digits) => { const text = Number(row[head.indexOf(column)]).toFixed(digits); return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−'); };
+  assert.deepEqual(rows.toReversed().map((row) => [row[0], cell(row, 't_s', 4), cell(row, 'theta_rad', 6), cell(row, 'theta_dot_rad_per_s', 6), cell(row, 'alpha_rad', 6)]), shown);
+  clean();
+});
+
+test('the copied curl runs, and gives the data of the plots with all that was done to the run', async () => {
+  const { page, clean } = await changedRun(stage);
+  const shown = await numbers(page, 'plane-velocity');
+  await open(page, 'plane-velocity');
+  await page.locator('dialog.large').getByRole('button', { name: 'Copy curl' }).click();
+  const command = await page.evaluate(() => navigator.clipboard.readText());
+  assert.match(command, /^curl 'http/);
+  const { stdout } = await shell('sh', ['-c', `${command} -s`]);
+  const answer = JSON.parse(stdout);
+  assert.equal(answer.impacts.n.length, await impacts(page));
+  assert.deepEqual(answer.impacts.x_dot.toReversed().map((value) => value.toFixed(6).replace('-', '−')), shown.map((row) => row[2]));
+  clean();
+});
+
+test('every plot is saved as SVG, with a mark for every impact, and as PNG', async () => {
+  const { page, clean } = await changedRun(stage);
+  const count = await impacts(page);
+  for (const id of ['plane-angle', 'plane-velocity', 'energy', 'circle']) {
+    await open(page, id);
+    const svg = (await saved(page, 'SVG')).bytes.toString();
+    const found = await page.evaluate((text) => {
+      const file = new DOMParser().parseFromString(text, 'image/svg+xml');
+      return { error: file.querySelector('parsererror')?.textContent ?? null, title: file.querySelector('title')?.textContent, texts: [...file.querySelectorAll('text')].map((one) => one.textContent), arcs: (text.match(/A[\d.]+ /g) ?? []).length, wild: /NaN|undefined|Infinity/.test(text) };
+    }, svg);
+    assert.deepEqual([found.error, found.wild], [null, false], id);
+    assert.ok(found.title && found.texts.length > 6, `${id} has its axes`);
+    // A dot is two arcs; changed values make dots of other shapes.
+    if (id === 'energy') assert.ok(found.texts.includes('impact'));
+    if (id === 'circle') assert.ok(found.arcs >= 2);
+    else assert.ok(found.arcs >= 6 && found.arcs <= 2 * (count + 1), `${found.arcs} arcs`);
+    const { name, bytes } = await saved(page, 'PNG');
+    assert.equal(name, `equipoise-${id}.png`);
+    assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
+    const canvas = await page.locator(`#${id} canvas`).first().evaluate(({ width, height }) => [width, height]);
+    assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], canvas);
+    await page.keyboard.press('Escape');
+  }
+  await page.click('.card.scene .enlarge');
+  const scene = (await saved(page, 'SVG')).bytes.toString();
+  assert.match(scene, /impulse/);
+  assert.doesNotMatch(scene, /NaN|undefined/);
+  clean();
+});
+
+test('what was recorded looks as it is drawn', async () => {
+  const { page, context, clean } = await changedRun(stage);
+  await open(page, 'plane-angle');
+  const [svg, png] = [(await saved(page, 'SVG')).bytes.toString(), (await saved(page, 'PNG')).bytes];
+  const sheet = await context.newPage();
+  const differing = await sheet.evaluate(async ([text, pixels]) => {
+    const load = async (source) => { const image = new Image(); image.src = source; await image.decode(); return image; };
+    const [drawn, seen] = [await load(`data:image/svg+xml;base64,${btoa(unescape(encodeURIComponent(text)))}`), await load(`data:image/png;base64,${pixels}`)];
+    const { width, height } = seen;
+    const [one, other] = [drawn, seen].map((image) => {
+      const canvas = Object.assign(document.createElement('canvas'), { width, height });
+      const paper = canvas.getContext('2d');
+      paper.drawImage(image, 0, 0, width, height);
+      return paper.getImageData(0, 0, width, height).data;
+    });
+    let count = 0;
+    for (let k = 0; k < one.length; k += 4) if (Math.abs(one[k] - other[k]) + Math.abs(one[k + 1] - other[k + 1]) + Math.abs(one[k + 2] - other[k + 2]) > 120) count += 1;
+    return count / (width * height);
+  }, [svg, png.toString('base64')]);
+  // Letters and edges are smoothed in another way.
+  assert.ok(differing < 0.01, `${differing} of the pixels differ`);
+  clean();
+});
+
+test('a panel opens large, and comes back to its place and size with the focus where it was', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  await loadAll(page);
+  const place = (id) => page.evaluate((name) => { const { left, top, width, height } = document.getElementById(name).getBoundingClientRect(); return [left, top + scrollY, width, height].map(Math.round); }, id);
+  for (const id of ['plane-angle', 'circle', 'map', 'survival', 'ladder', 'design', 'branch', 'precision', 'gallery']) {
+    const before = await place(id);
+    await page.locator(`#${id} .enlarge`).focus();
+    await page.keyboard.press('Enter');
+    const dialog = page.locator('dialog.large');
+    await dialog.waitFor();
+    assert.ok((await dialog.boundingBox()).width > 1200, id);
+    assert.equal(await dialog.locator(`#${id}`).count(), 1);
+    await page.keyboard.press('Escape');
+    await dialog.waitFor({ state: 'detached' });
+    assert.deepEqual(await place(id), before, id);
+    assert.equal(await page.evaluate(() => document.activeElement.className), 'enlarge');
+  }
+  clean();
+});
+
+test('all that a panel names to be saved is there', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  await loadAll(page);
+  const paths = await page.locator('.lazy a[download]').evaluateAll((links) => links.map((link) => link.getAttribute('href')));
+  assert.ok(paths.length >= 20, `${paths.length}`);
+  for (const path of paths) {
+    // Measuring anew takes seconds.
+    if (path.startsWith('v1/precision')) continue;
+    const response = await fetch(stage.url + path);
+    assert.equal(response.status, 200, path);
+    assert.ok((await response.arrayBuffer()).byteLength > 100);
+  }
+  clean();
+});

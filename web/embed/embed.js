@@ -1,0 +1,106 @@
+// One panel of the page alone, for a frame in somebody's dashboard: the scene, and the run if there is one, are in the address.
+// Not for changing either: that is for the whole page, one click away.
+
+import { Circle } from '../circle.js';
+import { Problem, fieldsOf, get } from '../api.js';
+import { Run } from '../run.js';
+import { SceneView } from '../scene-view.js';
+import { anglePlane, velocityPlane } from '../plane.js';
+import { byId, h } from '../dom.js';
+import { clearNotice, connectionNotice, notice } from '../notices.js';
+import { energyPlot } from '../energy.js';
+import { invalidate } from '../surface.js';
+import { merged, readLink, sceneQuery } from '../link.js';
+import { PANELS, card } from '../panels.js';
+
+const id = location.pathname.split('/').at(-1) ?? '';
+const main = byId('main');
+
+/** @param {string[]} what */
+const dropped = (what) => { if (what.length > 0) notice('link', ['This address was not whole. Dropped: ', what.join('; '), '.'], { caution: true }); };
+
+/** What runs, with one of its views. @param {Run} run */
+const VIEWS = {
+  scene: (/** @type {Run} */ run) => {
+    const box = h('div', { class: 'scene-frame' });
+    const readout = h('output', { class: 'readout', 'aria-live': 'off' });
+    const view = new SceneView(box, readout, run);
+    return { element: h('section', { class: 'card scene', 'aria-label': 'Scene' }, box, readout), view, clear: () => view.reset() };
+  },
+  'plane-angle': (/** @type {Run} */ run) => plot(anglePlane(run.impacts)),
+  'plane-velocity': (/** @type {Run} */ run) => plot(velocityPlane(run.impacts)),
+  energy: (/** @type {Run} */ run) => plot(energyPlot(run.impacts, () => run.scene)),
+};
+
+/** @param {import('../impact-plot.js').ImpactPlot} view */
+function plot(view) {
+  view.onPoint = (place) => view.point(place);
+  return { element: view.figure.element, view, clear: () => view.clear() };
+}
+
+/** @param {keyof typeof VIEWS} name @param {URLSearchParams} query */
+function watch(name, query) {
+  /** @type {ReturnType<typeof VIEWS['scene']> | ReturnType<typeof plot> | null} */
+  let shown = null;
+  const state = byId('run-state');
+  const run = new Run({
+    changed: () => {
+      const words = { idle: '', connecting: 'Connecting…', running: 'Running', paused: 'Paused', lost: 'Connection lost', ended: `Ended: ${run.outcome?.kind.replaceAll('_', ' ')}` }[run.phase];
+      if (state.textContent !== words) state.textContent = words;
+      shown?.view.redraw();
+    },
+    struck: () => { if (shown) invalidate(shown.view); },
+    cleared: () => shown?.clear(),
+    lost: (seconds) => connectionNotice(seconds, () => run.retry()),
+    refused: (problem) => { clearNotice('connection'); notice('run', [problem.message], { dismissible: false, caution: true }); },
+    problem: () => {},
+  });
+  shown = VIEWS[name](run);
+  main.append(shown.element);
+  run.start(query);
+}
+
+/** @param {URLSearchParams} query */
+async function eigenvalues(query) {
+  const circle = new Circle();
+  main.append(circle.figure.element);
+  circle.show(await get(`v1/stability?${query}`));
+}
+
+async function begin() {
+  const [table, { scenes: cases }] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
+  const fields = fieldsOf(table);
+  const link = readLink(location.search, fields, cases);
+  dropped(link.dropped);
+  const named = cases.find((/** @type {import('../api.js').Case} */ one) => one.name === link.preset);
+  const chosen = named ?? (Object.keys(link.changes).length === 0 ? cases[0] : null);
+  const scene = merged(chosen?.scene ?? {}, link.changes);
+  const query = sceneQuery(scene, chosen, fields);
+  byId('whole', HTMLAnchorElement).href = `./${location.search}`;
+  const own = PANELS.find((one) => one.id === id);
+  if (id in VIEWS) {
+    for (const [key, value] of link.run ?? []) query.set(key, value);
+    query.set('speed', String(link.speed));
+    return watch(/** @type {keyof typeof VIEWS} */ (id), query);
+  }
+  if (id === 'circle') return eigenvalues(query);
+  if (!own) {
+    return main.append(h('p', { class: 'card' }, `There is no panel “${id.slice(0, 40)}”. There are: ${[...Object.keys(VIEWS), 'circle', ...PANELS.map((one) => one.id)].join(', ')}.`));
+  }
+  // To run another scene, the whole page opens beside the dashboard.
+  const play = (/** @type {import('../api.js').Scene} */ other) => void open(`./?${sceneQuery(other, null, fields)}`, '_blank', 'noopener');
+  const page = { fields, query: () => new URLSearchParams(query), scene: () => scene, chosen: () => chosen ?? null, played: () => new URLSearchParams(query), play, changed: () => {},
+    launch: (/** @type {Record<string, number>} */ values) => { const other = new URLSearchParams(query); for (const [path, value] of Object.entries(values)) other.set(`scene.${path}`, String(value)); void open(`./?${other}`, '_blank', 'noopener'); } };
+  const { element, bring } = card(own, page, () => link.panels, async (panel) => {
+    dropped(panel.restore?.(link.panels) ?? []);
+    if (panel.judged) panel.judged({ answer: await get(`v1/stability?${query}`), scene: query });
+  });
+  main.append(element);
+  await bring();
+}
+
+begin().catch((error) => {
+  const words = error instanceof Problem ? error.errors.map(({ detail }) => detail).join(' ') || error.message : 'The server does not answer.';
+  notice('server', [words, ' ', h('button', { type: 'button', click: () => location.reload() }, 'Try again')], { dismissible: false, caution: true });
+});
+document.title = `${id} · equipoise`;
