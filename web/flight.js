@@ -30,7 +30,13 @@
 export const effectiveGravity = (scene) => (scene.gravity ?? 9.81) * Math.sin(scene.incline ?? Math.PI / 2);
 
 /** Centre of gravity to contact point; a point mass is its own contact point. @param {Scene} scene @returns {number} */
-export const contactDistance = (scene) => scene.body?.contact_distance ?? Math.abs(corners(scene)?.[scene.body.contact_vertex ?? 0][1] ?? 0);
+export const contactDistance = (scene) => scene.body?.contact_distance ?? Math.abs(corners(scene)?.[contactVertex(scene)][1] ?? 0);
+
+/** The vertex that bounces: the lowest, where none is named. @param {Scene} scene @returns {number} */
+function contactVertex({ body }) {
+  const heights = body.vertices.map((/** @type {number[]} */ [, y]) => y);
+  return body.contact_vertex ?? heights.indexOf(Math.min(...heights));
+}
 
 /**
  * The vertices of a polygon about its centre of gravity, that straight above the contact vertex; of no polygon, null.
@@ -53,7 +59,7 @@ export function corners(scene) {
     y += part * (ay + by);
   });
   const about = places.map(([px, py]) => [px - x / area, py - y / area]);
-  const [dx, dy] = about[scene.body.contact_vertex ?? 0];
+  const [dx, dy] = about[contactVertex(scene)] ?? [0, -1];
   const l = Math.hypot(dx, dy);
   return about.map(([px, py]) => [(dx * py - dy * px) / l, -(dx * px + dy * py) / l]);
 }

@@ -11,7 +11,7 @@ import { pathOf, setAt, valueAt } from './api.js';
  * @typedef {object} Row
  * @property {Field} field
  * @property {HTMLElement} element
- * @property {HTMLInputElement | HTMLSelectElement} input
+ * @property {HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement} input
  * @property {HTMLInputElement | null} slider
  * @property {HTMLElement} error
  * @property {{text: string, value: number} | null} exact what a shortened text stands for, until it is edited
@@ -38,6 +38,13 @@ const COMFORTABLE = {
   'table.feedback.x': [-1, 1], 'table.feedback.theta': [-2, 2], 'table.feedback.x_dot': [-1, 1], 'table.feedback.theta_dot': [-1, 1],
   'table.limits.tilt': [0, 1.57], 'table.limits.tilt_rate': [0, 20], 'table.limits.speed': [0, 2], 'table.limits.stroke': [0, 0.5],
 };
+
+/** Vertices from lines of two numbers. @param {string} text @returns {{value: unknown, problem: string | null}} */
+function places(text) {
+  const lines = text.trim().split('\n').map((line) => line.trim().split(/[\s,;]+/).map((part) => parse(part, 'm')));
+  const wrong = lines.findIndex((place) => place.length !== 2 || place.includes(null));
+  return wrong < 0 ? { value: lines, problem: null } : { value: undefined, problem: `Line ${wrong + 1} is not x and y, as in “0.1, 0.2”.` };
+}
 
 /** A step of 1, 2 or 5 that parts the span into some two hundred. @param {number} span */
 function step(span) {
@@ -80,8 +87,6 @@ export class Form {
   /** @type {Map<string, Row>} */
   #rows = new Map();
   #onEdit;
-  /** @type {[number, number][] | null} */
-  #vertices = null;
 
   /**
    * @param {HTMLElement} root
@@ -106,13 +111,15 @@ export class Form {
     const about = h('span', { class: 'about', id: `${id}-about` }, field.about);
     const name = h('label', { for: id }, field.title, field.symbol && ' ', field.symbol ? symbol(field.symbol) : null);
     const described = `${id}-about ${id}-error`;
-    /** @type {HTMLInputElement | HTMLSelectElement} */
+    /** @type {Row['input']} */
     let input;
     /** @type {HTMLInputElement | null} */
     let slider = null;
     if (field.kind === 'choice') {
       input = h('select', { id, 'aria-describedby': described, change: () => this.#edited(field.path, true) },
         field.default == null && h('option', { value: '' }, 'not set'), ...(field.choices ?? []).map((choice) => h('option', { value: choice }, choice)));
+    } else if (field.kind === 'vertices') {
+      input = h('textarea', { id, rows: 3, spellcheck: 'false', 'aria-describedby': described, placeholder: 'not set', input: () => this.#edited(field.path, false), change: () => this.#edited(field.path, true) });
     } else if (field.kind === 'boolean') {
       input = h('input', { id, type: 'checkbox', 'aria-describedby': described, change: () => this.#edited(field.path, true) });
     } else {
@@ -157,15 +164,17 @@ export class Form {
     this.#onEdit(path, final);
   }
 
-  /** A point has no extent: what belongs to a rod cannot be typed beside it, and stays for later. */
+  /** A point has no extent and a polygon has the rod's lengths: what one cannot have beside it cannot be typed, and stays for later. */
   #reach() {
     const point = this.#rows.get('body.point');
     const isPoint = point?.input instanceof HTMLInputElement && point.input.checked;
+    const isPolygon = !isPoint && this.#rows.get('body.vertices')?.input.value.trim() !== '';
     for (const { field, input, slider, element } of this.#rows.values()) {
       if (!field.path.startsWith('body.') || field.path === 'body.point') continue;
-      input.disabled = isPoint;
-      if (slider) slider.disabled = isPoint;
-      element.classList.toggle('off', isPoint);
+      const off = isPoint || (isPolygon && ['body.contact_distance', 'body.radius_of_gyration'].includes(field.path));
+      input.disabled = off;
+      if (slider) slider.disabled = off;
+      element.classList.toggle('off', off);
     }
   }
 
@@ -183,6 +192,7 @@ export class Form {
       if (field.required && !field.path.startsWith('body.') && !(field.path === 'table.tilt_gain' && this.#feedback())) return { value: undefined, problem: `${field.title} is needed.` };
       return { value: undefined, problem: null };
     }
+    if (field.kind === 'vertices') return places(input.value);
     if (input.value === exact?.text) return { value: exact.value, problem: null };
     const value = parse(input.value, field.unit);
     return value === null ? { value: undefined, problem: `“${input.value.trim()}” is not a number.` } : { value, problem: null };
@@ -200,7 +210,6 @@ export class Form {
 
   /** Fills in a scene; what it leaves open shows its default. @param {Scene} scene */
   fill(scene) {
-    this.#vertices = scene.body?.vertices ?? null;
     for (const row of this.#rows.values()) {
       const value = valueAt(scene, row.field.path);
       this.#put(row, value === row.field.default ? null : value);
@@ -217,6 +226,7 @@ export class Form {
     const { field, input, slider } = row;
     row.exact = null;
     if (input instanceof HTMLInputElement && field.kind === 'boolean') input.checked = value === true;
+    else if (Array.isArray(value)) input.value = value.map((place) => place.join(', ')).join('\n');
     else if (field.kind === 'choice') input.value = String(value ?? field.default ?? '');
     else if (typeof value !== 'number') input.value = '';
     else {
@@ -250,9 +260,6 @@ export class Form {
       if (problem) complete = false;
       else if (value !== undefined) setAt(scene, row.field.path, value);
     }
-    // No control types the vertices of a polygon: they stay until its contact vertex is cleared or another body is typed.
-    const { contact_vertex, contact_distance, radius_of_gyration } = scene.body ?? {};
-    if (this.#vertices && contact_vertex !== undefined && contact_distance === undefined && radius_of_gyration === undefined) scene.body.vertices = this.#vertices;
     return { scene, complete };
   }
 
@@ -275,7 +282,7 @@ export class Form {
     const homeless = [];
     for (const { pointer, detail } of errors) {
       const path = pathOf(pointer);
-      const row = this.#rows.get(path) ?? [...this.#rows.values()].find(({ field }) => field.path.startsWith(`${path}.`));
+      const row = this.#rows.get(path) ?? [...this.#rows.values()].find(({ field }) => field.path.startsWith(`${path}.`) || path.startsWith(`${field.path}.`));
       if (row && path !== '') this.#say(row, detail);
       else homeless.push(detail);
     }

@@ -68,6 +68,8 @@ test('the printed values stand beside the computed ones, with the reason where t
   const differing = scenes.find(({ name }) => name === 'case-4').computed.filter(({ why }) => why);
   // Symbols are set as such, so only the letters are compared.
   const letters = (text) => text.replace(/[\s_*]/g, '').toLowerCase();
+  await page.locator('#paper').scrollIntoViewIfNeeded();
+  await page.locator('#paper tbody tr').first().waitFor();
   const text = letters(await page.locator('#paper').innerText());
   for (const { why } of differing) assert.ok(text.includes(letters(why)), why);
   assert.ok(await page.locator('#paper tbody tr').count() > 0);
@@ -77,6 +79,7 @@ test('the printed values stand beside the computed ones, with the reason where t
 test('the copied curl gives the page’s verdict', async () => {
   const { page, clean } = await stage.page('?preset=case-1&scene.table.tilt_gain=1.3');
   await verdict(page);
+  await page.locator('#calls').scrollIntoViewIfNeeded();
   await page.locator('.call button').first().click();
   const call = await page.evaluate(() => navigator.clipboard.readText());
   const url = /^curl '(.+)'$/.exec(call)[1];
@@ -85,7 +88,7 @@ test('the copied curl gives the page’s verdict', async () => {
   clean();
 });
 
-test('a polygon stays with what is typed beside it, until another body is', async () => {
+test('a polygon stays with what is typed beside it, until its vertices are taken away', async () => {
   const { page, clean } = await stage.page('?preset=triangle-polygon');
   assert.match(await verdict(page), /\S/);
   await page.locator('#field-table-tilt_gain').fill('1.05');
@@ -94,8 +97,46 @@ test('a polygon stays with what is typed beside it, until another body is', asyn
   await page.click('#run');
   await page.waitForFunction(() => /impact\s[1-9]/.test(document.body.innerText));
   assert.match(page.url(), /preset=triangle-polygon/);
+  assert.ok(await page.locator('#field-body-contact_distance').isDisabled());
+  clean();
+  await page.locator('#field-body-vertices').fill('');
+  await page.locator('#field-body-contact_vertex').fill('');
   await page.locator('#field-body-contact_distance').fill('0.1');
   await page.locator('#field-body-radius_of_gyration').fill('0.1');
   assert.match(await verdict(page), /\S/);
+  assert.equal(await page.locator('#field-body-vertices-error').innerText(), '');
+});
+
+test('a polygon is typed, runs, and is in the link', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const vertices = page.locator('#field-body-vertices');
+  await vertices.fill('0, 0\n0.1 0.2\n-0.1');
+  await vertices.blur();
+  assert.match(await page.locator('#field-body-vertices-error').innerText(), /Line 3/);
+  await vertices.fill('0, 0\n0,1 0,2\n-0.1; 0.2');
+  await vertices.blur();
+  assert.match(await page.locator('#field-body-vertices-error').innerText(), /Line 2/);
+  await vertices.fill('0, 0\n0.1 0.2\n-0.1; 0.2');
+  await page.waitForFunction(() => /vertices\.2\.1=0\.2/.test(location.search));
+  assert.match(await verdict(page), /\S/);
+  const response = await fetch(`${stage.url}v1/trajectories${new URL(page.url()).search}&impacts=5`);
+  const { model, outcome } = await response.json();
+  assert.deepEqual([model.name, outcome.kind], ['polygon', 'completed']);
+  await page.click('#run');
+  await page.waitForFunction(() => /impact\s[2-9]/.test(document.body.innerText));
+  const second = await stage.page(new URL(page.url()).search);
+  assert.equal(await second.page.locator('#field-body-vertices').inputValue(), '0, 0\n0.1, 0.2\n-0.1, 0.2');
+  assert.equal(await second.page.locator('#notices').innerText(), '');
+  clean();
+  second.clean();
+  // Two corners are no polygon: the server says so beside them.
+  await vertices.fill('0, 0\n0.1 0.2');
+  await page.waitForFunction(() => /3 to 32/.test(document.querySelector('#field-body-vertices-error').textContent));
+});
+
+test('a link whose vertices are not whole drops them', async () => {
+  const { page, clean } = await stage.page('?preset=triangle-polygon&scene.body.vertices.0.0=0&scene.body.vertices.2.1=1');
+  assert.match(await page.locator('.notice').innerText(), /vertices, which are not whole/);
   clean();
 });
