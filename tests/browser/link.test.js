@@ -82,6 +82,38 @@ test('a run too old to catch up with is told, and its scene kept', async () => {
   assert.ok(!wrongs.some((wrong) => wrong.startsWith('exception')), wrongs.join('\n'));
 });
 
+/** Two hundred links, each with something wrong in it: every field in every way there is to be wrong, and what is no field at all. */
+async function brokenLinks() {
+  const { fields } = await (await fetch(`${stage.url}v1/fields`)).json();
+  const links = fields.flatMap(({ path, kind, minimum, maximum }) => {
+    if (kind === 'choice') return [`scene.${path}=none-such`, `scene.${path}=`];
+    if (kind === 'boolean') return [`scene.${path}=perhaps`];
+    return [`scene.${path}=steep`, `scene.${path}=`, `scene.${path}=1e999`, ...(maximum === null ? [] : [`scene.${path}=${maximum + 1 + Math.abs(maximum)}`]), ...(minimum === null ? [] : [`scene.${path}=${minimum - 1 - Math.abs(minimum)}`])];
+  });
+  const parts = ['speed', 'epoch', 'colour', 'scene', 'scene.', 'scene.body', '__proto__', 'scene.__proto__.x', 'scene.constructor', 'interventions.0.impact', 'interventions.x.impact', 'interventions.0.kick.spin', 'clock.0.wall', 'clock.0', 'map.z.parameter', 'map', 'survival.rums', 'brush.mass.from', 'toString', 'preset'];
+  const values = ['', '-1', 'NaN', '[object Object]', '%00', '9'.repeat(300), '<script>alert(1)</script>'];
+  for (const part of parts) for (const value of values) links.push(`${part}=${value.startsWith('%') ? value : encodeURIComponent(value)}`);
+  return links.filter((link) => !/^epoch=9+$/.test(link)).slice(0, 200);
+}
+
+test('of 200 broken links none throws, and each is told', async () => {
+  const links = await brokenLinks();
+  assert.equal(links.length, 200);
+  const { page, wrongs } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const silent = await page.evaluate((all) => all.filter((link) => {
+    history.pushState(null, '', '?preset=case-1');
+    dispatchEvent(new PopStateEvent('popstate'));
+    if (document.querySelector('#notices .notice')) return true;
+    history.pushState(null, '', `?preset=case-1&${link}`);
+    dispatchEvent(new PopStateEvent('popstate'));
+    return !document.querySelector('#notices .notice li');
+  }), links);
+  assert.deepEqual(silent, []);
+  assert.deepEqual(wrongs, []);
+  await page.locator('#run:enabled').waitFor();
+});
+
 test('no mangled link throws', async () => {
   const { page, wrongs } = await stage.page('');
   // A fixed generator: the same links every time.

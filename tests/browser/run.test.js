@@ -128,7 +128,7 @@ test('a parameter that is not live waits for the restart and then plays', async 
   clean();
 });
 
-test('a server that goes away and comes back loses no impact', async () => {
+test('a server that goes away for three seconds and comes back loses no impact', async () => {
   const { page } = await stage.page('?preset=case-1');
   await page.click('#run');
   await reachImpact(page, 3);
@@ -136,6 +136,8 @@ test('a server that goes away and comes back loses no impact', async () => {
   await page.locator('.notice', { hasText: 'Connection lost' }).waitFor();
   await page.locator('.countdown', { hasText: /\d s/ }).waitFor();
   const before = await impacts(page);
+  // Long enough for a try to fail.
+  await page.waitForTimeout(3000);
   await stage.startServer();
   await reachPhase(page, 'running');
   await page.locator('.notice', { hasText: 'Connection lost' }).waitFor({ state: 'detached' });
