@@ -200,6 +200,27 @@ async fn every_format_says_the_same() {
     }
 }
 
+/// A line at once, a line for each hundredth of the runs as far as blocks allow, and the answer.
+#[tokio::test]
+async fn progress_is_told_in_runs() {
+    let server = Server::start();
+    // Blocks of five runs, of one, and a block of all.
+    for (size, step) in [("runs=500&impacts=10000", 5), ("runs=3&impacts=50000", 1), ("runs=40&impacts=50", 40)] {
+        let target = format!("{CASE_1}&scene.noise.model=plan&{size}");
+        let answer = server.get(&format!("{target}&format=progress")).await.expect(200);
+        let lines: Vec<Value> = answer.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        let whole = server.get(&target).await.expect(200);
+        assert_eq!(lines.last().unwrap(), &json!({"end": whole.json()}), "{size}");
+        assert!(answer.text().ends_with(&format!("{{\"end\":{}}}\n", whole.text())), "{size}: the same bytes");
+        let runs = whole.json()["runs"].as_u64().unwrap();
+        let expected: Vec<Value> =
+            (0..=runs).step_by(step).map(|done| json!({"progress": {"done": done, "of": runs}})).collect();
+        assert_eq!(lines[..lines.len() - 1], expected, "{size}");
+    }
+    let many = server.get(&format!("{CASE_1}&runs=2000&impacts=30000&scene.table.tilt_gain=3&format=progress")).await;
+    assert_eq!(many.expect(200).text().lines().count(), 102);
+}
+
 #[tokio::test]
 async fn the_picture_says_what_noise_and_how_many() {
     let server = Server::start();
@@ -224,7 +245,7 @@ async fn the_picture_says_what_noise_and_how_many() {
 /// The bytes of an ensemble of many blocks on 1, 2 and 3 threads.
 #[tokio::test]
 async fn threads_do_not_show() {
-    for rest in ["", "&scene.noise.model=plan", "&format=ndjson", "&format=csv", "&format=svg"] {
+    for rest in ["", "&scene.noise.model=plan", "&format=ndjson", "&format=progress", "&format=csv", "&format=svg"] {
         for headers in [&[][..], &[("accept-encoding", "gzip")]] {
             let target = format!("{CASE_1}&runs=400{rest}");
             let one = Server::with_permits(1).get_with(&target, headers).await.expect(200);

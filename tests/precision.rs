@@ -136,7 +136,8 @@ async fn a_run_that_ends_early_is_compared_where_it_ends() {
 
 #[tokio::test]
 async fn what_cannot_run_says_why() {
-    let points = points(&Server::start().get("/v1/precision?preset=point-mass&impacts=10").await.expect(200));
+    let server = Server::start();
+    let points = points(&server.get("/v1/precision?preset=point-mass&impacts=10").await.expect(200));
     assert!(error(&of(&points, "map")[0]) < 1e-12);
     for name in ["linear", "adaptive", "penalty"] {
         for point in of(&points, name) {
@@ -144,6 +145,15 @@ async fn what_cannot_run_says_why() {
             assert!(point["reason"].as_str().unwrap().contains("point mass"), "{point}");
         }
     }
+    // What is not there is done at once.
+    let target = "/v1/precision?preset=point-mass&impacts=10&methods.0=map&methods.1=adaptive&format=progress";
+    let answer = server.get(target).await.expect(200);
+    let done: Vec<u64> = answer
+        .text()
+        .lines()
+        .filter_map(|line| serde_json::from_str::<Value>(line).unwrap()["progress"]["done"].as_u64())
+        .collect();
+    assert_eq!(done, [0, 1, 2, 3, 4, 5, 6, 12]);
 }
 
 #[tokio::test]
@@ -174,6 +184,15 @@ async fn every_format_has_every_point() {
             assert!(picture.text().contains(part), "{axis}: {part}");
         }
     }
+    let progress = server.get(&format!("{asked}&format=progress")).await.expect(200);
+    assert_eq!((progress.header("cache-control"), progress.header("etag")), (Some("no-store"), None));
+    let lines: Vec<Value> = progress.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    // A line for the beginning, for each run and for each timing.
+    let of = 2 * count;
+    let expected: Vec<Value> = (0..=of).map(|done| json!({"progress": {"done": done, "of": of}})).collect();
+    assert_eq!(lines[..lines.len() - 1], expected);
+    let whole = lines.last().unwrap()["end"]["points"].as_array().unwrap();
+    assert_eq!(counted(whole), counted(&points(&server.get(asked).await)));
     let pixels = server.get(&format!("{asked}&format=png")).await.expect(200);
     assert_eq!((pixels.media_type(), pixels.header("cache-control")), ("image/png", Some("no-store")));
 }

@@ -2,10 +2,12 @@
 
 mod support;
 
+use std::io::Write;
 use std::time::{Duration, Instant};
 
 use equipoise::router;
 use equipoise::routes::App;
+use http_body_util::BodyExt;
 use serde_json::{Value, json};
 use support::Server;
 use support::socket::{SOON, start};
@@ -100,6 +102,59 @@ async fn a_slow_reader_holds_no_core_and_misses_nothing() {
     let body = unchunked(&(begun + &rest));
     assert_eq!(body.lines().count(), 701);
     assert_eq!(body, Server::start().get(&target).await.expect(200).text());
+}
+
+const ENSEMBLE: &str = "/v1/ensembles?preset=case-1-noise&scene.release.theta=0.1&runs=20000&impacts=5000";
+
+/// Progress is heard long before the end, and who hangs up then frees the cores.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn who_hears_of_progress_may_leave() {
+    let (app, address) = start().await;
+    let precision = "/v1/precision?preset=case-1&impacts=1000";
+    for (target, some) in [(ENSEMBLE, "\"done\":200,\"of\":20000}"), (precision, "\"done\":20,\"of\":")] {
+        let mut socket = ask(address, &format!("{target}&format=progress")).await;
+        let heard = read_until(&mut socket, some).await;
+        assert!(heard.contains("{\"progress\":{\"done\":0,") && !heard.contains("\"end\""), "{heard}");
+        assert_eq!(jobs_running(&app).await, "equipoise_jobs_running 1", "{target}");
+        drop(socket);
+        let left = Instant::now();
+        while app.pool.running().get() > 0 {
+            assert!(left.elapsed() < Duration::from_millis(50), "{target}: the work goes on for nobody");
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+    }
+}
+
+/// Compressed lines can be read as they come, too.
+#[tokio::test]
+async fn progress_is_not_kept_back_by_its_compression() {
+    let app = App::new(&equipoise::config::Config::default());
+    let request = axum::http::Request::get(format!("{ENSEMBLE}&format=progress")).header("accept-encoding", "gzip");
+    let response = router::router(app).oneshot(request.body(axum::body::Body::empty()).unwrap()).await.unwrap();
+    assert_eq!(response.headers()["content-encoding"], "gzip");
+    let mut body = response.into_body();
+    let mut decoder = flate2::write::GzDecoder::new(Vec::new());
+    for line in ["{\"progress\":{\"done\":0,\"of\":20000}}\n", "{\"progress\":{\"done\":200,\"of\":20000}}\n"] {
+        let piece = timeout(SOON, body.frame()).await.expect("the server is silent").unwrap().unwrap();
+        decoder.write_all(&piece.into_data().unwrap()).unwrap();
+        decoder.flush().unwrap();
+        assert_eq!(String::from_utf8_lossy(decoder.get_ref()), line);
+        decoder.get_mut().clear();
+    }
+}
+
+#[tokio::test]
+async fn progress_has_a_tag_of_its_own() {
+    let server = Server::start();
+    let target = "/v1/ensembles?preset=case-1-noise&runs=100&impacts=1000";
+    let told = server.get(&format!("{target}&format=progress")).await.expect(200);
+    server.get_with(&format!("{target}&format=progress"), &[("if-none-match", told.etag())]).await.expect(304);
+    for format in ["json", "ndjson"] {
+        assert_ne!(server.head(&format!("{target}&format={format}")).await.expect(200).etag(), told.etag());
+    }
+    assert_eq!(server.head(&format!("{target}&format=progress")).await.expect(200).etag(), told.etag());
+    let body = serde_json::json!({"preset": "case-1-noise", "runs": 100, "impacts": 1000});
+    assert_eq!(server.post("/v1/ensembles?format=progress", &body).await.expect(200).raw, told.raw);
 }
 
 /// The lines are those of the whole answer in JSON.

@@ -38,8 +38,18 @@ struct Watched<'w, 'a> {
     looks_s: Vec<f64>,
 }
 
-/// Times all pieces of work in turns.
-pub fn time(works: &mut [Work<'_>], bounds: Bounds, cancel: &Cancel) -> Result<Vec<Timing>, Cancelled> {
+/// Times all pieces of work in turns, and says of each when it has been `timed`.
+pub fn time(
+    works: &mut [Work<'_>],
+    bounds: Bounds,
+    timed: &mut dyn FnMut(),
+    cancel: &Cancel,
+) -> Result<Vec<Timing>, Cancelled> {
+    let goes_on = |watch: &Watched<'_, '_>| {
+        let looks = watch.looks_s.len();
+        let few = looks < 3 && watch.spent < 3 * bounds.time;
+        looks == 0 || few || (watch.spent < bounds.time && looks < bounds.repeats)
+    };
     let mut watched = Vec::with_capacity(works.len());
     for work in works {
         let first = look(work, 1, cancel)?;
@@ -49,18 +59,19 @@ pub fn time(works: &mut [Work<'_>], bounds: Bounds, cancel: &Cancel) -> Result<V
         if times == 1 {
             watch.looks_s.push(first.as_secs_f64());
         }
+        if !goes_on(&watch) {
+            timed();
+        }
         watched.push(watch);
     }
-    let goes_on = |watch: &Watched<'_, '_>| {
-        let looks = watch.looks_s.len();
-        let few = looks < 3 && watch.spent < 3 * bounds.time;
-        looks == 0 || few || (watch.spent < bounds.time && looks < bounds.repeats)
-    };
     while watched.iter().any(goes_on) {
         for watch in watched.iter_mut().filter(|watch| goes_on(watch)) {
             let taken = look(watch.work, watch.times, cancel)?;
             watch.spent += taken;
             watch.looks_s.push(taken.as_secs_f64() / f64::from(watch.times));
+            if !goes_on(watch) {
+                timed();
+            }
         }
     }
     Ok(watched.into_iter().map(|watch| timing(watch.looks_s)).collect())
@@ -99,9 +110,11 @@ mod tests {
                 std::thread::sleep(3 * BOUNDS.time);
             }),
         ];
-        let timings = time(&mut works, BOUNDS, &Cancel::never()).unwrap();
+        let mut timed = Vec::new();
+        let timings = time(&mut works, BOUNDS, &mut || timed.push(long.get()), &Cancel::never()).unwrap();
         drop(works);
         assert_eq!((timings[0].repeats, timings[1].repeats, long.get()), (5, 1, 1));
+        assert_eq!(timed, [1, 1], "each is said once");
         assert!(short.get() > 100, "{} times", short.get());
         assert!(timings[0].quartiles_s[1] < 1e-4 && timings[1].quartiles_s[1] >= 0.12, "{timings:?}");
     }
@@ -110,6 +123,6 @@ mod tests {
     fn what_nobody_waits_for_is_given_up() {
         let cancel = Cancel::never();
         let mut works: Vec<Work<'_>> = vec![Box::new(|cancel| cancel.set())];
-        assert_eq!(time(&mut works, BOUNDS, &cancel), Err(Cancelled));
+        assert_eq!(time(&mut works, BOUNDS, &mut || {}, &cancel), Err(Cancelled));
     }
 }

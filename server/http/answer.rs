@@ -9,7 +9,7 @@ use super::encode;
 use super::etag::EntityTag;
 use super::leaf::Source;
 use super::negotiate::{self, Encoding, Format};
-use super::outlet::{Outlet, computed_in_turns};
+use super::outlet::{Outlet, computed_at_once, computed_in_turns};
 use super::problem::Problem;
 use super::request::Ask;
 use crate::compute::{Cancel, Cancelled, Pool, Price, Turns};
@@ -81,15 +81,18 @@ impl Ask {
     }
 
     /// The answer of a resource that measures something: never kept, no entity tag, because the next one is different.
+    /// Formats that are in `streamed` are sent piece by piece.
     pub async fn respond_afresh(
         &self,
         pool: &Pool,
         resource: &Resource,
         price: Price,
-        compute: impl FnOnce(Format, &Cancel) -> Result<Vec<u8>, Problem> + Send + 'static,
+        streamed: &[Format],
+        compute: impl FnOnce(Format, &Cancel, &mut Outlet) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
-        let mut response = computed(pool, format, encoding, price, compute).await?;
+        let (price, streams) = (with_drawing(price, format), streamed.contains(&format));
+        let mut response = computed_at_once(pool, price, (format, encoding), streams, compute).await?;
         response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
         Ok(response)
     }
@@ -113,14 +116,18 @@ async fn computed(
     price: Price,
     compute: impl FnOnce(Format, &Cancel) -> Result<Vec<u8>, Problem> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
-    let price = if format == Format::Png { price.and(Price::bounces(limits::PNG_PRICE)) } else { price };
     // Compression is part of the work: it takes as long as computing, and ends with it when the client goes away.
     let work = move |cancel: &Cancel| {
         let bytes = compute(format, cancel)?;
         Ok::<_, Problem>(if encoding == Encoding::Gzip { encode::gzip(&bytes, cancel)? } else { bytes })
     };
-    let bytes = pool.run(price, work).await?;
+    let bytes = pool.run(with_drawing(price, format), work).await?;
     Ok(ok(format.media_type(), encoding, bytes))
+}
+
+/// The price of an answer in this format: pixels are work of their own.
+fn with_drawing(price: Price, format: Format) -> Price {
+    if format == Format::Png { price.and(Price::bounces(limits::PNG_PRICE)) } else { price }
 }
 
 /// 200 with its body and the headers that describe it.

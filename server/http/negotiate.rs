@@ -15,6 +15,8 @@ pub enum Format {
     Csv,
     /// One JSON object per line.
     Ndjson,
+    /// The same, of how far the work is, and last of all the answer. Only `?format=` asks for it.
+    Progress,
     /// A picture in vectors.
     Svg,
     /// A picture in pixels.
@@ -24,7 +26,8 @@ pub enum Format {
 }
 
 impl Format {
-    const ALL: [Format; 6] = [Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png, Format::Events];
+    const ALL: [Format; 7] =
+        [Format::Json, Format::Csv, Format::Ndjson, Format::Progress, Format::Svg, Format::Png, Format::Events];
 
     /// Its name in `?format=`.
     pub fn name(self) -> &'static str {
@@ -32,6 +35,7 @@ impl Format {
             Format::Json => "json",
             Format::Csv => "csv",
             Format::Ndjson => "ndjson",
+            Format::Progress => "progress",
             Format::Svg => "svg",
             Format::Png => "png",
             Format::Events => "events",
@@ -43,7 +47,7 @@ impl Format {
         match self {
             Format::Json => "application/json",
             Format::Csv => "text/csv; charset=utf-8; header=present",
-            Format::Ndjson => "application/x-ndjson",
+            Format::Ndjson | Format::Progress => "application/x-ndjson",
             Format::Svg => "image/svg+xml",
             Format::Png => "image/png",
             Format::Events => "text/event-stream",
@@ -56,6 +60,7 @@ impl Format {
             Format::Json => &[("application", "json")],
             Format::Csv => &[("text", "csv")],
             Format::Ndjson => &[("application", "x-ndjson"), ("application", "ndjson"), ("application", "jsonl")],
+            Format::Progress => &[],
             Format::Svg => &[("image", "svg+xml")],
             Format::Png => &[("image", "png")],
             Format::Events => &[("text", "event-stream")],
@@ -92,7 +97,8 @@ pub fn format(asked: Option<&str>, headers: &HeaderMap, formats: &[Format]) -> R
         .filter(|((weight, _), _)| *weight > 0.0)
         .max_by(|(one, _), (other, _)| one.partial_cmp(other).expect("weights are between 0 and 1"));
     best.map(|(_, format)| format).ok_or_else(|| {
-        let types: Vec<&str> = formats.iter().map(|format| format.media_type()).collect();
+        let accepted = formats.iter().filter(|format| !format.accepted_as().is_empty());
+        let types: Vec<&str> = accepted.map(|format| format.media_type()).collect();
         let accept = shortened(&accept);
         Problem::not_acceptable(format!("Accept is {accept:?}; there is: {} (?format={})", types.join(", "), names()))
     })
@@ -226,6 +232,17 @@ mod tests {
         let problem = format(Some("svg"), &accept, &[Format::Json, Format::Csv]).unwrap_err();
         assert_eq!(problem.detail(), "there is no format \"svg\" here; there is: json, csv");
         assert!(format(Some("JSON"), &accept, &[Format::Json]).is_err());
+    }
+
+    #[test]
+    fn progress_is_told_to_who_asks_for_it_by_name() {
+        let formats = [Format::Progress, Format::Ndjson];
+        for accept in ["*/*", "application/x-ndjson", "application/*"] {
+            assert_eq!(format(None, &headers(header::ACCEPT, accept), &formats).unwrap(), Format::Ndjson, "{accept}");
+        }
+        assert_eq!(format(Some("progress"), &HeaderMap::new(), &formats).unwrap(), Format::Progress);
+        let problem = format(None, &headers(header::ACCEPT, "text/plain"), &formats).unwrap_err();
+        assert_eq!(problem.detail().matches("ndjson").count(), 2, "{}", problem.detail());
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Answers that are computed in turns, and sent while they are computed where the format has rows.
+//! Answers that are sent while they are computed, where the format has lines for that.
 //!
 //! Computing never waits for the reader: what is not yet read is kept, never more than the whole answer, which the price
 //! has bounded (`limits::ANSWER`), and a reader that takes nothing is cut off after `limits::STALL_TIME`. So a slow reader
@@ -18,7 +18,7 @@ use super::answer::ok;
 use super::encode;
 use super::negotiate::{Encoding, Format};
 use super::problem::Problem;
-use crate::compute::{Cancel, Cancelled, Pool, Turns};
+use crate::compute::{Cancel, Cancelled, Pool, Price, Turns};
 
 /// Where work puts the bytes of its answer.
 #[derive(Debug)]
@@ -103,10 +103,8 @@ pub(super) async fn computed_in_turns(
     streams: bool,
     compute: impl FnOnce(Format, &Turns, &mut Outlet) -> Result<(), Problem> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
-    let (to, made) = unbounded_channel();
-    let gzip = (encoding == Encoding::Gzip).then(encode::encoder);
-    let (pool, mut outlet) = (pool.clone(), Outlet { to, gzip });
-    let work = async move {
+    let pool = pool.clone();
+    let work = |mut outlet: Outlet| async move {
         let compute = move |turns: &Turns| {
             compute(format, turns, &mut outlet)?;
             outlet.finish();
@@ -114,7 +112,38 @@ pub(super) async fn computed_in_turns(
         };
         pool.run_in_turns(compute).await
     };
-    let mut pieces = Pieces { made, work: Some(Box::pin(work)) };
+    in_pieces(format, encoding, streams, work).await
+}
+
+/// The same of work that keeps its permit from its beginning to its end.
+pub(super) async fn computed_at_once(
+    pool: &Pool,
+    price: Price,
+    (format, encoding): (Format, Encoding),
+    streams: bool,
+    compute: impl FnOnce(Format, &Cancel, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+) -> Result<Response<Body>, Problem> {
+    let pool = pool.clone();
+    let work = |mut outlet: Outlet| async move {
+        let compute = move |cancel: &Cancel| {
+            compute(format, cancel, &mut outlet)?;
+            outlet.finish();
+            Ok(())
+        };
+        pool.run(price, compute).await
+    };
+    in_pieces(format, encoding, streams, work).await
+}
+
+async fn in_pieces<Work: Future<Output = Result<(), Problem>> + Send + 'static>(
+    format: Format,
+    encoding: Encoding,
+    streams: bool,
+    work: impl FnOnce(Outlet) -> Work,
+) -> Result<Response<Body>, Problem> {
+    let (to, made) = unbounded_channel();
+    let gzip = (encoding == Encoding::Gzip).then(encode::encoder);
+    let mut pieces = Pieces { made, work: Some(Box::pin(work(Outlet { to, gzip }))) };
     let first = pieces.next().await?.unwrap_or_default();
     if streams {
         return Ok(ok(format.media_type(), encoding, pieces.into_body(first)));

@@ -221,13 +221,20 @@ fn power_of_ten(time: f64) -> f64 {
     power.and_then(|(_, power)| format!("1e{power}").parse().ok()).unwrap_or(1.0)
 }
 
-/// Runs and times `methods` over `impacts` contacts of a scene.
-pub fn chart(scene: &Scene, impacts: u64, methods: &[Method], cancel: &Cancel) -> Result<Chart, Cancelled> {
+/// Runs and times `methods` over `impacts` contacts of a scene. `progress` hears how much of how much is done: of each point its run,
+/// and its timing.
+pub fn chart(
+    scene: &Scene,
+    impacts: u64,
+    methods: &[Method],
+    progress: &mut dyn FnMut(u64, u64),
+    cancel: &Cancel,
+) -> Result<Chart, Cancelled> {
     let subject = Subject::new(scene, impacts);
     let reference = subject.reference();
     let scale = power_of_ten(reference.t / reference.impacts.max(1) as f64);
     let mut notes = Vec::new();
-    let mut points = Vec::new();
+    let mut wanted = Vec::new();
     let mut left_out = Vec::new();
     for &method in methods {
         for setting in method.kind.settings(scale) {
@@ -235,11 +242,18 @@ pub fn chart(scene: &Scene, impacts: u64, methods: &[Method], cancel: &Cancel) -
                 && reference.t / value > 0.9 * limits::PRECISION_STEPS as f64
             {
                 left_out.push(value);
-                continue;
+            } else {
+                wanted.push((method, setting));
             }
-            let done = subject.run(method.kind, setting, cancel)?;
-            points.push(point(&subject, method, setting, done));
         }
+    }
+    let of = 2 * wanted.len() as u64;
+    progress(0, of);
+    let mut points = Vec::with_capacity(wanted.len());
+    for (method, setting) in wanted {
+        let done = subject.run(method.kind, setting, cancel)?;
+        points.push(point(&subject, method, setting, done));
+        progress(points.len() as u64, of);
     }
     if let Some(coarsest) = left_out.into_iter().reduce(f64::max) {
         notes.push(format!(
@@ -247,7 +261,7 @@ pub fn chart(scene: &Scene, impacts: u64, methods: &[Method], cancel: &Cancel) -
             limits::PRECISION_STEPS
         ));
     }
-    measure(&subject, &mut points, cancel)?;
+    measure(&subject, &mut points, progress, cancel)?;
     mark(&mut points, |point| point.cost_ns().map(|cost| cost[1]), |point| &mut point.pareto);
     mark(&mut points, Point::evaluations_per_impact, |point| &mut point.pareto_evaluations);
     Ok(Chart { reference, points, notes })
@@ -293,7 +307,13 @@ fn point(subject: &Subject<'_>, method: Method, setting: Option<Setting>, done: 
 }
 
 /// Times all runs there were, in turns.
-fn measure(subject: &Subject<'_>, points: &mut [Point], cancel: &Cancel) -> Result<(), Cancelled> {
+fn measure(
+    subject: &Subject<'_>,
+    points: &mut [Point],
+    progress: &mut dyn FnMut(u64, u64),
+    cancel: &Cancel,
+) -> Result<(), Cancelled> {
+    let of = 2 * points.len() as u64;
     let mut ran: Vec<&mut Point> = points.iter_mut().filter(|point| point.outcome != "unavailable").collect();
     let mut works: Vec<Work<'_>> = ran
         .iter()
@@ -304,7 +324,12 @@ fn measure(subject: &Subject<'_>, points: &mut [Point], cancel: &Cancel) -> Resu
         .collect();
     let bounds =
         Bounds { time: limits::PRECISION_TIME, look: limits::PRECISION_LOOK, repeats: limits::PRECISION_REPEATS };
-    let timings = stopwatch::time(&mut works, bounds, cancel)?;
+    let mut done = of - works.len() as u64;
+    let mut timed = || {
+        done += 1;
+        progress(done, of);
+    };
+    let timings = stopwatch::time(&mut works, bounds, &mut timed, cancel)?;
     for (point, timing) in ran.iter_mut().zip(timings) {
         point.timing = Some(timing);
     }

@@ -8,13 +8,19 @@ use axum::routing::get;
 
 use super::App;
 use crate::compute::Cancel;
-use crate::http::{Ask, Format, Problem, Resource};
+use crate::http::{Ask, Format, Outlet, Problem, Resource};
 use crate::limits;
 use crate::wire::precision::{Precision, Request};
+use crate::wire::progress::{self, Progress};
 use crate::wire::scene;
 
-const RESOURCE: Resource =
-    Resource { name: "precision", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png] };
+const RESOURCE: Resource = Resource {
+    name: "precision",
+    formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Progress, Format::Svg, Format::Png],
+};
+
+/// Those that are sent line by line while it is measured.
+const STREAMED: [Format; 1] = [Format::Progress];
 
 /// Its path.
 pub fn routes() -> Router<App> {
@@ -29,15 +35,23 @@ async fn precision(State(app): State<App>, ask: Ask) -> Result<Response<Body>, P
     })?;
     let price = request.price().within(&limits::WORK)?;
     let metrics = app.metrics.clone();
-    ask.respond_afresh(&app.pool, &RESOURCE, price, move |format: Format, cancel: &Cancel| {
-        let precision = Precision::compute(&scene, &request, cancel)?;
+    let compute = move |format: Format, cancel: &Cancel, out: &mut Outlet| {
+        let mut lines = Progress::default();
+        let mut tell = |done, of| {
+            if STREAMED.contains(&format) {
+                out.send(lines.line(done, of));
+            }
+        };
+        let precision = Precision::compute(&scene, &request, &mut tell, cancel)?;
         metrics.bounces.inc_by(precision.bounces());
-        match format {
-            Format::Csv => Ok(precision.to_table().to_csv()),
-            Format::Ndjson => Ok(precision.to_table().to_ndjson(&precision.end())),
-            Format::Svg | Format::Png => super::picture(precision.to_picture(), format, cancel),
-            _ => super::json(&precision),
-        }
-    })
-    .await
+        let bytes = match format {
+            Format::Csv => precision.to_table().to_csv(),
+            Format::Ndjson => precision.to_table().to_ndjson(&precision.end()),
+            Format::Progress => progress::end(&super::json(&precision)?),
+            Format::Svg | Format::Png => super::picture(precision.to_picture(), format, cancel)?,
+            _ => super::json(&precision)?,
+        };
+        Ok(out.send_whole(bytes, cancel)?)
+    };
+    ask.respond_afresh(&app.pool, &RESOURCE, price, &STREAMED, compute).await
 }

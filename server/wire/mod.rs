@@ -16,6 +16,7 @@ pub mod outcome;
 pub mod periodic_orbits;
 pub mod precision;
 pub mod presets;
+pub mod progress;
 pub mod region;
 pub mod region_rows;
 pub mod scene;

@@ -121,9 +121,14 @@ pub struct Precision<'a> {
 }
 
 impl<'a> Precision<'a> {
-    /// Runs and times all of it.
-    pub fn compute(scene: &'a Scene, request: &Request, cancel: &Cancel) -> Result<Self, Cancelled> {
-        let chart = chart(scene, request.impacts, &request.methods, cancel)?;
+    /// Runs and times all of it, and tells `progress` how much of how much is done.
+    pub fn compute(
+        scene: &'a Scene,
+        request: &Request,
+        progress: &mut dyn FnMut(u64, u64),
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
+        let chart = chart(scene, request.impacts, &request.methods, progress, cancel)?;
         let named = |method: &Method| Named { name: method.name, title: method.title, about: method.about };
         let mut notes = vec![
             "cost is measured on this machine while it serves others; steps, evaluations and errors are the same everywhere"

@@ -1,0 +1,47 @@
+//! The lines of an answer that tells how far it is: at most one for each hundredth of the work, and last of all the answer.
+//!
+//! When a line comes is a matter of the work done, not of the clock: the same request has the same lines. Not here: what work is
+//! counted in, which is the resource's to say.
+
+/// What has been told so far.
+#[derive(Debug, Default)]
+pub struct Progress {
+    hundredth: Option<u64>,
+}
+
+impl Progress {
+    /// The line for so much `done`; empty within the hundredth that was told last.
+    pub fn line(&mut self, done: u64, of: u64) -> Vec<u8> {
+        let hundredth = Some(100 * done / of.max(1));
+        if self.hundredth == hundredth {
+            return Vec::new();
+        }
+        self.hundredth = hundredth;
+        format!("{{\"progress\":{{\"done\":{done},\"of\":{of}}}}}\n").into_bytes()
+    }
+}
+
+/// The last line, of an answer in JSON.
+pub fn end(answer: &[u8]) -> Vec<u8> {
+    [b"{\"end\":", answer, b"}\n"].concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_is_a_line_for_each_hundredth() {
+        let mut progress = Progress::default();
+        let lines: Vec<_> = (0..=1000).map(|done| progress.line(done, 1000)).filter(|line| !line.is_empty()).collect();
+        assert_eq!(lines.len(), 101);
+        assert_eq!(lines[57], b"{\"progress\":{\"done\":570,\"of\":1000}}\n");
+    }
+
+    #[test]
+    fn little_work_has_a_line_for_each_step() {
+        let mut progress = Progress::default();
+        assert!((0..=3).all(|done| !progress.line(done, 3).is_empty()));
+        assert_eq!(Progress::default().line(0, 0), b"{\"progress\":{\"done\":0,\"of\":0}}\n");
+    }
+}
