@@ -2,18 +2,16 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, measure, slide, verdict } from './stage.js';
+import { Stage, answersOf, free, measure, slide, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
 async function open(query, options) {
   const opened = await stage.page(query, options);
-  const answers = [];
-  opened.page.on('response', async (response) => { if (response.url().includes('v1/precision?')) answers.push(await response.json().catch(() => null)); });
   await verdict(opened.page);
   await opened.page.locator('#precision-body').scrollIntoViewIfNeeded();
   await opened.page.locator('#precision-measure').waitFor();
-  return { ...opened, answers };
+  return { ...opened, answers: await answersOf(opened.page, 'v1/precision?') };
 }
 
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
@@ -21,11 +19,11 @@ const marks = (page) => page.locator('#precision-box .mark').count();
 
 test('it is measured when somebody asks, and shows every point that has an error', async () => {
   const { page, answers, clean } = await open('?preset=case-1');
-  assert.equal(answers.length, 0);
+  assert.equal((await answers()).length, 0);
   assert.ok(await page.locator('.precision-sheet').isHidden());
   await measure(page, 20);
-  assert.equal(answers.length, 1);
-  const [{ points, methods, reference }] = answers;
+  assert.equal((await answers()).length, 1);
+  const { points, methods, reference } = (await answers())[0];
   assert.equal(reference.impacts, 20);
   const drawn = (cost) => points.filter((point) => point.error !== null && cost(point) > 0);
   assert.equal(await marks(page), drawn((point) => point.cost_ns_per_impact).length);
@@ -49,14 +47,14 @@ test('it is measured when somebody asks, and shows every point that has an error
   await page.selectOption('#precision-axis', 'steps');
   assert.equal(await marks(page), drawn((point) => point.steps).length);
   assert.equal(await page.locator('#precision-box .front').count(), 0);
-  assert.equal(answers.length, 1, 'another axis is no other measurement');
+  assert.equal((await answers()).length, 1, 'another axis is no other measurement');
   clean();
 });
 
 test('pointer and keys read the points', async () => {
   const { page, answers, clean } = await open('?preset=case-1');
   await measure(page, 20);
-  const [{ points, methods }] = answers;
+  const { points, methods } = (await answers())[0];
   const readout = async () => plain(await page.locator('#precision-readout').innerText());
   const title = (name) => methods.find((method) => method.name === name).title;
   const timed = points.filter((point) => point.error !== null && point.cost_ns_per_impact > 0);
@@ -78,22 +76,42 @@ test('pointer and keys read the points', async () => {
   clean();
 });
 
-test('it can be cancelled, and says when the scene is another one', async () => {
+test('it counts what is done, can be cancelled, and says when the scene is another one', async () => {
   const { page, answers, clean } = await open('?preset=case-1');
+  await page.fill('#precision-impacts', '1000');
   await page.click('#precision-measure');
-  assert.ok(await page.locator('#precision-told progress').isVisible());
+  await page.waitForFunction(() => document.querySelector('#precision-told progress').value > 3);
+  const [value, most, words] = await page.locator('#precision-told').evaluate((told) => [told.querySelector('progress').value, told.querySelector('progress').max, told.innerText]);
+  assert.ok(value < most && most > 50);
+  assert.match(words, new RegExp(`^Measuring… ${value} of ${most} parts$`));
   await page.click('#precision-cancel');
-  await page.locator('#precision-told', { hasText: 'Cancelled' }).waitFor();
+  await page.locator('#precision-told', { hasText: 'Cancelled.' }).waitFor();
+  await free(stage);
   assert.ok(await page.locator('#precision-measure').isEnabled());
   await page.fill('#precision-impacts', '1001');
   await page.click('#precision-measure');
   assert.match(await page.locator('#precision-error').innerText(), /from 1 to 1000/);
   await measure(page);
-  const before = answers.filter((answer) => answer).length;
+  const before = (await answers()).length;
   await slide(page, '#gain', await page.locator('#gain').evaluate((slider) => Number(slider.value) + Number(slider.step || 1)));
   await page.locator('#precision-told', { hasText: 'has changed' }).waitFor();
-  assert.equal(answers.filter((answer) => answer).length, before);
+  assert.equal((await answers()).length, before);
   clean();
+});
+
+test('its settings are in the address, and what is broken of them is dropped in words', async () => {
+  const { page, clean } = await open('?preset=case-1&precision.impacts=7&precision.axis=steps');
+  assert.deepEqual([await page.inputValue('#precision-impacts'), await page.inputValue('#precision-axis')], ['7', 'steps']);
+  await page.fill('#precision-impacts', '100');
+  await page.selectOption('#precision-axis', 'evaluations');
+  await page.waitForFunction(() => location.search.includes('evaluations'));
+  assert.equal(new URL(page.url()).search, '?preset=case-1&precision.axis=evaluations');
+  clean();
+  const broken = await open('?preset=case-1&precision.impacts=0&precision.axis=luck');
+  const words = await broken.page.locator('#notices').innerText();
+  for (const said of ['impacts “0”: it must be a whole number from 1 to 1000', 'axis “luck”: it must be one of time, evaluations, steps']) assert.ok(words.includes(`precision.${said}`), words);
+  assert.deepEqual([await broken.page.inputValue('#precision-impacts'), await broken.page.inputValue('#precision-axis')], ['100', 'time']);
+  broken.clean();
 });
 
 test('what the server refuses is told, and it can be asked again', async () => {

@@ -59,6 +59,12 @@ export class Stage {
     await ended;
   }
 
+  /** Pieces of work that the server does at the moment. */
+  async running() {
+    const metrics = await (await fetch(`${this.url}metrics`)).text();
+    return Number(/^equipoise_jobs_running (\d+)$/m.exec(metrics)[1]);
+  }
+
   async close() {
     await this.#browser?.close();
     await this.stopServer();
@@ -87,6 +93,32 @@ export class Stage {
     await page.locator(sign).first().waitFor();
     return { page, context, wrongs, clean: () => assert.deepEqual(wrongs, []) };
   }
+}
+
+/** Waits until the server does nothing more: far less than the work would take that was cancelled. @param {Stage} stage */
+export async function free(stage) {
+  const begin = Date.now();
+  while (await stage.running() > 0) {
+    assert.ok(Date.now() - begin < 5000, 'the work goes on for nobody');
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+}
+
+/**
+ * From now on keeps what the page hears from a path that tells its progress, and gives the answers; null for one that broke off.
+ * Browsers do not always keep the body of a stream for who looks at it from outside.
+ */
+export async function answersOf(page, path) {
+  await page.evaluate((wanted) => {
+    const real = globalThis.fetch;
+    globalThis.answers = [];
+    globalThis.fetch = async (input, init) => {
+      const response = await real(input, init);
+      if (String(input).includes(wanted)) globalThis.answers.push(response.clone().text().then((text) => JSON.parse(text.trim().split('\n').at(-1)).end ?? null).catch(() => null));
+      return response;
+    };
+  }, path);
+  return () => page.evaluate(() => Promise.all(globalThis.answers));
 }
 
 /** Waits until the verdict belongs to what is typed, and gives its words. */

@@ -2,18 +2,16 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, reachImpact, verdict } from './stage.js';
+import { Stage, answersOf, free, reachImpact, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
 async function open(query, options) {
   const opened = await stage.page(query, options);
-  const answers = [];
-  opened.page.on('response', (response) => { if (response.url().includes('v1/ensembles?')) answers.push(response.json().catch(() => null)); });
   await verdict(opened.page);
   await opened.page.locator('#survival-body').scrollIntoViewIfNeeded();
   await opened.page.locator('#survival-start').waitFor();
-  return { ...opened, answers };
+  return { ...opened, answers: await answersOf(opened.page, 'v1/ensembles?') };
 }
 
 async function runAll(page, runs, impacts) {
@@ -27,7 +25,7 @@ const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212'
 
 test('a scene without noise is tried with some, by either reading', async () => {
   const { page, answers, clean } = await open('?preset=case-1');
-  assert.equal(answers.length, 0);
+  assert.equal((await answers()).length, 0);
   assert.ok(await page.locator('.survival-sheet').isHidden());
   assert.ok(await page.locator('#survival-offer').isVisible());
   await runAll(page, 60, 120);
@@ -35,7 +33,7 @@ test('a scene without noise is tried with some, by either reading', async () => 
   await page.fill('#survival-timing', '5');
   await page.click('#survival-start');
   await page.waitForFunction(() => /noise\.model=plan/.test(document.querySelector('#survival-links a').href));
-  const [strike, plan] = await Promise.all(answers);
+  const [strike, plan] = await answers();
   assert.deepEqual([strike.scene.noise.timing_sd, strike.scene.noise.model, plan.scene.noise.timing_sd, plan.scene.noise.model], [0.01, 'strike', 0.005, 'plan']);
   assert.equal(await page.inputValue('#field-noise-timing_sd'), '', 'the scene of the page is left as it is');
   clean();
@@ -46,7 +44,7 @@ test('curve, numbers at risk, table and figures are the server’s', async () =>
   assert.ok(await page.locator('#survival-offer').isHidden());
   assert.match(plain(await page.locator('#survival-noise').innerText()), /10 ms/);
   await runAll(page, 80, 300);
-  const { survival, quantiles, survived, counts, runs, impacts } = await answers[0];
+  const { survival, quantiles, survived, counts, runs, impacts } = (await answers())[0];
   assert.ok(survived.runs > 0 && survived.runs < runs, 'a curve that falls, but not to the ground');
   assert.match(plain(await page.locator('#survival-told').innerText()), new RegExp(`^${survived.runs} of 80 runs outlast 300`));
   const risk = await page.locator('#survival-box .risk').allTextContents();
@@ -82,7 +80,7 @@ test('curve, numbers at risk, table and figures are the server’s', async () =>
 test('pointer and keys read the curve', async () => {
   const { page, answers, clean } = await open('?preset=case-1');
   await runAll(page, 50, 200);
-  const { survival } = await answers[0];
+  const { survival } = (await answers())[0];
   const readout = async () => plain(await page.locator('#survival-readout').innerText());
   await page.focus('#survival-box');
   await page.keyboard.press('End');
@@ -108,7 +106,7 @@ test('its links answer, and the first run can be watched', async () => {
   for (const href of await page.locator('#survival-links a').evaluateAll((links) => links.map((link) => link.href))) assert.ok((await fetch(href)).ok, href);
   await page.click('#survival-links button');
   const call = await page.evaluate(() => navigator.clipboard.readText());
-  assert.deepEqual(await (await fetch(/^curl '(.+)'$/.exec(call)[1])).json(), await answers[0]);
+  assert.deepEqual(await (await fetch(/^curl '(.+)'$/.exec(call)[1])).json(), (await answers())[0]);
   await page.click('#survival-first');
   await reachImpact(page, 2);
   const query = new URL(page.url()).searchParams;
@@ -117,13 +115,85 @@ test('its links answer, and the first run can be watched', async () => {
   clean();
 });
 
-test('what is wrong is said beside it, and a long answer can be cancelled', async () => {
+test('progress is counted in runs, and Cancel frees the server', async () => {
+  const { page, clean } = await open('?preset=case-1');
+  await runAll(page, 40, 50);
+  const before = await page.locator('#survival-box .curve').getAttribute('d');
+  // From a small angle no run ends early: the dearest there is.
+  await page.fill('#field-release-theta', '0.05');
+  await page.fill('#survival-runs', '20000');
+  await page.fill('#survival-impacts', '5000');
+  await page.focus('#survival-start');
+  await page.keyboard.press('Enter');
+  const bar = page.locator('#survival-told progress');
+  await page.waitForFunction(() => document.querySelector('#survival-told progress').value > 0);
+  assert.equal(await bar.getAttribute('max'), '20000');
+  const [value, words] = await page.locator('#survival-told').evaluate((told) => [told.querySelector('progress').value, told.innerText]);
+  assert.match(plain(words), new RegExp(`^Running… ${plain(value.toLocaleString('en').replace(',', value > 9999 ? ' ' : ''))} of 20 000 runs$`));
+  assert.ok(!(await page.locator('#survival-told [role=status]').innerText()).includes('of'), 'the count is not spoken at every step');
+  assert.equal(await page.locator('#survival-box .curve').getAttribute('d'), before, 'what was there stays');
+  assert.notEqual(await stage.running(), 0);
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'survival-cancel');
+  await page.keyboard.press('Enter');
+  await page.locator('#survival-told', { hasText: 'Cancelled. What is shown is from before.' }).waitFor();
+  assert.ok(await bar.isHidden());
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'survival-start');
+  await free(stage);
+  assert.equal(await page.locator('#survival-box .curve').getAttribute('d'), before);
+  await runAll(page, 30, 50);
+  clean();
+});
+
+test('an answer that breaks off says how far it came', async () => {
   const { page } = await open('?preset=case-1', { prepare: () => {
     const real = globalThis.fetch;
-    globalThis.hold = true;
-    globalThis.fetch = (input, init) => (globalThis.hold && String(input).includes('v1/ensembles')
-      ? new Promise((_, reject) => { init.signal.addEventListener('abort', () => reject(new DOMException('aborted', 'AbortError'))); }) : real(input, init));
+    globalThis.cut = true;
+    globalThis.fetch = (input, init) => {
+      if (!globalThis.cut || !String(input).includes('v1/ensembles')) return real(input, init);
+      const lines = [0, 90].map((done) => `${JSON.stringify({ progress: { done, of: 300 } })}\n`);
+      return Promise.resolve(new Response(new ReadableStream({
+        async pull(controller) {
+          const line = lines.shift();
+          if (line) return controller.enqueue(new TextEncoder().encode(line));
+          await new Promise((resolve) => { setTimeout(resolve, 50); });
+          if (globalThis.cut === 'clean') controller.close();
+          else controller.error(new TypeError('network error'));
+        },
+      })));
+    };
   } });
+  for (const cut of ['clean', true]) {
+    await page.evaluate((way) => { globalThis.cut = way; }, cut);
+    await page.click('#survival-start');
+    await page.locator('#survival-told', { hasText: 'The answer broke off at 90 of 300 runs.' }).waitFor();
+    assert.ok(await page.locator('#survival-told progress').isHidden());
+    assert.ok(await page.locator('.survival-sheet').isHidden());
+  }
+  await page.evaluate(() => { globalThis.cut = false; });
+  await runAll(page, 30, 50);
+});
+
+test('its settings are in the address, and what is broken of them is dropped in words', async () => {
+  const link = 'survival.runs=1000&survival.impacts=50&survival.timing_sd=0.0025&survival.model=plan';
+  const { page, clean } = await open(`?preset=case-1&${link}`);
+  const shown = () => Promise.all(['runs', 'impacts', 'timing', 'reading'].map((name) => page.inputValue(`#survival-${name}`)));
+  assert.deepEqual(await shown(), ['1000', '50', '2.5', 'plan']);
+  await page.fill('#survival-runs', '300');
+  await page.fill('#survival-timing', '12,5');
+  await page.selectOption('#survival-reading', 'strike');
+  await page.waitForFunction(() => !location.search.includes('survival.model'));
+  assert.equal(new URL(page.url()).search, '?preset=case-1&survival.runs=300&survival.impacts=50&survival.timing_sd=0.0125');
+  clean();
+  const broken = await open('?preset=case-1&survival.runs=20001&survival.impacts=1.5&survival.timing_sd=&survival.model=toString');
+  const words = plain(await broken.page.locator('#notices').innerText());
+  for (const said of ['runs “20001”: it must be a whole number from 1 to 20 000', 'impacts “1.5”: it must be a whole number from 1 to 100 000',
+    'timing_sd “”: it must be a number above 0 and up to 1000 ms', 'model “toString”: it must be strike or plan']) assert.ok(words.includes(`survival.${said}`), words);
+  assert.deepEqual(await Promise.all(['runs', 'impacts', 'timing', 'reading'].map((name) => broken.page.inputValue(`#survival-${name}`))), ['200', '400', '10', 'strike']);
+  broken.clean();
+});
+
+test('what is wrong is said beside it', async () => {
+  const { page } = await open('?preset=case-1');
   await page.fill('#survival-runs', '20001');
   await page.click('#survival-start');
   assert.match(plain(await page.locator('#survival-runs-error').innerText()), /1 to 20 000/);
@@ -133,11 +203,6 @@ test('what is wrong is said beside it, and a long answer can be cancelled', asyn
   await page.click('#survival-start');
   assert.match(await page.locator('#survival-timing-error').innerText(), /1000 ms/);
   await page.fill('#survival-timing', '10');
-  await page.click('#survival-start');
-  assert.ok(await page.locator('#survival-told progress').isVisible());
-  await page.click('#survival-cancel');
-  await page.locator('#survival-told', { hasText: 'Cancelled' }).waitFor();
-  await page.evaluate(() => { globalThis.hold = false; });
   await runAll(page, 50, 50);
   await page.fill('#survival-runs', '20000');
   await page.fill('#survival-impacts', '100000');

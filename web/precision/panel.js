@@ -1,7 +1,7 @@
 // Speed against accuracy of every method on the scene of the page: asked for when somebody wants it, since it keeps a core busy. Not for drawing.
 
+import { Asking } from '../asking.js';
 import { Plot, mark } from './plot.js';
-import { Problem, get } from '../api.js';
 import { actions } from '../save/actions.js';
 import { h, marked } from '../dom.js';
 import { lookOf } from './looks.js';
@@ -31,7 +31,12 @@ import { svg } from '../svg.js';
  * @property {string[]} notes
  */
 
+const USUAL_IMPACTS = 100;
 const MOST_IMPACTS = 1000;
+const MUST = `a whole number from 1 to ${MOST_IMPACTS}`;
+
+/** @param {number | null} impacts */
+const isRight = (impacts) => impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS;
 
 /**
  * What is along. Steps of different methods are different work, so that no point beats another by them.
@@ -50,16 +55,14 @@ const each = ({ impacts }, count) => (impacts > 0 && count !== null ? count / im
 const setting = ({ setting: told }) => (told ? `${told.name} ${quantity(told.value, told.unit, 2)}` : '');
 
 /** @type {import('../panels.js').Module['mount']} */
-export const mount = (root, { query }) => new PrecisionPanel(root, query);
+export const mount = (root, page) => new PrecisionPanel(root, page);
 
 class PrecisionPanel {
   #query;
-  #impacts = h('input', { id: 'precision-impacts', type: 'text', inputmode: 'numeric', autocomplete: 'off', value: '100', 'aria-describedby': 'precision-error' });
+  #impacts = h('input', { id: 'precision-impacts', type: 'text', inputmode: 'numeric', autocomplete: 'off', 'aria-describedby': 'precision-error' });
   #error = h('p', { class: 'error', id: 'precision-error' });
   #axis = h('select', { id: 'precision-axis', change: () => this.#draw() }, ...Object.entries(AXES).map(([value, { title }]) => h('option', { value }, title)));
-  #measure = h('button', { type: 'submit', id: 'precision-measure' }, 'Measure');
-  #cancel = h('button', { type: 'button', id: 'precision-cancel', disabled: true, click: () => this.#stop('Cancelled.') }, 'Cancel');
-  #told = h('div', { class: 'precision-told', id: 'precision-told', role: 'status' });
+  #asking = new Asking('precision', h('button', { type: 'submit', id: 'precision-measure' }, 'Measure'), 'Measuring', 'parts');
   #methods = h('ul', { class: 'methods', 'aria-label': 'Methods' });
   #box = h('div', { class: 'precision-box', id: 'precision-box', tabindex: 0, role: 'application', 'aria-roledescription': 'chart', 'aria-label': 'Speed against accuracy', 'aria-describedby': 'precision-hint' });
   #readout = h('output', { class: 'readout', id: 'precision-readout', 'aria-live': 'off' });
@@ -77,14 +80,12 @@ class PrecisionPanel {
   #drawn = [];
   /** @type {number | null} */
   #pointed = null;
-  /** @type {AbortController | null} */
-  #asking = null;
 
   /**
    * @param {HTMLElement} root
-   * @param {() => URLSearchParams | null} query the scene that is typed; null while some of it is no value
+   * @param {import('../panels.js').Page} page
    */
-  constructor(root, query) {
+  constructor(root, { query, changed }) {
     this.#query = query;
     const head = ['Method', 'Setting', 'ns/impact', 'quartiles', 'steps', 'evaluations', 'error / m or m/s', 'best', 'outcome'];
     this.#sheet = h('div', { class: 'precision-sheet', hidden: true }, this.#box, this.#readout, this.#spoken,
@@ -92,35 +93,46 @@ class PrecisionPanel {
       h('details', {}, h('summary', {}, 'Numbers'), h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: speed against accuracy' },
         h('table', {}, h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))), this.#body))),
       h('details', {}, h('summary', {}, 'How it was measured'), this.#notes), this.#links);
-    root.append(h('div', {}, h('form', { novalidate: true, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.#ask(); } },
+    root.append(h('div', {}, h('form', { novalidate: true, change: changed, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.#ask(); } },
       h('p', { class: 'precision-row' }, h('label', { for: 'precision-impacts' }, 'Contacts'), this.#impacts), this.#error,
       h('p', { class: 'precision-row' }, h('label', { for: 'precision-axis' }, 'Across'), this.#axis),
-      h('p', { class: 'buttons' }, this.#measure, this.#cancel), this.#told), this.#methods), this.#sheet);
-    this.#told.append('It runs the scene by eleven methods with all their settings, which takes the server some seconds.');
+      this.#asking.buttons, this.#asking.told), this.#methods), this.#sheet);
+    this.#asking.say('It runs the scene by eleven methods with all their settings, which takes the server some seconds.');
     this.#plot = new Plot(this.#box);
     this.#box.addEventListener('pointermove', (event) => this.#point(this.#plot.nearest(event), false));
     this.#box.addEventListener('pointerleave', () => this.#point(null, false));
     this.#box.addEventListener('keydown', (event) => this.#key(event));
+    this.restore(new URLSearchParams());
+  }
+
+  /** Its part of the page’s address. */
+  query() {
+    const query = new URLSearchParams();
+    const impacts = parse(this.#impacts.value, '1');
+    if (isRight(impacts) && impacts !== USUAL_IMPACTS) query.set('precision.impacts', String(impacts));
+    if (this.#axis.value !== 'time') query.set('precision.axis', this.#axis.value);
+    return query;
+  }
+
+  /** @param {URLSearchParams} link */
+  restore(link) {
+    const dropped = [];
+    const text = link.get('precision.impacts');
+    const impacts = text === null ? USUAL_IMPACTS : Number(text);
+    if (!isRight(impacts)) dropped.push(`precision.impacts “${text?.slice(0, 40)}”: it must be ${MUST}`);
+    this.#impacts.value = String(isRight(impacts) ? impacts : USUAL_IMPACTS);
+    this.#blame('');
+    const axis = link.get('precision.axis') ?? 'time';
+    if (!Object.hasOwn(AXES, axis)) dropped.push(`precision.axis “${axis.slice(0, 40)}”: it must be one of ${Object.keys(AXES).join(', ')}`);
+    this.#axis.value = Object.hasOwn(AXES, axis) ? axis : 'time';
+    this.#draw();
+    return dropped;
   }
 
   /** The scene of the page is another one. */
   sceneChanged() {
-    if (this.#asking) this.#stop('The scene has changed; measure again.');
-    else if (this.#shown) this.#told.replaceChildren('The scene has changed since.');
-  }
-
-  /** @param {string} words */
-  #stop(words) {
-    this.#asking?.abort();
-    this.#busy(null);
-    this.#told.replaceChildren(words);
-  }
-
-  /** @param {AbortController | null} asking */
-  #busy(asking) {
-    this.#asking = asking;
-    this.#measure.disabled = asking !== null;
-    this.#cancel.disabled = asking === null;
+    if (this.#asking.active) this.#asking.stop('The scene has changed; measure again.');
+    else if (this.#shown) this.#asking.say('The scene has changed since.');
   }
 
   /** @param {string} words about the number of contacts */
@@ -131,28 +143,18 @@ class PrecisionPanel {
 
   async #ask() {
     const impacts = parse(this.#impacts.value, '1');
-    this.#blame(impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS ? '' : `Contacts must be a whole number from 1 to ${MOST_IMPACTS}.`);
+    this.#blame(isRight(impacts) ? '' : `Contacts must be ${MUST}.`);
     if (this.#error.textContent) return this.#impacts.focus();
     const request = this.#query();
-    if (!request) return this.#told.replaceChildren('A parameter of the scene is not a number; it is marked among them.');
+    if (!request) return this.#asking.say('A parameter of the scene is not a number; it is marked among them.');
     request.set('impacts', String(impacts));
-    const asking = new AbortController();
-    this.#busy(asking);
-    this.#told.replaceChildren('Measuring…', h('progress', { 'aria-label': 'Measuring' }));
-    try {
-      const answer = await get(`v1/precision?${request}`, asking.signal);
-      if (asking.signal.aborted) return;
-      this.#shown = { answer, request };
-      this.#busy(null);
-      const { reference: { impacts: seen, outcome } } = answer;
-      this.#told.replaceChildren(`Measured over ${number(seen)} impacts: ${outcome.replaceAll('_', ' ')}.`);
-      this.#sheet.hidden = false;
-      this.#show();
-    } catch (error) {
-      if (asking.signal.aborted) return;
-      this.#busy(null);
-      this.#told.replaceChildren(...marked(error instanceof Problem ? error.errors.map(({ detail }) => detail).join(' ') || error.message : 'The server does not answer.'));
-    }
+    const answer = await this.#asking.ask(`v1/precision?${request}`);
+    if (!answer) return;
+    this.#shown = { answer, request };
+    const { reference: { impacts: seen, outcome } } = answer;
+    this.#asking.say(`Measured over ${number(seen)} impacts: ${outcome.replaceAll('_', ' ')}.`);
+    this.#sheet.hidden = false;
+    this.#show();
   }
 
   #show() {

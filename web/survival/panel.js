@@ -1,9 +1,9 @@
 // How long runs of the page's scene last when the table errs: many runs, asked for when somebody wants them. Not for drawing.
 
+import { Asking } from '../asking.js';
 import { Plot } from './plot.js';
-import { Problem, get } from '../api.js';
-import { h, marked, prose } from '../dom.js';
 import { actions } from '../save/actions.js';
+import { h, marked, prose } from '../dom.js';
 import { number, parse, quantity, unbroken } from '../numbers.js';
 
 /** @typedef {import('../api.js').Scene} Scene */
@@ -24,30 +24,37 @@ import { number, parse, quantity, unbroken } from '../numbers.js';
  */
 
 const QUANTILES = /** @type {const} */ (['q05', 'q25', 'q50', 'q75', 'q95']);
-/** What a table without noise of its own is tried with, s. */
-const TIMING_SD_S = 0.01;
+/** What is typed: its name in requests, its value at first, how many of what is typed are one of it, and what it must be. */
+const TYPED = {
+  runs: { key: 'runs', usual: 200, scale: 1, most: 20_000, must: `a whole number from 1 to ${number(20_000, 7)}` },
+  impacts: { key: 'impacts', usual: 400, scale: 1, most: 100_000, must: `a whole number from 1 to ${number(100_000, 7)}` },
+  // What a table without noise of its own is tried with.
+  timing: { key: 'timing_sd', usual: 0.01, scale: 1000, most: 1, must: 'a number above 0 and up to 1000 ms' },
+};
+/** @typedef {keyof typeof TYPED} Name */
+const NAMES = /** @type {Name[]} */ (Object.keys(TYPED));
 const READINGS = { strike: 'It strikes early or late', plan: 'It carries out the plan for a wrong time' };
-const LIMITS = { runs: 20_000, impacts: 100_000 };
+
+/** @param {Name} name @param {number | null} value */
+const isRight = (name, value) => value !== null && value > 0 && value <= TYPED[name].most && (TYPED[name].scale !== 1 || Number.isInteger(value));
 
 /** @param {Scene} scene */
 const hasNoise = ({ noise }) => (noise?.timing_sd ?? 0) > 0 || (noise?.angle_sd ?? 0) > 0;
 
-/** @param {string} id @param {string} value */
-const typed = (id, value) => h('input', { id, type: 'text', inputmode: 'decimal', autocomplete: 'off', value, 'aria-describedby': `${id}-error` });
+/** @param {string} id */
+const typed = (id) => h('input', { id, type: 'text', inputmode: 'decimal', autocomplete: 'off', 'aria-describedby': `${id}-error` });
 
 /** @type {import('../panels.js').Module['mount']} */
 export const mount = (root, page) => new SurvivalPanel(root, page);
 
 class SurvivalPanel {
   #page;
-  #inputs = { runs: typed('survival-runs', '200'), impacts: typed('survival-impacts', '400'), timing: typed('survival-timing', '10') };
+  #inputs = { runs: typed('survival-runs'), impacts: typed('survival-impacts'), timing: typed('survival-timing') };
   #errors = { runs: h('p', { class: 'error', id: 'survival-runs-error' }), impacts: h('p', { class: 'error', id: 'survival-impacts-error' }), timing: h('p', { class: 'error', id: 'survival-timing-error' }) };
   #reading = h('select', { id: 'survival-reading' }, ...Object.entries(READINGS).map(([value, words]) => h('option', { value }, words)));
   #offered;
   #own = h('p', { class: 'muted', id: 'survival-noise' });
-  #start = h('button', { type: 'submit', id: 'survival-start' }, 'Run them all');
-  #cancel = h('button', { type: 'button', id: 'survival-cancel', disabled: true, click: () => this.#stop('Cancelled.') }, 'Cancel');
-  #told = h('div', { class: 'survival-told', id: 'survival-told', role: 'status' });
+  #asking = new Asking('survival', h('button', { type: 'submit', id: 'survival-start' }, 'Run them all'), 'Running', 'runs');
   #box = h('div', { class: 'survival-box', id: 'survival-box', tabindex: 0, role: 'application', 'aria-roledescription': 'chart', 'aria-label': 'Survival', 'aria-describedby': 'survival-hint' });
   #readout = h('output', { class: 'readout', id: 'survival-readout', 'aria-live': 'off' });
   // Spoken when keys move; a pointer's way over the chart is not.
@@ -62,16 +69,14 @@ class SurvivalPanel {
   #shown = null;
   /** @type {number | null} */
   #pointed = null;
-  /** @type {AbortController | null} */
-  #asking = null;
 
   /**
    * @param {HTMLElement} root
-   * @param {{query: () => URLSearchParams | null, scene: () => Scene, play: (scene: Scene) => void}} page the scene that is typed, and how one is run
+   * @param {import('../panels.js').Page} page
    */
   constructor(root, page) {
     this.#page = page;
-    const row = (/** @type {'runs' | 'impacts' | 'timing'} */ name, /** @type {string} */ label) => [h('p', { class: 'survival-row' }, h('label', { for: `survival-${name}` }, label), this.#inputs[name]), this.#errors[name]];
+    const row = (/** @type {Name} */ name, /** @type {string} */ label) => [h('p', { class: 'survival-row' }, h('label', { for: `survival-${name}` }, label), this.#inputs[name]), this.#errors[name]];
     this.#offered = h('div', { id: 'survival-offer' }, h('p', { class: 'muted' }, 'The scene has no noise; this one is tried.'), ...row('timing', 'σ_t / ms'),
       h('p', { class: 'survival-wide' }, h('label', { for: 'survival-reading' }, 'A table that errs in time:'), this.#reading));
     this.#offered.querySelector('label')?.replaceChildren(...marked('σ_t / ms'));
@@ -82,21 +87,49 @@ class SurvivalPanel {
       h('details', {}, h('summary', {}, 'Numbers'), h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: survival' },
         h('table', {}, h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))), this.#body))),
       h('details', {}, h('summary', {}, 'How it was counted'), this.#notes), this.#links);
-    root.append(h('form', { novalidate: true, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.#ask(); } },
-      ...row('runs', 'Runs'), ...row('impacts', 'Contacts'), this.#own, this.#offered,
-      h('p', { class: 'buttons' }, this.#start, this.#cancel), this.#told), this.#sheet);
+    root.append(h('form', { novalidate: true, change: page.changed, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.#ask(); } },
+      ...row('runs', 'Runs'), ...row('impacts', 'Contacts'), this.#own, this.#offered, this.#asking.buttons, this.#asking.told), this.#sheet);
     this.#plot = new Plot(this.#box);
     this.#box.addEventListener('pointermove', (event) => this.#point(this.#plot.nearest(event), false));
     this.#box.addEventListener('pointerleave', () => this.#point(null, false));
     this.#box.addEventListener('keydown', (event) => this.#key(event));
     this.#offer();
+    this.restore(new URLSearchParams());
+  }
+
+  /** Its part of the page’s address. */
+  query() {
+    const query = new URLSearchParams();
+    for (const name of NAMES) {
+      const value = this.#value(name);
+      if (isRight(name, value) && value !== TYPED[name].usual) query.set(`survival.${TYPED[name].key}`, String(value));
+    }
+    if (this.#reading.value !== 'strike') query.set('survival.model', this.#reading.value);
+    return query;
+  }
+
+  /** @param {URLSearchParams} link */
+  restore(link) {
+    const dropped = [];
+    for (const name of NAMES) {
+      const { key, usual, scale, must } = TYPED[name];
+      const text = link.get(`survival.${key}`);
+      const value = text === null ? usual : Number(text);
+      if (!isRight(name, value)) dropped.push(`survival.${key} “${text?.slice(0, 40)}”: it must be ${must}`);
+      this.#inputs[name].value = String(Number(((isRight(name, value) ? value : usual) * scale).toPrecision(12)));
+      this.#blame(name, '');
+    }
+    const model = link.get('survival.model') ?? 'strike';
+    if (!Object.hasOwn(READINGS, model)) dropped.push(`survival.model “${model.slice(0, 40)}”: it must be ${Object.keys(READINGS).join(' or ')}`);
+    this.#reading.value = Object.hasOwn(READINGS, model) ? model : 'strike';
+    return dropped;
   }
 
   /** The scene of the page is another one. */
   sceneChanged() {
     this.#offer();
-    if (this.#asking) this.#stop('The scene has changed; run them again.');
-    else if (this.#shown) this.#told.replaceChildren('The scene has changed since.');
+    if (this.#asking.active) this.#asking.stop('The scene has changed; run them again.');
+    else if (this.#shown) this.#asking.say('The scene has changed since.');
   }
 
   /** Noise to try with, where the scene has none. */
@@ -110,21 +143,13 @@ class SurvivalPanel {
     this.#own.replaceChildren('Noise of the scene: ', ...marked(parts.join(', ')), timing ? `. ${READINGS[/** @type {'strike'} */ (model)] ?? model}.` : '.');
   }
 
-  /** @param {string} words */
-  #stop(words) {
-    this.#asking?.abort();
-    this.#busy(null);
-    this.#told.replaceChildren(words);
+  /** What is typed, in the server's unit; null where it is no number. @param {Name} name */
+  #value(name) {
+    const value = parse(this.#inputs[name].value, null);
+    return value === null ? null : Number((value / TYPED[name].scale).toPrecision(12));
   }
 
-  /** @param {AbortController | null} asking */
-  #busy(asking) {
-    this.#asking = asking;
-    this.#start.disabled = asking !== null;
-    this.#cancel.disabled = asking === null;
-  }
-
-  /** @param {'runs' | 'impacts' | 'timing'} name @param {string} words */
+  /** @param {Name} name @param {string} words */
   #blame(name, words) {
     this.#errors[name].textContent = words;
     this.#inputs[name].setAttribute('aria-invalid', String(words !== ''));
@@ -135,53 +160,37 @@ class SurvivalPanel {
     const request = this.#page.query();
     /** @type {HTMLInputElement[]} */
     const wrong = [];
-    for (const name of /** @type {const} */ (['runs', 'impacts'])) {
-      const value = parse(this.#inputs[name].value, '1');
-      const right = value !== null && Number.isInteger(value) && value >= 1 && value <= LIMITS[name];
-      this.#blame(name, right ? '' : `It must be a whole number from 1 to ${number(LIMITS[name], 7)}.`);
-      if (right) request?.set(name, String(value));
-      else wrong.push(this.#inputs[name]);
+    for (const name of NAMES) {
+      if (name === 'timing' && this.#offered.hidden) continue;
+      const value = this.#value(name);
+      const right = isRight(name, value);
+      this.#blame(name, right ? '' : `It must be ${TYPED[name].must}.`);
+      if (!right) wrong.push(this.#inputs[name]);
+      request?.set(name === 'timing' ? 'scene.noise.timing_sd' : name, String(value));
     }
-    if (!this.#offered.hidden) {
-      const value = parse(this.#inputs.timing.value, 'ms');
-      const right = value !== null && value > 0 && value <= 1000;
-      this.#blame('timing', right ? '' : 'It must be a number above 0 and up to 1000 ms.');
-      if (!right) wrong.push(this.#inputs.timing);
-      request?.set('scene.noise.timing_sd', String(right ? Number((value / 1000).toPrecision(12)) : TIMING_SD_S));
-      request?.set('scene.noise.model', this.#reading.value);
-    }
+    if (!this.#offered.hidden) request?.set('scene.noise.model', this.#reading.value);
     wrong[0]?.focus();
     if (wrong.length > 0) return null;
-    if (!request) this.#told.replaceChildren('A parameter of the scene is not a number; it is marked among them.');
+    if (!request) this.#asking.say('A parameter of the scene is not a number; it is marked among them.');
     return request;
   }
 
   async #ask() {
     const request = this.#request();
     if (!request) return;
-    const asking = new AbortController();
-    this.#busy(asking);
-    this.#told.replaceChildren(`${number(Number(request.get('runs')), 6)} runs…`, h('progress', { 'aria-label': 'Running' }));
     const path = `v1/ensembles?${request}`;
-    try {
-      const answer = await get(path, asking.signal);
-      if (asking.signal.aborted) return;
-      this.#shown = { answer, path };
-      this.#busy(null);
-      this.#sheet.hidden = false;
-      this.#show();
-    } catch (error) {
-      if (asking.signal.aborted) return;
-      this.#busy(null);
-      this.#told.replaceChildren(...marked(error instanceof Problem ? error.errors.map(({ detail }) => detail).join(' ') || error.message : 'The server does not answer.'));
-    }
+    const answer = await this.#asking.ask(path);
+    if (!answer) return;
+    this.#shown = { answer, path };
+    this.#sheet.hidden = false;
+    this.#show();
   }
 
   #show() {
     if (!this.#shown) return;
     const { answer, path } = this.#shown;
     const { survived, runs, impacts, counts, survival, quantiles } = answer;
-    this.#told.replaceChildren(`${number(survived.runs, 6)} of ${number(runs, 6)} runs outlast ${number(impacts, 7)} contacts.`);
+    this.#asking.say(`${number(survived.runs, 6)} of ${number(runs, 6)} runs outlast ${number(impacts, 7)} contacts.`);
     const ends = Object.entries(counts).filter(([name, count]) => name !== 'completed' && count > 0).map(([name, count]) => `${number(count, 6)} ${name.replaceAll('_', ' ')}`);
     /** @type {[string, string, string][]} */
     const rows = [['share', number(survived.share), `${number(survived.lower)} to ${number(survived.upper)} with 95 %`],
