@@ -24,13 +24,14 @@ export class Stage {
   #browser = null;
   #contexts = [];
 
-  static async open() {
+  /** Outside of tests, without their hooks. @param {{after: Function, afterEach: Function} | null} hooks */
+  static async open(hooks = { after, afterEach }) {
     const stage = new Stage();
     stage.port = await freePort();
     stage.url = `http://127.0.0.1:${stage.port}/`;
-    after(() => stage.close());
+    hooks?.after(() => stage.close());
     // A page that is left open goes on running beside the next test.
-    afterEach(() => Promise.all(stage.#contexts.splice(0).map((context) => context.close())));
+    hooks?.afterEach(() => Promise.all(stage.#contexts.splice(0).map((context) => context.close())));
     await stage.startServer();
     stage.#browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: FLAGS });
     return stage;
