@@ -133,3 +133,28 @@ export function drawMark(context, series, x, y, r) {
 
 /** @param {number} series */
 export const seriesColour = (series) => theme()[/** @type {'series-0'} */ (`series-${series % 4}`)];
+
+/** @typedef {'plain' | 'selected' | 'receded'} Look */
+
+/**
+ * The dot of an impact: whether it is selected is told by size and ring as well as by colour.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number} series
+ * @param {number} x
+ * @param {number} y
+ * @param {Look} look
+ * @param {boolean} many a dot among so many that it must be small
+ */
+export function drawDot(context, series, x, y, look, many) {
+  const size = many ? 0.6 : 1;
+  drawMark(context, series, x, y, size * { plain: 1.8, selected: 3, receded: 1.3 }[look]);
+  context.fillStyle = seriesColour(series);
+  context.globalAlpha = look === 'receded' ? 0.4 : 1;
+  context.fill();
+  context.globalAlpha = 1;
+  // Rings that overlap would hide what they surround.
+  if (look !== 'selected' || many) return;
+  context.lineWidth = 1.25;
+  context.strokeStyle = theme().ink;
+  context.stroke();
+}

@@ -6,8 +6,8 @@ export const COLUMNS = /** @type {const} */ (['n', 't', 'x', 'theta', 'x_dot', '
 /** @typedef {(typeof COLUMNS)[number]} Column */
 /** @typedef {Record<Column, number>} Impact states just before the impact, `…_after` just after; what does not exist is NaN */
 
-// What stays in memory, 4 MB of it: a day's run must not grow the page.
-const KEPT = 1 << 15;
+// What stays in memory, 19 MB of it: a day's run must not grow the page.
+const KEPT = 1 << 17;
 
 export class Impacts {
   /** Counts every impact taken in, forgotten ones included: the place of the next one. */
@@ -34,6 +34,9 @@ export class Impacts {
     return this.#columns[column][place % this.#room];
   }
 
+  /** All that is kept of a column, for those who read much of it: a place is its index, less whole lengths. @param {Column} column */
+  column(column) { return this.#columns[column]; }
+
   /** @param {number} place @returns {Impact} */
   row(place) {
     return /** @type {Impact} */ (Object.fromEntries(COLUMNS.map((name) => [name, this.at(name, place)])));
@@ -45,10 +48,10 @@ export class Impacts {
   /** @param {Impact} impact */
   append(impact) {
     if (this.end === this.#room && this.#room < KEPT) {
-      const wider = Impacts.#allocate(this.#room * 4);
+      this.#room = Math.min(KEPT, this.#room * 4);
+      const wider = Impacts.#allocate(this.#room);
       for (const name of COLUMNS) wider[name].set(this.#columns[name]);
       this.#columns = wider;
-      this.#room *= 4;
     }
     for (const name of COLUMNS) this.#columns[name][this.end % this.#room] = impact[name];
     this.end += 1;

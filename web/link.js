@@ -9,7 +9,7 @@ import { playedAt, same, setAt } from './api.js';
 /** @typedef {{impact: number, set: Record<string, number | string>, kick: Record<string, number>}} Intervention */
 
 /** What belongs to a panel, by its name. */
-const PANEL_KEYS = /^(map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input)))$/;
+const PANEL_KEYS = /^(map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input))|brush\.\w+\.(from|to))$/;
 
 export const SLOWEST = 0.05;
 export const FASTEST = 20;

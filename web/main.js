@@ -37,6 +37,8 @@ let form = null;
 let speed = 1;
 /** Those below the fold, which come after the first plot. @type {import('./panels.js').Panels | null} */
 let panels = null;
+/** What acts on all charts of the impacts, after the first plot too. @type {import('./planes/acts.js').Acts | null} */
+let acts = null;
 /** What they show by the link, and the newest verdict, until they are there. */
 let panelLink = new URLSearchParams();
 /** @type {import('./panels.js').Judged | null} */
@@ -46,8 +48,8 @@ let lastSent = 'other';
 
 const run = new Run({
   changed: showRun,
-  struck: () => { for (const plot of plots) invalidate(plot); view.redraw(); },
-  cleared: () => { for (const plot of plots) plot.clear(); view.reset(); },
+  struck: () => { for (const plot of plots) invalidate(plot); acts?.struck(); view.redraw(); },
+  cleared: () => { for (const plot of plots) plot.clear(); acts?.cleared(); view.reset(); },
   lost: (seconds) => connectionNotice(seconds, () => run.retry()),
   refused: (problem) => {
     clearNotice('connection');
@@ -79,7 +81,6 @@ byId('charts').append(plots[0].figure.element, plots[1].figure.element, circle.f
 for (const one of [...plots, circle]) one.figure.offer(() => savesOf(one.figure.id, one.figure.title, one));
 const sceneCard = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
 sceneCard.querySelector('.card-head')?.append(enlarger(sceneCard, 'Scene', () => savesOf('scene', 'Scene', view)));
-for (const plot of plots) plot.onPoint = (place) => { for (const other of plots) other.point(place); };
 
 /** What is typed, as a query; null while some of it is no value. */
 function typedQuery() {
@@ -358,10 +359,12 @@ async function begin() {
   // The plots of the first look are drawn in the next frame; what nobody sees yet comes after.
   await new Promise((resolve) => requestAnimationFrame(resolve));
   performance.mark('first plot');
-  const [{ Panels }, { listenToKeys }] = await Promise.all([import('./panels.js'), import('./keys.js')]);
+  const [{ Panels }, { listenToKeys }, { Acts }] = await Promise.all([import('./panels.js'), import('./keys.js'), import('./planes/acts.js')]);
   listenToKeys(KEYS);
   panels = new Panels(byId('main'), { fields, query: typedQuery, scene: () => form?.read().scene ?? {}, chosen: () => chosen, played: playedQuery, launch, play, changed: address },
     (id, dropped) => (dropped.length > 0 ? notWhole(`link-${id}`, dropped) : clearNotice(`link-${id}`)));
+  acts = new Acts(byId('impacts-bar'), { run, view, plots, typed: () => form?.read().scene ?? null, fields, launch, changed: address });
+  panels.join('brush', acts);
   panels.restore(panelLink);
   if (judged) panels.judged(judged);
 }

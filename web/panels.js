@@ -57,7 +57,7 @@ export const PANELS = [
 ];
 
 /** @param {string} path @returns {Promise<void>} */
-function styles(path) {
+export function styles(path) {
   return new Promise((resolve, reject) => {
     document.head.append(h('link', { rel: 'stylesheet', href: path, load: () => resolve(), error: () => reject(new Error(path)) }));
   });
@@ -119,6 +119,11 @@ export class Panels {
         void bring();
       }, { rootMargin: '100px 0px' }).observe(body);
     }
+  }
+
+  /** One that has its place already takes its part of the address as well. @param {string} id @param {Panel} panel */
+  join(id, panel) {
+    this.#mounted.set(id, panel);
   }
 
   /** @param {string} id @param {Panel} panel */

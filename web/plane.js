@@ -10,7 +10,7 @@ const HINT = 'Every impact becomes a dot here';
 /** @param {Impacts} impacts */
 export function anglePlane(impacts) {
   return new ImpactPlot(impacts, {
-    id: 'plane-angle', title: 'Angle ⟨θ, θ̇⟩', about: 'Tilt and spin just before each impact. A closed loop is balance.', hint: HINT,
+    id: 'plane-angle', start: 'angle', title: 'Angle ⟨θ, θ̇⟩', about: 'Tilt and spin just before each impact. A closed loop is balance.', hint: HINT,
     lacking: 'A point mass has no spin', spoken: 'Phase plane of angle θ and angular velocity θ̇',
     x: { column: 'theta', name: 'θ / rad', symmetric: true, span: 0.04 }, y: { column: 'theta_dot', name: 'θ̇ / rad s⁻¹', symmetric: true, span: 0.1 },
     head: ['impact', 't / s', 'θ / rad', 'θ̇ / rad s⁻¹', 'α / rad'],
@@ -22,7 +22,7 @@ export function anglePlane(impacts) {
 /** @param {Impacts} impacts */
 export function velocityPlane(impacts) {
   return new ImpactPlot(impacts, {
-    id: 'plane-velocity', title: 'Velocity ⟨ẋ, ẏ⟩', about: 'Velocity of the centre of gravity just before each impact.', hint: HINT,
+    id: 'plane-velocity', start: 'velocity', title: 'Velocity ⟨ẋ, ẏ⟩', about: 'Velocity of the centre of gravity just before each impact.', hint: HINT,
     spoken: 'Phase plane of the velocities ẋ and ẏ of the centre of gravity',
     x: { column: 'x_dot', name: 'ẋ / m s⁻¹', symmetric: true, span: 0.04 }, y: { column: 'y_dot', name: 'ẏ / m s⁻¹', span: 0.02 },
     head: ['impact', 't / s', 'ẋ / m s⁻¹', 'ẏ / m s⁻¹', 'contact speed / m s⁻¹'],

@@ -25,6 +25,8 @@ export class SceneView {
   #run;
   #box;
   #surface;
+  /** Draws marks on the floor. @type {((surface: import('./surface.js').Surface, scale: import('./bodies.js').Scale, scene: Scene) => void) | null} */
+  under = null;
   #readout;
   /** What to draw while there is no run. @type {Scene | null} */
   #draft = null;
@@ -129,6 +131,7 @@ export class SceneView {
     this.#ground();
     const scale = this.#scale();
     this.#wanted(scale, scene);
+    this.under?.(this.#surface, scale, scene);
     this.#trail(scale, scene, place, t);
     const last = strikeOf(impact, scene) ?? { t: 0, x: arc.x + contactDistance(scene) * Math.sin(arc.theta), y: 0, alpha: 0, speed: 0 };
     const next = arc.duration > 0 ? strikeAfter(arc, scene) : last;

@@ -1,6 +1,6 @@
 // The style sheet's colours for canvases, read once per change of scheme. Not for elements: those have the style sheet.
 
-const NAMES = /** @type {const} */ (['ink', 'muted', 'line', 'faint', 'surface', 'accent', 'strike', 'good', 'series-0', 'series-1', 'series-2', 'series-3']);
+const NAMES = /** @type {const} */ (['ink', 'muted', 'line', 'faint', 'surface', 'accent', 'strike', 'good', 'series-0', 'series-1', 'series-2', 'series-3', 'measured']);
 
 /** @typedef {Record<(typeof NAMES)[number], string>} Colours */
 

@@ -5,11 +5,13 @@ import { Circle } from '../circle.js';
 import { Problem, fieldsOf, get } from '../api.js';
 import { Run } from '../run.js';
 import { SceneView } from '../scene-view.js';
+import { Selection } from '../selection.js';
 import { anglePlane, velocityPlane } from '../plane.js';
 import { byId, h } from '../dom.js';
 import { clearNotice, connectionNotice, notice } from '../notices.js';
 import { energyPlot } from '../energy.js';
 import { invalidate } from '../surface.js';
+import { listen } from '../planes/pointing.js';
 import { merged, readLink, sceneQuery } from '../link.js';
 import { PANELS, card } from '../panels.js';
 
@@ -27,14 +29,19 @@ const VIEWS = {
     const view = new SceneView(box, readout, run);
     return { element: h('section', { class: 'card scene', 'aria-label': 'Scene' }, box, readout), view, clear: () => view.reset() };
   },
-  'plane-angle': (/** @type {Run} */ run) => plot(anglePlane(run.impacts)),
-  'plane-velocity': (/** @type {Run} */ run) => plot(velocityPlane(run.impacts)),
-  energy: (/** @type {Run} */ run) => plot(energyPlot(run.impacts, () => run.scene)),
+  'plane-angle': (/** @type {Run} */ run) => plot(anglePlane(run.impacts), run),
+  'plane-velocity': (/** @type {Run} */ run) => plot(velocityPlane(run.impacts), run),
+  energy: (/** @type {Run} */ run) => plot(energyPlot(run.impacts, () => run.scene), run),
 };
 
-/** @param {import('../impact-plot.js').ImpactPlot} view */
-function plot(view) {
-  view.onPoint = (place) => view.point(place);
+/** @param {import('../impact-plot.js').ImpactPlot} view @param {Run} run */
+function plot(view, { impacts }) {
+  const selection = new Selection(impacts);
+  const spoken = h('p', { class: 'unseen', role: 'status' });
+  selection.changed = () => view.redraw();
+  view.figure.element.append(spoken);
+  // Nothing is released here, so that no click offers to.
+  listen(view, { impacts, selection, typed: () => null, fields: [], launch: () => {}, point: (place) => view.point(place), say: (words) => { spoken.textContent = words; } });
   return { element: view.figure.element, view, clear: () => view.clear() };
 }
 
