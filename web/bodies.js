@@ -2,7 +2,7 @@
 
 import { line } from './axes.js';
 import { MODES } from './impacts.js';
-import { SANS, theme } from './theme.js';
+import { SANS, SERIF, theme } from './theme.js';
 import { contactDistance, corners } from './flight.js';
 import { fixed } from './numbers.js';
 
@@ -126,6 +126,9 @@ export function drawTable(context, scale, table, half, floor) {
 const ARROW_S = 0.04;
 // Friction is much the smaller part.
 const FRICTION_S = 0.2;
+const LEAST_PX = 26;
+// Over the table, on which it would not be seen.
+const RAISED_PX = 8;
 
 /**
  * Normal, impulse and its part along the table, which is friction, where rod and table met.
@@ -144,20 +147,28 @@ export function drawStrike(context, scale, impact, strike, strength) {
   context.globalAlpha = strength;
   context.setLineDash([4, 4]);
   context.lineWidth = 1;
-  const reach = 0.2 * scale.metre;
-  line(context, colours.muted, x, y, x + nx * reach, y + ny * reach);
+  // Farther than the rod, on which it would not be seen.
+  const reach = 0.85 * y;
+  line(context, colours.ink, x, y, x + nx * reach, y + ny * reach);
   context.setLineDash([]);
+  context.font = `italic 12px ${SERIF}`;
+  context.fillStyle = colours.ink;
+  context.textAlign = 'left';
+  context.textBaseline = 'top';
+  context.fillText('n', x + nx * reach + 5, y + ny * reach);
   const dx = impact.x_dot_after - impact.x_dot;
   const dy = impact.y_dot_after - impact.y_dot;
   const impulse = Math.hypot(dx, dy);
   if (impulse > 0) {
     const length = Math.min(ARROW_S * impulse * scale.metre, y * 0.8);
-    // Beside the rod, so that the arrow is seen along its whole length.
-    const offset = dx > 0 ? -16 : 16;
     const friction = dx * Math.cos(strike.alpha) + dy * Math.sin(strike.alpha);
-    const along = Math.sign(friction) * Math.min(FRICTION_S * Math.abs(friction) * scale.metre, 0.3 * scale.right);
     const rubs = MODES[impact.mode] !== 'frictionless' && Math.abs(friction) > 1e-9 * impulse;
-    if (rubs && Math.abs(along) > 9) arrow(context, x, y, x + Math.cos(strike.alpha) * along, y - Math.sin(strike.alpha) * along, colours.good);
+    // Beside the rod, so that the arrow is seen along its whole length, and not where friction points.
+    const offset = (rubs ? friction : dx) > 0 ? -16 : 16;
+    // A small one still shows which way it goes; its number is beside it.
+    const along = Math.sign(friction) * Math.min(Math.max(LEAST_PX, FRICTION_S * Math.abs(friction) * scale.metre), 0.3 * scale.right);
+    const [fx, fy] = [x + nx * RAISED_PX, y + ny * RAISED_PX];
+    if (rubs) arrow(context, fx, fy, fx + Math.cos(strike.alpha) * along, fy - Math.sin(strike.alpha) * along, colours.good);
     if (length > 9) arrow(context, x + offset, y, x + offset + dx / impulse * length, y - dy / impulse * length, colours.strike);
     context.font = `11px ${SANS}`;
     context.fillStyle = colours.strike;
