@@ -363,7 +363,7 @@ async function begin() {
   listenToKeys(KEYS);
   panels = new Panels(byId('main'), { fields, query: typedQuery, scene: () => form?.read().scene ?? {}, chosen: () => chosen, played: playedQuery, launch, play, changed: address },
     (id, dropped) => (dropped.length > 0 ? notWhole(`link-${id}`, dropped) : clearNotice(`link-${id}`)));
-  acts = new Acts(byId('impacts-bar'), { run, view, plots, typed: () => form?.read().scene ?? null, fields, launch, changed: address });
+  acts = new Acts(byId('impacts-bar'), { run, view, plots, typed: () => { const read = form?.read(); return read?.complete ? read.scene : null; }, fields, launch, changed: address });
   panels.join('brush', acts);
   panels.restore(panelLink);
   if (judged) panels.judged(judged);

@@ -47,6 +47,7 @@ export class Selection {
   update() {
     const { begin, end } = this.#impacts;
     if (!this.active) return;
+    if (end < this.#judged) this.forget();
     if (this.places[0] < begin) this.places = this.places.filter((place) => place >= begin);
     for (let place = Math.max(begin, this.#judged); place < end; place += 1) if (this.has(place)) this.places.push(place);
     this.#judged = end;

@@ -42,6 +42,7 @@ async function sums(page) {
 /** The residuals one by one. */
 async function residuals(page) {
   if (!(await page.locator('.measured-sheet details').evaluate((details) => details.open))) await page.locator('.measured-sheet summary').click();
+  await page.locator('.measured-sheet details tbody tr').first().waitFor();
   const rows = await page.locator('.measured-sheet details tbody tr').evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
   return rows.map((row) => row.map(value));
 }

@@ -40,8 +40,10 @@ function plot(view, { impacts }) {
   const spoken = h('p', { class: 'unseen', role: 'status' });
   selection.changed = () => view.redraw();
   view.figure.element.append(spoken);
-  // Nothing is released here, so that no click offers to.
+  // Nothing is released here, and no click offers to.
+  delete view.meaning.start;
   listen(view, { impacts, selection, typed: () => null, fields: [], launch: () => {}, point: (place) => view.point(place), say: (words) => { spoken.textContent = words; } });
+  selection.restore(new URLSearchParams(location.search));
   return { element: view.figure.element, view, clear: () => view.clear() };
 }
 

@@ -32,7 +32,7 @@ export class MeasuredPanel {
   #laid = '';
   #compared_ms = -Infinity;
   #chip = h('span', { class: 'chip measured-chip', id: 'measured-chip', hidden: true });
-  #name = h('h3', { id: 'measured-title', tabindex: -1 }, 'Measured impacts');
+  #name = h('h3', { id: 'measured-title' }, 'Measured impacts');
   #told = h('p', { id: 'measured-told', role: 'status' });
   #remarks = h('ul', { class: 'measured-remarks', id: 'measured-remarks' });
   #first = h('input', { type: 'text', inputmode: 'numeric', autocomplete: 'off', id: 'measured-first', 'aria-describedby': 'measured-first-error', change: () => this.#number() });
@@ -41,6 +41,7 @@ export class MeasuredPanel {
   #box = h('div', { class: 'measured-box', role: 'img', 'aria-label': 'Residuals' });
   #sums = h('tbody');
   #rows = h('tbody');
+  #numbers;
   #sheet;
   #panel;
 
@@ -55,7 +56,7 @@ export class MeasuredPanel {
       h('table', {}, h('thead', {}, h('tr', {}, ...head.map((one) => h('th', { scope: 'col' }, one)))), body));
     this.#sheet = h('div', { class: 'measured-sheet', hidden: true }, this.#box, h('div', {},
       table('Residuals in sum', ['residual', 'RMS', 'largest', 'at n'], this.#sums),
-      h('details', {}, h('summary', {}, 'Numbers'), table('Numbers: residuals', ['impact', ...COMPARED.map((quantity) => NAMES[quantity].join(' / '))], this.#rows))));
+      this.#numbers = h('details', { toggle: () => this.#compare() }, h('summary', {}, 'Numbers'), table('Numbers: residuals', ['impact', ...COMPARED.map((quantity) => NAMES[quantity].join(' / '))], this.#rows))));
     this.#panel = h('section', { class: 'card measured', 'aria-labelledby': 'measured-title', hidden: true }, h('div', { class: 'card-head' }, this.#name,
       h('button', { type: 'button', id: 'measured-remove', click: () => this.#remove() }, 'Remove')),
     h('p', { class: 'muted' }, 'Measured less simulated at the same impact; t counts from the first that both have. The file stays in this browser.'),
@@ -161,7 +162,7 @@ export class MeasuredPanel {
     drawResiduals(this.#box, all, found.map(({ quantity }) => [quantity, NAMES[quantity].join(' / ')]));
     this.#box.setAttribute('aria-label', `Residuals of ${both} impacts. ${found.map(({ quantity, rms }) => `${NAMES[quantity][0]}: RMS ${number(rms)} ${NAMES[quantity][1]}`).join('; ')}`);
     this.#sums.replaceChildren(...found.map(({ quantity, rms, largest, at }) => h('tr', {}, h('th', { scope: 'row' }, NAMES[quantity].join(' / ')), ...[number(rms), number(largest), number(at, 7)].map((cell) => h('td', {}, cell)))));
-    this.#rows.replaceChildren(...all.slice(0, LISTED).map((one) => h('tr', {}, h('th', { scope: 'row' }, number(one.n, 7)), ...COMPARED.map((quantity) => h('td', {}, number(one[quantity], 5))))));
+    if (this.#numbers.open) this.#rows.replaceChildren(...all.slice(0, LISTED).map((one) => h('tr', {}, h('th', { scope: 'row' }, number(one.n, 7)), ...COMPARED.map((quantity) => h('td', {}, number(one[quantity], 5))))));
   }
 
   /** @param {string} words */

@@ -13,30 +13,33 @@ import { styles } from '../panels.js';
  * @property {import('../run.js').Run} run
  * @property {import('../scene-view.js').SceneView} view
  * @property {import('../impact-plot.js').ImpactPlot[]} plots
- * @property {() => import('../api.js').Scene | null} typed what a run would be released with
+ * @property {() => import('../api.js').Scene | null} typed what a run would be released with; null while some of it is no value
  * @property {import('../api.js').Field[]} fields
  * @property {(values: Record<string, number>) => void} launch
  * @property {() => void} changed what the address says
  */
 
-const IDLE = 'Drag over a plot to select impacts; click in a plane to say where a run first lands.';
+const BY_POINTER = 'Drag over a plot to select impacts; click in a plane to say where a run first lands.';
+const BY_KEYS = 'Left and right go from impact to impact, with Shift they select; Enter starts a run whose first impact is that one; Escape clears the selection.';
 
 export class Acts {
   #bar;
   #page;
   #selection;
-  #told = h('span', { id: 'brush-told' }, IDLE);
+  #told = h('span', { id: 'brush-told' }, BY_POINTER);
   #clear = h('button', { type: 'button', id: 'brush-clear', hidden: true, click: () => this.#selection.set([]) }, 'Clear');
   #load = h('button', { type: 'button', id: 'measured-load', click: () => this.#file.click() }, 'Load measured impacts…');
   #file = h('input', { type: 'file', id: 'measured-file', accept: '.csv,.tsv,.txt,text/csv,text/tab-separated-values', hidden: true, change: () => {
     void this.#take(this.#file.files?.[0]);
     this.#file.value = '';
   } });
-  #hint = h('p', { class: 'unseen', id: 'impacts-hint' }, 'Left and right go from impact to impact, with Shift they select; Enter starts a run whose first impact is that one; Escape clears the selection.');
+  #hint = h('p', { class: 'unseen', id: 'impacts-hint' }, BY_KEYS);
   // Spoken when keys move or a selection is made; a pointer's way over a chart is not.
   #spoken = h('p', { class: 'unseen', role: 'status', id: 'impacts-spoken' });
   /** @type {import('../measured/panel.js').MeasuredPanel | null} */
   #measured = null;
+  /** Whether keys go to one of the plots. */
+  #keyed = false;
 
   /** @param {HTMLElement} bar over the plots @param {Page} page */
   constructor(bar, page) {
@@ -49,7 +52,10 @@ export class Acts {
     view.under = (surface, scale, scene) => drawContacts(surface, scale, scene, impacts, selection);
     for (const plot of plots) {
       listen(plot, { ...page, impacts, selection, point: (place) => { for (const one of plots) one.point(place); }, say: (words) => { this.#spoken.textContent = words; } });
-      plot.figure.box.setAttribute('aria-describedby', this.#hint.id);
+      const { box } = plot.figure;
+      box.setAttribute('aria-describedby', this.#hint.id);
+      // A pointer does not give the focus.
+      for (const event of ['focus', 'blur']) box.addEventListener(event, () => { this.#keyed = event === 'focus'; invalidate(this); });
     }
     const root = /** @type {HTMLElement} */ (bar.parentElement);
     root.addEventListener('dragover', (event) => event.preventDefault());
@@ -103,7 +109,7 @@ export class Acts {
     const { active, places } = this.#selection;
     const { begin, end } = this.#page.run.impacts;
     this.#clear.hidden = !active;
-    const words = active ? `${places.length} of ${end - begin} impacts selected` : IDLE;
+    const words = active ? `${places.length} of ${end - begin} impacts selected` : this.#keyed ? BY_KEYS : BY_POINTER;
     if (this.#told.textContent !== words) this.#told.textContent = words;
     return false;
   }

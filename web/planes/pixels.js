@@ -87,5 +87,6 @@ export function drawPixels({ context, canvas, width, height }, { frame, meaning 
   if (selection?.active) put(stampsOf('selected', ratio, across_px), places.length, (index) => places[index]);
   const sheet = h('canvas', { width: canvas.width, height: canvas.height });
   /** @type {CanvasRenderingContext2D} */ (sheet.getContext('2d')).putImageData(image, 0, 0);
+  context.imageSmoothingEnabled = false;
   context.drawImage(sheet, 0, 0, width, height);
 }

@@ -12,7 +12,7 @@ import { angleStart, velocityStart, within } from './start.js';
  * @typedef {object} Page
  * @property {import('../impacts.js').Impacts} impacts
  * @property {import('../selection.js').Selection} selection
- * @property {() => import('../api.js').Scene | null} typed what a run would be released with
+ * @property {() => import('../api.js').Scene | null} typed what a run would be released with; null while some of it is no value
  * @property {import('../api.js').Field[]} fields
  * @property {(values: Record<string, number>) => void} launch
  * @property {(place: number | null) => void} point at an impact, in all plots
@@ -81,13 +81,12 @@ export function listen(plot, page) {
   /** @param {number} x @param {number} y values of a first impact */
   const startAt = (x, y) => {
     const scene = page.typed();
-    if (!scene || !plot.meaning.start) return null;
-    return within(plot.meaning.start === 'angle' ? angleStart(scene, x, y) : velocityStart(scene, x, y), page.fields);
+    return scene && within(plot.meaning.start === 'angle' ? angleStart(scene, x, y) : velocityStart(scene, x, y), page.fields);
   };
 
   /** Says what a click would do. @param {Place | null} place */
   const offer = (place, verb = 'click') => {
-    const values = place && inside(place) ? valuesAt(place) : null;
+    const values = plot.meaning.start && place && inside(place) ? valuesAt(place) : null;
     const start = values && startAt(values.x, values.y);
     offered = place && start ? { ...place, words: start.values ? `${verb}: ${start.words}` : start.words, possible: start.values !== null } : null;
     invalidate(plot);
@@ -95,8 +94,9 @@ export function listen(plot, page) {
 
   /** @param {number} x @param {number} y */
   const start = (x, y) => {
+    if (!plot.meaning.start) return;
     const found = startAt(x, y);
-    if (!found) return;
+    if (!found) return page.say('Nothing can be released: a parameter is not a number.');
     offer(null);
     if (found.values) page.launch(found.values);
     page.say(found.values ? `Released anew for a first impact there: ${found.words}` : found.words);
@@ -181,7 +181,7 @@ export function listen(plot, page) {
     const { begin, end } = impacts;
     if (event.key === 'Escape' && pressed) cancel();
     else if (end > begin && move(event)) { /* done */ }
-    else if (event.key === 'Enter' && cursor !== null && cursor >= begin && cursor < end && plot.meaning.start) start(impacts.at(plot.meaning.x.column, cursor), impacts.at(plot.meaning.y.column, cursor));
+    else if (event.key === 'Enter' && cursor !== null && cursor >= begin && cursor < end) start(impacts.at(plot.meaning.x.column, cursor), impacts.at(plot.meaning.y.column, cursor));
     else return;
     event.preventDefault();
     event.stopPropagation();
