@@ -26,6 +26,7 @@ import { h } from './dom.js';
  * What stands in its place.
  * @typedef {object} Panel
  * @property {() => void} [sceneChanged]
+ * @property {() => void} [ask] what waits for a press of a button in the page
  * @property {(judged: Judged) => void} [judged]
  * @property {() => void} [played] what the plots show may be another run
  * @property {() => URLSearchParams} [query] its part of the page’s address, where it differs from the usual

@@ -13,7 +13,7 @@ const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.mi
 /** Every panel, and what is there once it is. */
 const SIGNS = {
   scene: '.readout:has-text("impact 2")', 'plane-angle': '.readout:has-text("n 2")', 'plane-velocity': '.readout:has-text("n 2")', energy: '.readout:has-text("n 2")',
-  circle: '.readout:has-text("κ 1.100")', map: '#map-links a', survival: '#survival-start', ladder: '.rungs td', design: '#design-start', branch: '.changes', precision: '#precision-measure',
+  circle: '.readout:has-text("κ 1.100")', map: '#map-links a', survival: '#survival-told:has-text("outlast")', ladder: '.rungs td', design: '#design-sheet img', branch: '.changes', precision: '#precision-told:has-text("Measured over")',
   paper: '.paper', calls: '.call', gallery: 'article',
 };
 

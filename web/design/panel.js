@@ -59,7 +59,7 @@ class DesignPanel {
       this.#weights.set(name, input);
       return h('p', { class: 'design-row' }, h('label', { for: `design-${name}` }, 'of ', symbol(sign)), input);
     };
-    root.append(h('form', { novalidate: true, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.#ask(); } },
+    root.append(h('form', { novalidate: true, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.ask(); } },
       h('fieldset', {}, h('legend', {}, 'Weights, squared deviations'), ...STATES.map(([name, sign, value]) => row(name, sign, value)), row('input', 'α', INPUT)),
       this.#error, h('p', { class: 'design-row' }, h('label', { for: 'design-contact' }, 'Contact'), this.#contact),
       h('p', { class: 'buttons' }, h('button', { type: 'submit', id: 'design-start' }, 'Design')), this.#told), this.#sheet);
@@ -116,7 +116,7 @@ class DesignPanel {
     return request;
   }
 
-  async #ask() {
+  async ask() {
     const request = this.#request();
     if (!request) return;
     this.#asking?.abort();

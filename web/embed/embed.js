@@ -102,6 +102,8 @@ async function begin() {
     launch: (/** @type {Record<string, number>} */ values) => { const other = new URLSearchParams(query); for (const [path, value] of Object.entries(values)) other.set(`scene.${path}`, String(value)); void open(`./?${other}`, '_blank', 'noopener'); } };
   const { element, bring } = card(own, page, () => link.panels, async (panel) => {
     dropped(panel.restore?.(link.panels) ?? []);
+    // A dashboard has nobody to press a button.
+    panel.ask?.();
     if (panel.judged) panel.judged({ answer: await get(`v1/stability?${query}`), scene: query });
   });
   main.append(element);

@@ -93,7 +93,7 @@ class PrecisionPanel {
       h('details', {}, h('summary', {}, 'Numbers'), h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: speed against accuracy' },
         h('table', {}, h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))), this.#body))),
       h('details', {}, h('summary', {}, 'How it was measured'), this.#notes), this.#links);
-    root.append(h('div', {}, h('form', { novalidate: true, change: changed, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.#ask(); } },
+    root.append(h('div', {}, h('form', { novalidate: true, change: changed, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.ask(); } },
       h('p', { class: 'precision-row' }, h('label', { for: 'precision-impacts' }, 'Contacts'), this.#impacts), this.#error,
       h('p', { class: 'precision-row' }, h('label', { for: 'precision-axis' }, 'Across'), this.#axis),
       this.#asking.buttons, this.#asking.told), this.#methods), this.#sheet);
@@ -141,7 +141,7 @@ class PrecisionPanel {
     this.#impacts.setAttribute('aria-invalid', String(words !== ''));
   }
 
-  async #ask() {
+  async ask() {
     const impacts = parse(this.#impacts.value, '1');
     this.#blame(isRight(impacts) ? '' : `Contacts must be ${MUST}.`);
     if (this.#error.textContent) return this.#impacts.focus();

@@ -87,7 +87,7 @@ class SurvivalPanel {
       h('details', {}, h('summary', {}, 'Numbers'), h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: survival' },
         h('table', {}, h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))), this.#body))),
       h('details', {}, h('summary', {}, 'How it was counted'), this.#notes), this.#links);
-    root.append(h('form', { novalidate: true, change: page.changed, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.#ask(); } },
+    root.append(h('form', { novalidate: true, change: page.changed, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.ask(); } },
       ...row('runs', 'Runs'), ...row('impacts', 'Contacts'), this.#own, this.#offered, this.#asking.buttons, this.#asking.told), this.#sheet);
     this.#plot = new Plot(this.#box);
     this.#box.addEventListener('pointermove', (event) => this.#point(this.#plot.nearest(event), false));
@@ -175,7 +175,7 @@ class SurvivalPanel {
     return request;
   }
 
-  async #ask() {
+  async ask() {
     const request = this.#request();
     if (!request) return;
     const path = `v1/ensembles?${request}`;
