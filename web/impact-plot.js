@@ -5,12 +5,11 @@ import { MARGIN, drawAxes, drawDot, drawMark, line, roundRange, toX, toY } from 
 import { SANS, theme, onThemeChange } from './theme.js';
 import { invalidate, surfaces } from './surface.js';
 
-/** @typedef {import('./impacts.js').Column} Column */
 /** @typedef {import('./axes.js').Frame} Frame */
 
 /**
  * @typedef {object} Axis
- * @property {Column} column
+ * @property {import('./impacts.js').Lasting} column
  * @property {string} name with its unit, for the axis
  * @property {boolean} [symmetric] about zero
  * @property {number} [span] least span, so that rounding does not look like motion

@@ -6,36 +6,50 @@ export const COLUMNS = /** @type {const} */ (['n', 't', 'x', 'theta', 'x_dot', '
 /** @typedef {(typeof COLUMNS)[number]} Column */
 /** @typedef {Record<Column, number>} Impact states just before the impact, `…_after` just after; what does not exist is NaN */
 
-// What stays in memory, 19 MB of it: a day's run must not grow the page.
-const KEPT = 1 << 17;
+/** What charts show, kept for long. */
+export const LASTING = /** @type {const} */ (['n', 't', 'x', 'theta', 'x_dot', 'y_dot', 'theta_dot', 'energy', 'series']);
+
+/** @typedef {(typeof LASTING)[number]} Lasting */
+
+// How many impacts are kept so, 4 MB of them: a day's run must not grow the page. The rest of an impact lasts for the newest only.
+const KEPT = 1 << 16;
+const NEWEST = 1 << 10;
+
+/** @param {readonly string[]} names @param {number} room */
+const allocate = (names, room) => Object.fromEntries(names.map((name) => [name, name === 'n' ? new Uint32Array(room) : name === 'series' ? new Uint8Array(room) : new Float64Array(room)]));
 
 export class Impacts {
   /** Counts every impact taken in, forgotten ones included: the place of the next one. */
   end = 0;
   /** Impacts the server skipped over. */
   missing = 0;
+  #kept;
   #room = 256;
-  /** @type {Record<Column, Float64Array>} */
-  #columns = Impacts.#allocate(256);
+  /** @type {Record<string, Float64Array | Uint32Array | Uint8Array>} */
+  #lasting = allocate(LASTING, this.#room);
+  #newest = allocate(COLUMNS.filter((name) => !LASTING.some((one) => one === name)), NEWEST);
 
-  /** @param {number} room @returns {Record<Column, Float64Array>} */
-  static #allocate(room) {
-    return /** @type {Record<Column, Float64Array>} */ (Object.fromEntries(COLUMNS.map((name) => [name, new Float64Array(room)])));
+  /** @param {number} [kept] a power of 4, at least 256 */
+  constructor(kept = KEPT) {
+    this.#kept = kept;
   }
 
   /** The first place still in memory. */
-  get begin() { return Math.max(0, this.end - KEPT); }
+  get begin() { return Math.max(0, this.end - this.#kept); }
 
   /**
+   * NaN where there is none, or none any more.
    * @param {Column} column
    * @param {number} place from `begin` to `end`
    */
   at(column, place) {
-    return this.#columns[column][place % this.#room];
+    const lasting = this.#lasting[column];
+    if (lasting) return lasting[place % this.#room];
+    return place >= this.end - NEWEST ? this.#newest[column][place % NEWEST] : NaN;
   }
 
-  /** All that is kept of a column, for those who read much of it: a place is its index, less whole lengths. @param {Column} column */
-  column(column) { return this.#columns[column]; }
+  /** All that is kept of a column, for those who read much of it: a place is its index, less whole lengths. @param {Lasting} column */
+  column(column) { return this.#lasting[column]; }
 
   /** @param {number} place @returns {Impact} */
   row(place) {
@@ -47,13 +61,16 @@ export class Impacts {
 
   /** @param {Impact} impact */
   append(impact) {
-    if (this.end === this.#room && this.#room < KEPT) {
-      this.#room = Math.min(KEPT, this.#room * 4);
-      const wider = Impacts.#allocate(this.#room);
-      for (const name of COLUMNS) wider[name].set(this.#columns[name]);
-      this.#columns = wider;
+    if (this.end === this.#room && this.#room < this.#kept) {
+      this.#room *= 4;
+      const wider = allocate(LASTING, this.#room);
+      for (const name of LASTING) wider[name].set(this.#lasting[name]);
+      this.#lasting = wider;
     }
-    for (const name of COLUMNS) this.#columns[name][this.end % this.#room] = impact[name];
+    for (const name of COLUMNS) {
+      if (name in this.#lasting) this.#lasting[name][this.end % this.#room] = impact[name];
+      else this.#newest[name][this.end % NEWEST] = impact[name];
+    }
     this.end += 1;
   }
 

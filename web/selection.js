@@ -1,8 +1,8 @@
 // The impacts picked out in every chart: ranges of columns, so that those to come are judged alike and an address can hold them.
 
-import { COLUMNS } from './impacts.js';
+import { LASTING } from './impacts.js';
 
-/** @typedef {[import('./impacts.js').Column, import('./axes.js').Range]} Limits */
+/** @typedef {[import('./impacts.js').Lasting, import('./axes.js').Range]} Limits */
 
 export class Selection {
   /** Where the selected impacts are kept, oldest first. @type {number[]} */
@@ -67,7 +67,7 @@ export class Selection {
     /** @type {Limits[]} */
     const ranges = [];
     for (const name of new Set([...params.keys()].filter((key) => key.startsWith('brush.')).map((key) => key.split('.')[1]))) {
-      const column = COLUMNS.find((one) => one === name);
+      const column = LASTING.find((one) => one === name);
       const [low, high] = ['from', 'to'].map((end) => Number(params.get(`brush.${name}.${end}`)?.trim() || NaN));
       if (column && low <= high) ranges.push([column, { low, high }]);
       else dropped.push(`the selection by “${name.slice(0, 40)}”, which is no range of what impacts have`);

@@ -280,7 +280,7 @@ test('beyond twenty thousand impacts the dots are put down as pixels, selected o
   const { page, clean } = await stage.page('?preset=case-1');
   const found = await page.evaluate(async () => {
     const [{ Impacts, COLUMNS }, { Selection }, { anglePlane }] = await Promise.all([import('./impacts.js'), import('./selection.js'), import('./plane.js')]);
-    const impacts = new Impacts();
+    const impacts = new Impacts(1 << 18);
     for (let n = 1; n <= 100_000; n += 1) {
       const impact = Object.fromEntries(COLUMNS.map((name) => [name, 0]));
       impacts.append({ ...impact, n, theta: 0.3 * Math.cos(n) * Math.sqrt(n / 1e5), theta_dot: Math.sin(n) * Math.sqrt(n / 1e5) });
