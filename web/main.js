@@ -77,7 +77,7 @@ const controls = new Controls(byId('controls'), {
   gain: (value, final) => { form?.put(GAIN, value); edited(GAIN, final); },
   kick: (velocities) => { lastSent = 'kick'; run.kick(velocities); },
 });
-byId('charts').append(plots[0].figure.element, plots[1].figure.element, circle.figure.element, plots[2].figure.element);
+byId('impacts-bar').before(plots[0].figure.element, plots[1].figure.element, circle.figure.element, plots[2].figure.element);
 for (const one of [...plots, circle]) one.figure.offer(() => savesOf(one.figure.id, one.figure.title, one));
 const sceneCard = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
 sceneCard.querySelector('.card-head')?.append(enlarger(sceneCard, 'Scene', () => savesOf('scene', 'Scene', view)));
