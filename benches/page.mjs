@@ -15,18 +15,18 @@ const sorted = (values) => values.toSorted((a, b) => a - b);
 const median = (values) => sorted(values)[values.length >> 1];
 const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
-/** Frames and main-thread time over some seconds, by the browser's own count. */
+/** Frames, and the processor time of the main thread, over some seconds, by the browser's own count. */
 async function frames(page, seconds) {
   const session = await page.context().newCDPSession(page);
-  await session.send('Performance.enable', { timeDomain: 'timeTicks' });
+  await session.send('Performance.enable', { timeDomain: 'threadTicks' });
   const metrics = async () => Object.fromEntries((await session.send('Performance.getMetrics')).metrics.map(({ name, value }) => [name, value]));
   await page.evaluate(() => { globalThis.frameCount = 0; const count = () => { globalThis.frameCount += 1; requestAnimationFrame(count); }; requestAnimationFrame(count); });
-  const [before, from] = [await metrics(), await page.evaluate(() => globalThis.frameCount)];
+  const count = () => page.evaluate(() => [globalThis.frameCount, performance.now()]);
+  const [before, [from, begin]] = [await metrics(), await count()];
   await wait(seconds * 1000);
-  const [after, to] = [await metrics(), await page.evaluate(() => globalThis.frameCount)];
+  const [after, [to, end]] = [await metrics(), await count()];
   await session.detach();
-  const count = to - from;
-  return { perSecond: count / (after.Timestamp - before.Timestamp), msPerFrame: (after.TaskDuration - before.TaskDuration) * 1000 / count };
+  return { perSecond: (to - from) / (end - begin) * 1000, msPerFrame: (after.TaskDuration - before.TaskDuration) * 1000 / (to - from) };
 }
 
 // Cold: a profile of its own each time, nothing kept.
