@@ -20,16 +20,7 @@ const PRINTED: f64 = 0.094_280_904_158_206_35;
 const TRIANGLE: f64 = 0.051_37;
 
 fn scene(radius_of_gyration: f64, tilt_gain: f64, theta: f64) -> Scene {
-    let rod = Rod {
-        contact_distance: 0.4 / 3.0,
-        radius_of_gyration,
-        gravity: 9.81,
-        restitution: 1.0,
-        tilt_gain,
-        strike_gain: 2.0,
-        strike_gain_per_energy: 0.0,
-        target_energy: 0.0,
-    };
+    let rod = Rod::lossless(0.4 / 3.0, radius_of_gyration, tilt_gain);
     let state = State { theta, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
     Scene { rod, rules: RULES, release: Release { x: 0.0, height: 0.2, state } }
 }

@@ -4,16 +4,7 @@ use equipoise_physics::impact::Rod;
 use equipoise_physics::map::Rules;
 
 /// The rod.
-pub(crate) const ROD: Rod = Rod {
-    contact_distance: 0.4 / 3.0,
-    radius_of_gyration: 0.094_280_904_158_206_35,
-    gravity: 9.81,
-    restitution: 1.0,
-    tilt_gain: 1.1,
-    strike_gain: 2.0,
-    strike_gain_per_energy: 0.0,
-    target_energy: 0.0,
-};
+pub(crate) const ROD: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.1);
 
 /// When its runs end.
 pub(crate) const RULES: Rules =

@@ -238,6 +238,21 @@ impl<N: Number> Rod<N> {
 }
 
 impl Rod<f64> {
+    /// The paper's plain case: struck so that every bounce keeps its energy, e = 1, g = 9.81 m/s². Lengths l and ρ in m, tilt
+    /// gain κ.
+    pub const fn lossless(contact_distance: f64, radius_of_gyration: f64, tilt_gain: f64) -> Self {
+        Self {
+            contact_distance,
+            radius_of_gyration,
+            gravity: 9.81,
+            restitution: 1.0,
+            tilt_gain,
+            strike_gain: 2.0,
+            strike_gain_per_energy: 0.0,
+            target_energy: 0.0,
+        }
+    }
+
     /// The same rod in another kind of number.
     #[inline(always)]
     pub fn lift<N: Number>(&self) -> Rod<N> {

@@ -3,16 +3,7 @@
 use equipoise_physics::impact::Rod;
 use equipoise_physics::map::{Ending, Kick, Orbit, Release, Rules};
 
-const CASE_1: Rod = Rod {
-    contact_distance: 0.4 / 3.0,
-    radius_of_gyration: 0.094,
-    gravity: 9.81,
-    restitution: 1.0,
-    tilt_gain: 1.1,
-    strike_gain: 2.0,
-    strike_gain_per_energy: 0.0,
-    target_energy: 0.0,
-};
+const CASE_1: Rod = Rod::lossless(0.4 / 3.0, 0.094, 1.1);
 
 const HOLDING: Rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None };
 

@@ -11,16 +11,7 @@ mod random;
 
 const LAWS: [Law; 3] = [Law::Poisson, Law::Newton, Law::Stronge];
 
-const ROD: Rod = Rod {
-    contact_distance: 0.4 / 3.0,
-    radius_of_gyration: 0.094_280_904_158_206_35,
-    gravity: 9.81,
-    restitution: 1.0,
-    tilt_gain: 1.1,
-    strike_gain: 2.0,
-    strike_gain_per_energy: 0.0,
-    target_energy: 0.0,
-};
+const ROD: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.1);
 
 /// Kinetic energy before and after an impact at velocities in the axes of a table at rest, and what the contact did.
 fn energies(

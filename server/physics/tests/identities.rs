@@ -10,22 +10,9 @@ use equipoise_physics::trig;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
-fn rod(contact_distance: f64, radius_of_gyration: f64, tilt_gain: f64) -> Rod {
-    Rod {
-        contact_distance,
-        radius_of_gyration,
-        gravity: 9.81,
-        restitution: 1.0,
-        tilt_gain,
-        strike_gain: 2.0,
-        strike_gain_per_energy: 0.0,
-        target_energy: 0.0,
-    }
-}
-
 prop_compose! {
     fn rods()(length in 0.02..2.0, ratio in 0.2..1.5, tilt_gain in -1.0..3.0) -> Rod {
-        rod(length, length * ratio, tilt_gain)
+        Rod::lossless(length, length * ratio, tilt_gain)
     }
 }
 
@@ -150,7 +137,7 @@ fn fixed_point_jacobian_is_equation_14_with_the_energy_term() {
             gravity,
             strike_gain_per_energy: (1.0 + restitution) * energy_gain,
             target_energy: gravity * l + 0.5 * y * y,
-            ..rod(l, rho, tilt_gain)
+            ..Rod::lossless(l, rho, tilt_gain)
         };
         let state = State { theta: 0.0, x_dot: 0.0, y_dot: y, theta_dot: 0.0 };
         let matrix = jacobian(&Model::Rod(model), &state, 1).unwrap().matrix;
@@ -179,7 +166,7 @@ fn derivatives_agree_with_differences_of_50_digits() {
             restitution: body("restitution"),
             strike_gain_per_energy: (1.0 + body("restitution")) * body("energy_gain"),
             target_energy: body("gravity") * body("target_height"),
-            ..rod(body("contact_distance"), body("radius_of_gyration"), body("tilt_gain"))
+            ..Rod::lossless(body("contact_distance"), body("radius_of_gyration"), body("tilt_gain"))
         };
         let state = State {
             theta: number("state", "theta"),
@@ -207,7 +194,7 @@ fn period_two_orbits_beyond_the_boundary_are_exact() {
     let speed = (gravity * rho * rho * theta * (kappa * theta).cos() / (l * ((kappa - 1.0) * theta).sin())).sqrt();
     let state =
         State { theta, x_dot: speed * (kappa * theta).tan(), y_dot: -speed, theta_dot: gravity * theta / speed };
-    let (end, ..) = bounce(&rod(l, rho, kappa), &state).unwrap();
+    let (end, ..) = bounce(&Rod::lossless(l, rho, kappa), &state).unwrap();
     for (ours, exact) in [
         (end.theta, -state.theta),
         (end.x_dot, -state.x_dot),

@@ -90,16 +90,7 @@ fn every_kind_of_instructions_gives_the_same_bits() {
     let starts: Vec<Start> = (0..40 * 30)
         .map(|cell| {
             let (column, row) = (f64::from(cell % 40), f64::from(cell / 40));
-            let rod = Rod {
-                contact_distance: 0.4 / 3.0,
-                radius_of_gyration: 0.094_280_904_158_206_35,
-                gravity: 9.81,
-                restitution: 1.0,
-                tilt_gain: 1.0 + column * 0.015,
-                strike_gain: 2.0,
-                strike_gain_per_energy: 0.0,
-                target_energy: 0.0,
-            };
+            let rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.0 + column * 0.015);
             let rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None };
             let state = State { theta: row * 0.0175, x_dot: 0.0, y_dot: -1.15, theta_dot: 0.0 };
             Start { rod, rules, state }
@@ -149,16 +140,7 @@ fn without_held_energy(start: Start) -> Start {
 
 #[test]
 fn every_outcome_of_a_lane_occurs_and_a_sweep_can_be_stopped() {
-    let rod = Rod {
-        contact_distance: 0.4 / 3.0,
-        radius_of_gyration: 0.094,
-        gravity: 9.81,
-        restitution: 1.0,
-        tilt_gain: 1.1,
-        strike_gain: 2.0,
-        strike_gain_per_energy: 0.0,
-        target_energy: 0.0,
-    };
+    let rod = Rod::lossless(0.4 / 3.0, 0.094, 1.1);
     let rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None };
     let state = |theta, y_dot, theta_dot| State { theta, x_dot: 0.0, y_dot, theta_dot };
     let start = |rod, state| Start { rod, rules, state };
