@@ -2,7 +2,7 @@
 
 import { Problem, problemOf } from './api.js';
 import { h, marked } from './dom.js';
-import { lines } from './map/grid.js';
+import { lines } from './ndjson.js';
 import { number } from './numbers.js';
 
 export class Asking {

@@ -1,4 +1,4 @@
-// The cells of a map as they arrive, row by row, and the reading of lines from an answer. Not for drawing them.
+// The cells of a map as they arrive, row by row. Not for drawing them.
 
 import { rowsOf } from './settings.js';
 
@@ -92,27 +92,4 @@ export class Grid {
 function valueOn({ from, to }, index, count) {
   const share = index / (count - 1);
   return share === 1 ? to : from + (to - from) * share;
-}
-
-/**
- * The objects of an NDJSON answer, each as soon as its line is there.
- * @param {ReadableStream<Uint8Array>} body
- * @returns {AsyncGenerator<any>}
- */
-export async function* lines(body) {
-  const reader = body.getReader();
-  const decoder = new TextDecoder();
-  let rest = '';
-  try {
-    for (;;) {
-      const { done, value } = await reader.read();
-      const parts = (rest + decoder.decode(value, { stream: !done })).split('\n');
-      rest = parts.pop() ?? '';
-      for (const part of parts) if (part !== '') yield JSON.parse(part);
-      if (done) return;
-    }
-  } finally {
-    // Whoever stops early wants no more of it.
-    void reader.cancel().catch(() => {});
-  }
 }

@@ -1,12 +1,13 @@
 // The stability map: asks for it, draws it as it arrives, lets one run any point of it or look closer. Not for its controls or its picture.
 
 import { Controls } from './controls.js';
-import { Grid, lines } from './grid.js';
+import { Grid } from './grid.js';
 import { Picture } from './picture.js';
 import { Problem, get, playedAt, problemOf } from '../api.js';
 import { actions } from '../save/actions.js';
 import { QUANTITIES, outlineQuery, readSettings, requestQuery, rowsOf, settingsQuery } from './settings.js';
 import { h, settled } from '../dom.js';
+import { lines } from '../ndjson.js';
 import { listen } from './pointing.js';
 import { number, quantity as withUnit, unbroken } from '../numbers.js';
 

@@ -1,0 +1,24 @@
+// An answer that comes line by line. Not for what its lines say.
+
+/**
+ * The objects of an NDJSON answer, each as soon as its line is there.
+ * @param {ReadableStream<Uint8Array>} body
+ * @returns {AsyncGenerator<any>}
+ */
+export async function* lines(body) {
+  const reader = body.getReader();
+  const decoder = new TextDecoder();
+  let rest = '';
+  try {
+    for (;;) {
+      const { done, value } = await reader.read();
+      const parts = (rest + decoder.decode(value, { stream: !done })).split('\n');
+      rest = parts.pop() ?? '';
+      for (const part of parts) if (part !== '') yield JSON.parse(part);
+      if (done) return;
+    }
+  } finally {
+    // Whoever stops early wants no more of it.
+    void reader.cancel().catch(() => {});
+  }
+}
