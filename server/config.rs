@@ -1,16 +1,23 @@
 //! What can be set when the server starts: the command line and its environment variables.
 
+use std::fmt::{self, Display, Formatter};
+use std::net::{IpAddr, SocketAddr};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::str::FromStr;
 
-use clap::Parser;
+use clap::builder::Resettable;
+use clap::{CommandFactory, FromArgMatches, Parser};
+
+use crate::http::{Origin, Token};
+use crate::limits::Limits;
 
 /// Says whether a bouncing object can be balanced: a page and an HTTP API.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "equipoise", version = crate::BUILD)]
 pub struct Config {
     /// Where to listen; port 0 takes any that is free
-    #[arg(long, env = "EQUIPOISE_LISTEN", value_name = "ADDRESS:PORT", default_value = Self::LISTEN)]
+    #[arg(long, env = "EQUIPOISE_LISTEN", value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     pub listen: String,
 
     /// Requests computed at a time [default: as many as there are cores]
@@ -20,35 +27,169 @@ pub struct Config {
     /// Serve the page's files from this folder instead of the embedded ones, while working on them
     #[arg(long, env = "EQUIPOISE_WEB", value_name = "FOLDER")]
     pub web: Option<PathBuf>,
+
+    /// Write a line of JSON to stderr for each request: time, id, peer, method, target, status, milliseconds
+    #[arg(long, env = "EQUIPOISE_ACCESS_LOG")]
+    pub access_log: bool,
+
+    /// Answer nobody without this secret, but for /health. Programs send it as `Authorization: Bearer …`; a browser opens
+    /// /?token=… once. Other users of the machine can read a command line: better set the variable
+    #[arg(long, env = "EQUIPOISE_TOKEN", value_name = "TOKEN", hide_env_values = true)]
+    pub token: Option<Token>,
+
+    /// Let pages of this origin ask and open live runs too. May be given again
+    #[arg(long, env = "EQUIPOISE_ALLOW_ORIGIN", value_name = "ORIGIN", value_delimiter = ',')]
+    pub allow_origin: Vec<Origin>,
+
+    /// The path under which a proxy shows this server, as in /rig. Requests are taken with it and without
+    #[arg(long, env = "EQUIPOISE_BASE_PATH", value_name = "PATH", default_value = "", hide_default_value = true)]
+    pub base_path: BasePath,
+
+    /// Believe this proxy who asks, as its `X-Forwarded-For` says at its end. Otherwise all its clients share what one is
+    /// given. May be given again
+    #[arg(long, env = "EQUIPOISE_TRUST_PROXY", value_name = "ADDRESS", value_delimiter = ',')]
+    pub trust_proxy: Vec<IpAddr>,
+
+    /// The limits that can be set.
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 impl Config {
-    const LISTEN: &str = "127.0.0.1:8080";
-
     /// Requests computed at a time. How many never changes what an answer says, only when.
     pub fn permits(&self) -> usize {
         self.permits.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
+    }
+
+    /// What is open to whom, in a sentence, to whoever starts a server that listens here.
+    pub fn openness(&self, address: SocketAddr) -> String {
+        let whom = match address.ip() {
+            ip if ip.is_loopback() => "programs on this machine, and whatever a proxy on it lets through".to_owned(),
+            ip if ip.is_unspecified() => "everyone who reaches this machine on any of its networks".to_owned(),
+            ip => format!("everyone who reaches {ip}"),
+        };
+        let with = match self.token {
+            Some(_) => "with the token, and /health without",
+            None => "no token is asked for",
+        };
+        let origins: String =
+            self.allow_origin.iter().map(|origin| format!("; pages of {origin} may ask too")).collect();
+        format!("open to {whom}: {with}{origins}")
     }
 }
 
 /// As from an empty command line in an empty environment.
 impl Default for Config {
     fn default() -> Self {
-        Self { listen: Self::LISTEN.to_owned(), permits: None, web: None }
+        let command = Self::command().mut_args(|arg| arg.env(Resettable::Reset));
+        Self::from_arg_matches(&command.get_matches_from([""])).expect("everything has a default")
+    }
+}
+
+/// A path that stands before all others: none, or `/` and segments.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BasePath(String);
+
+impl BasePath {
+    /// Its text; empty where there is none.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl FromStr for BasePath {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let path = text.trim_end_matches('/');
+        let is_plain = |segment: &str| {
+            !matches!(segment, "" | "." | "..")
+                && segment.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte))
+        };
+        let is_fine = match path.strip_prefix('/') {
+            None => path.is_empty(),
+            Some(segments) => path.len() <= 256 && segments.split('/').all(is_plain),
+        };
+        if !is_fine {
+            return Err("it must begin with / and have segments of letters, digits and -._~, as in /rig".to_owned());
+        }
+        Ok(Self(path.to_owned()))
+    }
+}
+
+impl Display for BasePath {
+    fn fmt(&self, formatter: &mut Formatter) -> fmt::Result {
+        formatter.write_str(&self.0)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
+    use std::time::Duration;
+
+    fn parsed(arguments: &[&str]) -> Result<Config, String> {
+        Config::try_parse_from([&["equipoise"], arguments].concat()).map_err(|error| error.to_string())
+    }
 
     #[test]
     fn the_command_line_is_consistent() {
         Config::command().debug_assert();
-        let config = Config::try_parse_from(["equipoise", "--listen", "[::1]:0", "--permits", "3"]).unwrap();
+        let config = parsed(&["--listen", "[::1]:0", "--permits", "3"]).unwrap();
         assert_eq!((config.listen.as_str(), config.permits()), ("[::1]:0", 3));
-        assert!(Config::try_parse_from(["equipoise", "--permits", "0"]).is_err());
+        assert!(parsed(&["--permits", "0"]).is_err());
         assert!(Config::default().permits() >= 1);
+    }
+
+    #[test]
+    fn limits_are_set_within_their_ranges() {
+        let config = parsed(&["--connections", "100", "--head-time", "7", "--region-work", "5000"]).unwrap();
+        let Limits { connections, head_time, region_work, .. } = config.limits;
+        assert_eq!((connections, head_time, region_work), (100, Duration::from_secs(7), 5000));
+        assert_eq!(Limits { connections, head_time, region_work, ..Limits::default() }, config.limits);
+        for (flag, value, unit) in [
+            ("--connections", "7", "16 to 1000000 connections"),
+            ("--head-time", "0", "1 to 3600 seconds"),
+            ("--head-time", "1.5", "whole number"),
+            ("--body-bytes", "much", "bytes"),
+            ("--work", "0", "bounces"),
+        ] {
+            let error = parsed(&[flag, value]).unwrap_err();
+            assert!(error.contains(flag) && error.contains(unit), "{error}");
+        }
+    }
+
+    /// Every limit that can be set has a flag, a variable, a unit and a default, all of which `--help` shows.
+    #[test]
+    fn help_shows_every_limit() {
+        let help = Config::command().render_long_help().to_string();
+        let (_, limits) = help.split_once("Limits:").unwrap();
+        let shown = limits.matches("\n      --").count();
+        assert_eq!(shown, format!("{:?}", Limits::default()).matches(": ").count(), "{help}");
+        for part in ["[env: EQUIPOISE_", "[default: "] {
+            assert_eq!(limits.matches(part).count(), shown, "{limits}");
+        }
+        assert!(!help.contains("EQUIPOISE_TOKEN="), "{help}");
+    }
+
+    #[test]
+    fn what_is_open_to_whom_is_said() {
+        let say = |listen: &str, arguments: &[&str]| parsed(arguments).unwrap().openness(listen.parse().unwrap());
+        assert!(say("127.0.0.1:80", &[]).starts_with("open to programs on this machine"));
+        assert!(say("0.0.0.0:80", &[]).ends_with("any of its networks: no token is asked for"));
+        let guarded = ["--token", "0123456789abcdef", "--allow-origin", "https://lab.example"];
+        let said = say("192.0.2.1:80", &guarded);
+        assert!(said.contains("with the token") && said.contains("https://lab.example"), "{said}");
+        assert!(!said.contains("0123456789abcdef"));
+    }
+
+    #[test]
+    fn a_base_path_is_a_path() {
+        for (text, path) in [("", ""), ("/", ""), ("/rig", "/rig"), ("/lab/rig-2/", "/lab/rig-2")] {
+            assert_eq!(text.parse::<BasePath>().unwrap().as_str(), path);
+        }
+        for text in ["rig", "//rig", "/a//b", "/a/../b", "/a?b", "/ä", "http://x/"] {
+            assert!(text.parse::<BasePath>().is_err(), "{text}");
+        }
     }
 }

@@ -1,18 +1,159 @@
 //! Every limit the server keeps, in one place: its unit, what it means and why it has this value.
 //!
-//! Not here: the ranges of a scene's fields, which are physics and stand in the table of fields.
+//! First those that can be set when the server starts, then those that are part of its design. Not here: the ranges of a
+//! scene's fields, which are physics and stand in the table of fields.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
 use std::time::Duration;
+
+use clap::builder::Resettable;
+use clap::{Args, Command, FromArgMatches};
 
 use crate::compute::Limit;
 
+/// The limits that can be set: those of load, which depend on the machine and on who uses it. What is said here is what
+/// `--help` says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Args)]
+#[command(next_help_heading = "Limits")]
+pub struct Limits {
+    /// Open connections, besides those of WebSockets. When all are taken, the one that has waited longest for its client
+    /// gives way, of whoever has most. Each takes some 10 KiB, and up to 64 KiB while a request arrives
+    #[arg(long, env = "EQUIPOISE_CONNECTIONS", value_name = "NUMBER", default_value = "16384")]
+    #[arg(value_parser = within::<usize>(16..=1_000_000, "connections"))]
+    pub connections: usize,
+
+    /// Time a client has to send the head of a request, and an idle connection to send its next one
+    #[arg(long, env = "EQUIPOISE_HEAD_TIME", value_name = "SECONDS", default_value = "30")]
+    #[arg(value_parser = seconds(1..=3600))]
+    pub head_time: Duration,
+
+    /// Size of a request's body. A scene of a polygon with hundreds of corners is about 20 KiB
+    #[arg(long, env = "EQUIPOISE_BODY_BYTES", value_name = "BYTES", default_value = "262144")]
+    #[arg(value_parser = within::<usize>(1024..=64 * 1024 * 1024, "bytes"))]
+    pub body_bytes: usize,
+
+    /// Time a client has to send a whole body. Longer is a stuck or hostile client that holds memory
+    #[arg(long, env = "EQUIPOISE_BODY_TIME", value_name = "SECONDS", default_value = "10")]
+    #[arg(value_parser = seconds(1..=3600))]
+    pub body_time: Duration,
+
+    /// Time in which a client that is slow has to take at least 64 KiB of its answer, which is held in memory for it,
+    /// before it is cut off
+    #[arg(long, env = "EQUIPOISE_STALL_TIME", value_name = "SECONDS", default_value = "30")]
+    #[arg(value_parser = seconds(1..=3600))]
+    pub stall_time: Duration,
+
+    /// Work of one request, in bounces of the plain rod, some 70 ns each: two seconds of one core
+    #[arg(long, env = "EQUIPOISE_WORK", value_name = "BOUNCES", default_value = "30000000")]
+    #[arg(value_parser = within::<u64>(1000..=1_000_000_000_000, "bounces"))]
+    pub work: u64,
+
+    /// Work of one region, in bounces of lanes, a sixth of a plain one each: some 20 s of two cores for a million cells of
+    /// 2000 contacts. It is computed in turns with others' requests, and stopped as soon as its client is gone
+    #[arg(long, env = "EQUIPOISE_REGION_WORK", value_name = "BOUNCES", default_value = "2000000000")]
+    #[arg(value_parser = within::<u64>(1000..=1_000_000_000_000, "bounces"))]
+    pub region_work: u64,
+
+    /// Work of one ensemble, in bounces, which with noise take two to four times as long as plain ones: some 10 s of two
+    /// cores. In turns and stopped like that of a region
+    #[arg(long, env = "EQUIPOISE_ENSEMBLE_WORK", value_name = "BOUNCES", default_value = "100000000")]
+    #[arg(value_parser = within::<u64>(1000..=1_000_000_000_000, "bounces"))]
+    pub ensemble_work: u64,
+
+    /// Numbers in one answer (columns times rows). JSON takes some 20 bytes for each, held in memory until they are sent
+    #[arg(long, env = "EQUIPOISE_ANSWER", value_name = "NUMBERS", default_value = "4000000")]
+    #[arg(value_parser = within::<u64>(1000..=1_000_000_000, "numbers"))]
+    pub answer: u64,
+
+    /// Requests that may wait for each of the permits. One client takes at most as many places as are left, so half of
+    /// them; more would wait longer than the time to wait anyway
+    #[arg(long, env = "EQUIPOISE_QUEUE", value_name = "NUMBER", default_value = "16")]
+    #[arg(value_parser = within::<usize>(1..=10_000, "requests for each permit"))]
+    pub queue: usize,
+
+    /// Time a request waits for a permit before it is told to come back
+    #[arg(long, env = "EQUIPOISE_QUEUE_TIME", value_name = "SECONDS", default_value = "5")]
+    #[arg(value_parser = seconds(1..=3600))]
+    pub queue_time: Duration,
+
+    /// Live runs at a time, over WebSockets and as events together; one client has at most as many as are left, so half of
+    /// them. Each computes its own bounces, `speed` times real time, and takes some 40 KiB
+    #[arg(long, env = "EQUIPOISE_LIVE_SESSIONS", value_name = "NUMBER", default_value = "2048")]
+    #[arg(value_parser = within::<usize>(1..=1_000_000, "live runs"))]
+    pub live_sessions: usize,
+
+    /// Time that a live run is told on one WebSocket before it is closed, so that none is held for ever. Clients come back
+    /// to the run's URL and miss nothing, perhaps to another server
+    #[arg(long, env = "EQUIPOISE_LIVE_TIME", value_name = "SECONDS", default_value = "86400")]
+    #[arg(value_parser = seconds(1..=31_536_000))]
+    pub live_time: Duration,
+
+    /// The same for events, whose server cannot tell a dead client from a silent one
+    #[arg(long, env = "EQUIPOISE_EVENTS_TIME", value_name = "SECONDS", default_value = "3600")]
+    #[arg(value_parser = seconds(1..=31_536_000))]
+    pub events_time: Duration,
+
+    /// Time that a live run which ended, or is paused, stays open without a message from its client
+    #[arg(long, env = "EQUIPOISE_LIVE_IDLE_TIME", value_name = "SECONDS", default_value = "1800")]
+    #[arg(value_parser = seconds(1..=31_536_000))]
+    pub live_idle_time: Duration,
+
+    /// Time a shutdown waits for answers under way before it cuts them off. Longer than the dearest request takes
+    #[arg(long, env = "EQUIPOISE_SHUTDOWN_TIME", value_name = "SECONDS", default_value = "8")]
+    #[arg(value_parser = seconds(0..=3600))]
+    pub shutdown_time: Duration,
+}
+
+impl Limits {
+    /// [`Limits::work`], for its error.
+    pub fn of_work(&self) -> Limit {
+        Limit { name: "work of this request", most: self.work, unit: "bounces" }
+    }
+
+    /// [`Limits::region_work`], for its error.
+    pub fn of_region_work(&self) -> Limit {
+        Limit { name: "work of this region", most: self.region_work, unit: "bounces" }
+    }
+
+    /// [`Limits::ensemble_work`], for its error.
+    pub fn of_ensemble_work(&self) -> Limit {
+        Limit { name: "work of this ensemble", most: self.ensemble_work, unit: "bounces" }
+    }
+
+    /// [`Limits::answer`], for its error.
+    pub fn of_answer(&self) -> Limit {
+        Limit { name: "size of the answer", most: self.answer, unit: "numbers" }
+    }
+}
+
+/// As when nothing is set, whatever the environment says.
+impl Default for Limits {
+    fn default() -> Self {
+        let command = Self::augment_args(Command::new("equipoise")).mut_args(|arg| arg.env(Resettable::Reset));
+        Self::from_arg_matches(&command.get_matches_from([""])).expect("every limit has a default within its range")
+    }
+}
+
+/// Reads a whole number within a range.
+fn within<T: FromStr + PartialOrd + Display + Copy>(
+    range: RangeInclusive<T>,
+    unit: &'static str,
+) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| {
+        let value = text.parse().ok().filter(|value| range.contains(value));
+        value.ok_or_else(|| format!("it must be a whole number from {} to {} {unit}", range.start(), range.end()))
+    }
+}
+
+/// Reads a time of whole seconds.
+fn seconds(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<Duration, String> + Clone {
+    let number = within(range, "seconds");
+    move |text| number(text).map(Duration::from_secs)
+}
+
 // --- What a request may be ---
-
-/// Bytes of a request body. A scene of a polygon with hundreds of corners is about 20 KiB.
-pub const BODY_BYTES: usize = 256 * 1024;
-
-/// Time a client has to send its whole body. Longer is a stuck or hostile client that holds memory.
-pub const BODY_TIME: Duration = Duration::from_secs(10);
 
 /// Bytes of path and query together. Common proxies pass 8 KiB at most, so a longer URL would not arrive anyway.
 pub const URL_BYTES: usize = 8 * 1024;
@@ -22,9 +163,6 @@ pub const HEAD_BYTES: usize = 64 * 1024;
 
 /// Headers of one request.
 pub const HEADERS: usize = 100;
-
-/// Time a client has to send a request head, and an idle connection to send its next one.
-pub const HEAD_TIME: Duration = Duration::from_secs(30);
 
 /// Parameters of one query. All fields of a scene together are under a hundred.
 pub const QUERY_PARAMETERS: usize = 512;
@@ -56,13 +194,6 @@ pub const CONTROLLER_PRICE: u64 = 20_000;
 /// Samples of one flight. A canvas is no wider.
 pub const SAMPLES_PER_FLIGHT: u64 = 256;
 
-/// Work of one request, in bounces of the plain rod (some 70 ns each): two seconds of one core.
-pub const WORK: Limit = Limit { name: "work of this request", most: 30_000_000, unit: "bounces" };
-
-/// Work of one region, in bounces of lanes, a sixth of a plain one each: some 20 s of two cores for a million cells of
-/// 2000 contacts. It is the one request that may take long; it is stopped as soon as its client is gone.
-pub const REGION_WORK: Limit = Limit { name: "work of this region", most: 2_000_000_000, unit: "bounces" };
-
 /// Values of one side of a region. More than a screen has pixels; larger maps are tiles put together.
 pub const REGION_SIDE: u64 = 4096;
 
@@ -71,17 +202,13 @@ pub const REGION_SIDE: u64 = 4096;
 pub const REGION_BLOCK_WORK: u64 = 1_000_000;
 
 /// Cells of one block: at least so many that lanes are full, at most so many that rows come as they are done.
-pub const REGION_BLOCK_CELLS: std::ops::RangeInclusive<u64> = 64..=2048;
+pub const REGION_BLOCK_CELLS: RangeInclusive<u64> = 64..=2048;
 
 /// Nodes along a side of the grid on which the linear boundary of a region is found.
 pub const REGION_BOUNDARY_NODES: usize = 49;
 
 /// Runs of one ensemble. The interval about a share of them is then within 0.7 % of it.
 pub const ENSEMBLE_RUNS: u64 = 20_000;
-
-/// Work of one ensemble, in bounces, which with noise take two to four times as long as plain ones: some 10 s of two cores.
-/// It is stopped as soon as its client is gone.
-pub const ENSEMBLE_WORK: Limit = Limit { name: "work of this ensemble", most: 100_000_000, unit: "bounces" };
 
 /// Work of one block of an ensemble, the runs that a thread takes at a time: some 10 ms, as for regions. One run may be more.
 pub const ENSEMBLE_BLOCK_WORK: u64 = 50_000;
@@ -109,9 +236,6 @@ pub const PRECISION_LOOK: Duration = Duration::from_micros(50);
 /// Looks of which a median is taken.
 pub const PRECISION_REPEATS: usize = 301;
 
-/// Numbers in one answer (columns times rows). JSON takes some 20 bytes for each, so 80 MB, held in memory until sent.
-pub const ANSWER: Limit = Limit { name: "size of the answer", most: 4_000_000, unit: "numbers" };
-
 /// Pixels of one picture. The largest drawing has 0.9 million; a pixel takes four bytes, three times over.
 pub const PICTURE_PIXELS: u64 = 4_000_000;
 
@@ -122,12 +246,6 @@ pub const PNG_PRICE: u64 = 400_000;
 /// another thread and back is worth.
 pub const INLINE_BOUNCES: u64 = 2048;
 
-/// Requests that may wait for a permit, for each permit there is. More would wait longer than `QUEUE_TIME` anyway.
-pub const QUEUE_PER_PERMIT: usize = 8;
-
-/// Time a request waits for a permit before it is told to come back.
-pub const QUEUE_TIME: Duration = Duration::from_secs(5);
-
 /// What `Retry-After` says on a 503, seconds: about the time of one request at its dearest.
 pub const RETRY_AFTER_S: u32 = 2;
 
@@ -136,24 +254,29 @@ pub const GZIP_STEP_BYTES: usize = 128 * 1024;
 
 // --- Connections ---
 
-/// Open connections; WebSockets are counted by `LIVE_SESSIONS` instead. Each buffers `HEAD_BYTES` at most while it waits
-/// for a request. Beyond it new ones wait in the kernel's queue.
-pub const CONNECTIONS: usize = 2048;
+/// Bytes of its answer that a slow client has to take in the time to stall: at the default time some 2 KB/s, which any
+/// network does.
+pub const STALL_BYTES: usize = 64 * 1024;
 
-/// Time a client may take no bytes of its answer, which is held in memory for it, before it is cut off.
-pub const STALL_TIME: Duration = Duration::from_secs(30);
+/// When connections give way, one in so many does at once: finding out which takes longer than closing them.
+pub const CONNECTIONS_AT_ONCE: usize = 64;
 
-/// Time a shutdown waits for answers under way before it cuts them off. Longer than the dearest request takes.
-pub const SHUTDOWN_TIME: Duration = Duration::from_secs(8);
+/// Open files kept free for anything but connections: sockets to listen on, the log, the page's files.
+pub const OTHER_FILES: usize = 64;
 
-/// Time that live runs have, after that, to say goodbye.
+/// Bytes of a request id that a client or a proxy may choose. A UUID has 36.
+pub const REQUEST_ID_BYTES: usize = 64;
+
+/// Characters of a token, at least: 16 random ones cannot be guessed over a network.
+pub const TOKEN_CHARACTERS: RangeInclusive<usize> = 16..=512;
+
+/// Time for which a browser may remember that another origin may ask.
+pub const PREFLIGHT_TIME: Duration = Duration::from_secs(3600);
+
+/// Time that live runs have, after the answers under way at a shutdown, to say goodbye.
 pub const GOODBYE_TIME: Duration = Duration::from_secs(1);
 
 // --- Live runs ---
-
-/// Live runs at a time, over WebSockets and as events together. Each computes at most its own bounces, `speed` times real
-/// time.
-pub const LIVE_SESSIONS: usize = 512;
 
 /// Bytes of one message from a live client. The longest valid one sets a few fields.
 pub const LIVE_MESSAGE_BYTES: usize = 8 * 1024;
@@ -161,10 +284,22 @@ pub const LIVE_MESSAGE_BYTES: usize = 8 * 1024;
 /// Messages a second that a live client may send, averaged over a few seconds. A dragged slider sends up to 60.
 pub const LIVE_MESSAGES_PER_S: u32 = 120;
 
+/// Bytes read at a time from a live client, whose messages are short. The library's own 128 KiB are cleared at every read: at a
+/// thousand clients two thirds of all the work.
+pub const LIVE_READ_BYTES: usize = 4 * 1024;
+
+/// Bytes that wait to be written before the socket is tried.
+pub const LIVE_WRITE_BYTES: usize = 16 * 1024;
+
+/// Bytes that may wait to be written beyond that: the longest message, several times over. A client that takes fewer is
+/// slow, and what else there is to say waits where it can be left out.
+pub const LIVE_WRITE_MOST_BYTES: usize = 1024 * 1024;
+
 /// Impacts waiting for a slow live client before the oldest are skipped over with a `gap`: four batches.
 pub const LIVE_QUEUE: usize = 1024;
 
-/// Time that a live client may be behind before it is closed with 1013. Under `STALL_TIME`, which would cut it off mute.
+/// Time that a live client may be behind before it is closed with 1013. Under the default time to stall,
+/// which would cut it off mute.
 pub const LIVE_BEHIND_TIME: Duration = Duration::from_secs(20);
 
 /// Bytes of one message that break the connection, since reading it to its end would only cost memory. In between a
@@ -199,13 +334,6 @@ pub const LIVE_PING_TIME: Duration = Duration::from_secs(20);
 
 /// Silence of a live client, its pongs included, after which its run ends.
 pub const LIVE_SILENCE_TIME: Duration = Duration::from_secs(60);
-
-/// Time that a live run which ended, or is paused, stays open without a message from its client.
-pub const LIVE_IDLE_TIME: Duration = Duration::from_secs(30 * 60);
-
-/// Time that a live run is told as events on one connection. Clients come back by themselves and miss nothing, perhaps to
-/// another server; what only a dead connection holds is freed.
-pub const LIVE_EVENTS_TIME: Duration = Duration::from_secs(60 * 60);
 
 /// Time after which a client of events that was cut off is told to come back.
 pub const LIVE_RETRY_TIME: Duration = Duration::from_secs(1);

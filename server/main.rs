@@ -23,18 +23,24 @@ async fn main() -> ExitCode {
     }
 }
 
-async fn run(config: Config) -> Result<(), String> {
+async fn run(mut config: Config) -> Result<(), String> {
+    if let Some(connections) = transport::fit_open_files(&mut config.limits) {
+        eprintln!(
+            "equipoise: the system's limit of open files allows {connections} connections; raise it with ulimit -n"
+        );
+    }
     let listener = TcpListener::bind(&config.listen).await.map_err(|error| cannot_listen(&config.listen, &error))?;
     let address = listener.local_addr().map_err(|error| error.to_string())?;
     let stop = stop_signal().map_err(|error| format!("cannot listen for signals: {error}"))?;
-    println!("equipoise {BUILD} serves http://{address}/");
+    println!("equipoise {BUILD} serves http://{address}{}/", config.base_path);
+    println!("{}", config.openness(address));
 
     let app = App::new(&config);
     let stop = async {
         stop.await;
         app.close();
     };
-    transport::serve(listener, router::router(app.clone()), stop).await;
+    transport::serve(listener, router::router(app.clone()), &config.limits, stop).await;
     // Live runs have left their connections' tasks; they know that the server closes, and say so to their clients.
     let gone = async {
         while app.metrics.live_sessions.get() > 0 {

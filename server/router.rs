@@ -24,8 +24,8 @@ mod tests {
     use crate::BUILD;
     use crate::compute::{Cancel, Price};
     use crate::config::Config;
-    use crate::http::{Ask, Errors, Format, Problem, Resource};
-    use crate::limits;
+    use crate::http::{Ask, Errors, Format, Problem, REQUEST_ID, Resource};
+    use crate::limits::{self, Limits};
 
     async fn send(request: Request<Body>) -> Response<Body> {
         let app = App::new(&Config::default());
@@ -75,7 +75,7 @@ mod tests {
     #[tokio::test]
     async fn a_panic_in_work_is_a_500_too() {
         let dear = crate::compute::Price::bounces(limits::INLINE_BOUNCES + 1);
-        let pool = crate::compute::Pool::new(1);
+        let pool = crate::compute::Pool::new(1, &Limits::default());
         let work =
             get(async move || pool.run(dear, |_| -> Result<String, crate::http::Problem> { panic!("deep") }).await);
         let app = App::new(&Config::default());
@@ -130,7 +130,7 @@ mod tests {
             reader.within("scale", |scale| scale.number("factor", 0.0..=10.0, "m").unwrap_or(1.0)).unwrap_or(1.0);
         reader.finish();
         errors.into_result()?;
-        let price = Price::bounces(count).times(100).within(&limits::WORK)?;
+        let price = Price::bounces(count).times(100).within(&app.config.limits.of_work())?;
         let canonical = serde_json::to_vec(&(count, factor)).expect("numbers");
         let metrics = app.metrics.clone();
         let compute = move |format: Format, cancel: &Cancel| {
@@ -163,7 +163,12 @@ mod tests {
         let post = send(json(), r#"{"scale": {"factor": 5e-1}, "count": 4}"#).await;
         assert_eq!(get.headers()[header::ETAG], post.headers()[header::ETAG]);
         let head = send(Request::head("/v1/squares?count=4&scale.factor=0.5"), "").await;
-        assert_eq!(head.headers(), get.headers());
+        let lasting = |response: &Response<Body>| {
+            let mut headers = response.headers().clone();
+            assert!(headers.remove(REQUEST_ID).is_some());
+            headers
+        };
+        assert_eq!(lasting(&head), lasting(&get));
         assert_eq!(text_of(head).await, "");
         let tag = get.headers()[header::ETAG].clone();
         assert_eq!((text_of(get).await, text_of(post).await), ("[0.0,0.5,2.0,4.5]".into(), "[0.0,0.5,2.0,4.5]".into()));

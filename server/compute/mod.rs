@@ -3,12 +3,17 @@
 //! No HTTP and no physics here: work is a closure with a price, and a refusal is a value.
 
 mod cancel;
+mod line;
+mod peer;
 mod pool;
 mod price;
+mod shares;
 pub mod stopwatch;
 mod turns;
 
 pub use cancel::{Cancel, Cancelled};
+pub use peer::Peer;
 pub use pool::{Counted, Pool, Refused};
 pub use price::{Limit, OverBudget, Price};
+pub use shares::{NoShare, Share, Shares};
 pub use turns::Turns;

@@ -2,28 +2,32 @@
 
 use std::fmt;
 use std::sync::Arc;
+use std::time::Duration;
 
 use prometheus_client::metrics::gauge::Gauge;
 use tokio::runtime::Handle;
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::spawn_blocking;
 use tokio::time::timeout;
 
 use super::cancel::{Cancel, OnDrop};
+use super::line::{Flow, Line, Permit};
+use super::peer::Peer;
 use super::price::Price;
+use super::shares::{NoShare, Share, Shares};
 use super::turns::Turns;
-use crate::limits;
+use crate::limits::{self, Limits};
 
 /// Admits work and runs it. Cheap to clone; clones share their permits.
 #[derive(Debug, Clone)]
 pub struct Pool {
     /// Places to run or to wait in.
-    places: Arc<Semaphore>,
+    places: Shares,
     /// Permits to run.
-    permits: Arc<Semaphore>,
-    /// Blocks of long work that have a permit or wait for one.
-    blocks: Arc<Semaphore>,
+    line: Arc<Line>,
     count: usize,
+    queue_time: Duration,
+    /// Whose work it is.
+    peer: Peer,
     running: Gauge,
     queued: Gauge,
 }
@@ -32,12 +36,7 @@ pub struct Pool {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Refused {
     /// No place to wait in.
-    Full {
-        /// Pieces of work that run at a time.
-        permits: usize,
-        /// Pieces of work that may wait.
-        places: usize,
-    },
+    Full(NoShare),
     /// A place, but no turn in good time.
     Late {
         /// Seconds it waited.
@@ -48,8 +47,12 @@ pub enum Refused {
 impl fmt::Display for Refused {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Refused::Full { permits, places } => {
-                write!(formatter, "{permits} requests are being computed and {places} are waiting, which is the limit")
+            Refused::Full(NoShare { held, free }) => {
+                write!(formatter, "{held} requests from this address are computed or waiting, and ")?;
+                match free {
+                    0 => formatter.write_str("no place is left"),
+                    free => write!(formatter, "the last {free} places are for others"),
+                }
             }
             Refused::Late { waited_s } => write!(formatter, "the request waited {waited_s} s for its turn, the limit"),
         }
@@ -60,15 +63,21 @@ impl std::error::Error for Refused {}
 
 impl Pool {
     /// A pool that does `permits` pieces of work at a time.
-    pub fn new(permits: usize) -> Self {
+    pub fn new(permits: usize, limits: &Limits) -> Self {
         Self {
-            places: Arc::new(Semaphore::new(permits * (1 + limits::QUEUE_PER_PERMIT))),
-            permits: Arc::new(Semaphore::new(permits)),
-            blocks: Arc::new(Semaphore::new(permits)),
+            places: Shares::new(permits * (1 + limits.queue)),
+            line: Line::new(permits),
             count: permits,
+            queue_time: limits.queue_time,
+            peer: Peer::NOBODY,
             running: Gauge::default(),
             queued: Gauge::default(),
         }
+    }
+
+    /// The same pool for the work of this peer.
+    pub fn of(&self, peer: Peer) -> Self {
+        Self { peer, ..self.clone() }
     }
 
     /// How much runs at the moment.
@@ -109,9 +118,8 @@ impl Pool {
         E: From<Refused> + Send + 'static,
     {
         let (place, _) = self.turn().await?;
-        let (permits, blocks, threads) = (self.permits.clone(), self.blocks.clone(), self.count);
-        let runtime = Handle::current();
-        let work = move |cancel: &Cancel| work(&Turns { cancel: cancel.clone(), permits, blocks, threads, runtime });
+        let (line, peer, threads, runtime) = (self.line.clone(), self.peer, self.count, Handle::current());
+        let work = move |cancel: &Cancel| work(&Turns { cancel: cancel.clone(), line, peer, threads, runtime });
         self.apart(place, work).await
     }
 
@@ -139,16 +147,15 @@ impl Pool {
         })
     }
 
-    async fn turn(&self) -> Result<(OwnedSemaphorePermit, OwnedSemaphorePermit), Refused> {
-        let full = Refused::Full { permits: self.count, places: self.count * limits::QUEUE_PER_PERMIT };
-        let place = self.places.clone().try_acquire_owned().map_err(|_| full)?;
-        if let Ok(permit) = self.permits.clone().try_acquire_owned() {
+    async fn turn(&self) -> Result<(Share, Permit), Refused> {
+        let place = self.places.take(self.peer).map_err(Refused::Full)?;
+        if let Some(permit) = self.line.try_take() {
             return Ok((place, permit));
         }
         let _queued = Counted::one(&self.queued);
-        match timeout(limits::QUEUE_TIME, self.permits.clone().acquire_owned()).await {
-            Ok(permit) => Ok((place, permit.expect("the semaphore is never closed"))),
-            Err(_) => Err(Refused::Late { waited_s: limits::QUEUE_TIME.as_secs() }),
+        match timeout(self.queue_time, self.line.take(Flow::Short(self.peer))).await {
+            Ok(permit) => Ok((place, permit)),
+            Err(_) => Err(Refused::Late { waited_s: self.queue_time.as_secs() }),
         }
     }
 }
@@ -177,13 +184,16 @@ mod tests {
     use std::sync::mpsc;
     use std::time::{Duration, Instant};
 
+    /// Places of which one peer gets half: one to run in and eight to wait in.
+    const QUEUE: usize = 8;
+
     fn dear() -> Price {
         Price::bounces(limits::INLINE_BOUNCES + 1)
     }
 
     #[tokio::test]
     async fn cheap_work_stays_on_its_thread_and_dear_work_leaves_it() {
-        let pool = Pool::new(1);
+        let pool = Pool::new(1, &Limits::default());
         let here = std::thread::current().id();
         let thread = |_: &Cancel| Ok::<_, Refused>(std::thread::current().id());
         assert_eq!(pool.run(Price::bounces(1), thread).await, Ok(here));
@@ -192,7 +202,7 @@ mod tests {
 
     #[tokio::test]
     async fn dropping_the_future_cancels_the_work_and_frees_the_permit() {
-        let pool = Pool::new(1);
+        let pool = Pool::new(1, &Limits::default());
         let (ended, end) = mpsc::channel();
         let work = pool.run(dear(), move |cancel| {
             while !cancel.is_set() {
@@ -210,25 +220,34 @@ mod tests {
 
     #[tokio::test]
     async fn beyond_the_queue_is_a_refusal() {
-        let pool = Pool::new(1);
+        let pool = Pool::new(1, &Limits::default());
         let (release, gate) = mpsc::channel::<()>();
         let busy = tokio::spawn({
             let pool = pool.clone();
             async move { pool.run(dear(), move |_| Ok::<_, Refused>(gate.recv().is_err())).await }
         });
-        let waiting: Vec<_> = (0..limits::QUEUE_PER_PERMIT)
+        let waiting: Vec<_> = (0..QUEUE)
             .map(|_| {
                 let pool = pool.clone();
                 tokio::spawn(async move { pool.run(dear(), |_| Ok::<_, Refused>(())).await })
             })
             .collect();
-        while pool.queued().get() < limits::QUEUE_PER_PERMIT as i64 {
+        while pool.queued().get() < QUEUE as i64 {
             tokio::task::yield_now().await;
         }
         assert_eq!(pool.running().get(), 1);
         let refused = pool.run(dear(), |_| Ok::<_, Refused>(())).await;
-        assert_eq!(refused, Err(Refused::Full { permits: 1, places: limits::QUEUE_PER_PERMIT }));
+        assert_eq!(refused, Err(Refused::Full(NoShare { held: 1 + QUEUE, free: QUEUE })));
+        // Another's request still has a place.
+        let other = tokio::spawn({
+            let pool = pool.of(Peer::at([192, 0, 2, 1].into()));
+            async move { pool.run(dear(), |_| Ok::<_, Refused>(())).await }
+        });
+        while pool.queued().get() == QUEUE as i64 {
+            tokio::task::yield_now().await;
+        }
         drop(release);
+        assert_eq!(other.await.unwrap(), Ok(()));
         assert_eq!(busy.await.unwrap(), Ok(true));
         for waiting in waiting {
             assert_eq!(waiting.await.unwrap(), Ok(()));
@@ -238,7 +257,7 @@ mod tests {
 
     #[tokio::test]
     async fn a_panic_comes_through_and_costs_no_permit() {
-        let pool = Pool::new(1);
+        let pool = Pool::new(1, &Limits::default());
         let panicking = tokio::spawn({
             let pool = pool.clone();
             async move { pool.run(dear(), |_| -> Result<(), Refused> { panic!("on purpose") }).await }

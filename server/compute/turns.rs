@@ -6,26 +6,21 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use tokio::runtime::Handle;
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use super::cancel::{Cancel, Cancelled};
+use super::line::{Flow, Line, Permit};
+use super::peer::Peer;
 
 /// What one piece of long work gets its turns from.
 #[derive(Debug)]
 pub struct Turns {
     pub(super) cancel: Cancel,
-    /// Permits of the pool.
-    pub(super) permits: Arc<Semaphore>,
-    /// As many again, for blocks alone: so many of them have a permit or are waiting for one, and no more. Whatever the
-    /// number of long pieces of work, a short one finds at most that many blocks before it.
-    pub(super) blocks: Arc<Semaphore>,
+    /// Permits of the pool, in which the blocks of one peer's long work wait apart from its requests: whatever the number of
+    /// blocks, a request finds at most one of each peer's before it.
+    pub(super) line: Arc<Line>,
+    pub(super) peer: Peer,
     pub(super) threads: usize,
     pub(super) runtime: Handle,
-}
-
-/// The right to compute; over when dropped.
-struct Turn {
-    _permits: [OwnedSemaphorePermit; 2],
 }
 
 impl Turns {
@@ -77,17 +72,12 @@ impl Turns {
     }
 
     /// Waits, on this thread, as long as somebody waits for the result.
-    fn turn(&self) -> Option<Turn> {
+    fn turn(&self) -> Option<Permit> {
         self.runtime.block_on(async {
-            let turn = async {
-                let block = self.blocks.clone().acquire_owned().await;
-                let permit = self.permits.clone().acquire_owned().await;
-                Turn { _permits: [block, permit].map(|permit| permit.expect("the semaphores are never closed")) }
-            };
             tokio::select! {
                 biased;
                 () = self.cancel.wait() => None,
-                turn = turn => Some(turn),
+                permit = self.line.take(Flow::Long(self.peer)) => Some(permit),
             }
         })
     }
@@ -114,7 +104,7 @@ impl<T, Done: FnMut(T)> Order<T, Done> {
 mod tests {
     use super::*;
     use crate::compute::{Pool, Price, Refused};
-    use crate::limits;
+    use crate::limits::{self, Limits};
     use std::sync::atomic::AtomicU64;
     use std::sync::mpsc;
 
@@ -142,7 +132,7 @@ mod tests {
     #[tokio::test]
     async fn results_are_in_order_whatever_the_threads() {
         for threads in [1, 2, 3, 8] {
-            let pool = Pool::new(threads);
+            let pool = Pool::new(threads, &Limits::default());
             for blocks in [0, 1, 100] {
                 let expected: Vec<_> = (0..blocks).map(|block| block * block).collect();
                 assert_eq!(pool.run_in_turns(move |turns| squares(turns, blocks)).await, Ok(expected));
@@ -161,14 +151,14 @@ mod tests {
             };
             Ok::<_, Failed>(turns.spread(10_000, work, |()| {})?)
         };
-        assert_eq!(Pool::new(2).run_in_turns(work).await, Err(Failed));
+        assert_eq!(Pool::new(2, &Limits::default()).run_in_turns(work).await, Err(Failed));
         assert!(begun.load(Ordering::Relaxed) < 10_000);
     }
 
     /// Two endless pieces of long work on one permit; a short one is done after a block or two of them.
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
     async fn short_work_waits_for_a_block_and_not_for_the_whole() {
-        let pool = Pool::new(1);
+        let pool = Pool::new(1, &Limits::default());
         let blocks_done = Arc::new(AtomicU64::new(0));
         let (begun, mut begin) = tokio::sync::mpsc::unbounded_channel();
         let (step, steps) = mpsc::channel::<()>();

@@ -41,7 +41,13 @@ impl Ask {
         compute: impl FnOnce(Format, &Cancel) -> Result<Vec<u8>, Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
-        self.tagged(resource, (format, encoding), canonical, computed(pool, format, encoding, price, compute)).await
+        self.tagged(
+            resource,
+            (format, encoding),
+            canonical,
+            computed(&pool.of(self.peer), format, encoding, price, compute),
+        )
+        .await
     }
 
     /// The same for long work, which `compute` does in turns. Formats that are in `streamed` are sent piece by piece.
@@ -55,7 +61,8 @@ impl Ask {
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
         let streams = streamed.contains(&format);
-        let answer = computed_in_turns(pool, format, encoding, streams, compute);
+        let pool = pool.of(self.peer);
+        let answer = computed_in_turns(&pool, format, encoding, streams, compute);
         self.tagged(resource, (format, encoding), canonical, answer).await
     }
 
@@ -92,7 +99,8 @@ impl Ask {
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
         let (price, streams) = (with_drawing(price, format), streamed.contains(&format));
-        let mut response = computed_at_once(pool, price, (format, encoding), streams, compute).await?;
+        let pool = pool.of(self.peer);
+        let mut response = computed_at_once(&pool, price, (format, encoding), streams, compute).await?;
         response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
         Ok(response)
     }
@@ -160,6 +168,7 @@ impl From<Cancelled> for Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::limits::Limits;
     use axum::extract::{FromRequest, Request};
     use http_body_util::BodyExt;
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -168,12 +177,14 @@ mod tests {
 
     async fn get(query: &str, headers: &[(&str, &str)], work: &'static AtomicUsize) -> Response<Body> {
         let request = headers.iter().fold(Request::get(query), |request, (name, value)| request.header(*name, *value));
-        let ask = Ask::from_request(request.body(Body::empty()).unwrap(), &()).await.unwrap();
+        let ask = Ask::from_request(request.body(Body::empty()).unwrap(), &Limits::default()).await.unwrap();
         let compute = |format: Format, _: &Cancel| {
             work.fetch_add(1, Ordering::Relaxed);
             Ok(format.name().repeat(1000).into_bytes())
         };
-        ask.respond(&Pool::new(1), &RESOURCE, b"canonical", Price::bounces(1), compute).await.unwrap()
+        ask.respond(&Pool::new(1, &Limits::default()), &RESOURCE, b"canonical", Price::bounces(1), compute)
+            .await
+            .unwrap()
     }
 
     #[tokio::test]

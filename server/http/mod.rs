@@ -3,22 +3,28 @@
 //! No physics and no routes here: everything is told in JSON values, bytes and formats.
 
 pub mod answer;
+mod asked;
 pub mod encode;
 pub mod etag;
 pub mod fixed;
 pub mod json;
 pub mod leaf;
 pub mod negotiate;
+pub mod origin;
 pub mod outlet;
 pub mod problem;
 pub mod query;
 pub mod reader;
 pub mod request;
+mod token;
 
 pub use answer::Resource;
+pub use asked::{Asked, REQUEST_ID};
 pub use leaf::Source;
 pub use negotiate::Format;
+pub use origin::Origin;
 pub use outlet::Outlet;
 pub use problem::{FieldError, Problem};
 pub use reader::{Errors, Reader};
 pub use request::Ask;
+pub use token::Token;

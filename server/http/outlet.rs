@@ -1,7 +1,7 @@
 //! Answers that are sent while they are computed, where the format has lines for that.
 //!
 //! Computing never waits for the reader: what is not yet read is kept, never more than the whole answer, which the price
-//! has bounded (`limits::ANSWER`), and a reader that takes nothing is cut off after `limits::STALL_TIME`. So a slow reader
+//! has bounded (`Limits::answer`), and a reader that takes nothing is cut off after `Limits::stall_time`. So a slow reader
 //! holds neither a permit nor a place in the queue. A reader that leaves ends the work.
 
 use std::io::{self, Write};
@@ -165,7 +165,14 @@ mod tests {
         compute: impl FnOnce(&mut Outlet) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let compute = |_: Format, _: &Turns, out: &mut Outlet| compute(out);
-        computed_in_turns(&Pool::new(1), Format::Ndjson, Encoding::Identity, streams, compute).await
+        computed_in_turns(
+            &Pool::new(1, &crate::limits::Limits::default()),
+            Format::Ndjson,
+            Encoding::Identity,
+            streams,
+            compute,
+        )
+        .await
     }
 
     #[tokio::test]

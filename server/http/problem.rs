@@ -9,6 +9,7 @@ use axum::response::{IntoResponse, Response};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
+use super::asked::Asked;
 use crate::compute::{OverBudget, Refused};
 use crate::limits;
 
@@ -55,6 +56,14 @@ impl Problem {
     /// 400: the body is not JSON, or the URL is not properly encoded.
     pub fn not_readable(detail: impl Into<String>) -> Self {
         Self::plain(StatusCode::BAD_REQUEST, detail).named("not-readable", "The request cannot be read")
+    }
+
+    /// 401: the server has a token, and the request does not carry it.
+    pub fn unauthorized() -> Self {
+        let detail = "this server answers only who has its token: send it as Authorization: Bearer, or open the page once as \
+                      /?token=…";
+        Self::plain(StatusCode::UNAUTHORIZED, detail)
+            .header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer realm=\"equipoise\""))
     }
 
     /// 404: nothing by this name.
@@ -180,9 +189,13 @@ impl Problem {
 impl Serialize for Problem {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let parts = &*self.0;
+        let asked = Asked::under_way();
         let mut map = serializer.serialize_map(None)?;
         match parts.slug {
-            Some(slug) => map.serialize_entry("type", &format_args!("/docs#problem-{slug}"))?,
+            Some(slug) => {
+                let base = asked.as_ref().map_or("", |asked| &asked.base);
+                map.serialize_entry("type", &format_args!("{base}/docs#problem-{slug}"))?;
+            }
             None => map.serialize_entry("type", "about:blank")?,
         }
         map.serialize_entry("title", parts.title)?;
@@ -190,6 +203,9 @@ impl Serialize for Problem {
         map.serialize_entry("detail", &parts.detail)?;
         if !parts.errors.is_empty() {
             map.serialize_entry("errors", &parts.errors)?;
+        }
+        if let Some(asked) = &asked {
+            map.serialize_entry("request_id", &*asked.id)?;
         }
         map.end()
     }

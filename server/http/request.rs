@@ -2,7 +2,7 @@
 //! the answer. Both kinds give the same tree, so nothing behind this tells one from the other.
 
 use axum::body::{Body, to_bytes};
-use axum::extract::{FromRequest, Request};
+use axum::extract::{FromRef, FromRequest, Request};
 use axum::http::{HeaderMap, Method, header};
 use http_body_util::LengthLimitError;
 use serde_json::{Map, Value};
@@ -12,7 +12,8 @@ use super::leaf::Source;
 use super::problem::{FieldError, Problem, shortened};
 use super::reader::{Errors, Reader, join};
 use super::{json, query};
-use crate::limits;
+use crate::compute::Peer;
+use crate::limits::{self, Limits};
 
 /// A request for something computed. As an extractor it takes the body, so it stands last.
 #[derive(Debug, Clone)]
@@ -23,6 +24,8 @@ pub struct Ask {
     pub source: Source,
     /// The request's headers.
     pub headers: HeaderMap,
+    /// Who asks.
+    pub peer: Peer,
     /// What `?format=` says.
     pub(super) format: Option<String>,
 }
@@ -46,12 +49,12 @@ impl Ask {
         value.ok_or_else(Problem::internal)
     }
 
-    fn from_query(query: &str, headers: HeaderMap) -> Result<Self, Problem> {
+    fn from_query(query: &str, headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
         let (format, parameters) = split_format(query)?;
-        Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, format })
+        Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, peer, format })
     }
 
-    fn from_body(query: &str, body: &[u8], headers: HeaderMap) -> Result<Self, Problem> {
+    fn from_body(query: &str, body: &[u8], headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
         let (format, parameters) = split_format(query)?;
         if !parameters.is_empty() {
             let error = |(name, _): (String, String)| FieldError {
@@ -63,22 +66,26 @@ impl Ask {
             };
             return Err(Problem::invalid(parameters.into_iter().map(error).take(limits::ERRORS).collect()));
         }
-        Ok(Self { fields: json::object(body)?, source: Source::Json, headers, format })
+        Ok(Self { fields: json::object(body)?, source: Source::Json, headers, peer, format })
     }
 }
 
-impl<S: Send + Sync> FromRequest<S> for Ask {
+impl<S: Send + Sync> FromRequest<S> for Ask
+where
+    Limits: FromRef<S>,
+{
     type Rejection = Problem;
 
-    async fn from_request(request: Request, _: &S) -> Result<Self, Problem> {
+    async fn from_request(request: Request, state: &S) -> Result<Self, Problem> {
         let (parts, body) = request.into_parts();
         let query = parts.uri.query().unwrap_or_default();
+        let peer = parts.extensions.get().copied().unwrap_or(Peer::NOBODY);
         if parts.method == Method::GET || parts.method == Method::HEAD {
-            return Self::from_query(query, parts.headers);
+            return Self::from_query(query, parts.headers, peer);
         }
         check_media_type(&parts.headers)?;
-        let body = read(body, &parts.headers).await?;
-        Self::from_body(query, &body, parts.headers)
+        let body = read(body, &parts.headers, &Limits::from_ref(state)).await?;
+        Self::from_body(query, &body, parts.headers, peer)
     }
 }
 
@@ -129,20 +136,20 @@ fn check_media_type(headers: &HeaderMap) -> Result<(), Problem> {
     }
 }
 
-async fn read(body: Body, headers: &HeaderMap) -> Result<axum::body::Bytes, Problem> {
+async fn read(body: Body, headers: &HeaderMap, limits: &Limits) -> Result<axum::body::Bytes, Problem> {
     let announced = headers.get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
-    if announced.is_some_and(|length| length > limits::BODY_BYTES as u64) {
-        return Err(Problem::too_large(limits::BODY_BYTES));
+    if announced.is_some_and(|length| length > limits.body_bytes as u64) {
+        return Err(Problem::too_large(limits.body_bytes));
     }
-    let reading = timeout(limits::BODY_TIME, to_bytes(body, limits::BODY_BYTES)).await;
+    let reading = timeout(limits.body_time, to_bytes(body, limits.body_bytes)).await;
     let Ok(read) = reading else {
-        let limit_s = limits::BODY_TIME.as_secs();
+        let limit_s = limits.body_time.as_secs();
         return Err(Problem::too_slow(format!("the request body took longer than the limit of {limit_s} s to arrive")));
     };
     read.map_err(|error| {
         use std::error::Error;
         match error.source().is_some_and(|source| source.is::<LengthLimitError>()) {
-            true => Problem::too_large(limits::BODY_BYTES),
+            true => Problem::too_large(limits.body_bytes),
             false => Problem::not_readable("the connection ended, or broke the protocol, within the request body"),
         }
     })
@@ -154,7 +161,7 @@ mod tests {
     use serde_json::json;
 
     async fn ask(request: axum::http::request::Builder, body: impl Into<Body>) -> Result<Ask, Problem> {
-        Ask::from_request(request.body(body.into()).unwrap(), &()).await
+        Ask::from_request(request.body(body.into()).unwrap(), &Limits::default()).await
     }
 
     fn post(media_type: &str) -> axum::http::request::Builder {
@@ -197,7 +204,7 @@ mod tests {
 
     #[tokio::test]
     async fn bodies_are_bounded_announced_or_not() {
-        let large = format!("{{\"a\": \"{}\"}}", "x".repeat(limits::BODY_BYTES));
+        let large = format!("{{\"a\": \"{}\"}}", "x".repeat(Limits::default().body_bytes));
         assert_eq!(ask(post("application/json"), large.clone()).await.unwrap_err().status(), 413);
         let announced = post("application/json").header(header::CONTENT_LENGTH, large.len());
         assert_eq!(ask(announced, large).await.unwrap_err().status(), 413);

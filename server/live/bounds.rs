@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::compute::Limit;
-use crate::limits;
+use crate::limits::{self, Limits};
 
 /// The bounds of one session, so that a test can wait for them.
 #[derive(Debug, Clone, Copy)]
@@ -14,8 +14,10 @@ pub struct Bounds {
     pub behind: Duration,
     /// Time between pings.
     pub ping: Duration,
-    /// Time without a word from the client, pongs included; of one that cannot speak, all its time.
+    /// Time without a word from the client, pongs included.
     pub silence: Duration,
+    /// All the time it is told a run.
+    pub lifetime: Duration,
     /// Time without a message, when the run has ended or is paused.
     pub idle: Duration,
     /// Whether it stays when the run has ended, for a client that may begin it anew.
@@ -26,25 +28,26 @@ pub struct Bounds {
     pub catch_up: Limit,
 }
 
-impl Default for Bounds {
-    fn default() -> Self {
+impl Bounds {
+    /// Those of a client that talks.
+    pub fn of_a_talker(limits: &Limits) -> Self {
         Self {
             queue: limits::LIVE_QUEUE,
             behind: limits::LIVE_BEHIND_TIME,
             ping: limits::LIVE_PING_TIME,
             silence: limits::LIVE_SILENCE_TIME,
-            idle: limits::LIVE_IDLE_TIME,
+            lifetime: limits.live_time,
+            idle: limits.live_idle_time,
             stays: true,
             messages_per_s: limits::LIVE_MESSAGES_PER_S,
             catch_up: limits::LIVE_CATCH_UP,
         }
     }
-}
 
-impl Bounds {
-    /// Those of a client that only listens.
-    pub fn of_a_listener() -> Self {
-        Self { silence: limits::LIVE_EVENTS_TIME, stays: false, ..Self::default() }
+    /// Those of a client that only listens, and so is never heard.
+    pub fn of_a_listener(limits: &Limits) -> Self {
+        let lifetime = limits.events_time;
+        Self { silence: lifetime, lifetime, stays: false, ..Self::of_a_talker(limits) }
     }
 }
 

@@ -15,7 +15,6 @@ use super::address::{self, Asked};
 use super::course::Course;
 use super::messages::{Frame, Mark};
 use super::session::{self, Place};
-use crate::compute::Counted;
 use crate::http::Reader;
 use crate::http::leaf::{self, Source};
 use crate::limits;
@@ -58,13 +57,14 @@ pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Optio
     None
 }
 
-/// Tells a run. The session ends when the events are dropped, as they are when the client has gone, or when `closing` does.
+/// Tells a run. The session ends when the events are dropped, as they are when the client has gone, or when `closing` does; with it
+/// goes what is `held` for it.
 pub fn tell(
     asked: Asked,
     course: Course,
     place: Place,
     closing: impl Future<Output = ()> + Send + 'static,
-    counted: Counted,
+    held: impl Send + 'static,
 ) -> impl Stream<Item = Result<Event, Infallible>> + Send + 'static {
     let (to, events) = mpsc::channel(1);
     let (here, gone) = oneshot::channel::<Infallible>();
@@ -77,7 +77,7 @@ pub fn tell(
         Ok::<_, Infallible>(Message::Close(None))
     });
     tokio::spawn(async move {
-        let _counted = counted;
+        let _held = held;
         session::serve(asked, Ok(course), Box::pin(incoming), Box::pin(outgoing), place, closing).await;
     });
     let first = Event::default().retry(limits::LIVE_RETRY_TIME);
@@ -113,7 +113,8 @@ mod tests {
     use prometheus_client::metrics::gauge::Gauge;
 
     use super::*;
-    use crate::compute::Pool;
+    use crate::compute::{Counted, Pool};
+    use crate::limits::Limits;
     use crate::live::bounds::Bounds;
     use crate::live::clock::Clock;
     use crate::live::run::Run;
@@ -123,7 +124,8 @@ mod tests {
     async fn heard(preset: &str, bounds: Bounds) -> String {
         let run = Run::new(*case(preset).scene(), Clock::new(session::wall_now(), 20.0));
         let asked = Asked { run, from: None };
-        let place = Place { pool: Pool::new(1), bounces: Counter::default(), bounds };
+        let place =
+            Place { pool: Pool::new(1, &Limits::default()), bounces: Counter::default(), base_path: "".into(), bounds };
         let course = session::caught_up(&asked, &place).await.unwrap();
         let sessions = Gauge::default();
         let events = tell(asked, course, place, std::future::pending(), Counted::one(&sessions));
@@ -134,15 +136,15 @@ mod tests {
 
     #[tokio::test]
     async fn a_slow_client_is_told_what_it_misses_and_the_end() {
-        let text = heard("still-lossy", Bounds { queue: 4, ..Bounds::of_a_listener() }).await;
+        let text = heard("still-lossy", Bounds { queue: 4, ..Bounds::of_a_listener(&Limits::default()) }).await;
         assert!(text.contains("event: gap\n"), "{text}");
         assert!(text.ends_with("id: end\n\n"), "{text}");
     }
 
     #[tokio::test]
     async fn a_client_is_pinged_and_let_go_in_time() {
-        let (ping, silence) = (Duration::from_millis(50), Duration::from_millis(700));
-        let text = heard("case-1", Bounds { ping, silence, ..Bounds::of_a_listener() }).await;
+        let (ping, lifetime) = (Duration::from_millis(50), Duration::from_millis(700));
+        let text = heard("case-1", Bounds { ping, lifetime, ..Bounds::of_a_listener(&Limits::default()) }).await;
         assert!(text.starts_with("retry: ") && text.contains("\n\n:") && !text.contains("id: end"), "{text}");
     }
 }

@@ -134,8 +134,8 @@ struct Release {
 }
 
 impl<'a> Hello<'a> {
-    /// Of a run that is told from `course` on, at the wall time `now`, unix ms.
-    pub fn new(run: &'a Run, course: &'a Course, now: u64) -> Self {
+    /// Of a run that is told from `course` on, at the wall time `now`, unix ms. Its URL begins with `base`.
+    pub fn new(run: &'a Run, course: &'a Course, base: &str, now: u64) -> Self {
         let scene = run.scene();
         let release = scene.release();
         let angle = |value| has_angle(scene).then_some(value);
@@ -148,7 +148,7 @@ impl<'a> Hello<'a> {
             paused: run.clock.is_paused(),
             now,
             run_time: run.clock.run_time(now),
-            url: address::url(run),
+            url: format!("{base}{}", address::url(run)),
             release: Release {
                 t: 0.0,
                 x: release.x,

@@ -4,6 +4,7 @@
 //! what cannot be sent at once waits in the outbox. Not here: what carries it, a WebSocket or Server-Sent Events.
 
 use std::pin::pin;
+use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, close_code};
@@ -31,6 +32,8 @@ pub struct Place {
     pub pool: Pool,
     /// Counts the bounces.
     pub bounces: Counter,
+    /// What stands before its URLs as clients see them.
+    pub base_path: Arc<str>,
     /// The bounds to keep.
     pub bounds: Bounds,
 }
@@ -144,6 +147,7 @@ struct Session {
     came_at: f64,
     next_pump: Instant,
     next_ping: Instant,
+    opened: Instant,
     last_heard: Instant,
     last_order: Instant,
     allowance: Allowance,
@@ -161,6 +165,7 @@ impl Session {
             catching_up: true,
             next_pump: now,
             next_ping: now + place.bounds.ping,
+            opened: now,
             last_heard: now,
             last_order: now,
             allowance: Allowance::new(place.bounds.messages_per_s, now),
@@ -213,7 +218,7 @@ impl Session {
 
     /// Says which run it is.
     fn greet(&mut self, now: u64) {
-        let hello = Hello::new(&self.run, &self.course, now);
+        let hello = Hello::new(&self.run, &self.course, &self.place.base_path, now);
         self.outbox.push(Said::Hello(Box::new(hello)).to_frame());
         if let Some(outcome) = self.course.outcome() {
             self.outbox.push(Said::End { outcome, demand: self.course.demand().into() }.to_frame());
@@ -264,6 +269,9 @@ impl Session {
             self.outbox.push(Frame::Ping);
             self.next_ping = now + bounds.ping;
         }
+        if now >= self.opened + bounds.lifetime {
+            return Some((close_code::AWAY, "open for the time that the limit allows"));
+        }
         if now >= self.last_heard + bounds.silence {
             return Some((close_code::POLICY, "no answer to pings"));
         }
@@ -287,8 +295,8 @@ impl Session {
         let idle = self.is_idle().then(|| self.last_order + bounds.idle);
         let behind = self.outbox.waiting_since().map(|since| since + bounds.behind);
         let pump = (!self.catching_up && self.course.next_n().is_some()).then_some(self.next_pump);
-        let silence = self.last_heard + bounds.silence;
-        [Some(silence), Some(self.next_ping), idle, behind, pump].into_iter().flatten().min().unwrap_or(silence)
+        let end = (self.last_heard + bounds.silence).min(self.opened + bounds.lifetime);
+        [Some(self.next_ping), idle, behind, pump].into_iter().flatten().fold(end, Instant::min)
     }
 
     /// Takes a message.
@@ -381,7 +389,7 @@ impl Session {
         self.next_pump = Instant::now();
         let ack = Ack {
             of: order.name(),
-            url: &address::url(&self.run),
+            url: &format!("{}{}", self.place.base_path, address::url(&self.run)),
             run_time: self.run.clock.run_time(now),
             now,
             speed: self.run.clock.speed(),

@@ -18,6 +18,7 @@ use super::run::Run;
 use super::run::tests::case;
 use super::session::{Place, caught_up, serve, wall_now};
 use crate::compute::Pool;
+use crate::limits::Limits;
 
 /// The client's ends of a connection that takes one message at a time.
 struct Client {
@@ -31,12 +32,17 @@ fn open(asked: Asked, bounds: Bounds) -> Client {
     let incoming = stream::unfold(incoming, async |mut from| from.recv().await.map(|message| (message, from)));
     let outgoing =
         sink::unfold(outgoing, async |to: Sender<Message>, frame: Frame| to.send(frame.into()).await.map(|()| to));
-    let place = Place { pool: Pool::new(1), bounces: Counter::default(), bounds };
+    let place =
+        Place { pool: Pool::new(1, &Limits::default()), bounces: Counter::default(), base_path: "".into(), bounds };
     tokio::spawn(async move {
         let course = caught_up(&asked, &place).await;
         serve(asked, course, Box::pin(incoming), Box::pin(outgoing), place, std::future::pending()).await;
     });
     Client { says, hears }
+}
+
+fn bounds() -> Bounds {
+    Bounds::of_a_talker(&Limits::default())
 }
 
 /// A run of a preset that is released now.
@@ -65,7 +71,7 @@ impl Client {
 
 #[tokio::test]
 async fn a_slow_client_gets_a_gap_and_no_impact_twice_or_out_of_order() {
-    let bounds = Bounds { queue: 4, ..Bounds::default() };
+    let bounds = Bounds { queue: 4, ..bounds() };
     let mut client = open(now("still-lossy", 20.0), bounds);
     assert!(client.hear().await.is_some());
     sleep(Duration::from_millis(500)).await;
@@ -94,7 +100,7 @@ async fn a_slow_client_gets_a_gap_and_no_impact_twice_or_out_of_order() {
 
 #[tokio::test]
 async fn a_client_that_stays_behind_is_closed_with_1013() {
-    let bounds = Bounds { behind: Duration::from_millis(300), ..Bounds::default() };
+    let bounds = Bounds { behind: Duration::from_millis(300), ..bounds() };
     let mut client = open(now("case-1", 20.0), bounds);
     sleep(Duration::from_millis(600)).await;
     assert_eq!(client.rest().await.1, Some(1013));
@@ -105,7 +111,7 @@ async fn a_catch_up_waits_for_its_client() {
     let mut asked = now("case-1", 1.0);
     asked.run.clock = Clock::new(wall_now() - 600_000, 1.0);
     asked.from = Some(1);
-    let bounds = Bounds { queue: 256, ..Bounds::default() };
+    let bounds = Bounds { queue: 256, ..bounds() };
     let mut client = open(asked, bounds);
     let mut next = 1;
     while next < 1000 {
@@ -123,7 +129,7 @@ async fn a_catch_up_waits_for_its_client() {
 
 #[tokio::test]
 async fn a_silent_client_is_pinged_and_then_given_up() {
-    let bounds = Bounds { ping: Duration::from_millis(50), silence: Duration::from_millis(250), ..Bounds::default() };
+    let bounds = Bounds { ping: Duration::from_millis(50), silence: Duration::from_millis(250), ..bounds() };
     let mut client = open(now("case-1", 1.0), bounds);
     let (mut pings, mut code) = (0, None);
     while let Some(message) = client.hear().await {
@@ -138,12 +144,20 @@ async fn a_silent_client_is_pinged_and_then_given_up() {
 }
 
 #[tokio::test]
+async fn a_client_is_let_go_at_the_end_of_its_time() {
+    let mut client = open(now("case-1", 10.0), Bounds { lifetime: Duration::from_millis(500), ..bounds() });
+    let (texts, code) = client.rest().await;
+    assert_eq!(code, Some(1001));
+    assert!(texts.len() > 1 && texts[0]["type"] == "hello", "{texts:?}");
+}
+
+#[tokio::test]
 async fn a_client_that_answers_pings_stays_until_it_is_idle() {
     let bounds = Bounds {
         ping: Duration::from_millis(50),
         silence: Duration::from_secs(1),
         idle: Duration::from_millis(2000),
-        ..Bounds::default()
+        ..bounds()
     };
     let mut client = open(now("case-1", 1.0), bounds);
     client.says.send(Ok(Message::text(r#"{"type":"pause"}"#))).await.unwrap();

@@ -29,7 +29,7 @@ pub fn routes() -> Router<App> {
     let mut router = Router::new();
     for (name, bytes) in ASSETS.iter().copied() {
         let fixed = Arc::new(Fixed::new(media_type(name), bytes));
-        let handler = get(async move |State(app): State<App>, headers: HeaderMap| match &app.web {
+        let handler = get(async move |State(app): State<App>, headers: HeaderMap| match &app.config.web {
             None => fixed.answer(&headers),
             Some(folder) => match tokio::task::block_in_place(|| std::fs::read(folder.join(name))) {
                 Ok(bytes) => Fixed::new(media_type(name), bytes).answer(&headers),
@@ -44,7 +44,7 @@ pub fn routes() -> Router<App> {
         router = match name {
             "index.html" => router.route("/", handler),
             "docs/index.html" => {
-                router.route("/docs", handler).route("/docs/", get(async || Redirect::permanent("/docs")))
+                router.route("/docs", handler).route("/docs/", get(async || Redirect::permanent("../docs")))
             }
             EMBED => router.route("/embed/{panel}", handler),
             _ => router,

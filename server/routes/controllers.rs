@@ -22,7 +22,7 @@ pub fn routes() -> Router<App> {
 
 async fn controllers(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let request = ask.read(Request::read)?;
-    let price = Price::bounces(limits::CONTROLLER_PRICE).within(&limits::WORK)?;
+    let price = Price::bounces(limits::CONTROLLER_PRICE).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&request.scene, &request.rest());
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
         let controller =

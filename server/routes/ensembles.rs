@@ -29,7 +29,7 @@ pub fn routes() -> Router<App> {
 
 async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let ensemble = ask.read(read)?;
-    limits::ENSEMBLE_WORK.admit(ensemble.runs.saturating_mul(ensemble.impacts))?;
+    app.config.limits.of_ensemble_work().admit(ensemble.runs.saturating_mul(ensemble.impacts))?;
     let canonical = super::canonical(&ensemble.scene, &(ensemble.runs, ensemble.impacts));
     let metrics = app.metrics.clone();
     ask.respond_in_turns(&app.pool, &RESOURCE, &canonical, &STREAMED, move |format, turns: &Turns, out: &mut Outlet| {

@@ -9,7 +9,6 @@ use axum::routing::get;
 use super::App;
 use crate::compute::{Cancel, Cancelled, Price};
 use crate::http::{Ask, Format, Problem, Resource};
-use crate::limits;
 use crate::wire::ladder::{Ladder, Request};
 use crate::wire::scene;
 
@@ -26,7 +25,7 @@ async fn ladder(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Prob
         let request = Request::read(reader);
         Some((scene?, request))
     })?;
-    let price = Price::bounces(request.price()).within(&limits::WORK)?;
+    let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &request);
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {

@@ -12,9 +12,8 @@ use axum::routing::get;
 use futures_util::{SinkExt, StreamExt};
 
 use super::App;
-use crate::compute::Counted;
-use crate::http::problem::shortened;
-use crate::http::{Ask, Format, Problem, Resource};
+use crate::compute::{Counted, NoShare, Share};
+use crate::http::{Ask, Format, Problem, Resource, origin};
 use crate::limits;
 use crate::live::address::{self, PATH};
 use crate::live::bounds::Bounds;
@@ -39,12 +38,15 @@ async fn live(State(app): State<App>, upgrade: Upgrade, ask: Ask) -> Result<Resp
         Ok(upgrade) => upgrade,
         Err(rejection) => return Ok(not_a_websocket(&rejection, &ask.headers)),
     };
-    check_origin(&ask.headers)?;
-    let (counted, place) = admit(&app, Bounds::default())?;
+    origin::check(&ask.headers, &app.config.allow_origin)?;
+    let (counted, place) = admit(&app, &ask, Bounds::of_a_talker(&app.config.limits))?;
     let upgrade = upgrade
         .protocols([SUBPROTOCOL])
         .max_message_size(limits::LIVE_FRAME_BYTES)
-        .max_frame_size(limits::LIVE_FRAME_BYTES);
+        .max_frame_size(limits::LIVE_FRAME_BYTES)
+        .read_buffer_size(limits::LIVE_READ_BYTES)
+        .write_buffer_size(limits::LIVE_WRITE_BYTES)
+        .max_write_buffer_size(limits::LIVE_WRITE_MOST_BYTES);
     Ok(upgrade.on_upgrade(async move |socket| {
         let _counted = counted;
         let (outgoing, incoming) = socket.split();
@@ -59,9 +61,9 @@ async fn live(State(app): State<App>, upgrade: Upgrade, ask: Ask) -> Result<Resp
 async fn live_events(State(app): State<App>, ask: Ask) -> Result<Response, Problem> {
     let wanted = ask.read(|reader| events::read(reader, &ask.headers, session::wall_now()))?;
     ask.accepts(&EVENTS)?;
-    check_origin(&ask.headers)?;
+    origin::check(&ask.headers, &app.config.allow_origin)?;
     let Wanted::Run(asked) = wanted else { return Ok(StatusCode::NO_CONTENT.into_response()) };
-    let (counted, place) = admit(&app, Bounds::of_a_listener())?;
+    let (counted, place) = admit(&app, &ask, Bounds::of_a_listener(&app.config.limits))?;
     let course = session::caught_up(&asked, &place).await?;
     let told = events::tell(*asked, course, place, async move { app.closing().await }, counted);
     // A proxy that gathers bytes before it passes them on would make the run late.
@@ -69,16 +71,18 @@ async fn live_events(State(app): State<App>, ask: Ask) -> Result<Response, Probl
 }
 
 /// A place for one more live run, if there is one.
-fn admit(app: &App, bounds: Bounds) -> Result<(Counted, Place), Problem> {
+fn admit(app: &App, ask: &Ask, bounds: Bounds) -> Result<((Counted, Share), Place), Problem> {
     if app.is_closing() {
         return Err(Problem::overloaded("the server is shutting down"));
     }
+    let share = app.live_places.take(ask.peer).map_err(|NoShare { held, free }| {
+        Problem::overloaded(format!(
+            "{held} live runs are open from this address, and {free} places are left for others"
+        ))
+    })?;
     let counted = Counted::one(&app.metrics.live_sessions);
-    let most = limits::LIVE_SESSIONS;
-    if app.metrics.live_sessions.get() > most as i64 {
-        return Err(Problem::overloaded(format!("{most} live runs are open, which is the limit")));
-    }
-    Ok((counted, Place { pool: app.pool.clone(), bounces: app.metrics.bounces.clone(), bounds }))
+    let (pool, base_path) = (app.pool.of(ask.peer), app.base_path.clone());
+    Ok(((counted, share), Place { pool, bounces: app.metrics.bounces.clone(), base_path, bounds }))
 }
 
 fn not_a_websocket(rejection: &WebSocketUpgradeRejection, headers: &HeaderMap) -> Response {
@@ -94,43 +98,4 @@ fn not_a_websocket(rejection: &WebSocketUpgradeRejection, headers: &HeaderMap) -
     headers.insert(header::CONNECTION, HeaderValue::from_static("upgrade"));
     headers.insert(header::SEC_WEBSOCKET_VERSION, HeaderValue::from_static("13"));
     response
-}
-
-/// A page of another host must not open a run in its visitor's name; a program has no origin.
-fn check_origin(headers: &HeaderMap) -> Result<(), Problem> {
-    let Some(origin) = headers.get(header::ORIGIN) else { return Ok(()) };
-    let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
-    if origin.to_str().ok().zip(host).is_some_and(|(origin, host)| is_same_host(origin, host)) {
-        return Ok(());
-    }
-    let shown = shortened(&String::from_utf8_lossy(origin.as_bytes()));
-    let detail = format!("the origin {shown} is not this server's host; open the page from it, or send no Origin");
-    Err(Problem::other(StatusCode::FORBIDDEN, detail))
-}
-
-fn is_same_host(origin: &str, host: &str) -> bool {
-    let Some((scheme, authority)) = origin.split_once("://") else { return false };
-    let port = if scheme == "https" { ":443" } else { ":80" };
-    let bare = |text: &str| text.strip_suffix(port).unwrap_or(text).to_ascii_lowercase();
-    bare(authority) == bare(host)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_origin_is_of_the_same_host_and_port() {
-        assert!(is_same_host("http://localhost:8080", "localhost:8080"));
-        assert!(is_same_host("https://Example.org", "example.org:443"));
-        assert!(is_same_host("http://[::1]", "[::1]"));
-        for (origin, host) in [
-            ("http://localhost:8081", "localhost:8080"),
-            ("http://localhost.evil.org", "localhost"),
-            ("null", "localhost"),
-            ("https://example.org:80", "example.org"),
-        ] {
-            assert!(!is_same_host(origin, host), "{origin} {host}");
-        }
-    }
 }

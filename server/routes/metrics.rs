@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn what_is_counted_is_shown() {
-        let metrics = Metrics::new(&Pool::new(1));
+        let metrics = Metrics::new(&Pool::new(1, &crate::limits::Limits::default()));
         metrics.answered("GET", "/v1/scenes", 200, Duration::from_millis(1));
         metrics.answered("BREW", "none", 405, Duration::from_millis(1));
         metrics.bounces.inc_by(7);

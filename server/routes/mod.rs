@@ -20,17 +20,18 @@ pub mod scenes;
 pub mod stability;
 pub mod trajectories;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use axum::Router;
+use axum::extract::FromRef;
 use equipoise_physics::scene::Scene;
 use serde::Serialize;
 use tokio::sync::watch;
 
-use crate::compute::{Cancel, Cancelled, Pool};
+use crate::compute::{Cancel, Cancelled, Pool, Shares};
 use crate::config::Config;
 use crate::http::{Format, Problem};
+use crate::limits::Limits;
 use crate::picture::{NoPixels, png};
 use crate::wire::scene::Resolved;
 use metrics::Metrics;
@@ -40,19 +41,29 @@ use metrics::Metrics;
 pub struct App {
     /// Where work is done.
     pub pool: Pool,
+    /// Places for live runs.
+    pub live_places: Shares,
+    /// What was set.
+    pub config: Arc<Config>,
+    /// What stands before every path as clients see it.
+    pub base_path: Arc<str>,
     /// What is counted.
     pub metrics: Arc<Metrics>,
-    /// The folder of the page's files, if not the embedded ones.
-    pub web: Option<PathBuf>,
     closing: Arc<watch::Sender<bool>>,
 }
 
 impl App {
     /// An app as configured, with nothing to do yet.
     pub fn new(config: &Config) -> Self {
-        let pool = Pool::new(config.permits());
-        let metrics = Arc::new(Metrics::new(&pool));
-        Self { pool, metrics, web: config.web.clone(), closing: Arc::new(watch::Sender::new(false)) }
+        let pool = Pool::new(config.permits(), &config.limits);
+        Self {
+            metrics: Arc::new(Metrics::new(&pool)),
+            pool,
+            live_places: Shares::new(config.limits.live_sessions),
+            config: Arc::new(config.clone()),
+            base_path: config.base_path.as_str().into(),
+            closing: Arc::new(watch::Sender::new(false)),
+        }
     }
 
     /// Says that the server is about to stop: it is no longer ready, and live runs end.
@@ -70,6 +81,12 @@ impl App {
         let mut closing = self.closing.subscribe();
         // An error would mean that the sender is gone, which is in `self`.
         let _ = closing.wait_for(|closing| *closing).await;
+    }
+}
+
+impl FromRef<App> for Limits {
+    fn from_ref(app: &App) -> Self {
+        app.config.limits
     }
 }
 

@@ -9,7 +9,6 @@ use axum::routing::get;
 use super::App;
 use crate::compute::{Cancel, Cancelled, Price};
 use crate::http::{Ask, Format, Problem, Resource};
-use crate::limits;
 use crate::wire::periodic_orbits::{PeriodicOrbits, Request};
 use crate::wire::scene;
 
@@ -29,7 +28,7 @@ async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<Response<Bo
         let request = Request::read(reader);
         Some((scene?, request?))
     })?;
-    let price = Price::bounces(request.price()).within(&limits::WORK)?;
+    let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &request);
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {

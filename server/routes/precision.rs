@@ -9,7 +9,6 @@ use axum::routing::get;
 use super::App;
 use crate::compute::Cancel;
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
-use crate::limits;
 use crate::wire::precision::{Precision, Request};
 use crate::wire::progress::{self, Progress};
 use crate::wire::scene;
@@ -33,7 +32,7 @@ async fn precision(State(app): State<App>, ask: Ask) -> Result<Response<Body>, P
         let request = Request::read(reader);
         Some((scene?, request?))
     })?;
-    let price = request.price().within(&limits::WORK)?;
+    let price = request.price().within(&app.config.limits.of_work())?;
     let metrics = app.metrics.clone();
     let compute = move |format: Format, cancel: &Cancel, out: &mut Outlet| {
         let mut lines = Progress::default();

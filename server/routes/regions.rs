@@ -9,7 +9,6 @@ use axum::routing::get;
 use super::App;
 use crate::compute::Turns;
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
-use crate::limits;
 use crate::wire::region::{Answer, Request};
 use crate::wire::region_rows::Rows;
 use crate::wire::scene::Resolved;
@@ -27,8 +26,8 @@ pub fn routes() -> Router<App> {
 
 async fn regions(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let request = ask.read(Request::read)?;
-    limits::ANSWER.admit(request.cells().saturating_mul(2))?;
-    limits::REGION_WORK.admit(request.bounces())?;
+    app.config.limits.of_answer().admit(request.cells().saturating_mul(2))?;
+    app.config.limits.of_region_work().admit(request.bounces())?;
     let region = request.region;
     let sides = [region.x, region.y].map(|axis| (axis.name.row().path, axis.from, axis.to, axis.count));
     let rest = (sides, region.impacts, region.quantity as u8, request.tile);

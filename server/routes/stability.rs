@@ -9,7 +9,6 @@ use axum::routing::get;
 use super::App;
 use crate::compute::{Cancel, Cancelled, Price};
 use crate::http::{Ask, Format, Problem, Resource};
-use crate::limits;
 use crate::wire::scene;
 use crate::wire::stability::{Request, Stability};
 
@@ -27,7 +26,7 @@ async fn stability(State(app): State<App>, ask: Ask) -> Result<Response<Body>, P
         let request = Request::read(reader);
         Some((scene?, request))
     })?;
-    let price = Price::bounces(Stability::price(&request)).within(&limits::WORK)?;
+    let price = Price::bounces(Stability::price(&request)).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &request.canonical());
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {

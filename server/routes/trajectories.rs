@@ -10,7 +10,6 @@ use equipoise_physics::map::Contact;
 use super::App;
 use crate::compute::{Cancel, Cancelled, Price};
 use crate::http::{Ask, Format, Problem, Resource};
-use crate::limits;
 use crate::live::address;
 use crate::live::course::Course;
 use crate::wire::trajectory::{Request, Trajectory};
@@ -29,8 +28,8 @@ async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Response<Body>
         let request = Request::read(reader);
         Some((run?, request))
     })?;
-    limits::ANSWER.admit(request.numbers())?;
-    let price = Price::bounces(request.price()).within(&limits::WORK)?;
+    app.config.limits.of_answer().admit(request.numbers())?;
+    let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(run.scene(), &(request, address::url(&run)));
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {

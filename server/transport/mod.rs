@@ -2,52 +2,76 @@
 //!
 //! Not here: what is answered on them.
 
+mod body;
+mod places;
 mod stream;
 
+use std::convert::Infallible;
 use std::io;
+use std::net::SocketAddr;
 use std::pin::pin;
-use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
+use axum::body::Body;
+use axum::http::Request;
+use hyper::body::Incoming;
 use hyper::server::conn::http1;
+use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
-use hyper_util::service::TowerToHyperService;
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{Semaphore, watch};
+use tokio::sync::watch;
 use tokio::time::{sleep, timeout};
+use tower::ServiceExt;
 
-use crate::limits;
+use crate::compute::Peer;
+use crate::limits::{self, Limits};
+use body::Awaited;
+use places::Places;
 use stream::Stream;
 
 /// Serves until `stop`, then waits for the answers under way, but not for ever.
-pub async fn serve(listener: TcpListener, router: Router, stop: impl Future<Output = ()>) {
-    let places = Arc::new(Semaphore::new(limits::CONNECTIONS));
+pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop: impl Future<Output = ()>) {
+    let places = Places::new(limits.connections);
     let (closing, _) = watch::channel(false);
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new())
-        .header_read_timeout(limits::HEAD_TIME)
+        .header_read_timeout(limits.head_time)
         .max_buf_size(limits::HEAD_BYTES)
         .max_headers(limits::HEADERS);
     let mut stop = pin!(stop);
     loop {
         let next = async {
-            let place = places.clone().acquire_owned().await.expect("the semaphore is never closed");
-            (place, accept(&listener).await)
+            let (socket, from) = accept(&listener).await;
+            let peer = Peer::from(from);
+            (socket, peer, places.take(peer).await)
         };
-        let (place, socket) = tokio::select! {
+        let (socket, peer, taken) = tokio::select! {
             next = next => next,
             () = &mut stop => break,
         };
-        let service = TowerToHyperService::new(router.clone());
-        let connection = http.serve_connection(TokioIo::new(Stream::new(socket)), service).with_upgrades();
+        let stream = Stream::new(socket, taken.place().clone(), limits.stall_time);
+        let (router, place) = (router.clone(), taken.place().clone());
+        let service = service_fn(move |mut request: Request<Incoming>| {
+            request.extensions_mut().insert(peer);
+            let (router, place) = (router.clone(), place.clone());
+            async move {
+                place.answers(true);
+                let request = request.map(|body| Body::new(Awaited::new(body, place.clone())));
+                let answer = router.oneshot(request).await;
+                place.answers(false);
+                Ok::<_, Infallible>(answer.unwrap_or_else(|never| match never {}))
+            }
+        });
+        let connection = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
         let mut closing = closing.subscribe();
         tokio::spawn(async move {
-            let _place = place;
             let mut connection = pin!(connection);
             // An error is a client that left or broke the protocol; it has been told what can be told.
             tokio::select! {
                 _ = &mut connection => return,
+                () = taken.gives_way() => return,
                 _ = closing.wait_for(|closing| *closing) => connection.as_mut().graceful_shutdown(),
             }
             let _ = connection.await;
@@ -55,17 +79,30 @@ pub async fn serve(listener: TcpListener, router: Router, stop: impl Future<Outp
     }
     drop(listener);
     closing.send_replace(true);
-    let all = u32::try_from(limits::CONNECTIONS).expect("a few thousand");
-    let _ = timeout(limits::SHUTDOWN_TIME, places.acquire_many(all)).await;
+    let _ = timeout(limits.shutdown_time, places.all_free()).await;
 }
 
-async fn accept(listener: &TcpListener) -> TcpStream {
+/// Raises how many files the process may open as far as it may, and lowers the number of connections to what then fits.
+/// The number if it was lowered.
+pub fn fit_open_files(limits: &mut Limits) -> Option<usize> {
+    let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
+    let raised = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum }).is_ok();
+    // None is no limit.
+    let files = usize::try_from(if raised { maximum } else { current }?).ok()?;
+    let most = files.saturating_sub(limits::OTHER_FILES + limits.live_sessions).max(1);
+    (limits.connections > most).then(|| {
+        limits.connections = most;
+        most
+    })
+}
+
+async fn accept(listener: &TcpListener) -> (TcpStream, SocketAddr) {
     loop {
         match listener.accept().await {
-            Ok((socket, _)) => {
+            Ok((socket, from)) => {
                 // Small messages of live runs go out at once. It fails only on a connection that is gone already.
                 let _ = socket.set_nodelay(true);
-                return socket;
+                return (socket, from);
             }
             Err(error) if is_of_one_connection(&error) => {}
             Err(error) => {
@@ -103,7 +140,7 @@ mod tests {
         let address = listener.local_addr().unwrap();
         let (stop, stopped) = oneshot::channel();
         let stop_signal = async { drop(stopped.await) };
-        let serving = tokio::spawn(serve(listener, router, stop_signal));
+        let serving = tokio::spawn(async move { serve(listener, router, &Limits::default(), stop_signal).await });
         (address, stop, serving)
     }
 
@@ -150,7 +187,7 @@ mod tests {
     async fn a_client_that_goes_away_frees_its_core() {
         let (begun, mut begin) = tokio::sync::mpsc::unbounded_channel();
         let (ended, mut end) = tokio::sync::mpsc::unbounded_channel();
-        let pool = Pool::new(1);
+        let pool = Pool::new(1, &Limits::default());
         let work = get(async move || {
             let dear = Price::bounces(limits::INLINE_BOUNCES + 1);
             let endless = move |cancel: &Cancel| -> Result<String, Problem> {

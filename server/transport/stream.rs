@@ -3,7 +3,9 @@
 
 use std::io::{self, IoSlice};
 use std::pin::Pin;
+use std::sync::Arc;
 use std::task::{Context, Poll};
+use std::time::Duration;
 
 use axum::http::StatusCode;
 use axum::response::IntoResponse;
@@ -11,6 +13,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio::time::{Sleep, sleep};
 
+use super::places::Place;
 use crate::http::Problem;
 use crate::limits;
 use crate::middleware::seal;
@@ -19,24 +22,32 @@ use crate::middleware::seal;
 #[derive(Debug)]
 pub(super) struct Stream {
     socket: TcpStream,
+    place: Arc<Place>,
     /// What is still to be written in the place of a bare error.
     instead: Option<Vec<u8>>,
-    /// Runs while the socket takes nothing.
-    stall: Option<Pin<Box<Sleep>>>,
+    /// Runs while the socket takes too little, and what it has taken since.
+    stall: Option<(Pin<Box<Sleep>>, usize)>,
+    stall_time: Duration,
 }
 
 impl Stream {
-    pub(super) fn new(socket: TcpStream) -> Self {
-        Self { socket, instead: None, stall: None }
+    pub(super) fn new(socket: TcpStream, place: Arc<Place>, stall_time: Duration) -> Self {
+        Self { socket, place, instead: None, stall: None, stall_time }
     }
 
     fn poll_socket(&mut self, context: &mut Context<'_>, buffers: &[IoSlice<'_>]) -> Poll<io::Result<usize>> {
         let written = Pin::new(&mut self.socket).poll_write_vectored(context, buffers);
-        if written.is_ready() {
-            self.stall = None;
-            return written;
+        if let Poll::Ready(written) = written {
+            self.place.moved();
+            let (took, offered) =
+                (*written.as_ref().unwrap_or(&0), buffers.iter().map(|part| part.len()).sum::<usize>());
+            // A client that takes a byte now and then is as slow as one that takes none.
+            self.stall = self.stall.take().map(|(stall, taken)| (stall, taken + took));
+            self.stall.take_if(|(_, taken)| took == offered || *taken >= limits::STALL_BYTES);
+            return Poll::Ready(written);
         }
-        let stall = self.stall.get_or_insert_with(|| Box::pin(sleep(limits::STALL_TIME)));
+        let time = self.stall_time;
+        let (stall, _) = self.stall.get_or_insert_with(|| (Box::pin(sleep(time)), 0));
         stall.as_mut().poll(context).map(|()| Err(io::ErrorKind::TimedOut.into()))
     }
 }
@@ -88,7 +99,12 @@ impl AsyncWrite for Stream {
 
 impl AsyncRead for Stream {
     fn poll_read(mut self: Pin<&mut Self>, context: &mut Context<'_>, into: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.socket).poll_read(context, into)
+        let before = into.filled().len();
+        let polled = Pin::new(&mut self.socket).poll_read(context, into);
+        if into.filled().len() > before {
+            self.place.moved();
+        }
+        polled
     }
 }
 

@@ -130,18 +130,23 @@ fn hold_everywhere(answer: &Answer) {
     assert!(!policy.contains("unsafe"), "{request}: {policy}");
     assert_eq!(answer.header("x-content-type-options"), Some("nosniff"), "{request}");
     assert_eq!(answer.header("referrer-policy"), Some("no-referrer"), "{request}");
+    let id = answer.header("x-request-id").unwrap_or_else(|| panic!("{request}: no id"));
     if answer.status == StatusCode::NOT_MODIFIED {
         assert!(answer.raw.is_empty(), "{request}: a 304 with a body");
     }
     if answer.media_type() == "application/problem+json" && !answer.body.is_empty() {
         let problem = answer.json();
         assert_eq!(problem["status"], answer.status.as_u16(), "{request}: {problem}");
+        assert_eq!(problem["request_id"], id, "{request}: {problem}");
     }
 }
 
 #[track_caller]
 fn hold_to_operation(method: &Method, operation: &Value, answer: &Answer) {
     let request = &answer.request;
+    if answer.status == StatusCode::UNAUTHORIZED {
+        return hold_to_response(method, &DOCUMENT["components"]["responses"]["Unauthorized"], answer);
+    }
     let responses = operation["responses"].as_object().expect("responses");
     let response = responses.get(answer.status.as_str()).unwrap_or_else(|| {
         panic!("{request}: the contract has no {}; the answer: {}", answer.status, answer.excerpt());

@@ -24,14 +24,16 @@ pub(crate) struct Server {
 
 impl Server {
     pub(crate) fn start() -> Self {
-        let app = equipoise::routes::App::new(&equipoise::config::Config::default());
-        Self { router: equipoise::router::router(app) }
+        Self::with(&equipoise::config::Config::default())
     }
 
     pub(crate) fn with_permits(permits: usize) -> Self {
         let permits = std::num::NonZeroUsize::new(permits);
-        let config = equipoise::config::Config { permits, ..Default::default() };
-        Self { router: equipoise::router::router(equipoise::routes::App::new(&config)) }
+        Self::with(&equipoise::config::Config { permits, ..Default::default() })
+    }
+
+    pub(crate) fn with(config: &equipoise::config::Config) -> Self {
+        Self { router: equipoise::router::router(equipoise::routes::App::new(config)) }
     }
 
     pub(crate) async fn get(&self, target: &str) -> Answer {
@@ -52,6 +54,19 @@ impl Server {
 
     /// Sends a request as it stands and holds the answer to the contract.
     pub(crate) async fn send(&self, method: Method, target: &str, headers: &[(&str, &str)], body: &str) -> Answer {
+        let answer = self.send_unheld(method.clone(), target, headers, body).await;
+        contract::hold(&method, target, &answer);
+        answer
+    }
+
+    /// The same for what is not in the contract: what a server does beside it when it is told to.
+    pub(crate) async fn send_unheld(
+        &self,
+        method: Method,
+        target: &str,
+        headers: &[(&str, &str)],
+        body: &str,
+    ) -> Answer {
         let mut request = Request::builder().method(&method).uri(target).header(header::HOST, "localhost");
         for (name, value) in headers {
             request = request.header(*name, *value);
@@ -60,15 +75,13 @@ impl Server {
         let response = self.router.clone().oneshot(request).await.expect("the router never fails");
         let (parts, body) = response.into_parts();
         let raw = body.collect().await.expect("a whole body").to_bytes().to_vec();
-        let answer = Answer {
+        Answer {
             request: format!("{method} {target}"),
             status: parts.status,
             body: decoded(&parts.headers, &raw),
             headers: parts.headers,
             raw,
-        };
-        contract::hold(&method, target, &answer);
-        answer
+        }
     }
 }
 

@@ -23,10 +23,18 @@ pub(crate) const SOON: Duration = Duration::from_secs(20);
 
 /// A server on a free port.
 pub(crate) async fn start() -> (App, SocketAddr) {
+    start_with(&Config::default()).await
+}
+
+pub(crate) async fn start_with(config: &Config) -> (App, SocketAddr) {
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let address = listener.local_addr().unwrap();
-    let app = App::new(&Config::default());
-    tokio::spawn(transport::serve(listener, router::router(app.clone()), std::future::pending()));
+    let app = App::new(config);
+    let serving = app.clone();
+    tokio::spawn(async move {
+        let limits = serving.config.limits;
+        transport::serve(listener, router::router(serving), &limits, std::future::pending()).await;
+    });
     (app, address)
 }
 

@@ -1,0 +1,151 @@
+//! A line in which everybody who waits is served in turns, whatever the number of those that one client has put into it.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use tokio::sync::oneshot;
+
+use super::peer::Peer;
+
+/// Permits, and those who wait for one.
+#[derive(Debug)]
+pub(super) struct Line(Mutex<State>);
+
+#[derive(Debug)]
+struct State {
+    /// More than none only where nobody waits.
+    free: usize,
+    /// Who waits, the next at the front.
+    flows: VecDeque<(Flow, VecDeque<oneshot::Sender<Permit>>)>,
+}
+
+/// What is served in the order in which it came, and in turns with others: a peer's requests, and the blocks of its long work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Flow {
+    /// Requests.
+    Short(Peer),
+    /// Blocks of long work.
+    Long(Peer),
+}
+
+/// The right to compute; the next one's when dropped.
+#[derive(Debug)]
+pub(super) struct Permit(Option<Arc<Line>>);
+
+impl Line {
+    pub(super) fn new(permits: usize) -> Arc<Self> {
+        Arc::new(Self(Mutex::new(State { free: permits, flows: VecDeque::new() })))
+    }
+
+    /// A permit, if one is free.
+    pub(super) fn try_take(self: &Arc<Self>) -> Option<Permit> {
+        let mut state = self.state();
+        state.free = state.free.checked_sub(1)?;
+        Some(Permit(Some(self.clone())))
+    }
+
+    /// A permit when it is the turn of `flow`. Whoever drops the future has left the line.
+    pub(super) async fn take(self: &Arc<Self>, flow: Flow) -> Permit {
+        let receiver = {
+            let mut state = self.state();
+            if state.free > 0 {
+                state.free -= 1;
+                return Permit(Some(self.clone()));
+            }
+            let (sender, receiver) = oneshot::channel();
+            match state.flows.iter_mut().find(|(known, _)| *known == flow) {
+                Some((_, waiting)) => waiting.push_back(sender),
+                None => state.flows.push_back((flow, [sender].into())),
+            }
+            receiver
+        };
+        receiver.await.expect("senders are dropped by their receivers alone")
+    }
+
+    /// Gives a permit that somebody had to the next, if anybody waits.
+    fn pass_on(self: &Arc<Self>) {
+        loop {
+            let Some(next) = self.state().next() else { return };
+            match next.send(Permit(Some(self.clone()))) {
+                Ok(()) => return,
+                // Gone in between; the permit is still to be given.
+                Err(mut permit) => drop(permit.0.take()),
+            }
+        }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl State {
+    /// Who is next. If nobody is, one more permit is free.
+    fn next(&mut self) -> Option<oneshot::Sender<Permit>> {
+        while let Some((flow, mut waiting)) = self.flows.pop_front() {
+            let next = std::iter::from_fn(|| waiting.pop_front()).find(|next| !next.is_closed());
+            if !waiting.is_empty() {
+                self.flows.push_back((flow, waiting));
+            }
+            if next.is_some() {
+                return next;
+            }
+        }
+        self.free += 1;
+        None
+    }
+}
+
+impl Drop for Permit {
+    fn drop(&mut self) {
+        if let Some(line) = self.0.take() {
+            line.pass_on();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use futures_util::FutureExt;
+
+    fn peer(last: u8) -> Peer {
+        Peer::at([192, 0, 2, last].into())
+    }
+
+    #[test]
+    fn peers_take_turns_whatever_the_length_of_their_lines() {
+        let line = Line::new(1);
+        let only = line.try_take().unwrap();
+        let flows = [Flow::Short(peer(1)), Flow::Short(peer(2)), Flow::Long(peer(1))];
+        let mut waiting: Vec<_> = [0, 0, 0, 0, 1, 2, 2].map(|flow| (flow, Box::pin(line.take(flows[flow])))).into();
+        for (_, turn) in &mut waiting {
+            assert!(turn.now_or_never().is_none());
+        }
+        drop(only);
+        let mut order = Vec::new();
+        while !waiting.is_empty() {
+            let next = waiting.iter_mut().position(|(_, turn)| turn.now_or_never().is_some());
+            // The permit is dropped at once, and so passed on.
+            order.push(waiting.remove(next.expect("somebody's turn")).0);
+        }
+        assert_eq!(order, [0, 1, 2, 0, 2, 0, 0]);
+        assert!(line.try_take().is_some());
+    }
+
+    #[test]
+    fn who_leaves_the_line_costs_no_permit() {
+        let line = Line::new(1);
+        let only = line.try_take().unwrap();
+        let mut gone = Box::pin(line.take(Flow::Short(peer(1))));
+        let mut given = Box::pin(line.take(Flow::Short(peer(1))));
+        let mut last = Box::pin(line.take(Flow::Short(peer(1))));
+        assert!([&mut gone, &mut given, &mut last].into_iter().all(|turn| turn.now_or_never().is_none()));
+        drop(gone);
+        drop(only);
+        // It has its permit, and leaves without looking.
+        drop(given);
+        assert!(last.now_or_never().is_some());
+        assert!(line.try_take().is_some());
+    }
+}

@@ -1,0 +1,80 @@
+//! What is known of the request under way wherever in its task it is answered: its id, and where clients see this server.
+
+use std::sync::Arc;
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use axum::http::{HeaderMap, HeaderName, HeaderValue};
+
+use crate::limits;
+
+/// The header that a request's id is taken from and given back in.
+pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
+
+tokio::task_local! {
+    static ASKED: Asked;
+}
+
+/// What an answer, and above all a problem, has to know of its request.
+#[derive(Debug, Clone)]
+pub struct Asked {
+    /// Its id: letters, digits and `-._`.
+    pub id: Arc<str>,
+    /// What stands before every path, as clients see it.
+    pub base: Arc<str>,
+}
+
+impl Asked {
+    /// Of a request with these headers: the id that a proxy or the client chose, or one of its own.
+    pub fn new(headers: &HeaderMap, base: Arc<str>) -> Self {
+        let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._".contains(&byte);
+        let is_fine = |id: &&str| (1..=limits::REQUEST_ID_BYTES).contains(&id.len()) && id.bytes().all(is_plain);
+        let chosen = headers.get(REQUEST_ID).and_then(|id| id.to_str().ok()).filter(is_fine);
+        Self { id: chosen.map_or_else(fresh, Arc::from), base }
+    }
+
+    /// Answers the request with `future`, in which it is known.
+    pub async fn answer<T>(self, future: impl Future<Output = T>) -> T {
+        ASKED.scope(self, future).await
+    }
+
+    /// The one that this task answers, if any.
+    pub fn under_way() -> Option<Self> {
+        ASKED.try_with(Clone::clone).ok()
+    }
+
+    /// The id as a header.
+    pub fn header(&self) -> HeaderValue {
+        HeaderValue::from_str(&self.id).expect("an id is letters, digits and -._")
+    }
+}
+
+/// An id that no other request to this process has, and hardly one to another.
+fn fresh() -> Arc<str> {
+    static COUNT: AtomicU64 = AtomicU64::new(1);
+    static PROCESS: LazyLock<u64> = LazyLock::new(|| {
+        let begin = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+        xxhash_rust::xxh3::xxh3_64(format!("{begin} {}", std::process::id()).as_bytes())
+    });
+    format!("{:016x}-{}", *PROCESS, COUNT.fetch_add(1, Ordering::Relaxed)).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_id_is_taken_only_where_it_can_stand_in_a_log() {
+        let id = |value: &'static [u8]| {
+            let headers = [(REQUEST_ID, HeaderValue::from_bytes(value).unwrap())].into_iter().collect();
+            Asked::new(&headers, "".into()).id
+        };
+        assert_eq!(&*id(b"a-1.b_2"), "a-1.b_2");
+        for hostile in [b"".as_slice(), b"a b", b"a\"b", b"\xff", &[b'x'; 65]] {
+            let made = id(hostile);
+            assert!(made.len() > 16 && made.bytes().all(|byte| byte.is_ascii_hexdigit() || byte == b'-'), "{made}");
+        }
+        assert_ne!(id(b""), id(b""));
+    }
+}

@@ -1,0 +1,245 @@
+//! The program itself: what it says when it starts, what it does when too many come, and how it ends.
+//!
+//! Order, counts and content are asserted, never speed.
+
+mod support;
+
+use std::io::{BufRead, BufReader, Read};
+use std::net::SocketAddr;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use serde_json::Value;
+use support::socket::{SOON, open};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::time::{sleep, timeout};
+
+/// A running program; killed when dropped.
+struct Program {
+    child: Child,
+    address: SocketAddr,
+    /// The line that says what is open to whom.
+    openness: String,
+}
+
+impl Program {
+    fn start(arguments: &[&str]) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_equipoise"))
+            .args(["--listen", "127.0.0.1:0"])
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
+        let first = lines.next().expect("a line that says where it listens");
+        let (_, url) = first.split_once(" serves http://").unwrap();
+        let address = url.split('/').next().unwrap().parse().unwrap();
+        Self { child, address, openness: lines.next().unwrap() }
+    }
+
+    /// Asks it to stop, as a service manager does.
+    fn stop(&self) {
+        let killed = Command::new("kill").args(["-TERM", &self.child.id().to_string()]).status().unwrap();
+        assert!(killed.success());
+    }
+
+    /// Its exit code and what it wrote to stderr.
+    async fn end(mut self) -> (Option<i32>, String) {
+        let ended = async {
+            loop {
+                if let Some(status) = self.child.try_wait().unwrap() {
+                    return status.code();
+                }
+                sleep(Duration::from_millis(10)).await;
+            }
+        };
+        let code = timeout(2 * SOON, ended).await.expect("the program does not end");
+        let mut log = String::new();
+        self.child.stderr.take().unwrap().read_to_string(&mut log).unwrap();
+        (code, log)
+    }
+
+    async fn send(&self, target: &str, headers: &str) -> TcpStream {
+        let mut socket = TcpStream::connect(self.address).await.unwrap();
+        let request = format!("GET {target} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n{headers}\r\n");
+        socket.write_all(request.as_bytes()).await.unwrap();
+        socket
+    }
+
+    async fn get(&self, target: &str, headers: &str) -> String {
+        whole(self.send(target, headers).await).await
+    }
+
+    async fn metric(&self, name: &str) -> f64 {
+        let text = self.get("/metrics", "").await;
+        let line = text.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+        line.unwrap_or_else(|| panic!("no {name} in {text}")).parse().unwrap()
+    }
+
+    async fn until(&self, name: &str, value: f64) {
+        let wait = async {
+            while self.metric(name).await != value {
+                sleep(Duration::from_millis(10)).await;
+            }
+        };
+        timeout(SOON, wait).await.unwrap_or_else(|_| panic!("{name} does not become {value}"));
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Everything up to the end of a connection.
+async fn whole(mut socket: TcpStream) -> String {
+    let mut answer = Vec::new();
+    timeout(2 * SOON, socket.read_to_end(&mut answer)).await.expect("the server is silent").unwrap();
+    String::from_utf8_lossy(&answer).into_owned()
+}
+
+/// Seconds of work, and none that an entity tag would save.
+const DEAR: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000\
+                    &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=1000&impacts=2000";
+
+#[tokio::test]
+async fn it_says_what_is_open_to_whom() {
+    let program = Program::start(&[]);
+    assert_eq!(
+        program.openness,
+        "open to programs on this machine, and whatever a proxy on it lets through: no token is asked for"
+    );
+    let token = "0123456789abcdef";
+    let program = Program::start(&["--token", token, "--allow-origin", "https://lab.example"]);
+    assert!(program.openness.contains("with the token") && program.openness.contains("https://lab.example"));
+    assert!(!program.openness.contains(token));
+}
+
+#[test]
+fn it_refuses_what_it_cannot_keep_to() {
+    let run = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_equipoise")).args(arguments).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap() + &String::from_utf8(output.stdout).unwrap())
+    };
+    let (code, said) = run(&["--connections", "1"]);
+    assert_eq!(code, Some(2));
+    assert!(said.contains("'1' for '--connections <NUMBER>': it must be a whole number from 16 to"), "{said}");
+    let (code, said) = run(&["--token", "short"]);
+    assert!(code == Some(2) && said.contains("openssl rand -hex 16"), "{said}");
+    let (code, help) = run(&["--help"]);
+    assert_eq!(code, Some(0));
+    for word in ["--region-work <BOUNCES>", "EQUIPOISE_LIVE_SESSIONS", "[default: 16384]", "--trust-proxy"] {
+        assert!(help.contains(word), "{word} is not in {help}");
+    }
+}
+
+#[tokio::test]
+async fn each_request_is_a_line_of_the_log_and_no_line_has_the_token() {
+    let token = "0123456789abcdef";
+    let program = Program::start(&["--access-log", "--token", token, "--trust-proxy", "127.0.0.1"]);
+    let bearer = format!("authorization: Bearer {token}\r\n");
+    program
+        .get("/v1/scenes?a=%22%0a", &format!("{bearer}x-request-id: lab-1\r\nx-forwarded-for: 10.0.0.9, 192.0.2.7\r\n"))
+        .await;
+    program.get(&format!("/?preset=case-1&token={token}"), "").await;
+    program.get("/none", &bearer).await;
+    program.stop();
+    let (_, log) = program.end().await;
+    assert!(!log.contains(token), "{log}");
+    let lines: Vec<Value> = log.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let told: Vec<_> =
+        lines.iter().map(|line| (line["target"].as_str().unwrap(), line["status"].as_u64().unwrap())).collect();
+    assert_eq!(told, [("/v1/scenes?a=%22%0a", 422), ("/?preset=case-1&token=", 303), ("/none", 404)]);
+    assert_eq!((lines[0]["id"].as_str(), lines[0]["peer"].as_str()), (Some("lab-1"), Some("192.0.2.7")));
+    assert_eq!((lines[1]["peer"].as_str(), lines[1]["method"].as_str()), (Some("127.0.0.1"), Some("GET")));
+    assert!(lines[0]["ms"].as_f64().unwrap() > 0.0);
+}
+
+/// One client fills all that it may; others are still computed for, and what cannot wait is told so.
+#[tokio::test]
+async fn one_client_cannot_have_it_all() {
+    let program = Program::start(&["--permits", "1", "--queue", "4", "--trust-proxy", "127.0.0.1"]);
+    let of = |client: u8| format!("x-forwarded-for: 192.0.2.{client}\r\n");
+    // Of 5 places one client gets 3.
+    let mut held = Vec::new();
+    for held_before in 0..3 {
+        held.push(program.send(DEAR, &of(1)).await);
+        program.until("equipoise_jobs_running", f64::from(held_before + 1)).await;
+    }
+    let refused = program.get(DEAR, &of(1)).await;
+    assert!(refused.starts_with("HTTP/1.1 503") && refused.contains("retry-after: "), "{refused}");
+    assert!(
+        refused.contains("3 requests from this address are computed or waiting, and the last 2 places are for others")
+    );
+    let answered = program.get("/v1/stability?preset=case-1&impacts=2000", &of(2)).await;
+    assert!(answered.starts_with("HTTP/1.1 200"), "{answered}");
+    // Neither health nor what is cheap asks for a place.
+    assert!(program.get("/health/ready", &of(1)).await.starts_with("HTTP/1.1 200"));
+    drop(held);
+    program.until("equipoise_jobs_running", 0.0).await;
+    assert!(program.get("/v1/stability?preset=case-1&impacts=2000", &of(1)).await.starts_with("HTTP/1.1 200"));
+}
+
+/// More clients than there are places send nothing, half a head, or half a body; whoever asks is answered.
+#[tokio::test]
+async fn silent_clients_keep_nobody_out() {
+    let program = Program::start(&["--connections", "32"]);
+    let mut silent = Vec::new();
+    for index in 0..200 {
+        let mut socket = TcpStream::connect(program.address).await.unwrap();
+        let begin: &[u8] = match index % 3 {
+            0 => b"",
+            1 => b"GET /v1/scenes HTTP/1.1\r\nho",
+            _ => b"POST /v1/stability HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\ncontent-length: 9\r\n\r\n{",
+        };
+        socket.write_all(begin).await.unwrap();
+        silent.push(socket);
+        if index % 20 == 0 {
+            assert!(program.get("/v1/scenes", "").await.starts_with("HTTP/1.1 200"));
+        }
+    }
+    // One that is being computed for keeps its place whoever comes.
+    let computing = program.send(&DEAR.replace("=1000", "=300"), "").await;
+    program.until("equipoise_jobs_running", 1.0).await;
+    for _ in 0..100 {
+        silent.push(TcpStream::connect(program.address).await.unwrap());
+    }
+    assert!(whole(computing).await.starts_with("HTTP/1.1 200"));
+}
+
+/// Half an answer is read when the program is told to stop: the rest comes whole, sockets are closed with 1001, nobody is let in, and
+/// all is well.
+#[tokio::test]
+async fn it_ends_when_it_is_told_to_and_breaks_nothing_off() {
+    let program = Program::start(&[]);
+    let mut client = open(program.address, "/v1/live?preset=case-1").await;
+    assert_eq!(client.next().await["type"], "hello");
+    let target = "/v1/trajectories?preset=case-1&impacts=50000";
+    let expected = program.get(target, "").await;
+    let mut half = program.send(target, "").await;
+    let mut begun = vec![0; 64 * 1024];
+    half.read_exact(&mut begun).await.unwrap();
+    let computing = program.send(&DEAR.replace("=1000", "=300"), "").await;
+    program.until("equipoise_jobs_running", 1.0).await;
+    let address = program.address;
+    program.stop();
+    assert_eq!(client.closed().await, Some(1001));
+    timeout(SOON, async {
+        while TcpStream::connect(address).await.is_ok() {
+            sleep(Duration::from_millis(5)).await;
+        }
+    })
+    .await
+    .expect("it still lets clients in");
+    let all = String::from_utf8(begun).unwrap() + &whole(half).await;
+    let body = |answer: &str| answer.split_once("\r\n\r\n").unwrap().1.to_owned();
+    assert!(body(&all) == body(&expected), "the answer under way was cut off");
+    let computed = whole(computing).await;
+    assert!(computed.starts_with("HTTP/1.1 200") && computed.ends_with('}'), "{computed:.300}");
+    let (code, log) = program.end().await;
+    assert_eq!((code, log.as_str()), (Some(0), ""));
+}
