@@ -14,7 +14,7 @@ use crate::limits::Limits;
 
 /// Says whether a bouncing object can be balanced: a page and an HTTP API.
 #[derive(Debug, Clone, Parser)]
-#[command(name = "equipoise", version = crate::BUILD)]
+#[command(name = "equipoise", version = crate::BUILD, next_line_help = true)]
 pub struct Config {
     /// Where to listen; port 0 takes any that is free
     #[arg(long, env = "EQUIPOISE_LISTEN", value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]

@@ -19,7 +19,7 @@ use crate::compute::Limit;
 #[command(next_help_heading = "Limits")]
 pub struct Limits {
     /// Open connections, besides those of WebSockets. When all are taken, the one that has waited longest for its client
-    /// gives way, of whoever has most. Each takes some 10 KiB, and up to 64 KiB while a request arrives
+    /// gives way, of whoever has most. Each takes some 20 KiB, and up to 64 KiB more while a request arrives
     #[arg(long, env = "EQUIPOISE_CONNECTIONS", value_name = "NUMBER", default_value = "16384")]
     #[arg(value_parser = within::<usize>(16..=1_000_000, "connections"))]
     pub connections: usize,
@@ -245,6 +245,9 @@ pub const PNG_PRICE: u64 = 400_000;
 /// Work up to this price, in bounces, is done on the async thread at once: some 0.15 ms, hardly more than the way to
 /// another thread and back is worth.
 pub const INLINE_BOUNCES: u64 = 2048;
+
+/// How far threads that compute stand back behind those that answer, in steps of the system's 19: a third of the weight.
+pub const COMPUTE_NICENESS: i32 = 5;
 
 /// What `Retry-After` says on a 503, seconds: about the time of one request at its dearest.
 pub const RETRY_AFTER_S: u32 = 2;

@@ -1,6 +1,6 @@
 //! The `equipoise` program: reads its command line, listens, and serves until it is told to stop.
 
-use std::io;
+use std::io::{self, Write};
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -32,8 +32,9 @@ async fn run(mut config: Config) -> Result<(), String> {
     let listener = TcpListener::bind(&config.listen).await.map_err(|error| cannot_listen(&config.listen, &error))?;
     let address = listener.local_addr().map_err(|error| error.to_string())?;
     let stop = stop_signal().map_err(|error| format!("cannot listen for signals: {error}"))?;
-    println!("equipoise {BUILD} serves http://{address}{}/", config.base_path);
-    println!("{}", config.openness(address));
+    let openness = config.openness(address);
+    // Nobody has to read it.
+    let _ = writeln!(io::stdout(), "equipoise {BUILD} serves http://{address}{}/\n{openness}", config.base_path);
 
     let app = App::new(&config);
     let stop = async {

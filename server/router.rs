@@ -41,8 +41,10 @@ mod tests {
         assert_eq!(response.headers()["equipoise-build"], BUILD);
         assert!(response.headers().contains_key(header::CONTENT_SECURITY_POLICY));
         let status = response.status().as_u16();
+        let id = response.headers()[REQUEST_ID].to_str().unwrap().to_owned();
         let problem: Value = serde_json::from_slice(&response.into_body().collect().await.unwrap().to_bytes()).unwrap();
         assert_eq!(problem["status"], status);
+        assert_eq!(problem["request_id"], id);
         problem
     }
 
@@ -73,15 +75,20 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_panic_in_work_is_a_500_too() {
+    async fn a_panic_in_work_is_a_500_too_and_the_next_request_succeeds() {
         let dear = crate::compute::Price::bounces(limits::INLINE_BOUNCES + 1);
         let pool = crate::compute::Pool::new(1, &Limits::default());
-        let work =
-            get(async move || pool.run(dear, |_| -> Result<String, crate::http::Problem> { panic!("deep") }).await);
+        let work = get(async move |uri: axum::http::Uri| {
+            let panics = uri.query().is_some();
+            pool.run(dear, move |_| if panics { panic!("deep") } else { Ok::<_, Problem>("fine") }).await
+        });
         let app = App::new(&Config::default());
         let router = surround(Router::new().route("/works", work), app);
-        let response = router.oneshot(Request::get("/works").body(Body::empty()).unwrap()).await.unwrap();
-        assert_eq!(problem_of(response).await["status"], 500);
+        for _ in 0..3 {
+            let ask = async |target| router.clone().oneshot(Request::get(target).body(Body::empty()).unwrap()).await;
+            assert_eq!(problem_of(ask("/works?panic").await.unwrap()).await["status"], 500);
+            assert_eq!(ask("/works").await.unwrap().status(), 200);
+        }
     }
 
     #[tokio::test]

@@ -246,13 +246,15 @@ async fn messages_are_limited_in_size_and_number() {
     let mut client = open(address, "/v1/live?preset=case-1").await;
     client.socket.send(Message::text("x".repeat(limits::LIVE_FRAME_BYTES + 1))).await.unwrap();
     assert_eq!(client.closed().await, Some(1009));
-    let mut client = open(address, "/v1/live?preset=case-1").await;
-    for _ in 0..4 * limits::LIVE_MESSAGES_PER_S {
-        if client.socket.send(Message::text("{}")).await.is_err() {
-            break;
+    for message in [Message::text("{}"), Message::Ping("".into()), Message::Pong("".into())] {
+        let mut client = open(address, "/v1/live?preset=case-1").await;
+        for _ in 0..4 * limits::LIVE_MESSAGES_PER_S {
+            if client.socket.send(message.clone()).await.is_err() {
+                break;
+            }
         }
+        assert_eq!(client.closed().await, Some(1008), "{message}");
     }
-    assert_eq!(client.closed().await, Some(1008));
 }
 
 #[tokio::test]

@@ -301,16 +301,20 @@ impl Session {
 
     /// Takes a message.
     fn hear(&mut self, message: &Message) -> Option<(u16, &'static str)> {
-        if matches!(message, Message::Ping(_) | Message::Pong(_)) {
-            return None;
-        }
         let now = Instant::now();
-        self.last_order = now;
+        let is_order = !matches!(message, Message::Ping(_) | Message::Pong(_));
+        if is_order {
+            self.last_order = now;
+        }
+        // Pings too: each is answered.
         if !self.allowance.takes(now) {
             let most = self.place.bounds.messages_per_s;
             let detail = format!("more than {most} messages a second, which is the limit");
             self.outbox.push(messages::problem(&Problem::invalid_at("", detail)));
             return Some((close_code::POLICY, "too many messages"));
+        }
+        if !is_order {
+            return None;
         }
         let done = match message {
             Message::Text(text) if text.len() > limits::LIVE_MESSAGE_BYTES => {

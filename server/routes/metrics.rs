@@ -1,5 +1,6 @@
 //! `/metrics`: what the server counts, as Prometheus text.
 
+use std::io::Write;
 use std::time::Duration;
 
 use axum::Router;
@@ -86,7 +87,7 @@ impl Metrics {
 async fn scrape(State(app): State<App>) -> Result<Response, Problem> {
     let mut text = String::new();
     encode(&mut text, &app.metrics.registry).map_err(|error| {
-        eprintln!("equipoise: cannot write metrics: {error}");
+        let _ = writeln!(std::io::stderr(), "equipoise: cannot write metrics: {error}");
         Problem::internal()
     })?;
     let media_type = "application/openmetrics-text; version=1.0.0; charset=utf-8";

@@ -7,7 +7,7 @@ mod places;
 mod stream;
 
 use std::convert::Infallible;
-use std::io;
+use std::io::{self, Write};
 use std::net::SocketAddr;
 use std::pin::pin;
 use std::time::Duration;
@@ -107,7 +107,7 @@ async fn accept(listener: &TcpListener) -> (TcpStream, SocketAddr) {
             Err(error) if is_of_one_connection(&error) => {}
             Err(error) => {
                 // Out of file descriptors or memory: trying again at once would only burn a core.
-                eprintln!("equipoise: cannot accept a connection: {error}");
+                let _ = writeln!(io::stderr(), "equipoise: cannot accept a connection: {error}");
                 sleep(Duration::from_millis(200)).await;
             }
         }

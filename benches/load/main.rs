@@ -1,0 +1,96 @@
+//! The program under load: `cargo bench --bench load` measures everything and writes `docs/load.md`; with `-- --only rates`, `overload`,
+//! `live`, `slow` or `soak` it measures one thing and prints it.
+//!
+//! The program is a process of its own, but its clients share the machine with it: their time is in every figure. Ratios hold
+//! on a noisy machine; absolute figures want a quiet one.
+
+mod client;
+mod live;
+mod overload;
+mod program;
+mod rates;
+mod slow;
+mod soak;
+
+use std::fmt::Write;
+use std::io;
+use std::time::Duration;
+
+use clap::{Parser, ValueEnum};
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+
+#[derive(Parser)]
+struct Arguments {
+    /// Measure this alone, and only print it
+    #[arg(long)]
+    only: Option<Part>,
+
+    /// How long mixed load lasts
+    #[arg(long, default_value_t = 30.0)]
+    minutes: f64,
+
+    /// Serve what this server answers from memory, for comparison
+    #[arg(long, hide = true)]
+    bare: Option<std::net::SocketAddr>,
+
+    /// What cargo calls every benchmark with.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Part {
+    Rates,
+    Overload,
+    Live,
+    Slow,
+    Soak,
+}
+
+#[tokio::main]
+async fn main() -> io::Result<()> {
+    let arguments = Arguments::parse();
+    if let Some(address) = arguments.bare {
+        return rates::serve_bare(address).await;
+    }
+    // Ten thousand connections are as many files.
+    let maximum = getrlimit(Resource::Nofile).maximum;
+    let _ = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
+    let mut report = introduction();
+    for part in [Part::Rates, Part::Overload, Part::Live, Part::Slow, Part::Soak] {
+        if arguments.only.is_some_and(|only| only != part) {
+            continue;
+        }
+        let section = match part {
+            Part::Rates => rates::measure().await?,
+            Part::Overload => overload::measure().await?,
+            Part::Live => live::measure().await?,
+            Part::Slow => slow::measure().await?,
+            Part::Soak => soak::measure(Duration::from_secs_f64(60.0 * arguments.minutes)).await?,
+        };
+        println!("{section}");
+        report += &section;
+    }
+    if arguments.only.is_none() {
+        std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/load.md"), report)?;
+    }
+    Ok(())
+}
+
+fn introduction() -> String {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let cpu = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let cpu = cpu
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(": "))
+        .map_or("a CPU", |(_, name)| name);
+    let mut text = String::from("# Under load\n\n");
+    let _ = writeln!(
+        text,
+        "Written by `cargo bench --bench load` on {cpu}, {cores} cores, build {}. Clients and server share the cores, so the\n\
+         clients' own time is in every figure; load of the machine before it began: {}.\n",
+        equipoise::BUILD,
+        program::load_average(),
+    );
+    text
+}

@@ -1,0 +1,84 @@
+//! What ten thousand connections that send nothing, or a byte now and then, cost those who ask.
+
+use std::fmt::Write;
+use std::io;
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::task::JoinHandle;
+use tokio::time::{sleep, timeout};
+
+use crate::client::{ask, median};
+use crate::program::Program;
+
+const SLOW: u64 = 10_000;
+const ROUND: Duration = Duration::from_secs(10);
+const ROUNDS: usize = 3;
+const TARGET: &str = "/v1/trajectories?preset=case-1&impacts=100";
+
+pub(crate) async fn measure() -> io::Result<String> {
+    let mut text = format!(
+        "## Slow and silent connections\n\n{SLOW} connections of which every second one is silent and the others send a byte of a \
+         head every five seconds; what the\nserver closes is opened again. Beside them 8 clients ask 100 times a second each for \
+         `{TARGET}`\nover connections that stay open (`--only slow`).\n\n\
+         | round | p50 before | p99 before | p50 beside them | p99 beside them | ratio of p99 | server CPU of theirs | server memory |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    let server = Program::start()?;
+    let others = async || ask(server.address, TARGET, 8, ROUND, Duration::from_millis(9)).await;
+    let mut ratios = Vec::new();
+    for round in 1..=ROUNDS {
+        let begin_s = server.cpu_s();
+        let mut before = others().await?;
+        let alone_s = server.cpu_s() - begin_s;
+        let slow: Vec<JoinHandle<()>> = (0..SLOW).map(|index| tokio::spawn(be_slow(server.address, index))).collect();
+        sleep(Duration::from_secs(10)).await;
+        let begin_s = server.cpu_s();
+        let mut beside = others().await?;
+        let cpu = (server.cpu_s() - begin_s - alone_s) / ROUND.as_secs_f64();
+        let memory = server.memory_mib();
+        slow.iter().for_each(JoinHandle::abort);
+        sleep(Duration::from_secs(3)).await;
+        let [[p50, p99], [beside_p50, beside_p99]] =
+            [&mut before, &mut beside].map(|times| [0.5, 0.99].map(|share| times.quantile(share)));
+        let ratio = beside_p99 / p99;
+        ratios.push(ratio);
+        let _ = writeln!(
+            text,
+            "| {round} | {p50:.2} ms | {p99:.2} ms | {beside_p50:.2} ms | {beside_p99:.2} ms | {ratio:.2} | {:.0} % of a core | {memory:.0} MiB |",
+            100.0 * cpu
+        );
+    }
+    let _ = writeln!(text, "\nMedian ratio of p99: {:.2}.\n", median(ratios));
+    Ok(text)
+}
+
+/// Holds a connection for as long as it can.
+pub(crate) async fn be_slow(address: SocketAddr, index: u64) {
+    // Not all at once: that would measure how fast connections are made.
+    sleep(Duration::from_micros(500 * index)).await;
+    loop {
+        if let Ok(mut socket) = TcpStream::connect(address).await {
+            let head = b"GET / HTTP/1.1\r\nhost: localhost\r\nx-slow: ".iter().chain(std::iter::repeat(&b'x'));
+            let mut sent = head.take_while(|_| index % 2 == 0);
+            let mut buffer = [0; 1024];
+            // Until it is closed.
+            loop {
+                match timeout(Duration::from_secs(5), socket.read(&mut buffer)).await {
+                    Ok(Ok(0) | Err(_)) => break,
+                    Ok(Ok(_)) => {}
+                    Err(_) => {
+                        if let Some(byte) = sent.next()
+                            && socket.write_all(&[*byte]).await.is_err()
+                        {
+                            break;
+                        }
+                    }
+                }
+            }
+        }
+        sleep(Duration::from_millis(100)).await;
+    }
+}
