@@ -67,6 +67,12 @@ pub struct Limits {
     #[arg(value_parser = within::<u64>(1000..=1_000_000_000, "numbers"))]
     pub answer: u64,
 
+    /// Memory for answers that are computed and not yet sent. One client has at most as much as is left, so half of it; beyond
+    /// that it is told to read first
+    #[arg(long, env = "EQUIPOISE_HELD_BYTES", value_name = "BYTES", default_value = "1073741824")]
+    #[arg(value_parser = within::<usize>(1024 * 1024..=1 << 44, "bytes"))]
+    pub held_bytes: usize,
+
     /// Requests that may wait for each of the permits. One client takes at most as many places as are left, so half of
     /// them; more would wait longer than the time to wait anyway
     #[arg(long, env = "EQUIPOISE_QUEUE", value_name = "NUMBER", default_value = "16")]

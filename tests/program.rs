@@ -184,6 +184,27 @@ async fn one_client_cannot_have_it_all() {
     assert!(program.get("/v1/stability?preset=case-1&impacts=2000", &of(1)).await.starts_with("HTTP/1.1 200"));
 }
 
+/// Who does not read what it asked for gets no more of it, and others do.
+#[tokio::test]
+async fn answers_that_nobody_reads_count() {
+    let program = Program::start(&["--held-bytes", "10000000", "--trust-proxy", "127.0.0.1"]);
+    let of = |client: u8| format!("x-forwarded-for: 192.0.2.{client}\r\n");
+    let long = "/v1/trajectories?preset=case-1&impacts=30000";
+    let short = "/v1/stability?preset=case-1&impacts=2000";
+    let mut unread = program.send(long, &of(1)).await;
+    unread.read_exact(&mut [0; 1024]).await.unwrap();
+    let refused = program.get(short, &of(1)).await;
+    assert!(refused.starts_with("HTTP/1.1 503") && refused.contains("still to be read from this address"), "{refused}");
+    assert!(program.get(short, &of(2)).await.starts_with("HTTP/1.1 200"));
+    drop(unread);
+    let wait = async {
+        while !program.get(short, &of(1)).await.starts_with("HTTP/1.1 200") {
+            sleep(Duration::from_millis(10)).await;
+        }
+    };
+    timeout(SOON, wait).await.expect("what nobody reads is held for ever");
+}
+
 /// More clients than there are places send nothing, half a head, or half a body; whoever asks is answered.
 #[tokio::test]
 async fn silent_clients_keep_nobody_out() {

@@ -13,7 +13,7 @@ mod turns;
 
 pub use cancel::{Cancel, Cancelled};
 pub use peer::Peer;
-pub use pool::{Counted, Pool, Refused};
+pub use pool::{Counted, Held, Pool, Refused};
 pub use price::{Limit, OverBudget, Price};
 pub use shares::{NoShare, Share, Shares};
 pub use turns::Turns;

@@ -24,6 +24,8 @@ pub struct Pool {
     places: Shares,
     /// Permits to run.
     line: Arc<Line>,
+    /// Bytes of results that are still to be taken.
+    results: Shares,
     count: usize,
     queue_time: Duration,
     /// Whose work it is.
@@ -37,6 +39,8 @@ pub struct Pool {
 pub enum Refused {
     /// No place to wait in.
     Full(NoShare),
+    /// Too many bytes of earlier results are still to be taken.
+    Untaken(NoShare),
     /// A place, but no turn in good time.
     Late {
         /// Seconds it waited.
@@ -54,6 +58,10 @@ impl fmt::Display for Refused {
                     free => write!(formatter, "the last {free} places are for others"),
                 }
             }
+            Refused::Untaken(NoShare { held, free }) => {
+                write!(formatter, "{held} bytes of answers are still to be read from this address, and ")?;
+                write!(formatter, "the last {free} bytes of memory for answers are for others")
+            }
             Refused::Late { waited_s } => write!(formatter, "the request waited {waited_s} s for its turn, the limit"),
         }
     }
@@ -67,6 +75,7 @@ impl Pool {
         Self {
             places: Shares::new(permits * (1 + limits.queue)),
             line: Line::new(permits),
+            results: Shares::new(limits.held_bytes),
             count: permits,
             queue_time: limits.queue_time,
             peer: Peer::NOBODY,
@@ -78,6 +87,11 @@ impl Pool {
     /// The same pool for the work of this peer.
     pub fn of(&self, peer: Peer) -> Self {
         Self { peer, ..self.clone() }
+    }
+
+    /// A result of work, which counts as memory of the peer's until it is dropped.
+    pub fn hold(&self, result: Vec<u8>) -> Held {
+        Held { _share: self.results.hold(self.peer, result.len()), result }
     }
 
     /// How much runs at the moment.
@@ -149,6 +163,7 @@ impl Pool {
     }
 
     async fn turn(&self) -> Result<(Share, Permit), Refused> {
+        self.results.has_room(self.peer).map_err(Refused::Untaken)?;
         let place = self.places.take(self.peer).map_err(Refused::Full)?;
         if let Some(permit) = self.line.try_take() {
             return Ok((place, permit));
@@ -158,6 +173,19 @@ impl Pool {
             Ok(permit) => Ok((place, permit)),
             Err(_) => Err(Refused::Late { waited_s: self.queue_time.as_secs() }),
         }
+    }
+}
+
+/// A result that is still to be taken.
+#[derive(Debug)]
+pub struct Held {
+    result: Vec<u8>,
+    _share: Share,
+}
+
+impl AsRef<[u8]> for Held {
+    fn as_ref(&self) -> &[u8] {
+        &self.result
     }
 }
 

@@ -4,7 +4,7 @@
 //! half of all, two get a third each, and one more always finds a place.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::peer::Peer;
 
@@ -18,11 +18,12 @@ struct Book {
     held: Mutex<BTreeMap<Peer, usize>>,
 }
 
-/// A place; free again when it is dropped.
+/// A place, or several; free again when it is dropped.
 #[derive(Debug)]
 pub struct Share {
     of: Shares,
     peer: Peer,
+    places: usize,
 }
 
 /// There is no place for a peer that has its share.
@@ -45,22 +46,42 @@ impl Shares {
     /// # Errors
     /// Where it has as many as are left.
     pub fn take(&self, peer: Peer) -> Result<Share, NoShare> {
-        let mut held = self.0.held.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut held = self.held();
+        self.room(&held, peer)?;
+        *held.entry(peer).or_default() += 1;
+        Ok(Share { of: self.clone(), peer, places: 1 })
+    }
+
+    /// Whether `peer` would get one.
+    ///
+    /// # Errors
+    /// Where it has as many as are left.
+    pub fn has_room(&self, peer: Peer) -> Result<(), NoShare> {
+        self.room(&self.held(), peer)
+    }
+
+    /// So many places for `peer`, be they there or not: what is held is held, and counts.
+    pub fn hold(&self, peer: Peer, places: usize) -> Share {
+        *self.held().entry(peer).or_default() += places;
+        Share { of: self.clone(), peer, places }
+    }
+
+    fn room(&self, held: &BTreeMap<Peer, usize>, peer: Peer) -> Result<(), NoShare> {
         let free = self.0.most.saturating_sub(held.values().sum());
-        let own = held.get(&peer).copied().unwrap_or_default();
-        if own >= free {
-            return Err(NoShare { held: own, free });
-        }
-        held.insert(peer, own + 1);
-        Ok(Share { of: self.clone(), peer })
+        let held = held.get(&peer).copied().unwrap_or_default();
+        if held < free { Ok(()) } else { Err(NoShare { held, free }) }
+    }
+
+    fn held(&self) -> MutexGuard<'_, BTreeMap<Peer, usize>> {
+        self.0.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Drop for Share {
     fn drop(&mut self) {
-        let mut held = self.of.0.held.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut held = self.of.held();
         if let Some(own) = held.get_mut(&self.peer) {
-            *own -= 1;
+            *own -= self.places;
             if *own == 0 {
                 held.remove(&self.peer);
             }
@@ -89,6 +110,19 @@ mod tests {
         assert_eq!(shares.take(peer(1)).err(), Some(NoShare { held: 8, free: 8 }));
         drop(first);
         assert_eq!(take(1).len(), 8);
+    }
+
+    #[test]
+    fn what_is_held_counts() {
+        let shares = Shares::new(100);
+        let much = shares.hold(peer(1), 150);
+        assert_eq!(shares.has_room(peer(2)), Err(NoShare { held: 0, free: 0 }));
+        drop(much);
+        let half = shares.hold(peer(1), 50);
+        assert_eq!(shares.has_room(peer(1)), Err(NoShare { held: 50, free: 50 }));
+        assert!(shares.has_room(peer(2)).is_ok());
+        drop(half);
+        assert!(shares.has_room(peer(1)).is_ok());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! What a resource computes, and what it costs, is the route's to say.
 
-use axum::body::Body;
+use axum::body::{Body, Bytes};
 use axum::http::{HeaderValue, Response, StatusCode, header};
 
 use super::encode;
@@ -130,7 +130,7 @@ async fn computed(
         Ok::<_, Problem>(if encoding == Encoding::Gzip { encode::gzip(&bytes, cancel)? } else { bytes })
     };
     let bytes = pool.run(with_drawing(price, format), work).await?;
-    Ok(ok(format.media_type(), encoding, bytes))
+    Ok(ok(format.media_type(), encoding, Bytes::from_owner(pool.hold(bytes))))
 }
 
 /// The price of an answer in this format: pixels are work of their own.

@@ -1,8 +1,9 @@
 //! Answers that are sent while they are computed, where the format has lines for that.
 //!
 //! Computing never waits for the reader: what is not yet read is kept, never more than the whole answer, which the price
-//! has bounded (`Limits::answer`), and a reader that takes nothing is cut off after `Limits::stall_time`. So a slow reader
-//! holds neither a permit nor a place in the queue. A reader that leaves ends the work.
+//! has bounded (`Limits::answer`), and counts as the client's (`Limits::held_bytes`). A reader that takes nothing is cut off
+//! after `Limits::stall_time`. So a slow reader holds neither a permit nor a place in the queue. A reader that leaves ends
+//! the work.
 
 use std::io::{self, Write};
 use std::panic::AssertUnwindSafe;
@@ -25,6 +26,7 @@ use crate::compute::{Cancel, Cancelled, Pool, Price, Turns};
 pub struct Outlet {
     to: UnboundedSender<Bytes>,
     gzip: Option<GzEncoder<Vec<u8>>>,
+    pool: Pool,
 }
 
 impl Outlet {
@@ -41,7 +43,7 @@ impl Outlet {
             }
         };
         // An error is a reader that has gone, of which the work hears otherwise.
-        let _ = self.to.send(piece.into());
+        let _ = self.to.send(Bytes::from_owner(self.pool.hold(piece)));
     }
 
     /// Sends an answer as a whole.
@@ -55,7 +57,8 @@ impl Outlet {
 
     fn finish(self) {
         if let Some(gzip) = self.gzip {
-            let _ = self.to.send(gzip.finish().expect("a vector takes all bytes").into());
+            let last = gzip.finish().expect("a vector takes all bytes");
+            let _ = self.to.send(Bytes::from_owner(self.pool.hold(last)));
         }
     }
 }
@@ -103,16 +106,16 @@ pub(super) async fn computed_in_turns(
     streams: bool,
     compute: impl FnOnce(Format, &Turns, &mut Outlet) -> Result<(), Problem> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
-    let pool = pool.clone();
+    let working = pool.clone();
     let work = |mut outlet: Outlet| async move {
         let compute = move |turns: &Turns| {
             compute(format, turns, &mut outlet)?;
             outlet.finish();
             Ok(())
         };
-        pool.run_in_turns(compute).await
+        working.run_in_turns(compute).await
     };
-    in_pieces(format, encoding, streams, work).await
+    in_pieces(pool, (format, encoding), streams, work).await
 }
 
 /// The same of work that keeps its permit from its beginning to its end.
@@ -123,27 +126,28 @@ pub(super) async fn computed_at_once(
     streams: bool,
     compute: impl FnOnce(Format, &Cancel, &mut Outlet) -> Result<(), Problem> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
-    let pool = pool.clone();
+    let working = pool.clone();
     let work = |mut outlet: Outlet| async move {
         let compute = move |cancel: &Cancel| {
             compute(format, cancel, &mut outlet)?;
             outlet.finish();
             Ok(())
         };
-        pool.run(price, compute).await
+        working.run(price, compute).await
     };
-    in_pieces(format, encoding, streams, work).await
+    in_pieces(pool, (format, encoding), streams, work).await
 }
 
 async fn in_pieces<Work: Future<Output = Result<(), Problem>> + Send + 'static>(
-    format: Format,
-    encoding: Encoding,
+    pool: &Pool,
+    (format, encoding): (Format, Encoding),
     streams: bool,
     work: impl FnOnce(Outlet) -> Work,
 ) -> Result<Response<Body>, Problem> {
     let (to, made) = unbounded_channel();
     let gzip = (encoding == Encoding::Gzip).then(encode::encoder);
-    let mut pieces = Pieces { made, work: Some(Box::pin(work(Outlet { to, gzip }))) };
+    let outlet = Outlet { to, gzip, pool: pool.clone() };
+    let mut pieces = Pieces { made, work: Some(Box::pin(work(outlet))) };
     let first = pieces.next().await?.unwrap_or_default();
     if streams {
         return Ok(ok(format.media_type(), encoding, pieces.into_body(first)));
@@ -152,7 +156,7 @@ async fn in_pieces<Work: Future<Output = Result<(), Problem>> + Send + 'static>(
     while let Some(piece) = pieces.next().await? {
         whole.extend_from_slice(&piece);
     }
-    Ok(ok(format.media_type(), encoding, whole))
+    Ok(ok(format.media_type(), encoding, Bytes::from_owner(pool.hold(whole))))
 }
 
 #[cfg(test)]
