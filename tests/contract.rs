@@ -233,7 +233,7 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
         };
         compare("minimum", &field["minimum"], schema.get("minimum"));
         compare("maximum", &field["maximum"], schema.get("maximum"));
-        compare("default", &field["default"], schema.get("default"));
+        compare("default", &field["default"], schema.get("x-default"));
         if schema.get("minimum").is_some() {
             compare("unit", &field["unit"], schema.get("x-unit"));
         }

@@ -9,7 +9,8 @@ function withoutPrefill(contract) {
     if (parameter.in !== "query" || parameter.name === "preset") continue;
     const name = parameter.schema.$ref?.replace("#/components/schemas/", "");
     const schema = { ...(name ? resolved(contract, name) : parameter.schema) };
-    if (schema.default !== undefined) parameter.description += ` Unless given: ${schema.default}.`;
+    const rest = schema.default ?? schema["x-default"];
+    if (rest !== undefined) parameter.description += ` Unless given${"x-default" in schema ? ", by a preset too" : ""}: ${rest}.`;
     delete schema.default;
     delete parameter.example;
     parameter.schema = schema;
