@@ -1,0 +1,50 @@
+"""Which tilt gain should I set? Scans it over release angles without noise and over repeated runs with it, and recommends one.
+
+A gain must come close to the best survival under noise (their 95 % intervals overlap); of those, the one that lets the body be
+released the furthest aside wins. Example: which_tilt_gain.py --preset case-1 --timing-sd 0.01
+"""
+
+import json
+
+from ask import arguments, ask, parse
+
+parser = arguments(__doc__)
+parser.add_argument("--preset", default="case-1")
+parser.add_argument("--scene", type=json.loads, default={}, help='what is different, as \'{"release": {"height": 0.3}}\'')
+parser.add_argument("--timing-sd", type=float, default=0.01, help="standard deviation of the time of the strike, in s")
+parser.add_argument("--model", choices=["strike", "plan"], default="plan", help="what a table does that is late: wait for the body, or carry out its plan")
+parser.add_argument("--gains", type=int, default=16, help="how many tilt gains")
+parser.add_argument("--impacts", type=int, default=400, help="bounces to survive")
+parser.add_argument("--runs", type=int, default=200, help="runs with noise for each gain")
+options = parse(parser)
+
+gain = ask("stability", {"preset": options.preset, "scene": options.scene, "impacts": 1})["linear"]["tilt_gain"]
+step = (gain["critical"] - gain["lower"]) / (options.gains + 1)
+x = {"parameter": "table.tilt_gain", "from": gain["lower"] + step, "to": gain["critical"] - step, "count": options.gains}
+y = {"parameter": "release.theta", "from": 0.01, "to": 0.6, "count": 60}
+region = ask("regions", {"preset": options.preset, "scene": options.scene, "x": x, "y": y, "impacts": options.impacts})
+survives = region["outcome_names"].index("completed")
+
+print(f"stable without noise, near upright: {gain['lower']:g} to {gain['critical']:.5f}; timing {options.timing_sd * 1000:g} ms ({options.model}), {options.runs} runs of {options.impacts} bounces")
+print(f"{'gain':>8} {'widest release':>15} {'survive noise':>14} {'95 %':>15}")
+rows = []
+for column, value in enumerate(region["x"]):
+    angle = 0.0
+    for theta, outcomes in zip(region["y"], region["outcomes"]):
+        if outcomes[column] != survives:
+            break
+        angle = theta
+    noise = {"table": {"tilt_gain": value}, "noise": {"timing_sd": options.timing_sd, "model": options.model}}
+    scene = {**options.scene, **noise, "table": {**options.scene.get("table", {}), **noise["table"]}}
+    ensemble = ask("ensembles", {"preset": options.preset, "scene": scene, "runs": options.runs, "impacts": options.impacts, "seed": 1})
+    rows.append((value, angle, ensemble["survived"]))
+    print(f"{value:8.4f} {angle:11.2f} rad {rows[-1][2]['share']:13.1%} {rows[-1][2]['lower']:7.1%}-{rows[-1][2]['upper']:.1%}")
+
+best = max(rows, key=lambda row: row[2]["share"])[2]
+close = [row for row in rows if row[2]["upper"] >= best["lower"]]
+value, angle, survived = max(close, key=lambda row: (row[1], row[2]["share"]))
+print(f"\nrecommended: {value:.4f}. {survived['share']:.1%} survive the noise, as good as the best ({best['share']:.1%}) with {options.runs} runs;")
+print(f"  of the {len(close)} gains of which that is so, it may be released the furthest aside: {angle:.2f} rad.")
+print(f"  It is {value - gain['lower']:.4f} above the lower end and {gain['critical'] - value:.4f} below the upper one.")
+if best["share"] == 0:
+    print("  But no gain survives this noise: the timing has to be better first.")

@@ -1,0 +1,87 @@
+"""Runs the scripts of docs/clients as shipped against a server, and holds what they print to another way to the same number."""
+
+import json
+import math
+import re
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+SERVER, SCRIPTS = sys.argv[1], Path(sys.argv[2]).resolve()
+sys.path.insert(0, str(SCRIPTS))
+sys.dont_write_bytecode = True
+import ask as client  # noqa: E402
+
+client.SERVER = SERVER
+
+
+def printed(script, *arguments, status=0):
+    done = subprocess.run([sys.executable, "-B", SCRIPTS / script, "--server", SERVER, *arguments], capture_output=True, text=True)
+    assert done.returncode == status, f"{script} {arguments}: {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def numbers(pattern, text):
+    found = re.search(pattern, text)
+    assert found, f"no {pattern} in:\n{text}"
+    return [float(each) for each in found.groups()]
+
+
+def outcome(scene, impacts):
+    return client.ask("trajectories", {"preset": "case-1", "scene": scene, "impacts": impacts})["outcome"]["kind"]
+
+
+def quickstart():
+    with tempfile.TemporaryDirectory() as folder:
+        picture = Path(folder) / "run.svg"
+        text = printed("quickstart.py", "--picture", str(picture))
+        assert ElementTree.parse(picture).getroot().tag.endswith("svg")
+    # Equation 18, with the paper's lengths: l = 0.4/3 and ρ² = 2/225.
+    assert numbers(r"in \(1\.0, ([\d.]+)\)", text) == [1 + 2 / 225 / (2 * (0.2 - 0.4 / 3) * 0.4 / 3)], text
+    assert len(re.findall(r"^ +\d+ +\d+\.\d{5}", text, re.MULTILINE)) == 10, text
+
+
+def margins():
+    text = printed("margins_of_my_rig.py", "--lengths", "0.133", "0.094", "--tilt-gain", "1.1", "--off-distance", "0.002", "--off-gyration", "0.001")
+    corners = [1 + rho**2 / (2 * l * (0.2 - l)) for l in (0.131, 0.133, 0.135) for rho in (0.093, 0.095)]
+    least, most = numbers(r"upper end is from ([\d.]+) to ([\d.]+)", text)
+    assert math.isclose(least, min(corners), abs_tol=1e-5) and math.isclose(most, max(corners), abs_tol=1e-5), (least, most, corners)
+    [aside] = numbers(r"up to ([\d.]+) rad aside", text)
+    scene = {"body": {"contact_distance": 0.133, "radius_of_gyration": 0.094}, "release": {"height": 0.2}}
+    assert outcome({**scene, "release": {"theta": aside - 0.01}}, 1000) == "completed", aside
+    polygon = printed("margins_of_my_rig.py", "--polygon", "0,0 0.05,0.2 -0.05,0.2", "--tilt-gain", "1.1")
+    # Of a triangle as an even sheet, base 0.1 and height 0.2: l = 0.4/3, ρ² = 0.2²/18 + 0.1²/24.
+    assert math.isclose(numbers(r"from 1 to ([\d.]+)", polygon)[0], 1 + (0.04 / 18 + 0.01 / 24) / (2 * (0.2 - 0.4 / 3) * 0.4 / 3), abs_tol=1e-5), polygon
+    wrong = printed("margins_of_my_rig.py", "--lengths", "0.133", "0.094", "--tilt-gain", "1000", status=1)
+    assert "scene.table.tilt_gain: tilt_gain is 1000; it must be from -100 to 100" in wrong, wrong
+
+
+def tilt_gain():
+    text = printed("which_tilt_gain.py", "--runs", "40", "--impacts", "100", "--gains", "7")
+    gain, share = numbers(r"recommended: ([\d.]+)\. ([\d.]+)% survive", text)
+    [aside] = numbers(r"furthest aside: ([\d.]+) rad", text)
+    table = {"tilt_gain": gain}
+    assert outcome({"table": table, "release": {"theta": aside}}, 100) == "completed"
+    assert outcome({"table": table, "release": {"theta": aside + 0.01}}, 100) != "completed"
+    # Every run of the ensemble alone.
+    noise = {"timing_sd": 0.01, "model": "plan", "seed": 1}
+    alone = [outcome({"table": table, "noise": {**noise, "run": run}}, 100) for run in range(40)]
+    assert math.isclose(100 * alone.count("completed") / 40, share, abs_tol=0.06), (alone, text)
+
+
+def friction():
+    text = printed("which_friction.py", "--scene", json.dumps({"release": {"theta": 0.05}, "table": {"tilt_gain": 2}}))
+    # Near upright a tilt gain of 2 is beyond 1.5 without friction, and within 2.5 on a contact that sticks.
+    [least] = numbers(r"moving along[^\n]*\n  poisson  friction 0: does not hold\n +from ([\d.]+) on: holds", text)
+    for factor, wanted in ((0.97, False), (1.0001, True)):
+        scene = {"release": {"theta": 0.05}, "table": {"tilt_gain": 2, "slide": "matched"}, "contact": {"friction": least * factor}}
+        assert (outcome(scene, 300) == "completed") == wanted, (least, factor)
+    slips = re.search(r"contact that slips\n  poisson  friction 0: holds\n +from 0\.0000\d on: does not hold", text)
+    assert slips, text
+
+
+for check in (quickstart, margins, tilt_gain, friction):
+    check()
+    print(f"ok    {check.__name__}")
