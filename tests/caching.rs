@@ -88,7 +88,7 @@ async fn each_form_of_an_answer_has_its_own_tag() {
         }
     }
     tags.push(server.get(&format!("{target}&format=png")).await.expect(200).etag().to_owned());
-    for other in ["&impacts=99", "&scene.table.tilt_gain=1.2", "&samples_per_flight=1"] {
+    for other in ["&impacts=99", "&scene.table.tilt_gain=1.2", "&samples_per_flight=1", "&epoch=0", "&epoch=1"] {
         tags.push(server.get(&format!("{target}{other}")).await.expect(200).etag().to_owned());
     }
     tags.push(server.get("/v1/stability?preset=case-1&impacts=100").await.expect(200).etag().to_owned());

@@ -13,6 +13,26 @@ use equipoise_physics::scene::Scene;
 use super::scene::has_angle;
 use super::table::{Cells, Column, Table};
 
+/// Dates, unix ms, of times since the release; none where nobody said when that was.
+#[derive(Debug, Default)]
+struct Dates(Option<(u64, Vec<u64>)>);
+
+impl Dates {
+    fn since(epoch: Option<u64>) -> Self {
+        Self(epoch.map(|epoch| (epoch, Vec::new())))
+    }
+
+    fn push(&mut self, t: f64) {
+        if let Some((epoch, dates)) = &mut self.0 {
+            dates.push((*epoch as f64 + 1e3 * t).round() as u64);
+        }
+    }
+
+    fn into_column(self) -> Option<Column> {
+        self.0.map(|(_, dates)| Column { name: "time", unit: "", cells: Cells::Counts(dates) })
+    }
+}
+
 /// The contacts of a run, gathered one by one.
 #[derive(Debug)]
 pub(super) struct Contacts {
@@ -20,6 +40,7 @@ pub(super) struct Contacts {
     gravity: f64,
     has_angle: bool,
     n: Vec<u64>,
+    dates: Dates,
     numbers: [Vec<f64>; 8],
     theta_dot: Vec<Option<f64>>,
     strikes: [Vec<Option<f64>>; 4],
@@ -32,14 +53,15 @@ pub(super) struct Contacts {
 }
 
 impl Contacts {
-    /// None yet, with room for some.
-    pub(super) fn new(scene: &Scene, expected: usize) -> Self {
+    /// None yet, with room for some. With an `epoch`, unix ms, they have their dates too.
+    pub(super) fn new(scene: &Scene, epoch: Option<u64>, expected: usize) -> Self {
         let room = expected.min(1 << 16);
         Self {
             body: scene.model(),
             gravity: scene.gravity(),
             has_angle: has_angle(scene),
             n: Vec::with_capacity(room),
+            dates: Dates::since(epoch),
             numbers: std::array::from_fn(|_| Vec::with_capacity(room)),
             theta_dot: Vec::with_capacity(room),
             strikes: std::array::from_fn(|_| Vec::with_capacity(room)),
@@ -70,6 +92,7 @@ impl Contacts {
             self.body.contact_speed(&contact.state),
         ];
         self.n.push(contact.n);
+        self.dates.push(contact.t);
         for (column, value) in self.numbers.iter_mut().zip(numbers) {
             column.push(value);
         }
@@ -121,7 +144,9 @@ impl Contacts {
             let cells = digits.as_mut().and_then(|digits| digits.take(name)).map_or(cells, Cells::Decimals);
             Column { name, unit, cells }
         };
-        Table(columns.into_iter().map(column).collect())
+        let mut columns: Vec<Column> = columns.into_iter().map(column).collect();
+        columns.splice(1..1, self.dates.into_column());
+        Table(columns)
     }
 }
 
@@ -183,12 +208,18 @@ impl Digits {
 #[derive(Debug, Default)]
 pub(super) struct Flights {
     impact: Vec<u64>,
+    dates: Dates,
     numbers: [Vec<f64>; 5],
     theta: Vec<Option<f64>>,
     theta_dot: Vec<Option<f64>>,
 }
 
 impl Flights {
+    /// None yet; `epoch` as for contacts.
+    pub(super) fn new(epoch: Option<u64>) -> Self {
+        Self { dates: Dates::since(epoch), ..Self::default() }
+    }
+
     /// Adds `samples` of the flight that follows contact `impact` (0: the fall from the release) at time `t`, place `x`
     /// and height `y` of the centre of gravity.
     #[expect(clippy::too_many_arguments, reason = "a flight is that many numbers")]
@@ -214,6 +245,7 @@ impl Flights {
                 start.y_dot - gravity * since,
             ];
             self.impact.push(impact);
+            self.dates.push(t + since);
             for (column, value) in self.numbers.iter_mut().zip(numbers) {
                 column.push(value);
             }
@@ -236,6 +268,8 @@ impl Flights {
             ("y_dot", "m_per_s", y_dot),
             ("theta_dot", "rad_per_s", Cells::Sparse(self.theta_dot)),
         ];
-        Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into())
+        let mut columns = columns.map(|(name, unit, cells)| Column { name, unit, cells }).to_vec();
+        columns.splice(1..1, self.dates.into_column());
+        Table(columns)
     }
 }

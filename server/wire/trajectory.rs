@@ -13,6 +13,7 @@ use super::outcome::Outcome;
 use super::scene::{Resolved, has_angle};
 use super::table::Table;
 use crate::http::Reader;
+use crate::http::leaf::LARGEST_EXACT;
 use crate::limits;
 use crate::picture::{PhasePlanes, phase_planes};
 
@@ -101,6 +102,9 @@ pub struct Request {
     pub method: Option<Method>,
     /// Wanted bound on the error, m/s.
     pub tolerance: Option<f64>,
+    /// When the body is released, unix ms; none leaves the column `time` out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub epoch: Option<u64>,
 }
 
 fn name_of<S: Serializer>(method: &Option<Method>, serializer: S) -> Result<S::Ok, S::Error> {
@@ -134,7 +138,8 @@ impl Request {
         let [linear, map, extended] = Method::ALL.map(|method| (method.name(), Some(method)));
         let method = reader.choice("method", &[("auto", None), map, linear, extended]).flatten();
         let tolerance = reader.number("tolerance", TOLERANCES, "m/s");
-        Self { impacts, samples_per_flight, method, tolerance }
+        let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
+        Self { impacts, samples_per_flight, method, tolerance, epoch }
     }
 
     /// Only the map runs on through a change, without a bound.
@@ -148,7 +153,8 @@ impl Request {
 
     /// Numbers in its answer.
     pub fn numbers(&self) -> u64 {
-        self.impacts.saturating_mul(CONTACT_NUMBERS + self.samples_per_flight * SAMPLE_NUMBERS)
+        let time = u64::from(self.epoch.is_some());
+        self.impacts.saturating_mul(CONTACT_NUMBERS + time + self.samples_per_flight * (SAMPLE_NUMBERS + time))
     }
 
     /// Its work, in bounces.
@@ -257,9 +263,9 @@ impl<'a> Trajectory<'a> {
         }
         let was_changed = changed.is_some();
         let (method, choice) = MethodChoice::of(scene, request, &mut go_on)?;
-        let Request { impacts, samples_per_flight: samples, tolerance, .. } = *request;
-        let mut contacts = Contacts::new(scene, usize::try_from(impacts).unwrap_or(usize::MAX));
-        let mut flights = (samples > 0).then(Flights::default);
+        let Request { impacts, samples_per_flight: samples, tolerance, epoch, .. } = *request;
+        let mut contacts = Contacts::new(scene, epoch, usize::try_from(impacts).unwrap_or(usize::MAX));
+        let mut flights = (samples > 0).then(|| Flights::new(epoch));
         let body = scene.model();
         let (mut last, mut unknown, mut predictable) = (None, 0, None);
         let mut meter = Meter::default();
