@@ -1,11 +1,12 @@
 //! `/metrics`: what the server counts, as Prometheus text.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::time::Duration;
 
 use axum::Router;
 use axum::extract::State;
-use axum::http::{HeaderValue, header};
+use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use prometheus_client::encoding::EncodeLabelSet;
@@ -20,7 +21,7 @@ use prometheus_client::registry::Registry;
 use super::App;
 use crate::BUILD;
 use crate::compute::Pool;
-use crate::http::Problem;
+use crate::http::{Problem, negotiate};
 
 /// The resource.
 pub fn routes() -> Router<App> {
@@ -84,18 +85,51 @@ impl Metrics {
     }
 }
 
-async fn scrape(State(app): State<App>) -> Result<Response, Problem> {
+/// What Prometheus asks for by name.
+const OPEN_METRICS: &str = "application/openmetrics-text";
+
+async fn scrape(State(app): State<App>, headers: HeaderMap) -> Result<Response, Problem> {
     let mut text = String::new();
     encode(&mut text, &app.metrics.registry).map_err(|error| {
         let _ = writeln!(std::io::stderr(), "equipoise: cannot write metrics: {error}");
         Problem::internal()
     })?;
-    let media_type = "application/openmetrics-text; version=1.0.0; charset=utf-8";
+    let media_type = if negotiate::list(&headers, &header::ACCEPT).to_ascii_lowercase().contains(OPEN_METRICS) {
+        "application/openmetrics-text; version=1.0.0; charset=utf-8"
+    } else {
+        text = plain(&text);
+        "text/plain; version=0.0.4; charset=utf-8"
+    };
     let headers = [
         (header::CONTENT_TYPE, HeaderValue::from_static(media_type)),
         (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
+        (header::VARY, HeaderValue::from_static("Accept")),
     ];
     Ok((headers, text).into_response())
+}
+
+/// OpenMetrics as the older text that every other collector reads: there a family has the name of its samples, an info is
+/// a gauge, and the end is not marked.
+fn plain(open_metrics: &str) -> String {
+    let families = open_metrics.lines().filter_map(|line| line.strip_prefix("# TYPE ")?.split_once(' '));
+    let families: BTreeMap<&str, &str> = families.collect();
+    let mut text = String::new();
+    for line in open_metrics.lines().filter(|line| *line != "# EOF") {
+        let mut words = line.splitn(4, ' ');
+        match (words.next(), words.next(), words.next(), words.next()) {
+            (Some("#"), Some(keyword @ ("HELP" | "TYPE")), Some(name), Some(rest)) => {
+                let (suffix, kind) = match families.get(name).copied() {
+                    Some("counter") => ("_total", "counter"),
+                    Some("info") => ("_info", "gauge"),
+                    kind => ("", kind.unwrap_or("untyped")),
+                };
+                let rest = if keyword == "TYPE" { kind } else { rest };
+                text += &format!("# {keyword} {name}{suffix} {rest}\n");
+            }
+            _ => text += &format!("{line}\n"),
+        }
+    }
+    text
 }
 
 #[cfg(test)]
@@ -118,5 +152,19 @@ mod tests {
         ] {
             assert!(text.lines().any(|found| found == line), "{line} is not in\n{text}");
         }
+        let older = plain(&text);
+        for line in [
+            "# HELP equipoise_bounces_total Bounces computed.",
+            "# TYPE equipoise_bounces_total counter",
+            "# TYPE equipoise_build_info gauge",
+            "# TYPE equipoise_jobs_running gauge",
+            "# TYPE equipoise_request_duration_seconds histogram",
+            "equipoise_requests_total{method=\"other\",route=\"none\",status=\"405\"} 1",
+        ] {
+            assert!(older.lines().any(|found| found == line), "{line} is not in\n{older}");
+        }
+        let samples = |text: &str| text.lines().filter(|line| !line.starts_with('#')).count();
+        assert_eq!(samples(&older), samples(&text));
+        assert!(!older.contains("# EOF"), "{older}");
     }
 }
