@@ -10,7 +10,8 @@ use std::time::Duration;
 use equipoise::compute::Peer;
 use equipoise::limits;
 use equipoise::routes::App;
-use serde_json::Value;
+use serde_json::{Value, json};
+use support::contract;
 use support::socket::{Row, SOON, held, impacts_in, now_ms, numbers, open, start};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader};
 use tokio::net::TcpStream;
@@ -33,6 +34,11 @@ async fn send(address: SocketAddr, request: &[u8]) -> Answer {
     while !head.ends_with("\r\n\r\n") {
         assert!(timeout(SOON, body.read_line(&mut head)).await.expect("an answer").unwrap() > 0, "{head}");
     }
+    let mut lines = head.lines();
+    let status = lines.next().and_then(|line| line.split(' ').nth(1)).expect("a status");
+    let headers = lines.filter_map(|line| line.split_once(": "));
+    let headers = headers.map(|(name, value)| (name.to_ascii_lowercase(), value.to_owned())).collect();
+    contract::hold_head("/v1/live/events", status, &headers);
     Answer { head: head.to_ascii_lowercase(), body }
 }
 
@@ -88,6 +94,8 @@ impl Answer {
         let mut text = String::new();
         timeout(SOON, self.body.read_to_string(&mut text)).await.expect("a whole answer").unwrap();
         let problem: Value = serde_json::from_str(&text).unwrap();
+        let faults = contract::faults(&json!({"$ref": "#/components/schemas/Problem"}), &problem);
+        assert!(faults.is_empty(), "{faults:?} in {text}");
         assert!(self.head.starts_with(&format!("http/1.0 {} ", problem["status"])), "{}", self.head);
         assert!(self.head.contains("content-type: application/problem+json"));
         problem

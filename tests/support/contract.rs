@@ -121,6 +121,31 @@ pub(crate) fn hold(method: &Method, target: &str, answer: &Answer) {
     }
 }
 
+/// Panics unless the contract has an answer to a GET of this template with this status and these headers, by lowercase names. For
+/// answers without an end, whose body is held message by message.
+#[track_caller]
+pub(crate) fn hold_head(template: &str, status: &str, headers: &HashMap<String, String>) {
+    let responses = &DOCUMENT["paths"][template]["get"]["responses"];
+    let response = responses.get(status).unwrap_or_else(|| panic!("{template}: the contract has no {status}"));
+    let response = resolved(response);
+    for (name, header) in response["headers"].as_object().into_iter().flatten() {
+        let header = resolved(header);
+        match headers.get(&name.to_lowercase()) {
+            Some(value) => {
+                let faults = faults(&header["schema"], &json!(value));
+                assert!(faults.is_empty(), "{template} {status}: header {name}: {value}: {faults:?}");
+            }
+            None => assert!(header["required"] != json!(true), "{template} {status}: no header {name}"),
+        }
+    }
+    let media_type = headers.get("content-type").map(|value| value.split(';').next().unwrap_or_default().trim());
+    match (response.get("content"), media_type) {
+        (None, None) => {}
+        (Some(content), Some(media_type)) if content.get(media_type).is_some() => {}
+        _ => panic!("{template} {status}: {media_type:?} is not in the contract"),
+    }
+}
+
 /// What holds for every answer whatever the resource.
 #[track_caller]
 fn hold_everywhere(answer: &Answer) {
