@@ -205,6 +205,44 @@ async fn answers_that_nobody_reads_count() {
     timeout(SOON, wait).await.expect("what nobody reads is held for ever");
 }
 
+/// Half a head, half a body, nothing after an answer, and an answer taken byte by byte: none of them lasts.
+#[tokio::test]
+async fn who_keeps_the_server_waiting_is_let_go() {
+    let times = ["--head-time", "1", "--body-time", "1", "--stall-time", "1"];
+    let program = Program::start(&[times.as_slice(), &["--held-bytes", "10000000"]].concat());
+    for (begin, end) in [
+        ("GET / HT", ""),
+        ("GET /health/live HTTP/1.1\r\nhost: x\r\n\r\n", "HTTP/1.1 200"),
+        (
+            "POST /v1/stability HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\ncontent-length: 9\r\n\r\n{",
+            "HTTP/1.1 408",
+        ),
+    ] {
+        let mut socket = TcpStream::connect(program.address).await.unwrap();
+        socket.write_all(begin.as_bytes()).await.unwrap();
+        let answer = whole(socket).await;
+        assert!(answer.starts_with(end), "{begin}: {answer}");
+    }
+    let mut slow = program.send("/v1/trajectories?preset=case-1&impacts=30000", "").await;
+    let drips = tokio::spawn(async move {
+        while slow.read_exact(&mut [0; 64]).await.is_ok() {
+            sleep(Duration::from_millis(50)).await;
+        }
+    });
+    let short = "/v1/stability?preset=case-1&impacts=2000";
+    let freed = async {
+        while program.get(short, "").await.starts_with("HTTP/1.1 200") {
+            sleep(Duration::from_millis(5)).await;
+        }
+        // Its answer counts now, until it is cut off.
+        while !program.get(short, "").await.starts_with("HTTP/1.1 200") {
+            sleep(Duration::from_millis(50)).await;
+        }
+    };
+    timeout(SOON, freed).await.expect("who takes a byte now and then is waited for");
+    drips.abort();
+}
+
 /// More clients than there are places send nothing, half a head, or half a body; whoever asks is answered.
 #[tokio::test]
 async fn silent_clients_keep_nobody_out() {

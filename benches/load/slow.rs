@@ -62,7 +62,7 @@ pub(crate) async fn be_slow(address: SocketAddr, index: u64) {
     loop {
         if let Ok(mut socket) = TcpStream::connect(address).await {
             let head = b"GET / HTTP/1.1\r\nhost: localhost\r\nx-slow: ".iter().chain(std::iter::repeat(&b'x'));
-            let mut sent = head.take_while(|_| index % 2 == 0);
+            let mut sent = head.take_while(|_| index.is_multiple_of(2));
             let mut buffer = [0; 1024];
             // Until it is closed.
             loop {
