@@ -174,7 +174,11 @@ proptest! {
                 let (a, b, c) = (others[i], others[j], others[k]);
                 turns(a, b, *from) && turns(b, c, *from) && turns(c, a, *from)
             })));
-            let refused = matches!(outline(&places, contact), Err(PolygonError::Hidden(_)));
+            let refused = match outline(&places, contact) {
+                // So near to the centre of gravity that it is refused for that first.
+                Err(PolygonError::ContactDistance { .. }) => continue,
+                other => matches!(other, Err(PolygonError::Hidden(_))),
+            };
             prop_assert!(!(alone && refused) && (refused || !in_triangle), "{contact} {alone} {in_triangle} {refused}");
         }
     }
