@@ -111,6 +111,7 @@ mod tests {
     use http_body_util::BodyExt;
     use prometheus_client::metrics::counter::Counter;
     use prometheus_client::metrics::gauge::Gauge;
+    use prometheus_client::metrics::histogram::Histogram;
 
     use super::*;
     use crate::compute::{Counted, Pool};
@@ -124,8 +125,13 @@ mod tests {
     async fn heard(preset: &str, bounds: Bounds) -> String {
         let run = Run::new(*case(preset).scene(), Clock::new(session::wall_now(), 20.0));
         let asked = Asked { run, from: None };
-        let place =
-            Place { pool: Pool::new(1, &Limits::default()), bounces: Counter::default(), base_path: "".into(), bounds };
+        let place = Place {
+            pool: Pool::new(1, &Limits::default()),
+            bounces: Counter::default(),
+            lags: Histogram::new([]),
+            base_path: "".into(),
+            bounds,
+        };
         let course = session::caught_up(&asked, &place).await.unwrap();
         let sessions = Gauge::default();
         let events = tell(asked, course, place, std::future::pending(), Counted::one(&sessions));

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, close_code};
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
 use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::histogram::Histogram;
 use tokio::sync::mpsc;
 use tokio::time::{sleep_until, timeout};
 
@@ -32,6 +33,8 @@ pub struct Place {
     pub pool: Pool,
     /// Counts the bounces.
     pub bounces: Counter,
+    /// How late impacts are looked for, s.
+    pub lags: Histogram,
     /// What stands before its URLs as clients see them.
     pub base_path: Arc<str>,
     /// The bounds to keep.
@@ -186,6 +189,7 @@ impl Session {
                 self.pump(wall_now());
             }
             if !self.catching_up && Instant::now() >= self.next_pump {
+                self.place.lags.observe(self.next_pump.elapsed().as_secs_f64());
                 self.pump(wall_now());
             }
             if let Some(close) = self.overdue(Instant::now()) {

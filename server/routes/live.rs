@@ -82,7 +82,8 @@ fn admit(app: &App, ask: &Ask, bounds: Bounds) -> Result<((Counted, Share), Plac
     })?;
     let counted = Counted::one(&app.metrics.live_sessions);
     let (pool, base_path) = (app.pool.of(ask.peer), app.base_path.clone());
-    Ok(((counted, share), Place { pool, bounces: app.metrics.bounces.clone(), base_path, bounds }))
+    let (bounces, lags) = (app.metrics.bounces.clone(), app.metrics.live_lags.clone());
+    Ok(((counted, share), Place { pool, bounces, lags, base_path, bounds }))
 }
 
 fn not_a_websocket(rejection: &WebSocketUpgradeRejection, headers: &HeaderMap) -> Response {

@@ -38,6 +38,8 @@ pub struct Metrics {
     pub bounces: Counter,
     /// Live runs at the moment (`compute::Counted` keeps it).
     pub live_sessions: Gauge,
+    /// How late live runs look for the impacts that are due, s.
+    pub live_lags: Histogram,
 }
 
 /// From 0.1 ms, what a small request takes, to 10 s, what none should.
@@ -62,6 +64,7 @@ impl Metrics {
         let durations: Family<Place, Histogram, fn() -> Histogram> =
             Family::new_with_constructor(|| Histogram::new(BUCKETS_S));
         let (requests, bounces, live_sessions) = (Family::default(), Counter::default(), Gauge::default());
+        let live_lags = Histogram::new(BUCKETS_S);
         let mut registry = Registry::with_prefix("equipoise");
         registry.register("build", "The build that answers", Info::new([("build", BUILD)]));
         registry.register("requests", "Requests answered", requests.clone());
@@ -69,8 +72,9 @@ impl Metrics {
         registry.register("jobs_running", "Pieces of work being computed", pool.running().clone());
         registry.register("jobs_queued", "Pieces of work waiting for their turn", pool.queued().clone());
         registry.register("live_sessions", "Live runs", live_sessions.clone());
+        registry.register("live_lag_seconds", "Time from when an impact was due to its telling", live_lags.clone());
         registry.register("bounces", "Bounces computed", bounces.clone());
-        Self { registry, requests, durations, bounces, live_sessions }
+        Self { registry, requests, durations, bounces, live_sessions, live_lags }
     }
 
     /// Counts one answered request. `route` is the template, not the path: clients do not choose how many there are.
