@@ -3,18 +3,19 @@
 
     python3 follow.py 'http://127.0.0.1:8080/v1/live/events?preset=case-1'
 
-Python alone, nothing to install. Ctrl-C ends it, and so does the end of the run.
+Python alone, nothing to install. Where the server has a token, it is taken from EQUIPOISE_TOKEN. Ctrl-C ends it, and so does the end of the run.
 """
 
 import http.client
 import json
+import os
 import sys
 import time
 import urllib.error
 import urllib.request
 from urllib.parse import parse_qs, urljoin, urlsplit
 
-EVENTS = "/v1/live/events?"
+TOKEN = os.environ.get("EQUIPOISE_TOKEN")
 
 
 def events(answer):
@@ -50,6 +51,8 @@ def follow(url):
     last = None
     while True:
         headers = {"Accept": "text/event-stream"}
+        if TOKEN:
+            headers["Authorization"] = f"Bearer {TOKEN}"
         if last:
             headers["Last-Event-ID"] = last
         try:
@@ -59,7 +62,8 @@ def follow(url):
                 for mark, message in events(answer):
                     if message["type"] == "hello":
                         # This address says when the run was released, so that it can be come back to.
-                        url = urljoin(url, f"{EVENTS}{message['url'].partition('?')[2]}&from={first}")
+                        events_url = message["url"].replace("/v1/live?", "/v1/live/events?", 1)
+                        url = urljoin(url, f"{events_url}&from={first}")
                     elif message["type"] == "gap":
                         print(f"too slow: impacts {message['from']} to {message['to']} were skipped", file=sys.stderr)
                     elif message["type"] == "problem":
