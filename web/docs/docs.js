@@ -56,7 +56,7 @@ function showProblem() {
 async function show() {
   const state = document.getElementById("state");
   try {
-    const answer = await fetch("/openapi.json");
+    const answer = await fetch("openapi.json");
     if (!answer.ok) throw new Error(`/openapi.json answered ${answer.status}`);
     const contract = withLinks(withoutPrefill(await answer.json()));
     SwaggerUIBundle({
