@@ -41,10 +41,12 @@ print(f"verdict      {answer['verdict']}: {answer['reason']}")
 linear, margins, basin, run = answer["linear"], answer["margins"], answer["basin"], answer["nonlinear"]
 if linear and linear["tilt_gain"]:
     gain = linear["tilt_gain"]
-    print(f"tilt gain    {gain['value']:g}, stable from {gain['lower']:g} to {gain['critical']:.5f}: {gain['margin_below']:+.5f} and {gain['margin_above']:+.5f} to spare")
+    print(f"tilt gain    {gain['value']:g}, stable from {gain['lower']:g} to {gain['critical']:.5f}:",
+          f"{gain['margin_below']:+.5f} and {gain['margin_above']:+.5f} to spare")
 if margins["tilt_gain"]:
     span = margins["tilt_gain"]["critical"]
-    print(f"tolerances   {'every' if margins['holds'] else 'NOT EVERY'} body within them is stable: the upper end is from {span['least']:.5f} to {span['most']:.5f}, {margins['tilt_gain']['margin_above']:+.5f} to spare at worst")
+    print(f"tolerances   {'every' if margins['holds'] else 'NOT EVERY'} body within them is stable: the upper end is from",
+          f"{span['least']:.5f} to {span['most']:.5f}, {margins['tilt_gain']['margin_above']:+.5f} to spare at worst")
 else:
     print(f"tolerances   no margin: {margins['reason']}")
 if basin:
@@ -52,4 +54,5 @@ if basin:
 if run:
     demand = run["demand"]
     print(f"this run     {run['detail']}")
-    print(f"the table    tilts to {demand['tilt']:.3f} rad at {demand['tilt_rate']:.2f} rad/s, moves at {demand['speed']:.3f} m/s over {demand['stroke']:.4f} m")
+    print(f"the table    tilts to {demand['tilt']:.3f} rad at {demand['tilt_rate']:.2f} rad/s,",
+          f"moves at {demand['speed']:.3f} m/s over {demand['stroke']:.4f} m")

@@ -17,7 +17,8 @@ stability = ask("stability", {"preset": options.preset})
 print(f"{options.preset}: {stability['verdict']}\n  {stability['reason']}")
 if stability["linear"] and stability["linear"]["tilt_gain"]:
     gain = stability["linear"]["tilt_gain"]
-    print(f"  tilt gain {gain['value']} in ({gain['lower']}, {gain['critical']:.4f}): {gain['margin_below']:.4f} above the one end, {gain['margin_above']:.4f} below the other")
+    print(f"  tilt gain {gain['value']} in ({gain['lower']}, {gain['critical']:.4f}):",
+          f"{gain['margin_below']:.4f} above the one end, {gain['margin_above']:.4f} below the other")
 
 # A preset with a change of one's own, and its run as columns: pandas.DataFrame(run["impacts"]) is a data frame.
 run = ask("trajectories", {"preset": options.preset, "scene": {"release": {"height": 0.25}}, "impacts": 10})

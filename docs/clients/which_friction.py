@@ -32,7 +32,9 @@ def judged(table, law, friction):
     """Whether it holds, and why."""
     scene = merged(merged(options.scene, table), {"contact": {"friction": friction, "law": law}})
     answer = ask("stability", {"preset": options.preset, "scene": scene, "impacts": options.impacts})
-    return answer["verdict"] not in (None, "unstable"), answer["reason"]
+    if answer["verdict"] is None:
+        raise SystemExit(f"no verdict: {answer['reason']}")
+    return answer["verdict"] != "unstable", answer["reason"]
 
 
 tables = {

@@ -18,14 +18,18 @@ parser.add_argument("--impacts", type=int, default=400, help="bounces to survive
 parser.add_argument("--runs", type=int, default=200, help="runs with noise for each gain")
 options = parse(parser)
 
-gain = ask("stability", {"preset": options.preset, "scene": options.scene, "impacts": 1})["linear"]["tilt_gain"]
+verdict = ask("stability", {"preset": options.preset, "scene": options.scene, "impacts": 1})
+gain = verdict["linear"] and verdict["linear"]["tilt_gain"]
+if not gain or gain["critical"] is None:
+    raise SystemExit(f"no tilt gain to choose: {verdict['reason']}")
 step = (gain["critical"] - gain["lower"]) / (options.gains + 1)
 x = {"parameter": "table.tilt_gain", "from": gain["lower"] + step, "to": gain["critical"] - step, "count": options.gains}
 y = {"parameter": "release.theta", "from": 0.01, "to": 0.6, "count": 60}
 region = ask("regions", {"preset": options.preset, "scene": options.scene, "x": x, "y": y, "impacts": options.impacts})
 survives = region["outcome_names"].index("completed")
 
-print(f"stable without noise, near upright: {gain['lower']:g} to {gain['critical']:.5f}; timing {options.timing_sd * 1000:g} ms ({options.model}), {options.runs} runs of {options.impacts} bounces")
+print(f"stable without noise, near upright: {gain['lower']:g} to {gain['critical']:.5f};",
+      f"timing {options.timing_sd * 1000:g} ms ({options.model}), {options.runs} runs of {options.impacts} bounces")
 print(f"{'gain':>8} {'widest release':>15} {'survive noise':>14} {'95 %':>15}")
 rows = []
 for column, value in enumerate(region["x"]):

@@ -65,6 +65,7 @@ def tilt_gain():
     table = {"tilt_gain": gain}
     assert outcome({"table": table, "release": {"theta": aside}}, 100) == "completed"
     assert outcome({"table": table, "release": {"theta": aside + 0.01}}, 100) != "completed"
+    assert "no tilt gain to choose: the table stands still" in printed("which_tilt_gain.py", "--preset", "still-lossy", status=1)
     # Every run of the ensemble alone.
     noise = {"timing_sd": 0.01, "model": "plan", "seed": 1}
     alone = [outcome({"table": table, "noise": {**noise, "run": run}}, 100) for run in range(40)]
@@ -78,6 +79,7 @@ def friction():
     for factor, wanted in ((0.97, False), (1.0001, True)):
         scene = {"release": {"theta": 0.05}, "table": {"tilt_gain": 2, "slide": "matched"}, "contact": {"friction": least * factor}}
         assert (outcome(scene, 300) == "completed") == wanted, (least, factor)
+    assert "no verdict: noise" in printed("which_friction.py", "--preset", "case-1-noise", status=1)
     slips = re.search(r"contact that slips\n  poisson  friction 0: holds\n +from 0\.0000\d on: does not hold", text)
     assert slips, text
 
