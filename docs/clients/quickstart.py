@@ -25,7 +25,7 @@ run = ask("trajectories", {"preset": options.preset, "scene": {"release": {"heig
 columns = run["impacts"]
 print(f"\nReleased at 0.25 m instead: {run['outcome']['detail']}\n{'n':>3} {'t [s]':>9} {'θ [rad]':>9} {'ẏ [m/s]':>9} {'error':>8}")
 for n, t, theta, y_dot, error in zip(columns["n"], columns["t"], columns["theta"], columns["y_dot"], columns["error_estimate"]):
-    print(f"{n:3} {t:9.5f} {theta:9.5f} {y_dot:9.5f} {error if error is None else format(error, '.0e'):>8}")
+    print(f"{n:3} {t:9.5f} {theta:9.5f} {y_dot:9.5f} {'' if error is None else format(error, '.0e'):>8}")
 
 # Whatever has a picture is drawn by the server.
 options.picture.write_bytes(ask("trajectories", {"preset": options.preset, "impacts": 300}, options.picture.suffix[1:]))
