@@ -153,7 +153,8 @@ export class Form {
    */
   #edited(path, final, bySlider = false) {
     const row = /** @type {Row} */ (this.#rows.get(path));
-    this.#say(row, null);
+    // Leaving a text changes nothing: what is wrong with it stays said.
+    if (!final || row.field.kind === 'choice' || row.field.kind === 'boolean') this.#say(row, null);
     const { value, problem } = this.#read(row);
     if (problem && final) this.#say(row, problem);
     if (row.slider && !problem) {

@@ -34,6 +34,16 @@ test('what is no number is said so, kept, and not sent', async () => {
   clean();
 });
 
+test('what the server says of a field stays while another is no number', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  await page.fill('#field-table-tilt_gain', '200');
+  await page.locator('#field-table-tilt_gain-error', { hasText: '100' }).waitFor();
+  await page.fill('#field-release-theta', 'steep');
+  await page.locator('#field-release-theta').blur();
+  await page.locator('#field-release-theta-error', { hasText: 'not a number' }).waitFor();
+  assert.match(await page.locator('#field-table-tilt_gain-error').innerText(), /100/);
+});
+
 test('a value that clashes with another is shown where the server points', async () => {
   const { page } = await stage.page('?preset=case-1');
   await verdict(page);
