@@ -16,7 +16,7 @@ const refused = (words) => ({ values: null, words });
 
 /**
  * The first impact at an angle with an angular velocity: only the release's own angle and spin are moved, and its height gives the time
- * T to the contact at y = l cos θ, so that θ₀ = θ − θ̇T. The flight is that of physics.md, section 2, from h₀.
+ * T to the contact at y = l cos θ, so that θ₀ = θ − θ̇T. In flight the centre of gravity falls freely and the spin stays.
  * @param {Scene} scene
  * @param {number} theta
  * @param {number} theta_dot
