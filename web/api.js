@@ -68,6 +68,9 @@ export function fieldsOf({ fields }) {
 /** Two values of a field, vertices included. @param {unknown} one @param {unknown} other */
 export const same = (one, other) => one === other || (Array.isArray(one) && String(one) === String(other));
 
+/** Impacts of one run that the server computes at a request. */
+export const MOST_IMPACTS = 100_000;
+
 /** What the server refused, with the fields it blames. */
 export class Problem extends Error {
   /**

@@ -1,6 +1,6 @@
 // The page: joins the form, the run and the panels. Not for what any of them does.
 
-import { Problem, fieldsOf, get, pathOf, playedAt, same, server, setAt, valueAt } from './api.js';
+import { MOST_IMPACTS, Problem, fieldsOf, get, pathOf, playedAt, same, server, setAt, valueAt } from './api.js';
 import { Circle } from './circle.js';
 import { Controls } from './controls.js';
 import { Form } from './form.js';
@@ -20,8 +20,6 @@ import { FASTEST, SLOWEST, interventionsOf, merged, readLink, sceneQuery } from 
 /** @typedef {import('./api.js').Scene} Scene */
 
 const GAIN = 'table.tilt_gain';
-/** What one answer of the server may have. */
-const MOST_IMPACTS = 100_000;
 /** What `[` and `]` go through. */
 const SPEEDS = [SLOWEST, 0.1, 0.2, 0.5, 1, 2, 5, 10, FASTEST];
 const chooser = byId('case', HTMLSelectElement);
@@ -237,7 +235,7 @@ function setSpeed(value) {
 
 function showRun() {
   const { phase, outcome } = run;
-  const words = { idle: 'Ready', connecting: 'Connecting…', running: 'Running', paused: 'Paused', lost: 'Connection lost', ended: `Ended: ${outcome?.kind.replaceAll('_', ' ')}` }[phase];
+  const words = run.words || 'Ready';
   const state = byId('run-state');
   if (state.textContent !== words) state.textContent = words;
   state.dataset.phase = phase;

@@ -121,6 +121,11 @@ export class Run {
     this.#watcher.changed();
   }
 
+  /** How it is going, in words; nothing where there is none. */
+  get words() {
+    return { idle: '', connecting: 'Connecting…', running: 'Running', paused: 'Paused', lost: 'Connection lost', ended: `Ended: ${this.outcome?.kind.replaceAll('_', ' ')}` }[this.phase];
+  }
+
   /** True while there is a run to act on. */
   get active() { return this.phase === 'running' || this.phase === 'paused'; }
 

@@ -54,8 +54,7 @@ function watch(name, query) {
   const state = byId('run-state');
   const run = new Run({
     changed: () => {
-      const words = { idle: '', connecting: 'Connecting…', running: 'Running', paused: 'Paused', lost: 'Connection lost', ended: `Ended: ${run.outcome?.kind.replaceAll('_', ' ')}` }[run.phase];
-      if (state.textContent !== words) state.textContent = words;
+      if (state.textContent !== run.words) state.textContent = run.words;
       shown?.view.redraw();
     },
     struck: () => { if (shown) invalidate(shown.view); },

@@ -1,6 +1,6 @@
 // Which model the page's scene needs: the server's rungs, one row each, with what each changed. Not for deciding it.
 
-import { Problem, get } from '../api.js';
+import { MOST_IMPACTS, Problem, get } from '../api.js';
 import { h, marked, prose, settled } from '../dom.js';
 import { actions } from '../save/actions.js';
 import { number, parse, quantity } from '../numbers.js';
@@ -20,7 +20,6 @@ import { number, parse, quantity } from '../numbers.js';
 
 const CHANGES = /** @type {const} */ ([['t', 's'], ['x', 'm'], ['theta', 'rad'], ['x_dot', 'm/s'], ['y_dot', 'm/s'], ['theta_dot', 'rad/s']]);
 const SYMBOLS = { t: 't', x: 'x', theta: 'θ', x_dot: 'ẋ', y_dot: 'ẏ', theta_dot: 'θ̇' };
-const MOST_IMPACTS = 100_000;
 /** m/s */
 const MOST_DIFFERENCE = 10;
 

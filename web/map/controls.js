@@ -1,6 +1,7 @@
 // What a map is asked for, as controls with their errors beside them, and how far its answer is. Not for asking.
 
-import { COLUMNS, MOST_IMPACTS, QUANTITIES, rowsOf, sidesOf } from './settings.js';
+import { COLUMNS, QUANTITIES, rowsOf, sidesOf } from './settings.js';
+import { MOST_IMPACTS } from '../api.js';
 import { h } from '../dom.js';
 import { number, parse, unitAfter } from '../numbers.js';
 import { sliderRange } from '../form.js';

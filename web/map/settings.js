@@ -1,5 +1,7 @@
 // What a map is asked for: two fields with their ends, quantity, impacts, resolution; as a link and as a request. Not for asking.
 
+import { MOST_IMPACTS } from '../api.js';
+
 /** @typedef {import('../api.js').Field} Field */
 /** @typedef {{parameter: string, from: number, to: number}} Side */
 /** @typedef {{x: Side, y: Side, quantity: string, impacts: number, columns: number}} Settings */
@@ -19,7 +21,6 @@ export const QUANTITIES = {
 };
 
 export const COLUMNS = [48, 96, 192, 384];
-export const MOST_IMPACTS = 100_000;
 
 /** @param {number} columns */
 export const rowsOf = (columns) => columns * 2 / 3;
