@@ -109,12 +109,10 @@ mod tests {
 
     use axum::response::{IntoResponse, Sse};
     use http_body_util::BodyExt;
-    use prometheus_client::metrics::counter::Counter;
     use prometheus_client::metrics::gauge::Gauge;
-    use prometheus_client::metrics::histogram::Histogram;
 
     use super::*;
-    use crate::compute::{Counted, Pool};
+    use crate::compute::Counted;
     use crate::limits::Limits;
     use crate::live::bounds::Bounds;
     use crate::live::clock::Clock;
@@ -125,13 +123,7 @@ mod tests {
     async fn heard(preset: &str, bounds: Bounds) -> String {
         let run = Run::new(*case(preset).scene(), Clock::new(session::wall_now(), 20.0));
         let asked = Asked { run, from: None };
-        let place = Place {
-            pool: Pool::new(1, &Limits::default()),
-            bounces: Counter::default(),
-            lags: Histogram::new([]),
-            base_path: "".into(),
-            bounds,
-        };
+        let place = Place::alone(bounds);
         let course = session::caught_up(&asked, &place).await.unwrap();
         let sessions = Gauge::default();
         let events = tell(asked, course, place, std::future::pending(), Counted::one(&sessions));

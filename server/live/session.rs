@@ -41,6 +41,15 @@ pub struct Place {
     pub bounds: Bounds,
 }
 
+#[cfg(test)]
+impl Place {
+    /// One of its own, with these bounds.
+    pub(super) fn alone(bounds: Bounds) -> Self {
+        let pool = Pool::new(1, &limits::Limits::default());
+        Self { pool, bounces: Counter::default(), lags: Histogram::new([]), base_path: "".into(), bounds }
+    }
+}
+
 /// How a session ends; none if the client has ended it.
 type Close = Option<(u16, &'static str)>;
 

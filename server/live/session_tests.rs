@@ -5,8 +5,6 @@ use std::time::Duration;
 
 use axum::extract::ws::Message;
 use futures_util::{sink, stream};
-use prometheus_client::metrics::counter::Counter;
-use prometheus_client::metrics::histogram::Histogram;
 use serde_json::Value;
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tokio::time::{sleep, timeout};
@@ -18,7 +16,6 @@ use super::messages::Frame;
 use super::run::Run;
 use super::run::tests::case;
 use super::session::{Place, caught_up, serve, wall_now};
-use crate::compute::Pool;
 use crate::limits::Limits;
 
 /// The client's ends of a connection that takes one message at a time.
@@ -33,13 +30,7 @@ fn open(asked: Asked, bounds: Bounds) -> Client {
     let incoming = stream::unfold(incoming, async |mut from| from.recv().await.map(|message| (message, from)));
     let outgoing =
         sink::unfold(outgoing, async |to: Sender<Message>, frame: Frame| to.send(frame.into()).await.map(|()| to));
-    let place = Place {
-        pool: Pool::new(1, &Limits::default()),
-        bounces: Counter::default(),
-        lags: Histogram::new([]),
-        base_path: "".into(),
-        bounds,
-    };
+    let place = Place::alone(bounds);
     tokio::spawn(async move {
         let course = caught_up(&asked, &place).await;
         serve(asked, course, Box::pin(incoming), Box::pin(outgoing), place, std::future::pending()).await;
