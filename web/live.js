@@ -12,6 +12,7 @@ import { Problem, get } from './api.js';
 const LONGEST_WAIT_S = 15;
 // Close code of a server that has too much to do just now.
 const TRY_AGAIN_LATER = 1013;
+const UPGRADE_REQUIRED = 426;
 
 export class Live {
   /** @type {WebSocket | null} */
@@ -19,6 +20,8 @@ export class Live {
   #listener;
   #resumeUrl;
   #failures = 0;
+  /** How often in a row the server has answered a plain request where its WebSocket had failed. */
+  #barred = 0;
   #greeted = false;
   #closed = false;
   /** @type {number | undefined} */
@@ -48,6 +51,7 @@ export class Live {
       if (message.type === 'hello') {
         this.#greeted = true;
         this.#failures = 0;
+        this.#barred = 0;
       } else if (message.type === 'problem' && !this.#greeted) {
         problem = new Problem(message.title, message.detail, message.errors ?? [], 422);
         return;
@@ -57,11 +61,32 @@ export class Live {
     socket.onclose = async ({ code }) => {
       if (this.#closed || this.#socket !== socket) return;
       if (code === TRY_AGAIN_LATER) problem = null;
-      else if (!this.#greeted) problem ??= await refusal(url, this.#failures);
+      else if (!this.#greeted) problem ??= await this.#refusal(url);
       if (this.#closed || this.#socket !== socket) return;
       if (problem) return this.#listener.refused(problem);
       this.#wait();
     };
+  }
+
+  /**
+   * A browser hides why a handshake was refused; the same request without the handshake tells it.
+   * @param {string} url
+   * @returns {Promise<Problem | null>} null when the server is not there, or wants nothing but the handshake
+   */
+  async #refusal(url) {
+    try {
+      await get(url);
+    } catch (error) {
+      if (!(error instanceof Problem) || error.status >= 500) {
+        this.#barred = 0;
+        return null;
+      }
+      if (error.status !== UPGRADE_REQUIRED) return error;
+      // Once or twice says little: the server may have come back between the two requests.
+      this.#barred += 1;
+      if (this.#barred > 2) return new Problem('No live connection', 'The server answers, but no WebSocket gets through to it; a proxy on the way may not pass one on.', [], error.status);
+    }
+    return null;
   }
 
   #wait() {
@@ -106,23 +131,4 @@ export class Live {
     clearTimeout(this.#timer);
     this.#socket?.close(1000);
   }
-}
-
-const UPGRADE_REQUIRED = 426;
-
-/**
- * A browser hides why a handshake was refused; the same request without the handshake tells it.
- * @param {string} url
- * @param {number} failures before this one
- * @returns {Promise<Problem | null>} null when the server is not there, or wants nothing but the handshake
- */
-async function refusal(url, failures) {
-  try {
-    await get(url);
-  } catch (error) {
-    if (!(error instanceof Problem) || error.status >= 500) return null;
-    if (error.status !== UPGRADE_REQUIRED) return error;
-    if (failures >= 2) return new Problem('No live connection', 'The server answers, but no WebSocket gets through to it; a proxy on the way may not pass one on.', [], error.status);
-  }
-  return null;
 }

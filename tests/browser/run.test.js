@@ -147,6 +147,27 @@ test('a server that goes away for three seconds and comes back loses no impact',
   assert.deepEqual(seen, seen.map((_, index) => seen[0] - index), 'every number once');
 });
 
+test('a server that comes back between a try and the question why it failed is not given up', async () => {
+  const { page } = await stage.page('?preset=case-1', { prepare: () => {
+    const real = globalThis.fetch;
+    globalThis.asked = 0;
+    globalThis.fetch = (input, init) => {
+      if (!String(input).startsWith('v1/live?')) return real(input, init);
+      globalThis.asked += 1;
+      // As the server answers that is there again by the third question.
+      return globalThis.asked === 3 ? Promise.resolve(new Response('{}', { status: 426 })) : real(input, init);
+    };
+  } });
+  await page.click('#run');
+  await reachImpact(page, 2);
+  await stage.stopServer();
+  await page.waitForFunction(() => globalThis.asked === 3);
+  await stage.startServer();
+  await page.getByRole('button', { name: 'Try now' }).click();
+  await reachPhase(page, 'running');
+  await reachImpact(page, 4);
+});
+
 test('the point mass runs with what it has', async () => {
   const { page, clean } = await stage.page('?preset=point-mass');
   await page.click('#run');
