@@ -200,8 +200,9 @@ pub const CONTROLLER_PRICE: u64 = 20_000;
 /// Samples of one flight. A canvas is no wider.
 pub const SAMPLES_PER_FLIGHT: u64 = 256;
 
-/// Values of one side of a region. More than a screen has pixels; larger maps are tiles put together.
-pub const REGION_SIDE: u64 = 4096;
+/// Values of one side of a region, which is larger than one answer may be and then asked for in tiles. At most so many stand in one
+/// row, which is in memory as a whole, with its values of x as text: some 10 MB.
+pub const REGION_SIDE: u64 = 100_000;
 
 /// Work of one block of a region, the piece that a thread takes at a time, in bounces of lanes: some 10 ms, so that a
 /// request beside it does not wait longer.

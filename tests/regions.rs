@@ -62,6 +62,30 @@ async fn tiles_put_together_are_the_whole() {
     }
 }
 
+/// Limits of work and of the answer are the tile's: 10^9 cells are asked for row by row, and each is the cell of the whole.
+#[tokio::test]
+async fn a_map_larger_than_any_answer_is_asked_for_in_tiles() {
+    let server = Server::start();
+    let map = MAP.replace("count=14", "count=31623").replace("count=11", "count=31623").replace("=300", "=3");
+    let whole = server.get(&map).await.expect(422);
+    assert!(whole.text().contains("size of the answer would be 2000028258 numbers"), "{}", whole.text());
+    let tile = format!("{map}&tile.of=31623&tile.index=20000");
+    let row = server.get(&tile).await.expect(200).json();
+    let (x, y) = (row["x"].as_array().unwrap(), row["y"].as_array().unwrap());
+    assert_eq!((x.len(), y.len(), row["values"][0].as_array().unwrap().len()), (31623, 1, 31623));
+    assert_eq!(x[7777], json!(0.95 + (1.6 - 0.95) * (7777.0 / 31622.0)));
+    assert_eq!(y[0], json!(0.5 * (20000.0 / 31622.0)));
+    let csv = server.get(&format!("{tile}&format=csv")).await.expect(200);
+    assert_eq!(csv.text().lines().count(), 1 + 31623);
+    let value = &row["values"][0][7777];
+    let cell = format!("{},{},{value},", x[7777], y[0]);
+    assert!(csv.text().lines().nth(7778).unwrap().starts_with(&cell), "{cell}");
+    let ndjson = server.get(&format!("{tile}&format=ndjson")).await.expect(200);
+    let line: Value = serde_json::from_str(ndjson.text().lines().next().unwrap()).unwrap();
+    assert_eq!((&line["row"], &line["values"]), (&json!(20000), &row["values"][0]));
+    server.get(&format!("{tile}&format=svg")).await.expect(200);
+}
+
 /// The linear boundary over tilt gain and angle is two upright lines: κ = 1 and κ_c, which the angle does not move.
 #[tokio::test]
 async fn the_boundary_is_where_the_residue_is_0_or_1() {

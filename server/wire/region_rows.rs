@@ -39,10 +39,15 @@ impl Rows {
     pub fn add(&mut self, cells: &[Cell]) -> Vec<u8> {
         self.counts.add(cells);
         self.begun.extend_from_slice(cells);
+        let columns = self.request.region.x.count;
+        let whole = self.begun.len() - self.begun.len() % columns;
         let mut out = Vec::new();
-        let begun = std::mem::take(&mut self.begun);
-        let rows = begun.chunks_exact(self.request.region.x.count);
-        self.begun = rows.remainder().to_vec();
+        if whole == 0 {
+            return out;
+        }
+        let rest = self.begun.split_off(whole);
+        let rows = std::mem::replace(&mut self.begun, rest);
+        let rows = rows.chunks_exact(columns);
         for cells in rows {
             if self.is_csv {
                 self.write_csv(cells, &mut out)
