@@ -214,8 +214,11 @@ pub const REGION_BLOCK_CELLS: RangeInclusive<u64> = 64..=2048;
 /// Nodes along a side of the grid on which the linear boundary of a region is found.
 pub const REGION_BOUNDARY_NODES: usize = 49;
 
-/// Runs of one ensemble. The interval about a share of them is then within 0.7 % of it.
+/// Runs of one answer about an ensemble. The interval about a share of them is then within 0.7 % of it.
 pub const ENSEMBLE_RUNS: u64 = 20_000;
+
+/// Runs of an ensemble that is asked for in tiles: counts of so many still add up exactly in a double, by far.
+pub const ENSEMBLE_RUNS_IN_TILES: u64 = 1_000_000_000;
 
 /// Work of one block of an ensemble, the runs that a thread takes at a time: some 10 ms, as for regions. One run may be more.
 pub const ENSEMBLE_BLOCK_WORK: u64 = 50_000;

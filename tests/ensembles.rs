@@ -257,13 +257,86 @@ async fn threads_do_not_show() {
     }
 }
 
+/// Counts of tiles add up to those of the whole, and the quantiles of the whole are those of their angles.
+#[tokio::test]
+async fn tiles_put_together_are_the_whole() {
+    let server = Server::start();
+    let body = |rest: Value| {
+        let mut body = json!({"preset": "case-1-noise", "runs": 100, "impacts": 90, "seed": 3});
+        body.as_object_mut().unwrap().extend(rest.as_object().unwrap().clone());
+        body
+    };
+    let whole = server.post("/v1/ensembles", &body(json!({"angles": true}))).await.expect(200).json();
+    assert!(server.post("/v1/ensembles", &body(json!({}))).await.expect(200).json()["angles"].is_null());
+    let (mut at_risk, mut ended) = (vec![0.0; 90], vec![0.0; 90]);
+    let mut angles = vec![Vec::new(); 90];
+    let (mut counts, mut runs) = (serde_json::Map::new(), 0);
+    for index in 0..3 {
+        let tile = json!({"tile": {"index": index, "of": 3}, "angles": true});
+        let part = server.post("/v1/ensembles", &body(tile)).await.expect(200).json();
+        let own = 33 + u64::from(index == 2);
+        assert_eq!(part["tile"], json!({"index": index, "of": 3, "first_run": runs, "runs": own}));
+        assert_eq!((&part["runs"], &part["survival"]["at_risk"][0]), (&json!(100), &json!(own)));
+        runs += own;
+        for (sums, name) in [(&mut at_risk, "at_risk"), (&mut ended, "ended")] {
+            for (sum, count) in sums.iter_mut().zip(numbers(&part["survival"][name])) {
+                *sum += count;
+            }
+        }
+        for (name, count) in part["counts"].as_object().unwrap() {
+            let before = counts.get(name).and_then(Value::as_u64).unwrap_or(0);
+            counts.insert(name.clone(), json!(before + count.as_u64().unwrap()));
+        }
+        for (place, found) in part["angles"].as_array().unwrap().iter().enumerate() {
+            assert!(
+                numbers(found).is_sorted()
+                    && found.as_array().unwrap().len() as u64 == part["quantiles"]["alive"][place]
+            );
+            angles[place].extend(numbers(found));
+        }
+    }
+    assert_eq!((at_risk, ended), (numbers(&whole["survival"]["at_risk"]), numbers(&whole["survival"]["ended"])));
+    assert_eq!((json!(counts), runs), (whole["counts"].clone(), 100));
+    for (place, angles) in angles.iter_mut().enumerate() {
+        angles.sort_by(f64::total_cmp);
+        assert_eq!(json!(angles), whole["angles"][place], "{place}");
+        let middle = angles.len() / 2;
+        let median =
+            if angles.len() % 2 == 1 { angles[middle] } else { f64::midpoint(angles[middle - 1], angles[middle]) };
+        assert!((median - whole["quantiles"]["q50"][place].as_f64().unwrap()).abs() < 1e-15, "{place}");
+    }
+}
+
+/// However many runs there are, a tile of them costs what its own do, and each is the run of its number.
+#[tokio::test]
+async fn a_tile_of_a_billion_runs_is_asked_for_like_any_other() {
+    let server = Server::start();
+    let target = format!("{CASE_1}&runs=1000000000&impacts=60&tile.index=333333333&tile.of=500000000");
+    let tile = server.get(&target).await.expect(200).json();
+    assert_eq!((&tile["tile"]["first_run"], &tile["tile"]["runs"]), (&json!(666_666_666), &json!(2)));
+    let mut alone = vec![0.0; 60];
+    for run in [666_666_666, 666_666_667] {
+        let run =
+            server.get(&format!("/v1/trajectories?preset=case-1-noise&impacts=60&scene.noise.run={run}")).await.json();
+        if run["outcome"]["kind"] != "completed" {
+            alone[run["impacts"]["n"].as_array().unwrap().len() - 1] += 1.0;
+        }
+    }
+    assert_eq!(numbers(&tile["survival"]["ended"]), alone);
+}
+
 #[tokio::test]
 async fn what_cannot_be_asked_is_named() {
     let server = Server::start();
     for (body, pointers) in [
         (json!({}), &[""][..]),
         (json!({"preset": "case-1", "runs": 0}), &["/runs"]),
-        (json!({"preset": "case-1", "runs": 20_001, "impacts": 100_001}), &["/runs", "/impacts"]),
+        (json!({"preset": "case-1", "runs": 20_001, "impacts": 100_001}), &["/impacts", "/runs"]),
+        (json!({"preset": "case-1", "runs": 0, "tile": {"index": 0, "of": 300}}), &["/runs"]),
+        (json!({"preset": "case-1", "runs": 1_000_000, "tile": {"index": 0, "of": 49}}), &["/tile"]),
+        (json!({"preset": "case-1", "runs": 3, "tile": {"index": 0, "of": 4}}), &["/tile"]),
+        (json!({"preset": "case-1", "tile": {"index": 4, "of": 4}}), &["/tile/index"]),
+        (json!({"preset": "case-1", "angles": "yes"}), &["/angles"]),
         (json!({"preset": "case-1", "seed": -1}), &["/seed"]),
         (json!({"preset": "case-1", "seed": 9_007_199_254_740_992_u64}), &["/seed"]),
         (json!({"preset": "case-1", "seed": 0.5, "threads": 2}), &["/seed", "/threads"]),

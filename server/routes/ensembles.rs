@@ -11,7 +11,7 @@ use super::App;
 use crate::compute::Turns;
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
 use crate::limits;
-use crate::wire::ensemble::{Answer, read};
+use crate::wire::ensemble::{Answer, Request};
 use crate::wire::progress::{self, Progress};
 
 const RESOURCE: Resource = Resource {
@@ -28,40 +28,50 @@ pub fn routes() -> Router<App> {
 }
 
 async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
-    let ensemble = ask.read(read)?;
-    app.config.limits.of_ensemble_work().admit(ensemble.runs.saturating_mul(ensemble.impacts))?;
-    let canonical = super::canonical(&ensemble.scene, &(ensemble.runs, ensemble.impacts));
+    let request = ask.read(Request::read)?;
+    let ensemble = request.ensemble;
+    app.config.limits.of_answer().admit(request.angles())?;
+    app.config.limits.of_ensemble_work().admit(request.runs().saturating_mul(ensemble.impacts))?;
+    let rest = (ensemble.runs, ensemble.impacts, request.tile, request.angles);
+    let canonical = super::canonical(&ensemble.scene, &rest);
     let metrics = app.metrics.clone();
     ask.respond_in_turns(&app.pool, &RESOURCE, &canonical, &STREAMED, move |format, turns: &Turns, out: &mut Outlet| {
         let cancel = turns.cancel();
         // A matter of the request alone, not that it would show.
         let block = (limits::ENSEMBLE_BLOCK_WORK / ensemble.impacts).max(1);
+        let (numbers, all) = (request.numbers(), request.runs());
         let compute = |number: usize| {
-            let first = number as u64 * block;
-            let runs = ensemble.runs(first..(first + block).min(ensemble.runs), &mut || !cancel.is_set())?;
+            let first = numbers.start + number as u64 * block;
+            let runs = ensemble.runs(first..(first + block).min(numbers.end), &mut || !cancel.is_set())?;
             metrics.bounces.inc_by(runs.ends.iter().map(|end| end.impacts).sum());
             Some(runs)
         };
         let (mut runs, mut lines) = (Runs::default(), Progress::default());
         let mut tell = |ended| {
             if STREAMED.contains(&format) {
-                out.send(lines.line(ended, ensemble.runs));
+                out.send(lines.line(ended, all));
             }
         };
         tell(0);
-        turns.spread(ensemble.runs.div_ceil(block) as usize, compute, |others| {
+        turns.spread(all.div_ceil(block) as usize, compute, |others| {
             runs.append(others);
             tell(runs.ends.len() as u64);
         })?;
         let angles = std::mem::take(&mut runs.angles);
-        let mut found = Vec::with_capacity(angles.len());
-        turns.spread(
-            angles.len(),
-            |place| Some(quantiles(angles[place].clone())),
-            |quantiles| found.push(quantiles),
-        )?;
+        let (mut sorted, mut found) = (Vec::with_capacity(angles.len()), Vec::with_capacity(angles.len()));
+        let sort = |place: usize| {
+            let mut angles = angles[place].clone();
+            angles.sort_unstable_by(f64::total_cmp);
+            let quantiles = quantiles(&angles);
+            // Kept for the answer alone: many are large.
+            Some((if request.angles { angles } else { Vec::new() }, quantiles))
+        };
+        turns.spread(angles.len(), sort, |(angles, quantiles)| {
+            sorted.push(angles);
+            found.push(quantiles);
+        })?;
         turns.take(|| {
-            let answer = Answer::new(&ensemble, &runs, &found);
+            let answer = Answer::new(&request, &runs, sorted, &found);
             let bytes = match format {
                 Format::Csv => answer.rows().to_csv(),
                 Format::Ndjson => answer.rows().to_ndjson(answer.summary()),

@@ -1,5 +1,7 @@
 //! The request and the answer of `ensembles`: many runs of a scene, and what became of them.
 
+use std::ops::Range;
+
 use equipoise_physics::ensemble::{Ensemble, Runs, SHARES, Survival, late_half_life, median_impacts};
 use equipoise_physics::model::Rung;
 use equipoise_physics::outcome::Outcome;
@@ -8,28 +10,95 @@ use serde::{Serialize, Serializer};
 
 use super::scene::{Resolved, build, has_angle, read_draft};
 use super::table::{Cells, Column, Table};
+use super::tile::Tile;
 use super::trajectory::Choice;
 use crate::http::Reader;
 use crate::limits;
 use crate::picture::{AnglesAt, SurvivalAt, SurvivalCurve, significant, survival_curve};
 
-/// Reads a request.
-pub fn read(reader: &mut Reader<'_, '_>) -> Option<Ensemble> {
-    let draft = read_draft(reader);
-    let runs = reader.integer("runs", 1..=limits::ENSEMBLE_RUNS).unwrap_or(200);
-    let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(400);
-    let Kind::Integer { maximum } = Name::Seed.row().kind else { return None };
-    let seed = reader.integer("seed", 0..=maximum);
-    let mut draft = draft?;
-    if let Some(seed) = seed
-        && let Err(error) = draft.set(Name::Seed, Some(Value::Integer(seed)))
-    {
-        reader.refuse("seed", error.detail);
-        return None;
+/// What is asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct Request {
+    /// All runs.
+    pub ensemble: Ensemble,
+    /// Which of them.
+    pub tile: Tile,
+    /// Whether the angles themselves are in the answer.
+    pub angles: bool,
+}
+
+impl Request {
+    /// Reads a request.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let draft = read_draft(reader);
+        let said = reader.integer("runs", 1..=limits::ENSEMBLE_RUNS_IN_TILES);
+        let is_known = said.is_some() || !reader.has("runs");
+        let runs = said.unwrap_or(200);
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(400);
+        let Kind::Integer { maximum } = Name::Seed.row().kind else { return None };
+        let seed = reader.integer("seed", 0..=maximum);
+        let angles = reader.boolean("angles").unwrap_or(false);
+        let is_tiled = reader.has("tile");
+        let tile = Tile::read(reader, limits::ENSEMBLE_RUNS_IN_TILES);
+        if let Some(tile) = tile.filter(|_| is_known) {
+            check_tile(reader, tile, is_tiled, runs);
+        }
+        let mut draft = draft?;
+        if let Some(seed) = seed
+            && let Err(error) = draft.set(Name::Seed, Some(Value::Integer(seed)))
+        {
+            reader.refuse("seed", error.detail);
+            return None;
+        }
+        let pointer = reader.pointer_to("scene");
+        let scene = build(draft, &pointer, reader.errors())?;
+        let ensemble = Ensemble { scene, runs, impacts, angle_contacts: limits::ENSEMBLE_ANGLE_CONTACTS };
+        Some(Self { ensemble, tile: tile?, angles })
     }
-    let pointer = reader.pointer_to("scene");
-    let scene = build(draft, &pointer, reader.errors())?;
-    Some(Ensemble { scene, runs, impacts, angle_contacts: limits::ENSEMBLE_ANGLE_CONTACTS })
+
+    /// The numbers of the runs of the tile.
+    pub fn numbers(&self) -> Range<u64> {
+        self.tile.share(self.ensemble.runs)
+    }
+
+    /// How many they are.
+    pub fn runs(&self) -> u64 {
+        let numbers = self.numbers();
+        numbers.end - numbers.start
+    }
+
+    /// How many angles are in the answer, at most.
+    pub fn angles(&self) -> u64 {
+        let watched = self.ensemble.angle_contacts.min(self.ensemble.impacts);
+        if self.angles { self.runs() * watched } else { 0 }
+    }
+}
+
+/// A tile has a run, and no more than one answer may have.
+fn check_tile(reader: &mut Reader<'_, '_>, tile: Tile, is_tiled: bool, runs: u64) {
+    const MOST: u64 = limits::ENSEMBLE_RUNS;
+    if tile.of > runs {
+        reader.refuse("tile", format!("tile is one of {}, but there are only {runs} runs", tile.of));
+    } else if runs.div_ceil(tile.of) > MOST {
+        let least = runs.div_ceil(MOST);
+        let (name, what) = match is_tiled {
+            true => ("tile", format!("one tile of {} has {} runs", tile.of, runs.div_ceil(tile.of))),
+            false => ("runs", format!("runs is {runs}")),
+        };
+        reader.refuse(
+            name,
+            format!("{what}; at most {MOST} are answered at once, so ask for one tile of {least} or more"),
+        );
+    }
+}
+
+/// Which runs an answer is about.
+#[derive(Debug, Serialize)]
+struct Part {
+    #[serde(flatten)]
+    tile: Tile,
+    first_run: u64,
+    runs: u64,
 }
 
 /// The answer.
@@ -40,14 +109,16 @@ pub struct Answer<'a> {
     runs: u64,
     impacts: u64,
     seed: u64,
+    tile: Part,
     #[serde(flatten)]
     summary: Summary,
     survival: Table,
     quantiles: Table,
+    angles: Option<Vec<Vec<f64>>>,
     #[serde(skip)]
     curve: Vec<Survival>,
     #[serde(skip)]
-    angles: Vec<AnglesAt>,
+    marks: Vec<AnglesAt>,
 }
 
 /// What the runs have in common, and what ends an answer as NDJSON.
@@ -76,15 +147,21 @@ fn by_name<S: Serializer>(counts: &[u64; Outcome::ALL.len()], serializer: S) -> 
 }
 
 impl<'a> Answer<'a> {
-    /// From all runs of an ensemble, and the quantiles of |θ| at the contacts it watched.
-    pub fn new(ensemble: &'a Ensemble, runs: &Runs, quantiles: &[Option<[f64; SHARES.len()]>]) -> Self {
+    /// From all runs of a tile, and the angles and their quantiles at the contacts it watched; the runs have none any more.
+    pub fn new(
+        request: &'a Request,
+        runs: &Runs,
+        angles: Vec<Vec<f64>>,
+        quantiles: &[Option<[f64; SHARES.len()]>],
+    ) -> Self {
+        let Request { ensemble, tile, .. } = request;
         let Ensemble { scene, impacts, .. } = ensemble;
         let curve = runs.survival(*impacts);
         let watched = ensemble.watched();
         let alive = watched.iter().map(|n| &curve[(n - 1) as usize]).map(|at| at.at_risk - at.ended).collect();
-        let angles = watched.iter().zip(quantiles).filter_map(|(&n, found)| Some(AnglesAt { n, quantiles: (*found)? }));
-        let angles = angles.collect();
-        let summary = Summary::new(ensemble, runs, &curve);
+        let marks = watched.iter().zip(quantiles).filter_map(|(&n, found)| Some(AnglesAt { n, quantiles: (*found)? }));
+        let marks = marks.collect();
+        let summary = Summary::new(request, runs, &curve);
         let seed = match scene.value(Name::Seed) {
             Some(Value::Integer(seed)) => seed,
             _ => 0,
@@ -95,11 +172,13 @@ impl<'a> Answer<'a> {
             runs: ensemble.runs,
             impacts: *impacts,
             seed,
+            tile: Part { tile: *tile, first_run: request.numbers().start, runs: request.runs() },
             summary,
             survival: survival_table(&curve),
             quantiles: quantile_table(watched, alive, quantiles),
+            angles: request.angles.then_some(angles),
             curve,
-            angles,
+            marks,
         }
     }
 
@@ -108,7 +187,7 @@ impl<'a> Answer<'a> {
         let Table(mut columns) = self.survival.clone();
         for (which, name) in QUANTILES.iter().enumerate() {
             let mut cells = vec![None; self.curve.len()];
-            for at in &self.angles {
+            for at in &self.marks {
                 cells[(at.n - 1) as usize] = Some(at.quantiles[which]);
             }
             columns.push(Column { name: name.1, unit: "rad", cells: Cells::Sparse(cells) });
@@ -134,20 +213,22 @@ impl<'a> Answer<'a> {
         let caption = format!(
             "{runs} of {} runs outlast {} contacts: {} %, with 95 % confidence {} to {} % (Wilson, at each contact by \
              itself); {median}. Angles are those of the runs still going.",
-            self.runs,
+            self.tile.runs,
             self.impacts,
             percent(share),
             percent(lower),
             percent(upper),
         );
+        let Tile { index, of } = self.tile.tile;
+        let part = if of > 1 { format!(", tile {} of {of}", index + 1) } else { String::new() };
         let points =
             self.curve.iter().map(|at| SurvivalAt { at_risk: at.at_risk, share: at.share, interval: at.interval });
         survival_curve(&SurvivalCurve {
-            title: &format!("Survival of {} runs {}", self.runs, noise_in_words(self.scene.0)),
-            subtitle: &format!("seed {}; {}", self.seed, counts.join(", ")),
+            title: &format!("Survival of {} runs {}", self.tile.runs, noise_in_words(self.scene.0)),
+            subtitle: &format!("seed {}{part}; {}", self.seed, counts.join(", ")),
             caption: &caption,
             curve: &points.collect::<Vec<_>>(),
-            angles: &self.angles,
+            angles: &self.marks,
         })
     }
 }
@@ -168,7 +249,8 @@ fn is_noisy(scene: &Scene) -> bool {
 }
 
 impl Summary {
-    fn new(ensemble: &Ensemble, runs: &Runs, curve: &[Survival]) -> Self {
+    fn new(request: &Request, runs: &Runs, curve: &[Survival]) -> Self {
+        let Request { ensemble, tile, .. } = request;
         let impacts = ensemble.impacts;
         let survived = runs.count(Outcome::Completed);
         let (share, (lower, upper)) = curve.last().map_or((1.0, (0.0, 1.0)), |last| (last.share, last.interval));
@@ -177,6 +259,14 @@ impl Summary {
             "intervals are those of Wilson, 95 % at each contact by itself; quantiles of |θ| are over the runs that went on"
                 .to_owned(),
         ];
+        if tile.of > 1 {
+            let (numbers, all) = (request.numbers(), ensemble.runs);
+            notes.push(format!(
+                "all of this is about runs {} to {} of {all}: counts of tiles add up to those of all, quantiles do not, their angles do",
+                numbers.start,
+                numbers.end - 1,
+            ));
+        }
         if !is_noisy(&ensemble.scene) {
             let detail = "the scene has no noise, so all runs are alike: give noise.timing_sd or noise.angle_sd";
             notes.push(detail.to_owned());

@@ -22,4 +22,5 @@ pub mod region_rows;
 pub mod scene;
 pub mod stability;
 pub mod table;
+pub mod tile;
 pub mod trajectory;

@@ -9,18 +9,10 @@ use equipoise_physics::sweep::Outcome;
 use serde::{Serialize, Serializer};
 
 use super::scene::{Resolved, build, read_draft};
+use super::tile::Tile;
 use crate::http::{Errors, Reader};
 use crate::limits;
 use crate::picture::{HeatAxis, HeatMap, heat_map};
-
-/// A band of whole rows: number `index`, from 0, of `of`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Tile {
-    /// Which.
-    pub index: u64,
-    /// Of how many.
-    pub of: u64,
-}
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +21,7 @@ pub struct Request {
     pub region: Region,
     /// A scene of it that can be, to show.
     pub scene: Scene,
-    /// Which rows.
+    /// Which rows, a band of whole ones.
     pub tile: Tile,
 }
 
@@ -49,7 +41,7 @@ impl Request {
             ("spectral_radius", Quantity::SpectralRadius),
         ];
         let quantity = reader.choice("quantity", &quantities).unwrap_or(Quantity::Survival);
-        let tile = read_tile(reader);
+        let tile = Tile::read(reader, limits::REGION_SIDE);
         let ([Some(x), Some(y)], Some(draft), Some(tile)) = (axes, draft, tile) else { return None };
         if x.name == y.name {
             reader.refuse("y", format!("y has the parameter of x, {}; a region needs two", x.name.row().path));
@@ -90,8 +82,8 @@ impl Request {
 
     /// The rows of the tile.
     pub fn rows(&self) -> Range<usize> {
-        let share = |index: u64| (self.region.y.count as u64 * index / self.tile.of) as usize;
-        share(self.tile.index)..share(self.tile.index + 1)
+        let rows = self.tile.share(self.region.y.count as u64);
+        rows.start as usize..rows.end as usize
     }
 
     /// How many cells the tile has.
@@ -155,22 +147,6 @@ fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Axis> {
         let count = axis.integer("count", 1..=limits::REGION_SIDE);
         range?;
         Some(Axis { name: row?.name, from: from?, to: to?, count: usize::try_from(count?).ok()? })
-    })?
-}
-
-fn read_tile(reader: &mut Reader<'_, '_>) -> Option<Tile> {
-    if !reader.has("tile") {
-        return Some(Tile { index: 0, of: 1 });
-    }
-    reader.within("tile", |tile| {
-        tile.require(&["index", "of"]);
-        let (index, of) = (tile.integer("index", 0..=limits::REGION_SIDE), tile.integer("of", 1..=limits::REGION_SIDE));
-        let (index, of) = (index?, of?);
-        if index >= of {
-            tile.refuse("index", format!("index is {index}; it must be from 0 to {}, below `of`", of - 1));
-            return None;
-        }
-        Some(Tile { index, of })
     })?
 }
 
