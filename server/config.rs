@@ -1,7 +1,7 @@
 //! What can be set when the server starts: the command line and its environment variables.
 
 use std::fmt::{self, Display, Formatter};
-use std::net::{IpAddr, SocketAddr};
+use std::net::SocketAddr;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -9,6 +9,7 @@ use std::str::FromStr;
 use clap::builder::Resettable;
 use clap::{CommandFactory, FromArgMatches, Parser};
 
+use crate::compute::Network;
 use crate::http::{Origin, Token};
 use crate::limits::Limits;
 
@@ -45,10 +46,10 @@ pub struct Config {
     #[arg(long, env = "EQUIPOISE_BASE_PATH", value_name = "PATH", default_value = "", hide_default_value = true)]
     pub base_path: BasePath,
 
-    /// Believe this proxy who asks, as its `X-Forwarded-For` says at its end. Otherwise all its clients share what one is
-    /// given. May be given again
-    #[arg(long, env = "EQUIPOISE_TRUST_PROXY", value_name = "ADDRESS", value_delimiter = ',')]
-    pub trust_proxy: Vec<IpAddr>,
+    /// Believe this proxy, or every one in a network, who asks, as its `X-Forwarded-For` says at its end. Otherwise all its
+    /// clients share what one is given. May be given again
+    #[arg(long, env = "EQUIPOISE_TRUST_PROXY", value_name = "ADDRESS[/BITS]", value_delimiter = ',')]
+    pub trust_proxy: Vec<Network>,
 
     /// The limits that can be set.
     #[command(flatten)]

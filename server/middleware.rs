@@ -66,7 +66,7 @@ impl Door {
     /// Who asks: the peer of the connection or, if that is a proxy to be believed, whom it names.
     fn peer(&self, request: &Request) -> Peer {
         let peer = request.extensions().get().copied().unwrap_or(Peer::NOBODY);
-        if !self.config.trust_proxy.iter().any(|proxy| Peer::at(*proxy) == peer) {
+        if !self.config.trust_proxy.iter().any(|proxies| proxies.has(peer)) {
             return peer;
         }
         // The last one is what the proxy itself has seen; those before it anybody can send.

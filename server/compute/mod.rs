@@ -12,7 +12,7 @@ pub mod stopwatch;
 mod turns;
 
 pub use cancel::{Cancel, Cancelled};
-pub use peer::Peer;
+pub use peer::{Network, Peer};
 pub use pool::{Counted, Held, Pool, Refused};
 pub use price::{Limit, OverBudget, Price};
 pub use shares::{NoShare, Share, Shares};
