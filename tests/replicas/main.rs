@@ -1,0 +1,291 @@
+//! Replicas behind the real nginx, as `docs/deploy` has them: they answer as one, and one that is gone is missed by nobody.
+//!
+//! The figures are printed. Where nginx is not installed the tests say so and are over; `tests/run` installs it on CI.
+
+mod asking;
+mod following;
+mod loss;
+mod programs;
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::fmt::Display;
+use std::io::{Write, stdout};
+
+use equipoise::limits::{self, Limits};
+use serde_json::json;
+
+use asking::{Answer, Ask, ask, begin};
+use following::{Follower, Over};
+use programs::{Nginx, Replica, folder, until};
+use support::contract;
+use support::socket::{now_ms, numbers, try_open};
+
+/// Says it even where the test passes.
+fn say(what: impl Display) {
+    let _ = writeln!(stdout(), "{what}");
+}
+
+/// The program, or nothing where there is none to test.
+fn nginx() -> Option<&'static str> {
+    let program = Nginx::program();
+    if program.is_none() {
+        say("skip  replicas: nginx is not installed (apt-get install nginx)");
+    }
+    program
+}
+
+/// Requests of all kinds.
+fn kinds() -> Vec<Ask> {
+    let run = r#"{"preset": "case-1", "scene": {"table": {"tilt_gain": 1.3}}, "impacts": 200}"#;
+    let get = |target: &str| Ask::get(target.to_owned());
+    vec![
+        get("/v1/trajectories?preset=case-1&impacts=100"),
+        get("/v1/trajectories?preset=case-2&impacts=300&format=csv").with("accept-encoding", "gzip"),
+        Ask::post("/v1/trajectories", run).with("accept", "application/x-ndjson"),
+        get("/v1/stability?preset=case-1&impacts=500"),
+        Ask::post("/v1/stability", run),
+        get("/v1/stability?preset=case-1&impacts=200&format=svg"),
+        get("/v1/trajectories?preset=case-1&impacts=200&format=png"),
+        get("/v1/jacobians?preset=case-1"),
+        get("/v1/periodic-orbits?preset=case-1"),
+        get("/v1/ladder?preset=case-1&impacts=50"),
+        get("/v1/controllers?preset=case-1"),
+        Ask::post("/v1/ensembles", r#"{"preset": "case-1-noise", "runs": 50, "impacts": 50}"#),
+        get(&region(20, "ndjson")),
+        get("/v1/ensembles?preset=case-1-noise&runs=100&impacts=100&format=progress"),
+        Ask { method: "HEAD", ..get("/v1/scenes") },
+        get("/v1/fields"),
+        get("/openapi.json").with("accept-encoding", "gzip"),
+        get("/"),
+        get("/v1/stability?preset=case-1&impacts=-1").with("x-request-id", "wrong-1"),
+        Ask::post("/v1/trajectories", r#"{"preset": "#).with("x-request-id", "wrong-2"),
+    ]
+}
+
+/// A map of so many cells squared: some seconds from two hundred on.
+fn region(side: u32, format: &str) -> String {
+    format!(
+        "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count={side}\
+         &y.parameter=release.theta&y.from=0&y.to=0.5&y.count={side}&impacts=2000&format={format}"
+    )
+}
+
+/// The same as JSON by POST.
+fn posted_region(side: u32) -> Ask {
+    let axis = |parameter, to: f64, from: f64| json!({"parameter": parameter, "from": from, "to": to, "count": side});
+    let (x, y) = (axis("table.tilt_gain", 1.6, 0.95), axis("release.theta", 0.5, 0.0));
+    Ask::post("/v1/regions", &json!({"preset": "case-1", "x": x, "y": y, "impacts": 2000}).to_string())
+}
+
+#[tokio::test]
+async fn two_replicas_answer_as_one() {
+    let Some(program) = nginx() else { return };
+    let folder = folder("as-one");
+    let [one, two] = ["one", "two"].map(|name| Replica::start(&folder, name, &[]));
+    let nginx = Nginx::start(program, &folder, &[&one, &two], |conf| conf).await;
+    for kind in kinds() {
+        let from_one = ask(one.address, &kind).await.unwrap();
+        for address in [two.address, nginx.address, nginx.address] {
+            assert_eq!(ask(address, &kind).await.unwrap().lasting(), from_one.lasting(), "{kind:?}");
+        }
+        if let Some(tag) = from_one.headers.get("etag") {
+            let again = kind.with("if-none-match", tag);
+            assert_eq!(ask(two.address, &again).await.unwrap().status, if again.method == "POST" { 200 } else { 304 });
+        }
+    }
+    assert!(one.log().len() > kinds().len() && two.log().len() > kinds().len(), "nginx asks one of them alone");
+
+    // One run, which began a while ago and goes on.
+    let query = format!("preset=case-1&speed=4&epoch={}", now_ms() - 20_000);
+    let addresses = [one.address, two.address, nginx.address, nginx.address];
+    let followers: Vec<_> = addresses
+        .into_iter()
+        .flat_map(|address| [Over::WebSocket, Over::Events].map(|over| Follower::start(address, &query, over)))
+        .collect();
+    let before = ask(one.address, &Ask::get(format!("/v1/trajectories?{}&impacts=50", "preset=case-1"))).await.unwrap();
+    until("all have heard it go on", async || followers.iter().all(|follower| follower.count() > 350)).await;
+    let whole: Vec<_> = followers.iter().map(|follower| follower.heard().rows[..350].to_vec()).collect();
+    assert_eq!(numbers(&whole[0]), (1..=350).collect::<Vec<_>>());
+    assert_eq!(before.json()["impacts"]["t"][49], whole[0][49]["t"]);
+    for rows in &whole {
+        assert_eq!(*rows, whole[0]);
+    }
+    say("ok    replicas: two give the same bytes, ETags and live run, asked directly and through nginx");
+}
+
+#[tokio::test]
+async fn ids_addresses_and_a_base_path_go_through() {
+    let Some(program) = nginx() else { return };
+    let folder = folder("through");
+    let replica = Replica::start(&folder, "one", &["--base-path", "/rig", "--token", "0123456789abcdef"]);
+    let under_rig = |conf: String| conf.replace("location / {", "location /rig/ {");
+    let nginx = Nginx::start(program, &folder, &[&replica], under_rig).await;
+    let bearer = |ask: Ask| ask.with("authorization", "Bearer 0123456789abcdef");
+    let answer = async |kind: Ask| ask(nginx.address, &kind).await.unwrap();
+
+    let page = answer(Ask::get("/rig")).await;
+    assert!(page.status == 301 && page.headers["location"].ends_with("/rig/"), "{page:?}");
+    let opened = answer(Ask::get("/rig/?preset=case-1&token=0123456789abcdef")).await;
+    assert_eq!((opened.status, opened.headers["location"].as_str()), (303, "./?preset=case-1"));
+    let chosen = answer(bearer(Ask::get("/rig/v1/scenes")).with("x-request-id", "lab-1").from(7)).await;
+    assert_eq!((chosen.status, chosen.headers["x-request-id"].as_str()), (200, "lab-1"));
+    // What cannot stand in a log is not taken, nor is an address that a client says it has.
+    let lie = Ask::post("/rig/v1/stability", "{}").with("x-request-id", "a b").with("x-forwarded-for", "192.0.2.1");
+    let made = answer(bearer(lie).from(8)).await;
+    let id = &made.headers["x-request-id"];
+    assert_eq!((made.status, made.json()["request_id"].as_str()), (422, Some(id.as_str())));
+    assert_eq!(id.len(), 32);
+    // Outside of it there is nothing of ours.
+    assert_eq!(answer(Ask::get("/v1/scenes")).await.status, 404);
+
+    let (mut logged, told) = (Vec::new(), replica.log());
+    until("nginx has logged what the replica has", async || {
+        logged = nginx.log();
+        logged.retain(|line| line["replicas"] != "");
+        logged.len() >= told.len()
+    })
+    .await;
+    for (of_nginx, of_replica) in logged.iter().zip(&told) {
+        for name in ["id", "peer", "method", "target"] {
+            assert_eq!(of_nginx[name], of_replica[name], "{of_nginx} {of_replica}");
+        }
+        assert_eq!(of_nginx["status"], of_replica["status"].to_string());
+    }
+    let column = |name: &str| told.iter().map(|line| line[name].as_str().unwrap().to_owned()).collect::<Vec<_>>();
+    assert_eq!(column("peer"), ["127.0.0.1", "127.0.0.7", "127.0.0.8"]);
+    assert_eq!(column("id")[1..], ["lab-1".to_owned(), id.clone()]);
+    assert_eq!(column("target")[0], "/rig/?preset=case-1&token=");
+
+    // The address of a run that a client comes back to is the one under which it is shown; a page of this host may open it.
+    let bearer = ("authorization", "Bearer 0123456789abcdef");
+    let own = format!("http://{}", nginx.address);
+    let run = "/rig/v1/live?preset=case-1&speed=10";
+    let (mut client, _) = try_open(nginx.address, run, &[bearer, ("origin", &own)]).await.unwrap();
+    let url = client.next().await["url"].as_str().unwrap().to_owned();
+    assert!(url.starts_with("/rig/v1/live?scene."), "{url}");
+    try_open(nginx.address, &url, &[bearer]).await.unwrap();
+    assert!(try_open(nginx.address, run, &[bearer, ("origin", "http://elsewhere.example")]).await.is_err());
+    say("ok    replicas: ids, addresses and a base path go through nginx");
+}
+
+#[tokio::test]
+async fn what_is_too_much_is_a_problem_whoever_finds_it() {
+    let Some(program) = nginx() else { return };
+    let folder = folder("too-much");
+    let mut replica = Replica::start(&folder, "one", &["--base-path", "/rig"]);
+    let nginx = Nginx::start(program, &folder, &[&replica], |conf| conf).await;
+    let answer = async |kind: Ask| ask(nginx.address, &kind).await.unwrap();
+    let long = |prefix: &str, bytes: usize| format!("{prefix}{}", "a".repeat(bytes - prefix.len()));
+
+    // As much as the server takes passes, one byte more is refused by it, and so is what nginx does not read to its end.
+    let url = limits::URL_BYTES;
+    let head = Ask::get("/v1/scenes").with("x-a", &"a".repeat(15_000)).with("x-b", &"b".repeat(15_000));
+    for (kind, status, by_replica) in [
+        (Ask::get(long("/v1/scenes?unknown=", url)), 422, true),
+        (Ask::get(long("/v1/scenes?unknown=", url + 1)), 414, true),
+        (Ask::get(long("/v1/scenes?unknown=", 2 * url + 100)), 414, false),
+        (head, 200, true),
+        (Ask::get("/v1/scenes").with("x-a", &"a".repeat(20_000)), 400, false),
+        (Ask::post("/v1/stability", &padded(Limits::default().body_bytes)), 200, true),
+        (Ask::post("/v1/stability", &padded(Limits::default().body_bytes + 1)), 413, false),
+        // An answer with a long head is no failure of its replica.
+        (Ask::get(long("/rig?unknown=", url)), 308, true),
+        (Ask::get("/v1/scenes"), 200, true),
+    ] {
+        let answer = answer(kind).await;
+        let what = format!("{:?}", answer.headers);
+        assert_eq!((answer.status, answer.headers.contains_key("equipoise-build")), (status, by_replica), "{what}");
+        if status >= 400 {
+            is_problem(&answer);
+        }
+    }
+
+    // Without a replica clients are told to come back, and that is found out again at once when there is one.
+    replica.kill();
+    for _ in 0..5 {
+        let gone = answer(Ask::post("/v1/stability", "{}")).await;
+        assert_eq!((gone.status, gone.headers["retry-after"].as_str()), (503, "2"));
+        is_problem(&gone);
+    }
+    replica.again();
+    until("it is found", async || answer(Ask::get("/v1/scenes")).await.status == 200).await;
+}
+
+/// A request of so many bytes.
+fn padded(bytes: usize) -> String {
+    let request = r#"{"preset": "case-1", "impacts": 10}"#;
+    format!("{request}{}", " ".repeat(bytes - request.len()))
+}
+
+#[track_caller]
+fn is_problem(answer: &Answer) {
+    assert_eq!(answer.headers["content-type"], "application/problem+json");
+    let problem = answer.json();
+    let faults = contract::faults(&json!({"$ref": "#/components/schemas/Problem"}), &problem);
+    assert!(faults.is_empty(), "{faults:?} in {problem}");
+    assert_eq!(problem["status"], answer.status);
+    assert_eq!(problem["request_id"].as_str(), Some(answer.headers["x-request-id"].as_str()));
+}
+
+/// Who is refused is refused by the server, and keeps nobody else from its replicas.
+#[tokio::test]
+async fn one_client_that_asks_too_much_takes_nothing_from_others() {
+    let Some(program) = nginx() else { return };
+    let folder = folder("too-often");
+    let narrow = ["--permits", "1", "--queue", "4", "--held-bytes", "2000000"];
+    let replicas = ["one", "two"].map(|name| Replica::start(&folder, name, &narrow));
+    let nginx = Nginx::start(program, &folder, &[&replicas[0], &replicas[1]], |conf| conf).await;
+    // Of 5 places of each replica one client gets 3.
+    let held: Vec<_> = (0..12)
+        .map(|_| tokio::spawn(async move { ask(nginx.address, &Ask::get(region(1000, "json")).from(1)).await }))
+        .collect();
+    until("both are full of it", async || {
+        let full = async |replica: &Replica| replica.metric("equipoise_jobs_running").await == 3.0;
+        full(&replicas[0]).await && full(&replicas[1]).await
+    })
+    .await;
+    for _ in 0..20 {
+        let kind = Ask::get("/v1/stability?preset=case-1&impacts=2000");
+        let refused = ask(nginx.address, &kind.clone().from(1)).await.unwrap();
+        assert_eq!((refused.status, refused.headers["retry-after"].as_str()), (503, "2"));
+        assert!(refused.headers.contains_key("equipoise-build"), "no replica is left");
+        assert_eq!(ask(nginx.address, &kind.from(2)).await.unwrap().status, 200);
+    }
+    // Who hangs up is computed for no longer.
+    for client in held {
+        client.abort();
+    }
+    until("nothing is computed", async || {
+        replicas[0].metric("equipoise_jobs_running").await + replicas[1].metric("equipoise_jobs_running").await == 0.0
+    })
+    .await;
+
+    // What nobody reads is the replica's to hold, and nginx keeps none of it.
+    let long = Ask::get("/v1/trajectories?preset=case-1&impacts=40000").from(1);
+    let mut unread = [begin(nginx.address, &long).await.unwrap(), begin(nginx.address, &long).await.unwrap()];
+    let short = Ask::get("/v1/stability?preset=case-1&impacts=2000");
+    let refused = ask(nginx.address, &short.from(1)).await.unwrap();
+    assert_eq!(refused.status, 503);
+    assert!(refused.json()["detail"].as_str().unwrap().contains("still to be read from this address"));
+    for answer in &mut unread {
+        assert!(answer.piece().await.unwrap().is_some());
+    }
+    say("ok    replicas: fair between the clients of nginx");
+}
+
+#[tokio::test]
+async fn an_answer_comes_as_it_is_made() {
+    let Some(program) = nginx() else { return };
+    let folder = folder("as-made");
+    let replica = Replica::start(&folder, "one", &[]);
+    let nginx = Nginx::start(program, &folder, &[&replica], |conf| conf).await;
+    let dear = "/v1/ensembles?preset=case-1-noise&runs=20000&impacts=5000&format=progress";
+    let mut answer = begin(nginx.address, &Ask::get(dear)).await.unwrap();
+    let first = answer.piece().await.unwrap().unwrap();
+    assert!(first.starts_with(b"{\"progress\":{\"done\":0,"), "{}", String::from_utf8_lossy(&first));
+    assert!(answer.piece().await.unwrap().unwrap().starts_with(b"{\"progress\""));
+    assert_eq!(replica.metric("equipoise_jobs_running").await, 1.0);
+    drop(answer);
+    until("nothing is computed", async || replica.metric("equipoise_jobs_running").await == 0.0).await;
+}

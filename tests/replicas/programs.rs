@@ -1,0 +1,204 @@
+//! The programs: replicas of the server, and the real nginx before them as `docs/deploy/nginx.conf` has it.
+//!
+//! Not here: who asks them.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufRead, BufReader};
+use std::net::{SocketAddr, TcpListener};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use serde_json::Value;
+use tokio::net::TcpStream;
+use tokio::time::{sleep, timeout};
+
+use crate::asking::{Ask, ask};
+use crate::support::socket::SOON;
+
+/// An empty folder of this test's own.
+pub(crate) fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("replicas").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// The lines of a log of JSON.
+fn lines(log: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(log).unwrap();
+    // The last one may be on its way.
+    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    whole.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|_| panic!("{line}"))).collect()
+}
+
+fn signal(name: &str, process: u32) {
+    assert!(Command::new("kill").args([name, &process.to_string()]).status().unwrap().success());
+}
+
+/// Polls until it is so.
+pub(crate) async fn until(what: &str, mut is_so: impl AsyncFnMut() -> bool) {
+    let wait = async {
+        while !is_so().await {
+            sleep(Duration::from_millis(10)).await;
+        }
+    };
+    timeout(3 * SOON, wait).await.unwrap_or_else(|_| panic!("it does not come to this: {what}"));
+}
+
+/// A replica; killed when dropped.
+pub(crate) struct Replica {
+    child: Child,
+    pub(crate) address: SocketAddr,
+    arguments: Vec<String>,
+    log: PathBuf,
+}
+
+impl Replica {
+    /// One on a free port, whose access log is in this folder.
+    pub(crate) fn start(folder: &Path, name: &str, arguments: &[&str]) -> Self {
+        let log = folder.join(name);
+        let arguments: Vec<_> = arguments.iter().map(|&argument| argument.to_owned()).collect();
+        let (child, address) = spawn("127.0.0.1:0", &arguments, &log);
+        Self { child, address, arguments, log }
+    }
+
+    /// As a crash, or the system that is out of memory.
+    pub(crate) fn kill(&mut self) {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+    }
+
+    /// As a service manager does.
+    pub(crate) fn stop(&self) {
+        signal("-TERM", self.child.id());
+    }
+
+    /// Waits for its end: the exit code.
+    pub(crate) async fn end(&mut self) -> Option<i32> {
+        let mut status = None;
+        until("the replica ends", async || {
+            status = self.child.try_wait().unwrap();
+            status.is_some()
+        })
+        .await;
+        status.and_then(|status| status.code())
+    }
+
+    /// Starts it anew where it was.
+    pub(crate) fn again(&mut self) {
+        (self.child, self.address) = spawn(&self.address.to_string(), &self.arguments, &self.log);
+    }
+
+    /// A figure of its metrics.
+    pub(crate) async fn metric(&self, name: &str) -> f64 {
+        let text = String::from_utf8(ask(self.address, &Ask::get("/metrics")).await.unwrap().body).unwrap();
+        let line = text.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+        line.unwrap_or_else(|| panic!("no {name} in {text}")).parse().unwrap()
+    }
+
+    /// Its access log.
+    pub(crate) fn log(&self) -> Vec<Value> {
+        lines(&self.log)
+    }
+}
+
+impl Drop for Replica {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn spawn(listen: &str, arguments: &[String], log: &Path) -> (Child, SocketAddr) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_equipoise"))
+        .args(["--access-log", "--trust-proxy", "127.0.0.1", "--listen", listen])
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(OpenOptions::new().create(true).append(true).open(log).unwrap())
+        .spawn()
+        .unwrap();
+    let mut first = String::new();
+    BufReader::new(child.stdout.take().unwrap()).read_line(&mut first).unwrap();
+    let (_, url) = first.split_once(" serves http://").expect("a line that says where it listens");
+    (child, url.split('/').next().unwrap().parse().unwrap())
+}
+
+/// nginx before replicas; stopped when dropped.
+pub(crate) struct Nginx {
+    child: Child,
+    pub(crate) address: SocketAddr,
+    log: PathBuf,
+}
+
+impl Nginx {
+    /// The program; none where it is not installed. Debian has it where only root looks.
+    pub(crate) fn program() -> Option<&'static str> {
+        ["nginx", "/usr/sbin/nginx"].into_iter().find(|program| {
+            Command::new(program).arg("-v").stderr(Stdio::null()).status().is_ok_and(|status| status.success())
+        })
+    }
+
+    /// Before these, as shipped but for what `edit` changes.
+    pub(crate) async fn start(
+        program: &str,
+        folder: &Path,
+        replicas: &[&Replica],
+        edit: impl FnOnce(String) -> String,
+    ) -> Self {
+        // Free a moment ago, and hardly taken since.
+        let address = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+        let addresses: Vec<_> = replicas.iter().map(|replica| replica.address).collect();
+        let file = folder.join("nginx.conf");
+        fs::write(&file, edit(filled_in(folder, address, &addresses))).unwrap();
+        let child = Command::new(program)
+            .args(["-p".as_ref(), folder, "-c".as_ref(), &file, "-e".as_ref(), &folder.join("error.log")])
+            .args(["-g", "daemon off;"])
+            .stderr(File::create(folder.join("stderr.log")).unwrap())
+            .spawn()
+            .unwrap();
+        let nginx = Self { child, address, log: folder.join("access.log") };
+        until("nginx listens", async || TcpStream::connect(address).await.is_ok()).await;
+        nginx
+    }
+
+    /// Its access log.
+    pub(crate) fn log(&self) -> Vec<Value> {
+        lines(&self.log)
+    }
+}
+
+impl Drop for Nginx {
+    fn drop(&mut self) {
+        // Killed it would leave its workers behind.
+        signal("-TERM", self.child.id());
+        let _ = self.child.wait();
+    }
+}
+
+/// The file that is shipped.
+pub(crate) fn shipped() -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/deploy/nginx.conf")).unwrap()
+}
+
+/// The file with these addresses, and with all that is written in this folder.
+fn filled_in(folder: &Path, listen: SocketAddr, replicas: &[SocketAddr]) -> String {
+    let here = folder.display();
+    let mut text = shipped();
+    let mut put = |old: &str, new: &str| {
+        assert_eq!(text.matches(old).count(), 1, "{old}");
+        text = text.replace(old, new);
+    };
+    let like = |address: &str| format!("        server {address} max_fails=2 fail_timeout=1s;\n");
+    put(&like("127.0.0.1:8082"), "");
+    put(&like("127.0.0.1:8081"), &replicas.iter().map(|address| like(&address.to_string())).collect::<String>());
+    put("        listen 80 default_server;", &format!("        listen {listen};"));
+    put("        listen [::]:80 default_server;\n", "");
+    put("pid /run/nginx.pid;", &format!("pid {here}/nginx.pid;"));
+    put("error_log /var/log/nginx/error.log;", &format!("error_log {here}/error.log;"));
+    put("access_log /var/log/nginx/access.log ", &format!("access_log {here}/access.log "));
+    let kinds = ["client_body", "proxy", "fastcgi", "scgi", "uwsgi"];
+    let places: String = kinds.iter().map(|kind| format!("    {kind}_temp_path {here}/{kind};\n")).collect();
+    put("http {\n", &format!("http {{\n{places}"));
+    text
+}
