@@ -1,6 +1,6 @@
 //! The picture of a branch of periodic orbits: largest angle against a parameter, stable solid, unstable dashed.
 
-use super::colour::{BLUE, INK, SOFT_INK, VERMILLION};
+use super::colour::{BLUE, INK, SOFT_INK, VERMILION};
 use super::legend::{Sample, legend};
 use super::marks::{Point, hollow, line};
 use super::number::significant;
@@ -80,7 +80,7 @@ pub fn branches(drawn: &Branches<'_>) -> String {
         let look = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
         svg.text(at, frame.top - 7.0, look, &[Span::Symbol("κ"), Span::Below("c"), Span::Plain(&label)]);
     }
-    let dashes = |stable: bool| if stable { (BLUE, None) } else { (VERMILLION, Some("6 4")) };
+    let dashes = |stable: bool| if stable { (BLUE, None) } else { (VERMILION, Some("6 4")) };
     let mut run: Vec<Point> = Vec::new();
     let mut last: Option<bool> = None;
     for pair in drawn.points.windows(2) {
@@ -107,7 +107,7 @@ pub fn branches(drawn: &Branches<'_>) -> String {
     panel.edge(&mut svg);
     let entries = [
         (Sample::Line { colour: BLUE, dashes: None }, "stable"),
-        (Sample::Line { colour: VERMILLION, dashes: Some("6 4") }, "unstable"),
+        (Sample::Line { colour: VERMILION, dashes: Some("6 4") }, "unstable"),
         (Sample::Hollow(INK), "stability changes"),
     ];
     legend(&mut svg, 386.0, top + ROOM - 22.0, &entries);

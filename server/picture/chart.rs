@@ -2,7 +2,7 @@
 //!
 //! Not here: which curves, and what they mean.
 
-use super::colour::{BLUE, GREEN, ORANGE, SOFT_INK, VERMILLION};
+use super::colour::{BLUE, GREEN, ORANGE, SOFT_INK, VERMILION};
 use super::legend::{Sample, legend};
 use super::marks::{Point, dots, line, ring};
 use super::panel::{Axis, Frame, Panel};
@@ -87,8 +87,8 @@ impl Look {
         match self {
             Self::Truth => full(BLUE),
             Self::TruthDots => Sample::Dot { radius: 2.6, colour: BLUE },
-            Self::Wrong => dashed(VERMILLION, "7 4"),
-            Self::WrongRings => Sample::Ring(VERMILLION),
+            Self::Wrong => dashed(VERMILION, "7 4"),
+            Self::WrongRings => Sample::Ring(VERMILION),
             Self::Second => dashed(ORANGE, "3 3"),
             Self::Beside => full(GREEN),
             Self::BesideDots => Sample::Dot { radius: 2.2, colour: GREEN },

@@ -1,7 +1,7 @@
 //! The picture of a law: the eigenvalues of its loop on the unit circle with their way as the gain is scaled, and the largest
 //! |λ| against the factor, with the factors between which it is stable.
 
-use super::colour::{AXIS, BLUE, INK, PALE_BLUE, SOFT_INK, VERMILLION};
+use super::colour::{AXIS, BLUE, INK, PALE_BLUE, SOFT_INK, VERMILION};
 use super::legend::{Sample, legend};
 use super::marks::{arrow, band, disc, dots, hollow, line};
 use super::number::significant;
@@ -48,7 +48,7 @@ pub fn closed_loop(law: &Loop<'_>) -> String {
         (Sample::Disc(INK), "with the law"),
         (Sample::Hollow(INK), "without it"),
         (Sample::Dot { radius: 2.0, colour: BLUE }, "gain scaled, stable"),
-        (Sample::Dot { radius: 2.0, colour: VERMILLION }, "gain scaled, not stable"),
+        (Sample::Dot { radius: 2.0, colour: VERMILION }, "gain scaled, not stable"),
     ];
     legend(&mut svg, 480.0, top + ROOM - 22.0, &entries);
     svg.finish()
@@ -73,7 +73,7 @@ fn draw_circle(law: &Loop<'_>, svg: &mut Svg, frame: Frame) {
     let circle = svg.tag("circle").number("cx", centre.0).number("cy", centre.1).number("r", rim.0 - centre.0);
     circle.word("fill", PALE_BLUE).word("stroke", AXIS).number("stroke-width", 1.2).end();
     let is_within = |value: &&(f64, f64)| value.0 > range.low && value.0 < range.high && value.1.abs() < tall;
-    for (colour, stable) in [(BLUE, true), (VERMILLION, false)] {
+    for (colour, stable) in [(BLUE, true), (VERMILION, false)] {
         let steps = law.way.iter().filter(|(_, values)| (largest(values) < 1.0) == stable);
         let points = steps.flat_map(|(_, values)| values.iter().filter(is_within)).map(|(re, im)| panel.at(*re, *im));
         dots(svg, points, 1.6, colour);

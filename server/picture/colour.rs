@@ -20,7 +20,7 @@ pub(super) const GREEN: &str = "#009e73";
 pub(super) const ORANGE: &str = "#e69f00";
 pub(super) const SKY: &str = "#56b4e9";
 pub(super) const PURPLE: &str = "#cc79a7";
-pub(super) const VERMILLION: &str = "#d55e00";
+pub(super) const VERMILION: &str = "#d55e00";
 /// Blue so light that everything reads on it.
 pub(super) const PALE_BLUE: &str = "#e3f0f8";
 /// Green for an area, and one on which it still stands out.

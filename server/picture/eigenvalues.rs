@@ -1,6 +1,6 @@
 //! The picture of a verdict: eigenvalues on the unit circle with the way of the angle pair over κ, and |λ| against κ.
 
-use super::colour::{AXIS, BLUE, INK, ORANGE, PALE_BLUE, SOFT_INK, VERMILLION};
+use super::colour::{AXIS, BLUE, INK, ORANGE, PALE_BLUE, SOFT_INK, VERMILION};
 use super::legend::{Sample, legend};
 use super::marks::{Point, arrow, band, disc, hollow, line};
 use super::number::significant;
@@ -74,7 +74,7 @@ pub fn eigenvalues(judged: &Eigenvalues<'_>) -> String {
         (Sample::Hollow(INK), others),
         (Sample::Line { colour: ORANGE, dashes: DASHES }, "κ too small"),
         (Sample::Line { colour: BLUE, dashes: None }, "stable κ"),
-        (Sample::Line { colour: VERMILLION, dashes: DASHES }, "κ too large"),
+        (Sample::Line { colour: VERMILION, dashes: DASHES }, "κ too large"),
         (Sample::Arrow(SOFT_INK), "growing κ"),
     ];
     legend(&mut svg, 480.0, top + ROOM - 22.0, &entries);
@@ -157,7 +157,7 @@ impl<'a> View<'a> {
                 for (part, colour, dashes, tip) in [
                     (&trail.below, ORANGE, DASHES, 12),
                     (&trail.stable, BLUE, None, if (0.2..0.45).contains(&self.residue) { 42 } else { 24 }),
-                    (&trail.beyond, VERMILLION, DASHES, 52),
+                    (&trail.beyond, VERMILION, DASHES, 52),
                 ] {
                     let points: Vec<Point> = part.iter().map(|(_, pair)| place(pair[branch])).collect();
                     line(svg, &points, colour, 3.0, dashes);
@@ -281,7 +281,7 @@ impl<'a> View<'a> {
             let branches = if trail.law == Law::Pair { 0..2 } else { 0..1 };
             for branch in branches {
                 for (part, colour, dashes) in
-                    [(&trail.below, ORANGE, DASHES), (&trail.stable, BLUE, None), (&trail.beyond, VERMILLION, DASHES)]
+                    [(&trail.below, ORANGE, DASHES), (&trail.stable, BLUE, None), (&trail.beyond, VERMILION, DASHES)]
                 {
                     let place = |(residue, pair): &(f64, [(f64, f64); 2])| {
                         panel.at(self.tilt_gain(*residue), modulus(pair[branch]))

@@ -1,6 +1,6 @@
 //! The picture of a trajectory: the planes ⟨θ, θ̇⟩ and ⟨ẋ, ẏ⟩ with a dot for every impact, as in the paper's figures.
 
-use super::colour::{BLUE, GREEN, SOFT_INK, VERMILLION};
+use super::colour::{BLUE, GREEN, SOFT_INK, VERMILION};
 use super::legend::{Sample, legend};
 use super::marks::{dots, ring, square};
 use super::panel::{Axis, Frame, Panel};
@@ -85,7 +85,7 @@ pub fn phase_planes(run: &PhasePlanes<'_>) -> String {
     let entries = [
         (Sample::Dot { radius: radius.max(2.2), colour: BLUE }, "impact"),
         (Sample::Ring(GREEN), "first (n = 1)"),
-        (Sample::Square(VERMILLION), last.as_str()),
+        (Sample::Square(VERMILION), last.as_str()),
     ];
     let entries = match impacts {
         0 => &entries[..0],
@@ -134,7 +134,7 @@ impl Plane<'_> {
         if let Some((x, y)) = self.points().next_back().filter(finite)
             && count > 1
         {
-            square(svg, panel.at(x, y), 5.5, VERMILLION);
+            square(svg, panel.at(x, y), 5.5, VERMILION);
         }
         if let Some((x, y)) = self.points().next().filter(finite) {
             ring(svg, panel.at(x, y), 6.5, GREEN);

@@ -1,6 +1,6 @@
 //! The picture of speed against accuracy: error over cost, both logarithmic, a symbol and a colour for each method.
 
-use super::colour::{BLUE, GREEN, INK, ORANGE, PAPER, PURPLE, SKY, SOFT_INK, VERMILLION};
+use super::colour::{BLUE, GREEN, INK, ORANGE, PAPER, PURPLE, SKY, SOFT_INK, VERMILION};
 use super::marks::{Point, line};
 use super::panel::{Axis, Frame, Panel};
 use super::scale::Range;
@@ -46,7 +46,7 @@ const LOOKS: [(&str, Outline); 11] = [
     (SKY, &[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)]),
     (GREEN, &[(0.0, -1.1), (1.1, 0.9), (-1.1, 0.9)]),
     (INK, &[(-1.0, -0.3), (1.0, -0.3), (1.0, 0.3), (-1.0, 0.3)]),
-    (VERMILLION, &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
+    (VERMILION, &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
     (PURPLE, &[(0.0, 1.1), (1.1, -0.9), (-1.1, -0.9)]),
     (PURPLE, &[(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)]),
     (
