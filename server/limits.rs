@@ -252,6 +252,13 @@ pub const PICTURE_PIXELS: u64 = 4_000_000;
 /// Work of drawing the pixels of one picture, in bounces: some 30 ms.
 pub const PNG_PRICE: u64 = 400_000;
 
+/// Times that a line of a batch waits again before it is told that there is too much to do: with the time that each
+/// waits in the queue, about a minute.
+pub const BATCH_WAITS: u32 = 10;
+
+/// Time until it tries again: what `RETRY_AFTER_S` asks of clients.
+pub const BATCH_WAIT_TIME: Duration = Duration::from_secs(RETRY_AFTER_S as u64);
+
 /// Work up to this price, in bounces, is done on the async thread at once: some 0.15 ms, hardly more than the way to
 /// another thread and back is worth.
 pub const INLINE_BOUNCES: u64 = 2048;

@@ -15,7 +15,7 @@ use support::contract::{self, DOCUMENT};
 /// A path for a template.
 fn path(template: &str) -> String {
     let name = if template.contains("failures") { "double-eigenvalue-soft" } else { "case-1" };
-    template.replace("{name}", name)
+    template.replace("{name}", name).replace("{resource}", "stability")
 }
 
 #[tokio::test]
@@ -46,7 +46,11 @@ async fn every_other_method_is_refused_with_those_there_are() {
         for method in ["GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"] {
             if !allowed.contains(method) {
                 let method = Method::from_bytes(method.as_bytes()).unwrap();
-                let answer = server.send(method, &path(template), &[], "").await.expect(405);
+                let answer = match method {
+                    // Where the router has no GET, it is the socket that leaves out the body.
+                    Method::HEAD => server.send_unheld(method, &path(template), &[], "").await.expect(405),
+                    _ => server.send(method, &path(template), &[], "").await.expect(405),
+                };
                 let named: BTreeSet<&str> = answer.header("allow").unwrap().split(',').map(str::trim).collect();
                 assert!(allowed.is_subset(&named), "{}: {named:?}, not {allowed:?}", answer.request);
             }

@@ -6,7 +6,7 @@ released the furthest aside wins. Example: which_tilt_gain.py --preset case-1 --
 
 import json
 
-from ask import arguments, ask, parse
+from ask import arguments, ask, ask_many, parse, said
 
 parser = arguments(__doc__)
 parser.add_argument("--preset", default="case-1")
@@ -31,16 +31,19 @@ survives = region["outcome_names"].index("completed")
 print(f"stable without noise, near upright: {gain['lower']:g} to {gain['critical']:.5f};",
       f"timing {options.timing_sd * 1000:g} ms ({options.model}), {options.runs} runs of {options.impacts} bounces")
 print(f"{'gain':>8} {'widest release':>15} {'survive noise':>14} {'95 %':>15}")
-rows = []
-for column, value in enumerate(region["x"]):
+rows, noisy = [], []
+for value in region["x"]:
+    noise = {"timing_sd": options.timing_sd, "model": options.model}
+    scene = {**options.scene, "table": {**options.scene.get("table", {}), "tilt_gain": value}, "noise": noise}
+    noisy.append({"preset": options.preset, "scene": scene, "runs": options.runs, "impacts": options.impacts, "seed": 1})
+for column, (value, (ensemble, problem)) in enumerate(zip(region["x"], ask_many("ensembles", noisy))):
+    if problem:
+        raise SystemExit(said(problem))
     angle = 0.0
     for theta, outcomes in zip(region["y"], region["outcomes"]):
         if outcomes[column] != survives:
             break
         angle = theta
-    noise = {"table": {"tilt_gain": value}, "noise": {"timing_sd": options.timing_sd, "model": options.model}}
-    scene = {**options.scene, **noise, "table": {**options.scene.get("table", {}), **noise["table"]}}
-    ensemble = ask("ensembles", {"preset": options.preset, "scene": scene, "runs": options.runs, "impacts": options.impacts, "seed": 1})
     rows.append((value, angle, ensemble["survived"]))
     print(f"{value:8.4f} {angle:11.2f} rad {rows[-1][2]['share']:13.1%} {rows[-1][2]['lower']:7.1%}-{rows[-1][2]['upper']:.1%}")
 

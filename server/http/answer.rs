@@ -105,6 +105,12 @@ impl Ask {
         Ok(response)
     }
 
+    /// An answer that is made while it is sent, and not compressed.
+    pub fn respond_piecewise(&self, resource: &Resource, pieces: Body) -> Result<Response<Body>, Problem> {
+        let (format, _) = self.negotiate(resource)?;
+        Ok(ok(format.media_type(), Encoding::Identity, pieces))
+    }
+
     /// 406 if the client takes the resource in none of its formats.
     pub fn accepts(&self, resource: &Resource) -> Result<(), Problem> {
         self.negotiate(resource).map(drop)

@@ -4,11 +4,13 @@
 
 pub mod answer;
 mod asked;
+mod body;
 pub mod encode;
 pub mod etag;
 pub mod fixed;
 pub mod json;
 pub mod leaf;
+pub mod lines;
 pub mod negotiate;
 pub mod origin;
 pub mod outlet;
@@ -21,6 +23,7 @@ mod token;
 pub use answer::Resource;
 pub use asked::{Asked, REQUEST_ID};
 pub use leaf::Source;
+pub use lines::{Line, Lines};
 pub use negotiate::Format;
 pub use origin::Origin;
 pub use outlet::Outlet;

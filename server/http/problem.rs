@@ -110,10 +110,10 @@ impl Problem {
         Self::plain(StatusCode::URI_TOO_LONG, detail)
     }
 
-    /// 415: the body is in a format or an encoding that is not read here.
-    pub fn unsupported_media_type(detail: impl Into<String>) -> Self {
+    /// 415: the body is in a format or an encoding that is not read here, where it has to be `accepted`.
+    pub fn unsupported_media_type(accepted: &'static str, detail: impl Into<String>) -> Self {
         Self::plain(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
-            .header(header::ACCEPT, HeaderValue::from_static("application/json"))
+            .header(header::ACCEPT, HeaderValue::from_static(accepted))
             .header(header::ACCEPT_ENCODING, HeaderValue::from_static("identity"))
     }
 

@@ -1,13 +1,11 @@
 //! What a client asks: the fields of a request, from the query of a GET or the JSON body of a POST, and how it wants
 //! the answer. Both kinds give the same tree, so nothing behind this tells one from the other.
 
-use axum::body::{Body, to_bytes};
 use axum::extract::{FromRef, FromRequest, Request};
-use axum::http::{HeaderMap, Method, header};
-use http_body_util::LengthLimitError;
+use axum::http::{HeaderMap, Method};
 use serde_json::{Map, Value};
-use tokio::time::timeout;
 
+use super::body::{self, JSON};
 use super::leaf::Source;
 use super::problem::{FieldError, Problem, shortened};
 use super::reader::{Errors, Reader, join};
@@ -54,7 +52,7 @@ impl Ask {
         Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, peer, format })
     }
 
-    fn from_body(query: &str, body: &[u8], headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
+    pub(super) fn from_body(query: &str, body: &[u8], headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
         let (format, parameters) = split_format(query)?;
         if !parameters.is_empty() {
             let error = |(name, _): (String, String)| FieldError {
@@ -83,8 +81,8 @@ where
         if parts.method == Method::GET || parts.method == Method::HEAD {
             return Self::from_query(query, parts.headers, peer);
         }
-        check_media_type(&parts.headers)?;
-        let body = read(body, &parts.headers, &Limits::from_ref(state)).await?;
+        JSON.check(&parts.headers)?;
+        let body = body::read(body, &parts.headers, &Limits::from_ref(state)).await?;
         Self::from_body(query, &body, parts.headers, peer)
     }
 }
@@ -100,64 +98,11 @@ fn split_format(query: &str) -> Result<(Option<String>, Vec<(String, String)>), 
     Ok((formats.into_iter().next().map(|(_, format)| format), others))
 }
 
-fn check_media_type(headers: &HeaderMap) -> Result<(), Problem> {
-    let text = |name| headers.get(name).map(|value| value.to_str().unwrap_or("not text"));
-    let Some(media_type) = text(header::CONTENT_TYPE) else {
-        return Err(Problem::unsupported_media_type(
-            "the request has no Content-Type; send JSON with Content-Type: application/json",
-        ));
-    };
-    let mut parameters = media_type.split(';').map(str::trim);
-    let is_json = parameters.next().is_some_and(|essence| {
-        let essence = essence.to_ascii_lowercase();
-        essence == "application/json" || (essence.starts_with("application/") && essence.ends_with("+json"))
-    });
-    if !is_json {
-        let shown = shortened(media_type);
-        return Err(Problem::unsupported_media_type(format!(
-            "the request has Content-Type: {shown}; send JSON with Content-Type: application/json"
-        )));
-    }
-    let charset =
-        parameters.find_map(|parameter| parameter.to_ascii_lowercase().strip_prefix("charset=").map(str::to_owned));
-    if let Some(charset) = charset.filter(|charset| !matches!(charset.trim_matches('"'), "utf-8" | "utf8" | "us-ascii"))
-    {
-        let charset = shortened(&charset);
-        return Err(Problem::unsupported_media_type(format!("the request is in {charset}; JSON is read as UTF-8")));
-    }
-    match text(header::CONTENT_ENCODING) {
-        Some(coding) if !coding.trim().eq_ignore_ascii_case("identity") => {
-            let coding = shortened(coding);
-            Err(Problem::unsupported_media_type(format!(
-                "the request has Content-Encoding: {coding}; bodies are read uncompressed"
-            )))
-        }
-        _ => Ok(()),
-    }
-}
-
-async fn read(body: Body, headers: &HeaderMap, limits: &Limits) -> Result<axum::body::Bytes, Problem> {
-    let announced = headers.get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
-    if announced.is_some_and(|length| length > limits.body_bytes as u64) {
-        return Err(Problem::too_large(limits.body_bytes));
-    }
-    let reading = timeout(limits.body_time, to_bytes(body, limits.body_bytes)).await;
-    let Ok(read) = reading else {
-        let limit_s = limits.body_time.as_secs();
-        return Err(Problem::too_slow(format!("the request body took longer than the limit of {limit_s} s to arrive")));
-    };
-    read.map_err(|error| {
-        use std::error::Error;
-        match error.source().is_some_and(|source| source.is::<LengthLimitError>()) {
-            true => Problem::too_large(limits.body_bytes),
-            false => Problem::not_readable("the connection ended, or broke the protocol, within the request body"),
-        }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use axum::body::Body;
+    use axum::http::header;
     use serde_json::json;
 
     async fn ask(request: axum::http::request::Builder, body: impl Into<Body>) -> Result<Ask, Problem> {

@@ -20,7 +20,7 @@ pub fn routes() -> Router<App> {
     Router::new().route("/v1/controllers", get(controllers).post(controllers))
 }
 
-async fn controllers(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+pub(super) async fn controllers(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let request = ask.read(Request::read)?;
     let price = Price::bounces(limits::CONTROLLER_PRICE).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&request.scene, &request.rest());

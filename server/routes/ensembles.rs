@@ -27,7 +27,7 @@ pub fn routes() -> Router<App> {
     Router::new().route("/v1/ensembles", get(ensembles).post(ensembles))
 }
 
-async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+pub(super) async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let request = ask.read(Request::read)?;
     let ensemble = request.ensemble;
     app.config.limits.of_answer().admit(request.angles())?;

@@ -21,7 +21,7 @@ pub fn routes() -> Router<App> {
     Router::new().route("/v1/jacobians", get(jacobians).post(jacobians))
 }
 
-async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+pub(super) async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, at, period, method) = ask.read(|reader| {
         let scene = scene::read_within(reader, &JUDGED);
         let at = At::read(reader);

@@ -19,7 +19,7 @@ pub fn routes() -> Router<App> {
     Router::new().route("/v1/ladder", get(ladder).post(ladder))
 }
 
-async fn ladder(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+pub(super) async fn ladder(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, request) = ask.read(|reader| {
         let scene = scene::read(reader);
         let request = Request::read(reader);

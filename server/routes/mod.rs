@@ -4,6 +4,7 @@
 //! `wire`. What all of them share is the `App`.
 
 pub mod assets;
+pub mod batches;
 pub mod contract;
 pub mod controllers;
 pub mod ensembles;
@@ -109,6 +110,7 @@ pub fn all() -> Router<App> {
         .merge(stability::routes())
         .merge(regions::routes())
         .merge(ensembles::routes())
+        .merge(batches::routes())
 }
 
 /// An answer as JSON.

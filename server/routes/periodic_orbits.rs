@@ -22,7 +22,7 @@ pub fn routes() -> Router<App> {
     Router::new().route("/v1/periodic-orbits", get(periodic_orbits).post(periodic_orbits))
 }
 
-async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+pub(super) async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, request) = ask.read(|reader| {
         let scene = scene::read_frictionless(reader);
         let request = Request::read(reader);

@@ -26,7 +26,7 @@ pub fn routes() -> Router<App> {
     Router::new().route("/v1/precision", get(precision).post(precision))
 }
 
-async fn precision(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+pub(super) async fn precision(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, request) = ask.read(|reader| {
         let scene = scene::read_frictionless(reader);
         let request = Request::read(reader);

@@ -24,7 +24,7 @@ pub fn routes() -> Router<App> {
     Router::new().route("/v1/regions", get(regions).post(regions))
 }
 
-async fn regions(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+pub(super) async fn regions(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let request = ask.read(Request::read)?;
     app.config.limits.of_answer().admit(request.cells().saturating_mul(2))?;
     app.config.limits.of_region_work().admit(request.bounces())?;

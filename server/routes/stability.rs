@@ -20,7 +20,7 @@ pub fn routes() -> Router<App> {
     Router::new().route("/v1/stability", get(stability).post(stability))
 }
 
-async fn stability(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+pub(super) async fn stability(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, request) = ask.read(|reader| {
         let scene = scene::read(reader);
         let request = Request::read(reader);

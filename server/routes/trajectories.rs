@@ -22,7 +22,7 @@ pub fn routes() -> Router<App> {
     Router::new().route("/v1/trajectories", get(trajectories).post(trajectories))
 }
 
-async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+pub(super) async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (run, request) = ask.read(|reader| {
         let run = address::read_unclocked(reader);
         let request = Request::read(reader);

@@ -50,8 +50,9 @@ def calls(contract):
                     break
             body = None
             if "requestBody" in operation:
-                examples = operation["requestBody"]["content"]["application/json"]["examples"]
-                body = next(iter(examples.values()))["value"]
+                # An object, or text: lines of JSON.
+                [content] = operation["requestBody"]["content"].values()
+                body = next(iter(content["examples"].values()))["value"]
             yield operation, path, method, placed, asked, body
 
 
@@ -61,12 +62,14 @@ def media(contract, operation):
 
 
 def python(contract):
-    head, body = ["import json", "import sys", "from typing import Any, Callable", "", "import httpx", "from generated import Client, models", "from generated.types import Response"], []
+    head, body = ["import io", "import json", "import sys", "from typing import Any, Callable", "", "import httpx", "from generated import Client, models", "from generated.types import File, Response"], []
     for operation, _, _, placed, asked, given in calls(contract):
         module = PythonIdentifier(operation["operationId"], "field_")
         head.append(f"from generated.api.{PythonIdentifier(operation['tags'][0], 'tag')} import {module} as {module}_")
         arguments = [f"{PythonIdentifier(name, 'field_')}={value!r}" for name, value in (placed | asked).items()]
-        if given is not None:
+        if isinstance(given, str):
+            arguments.append(f"body=File(io.BytesIO({given.encode()!r}))")
+        elif given is not None:
             schema = operation["requestBody"]["content"]["application/json"]["schema"]["$ref"].split("/")[-1]
             arguments.append(f"body=models.{ClassName(schema, 'field_')}.from_dict({given!r})")
         client = "upgrading" if "101" in operation["responses"] else "client"
@@ -105,9 +108,12 @@ def typescript(contract):
         options = ({"params": parameters} if parameters else {}) | ({} if given is None else {"body": given})
         if "application/json" not in media(contract, operation):
             options["parseAs"] = "text"
+        options = json.dumps(options)
+        if isinstance(given, str):
+            options = options[:-1] + ", \"bodySerializer\": String, \"headers\": { \"Content-Type\": \"application/x-ndjson\" }}"
         # An upgrade cannot be asked for with fetch, so here the contract's other answer is the right one.
         expected = 426 if "101" in operation["responses"] else 200
-        lines.append(f"calls.push([{json.dumps(operation['operationId'])}, {expected}, () => client.{method.upper()}({json.dumps(path)}, {json.dumps(options)})]);")
+        lines.append(f"calls.push([{json.dumps(operation['operationId'])}, {expected}, () => client.{method.upper()}({json.dumps(path)}, {options})]);")
     return "\n".join([*lines, TYPESCRIPT_END])
 
 

@@ -17,8 +17,9 @@ import ask as client  # noqa: E402
 client.SERVER = SERVER
 
 
-def printed(script, *arguments, status=0):
-    done = subprocess.run([sys.executable, "-B", SCRIPTS / script, "--server", SERVER, *arguments], capture_output=True, text=True)
+def printed(script, *arguments, status=0, given=None):
+    command = [sys.executable, "-B", SCRIPTS / script, "--server", SERVER, *arguments]
+    done = subprocess.run(command, input=given, capture_output=True, text=True)
     assert done.returncode == status, f"{script} {arguments}: {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout + done.stderr
 
@@ -84,6 +85,22 @@ def friction():
     assert slips, text
 
 
-for check in (quickstart, margins, tilt_gain, friction):
+def batch():
+    # More than one body takes, with a blank line and a wrong one in between.
+    gains = [1 + 0.4 * number / 4000 for number in range(4000)]
+    lines = [json.dumps({"preset": "case-1", "scene": {"table": {"tilt_gain": gain}}, "impacts": 1}) for gain in gains]
+    lines[1] = ""
+    lines[2] = '{"preset": "case-1", "impacts": 0}'
+    assert sum(map(len, lines)) > client.BODY_BYTES
+    told = [json.loads(line) for line in printed("batch.py", "trajectories", given="\n".join(lines), status=1).splitlines()]
+    assert [line["line"] for line in told] == [1, *range(3, 4001)]
+    assert [line["line"] for line in told if "problem" in line] == [3], told[1]
+    assert told[1]["problem"]["errors"][0]["pointer"] == "/impacts", told[1]
+    assert [line["answer"]["scene"]["table"]["tilt_gain"] for line in told[2:]] == gains[3:]
+    assert "line 2 is not JSON" in printed("batch.py", "trajectories", given='{"preset": "case-1"}\n{', status=1)
+    assert "there are controllers" in printed("batch.py", "scenes", given="{}", status=1)
+
+
+for check in (quickstart, margins, tilt_gain, friction, batch):
     check()
     print(f"ok    {check.__name__}")

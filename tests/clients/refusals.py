@@ -1,8 +1,12 @@
-"""A check for schemathesis: what keeps to the schema is not refused for its form, else the contract is wider than the server."""
+"""For schemathesis: what keeps to the schema is not refused for its form, else the contract is wider than the server. And bodies of
+lines, which no schema describes.
+"""
 
+import json
 import re
 
 import schemathesis
+from hypothesis import strategies
 
 FORM = re.compile(r"^unknown field|; it must be |must be a JSON")
 # Values of a field that another field names, and the band of a tile: no schema knows their limits.
@@ -15,3 +19,9 @@ def refused_for_its_form(ctx, response, case):
         return
     for error in response.json()["errors"]:
         assert not FORM.search(error["detail"]) or NAMED.search(error["pointer"]), error
+
+
+VALUES = strategies.none() | strategies.booleans() | strategies.floats(allow_nan=False, allow_infinity=False) | strategies.text()
+REQUESTS = strategies.dictionaries(strategies.sampled_from(["preset", "scene", "impacts", "x"]) | strategies.text(), VALUES).map(json.dumps)
+LINES = strategies.lists(strategies.just('{"preset": "case-1"}') | REQUESTS | strategies.text(), max_size=5)
+schemathesis.openapi.media_type("application/x-ndjson", LINES.map(lambda lines: "\n".join(["{}", *lines]).encode()))
