@@ -45,11 +45,16 @@ pub(crate) async fn measure(time: Duration) -> io::Result<String> {
     sleep(warm).await;
     let (begin, cpu) = (server.memory_mib(), server.cpu_s());
     let start = Instant::now();
-    let mut on_the_way = vec![];
-    for _ in 0..10 {
-        sleep((time - warm) / 10).await;
-        on_the_way.push(format!("{:.0}", server.memory_mib()));
+    // What is held goes up and down with the answers under way, so that only means say whether it grows.
+    let mut tenths = [0.0; 10];
+    for mean in &mut tenths {
+        const LOOKS: u32 = 60;
+        for _ in 0..LOOKS {
+            sleep((time - warm) / 10 / LOOKS).await;
+            *mean += server.memory_mib() / f64::from(LOOKS);
+        }
     }
+    let growth = tenths[7..].iter().sum::<f64>() / tenths[..3].iter().sum::<f64>() - 1.0;
     let cpu = (server.cpu_s() - cpu) / start.elapsed().as_secs_f64();
     tasks.iter().for_each(JoinHandle::abort);
     // When all are gone, nothing is being computed any more.
@@ -71,9 +76,11 @@ pub(crate) async fn measure(time: Duration) -> io::Result<String> {
     );
     let _ = writeln!(
         text,
-        "- Memory after {:.0} s {begin:.0} MiB, then at ten moments up to the end {} MiB; CPU {:.0} % of a core.",
+        "- Memory after {:.0} s {begin:.0} MiB, then as the mean over each tenth of the time {} MiB: from the first three to the last \
+         three {:+.1} %. CPU {:.0} % of a core.",
         warm.as_secs_f64(),
-        on_the_way.join(", "),
+        tenths.map(|mean| format!("{mean:.0}")).join(", "),
+        100.0 * growth,
         100.0 * cpu
     );
     let [p50, p99] = [0.5, 0.99].map(|share| book.times.quantile(share));
