@@ -354,6 +354,8 @@ async fn a_server_that_closes_says_so() {
     assert_eq!(app.metrics.live_sessions.get(), 1);
     app.close();
     assert_eq!(client.closed().await, Some(1001));
+    // Who still gets in is told the same.
+    assert_eq!(open(address, "/v1/live?preset=case-1").await.closed().await, Some(1001));
     timeout(SOON, async {
         while app.metrics.live_sessions.get() > 0 {
             tokio::time::sleep(Duration::from_millis(5)).await;

@@ -70,11 +70,9 @@ async fn live_events(State(app): State<App>, ask: Ask) -> Result<Response, Probl
     Ok(([("x-accel-buffering", "no")], Sse::new(told)).into_response())
 }
 
-/// A place for one more live run, if there is one.
+/// A place for one more live run, if there is one. Also while the server closes: a run that is told so at once is come back to,
+/// and a browser takes an answer of events other than 200 for the end.
 fn admit(app: &App, ask: &Ask, bounds: Bounds) -> Result<((Counted, Share), Place), Problem> {
-    if app.is_closing() {
-        return Err(Problem::overloaded("the server is shutting down"));
-    }
     let share = app.live_places.take(ask.peer).map_err(|NoShare { held, free }| {
         Problem::overloaded(format!(
             "{held} live runs are open from this address, and {free} places are left for others"
