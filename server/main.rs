@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use clap::Parser;
 use equipoise::config::Config;
+use equipoise::limits::Limits;
 use equipoise::routes::App;
 use equipoise::{BUILD, limits, router, transport};
 use mimalloc::MiMalloc;
@@ -30,9 +31,11 @@ async fn main() -> ExitCode {
 }
 
 async fn run(mut config: Config) -> Result<(), String> {
-    if let Some(connections) = transport::fit_open_files(&mut config.limits) {
+    if transport::fit_open_files(&mut config.limits) {
+        let Limits { connections, live_sessions, .. } = config.limits;
         eprintln!(
-            "equipoise: the system's limit of open files allows {connections} connections; raise it with ulimit -n"
+            "equipoise: the system's limit of open files allows {connections} connections and {live_sessions} live runs; raise it \
+             with ulimit -n"
         );
     }
     let listener = TcpListener::bind(&config.listen).await.map_err(|error| cannot_listen(&config.listen, &error))?;

@@ -82,18 +82,26 @@ pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop:
     let _ = timeout(limits.shutdown_time, places.all_free()).await;
 }
 
-/// Raises how many files the process may open as far as it may, and lowers the number of connections to what then fits.
-/// The number if it was lowered.
-pub fn fit_open_files(limits: &mut Limits) -> Option<usize> {
+/// Raises how many files the process may open as far as it may, and lowers the numbers of connections and of live runs to what
+/// then fits. Whether it has lowered them.
+pub fn fit_open_files(limits: &mut Limits) -> bool {
     let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
     let raised = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum }).is_ok();
     // None is no limit.
-    let files = usize::try_from(if raised { maximum } else { current }?).ok()?;
-    let most = files.saturating_sub(limits::OTHER_FILES + limits.live_sessions).max(1);
-    (limits.connections > most).then(|| {
-        limits.connections = most;
-        most
-    })
+    let files = if raised { maximum } else { current };
+    files.and_then(|files| usize::try_from(files).ok()).is_some_and(|files| fit(limits, files))
+}
+
+fn fit(limits: &mut Limits, files: usize) -> bool {
+    let files = files.saturating_sub(limits::OTHER_FILES);
+    if limits.connections + limits.live_sessions <= files {
+        return false;
+    }
+    // Who has few has some of both.
+    let live_runs = files.saturating_sub(limits.connections).max(files / 4);
+    limits.live_sessions = limits.live_sessions.min(live_runs).max(1);
+    limits.connections = limits.connections.min(files.saturating_sub(limits.live_sessions)).max(1);
+    true
 }
 
 async fn accept(listener: &TcpListener) -> (TcpStream, SocketAddr) {
@@ -168,6 +176,20 @@ mod tests {
             let problem: serde_json::Value = serde_json::from_str(body).unwrap();
             assert_eq!(problem["status"], status);
         }
+    }
+
+    #[test]
+    fn few_files_are_shared_between_connections_and_live_runs() {
+        let fitted = |files| {
+            let mut limits = Limits::default();
+            fit(&mut limits, files).then_some((limits.connections, limits.live_sessions))
+        };
+        let Limits { connections, live_sessions, .. } = Limits::default();
+        let enough = connections + live_sessions + limits::OTHER_FILES;
+        assert_eq!(fitted(enough), None);
+        assert_eq!(fitted(enough - 1), Some((connections - 1, live_sessions)));
+        assert_eq!(fitted(1024), Some((720, 240)));
+        assert_eq!(fitted(0), Some((1, 1)));
     }
 
     #[tokio::test]
