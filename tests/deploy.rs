@@ -104,6 +104,8 @@ fn the_unit_gives_the_server_the_files_and_the_time_it_needs() {
     let number = |name: &str| unit(name)[0].parse::<u64>().unwrap();
     let files = limits.connections + limits.live_sessions + limits::OTHER_FILES;
     assert!(number("LimitNOFILE") >= files as u64);
+    let said = format!("under {},{:03} leaves it fewer", files / 1000, files % 1000);
+    assert!(shipped("README.md").contains(&said), "{said}");
     assert!(Duration::from_secs(number("TimeoutStopSec")) > limits.shutdown_time + limits::GOODBYE_TIME);
 }
 
