@@ -8,7 +8,7 @@ use std::time::Duration;
 use serde_json::Value;
 use tokio::task::JoinHandle;
 
-use crate::asking::{Answer, Ask, Failed, ask};
+use crate::asking::{Answer, Ask, Failed, ask, begin};
 use crate::following::{Follower, Over};
 use crate::programs::{Nginx, Replica, folder, until};
 use crate::support::socket::{now_ms, numbers};
@@ -89,10 +89,21 @@ fn breaks(followers: &[Follower]) -> Vec<usize> {
 /// Long work on both replicas, as much on one as on the other: answers that are sent when they are ready, by POST, and answers that are
 /// sent as they are made.
 async fn work_on(replicas: [&Replica; 2], nginx: &Nginx) -> Vec<JoinHandle<Result<Answer, Failed>>> {
-    let mut asked = Vec::new();
+    let (address, mut asked) = (nginx.address, Vec::new());
     for kind in [Ask::get(streamed()), Ask::get(streamed()), posted_region(SIDE), posted_region(SIDE)] {
-        let address = nginx.address;
-        asked.push(tokio::spawn(async move { ask(address, &kind).await }));
+        asked.push(match kind.method {
+            "POST" => tokio::spawn(async move { ask(address, &kind).await }),
+            _ => {
+                // It has begun to be sent when its head and a piece are here.
+                let mut begun = begin(address, &kind).await.unwrap();
+                let first = begun.piece().await.unwrap().unwrap();
+                tokio::spawn(async move {
+                    let mut answer = begun.whole().await?;
+                    answer.body.splice(0..0, first);
+                    Ok(answer)
+                })
+            }
+        });
         let count = asked.len() as f64;
         until("it is computed", async || {
             replicas[0].metric("equipoise_jobs_running").await + replicas[1].metric("equipoise_jobs_running").await
@@ -106,7 +117,8 @@ async fn work_on(replicas: [&Replica; 2], nginx: &Nginx) -> Vec<JoinHandle<Resul
     asked
 }
 
-const SIDE: u32 = 150;
+/// Of a map that takes a second or more, on however many cores.
+const SIDE: u32 = 200;
 
 fn streamed() -> String {
     region(SIDE, "ndjson")
@@ -116,8 +128,9 @@ fn streamed() -> String {
 async fn what_is_computed_when_a_replica_is_lost_is_computed_by_another() {
     let Some(program) = nginx() else { return };
     let folder = folder("under-way");
-    // Longer than it takes on the slowest machine.
-    let [mut one, two] = ["one", "two"].map(|name| Replica::start(&folder, name, &["--shutdown-time", "60"]));
+    // To stop takes less on the slowest machine, and to compute as long on the fastest.
+    let [mut one, two] =
+        ["one", "two"].map(|name| Replica::start(&folder, name, &["--shutdown-time", "60", "--permits", "1"]));
     let nginx = Nginx::start(program, &folder, &[&one, &two], |conf| conf).await;
     let mut right = Vec::new();
     for kind in [Ask::get(streamed()), posted_region(SIDE)] {
