@@ -108,7 +108,8 @@ fn look_for_contact(flight: &Flight, eye: impl Eye) -> Result<f64, TooManyPieces
     }
     let start = if flight.clearance == 0.0 { guess(flight) } else { guess_from_above(flight) };
     let gap = eye.gap(flight, start);
-    if gap.slope < 0.0 && start > 0.0 {
+    // Where l θ̇² is about G the guess may be off by any power of ten, which Newton's halving would take for ever to make up.
+    if gap.slope < 0.0 && start > 0.0 && gap.value > 0.25 * start * gap.slope {
         return Ok(newton(flight, eye, start, gap));
     }
     let end = latest_contact(flight);
@@ -149,14 +150,28 @@ fn guess_from_above(flight: &Flight) -> f64 {
     let (sin, cos) = flight.sin_cos_theta;
     let v = flight.start.y_dot + flight.contact_distance * flight.start.theta_dot * sin;
     let a = flight.gravity - flight.bulge() * cos;
-    (v + (v * v + 2.0 * a * flight.clearance).max(0.0).sqrt()) / a
+    let root = (v * v + 2.0 * a * flight.clearance).max(0.0).sqrt();
+    // Neither is a difference.
+    if v < 0.0 { 2.0 * flight.clearance / (root - v) } else { (v + root) / a }
 }
 
 /// The time by which the centre of gravity has fallen to y = −l, so that the contact came before or is there.
 fn latest_contact(flight: &Flight) -> f64 {
-    let room = flight.clearance + flight.contact_distance * (1.0 + flight.sin_cos_theta.1);
+    let (sin, cos) = flight.sin_cos_theta;
+    // 1 + cos θ, near a rod that stands on its head too.
+    let rise = if cos < 0.0 { sin * sin / (1.0 - cos) } else { 1.0 + cos };
+    let room = flight.clearance + flight.contact_distance * rise;
+    passes(flight, room).1
+}
+
+/// When the centre of gravity was and will be `drop`, m, lower than at the start, s: the roots of ½Gt² − ẏt − d, neither from a
+/// difference, which would leave a fall in little gravity few digits.
+fn passes(flight: &Flight, drop: f64) -> (f64, f64) {
     let y_dot = flight.start.y_dot;
-    (y_dot + (y_dot * y_dot + 2.0 * flight.gravity * room).max(0.0).sqrt()) / flight.gravity
+    let sum = y_dot.abs() + (y_dot * y_dot + 2.0 * flight.gravity * drop).max(0.0).sqrt();
+    let far = sum / flight.gravity;
+    let near = if sum > 0.0 { 2.0 * drop / sum } else { 0.0 };
+    if y_dot < 0.0 { (-far, near) } else { (-near, far) }
 }
 
 /// Newton's iteration on a concave gap from `t`, where the gap is `gap` and falls.
@@ -168,7 +183,8 @@ fn latest_contact(flight: &Flight) -> f64 {
 fn newton(flight: &Flight, eye: impl Eye, mut t: f64, mut gap: Gap) -> f64 {
     for steps in 0..MAX_STEPS {
         let step = Step::new(flight, t, &gap);
-        if step.left_out <= step.negligible {
+        // A step most of the way back to zero would keep the rounding of the longer time.
+        if step.left_out <= step.negligible && step.newton > -0.5 * t {
             return step.refined;
         }
         if steps > 0 && step.newton >= 0.0 {
@@ -176,6 +192,10 @@ fn newton(flight: &Flight, eye: impl Eye, mut t: f64, mut gap: Gap) -> f64 {
         }
         t += step.newton;
         gap = eye.gap(flight, t);
+        // The top: a double root, to rounding.
+        if gap.slope >= 0.0 {
+            return t;
+        }
     }
     t
 }
@@ -257,14 +277,11 @@ fn first_descent_spinning(
     let end = latest.min(limit);
     // While the centre of gravity is higher than l, the rod cannot reach the table.
     let State { y_dot, .. } = flight.start;
-    let height = flight.clearance + flight.contact_distance * (flight.sin_cos_theta.1 - 1.0);
+    let (sin, cos) = flight.sin_cos_theta;
+    let versine = if cos > 0.0 { sin * sin / (1.0 + cos) } else { 1.0 - cos };
+    let height = flight.clearance - flight.contact_distance * versine;
     let reach = y_dot * y_dot + 2.0 * flight.gravity * height;
-    let (leaves, returns) = if reach > 0.0 {
-        let root = reach.sqrt();
-        ((y_dot - root) / flight.gravity, (y_dot + root) / flight.gravity)
-    } else {
-        (end, end)
-    };
+    let (leaves, returns) = if reach > 0.0 { passes(&flight, height) } else { (end, end) };
     let mut budget = MAX_PIECES;
     for (from, to) in [(0.0, leaves.min(end)), (returns.max(0.0), end)] {
         above |= reach > 0.0 && from > 0.0;

@@ -152,7 +152,9 @@ fn fall<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut 
         near &= turned <= Near::REACH;
         let refined = step.left_out.to_f64() <= step.negligible.to_f64();
         let better = if refined { step.refined.to_f64() } else { t + step.newton.to_f64() };
-        let apart = scratch.apart[lane] | unless((turned <= L::REACH) & (gap.slope.to_f64() < 0.0));
+        // As where `contact_time::first_contact` does not start from the guess.
+        let close = !first | (gap.value.to_f64() > 0.25 * t * gap.slope.to_f64());
+        let apart = scratch.apart[lane] | unless((turned <= L::REACH) & (gap.slope.to_f64() < 0.0) & close);
         if first {
             scratch.t[lane] = better;
             scratch.found[lane] = u64::from(refined);

@@ -1,7 +1,7 @@
 //! Exact identities of the map, at any state: energy, determinant, reversibility, mirror symmetry, and the derivative
 //! against eq. (14) and against differences computed with 50 digits.
 
-use equipoise_physics::contact_time::first_contact;
+use equipoise_physics::contact_time::{first_contact, first_descent};
 use equipoise_physics::flight::Flight;
 use equipoise_physics::impact::{Rod, State};
 use equipoise_physics::jacobian::{finite_difference, jacobian};
@@ -123,6 +123,51 @@ proptest! {
         let grazing = flight.gap(t).slope.abs() < 1e-4;
         prop_assert!((found - t).abs() <= 1e-7 || grazing, "found {found}, marched {t}");
         prop_assert!(flight.gap(found).value.abs() <= 1e-11 * (1.0 + curvature), "{}", flight.gap(found).value);
+    }
+}
+
+/// Flights whose ends were lost in rounding, or in a guess that was wrong by powers of ten; roots with 40 digits.
+#[test]
+fn contact_times_keep_their_digits_in_odd_flights() {
+    for (theta, theta_dot, y_dot, clearance, contact_distance, gravity, expected) in [
+        // l θ̇² = G.
+        (-3.575_374_014_647_543_6e-8, 1.0, 1.140_000_478_658_209_2, 0.0, 0.001, 0.001, 2_280.001_220_253_364),
+        // Downwards in little gravity: spinning, straight, and from next to nothing.
+        (
+            5.000_002_404_418_193e-10,
+            6.283_185_307_179_586,
+            -1.2,
+            5.000_002_404_418_193e-10,
+            10.0,
+            0.001,
+            4.166_669_065_010_124e-10,
+        ),
+        (
+            3.141_592_653_589_793,
+            0.0,
+            -1.853_520_685_703_823_1,
+            1.570_796_326_794_896_6,
+            0.2,
+            0.001,
+            0.847_272_654_377_277,
+        ),
+        (-0.348, 0.0015, -188.306_087_800_164_16, 1e-9, 0.0015, 0.001, 5.310_502_743_737_77e-12),
+        (
+            2.651_127_687_818_921e-6,
+            -1.570_796_326_794_896_8,
+            -1.570_796_326_794_896_8,
+            2.651_127_687_818_921e-6,
+            10.0,
+            0.001,
+            1.687_737_931_889_607_9e-6,
+        ),
+    ] {
+        let start = State { theta, x_dot: 0.0, y_dot, theta_dot };
+        let flight = Flight { start, sin_cos_theta: trig::sin_cos(theta), clearance, contact_distance, gravity };
+        for found in [first_contact(&flight).ok(), first_descent(&flight).unwrap()] {
+            let off = (found.unwrap() - expected).abs() / expected;
+            assert!(off <= 1e-9, "{found:?}, not {expected}: {flight:?}");
+        }
     }
 }
 
