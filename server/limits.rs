@@ -176,6 +176,10 @@ pub const QUERY_PARAMETERS: usize = 512;
 /// Levels of objects and arrays in a request. The deepest valid one has five; reading recurses once per level.
 pub const DEPTH: usize = 16;
 
+/// Longest name in a JSON body, bytes. The pointer of every error repeats all names down to it, so that 64 errors below one name
+/// of 250 KiB would be an answer of 16 MiB.
+pub const NAME_BYTES: usize = 256;
+
 /// Errors reported in one problem. A client mends a few at a time; more would only be bytes.
 pub const ERRORS: usize = 64;
 

@@ -1,9 +1,9 @@
-//! Reads a JSON body strictly: depth is bounded, a key that comes twice is an error rather than a silent choice, and a
+//! Reads a JSON body strictly: depth and names are bounded, a key that comes twice is an error rather than a silent choice, and a
 //! number too large for double precision is an error with its place rather than a broken body.
 
 use std::fmt;
 
-use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
 use super::problem::{Problem, shortened};
@@ -124,6 +124,13 @@ impl<'de> Visitor<'de> for Strict<'_> {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Value, A::Error> {
         let mut fields = Map::new();
         while let Some(name) = map.next_key::<String>()? {
+            if name.len() > limits::NAME_BYTES {
+                let (shown, bytes, most) = (shortened(&name), name.len(), limits::NAME_BYTES);
+                let pointer = self.0.pointer();
+                self.0.errors.push(pointer, format!("the name {shown:?} has {bytes} bytes; a name has at most {most}"));
+                map.next_value::<IgnoredAny>()?;
+                continue;
+            }
             let value = self.0.within(name.clone(), |reading| map.next_value_seed(Strict(reading)))?;
             if fields.contains_key(&name) {
                 let pointer = join(&self.0.pointer(), &name);
@@ -183,6 +190,18 @@ mod tests {
     fn a_number_too_large_has_its_pointer() {
         let (status, pointer, detail) = refused(r#"{"ok": 1, "scene": {"body": [0, 1e999]}}"#);
         assert_eq!((status, pointer.as_str()), (422, "/scene/body/1"), "{detail}");
+    }
+
+    #[test]
+    fn names_are_bounded() {
+        let named = |bytes: usize| format!("{{\"scene\": {{\"{}\": [1e999, {{}}]}}}}", "é".repeat(bytes / 2));
+        let (status, pointer, detail) = refused(&named(limits::NAME_BYTES + 2));
+        assert_eq!((status, pointer.as_str()), (422, "/scene"));
+        assert!(detail.ends_with("…\" has 258 bytes; a name has at most 256"), "{detail}");
+        assert!(object(named(limits::NAME_BYTES).replace("1e999", "1").as_bytes()).is_ok());
+        // However many errors there are below it, the answer is no longer for it.
+        let twice = format!("{{\"{}\": {{{}}}}}", "x".repeat(100_000), vec!["\"a\": 1"; 100].join(","));
+        assert!(object(twice.as_bytes()).unwrap_err().to_json().len() < 1000);
     }
 
     #[test]
