@@ -10,6 +10,7 @@ use serde::{Serialize, Serializer};
 
 use super::scene::{Resolved, build, read_draft};
 use super::tile::Tile;
+use crate::http::problem::shortened;
 use crate::http::{Errors, Reader};
 use crate::limits;
 use crate::picture::{HeatAxis, HeatMap, heat_map};
@@ -138,7 +139,7 @@ fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Axis> {
             _ => None,
         };
         if let (Some(path), None) = (path, &range) {
-            axis.refuse("parameter", format!("parameter is {path:?}; it must be a field of a scene whose values are numbers, such as table.tilt_gain"));
+            axis.refuse("parameter", format!("parameter is {:?}; it must be a field of a scene whose values are numbers, such as table.tilt_gain", shortened(path)));
         }
         // Without a range the ends are read all the same, so that they count as known.
         let ends = range.clone().unwrap_or(f64::MIN..=f64::MAX);

@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 
 use super::presets;
 use crate::http::leaf::{self, Source};
+use crate::http::problem::shortened;
 use crate::http::reader::join;
 use crate::http::{Errors, Reader};
 
@@ -50,7 +51,10 @@ pub fn read_draft(reader: &mut Reader<'_, '_>) -> Option<Draft> {
     let mut draft = Draft::default();
     if let Some(name) = preset {
         let Some(preset) = presets::find(name) else {
-            reader.refuse("preset", format!("preset is {name:?}; it must be {}", leaf::one_of(&presets::names())));
+            reader.refuse(
+                "preset",
+                format!("preset is {:?}; it must be {}", shortened(name), leaf::one_of(&presets::names())),
+            );
             return None;
         };
         draft = preset.draft();
@@ -122,7 +126,7 @@ impl Walk<'_> {
                 self.vertices(value, &pointer);
             } else {
                 let known = known_beside(&path).join(", ");
-                self.errors.push(pointer, format!("unknown field `{path}`; known here: {known}"));
+                self.errors.push(pointer, format!("unknown field `{}`; known here: {known}", shortened(&path)));
             }
         }
     }
