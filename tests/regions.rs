@@ -102,6 +102,37 @@ async fn the_boundary_is_where_the_residue_is_0_or_1() {
 }
 
 #[tokio::test]
+async fn a_run_that_never_meets_the_table_ends_at_once() {
+    // Thrown up so fast that a flight's plan for the table is missed; and turned so far that another corner is first.
+    let thrown = json!({"body": {"contact_distance": 0.275, "radius_of_gyration": 0.265}, "table": {"tilt_gain": 1.75},
+        "noise": {"model": "plan", "timing_sd": 0.0005}, "release": {"height": 0.275, "y_dot": 91.3}});
+    let turned = json!({"body": {"vertices": [[0, 0], [0.1, 0.2], [-0.1, 0.2]]}, "table": {"tilt_gain": 1.75},
+        "release": {"height": 0.5, "theta_dot": 5}});
+    for (scene, expected) in [(thrown, "missed"), (turned, "other_vertex")] {
+        let server = Server::start();
+        let axis = |parameter, from, to| json!({"parameter": parameter, "from": from, "to": to, "count": 3});
+        let request = json!({"scene": scene, "impacts": 9,
+            "x": axis("release.theta_dot", -9.0, 9.0), "y": axis("table.tilt_gain", 0.5, 2.0)});
+        let map = server.post("/v1/regions", &request).await.expect(200).json();
+        let names = map["outcome_names"].as_array().unwrap();
+        let mut seen = false;
+        for (row, tilt_gain) in map["y"].as_array().unwrap().iter().enumerate() {
+            for (column, spin) in map["x"].as_array().unwrap().iter().enumerate() {
+                let mut alone = json!({"scene": scene, "impacts": 9});
+                alone["scene"]["table"]["tilt_gain"] = tilt_gain.clone();
+                alone["scene"]["release"]["theta_dot"] = spin.clone();
+                let run = server.post("/v1/trajectories", &alone).await.expect(200).json();
+                let code = map["outcomes"][row][column].as_u64().unwrap() as usize;
+                assert_eq!(names[code], run["outcome"]["kind"], "{alone}");
+                assert_eq!(map["values"][row][column], run["outcome"]["impacts"], "{alone}");
+                seen |= map["values"][row][column] == 0 && names[code] == expected;
+            }
+        }
+        assert!(seen, "none is {expected} before its first contact: {map}");
+    }
+}
+
+#[tokio::test]
 async fn scenes_that_cannot_be_have_no_run() {
     let server = Server::start();
     let target = "/v1/regions?preset=case-1&x.parameter=release.height&x.from=0.05&x.to=0.3&x.count=6\

@@ -226,8 +226,12 @@ fn start_of(scene: &Scene) -> Option<(Start, Option<Friction>)> {
     start.fits().then_some((start, friction))
 }
 
+/// None once `go_on` said `false`. What never meets the table has ended before its first contact.
 fn run_alone(scene: &Scene, impacts: u64, go_on: &mut dyn FnMut() -> bool) -> Option<End> {
-    let mut orbit = scene.orbit().ok()?;
+    let mut orbit = match scene.orbit() {
+        Ok(orbit) => orbit,
+        Err(none) => return Some(End { impacts: 0, outcome: none.ending(0.0, 0.0).into(), max_theta: 0.0 }),
+    };
     let mut max_theta: f64 = 0.0;
     let ending = run(&mut orbit, impacts, |contact| {
         max_theta = max_theta.max(contact.state.theta.abs());
