@@ -1,0 +1,400 @@
+//! Random scenes through every resource: by POST and by the GET that says the same, in every format it gives. Whatever is
+//! answered is in the contract (the frame sees to that), says the same in each format, and is refused only with reasons that
+//! point to what was sent.
+//!
+//! Not here: what nobody should send (`hostile`, `fuzzed`), and what is right (the other files).
+
+mod support;
+
+use equipoise_physics::scene::{FIELDS, Kind, Name, VERTICES};
+use proptest::prelude::*;
+use proptest::sample::select;
+use serde_json::{Map, Value, json};
+use support::contract::{self, DOCUMENT};
+use support::csv::Table;
+use support::{Answer, Server};
+use tokio::runtime::Runtime;
+
+/// Values that a lab would have; the others come from the whole range of their field.
+const USUAL: [(Name, f64, f64); 14] = [
+    (Name::ContactDistance, 0.05, 0.5),
+    (Name::RadiusOfGyration, 0.03, 0.5),
+    (Name::Gravity, 1.0, 10.0),
+    (Name::Incline, 0.1, 1.57),
+    (Name::Restitution, 0.3, 1.0),
+    (Name::Friction, 0.0, 0.6),
+    (Name::TiltGain, 0.5, 3.0),
+    (Name::EnergyGain, -0.1, 0.3),
+    (Name::TargetHeight, 0.2, 0.8),
+    (Name::Theta, -0.3, 0.3),
+    (Name::ThetaDot, -2.0, 2.0),
+    (Name::XDot, -0.5, 0.5),
+    (Name::TimingSd, 0.0, 0.002),
+    (Name::AngleSd, 0.0, 0.01),
+];
+
+/// What a random scene is made of: where in its range each field is, if it is said; and what bounces.
+#[derive(Clone, Debug)]
+struct Made {
+    fields: Vec<Option<(f64, bool)>>,
+    above: f64,
+    body: Body,
+    tilts: Tilts,
+}
+
+#[derive(Clone, Debug)]
+enum Body {
+    Preset(usize),
+    Rod,
+    Point,
+    /// Radii of the corners, in turn.
+    Polygon(Vec<f64>),
+}
+
+/// What moves the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Tilts {
+    Gain,
+    Feedback,
+}
+
+prop_compose! {
+    fn made()(
+        fields in prop::collection::vec(prop::option::weighted(0.35, (0.0..=1.0, prop::bool::weighted(0.15))), FIELDS.len()),
+        above in 0.0..1.0,
+        body in prop_oneof![
+            2 => (0..64_usize).prop_map(Body::Preset),
+            5 => Just(Body::Rod),
+            1 => Just(Body::Point),
+            2 => prop::collection::vec(0.05..0.2, 3..9).prop_map(Body::Polygon),
+        ],
+        tilts in prop_oneof![6 => Just(Tilts::Gain), 1 => Just(Tilts::Feedback)],
+    ) -> Made {
+        Made { fields, above, body, tilts }
+    }
+}
+
+impl Made {
+    /// The scene of a request, with its preset if it has one. Mostly it does not contradict itself.
+    fn put_into(&self, request: &mut Value, presets: &[String], plain: bool) {
+        let mut scene = json!({});
+        let tilts = if plain { Tilts::Gain } else { self.tilts };
+        let is_point = matches!(self.body, Body::Point);
+        match &self.body {
+            Body::Preset(index) => request["preset"] = json!(presets[index % presets.len()]),
+            Body::Rod => {}
+            Body::Point => put(&mut scene, Name::PointMass.row().path, json!(true)),
+            Body::Polygon(radii) => {
+                let corner = |(index, radius): (usize, &f64)| {
+                    let angle = std::f64::consts::TAU * (index as f64 / radii.len() as f64 - 0.25);
+                    json!([radius * angle.cos(), radius * angle.sin()])
+                };
+                put(&mut scene, VERTICES, radii.iter().enumerate().map(corner).collect());
+            }
+        }
+        let said = |name: Name| self.fields[name as usize].is_some();
+        let still = self.fields[Name::Strike as usize].is_some_and(|(share, _)| share >= 0.5);
+        for row in &FIELDS {
+            let group = row.group();
+            let fits = match row.name {
+                Name::Friction | Name::Slide if plain => false,
+                _ if plain && ["table.feedback.", "noise."].iter().any(|group| row.path.starts_with(group)) => false,
+                Name::PointMass => false,
+                Name::ContactDistance | Name::RadiusOfGyration => matches!(self.body, Body::Rod),
+                Name::ContactVertex => false,
+                Name::Theta | Name::ThetaDot | Name::Friction | Name::Slide | Name::Law if is_point => false,
+                Name::EnergyGain | Name::AssumedRestitution if still => false,
+                Name::TiltGain => tilts == Tilts::Gain,
+                _ if row.path.starts_with("table.feedback.") => tilts == Tilts::Feedback,
+                // A table with limits soon ends its run; let some do.
+                _ if row.path.starts_with("table.limits.") => self.above < 0.2,
+                _ => group != "noise" || !is_point,
+            };
+            let needed = match row.name {
+                Name::TargetHeight => said(Name::EnergyGain) && !still,
+                _ => row.required && !matches!(self.body, Body::Preset(_)),
+            };
+            if fits && (said(row.name) || needed) {
+                put(&mut scene, row.path, self.value(row.name));
+            }
+        }
+        if tilts == Tilts::Feedback && matches!(self.body, Body::Preset(_)) {
+            put(&mut scene, Name::TiltGain.row().path, Value::Null);
+        }
+        if !matches!(self.body, Body::Preset(_)) {
+            let length = scene.pointer("/body/contact_distance").and_then(Value::as_f64).unwrap_or(0.3);
+            put(&mut scene, Name::Height.row().path, json!(length * (1.0 + self.above)));
+        }
+        if scene != json!({}) {
+            request["scene"] = scene;
+        }
+    }
+
+    fn value(&self, name: Name) -> Value {
+        let (share, anything) = self.fields[name as usize].unwrap_or((0.5, false));
+        match name.row().kind {
+            Kind::Number { minimum, maximum } => {
+                let usual = USUAL.iter().find(|(usual, ..)| *usual == name && !anything);
+                let (low, high) = usual.map_or((minimum, maximum), |(_, low, high)| (*low, *high));
+                json!((low + share * (high - low)).clamp(minimum, maximum))
+            }
+            Kind::Integer { maximum } => json!((share * maximum as f64) as u64),
+            Kind::Choice(words) => json!(words[((share * words.len() as f64) as usize).min(words.len() - 1)]),
+            Kind::Flag => json!(true),
+        }
+    }
+}
+
+fn put(scene: &mut Value, path: &str, value: Value) {
+    let mut at = scene;
+    for part in path.split('.') {
+        at = at.as_object_mut().expect("a group").entry(part).or_insert_with(|| Value::Object(Map::new()));
+    }
+    *at = value;
+}
+
+/// The query that says the same as a body. A value that is taken back is the word for it.
+fn query(body: &Value) -> String {
+    fn below(path: &str, value: &Value, into: &mut Vec<(String, String)>) {
+        let inner = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+        match value {
+            Value::Object(fields) => fields.iter().for_each(|(name, value)| below(&inner(name), value, into)),
+            Value::Array(items) => {
+                items.iter().enumerate().for_each(|(index, item)| below(&inner(&index.to_string()), item, into));
+            }
+            Value::String(text) => into.push((path.to_owned(), text.clone())),
+            other => into.push((path.to_owned(), other.to_string())),
+        }
+    }
+    let mut parameters = Vec::new();
+    below("", body, &mut parameters);
+    form_urlencoded::Serializer::new(String::new()).extend_pairs(parameters).finish()
+}
+
+/// A resource as it is tried.
+struct Resource {
+    path: &'static str,
+    /// Whether it is for contacts without friction, noise and feedback alone.
+    plain: bool,
+    /// How many rows of CSV its JSON makes.
+    rows: fn(&Value) -> usize,
+    /// How many lines of NDJSON, beside the last one.
+    lines: fn(&Value) -> usize,
+    /// Whether it draws.
+    draws: bool,
+}
+
+/// One that draws, and whose lines of NDJSON are the rows of CSV.
+fn resource(path: &'static str, rows: fn(&Value) -> usize) -> Resource {
+    Resource { path, plain: false, rows, lines: rows, draws: true }
+}
+
+/// Tries a resource with random scenes beside random parameters, so many times.
+fn hold(resource: &Resource, parameters: impl Strategy<Value = Value>, cases: u32) {
+    let (runtime, server) = (Runtime::new().expect("a runtime"), Server::start());
+    let listed = runtime.block_on(server.get("/v1/scenes")).json();
+    let name = |preset: &Value| preset["name"].as_str().expect("a name").to_owned();
+    let presets: Vec<String> = listed["scenes"].as_array().expect("presets").iter().map(name).collect();
+    let answered = std::cell::Cell::new(0);
+    let config =
+        ProptestConfig { cases, failure_persistence: None, max_shrink_iters: 200, ..ProptestConfig::default() };
+    proptest!(config, |(made in made(), mut request in parameters, pixels in prop::bool::weighted(0.05))| {
+        made.put_into(&mut request, &presets, resource.plain);
+        let is_answered = runtime.block_on(ask(&server, resource, &request, pixels));
+        answered.set(answered.get() + u32::from(is_answered));
+    });
+    println!("{}: {} of {cases} answered", resource.path, answered.get());
+    assert!(answered.get() * 5 >= cases, "{}: only {} of {cases} answered", resource.path, answered.get());
+}
+
+/// Whether the request was answered and not refused. Panics where anything is wrong.
+async fn ask(server: &Server, resource: &Resource, request: &Value, pixels: bool) -> bool {
+    let path = resource.path;
+    let posted = server.post(path, request).await;
+    let target = format!("{path}?{}", query(request));
+    let asked = server.get(&target).await;
+    assert_eq!(asked.status, posted.status, "{target}: {request}");
+    if posted.status == 422 {
+        assert_eq!(asked.pointers(), posted.pointers(), "{request}");
+        for pointer in posted.pointers() {
+            let known = request.pointer(&pointer).is_some() || names_a_field(path, &pointer);
+            assert!(known, "{pointer} of {request}");
+        }
+        return false;
+    }
+    assert_eq!(posted.status, 200, "{request}: {}", posted.text());
+    assert_eq!(asked.etag(), posted.etag(), "{request}");
+    assert!(asked.raw == posted.raw, "{request} by GET and by POST");
+    let json = posted.json();
+    let csv = server.post(&format!("{path}?format=csv"), request).await.expect(200);
+    let table = Table::parse(csv.text()).expect("RFC 4180");
+    for cell in table.rows.iter().flatten() {
+        let word = cell.trim_start_matches('-').to_ascii_lowercase();
+        assert!(!["nan", "inf", "infinity"].contains(&word.as_str()), "{cell} in the CSV of {request}");
+    }
+    let lines = server.get(&format!("{target}&format=ndjson")).await.expect(200).text().lines().count();
+    assert_eq!((resource.lines)(&json) + 1, lines, "rows of JSON and lines of NDJSON, {request}");
+    assert_eq!((resource.rows)(&json), table.rows.len(), "rows of JSON and CSV, {request}");
+    if resource.draws {
+        picture(server.get(&format!("{target}&format=svg")).await, request);
+        if pixels {
+            picture(server.get(&format!("{target}&format=png")).await, request);
+        }
+    }
+    true
+}
+
+/// How many items the array has that is there, or each column of the table.
+fn length(part: &Value) -> usize {
+    let columns = part.as_object().map(|columns| columns.values().next().expect("a column"));
+    columns.unwrap_or(part).as_array().expect("an array").len()
+}
+
+/// A picture, or a format that this request does not have, which is said as such.
+fn picture(answer: Answer, request: &Value) {
+    assert!(matches!(answer.status.as_u16(), 200 | 406 | 422), "{} for the picture of {request}", answer.status);
+}
+
+/// Whether a pointer leads to what may be said, and was left to its default or is missing: a field of a scene, or one of the request.
+fn names_a_field(path: &str, pointer: &str) -> bool {
+    let ends = |path: &str| pointer.ends_with(&format!("/{}", path.replace('.', "/")));
+    let body = &DOCUMENT["paths"][path]["post"]["requestBody"]["content"]["application/json"]["schema"];
+    let asked = contract::resolved(body)["properties"].get(pointer.trim_start_matches('/'));
+    asked.is_some() || FIELDS.iter().map(|row| row.path).chain([VERTICES, "body"]).any(ends)
+}
+
+fn object(parts: Vec<(&'static str, Option<Value>)>) -> Value {
+    Value::Object(parts.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))).collect())
+}
+
+fn maybe<S: Strategy>(strategy: S) -> impl Strategy<Value = Option<Value>>
+where
+    S::Value: Into<Value>,
+{
+    prop::option::of(strategy.prop_map(Into::into))
+}
+
+fn word(words: &'static [&'static str]) -> impl Strategy<Value = Value> {
+    select(words).prop_map(|word| json!(word))
+}
+
+fn state() -> impl Strategy<Value = Value> {
+    (-0.3..0.3, -0.3..0.3, -3.0..-0.2, -2.0..2.0).prop_map(|(theta, x_dot, y_dot, theta_dot)| {
+        json!({"theta": theta, "x_dot": x_dot, "y_dot": y_dot, "theta_dot": theta_dot})
+    })
+}
+
+#[test]
+fn trajectories_of_random_scenes() {
+    let parameters = (
+        1..40_u64,
+        maybe(0..4_u64),
+        maybe(word(&["auto", "map", "linear", "extended"])),
+        maybe((-15.0..-1.0).prop_map(|power| 10_f64.powf(power))),
+        maybe(0..2_000_000_000_000_u64),
+        prop::option::weighted(0.3, (1..20_u64, -1.0..1.0)),
+    )
+        .prop_map(|(impacts, samples, method, tolerance, epoch, kick)| {
+            let kick = kick.map(|(impact, speed)| json!([{"impact": impact, "kick": {"x_dot": speed}}]));
+            object(vec![
+                ("impacts", Some(json!(impacts))),
+                ("samples_per_flight", samples),
+                ("method", method),
+                ("tolerance", tolerance),
+                ("epoch", epoch),
+                ("interventions", kick),
+            ])
+        });
+    hold(&resource("/v1/trajectories", |json| length(&json["impacts"])), parameters, 40);
+}
+
+#[test]
+fn jacobians_of_random_scenes() {
+    let at = prop_oneof![
+        Just(json!("fixed_point")),
+        (1..20_u64).prop_map(|impact| json!({"impact": impact})),
+        state().prop_map(|state| json!({"state": state})),
+    ];
+    let parameters = (maybe(at), maybe(1..5_u64), maybe(word(&["exact", "finite_difference"])))
+        .prop_map(|(at, period, method)| object(vec![("at", at), ("period", period), ("method", method)]));
+    hold(&Resource { draws: false, ..resource("/v1/jacobians", |json| length(&json["matrix"])) }, parameters, 60);
+}
+
+#[test]
+fn verdicts_on_random_scenes() {
+    let off = (0.0..0.01, 0.0..0.01, 0.0..0.1).prop_map(|(contact_distance, radius_of_gyration, restitution)| {
+        json!({"contact_distance": contact_distance, "radius_of_gyration": radius_of_gyration, "restitution": restitution})
+    });
+    let parameters =
+        (1..200_u64, maybe(any::<bool>()), prop::option::weighted(0.2, off)).prop_map(|(impacts, basin, off)| {
+            object(vec![("impacts", Some(json!(impacts))), ("basin", basin), ("tolerances", off)])
+        });
+    hold(&resource("/v1/stability", |_| 1), parameters, 30);
+}
+
+#[test]
+fn regions_about_random_scenes() {
+    let axis = || {
+        (0..USUAL.len(), 0.0..1.0, 0.0..1.0, 1..6_u64).prop_map(|(field, from, to, count)| {
+            let (name, low, high) = USUAL[field];
+            let at = |share: f64| low + share * (high - low);
+            json!({"parameter": name.row().path, "from": at(from), "to": at(to), "count": count})
+        })
+    };
+    let quantity = word(&["survival", "max_theta", "residue", "spectral_radius"]);
+    let parameters = (axis(), axis(), 1..60_u64, maybe(quantity)).prop_map(|(x, y, impacts, quantity)| {
+        object(vec![("x", Some(x)), ("y", Some(y)), ("impacts", Some(json!(impacts))), ("quantity", quantity)])
+    });
+    hold(
+        &Resource {
+            lines: |json| length(&json["y"]),
+            ..resource("/v1/regions", |json| length(&json["x"]) * length(&json["y"]))
+        },
+        parameters,
+        50,
+    );
+}
+
+#[test]
+fn ensembles_of_random_scenes() {
+    let parameters = (1..8_u64, 1..60_u64, maybe(0..1_u64 << 53)).prop_map(|(runs, impacts, seed)| {
+        object(vec![("runs", Some(json!(runs))), ("impacts", Some(json!(impacts))), ("seed", seed)])
+    });
+    hold(&resource("/v1/ensembles", |json| length(&json["survival"])), parameters, 40);
+}
+
+#[test]
+fn periodic_orbits_of_random_scenes() {
+    let sweep = (0.5..2.0, 0.01..1.0, 2..6_u64).prop_map(|(from, width, points)| {
+        json!({"parameter": "table.tilt_gain", "from": from, "to": from + width, "points": points})
+    });
+    let parameters = prop_oneof![
+        Just(json!({})),
+        (1..4_u64, state()).prop_map(|(period, guess)| json!({"period": period, "guess": guess})),
+        (0.05..0.5).prop_map(|theta| json!({"family": "symmetric", "theta": theta})),
+        sweep.prop_map(|sweep| json!({"sweep": sweep})),
+    ];
+    let resource = Resource {
+        plain: true,
+        ..resource("/v1/periodic-orbits", |json| {
+            json.get("branch").filter(|it| !it.is_null()).map_or_else(|| length(&json["states"]), length)
+        })
+    };
+    hold(&resource, parameters, 60);
+}
+
+#[test]
+fn controllers_for_random_scenes() {
+    let weights = (prop::collection::vec(0.0..100.0, 4), 0.01..100.0)
+        .prop_map(|(state, input)| json!({"state": state, "input": input}));
+    let parameters = (prop::option::of(weights), maybe(word(&["frictionless", "stick"])))
+        .prop_map(|(weights, contact)| object(vec![("weights", weights), ("contact", contact)]));
+    hold(&resource("/v1/controllers", |_| 1), parameters, 40);
+}
+
+#[test]
+fn ladders_of_random_scenes() {
+    let parameters = (1..20_u64, maybe((-12.0..0.0).prop_map(|power| 10_f64.powf(power))))
+        .prop_map(|(impacts, tolerance)| object(vec![("impacts", Some(json!(impacts))), ("tolerance", tolerance)]));
+    hold(&Resource { draws: false, ..resource("/v1/ladder", |json| length(&json["rungs"])) }, parameters, 30);
+}
