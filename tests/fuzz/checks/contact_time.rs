@@ -1,0 +1,204 @@
+//! The contact time: that the root is one, that no other comes before it, and that finding it is bounded work. Judged with 31
+//! digits, by a march that cannot step over a root, and by symmetries that hold to the last bit.
+
+use equipoise_physics::contact_time::{
+    MAX_PIECES, TooManyPieces, evaluations, first_contact, first_descent, first_descent_before,
+};
+use equipoise_physics::double_double::DoubleDouble;
+use equipoise_physics::flight::Flight;
+use equipoise_physics::impact::State;
+use equipoise_physics::trig;
+use std::f64::consts::TAU;
+
+use super::numbers::Numbers;
+
+/// Steps of the march, and of the plain scan beside it.
+const MARCH: usize = 4000;
+const SCAN: usize = 400;
+
+/// Most looks at the gap on one piece of a flight: those for a double root, which halve its error a step, and the ends.
+const LOOKS_A_PIECE: f64 = 130.0;
+
+/// Roundings that one gap may be off.
+const ROUNDINGS: f64 = 16.0;
+
+/// A flight, and a table at y = 0 somewhere below, at or above its contact point.
+pub(crate) fn check(data: &[u8]) {
+    let numbers = Numbers::read(data);
+    let theta = numbers.within("theta", -100.0..=100.0, 0.3);
+    let flight = Flight {
+        start: State {
+            theta,
+            x_dot: 0.0,
+            y_dot: numbers.within("y_dot", -1e3..=1e3, 1.0),
+            theta_dot: numbers.within("theta_dot", -1e4..=1e4, 0.0),
+        },
+        sin_cos_theta: trig::sin_cos(theta),
+        clearance: numbers.within("clearance", -20.0..=100.0, 0.0),
+        contact_distance: numbers.within("contact_distance", 1e-3..=10.0, 0.2),
+        gravity: numbers.within("gravity", 1e-3..=100.0, 9.81),
+    };
+    let start = flight.gap(0.0);
+    let rises = start.slope > 0.0 || (start.slope == 0.0 && start.bend > 0.0);
+    let above = flight.clearance > 0.0 || (flight.clearance == 0.0 && rises);
+    if above {
+        let found = first_contact(&flight);
+        let looks = evaluations(&flight) as f64;
+        let most = (pieces(&flight) + 3.0).min(f64::from(MAX_PIECES) + 3.0) * LOOKS_A_PIECE;
+        assert!(looks <= most, "{looks} looks at the gap of {flight:?}");
+        let found = bounded(&flight, found);
+        let Some(t) = found else { return };
+        hold(&flight, t, true);
+        for (name, other, of_time) in images(&flight) {
+            assert_eq!(first_contact(&other).map(|t| t * of_time), Ok(t), "{name} of {flight:?}");
+        }
+    }
+    let Some(descent) = bounded(&flight, first_descent(&flight)) else { return };
+    match descent {
+        Some(t) => hold(&flight, t, above),
+        None => {
+            assert!(!above, "{flight:?} never comes down");
+            let end = latest(&flight);
+            let up = times(end).find(|&t| flight.gap(t).value > rounding(&flight, t));
+            assert_eq!(up, None, "{flight:?} is above then, and never comes down");
+        }
+    }
+    for share in [0.3, 0.999_999, 1.000_001, 2.0] {
+        let limit = share * descent.unwrap_or(latest(&flight)).max(0.0);
+        match bounded(&flight, first_descent_before(&flight, limit)).flatten() {
+            Some(t) => {
+                assert!(descent.is_some() && t <= limit, "{t} is beyond {limit} in {flight:?}");
+                hold(&flight, t, above);
+            }
+            None => {
+                assert!(descent.is_none() || share < 1.0 || limit == 0.0, "{limit} is after {descent:?} in {flight:?}")
+            }
+        }
+    }
+}
+
+/// The result, unless the work limit was passed, which nothing short of it may do.
+fn bounded<T>(flight: &Flight, found: Result<T, TooManyPieces>) -> Option<T> {
+    let needs = pieces(flight);
+    found.map_err(|error| assert!(needs > f64::from(MAX_PIECES), "{error:?} for {needs} pieces of {flight:?}")).ok()
+}
+
+/// How many convex and concave pieces there may be until the contact point has to be down.
+fn pieces(flight: &Flight) -> f64 {
+    2.0 * (flight.start.theta_dot.abs() * latest(flight) / TAU + 2.0)
+}
+
+/// By when the centre of gravity has fallen so deep that the contact point is down.
+fn latest(flight: &Flight) -> f64 {
+    let Flight { clearance, contact_distance, gravity, sin_cos_theta: (sin, cos), .. } = *flight;
+    let rise = if cos < 0.0 { sin * sin / (1.0 - cos) } else { 1.0 + cos };
+    let room = (clearance + contact_distance * rise).max(0.0);
+    let y_dot = flight.start.y_dot;
+    let root = (y_dot * y_dot + 2.0 * gravity * room).sqrt();
+    if y_dot < 0.0 { 2.0 * room / (root - y_dot) } else { (y_dot + root) / gravity }
+}
+
+/// How far rounding may take a gap at a time, m: that of its terms, and of the angle.
+fn rounding(flight: &Flight, t: f64) -> f64 {
+    let State { y_dot, theta_dot, .. } = flight.start;
+    let fall = y_dot.abs() * t + 0.5 * flight.gravity * t * t;
+    let turn = flight.contact_distance * (theta_dot * t).abs();
+    ROUNDINGS * f64::EPSILON * (flight.clearance.abs() + fall + turn.min(2.0 * flight.contact_distance) + turn)
+}
+
+/// The gap with 31 digits.
+fn exact_gap(flight: &Flight, t: f64) -> f64 {
+    let number = DoubleDouble::from;
+    let State { theta, x_dot, y_dot, theta_dot } = flight.start;
+    let exact = Flight {
+        start: State { theta: number(theta), x_dot: number(x_dot), y_dot: number(y_dot), theta_dot: number(theta_dot) },
+        sin_cos_theta: (number(flight.sin_cos_theta.0), number(flight.sin_cos_theta.1)),
+        clearance: number(flight.clearance),
+        contact_distance: number(flight.contact_distance),
+        gravity: number(flight.gravity),
+    };
+    exact.gap(number(t)).value.to_f64()
+}
+
+/// Times over a flight, the same and at random places between.
+fn times(end: f64) -> impl Iterator<Item = f64> {
+    (1..SCAN).map(move |index| end * (index as f64 / SCAN as f64))
+}
+
+/// Panics unless `t` is when a flight that starts `above` the table, or below it, first comes down.
+fn hold(flight: &Flight, t: f64, above: bool) {
+    assert!(t.is_finite() && t >= 0.0, "{t} of {flight:?}");
+    let end = latest(flight);
+    assert!(t <= end * (1.0 + 1e-9) + 1e-150, "{t} is after {end}, when {flight:?} is down");
+    let gap = exact_gap(flight, t);
+    assert!(gap.abs() <= 2.0 * rounding(flight, t), "the gap of {flight:?} is {gap} m at {t} s");
+    // It comes down, but for what a double root leaves open.
+    let curvature = flight.gravity + flight.contact_distance * flight.start.theta_dot.powi(2);
+    let slope = flight.gap(t).slope;
+    let open = 4.0 * (curvature * rounding(flight, t)).sqrt();
+    assert!(slope <= open, "{flight:?} rises by {slope} m/s at {t} s");
+    let mut been_above = above;
+    for time in times(t) {
+        let (gap, rounding) = (flight.gap(time).value, rounding(flight, time));
+        assert!(!been_above || gap >= -rounding, "{flight:?} is at {gap} m at {time} s already, before {t}");
+        been_above |= gap > rounding;
+    }
+    if above {
+        march(flight, t, curvature);
+    }
+}
+
+/// From zero on in steps that no root is in: the gap bends by `curvature` at most.
+fn march(flight: &Flight, t: f64, curvature: f64) {
+    let mut time = 0.0_f64;
+    for _ in 0..MARCH {
+        let gap = flight.gap(time);
+        let (value, rounding) = (gap.value, rounding(flight, time));
+        assert!(value >= -rounding, "{flight:?} is at {value} m at {time} s already, before {t}");
+        let step: f64 = (gap.slope + (gap.slope * gap.slope + 2.0 * curvature * value.max(0.0)).sqrt()) / curvature;
+        // Half of it, so as to look into what is all but a root as well.
+        time += (0.5 * step).max(t / MARCH as f64);
+        if time >= t {
+            return;
+        }
+    }
+}
+
+/// Flights that are the same to the last bit, and what their times are to be multiplied by: mirrored, in other lengths, and in
+/// other times.
+fn images(flight: &Flight) -> [(&'static str, Flight, f64); 3] {
+    let State { theta, y_dot, theta_dot, .. } = flight.start;
+    let (sin, cos) = flight.sin_cos_theta;
+    let start = flight.start;
+    [
+        (
+            "the mirror image",
+            Flight {
+                start: State { theta: -theta, theta_dot: -theta_dot, ..start },
+                sin_cos_theta: (-sin, cos),
+                ..*flight
+            },
+            1.0,
+        ),
+        (
+            "four times the size",
+            Flight {
+                start: State { y_dot: 4.0 * y_dot, ..start },
+                clearance: 4.0 * flight.clearance,
+                contact_distance: 4.0 * flight.contact_distance,
+                gravity: 4.0 * flight.gravity,
+                ..*flight
+            },
+            1.0,
+        ),
+        (
+            "twice the pace",
+            Flight {
+                start: State { y_dot: 2.0 * y_dot, theta_dot: 2.0 * theta_dot, ..start },
+                gravity: 4.0 * flight.gravity,
+                ..*flight
+            },
+            2.0,
+        ),
+    ]
+}

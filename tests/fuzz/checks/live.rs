@@ -1,0 +1,141 @@
+//! What a client of a live run says: the URL of the run, and the messages that change it.
+
+use equipoise::http::{Errors, Problem, Reader, Source};
+use equipoise::limits;
+use equipoise::live::address::{self, Asked};
+use equipoise::live::order::Order;
+use equipoise::live::run::Run;
+use equipoise::wire::scene::{has_angle, value_to_json};
+use serde_json::{Map, Value, json};
+
+use super::{problem, query};
+
+/// The clock of the server, unix ms, when the run is asked for.
+const NOW: u64 = 1_800_000_000_000;
+
+/// How long after one message the next one comes, ms, and how many impacts later.
+const PACE: (u64, u64) = (731, 3);
+
+/// The clock of the server when the message of this number comes.
+fn now(n: u64) -> u64 {
+    NOW + PACE.0 * n
+}
+
+/// The first line is the query of a run's URL, the others are messages. After each of them the run's URL reads back as the run.
+pub(crate) fn check(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let (first, messages) = text.split_once('\n').unwrap_or((text, ""));
+    let mut run = begin(first);
+    for (message, n) in messages.lines().zip(1..) {
+        let order = match Order::read(message) {
+            Ok(order) => order,
+            Err(refused) => {
+                let sent = serde_json::from_str::<Value>(message).ok();
+                let has_doubles = refused.errors().iter().any(|error| error.detail.ends_with("twice in one object"));
+                problem::hold(&refused, sent.as_ref().filter(|_| !has_doubles), message.len());
+                continue;
+            }
+        };
+        let again = Order::read(&written(&order)).unwrap_or_else(|refused| panic!("{message}: {refused:?}"));
+        assert_eq!(again, order, "{message}");
+        let Some(run) = &mut run else { continue };
+        let changed = carried_out(run, &order, n);
+        if !address::is_too_long(&changed) {
+            *run = changed;
+            reads_back(run, None, now(n));
+        }
+    }
+}
+
+/// The run of a query, or of a preset where it is none.
+fn begin(text: &str) -> Option<Run> {
+    let fields = match query::tree(text) {
+        Ok(fields) => fields,
+        Err(refused) => {
+            problem::hold(&refused, None, text.len());
+            return None;
+        }
+    };
+    match read(&fields, NOW) {
+        Ok(Asked { run, from }) => {
+            reads_back(&run, from, NOW);
+            Some(run)
+        }
+        Err(refused) => {
+            problem::hold(&refused, Some(&Value::Object(fields)), text.len());
+            None
+        }
+    }
+}
+
+fn read(fields: &Map<String, Value>, now: u64) -> Result<Asked, Problem> {
+    let mut errors = Errors::default();
+    let mut reader = Reader::new(fields, String::new(), Source::Query, &mut errors);
+    let asked = address::read(&mut reader, now);
+    reader.finish();
+    errors.into_result()?;
+    Ok(asked.expect("where there is no run, the errors say why"))
+}
+
+/// Panics unless the run's URL is that of the run.
+fn reads_back(run: &Run, from: Option<u64>, now: u64) {
+    let url = address::url(run);
+    let query = url.split_once('?').expect("a query").1;
+    let query = from.map_or_else(|| query.to_owned(), |from| format!("{query}&from={from}"));
+    let asked = query::tree(&query).and_then(|fields| read(&fields, now));
+    let asked = asked.unwrap_or_else(|refused| panic!("{url} was refused: {refused:?}"));
+    assert_eq!(asked, Asked { run: run.clone(), from }, "{url}");
+    assert_eq!(address::url(&asked.run), url);
+}
+
+/// The message that says this.
+fn written(order: &Order) -> String {
+    let mut message = json!({"type": order.name()});
+    match order {
+        Order::Pause | Order::Resume | Order::Step | Order::Restart => {}
+        Order::Speed(speed) => message["value"] = json!(speed),
+        Order::Set(changes) => {
+            for (name, value) in changes {
+                message[name.row().path] = value_to_json(*value);
+            }
+        }
+        Order::Kick(kick) => {
+            for (name, value) in [("x_dot", kick.x_dot), ("y_dot", kick.y_dot), ("theta_dot", kick.theta_dot)] {
+                message[name] = json!(value);
+            }
+        }
+    }
+    message.to_string()
+}
+
+/// The run after a message, as a session takes it; as it was, where the run refuses.
+fn carried_out(run: &Run, order: &Order, n: u64) -> Run {
+    let (now, impact) = (now(n), PACE.1 * n);
+    let mut changed = run.clone();
+    match order {
+        Order::Pause => changed.clock.pause(now),
+        Order::Resume => changed.clock.resume(now),
+        Order::Speed(speed) => changed.clock.set_speed(now, *speed),
+        Order::Step => {
+            if changed.clock.is_paused() {
+                let to = changed.clock.run_time(now) + 0.3;
+                changed.clock.step(now, to);
+            }
+        }
+        Order::Set(changes) => {
+            if let Err(errors) = changed.set(impact, changes) {
+                assert!(!errors.is_empty());
+                assert_eq!(changed, *run, "what is refused leaves the run as it was");
+            }
+        }
+        Order::Kick(kick) => {
+            if kick.theta_dot == 0.0 || has_angle(run.scene()) {
+                // More kicks than there may be, or too large in sum.
+                let _ = changed.kick(impact, *kick);
+            }
+        }
+        Order::Restart => changed = run.restarted(now, impact),
+    }
+    changed.clock.forget_beyond(limits::LIVE_CLOCK_ENTRIES);
+    changed
+}

@@ -1,0 +1,42 @@
+//! What has to hold for every problem: a status of the client's, errors whose pointers lead somewhere, and a size that does not
+//! grow beyond what was sent.
+
+use equipoise::http::{FieldError, Problem};
+use equipoise::limits;
+use equipoise_physics::scene::{FIELDS, VERTICES};
+use serde_json::Value;
+
+/// The names that a problem may point to although they were not sent: what is missing is named too.
+const NAMES: &[&str] = &["preset", "scene", "body", "type", "value", "impact", "wall", "run", "speed"];
+
+/// Longest sentence about one field, characters. What a client sent is quoted in part, and the known names in whole.
+const LONGEST: usize = 1500;
+
+/// Panics unless this is a proper answer to what was `sent` in so many bytes; none, where that is not one value.
+pub(crate) fn hold(problem: &Problem, sent: Option<&Value>, bytes: usize) {
+    let (status, errors) = (problem.status().as_u16(), problem.errors());
+    assert!(status == 400 || status == 422, "{problem:?}");
+    assert!(errors.len() <= limits::ERRORS, "{} errors", errors.len());
+    assert_eq!(status == 422, !errors.is_empty(), "every error of a field has its place: {problem:?}");
+    assert!(!problem.detail().is_empty() && problem.detail().chars().count() <= LONGEST + 20, "{problem:?}");
+    let written = problem.to_json().len();
+    assert!(written <= 64 * 1024 + 16 * bytes, "a problem of {written} bytes about {bytes}");
+    for FieldError { pointer, detail } in errors {
+        assert!(!detail.is_empty() && detail.chars().count() <= LONGEST, "{pointer}: {detail}");
+        assert!(pointer.is_empty() || pointer.starts_with('/'), "{pointer}");
+        let escapes = pointer.split('~').skip(1);
+        assert!(escapes.into_iter().all(|rest| rest.starts_with(['0', '1'])), "{pointer} is no pointer");
+        if let Some(sent) = sent {
+            assert!(sent.pointer(pointer).is_some() || names_a_field(pointer), "{pointer} leads nowhere: {detail}");
+        }
+    }
+}
+
+/// Whether the end of a pointer is the path of a field.
+fn names_a_field(pointer: &str) -> bool {
+    let ends = |path: &str| {
+        let rest = pointer.strip_suffix(&path.replace('.', "/")).or_else(|| pointer.strip_suffix(path));
+        rest.is_some_and(|rest| rest.ends_with('/'))
+    };
+    FIELDS.iter().map(|row| row.path).chain([VERTICES]).chain(NAMES.iter().copied()).any(ends)
+}

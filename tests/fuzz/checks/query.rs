@@ -1,0 +1,111 @@
+//! The query of a GET: from its text to the tree that it is equivalent to, and to the same scene as the JSON that says the same.
+
+use equipoise::http::{Problem, Source, query};
+use equipoise::wire::scene as wire;
+use equipoise_physics::scene::{Kind, VERTICES, field};
+use serde_json::{Map, Number, Value};
+
+use super::{problem, scene};
+
+/// A tree is written out as a query that reads back as itself; what is refused points to a parameter; and the JSON of the same
+/// request gives the same scene or the same errors.
+pub(crate) fn check(data: &[u8]) {
+    let Ok(query) = std::str::from_utf8(data) else { return };
+    let parameters = match query::parameters(query) {
+        Ok(parameters) => parameters,
+        Err(refused) => return problem::hold(&refused, None, data.len()),
+    };
+    let names: Vec<String> = parameters.iter().map(|(name, _)| pointer(name)).collect();
+    let fields = match query::unfold(parameters) {
+        Ok(fields) => fields,
+        Err(refused) => {
+            problem::hold(&refused, None, data.len());
+            for error in refused.errors() {
+                let leads = |name: &String| {
+                    name.strip_prefix(&error.pointer).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+                };
+                assert!(names.iter().any(leads), "{} is in no parameter of {query}", error.pointer);
+            }
+            return;
+        }
+    };
+    let sent = Value::Object(fields);
+    let mut leaves = Vec::new();
+    flatten(String::new(), &sent, &mut leaves);
+    assert_eq!(leaves.len(), names.len(), "every parameter is in the tree, and nothing else: {query} is {sent}");
+    let written = form_urlencoded::Serializer::new(String::new()).extend_pairs(leaves).finish();
+    let again = tree(&written).unwrap_or_else(|refused| panic!("{written} was refused: {refused:?}"));
+    assert_eq!(Value::Object(again), sent, "{query} and {written}");
+    compare(&sent, data.len());
+}
+
+/// The tree of a query.
+pub(crate) fn tree(query: &str) -> Result<Map<String, Value>, Problem> {
+    query::unfold(query::parameters(query)?)
+}
+
+/// Panics unless JSON that says the same as this tree of text is read the same.
+fn compare(sent: &Value, bytes: usize) {
+    let same = in_json("", sent);
+    let asked = scene::read(sent.as_object().expect("a query is an object"), Source::Query);
+    let posted = scene::read(same.as_object().expect("a query is an object"), Source::Json);
+    match (asked, posted) {
+        (Ok(asked), Ok(posted)) => {
+            assert_eq!(wire::to_json(&asked).to_string(), wire::to_json(&posted).to_string(), "{sent} and {same}");
+            scene::hold(&asked);
+        }
+        (Err(asked), Err(posted)) => {
+            problem::hold(&asked, Some(sent), bytes);
+            let pointers = |refused: &Problem| -> Vec<String> {
+                refused.errors().iter().map(|error| error.pointer.clone()).collect()
+            };
+            assert_eq!(pointers(&asked), pointers(&posted), "{sent} and {same}: {asked:?} and {posted:?}");
+        }
+        (asked, posted) => panic!("{sent} and {same}: {asked:?} and {posted:?}"),
+    }
+}
+
+/// The JSON that says the same as text in a query: numbers where numbers belong, if the text is one.
+fn in_json(path: &str, value: &Value) -> Value {
+    match value {
+        Value::Object(fields) => {
+            let below = |(name, value): (&String, &Value)| {
+                let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                (name.clone(), in_json(&path, value))
+            };
+            Value::Object(fields.iter().map(below).collect())
+        }
+        Value::Array(items) => Value::Array(items.iter().map(|item| in_json(path, item)).collect()),
+        Value::String(text) => {
+            let as_number = || text.parse().ok().and_then(Number::from_f64).map(Value::Number);
+            let row = path.strip_prefix("scene.").and_then(field);
+            let read = match (row, row.map(|row| row.kind)) {
+                (Some(_), _) if text == "null" => Some(Value::Null),
+                (_, Some(Kind::Number { .. } | Kind::Integer { .. })) => as_number(),
+                (_, Some(Kind::Flag)) => text.parse().ok().map(Value::Bool),
+                (None, _) if path.strip_prefix("scene.") == Some(VERTICES) => as_number(),
+                _ => None,
+            };
+            read.unwrap_or_else(|| value.clone())
+        }
+        other => panic!("{other} in the tree of a query"),
+    }
+}
+
+/// The dotted parameters of a tree.
+fn flatten(path: String, value: &Value, leaves: &mut Vec<(String, String)>) {
+    let mut below = |name: &str, value: &Value| {
+        flatten(if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }, value, leaves)
+    };
+    match value {
+        Value::Object(fields) => fields.iter().for_each(|(name, value)| below(name, value)),
+        Value::Array(items) => items.iter().enumerate().for_each(|(index, value)| below(&index.to_string(), value)),
+        Value::String(text) => leaves.push((path, text.clone())),
+        other => panic!("{other} in the tree of a query"),
+    }
+}
+
+/// Where the value of a parameter stands in the tree.
+fn pointer(name: &str) -> String {
+    name.split('.').map(|part| format!("/{}", part.replace('~', "~0").replace('/', "~1"))).collect()
+}
