@@ -1,0 +1,267 @@
+//! What a large map costs: `cargo bench --bench cost` measures cells per second of one core over HTTP, by scene, quantity and number of
+//! impacts, and the bytes of a cell, and writes `docs/cost.md` with what a map of 10⁹ cells comes to; with `-- --print` it only prints it.
+//!
+//! Seconds of a core are those that the system books for the server, so other work on the machine disturbs them little; only
+//! the last part, about servers beside each other, is by the clock and wants a quiet machine.
+
+#[path = "../load/program.rs"]
+mod program;
+mod tiles;
+
+use std::fmt::Write;
+use std::io;
+use std::process::Command;
+use std::time::Instant;
+
+use program::{Program, load_average};
+use tiles::{Map, ask};
+
+/// Of the map whose cost is worked out.
+const CELLS: f64 = 1e9;
+
+/// Cells of a tile of the script in `docs/clients`.
+const TILE_CELLS: f64 = 250_000.0;
+
+/// Only an example, of what a core-hour of a rented machine may be.
+const PRICE: f64 = 0.05;
+
+const TILT_GAIN: &str = "&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&y.parameter=release.theta&y.from=0&y.to=0.5";
+
+/// What is measured: a name, the scene and its axes, impacts, quantity.
+const MAPS: [Map; 16] = [
+    Map::new("rod", "preset=case-1", TILT_GAIN, 1000, "survival"),
+    Map::new("rod, 100 impacts", "preset=case-1", TILT_GAIN, 100, "survival"),
+    Map::new("rod, 10,000 impacts", "preset=case-1", TILT_GAIN, 10_000, "survival"),
+    Map::new("rod, all of whose runs survive", "preset=case-1", SMALL, 1000, "survival"),
+    Map::new("rod with losses, on an incline", "preset=case-4", TILT_GAIN, 1000, "survival"),
+    Map::new(
+        "friction by Poisson",
+        "preset=case-1&scene.contact.friction=0.2&scene.table.slide=matched",
+        TILT_GAIN,
+        1000,
+        "survival",
+    ),
+    Map::new(
+        "friction by Poisson, all of whose runs survive",
+        "preset=case-1&scene.contact.friction=0.2&scene.table.slide=matched",
+        SMALL,
+        1000,
+        "survival",
+    ),
+    Map::new(
+        "friction by Stronge, all of whose runs survive",
+        "preset=case-1&scene.contact.friction=0.2&scene.contact.law=stronge&scene.table.slide=matched",
+        SMALL,
+        1000,
+        "survival",
+    ),
+    Map::new("polygon, a triangle", "preset=triangle-polygon", TILT_GAIN, 1000, "survival"),
+    Map::new("table that looks at its place too", FEEDBACK, FEEDBACK_AXES, 1000, "survival"),
+    Map::new("noise", "preset=case-1-noise", TILT_GAIN, 1000, "survival"),
+    Map::new("point mass", "preset=point-mass", POINT_AXES, 1000, "survival"),
+    Map::new("rod, largest angle", "preset=case-1", TILT_GAIN, 1000, "max_theta"),
+    Map::new("rod, residue", "preset=case-1", TILT_GAIN, 1000, "residue"),
+    Map::new("rod, spectral radius", "preset=case-1", TILT_GAIN, 1000, "spectral_radius"),
+    Map::new("rod with losses, residue", "preset=case-4", TILT_GAIN, 1000, "residue"),
+];
+
+const SMALL: &str = "&x.parameter=table.tilt_gain&x.from=1.05&x.to=1.4&y.parameter=release.theta&y.from=0&y.to=0.05";
+const FEEDBACK: &str = "scene.body.contact_distance=0.13333&scene.body.radius_of_gyration=0.09428&scene.release.height=0.2\
+                        &scene.table.feedback.x=0.018&scene.table.feedback.x_dot=0.023&scene.table.feedback.theta_dot=-0.031";
+const FEEDBACK_AXES: &str =
+    "&x.parameter=table.feedback.theta&x.from=-1.6&x.to=-0.95&y.parameter=release.theta&y.from=0&y.to=0.5";
+const POINT_AXES: &str =
+    "&x.parameter=table.tilt_gain&x.from=0.1&x.to=0.9&y.parameter=release.height&y.from=0.1&y.to=0.4";
+
+fn main() -> io::Result<()> {
+    let mut text = introduction();
+    let server = Program::start()?;
+    let rates = write_rates(&server, &mut text)?;
+    let bytes = write_bytes(&server, &mut text)?;
+    let overhead_s = write_overhead(&server, &mut text)?;
+    drop(server);
+    write_servers(&mut text)?;
+    write_whole(&rates, &bytes, overhead_s, &mut text);
+    print!("{text}");
+    if !std::env::args().any(|argument| argument == "--print") {
+        std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/cost.md"), text)?;
+    }
+    Ok(())
+}
+
+fn introduction() -> String {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let cpu = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let cpu = cpu.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    let cpu = cpu.map_or("a CPU", |(_, name)| name);
+    format!(
+        "# What a large map costs\n\n\
+         Written by `cargo bench --bench cost` on {cpu}, {cores} cores, build {}, load of the machine before it began {}.\n\
+         A core is one that the system counts; its seconds are those it books for the server, sending the answer included.\n\n",
+        equipoise::BUILD,
+        load_average(),
+    )
+}
+
+/// Cells per second of one core, over whole tiles from all over a map; rates in the order of [`MAPS`].
+fn write_rates(server: &Program, text: &mut String) -> io::Result<Vec<f64>> {
+    text.push_str(
+        "## Cells per second of one core\n\n\
+         Maps over tilt gain and release, such as they are asked for: many of their runs fall early, which makes cells cheap. Rows \"all of\n\
+         whose runs survive\" are as dear as a cell of that scene can be. Median of 3 rounds, with what they differ by.\n\n\
+         | | impacts | quantity | cells per second | rounds | completed |\n|---|---|---|---|---|---|\n",
+    );
+    let mut rates = Vec::new();
+    for map in &MAPS {
+        let found = map.measure(server)?;
+        let (impacts, quantity) = (map.impacts, map.quantity);
+        let _ = writeln!(
+            text,
+            "| {} | {impacts} | {quantity} | {} | ± {:.0} % | {} |",
+            map.name,
+            grouped(found.rate),
+            100.0 * found.spread,
+            found.completed.map_or("–".to_owned(), |share| format!("{:.0} %", 100.0 * share)),
+        );
+        rates.push(found.rate);
+    }
+    text.push('\n');
+    Ok(rates)
+}
+
+/// Bytes of a cell as NDJSON and CSV, in that order.
+fn write_bytes(server: &Program, text: &mut String) -> io::Result<[f64; 2]> {
+    text.push_str("## Bytes of a cell\n\n| | NDJSON | the same, gzip | CSV | the same, gzip | JSON |\n|---|---|---|---|---|---|\n");
+    let mut kept = [0.0; 2];
+    for map in [&MAPS[0], &MAPS[12], &MAPS[13]] {
+        let _ = write!(text, "| {} |", map.quantity);
+        for (place, (form, gzip)) in
+            [("ndjson", false), ("ndjson", true), ("csv", false), ("csv", true), ("json", false)]
+                .into_iter()
+                .enumerate()
+        {
+            let (mut bytes, mut cells) = (0, 0);
+            for index in tiles::all_over() {
+                bytes += ask(server.address, &map.tile(index, form), gzip)?.len();
+                cells += tiles::CELLS;
+            }
+            let each = bytes as f64 / cells as f64;
+            let _ = write!(text, " {each:.1} |");
+            if map.quantity == MAPS[0].quantity && !gzip && place < 4 {
+                kept[place / 2] = each;
+            }
+        }
+        text.push('\n');
+    }
+    text.push('\n');
+    Ok(kept)
+}
+
+/// Seconds of a core that a tile costs besides its cells.
+fn write_overhead(server: &Program, text: &mut String) -> io::Result<f64> {
+    const REQUESTS: usize = 2000;
+    let one_cell = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=1&x.to=1.1&x.count=1\
+                    &y.parameter=release.theta&y.from=0&y.to=0.1&y.count=1&impacts=1&format=ndjson";
+    let (begin, before) = (Instant::now(), server.cpu_s());
+    for _ in 0..REQUESTS {
+        ask(server.address, one_cell, false)?;
+    }
+    let (wall_s, cpu_s) = (begin.elapsed().as_secs_f64(), server.cpu_s() - before);
+    let each_s = cpu_s / REQUESTS as f64;
+    let _ = writeln!(
+        text,
+        "## A tile besides its cells\n\n\
+         A request for one cell of one impact, over a connection of its own: {:.2} ms of a core and {:.2} ms by the clock. The script's \
+         tiles have\nup to {} cells. The server held {:.0} MiB after all of this.\n",
+        1e3 * each_s,
+        1e3 * wall_s / REQUESTS as f64,
+        grouped(TILE_CELLS),
+        server.memory_mib(),
+    );
+    Ok(each_s)
+}
+
+/// The same map by the clock: by one server with one permit, by one with two, and by two with one each.
+fn write_servers(text: &mut String) -> io::Result<()> {
+    text.push_str(
+        "## Servers beside each other\n\n\
+         The first map by the clock, asked for in tiles by two clients for each server, median of 3 rounds in turns. A permit is a\n\
+         request computed at a time.\n\n| servers | permits of each | cells per second | over one |\n|---|---|---|---|\n",
+    );
+    let set_ups = [(1, "1"), (1, "2"), (2, "1")];
+    let mut found = [const { Vec::new() }; 3];
+    for _ in 0..3 {
+        for ((servers, permits), rates) in set_ups.iter().zip(&mut found) {
+            let mut running = Vec::new();
+            for _ in 0..*servers {
+                let mut command = Command::new(env!("CARGO_BIN_EXE_equipoise"));
+                running.push(Program::spawn(command.args(["--listen", "127.0.0.1:0", "--permits", permits]))?);
+            }
+            rates.push(MAPS[0].measure_by_clock(&running)?);
+        }
+    }
+    let medians = found.map(|mut rates| {
+        rates.sort_by(f64::total_cmp);
+        rates[rates.len() / 2]
+    });
+    for ((servers, permits), rate) in set_ups.iter().zip(medians) {
+        let _ = writeln!(text, "| {servers} | {permits} | {} | {:.2} |", grouped(rate), rate / medians[0]);
+    }
+    text.push('\n');
+    Ok(())
+}
+
+fn write_whole(rates: &[f64], bytes: &[f64; 2], overhead_s: f64, text: &mut String) {
+    let tiles = CELLS / TILE_CELLS;
+    let _ = writeln!(
+        text,
+        "## A map of 10⁹ cells\n\n\
+         31,623 values a side, in {} tiles by [in_tiles.py](clients/README.md#too-large-for-one-request):\n\n\
+         - core-hours = (cells / cells per second of one core + tiles × {:.2} ms) / 3600\n\
+         - hours by the clock = core-hours / cores, while all are kept busy\n\
+         - cost = core-hours × your price of one; the last column is for {PRICE} of some currency, which is an assumption\n\
+         - bytes = cells × bytes of a cell, twice, as the tiles stay beside the result: of survival as NDJSON {:.0} GB, and {:.0} GB more\n  for CSV\n\n\
+         | | impacts | core-hours | on 2 cores | on 16 | on 128 | cost |\n|---|---|---|---|---|---|---|",
+        grouped(tiles),
+        1e3 * overhead_s,
+        2.0 * CELLS * bytes[0] / 1e9,
+        CELLS * bytes[1] / 1e9,
+    );
+    for (map, rate) in MAPS.iter().zip(rates) {
+        let core_s = CELLS / rate + tiles * overhead_s;
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {} | {:.2} |",
+            map.name,
+            map.impacts,
+            three_digits(core_s / 3600.0),
+            time(core_s / 2.0),
+            time(core_s / 16.0),
+            time(core_s / 128.0),
+            PRICE * core_s / 3600.0,
+        );
+    }
+}
+
+/// A whole number with its thousands apart.
+fn grouped(number: f64) -> String {
+    let digits = format!("{number:.0}");
+    let first = digits.len() % 3;
+    let groups = (0..digits.len()).filter(|place| place % 3 == first).map(|place| &digits[place..place + 3]);
+    let groups: Vec<&str> = (first > 0).then(|| &digits[..first]).into_iter().chain(groups).collect();
+    groups.join(",")
+}
+
+fn three_digits(number: f64) -> String {
+    let places = (2 - number.log10().floor() as i32).clamp(0, 4);
+    format!("{number:.*}", places as usize)
+}
+
+fn time(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
+        s => format!("{:.1} days", s / 86_400.0),
+    }
+}
