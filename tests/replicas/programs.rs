@@ -43,7 +43,7 @@ pub(crate) async fn until(what: &str, mut is_so: impl AsyncFnMut() -> bool) {
             sleep(Duration::from_millis(10)).await;
         }
     };
-    timeout(3 * SOON, wait).await.unwrap_or_else(|_| panic!("it does not come to this: {what}"));
+    timeout(6 * SOON, wait).await.unwrap_or_else(|_| panic!("it does not come to this: {what}"));
 }
 
 /// A replica; killed when dropped.
