@@ -363,10 +363,12 @@ async fn an_ensemble_ends_with_its_reader() {
         assert_eq!(app.pool.running().get(), 1, "{size}: it is long work");
         drop(socket);
         let left = Instant::now();
+        // Some ms, where nothing else wants the cores; the runs would have taken seconds.
         while app.pool.running().get() > 0 {
-            assert!(left.elapsed() < Duration::from_millis(50), "{size}: the work goes on for nobody");
+            assert!(left.elapsed() < Duration::from_secs(1), "{size}: the work goes on for nobody");
             tokio::time::sleep(Duration::from_millis(1)).await;
         }
+        println!("{size}: given up after {:.1} ms", 1e3 * left.elapsed().as_secs_f64());
     }
 }
 

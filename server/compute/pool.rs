@@ -256,7 +256,8 @@ mod tests {
         assert!(timeout(Duration::from_millis(20), work).await.is_err());
         let dropped = Instant::now();
         let ended = end.recv_timeout(Duration::from_secs(5)).expect("the work should have been cancelled");
-        assert!(ended.saturating_duration_since(dropped) < Duration::from_millis(50));
+        // Some ms on a machine that is not busy; the work would never end.
+        assert!(ended.saturating_duration_since(dropped) < Duration::from_secs(1));
         assert_eq!(pool.run(dear(), |_| Ok::<_, Refused>(7)).await, Ok(7));
     }
 
