@@ -1,6 +1,8 @@
 //! Exact identities of the map, at any state: energy, determinant, reversibility, mirror symmetry, and the derivative
 //! against eq. (14) and against differences computed with 50 digits.
 
+use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
+
 use equipoise_physics::contact_time::{first_contact, first_descent};
 use equipoise_physics::flight::Flight;
 use equipoise_physics::impact::{Rod, State};
@@ -133,24 +135,8 @@ fn contact_times_keep_their_digits_in_odd_flights() {
         // l θ̇² = G.
         (-3.575_374_014_647_543_6e-8, 1.0, 1.140_000_478_658_209_2, 0.0, 0.001, 0.001, 2_280.001_220_253_364),
         // Downwards in little gravity: spinning, straight, and from next to nothing.
-        (
-            5.000_002_404_418_193e-10,
-            6.283_185_307_179_586,
-            -1.2,
-            5.000_002_404_418_193e-10,
-            10.0,
-            0.001,
-            4.166_669_065_010_124e-10,
-        ),
-        (
-            3.141_592_653_589_793,
-            0.0,
-            -1.853_520_685_703_823_1,
-            1.570_796_326_794_896_6,
-            0.2,
-            0.001,
-            0.847_272_654_377_277,
-        ),
+        (5.000_002_404_418_193e-10, TAU, -1.2, 5.000_002_404_418_193e-10, 10.0, 0.001, 4.166_669_065_010_124e-10),
+        (PI, 0.0, -1.853_520_685_703_823_1, FRAC_PI_2, 0.2, 0.001, 0.847_272_654_377_277),
         (-0.348, 0.0015, -188.306_087_800_164_16, 1e-9, 0.0015, 0.001, 5.310_502_743_737_77e-12),
         (
             2.651_127_687_818_921e-6,
@@ -176,7 +162,7 @@ fn fixed_point_jacobian_is_equation_14_with_the_energy_term() {
     for (tilt_gain, restitution, energy_gain, y) in
         [(1.1, 1.0, 0.0, -1.1437), (1.5, 1.0, 0.0, -1.1437), (1.1, 0.5, 0.165, -1.2719), (0.3, 0.2, 0.4, -2.0)]
     {
-        let (l, rho, gravity) = (0.4 / 3.0, std::f64::consts::SQRT_2 / 15.0, 6.937);
+        let (l, rho, gravity) = (0.4 / 3.0, SQRT_2 / 15.0, 6.937);
         let model = Rod {
             restitution,
             gravity,
