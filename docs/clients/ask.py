@@ -35,22 +35,25 @@ def parse(parser):
 
 def ask(resource, request, form="json"):
     """POST to /v1/<resource>. While the server has too much to do, it says how long to wait, and that is waited."""
-    with post(f"{resource}?format={form}", json.dumps(request).encode(), "application/json") as answer:
-        return json.load(answer) if form == "json" else answer.read()
+    try:
+        with post(f"{resource}?format={form}", json.dumps(request).encode(), "application/json") as answer:
+            return json.load(answer) if form == "json" else answer.read()
+    except urllib.error.URLError as error:
+        sys.exit(f"no server at {SERVER}: {error.reason}; start one, or say --server where it is")
 
 
 def ask_many(resource, requests):
     """Many requests to /v1/<resource>: for each in its order (answer, None), or (None, problem), as soon as it is there.
 
     They go to /v1/batches/<resource>, as many at a time as a body may hold. What an answer that was cut off, or a server that was
-    being stopped, has left out is asked for again.
+    being started anew, has left out is asked for again.
     """
     waiting = collections.deque(json.dumps(request).encode() + b"\n" for request in requests)
     fruitless = 0
     while waiting:
         sizes = itertools.accumulate(map(len, waiting))
         body = b"".join(itertools.islice(waiting, max(1, sum(1 for _ in itertools.takewhile(BODY_BYTES.__ge__, sizes)))))
-        fruitless += 1
+        fruitless, why = fruitless + 1, "they break off"
         try:
             with post(f"batches/{resource}", body, "application/x-ndjson") as answer:
                 for line in map(json.loads, answer):
@@ -59,10 +62,10 @@ def ask_many(resource, requests):
                     waiting.popleft()
                     fruitless = 0
                     yield line.get("answer"), line.get("problem")
-        except (ValueError, OSError, http.client.HTTPException):
-            pass  # Cut off.
-        if fruitless > TRIES:
-            sys.exit(f"no answer from {SERVER} to {TRIES} batches one after the other")
+        except (ValueError, OSError, http.client.HTTPException) as error:
+            why = error
+        if fruitless == TRIES:
+            sys.exit(f"no answer from {SERVER} to {TRIES} batches one after the other: {why}")
         time.sleep(fruitless)
 
 
@@ -77,8 +80,6 @@ def post(path, body, media_type):
                 time.sleep(float(error.headers["Retry-After"]))
                 continue
             sys.exit(said(problem))
-        except urllib.error.URLError as error:
-            sys.exit(f"no server at {SERVER}: {error.reason}; start one, or say --server where it is")
 
 
 def said(problem):
