@@ -17,8 +17,9 @@ use crate::wire::scene;
 /// Where live runs are.
 pub const PATH: &str = "/v1/live";
 
-/// Run times that a clock may show, s: beyond it a double no longer resolves a flight.
-const RUN_TIMES: std::ops::RangeInclusive<f64> = -1e9..=1e9;
+/// Run times that a clock may show, s: all that it comes to between the earliest and the latest time, at the highest speed. An
+/// epoch in s instead of ms is 57 years ago, and its run can be paused as well.
+const RUN_TIMES: std::ops::RangeInclusive<f64> = -2e14..=2e14;
 
 /// How far the clocks of two servers may be apart, ms.
 const CLOCK_SKEW_MS: u64 = 60_000;
@@ -359,6 +360,16 @@ mod tests {
         assert_eq!(read_url_at(&url(&run), now).unwrap().run, run);
         run.clock.resume(released + 2);
         assert_eq!(read_url_at(&url(&run), now).unwrap_err()[0].0, "/clock/1");
+    }
+
+    #[test]
+    fn a_run_of_long_ago_or_far_ahead_reads_back_when_it_is_paused() {
+        for (now, released) in [(1_800_000_000_000, 18_001), (LARGEST_EXACT, 0), (0, LARGEST_EXACT)] {
+            let mut run = Run::new(*case("case-2").scene(), Clock::new(released, *SPEEDS.end()));
+            run.clock.set_speed(now, 1.0);
+            run.clock.pause(now);
+            assert_eq!(read_url_at(&url(&run), now).unwrap().run, run, "released at {released}");
+        }
     }
 
     #[test]
