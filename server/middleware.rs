@@ -22,7 +22,7 @@ use tower_http::cors::CorsLayer;
 use crate::compute::Peer;
 use crate::config::Config;
 use crate::http::problem::{MEDIA_TYPE, shortened};
-use crate::http::{Asked, Origin, Problem, REQUEST_ID};
+use crate::http::{Asked, Origin, Problem, REQUEST_ID, peer};
 use crate::routes::App;
 use crate::{BUILD, limits};
 
@@ -65,7 +65,7 @@ struct Door {
 impl Door {
     /// Who asks: the peer of the connection or, if that is a proxy to be believed, whom it names.
     fn peer(&self, request: &Request) -> Peer {
-        let peer = request.extensions().get().copied().unwrap_or(Peer::NOBODY);
+        let peer = peer(request.extensions());
         if !self.config.trust_proxy.iter().any(|proxies| proxies.has(peer)) {
             return peer;
         }

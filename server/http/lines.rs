@@ -6,7 +6,7 @@ use axum::http::HeaderMap;
 
 use super::body::{self, NDJSON};
 use super::problem::Problem;
-use super::request::Ask;
+use super::request::{Ask, peer};
 use crate::compute::Peer;
 use crate::limits::Limits;
 
@@ -62,7 +62,7 @@ where
         let (parts, body) = request.into_parts();
         NDJSON.check(&parts.headers)?;
         let body = body::read(body, &parts.headers, &Limits::from_ref(state)).await?;
-        let peer = parts.extensions.get().copied().unwrap_or(Peer::NOBODY);
+        let peer = peer(&parts.extensions);
         let ask = Ask::from_body(parts.uri.query().unwrap_or_default(), b"{}", parts.headers, peer)?;
         if body.trim_ascii().is_empty() {
             return Err(Problem::not_readable("the body is empty; it must be a JSON object on each line"));

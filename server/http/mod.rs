@@ -29,5 +29,5 @@ pub use origin::Origin;
 pub use outlet::Outlet;
 pub use problem::{FieldError, Problem};
 pub use reader::{Errors, Reader};
-pub use request::Ask;
+pub use request::{Ask, peer};
 pub use token::Token;

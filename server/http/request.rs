@@ -2,7 +2,7 @@
 //! the answer. Both kinds give the same tree, so nothing behind this tells one from the other.
 
 use axum::extract::{FromRef, FromRequest, Request};
-use axum::http::{HeaderMap, Method};
+use axum::http::{Extensions, HeaderMap, Method};
 use serde_json::{Map, Value};
 
 use super::body::{self, JSON};
@@ -77,7 +77,7 @@ where
     async fn from_request(request: Request, state: &S) -> Result<Self, Problem> {
         let (parts, body) = request.into_parts();
         let query = parts.uri.query().unwrap_or_default();
-        let peer = parts.extensions.get().copied().unwrap_or(Peer::NOBODY);
+        let peer = peer(&parts.extensions);
         if parts.method == Method::GET || parts.method == Method::HEAD {
             return Self::from_query(query, parts.headers, peer);
         }
@@ -85,6 +85,11 @@ where
         let body = body::read(body, &parts.headers, &Limits::from_ref(state)).await?;
         Self::from_body(query, &body, parts.headers, peer)
     }
+}
+
+/// Who asks, as far as it was found out; nobody where a test has no socket.
+pub fn peer(extensions: &Extensions) -> Peer {
+    extensions.get().copied().unwrap_or(Peer::NOBODY)
 }
 
 /// The one parameter that is about the answer and not part of the request, and all others.
