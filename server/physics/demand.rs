@@ -8,8 +8,6 @@ use crate::map::Contact;
 /// The table at a strike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// When, s after release.
-    pub t: f64,
     /// α, rad.
     pub alpha: f64,
     /// Its velocity in x and y, m/s.
@@ -47,13 +45,14 @@ pub struct Excess {
 }
 
 impl Pose {
-    /// What this strike asks for, after `last` if there was one.
+    /// What this strike asks for, after the last one and the flight between them, s, if there was one.
     #[inline(never)]
-    pub fn demand(&self, last: Option<&Self>) -> Demand {
+    pub fn demand(&self, last: Option<(Self, f64)>) -> Demand {
         let (x, y) = self.velocity;
-        let (tilt_rate, stroke) = last.map_or((0.0, 0.0), |last| {
-            let time = self.t - last.t;
-            ((self.alpha - last.alpha).abs() / time, stroke(last.velocity.1, y, time))
+        let (tilt_rate, stroke) = last.map_or((0.0, 0.0), |(last, time)| {
+            // The least flights are so short that this would be infinite.
+            let rate = ((self.alpha - last.alpha).abs() / time).min(f64::MAX);
+            (rate, stroke(last.velocity.1, y, time))
         });
         Demand { tilt: self.alpha.abs(), tilt_rate, speed: (x * x + y * y).sqrt(), stroke }
     }
@@ -82,7 +81,8 @@ fn stroke(v0: f64, v1: f64, time: f64) -> f64 {
 pub struct Meter {
     /// The most of each.
     pub most: Demand,
-    last: Option<Pose>,
+    /// The last strike and the flight after it, s.
+    last: Option<(Pose, f64)>,
 }
 
 impl Meter {
@@ -90,8 +90,9 @@ impl Meter {
     #[inline(always)]
     pub fn look(&mut self, contact: &Contact) {
         let Some(strike) = &contact.strike else { return };
-        let pose = Pose { t: contact.t, alpha: strike.alpha, velocity: strike.table_velocity };
-        self.most = self.most.or(pose.demand(self.last.replace(pose).as_ref()));
+        let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
+        self.most = self.most.or(pose.demand(self.last));
+        self.last = contact.flight_time.map(|time| (pose, time));
     }
 }
 
@@ -151,6 +152,15 @@ mod tests {
         // v₀ = v₁ = v: the extremes are at s = ½ ± 1/√12, v·time/(6√3) to either side.
         let expected = 0.5 * 0.2 / (3.0 * 3.0_f64.sqrt());
         assert!((stroke(0.2, 0.2, 0.5) - expected).abs() < 1e-15);
+    }
+
+    #[test]
+    fn no_flight_is_too_short_for_a_tilt_rate() {
+        let pose = |alpha| Pose { alpha, velocity: (0.0, 0.1) };
+        assert_eq!(pose(0.3).demand(Some((pose(0.1), 1e-20))).tilt_rate, (0.3 - 0.1) / 1e-20);
+        for time in [f64::from_bits(1), 0.0] {
+            assert_eq!(pose(0.3).demand(Some((pose(0.1), time))).tilt_rate, f64::MAX);
+        }
     }
 
     #[test]

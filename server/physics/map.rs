@@ -86,8 +86,9 @@ pub struct Orbit<B> {
     n: u64,
     t: Sum,
     x: Sum,
-    /// Of those that shrink, s; 0 until there is one.
+    /// Of a run that can settle, s; 0 until there is one.
     first_flight: f64,
+    /// s; 0 until there is one.
     last_flight: f64,
     /// Energy that the run should have at the coming contact; known from its first one.
     energy: Option<f64>,
@@ -208,8 +209,8 @@ impl<B: Body> Orbit<B> {
             return contact;
         }
         if let Some(limits) = &self.rules.limits {
-            let pose = Pose { t: contact.t, alpha: strike.alpha, velocity: strike.table_velocity };
-            let demand = pose.demand(self.last.replace(pose).as_ref());
+            let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
+            let demand = pose.demand(self.last.replace(pose).map(|last| (last, self.last_flight)));
             if let Some(excess) = limits.exceeded(&demand) {
                 contact.ending = Some(Ending::BeyondLimits(excess));
                 return contact;
@@ -246,13 +247,13 @@ impl<B: Body> Orbit<B> {
             }
         };
         let flight_time = arrival.t;
-        if self.rules.settles {
-            if let Some(ending) = self.settle(flight_time) {
-                contact.ending = Some(ending);
-                return contact;
-            }
-            self.last_flight = flight_time;
+        if self.rules.settles
+            && let Some(ending) = self.settle(flight_time)
+        {
+            contact.ending = Some(ending);
+            return contact;
         }
+        self.last_flight = flight_time;
         contact.flight_time = Some(flight_time);
         self.t.add(flight_time);
         self.x.add(arrival.state.x_dot * flight_time);
