@@ -20,7 +20,7 @@ pub const SETTLED_SHARE: f64 = 1e-9;
 pub struct Rules {
     /// |θ| at which a contact counts as toppled, rad; infinite for a body without an angle.
     pub topple_angle: f64,
-    /// Whether the strikes lose energy for good, so that a run can settle.
+    /// Whether strikes take energy away, always or at times, so that a run can settle.
     pub settles: bool,
     /// Whether rounding is kept off the energy ([`Orbit`]); not where a settling run loses it to G l (1 − cos θ).
     pub holds_energy: bool,
@@ -272,13 +272,25 @@ impl<B: Body> Orbit<B> {
     }
 }
 
-/// One contact in the midst of a run, with the energy that it should have there, and the flight after it: the state just
-/// before the next contact and the energy there, or why the run ends.
-pub(crate) fn contact<B: Body>(body: B, rules: Rules, state: State, energy: f64) -> Result<(State, f64), Ending> {
-    let mut orbit = Orbit { energy: Some(energy), ..Orbit::at(body, rules, state) };
-    match orbit.advance().ending {
-        None => Ok((orbit.state, orbit.energy.unwrap_or(energy))),
-        Some(ending) => Err(ending),
+/// A run between two contacts, as lanes keep it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Midst {
+    /// Just before the coming contact.
+    pub(crate) state: State,
+    /// Energy that the run should have there, m²/s².
+    pub(crate) energy: f64,
+    /// As in [`Orbit`], s.
+    pub(crate) first_flight: f64,
+}
+
+impl Midst {
+    /// One contact and the flight after it, or why the run ends.
+    pub(crate) fn advance<B: Body>(self, body: B, rules: Rules) -> Result<Self, Ending> {
+        let Self { state, energy, first_flight } = self;
+        let mut orbit = Orbit { energy: Some(energy), first_flight, ..Orbit::at(body, rules, state) };
+        let ending = orbit.advance().ending;
+        let Orbit { state, first_flight, .. } = orbit;
+        ending.map_or(Ok(Self { state, energy: orbit.energy.unwrap_or(energy), first_flight }), Err)
     }
 }
 

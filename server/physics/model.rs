@@ -173,8 +173,8 @@ impl Scene {
                 BodyShape::Rod { .. } => self.topple_angle,
                 BodyShape::Point => f64::INFINITY,
             },
-            settles: self.is_lossy(),
-            holds_energy: !self.is_lossy() && !self.is_rough() && self.noise.is_none(),
+            settles: !self.keeps_energy(),
+            holds_energy: self.keeps_energy() && !self.is_rough() && self.noise.is_none(),
             limits: self.limits,
         }
     }
@@ -191,6 +191,12 @@ impl Scene {
             Striking::Compensated => self.assumed_restitution() > self.restitution,
         };
         lost && self.energy_gain == 0.0
+    }
+
+    /// Whether the table takes no energy away. With an energy gain it does where a run has too much, and with a negative one where it
+    /// has too little, down to nothing.
+    fn keeps_energy(&self) -> bool {
+        !self.is_lossy() && self.energy_gain == 0.0
     }
 
     /// Its friction, where the contact has some or the table moves along itself.

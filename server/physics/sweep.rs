@@ -7,7 +7,7 @@ use crate::dispatch::{Path, Work, dispatch, dispatch_on};
 use crate::friction::{Law, Slide};
 use crate::impact::{Rod, State};
 use crate::lanes::{Bounced, Far, Moving, Near, Rods, Rough, Scratch, Smooth, Surface, WIDTH, bounce};
-use crate::map::Rules;
+use crate::map::{Midst, Rules};
 pub use crate::outcome::Outcome;
 
 /// One run to be made.
@@ -37,9 +37,9 @@ impl Start {
         self.rod.strike(&self.state).energy
     }
 
-    /// Whether it can run in lanes: a run that settles goes alone.
+    /// Whether it can run in lanes: one whose table is limited goes alone.
     pub fn fits(&self) -> bool {
-        !self.rules.settles && self.rules.limits.is_none()
+        self.rules.limits.is_none()
     }
 }
 
@@ -204,7 +204,7 @@ impl<S: Surface> Orbits<S> {
     fn idle(surface: S, impacts: u64) -> Self {
         Self {
             surface,
-            rods: Rods::all(&IDLE.rod, IDLE.rules.topple_angle),
+            rods: Rods::all(&IDLE.rod, &IDLE.rules),
             moving: Moving::all(&IDLE.state, IDLE.energy()),
             impacts,
             turn: 0,
@@ -230,7 +230,7 @@ impl<S: Surface> Orbits<S> {
                 (IDLE, S::IDLE, u64::MAX)
             }
         };
-        self.rods.set(lane, &start.rod, start.rules.topple_angle);
+        self.rods.set(lane, &start.rod, &start.rules);
         self.surface.set(lane, of);
         self.moving.set(lane, &start.state, start.energy());
         self.moving.max_theta[lane] = 0.0;
@@ -293,9 +293,10 @@ impl<S: Surface> Orbits<S> {
         let theta = self.moving.state(lane).theta;
         let max_theta = &mut self.moving.max_theta[lane];
         *max_theta = max_theta.max(theta.abs());
-        match self.surface.contact(&self.rods, &self.moving, lane) {
-            Ok((state, energy)) => {
+        match self.surface.contact(&self.rods, lane, self.rods.midst(&self.moving, lane)) {
+            Ok(Midst { state, energy, first_flight }) => {
                 self.moving.set(lane, &state, energy);
+                self.rods.begin(lane, first_flight);
                 None
             }
             Err(ending) => Some(ending.into()),

@@ -9,7 +9,7 @@ use super::{Lanes, WIDTH};
 use crate::contact_time::{self, Step};
 use crate::flight::Flight;
 use crate::impact::{Rod, State, Strike, Tilt};
-use crate::map::SPEED_LIMIT;
+use crate::map::{Midst, Rules, SETTLED_SHARE, SPEED_LIMIT};
 
 /// What bounces, and how far it may tilt.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ pub(crate) struct Rods {
     strike_gain_per_energy: Lanes,
     target_energy: Lanes,
     topple_angle: Lanes,
+    /// Of runs that can settle, s: infinite before it, so that it is made alone; 0 for those that cannot.
+    first_flight: Lanes,
 }
 
 /// What changes from contact to contact.
@@ -96,7 +98,8 @@ pub(crate) fn bounce<L: Lane, S: Surface>(
     }
     let mut any = 0;
     for lane in 0..WIDTH {
-        scratch.apart[lane] |= 1 - scratch.found[lane];
+        let settled = unless(scratch.t[lane] >= SETTLED_SHARE * rods.first_flight[lane]);
+        scratch.apart[lane] |= (1 - scratch.found[lane]) | settled;
         any |= scratch.apart[lane];
     }
     Bounced { near: tilted_near & fallen.near, common: any == 0 }
@@ -196,9 +199,14 @@ fn flight<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &Scratc
     }
 }
 
+/// What stands for the first flight before there is one.
+fn before_flight(rules: &Rules) -> f64 {
+    if rules.settles { f64::INFINITY } else { 0.0 }
+}
+
 impl Rods {
     /// All the same.
-    pub(crate) fn all(rod: &Rod, topple_angle: f64) -> Self {
+    pub(crate) fn all(rod: &Rod, rules: &Rules) -> Self {
         let Rod { contact_distance, radius_of_gyration, gravity, restitution, tilt_gain, .. } = *rod;
         Self {
             contact_distance: [contact_distance; WIDTH],
@@ -210,12 +218,13 @@ impl Rods {
             strike_gain: [rod.strike_gain; WIDTH],
             strike_gain_per_energy: [rod.strike_gain_per_energy; WIDTH],
             target_energy: [rod.target_energy; WIDTH],
-            topple_angle: [topple_angle; WIDTH],
+            topple_angle: [rules.topple_angle; WIDTH],
+            first_flight: [before_flight(rules); WIDTH],
         }
     }
 
     /// Puts another into a lane.
-    pub(crate) fn set(&mut self, lane: usize, rod: &Rod, topple_angle: f64) {
+    pub(crate) fn set(&mut self, lane: usize, rod: &Rod, rules: &Rules) {
         self.contact_distance[lane] = rod.contact_distance;
         self.radius_of_gyration[lane] = rod.radius_of_gyration;
         self.leverage[lane] = rod.leverage();
@@ -225,7 +234,13 @@ impl Rods {
         self.strike_gain[lane] = rod.strike_gain;
         self.strike_gain_per_energy[lane] = rod.strike_gain_per_energy;
         self.target_energy[lane] = rod.target_energy;
-        self.topple_angle[lane] = topple_angle;
+        self.topple_angle[lane] = rules.topple_angle;
+        self.first_flight[lane] = before_flight(rules);
+    }
+
+    /// A run has made its first flight, of so many seconds; 0 where it cannot settle.
+    pub(crate) fn begin(&mut self, lane: usize, first_flight: f64) {
+        self.first_flight[lane] = first_flight;
     }
 
     /// The one in a lane.
@@ -249,9 +264,21 @@ impl Rods {
         self.leverage[lane]
     }
 
-    /// How far the one in a lane may tilt, rad.
-    pub(crate) fn topple_angle(&self, lane: usize) -> f64 {
-        self.topple_angle[lane]
+    /// Whether the run in a lane can settle.
+    #[inline(always)]
+    pub(super) fn settles(&self, lane: usize) -> bool {
+        self.first_flight[lane] != 0.0
+    }
+
+    /// When the run in a lane ends.
+    pub(super) fn rules(&self, lane: usize) -> Rules {
+        Rules { topple_angle: self.topple_angle[lane], settles: self.settles(lane), holds_energy: false, limits: None }
+    }
+
+    /// Where the run in a lane is.
+    pub(crate) fn midst(&self, moving: &Moving, lane: usize) -> Midst {
+        let first_flight = Some(self.first_flight[lane]).filter(|flight| flight.is_finite()).unwrap_or(0.0);
+        Midst { state: moving.state(lane), energy: moving.energy[lane], first_flight }
     }
 }
 

@@ -7,8 +7,7 @@ use super::bounce::{Moving, Rods, Scratch};
 use super::number::Lane;
 use super::{Lanes, WIDTH};
 use crate::friction::{Friction, Law, Slide, as_it_is};
-use crate::impact::State;
-use crate::map::{Ending, Rules, contact};
+use crate::map::{Ending, Midst, Rules};
 use crate::rig::{Rig, Steering};
 
 /// A kind of contact.
@@ -25,11 +24,11 @@ pub(crate) trait Surface {
     /// The velocities after the strike, in all lanes; those whose run may end here are set apart.
     fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch);
 
-    /// One contact of one lane by the map itself: the state before the next one and the energy there, or why the run ends.
-    fn contact(&self, rods: &Rods, moving: &Moving, lane: usize) -> Result<(State, f64), Ending>;
+    /// One contact of one lane by the map itself: where the run is then, or why it ends.
+    fn contact(&self, rods: &Rods, lane: usize, midst: Midst) -> Result<Midst, Ending>;
 }
 
-/// Without friction; rounding is kept off the energy.
+/// Without friction; rounding is kept off the energy, but not where a run can settle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Smooth;
 
@@ -47,13 +46,15 @@ impl Surface for Smooth {
             let rod = rods.rod(lane).lift::<L>();
             let tilt = scratch.tilt::<L>(lane);
             let mut strike = rod.strike_with(&moving.state(lane).map(number), &tilt, number(rods.leverage(lane)));
-            let energy = rod.hold_energy(&mut strike, number(moving.energy[lane]));
+            // Where none is held, the one that there is: then nothing is corrected.
+            let held = if rods.settles(lane) { strike.energy } else { number(moving.energy[lane]) };
+            let energy = rod.hold_energy(&mut strike, held);
             next.struck(lane, &strike, energy.to_f64(), scratch);
         }
     }
 
-    fn contact(&self, rods: &Rods, moving: &Moving, lane: usize) -> Result<(State, f64), Ending> {
-        contact(rods.rod(lane), rules(rods, lane, true), moving.state(lane), moving.energy[lane])
+    fn contact(&self, rods: &Rods, lane: usize, midst: Midst) -> Result<Midst, Ending> {
+        midst.advance(rods.rod(lane), Rules { holds_energy: !rods.settles(lane), ..rods.rules(lane) })
     }
 }
 
@@ -117,7 +118,7 @@ impl Surface for Rough {
         by!(Poisson None, Poisson Matched, Newton None, Newton Matched, Stronge None, Stronge Matched);
     }
 
-    fn contact(&self, rods: &Rods, moving: &Moving, lane: usize) -> Result<(State, f64), Ending> {
+    fn contact(&self, rods: &Rods, lane: usize, midst: Midst) -> Result<Midst, Ending> {
         let friction = Friction { coefficient: self.coefficient[lane], law: self.law, slide: self.slide };
         let rig = Rig {
             rod: rods.rod(lane),
@@ -126,10 +127,6 @@ impl Surface for Rough {
             noise: None,
             outline: None,
         };
-        contact(rig, rules(rods, lane, false), moving.state(lane), moving.energy[lane])
+        midst.advance(rig, rods.rules(lane))
     }
-}
-
-fn rules(rods: &Rods, lane: usize, holds_energy: bool) -> Rules {
-    Rules { topple_angle: rods.topple_angle(lane), settles: false, holds_energy, limits: None }
 }

@@ -12,9 +12,12 @@ prop_compose! {
     fn starts()(
         length in 0.02..2.0_f64, ratio in 0.2..1.5, tilt_gain in -0.5..2.5, near in any::<bool>(),
         theta in -1.0..1.0, x_dot in -1.0..1.0, y_dot in -4.0..-0.2, theta_dot in -30.0..30.0,
-        energy_gain in prop_oneof![Just(0.0), 0.0..0.3], restitution in 0.2..1.0, above in 1.2..3.0,
+        energy_gain in prop_oneof![Just(0.0), -0.2..0.3], restitution in 0.2..1.0, above in 1.2..3.0,
+        still in prop::bool::weighted(0.2),
     ) -> Start {
         let scale = if near { 0.05 } else { 1.0 };
+        let energy_gain = if still { 0.0 } else { energy_gain };
+        let settles = still || energy_gain != 0.0;
         Start {
             rod: Rod {
                 contact_distance: length,
@@ -22,11 +25,11 @@ prop_compose! {
                 gravity: 9.81,
                 restitution,
                 tilt_gain,
-                strike_gain: 2.0,
+                strike_gain: if still { 1.0 + restitution } else { 2.0 },
                 strike_gain_per_energy: (1.0 + restitution) * energy_gain,
                 target_energy: 9.81 * length * above,
             },
-            rules: Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None },
+            rules: Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles, holds_energy: !settles, limits: None },
             state: State { theta: theta * scale, x_dot: x_dot * scale, y_dot, theta_dot: theta_dot * scale },
         }
     }
@@ -144,6 +147,7 @@ fn every_outcome_of_a_lane_occurs_and_a_sweep_can_be_stopped() {
     let rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None };
     let state = |theta, y_dot, theta_dot| State { theta, x_dot: 0.0, y_dot, theta_dot };
     let start = |rod, state| Start { rod, rules, state };
+    let still = Rod { strike_gain: 1.5, ..rod };
     let wild = Rod { strike_gain_per_energy: 1e8, target_energy: 1e8, ..rod };
     let starts = [
         (start(rod, state(0.1, -1.0, 0.0)), Outcome::Completed),
@@ -151,6 +155,13 @@ fn every_outcome_of_a_lane_occurs_and_a_sweep_can_be_stopped() {
         (start(rod, state(0.0, 1.0, 0.0)), Outcome::Separating),
         (start(Rod { tilt_gain: 3.0, ..rod }, state(0.4, -1.0, 0.0)), Outcome::Sinking),
         (start(wild, state(0.1, -1.0, 0.0)), Outcome::Diverged),
+        (
+            Start {
+                rules: Rules { settles: true, holds_energy: false, ..rules },
+                ..start(still, state(0.0, -1.0, 0.0))
+            },
+            Outcome::Settled,
+        ),
     ];
     let mut next = starts.iter().map(|(start, _)| *start).enumerate();
     let mut seen = vec![None; starts.len()];

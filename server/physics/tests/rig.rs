@@ -89,6 +89,33 @@ fn without_energy_feedback_a_wrong_belief_lets_the_height_drift_away() {
     assert_eq!(still.build().unwrap_err()[0].path, "table.assumed_restitution");
 }
 
+/// Upright, each strike multiplies the speed by γ − 1 + (1 + e)κ_E(E* − E), γ = 2(1 + e)/(1 + ê): below 1 for good where the
+/// gain is negative and the bounce too low, or too small for what the table believes wrongly.
+#[test]
+fn an_energy_gain_that_does_not_make_up_the_loss_lets_the_run_settle() {
+    let (e, wanted, g) = (0.5, 0.4, 9.81);
+    for (energy_gain, assumed) in [(-0.1, e), (0.02, 1.0)] {
+        let scene = scene(&[
+            (Name::Restitution, e),
+            (Name::AssumedRestitution, assumed),
+            (Name::EnergyGain, energy_gain),
+            (Name::TargetHeight, wanted),
+            (Name::Theta, 0.0),
+        ]);
+        let mut orbit = scene.orbit().unwrap();
+        let (mut t, mut speed) = (orbit.t(), -orbit.state().y_dot);
+        while speed > 1e-20 {
+            let missing = g * (wanted - 0.4 / 3.0) - 0.5 * speed * speed;
+            speed *= 2.0 * (1.0 + e) / (1.0 + assumed) - 1.0 + (1.0 + e) * energy_gain * missing;
+            t += 2.0 * speed / g;
+        }
+        let ending = run(&mut orbit, 100_000, |_| true).unwrap();
+        let Ending::Settled { settle_time, .. } = ending else { panic!("κ_E = {energy_gain}: {ending:?}") };
+        assert!((settle_time - t).abs() < 1e-12 * t, "κ_E = {energy_gain}: {settle_time} {t}");
+        assert!(orbit.contacts() < 1000);
+    }
+}
+
 #[test]
 fn a_strike_beyond_the_limits_ends_the_run() {
     let free = scene(&[]);
