@@ -40,6 +40,7 @@ struct Made {
     above: f64,
     body: Body,
     tilts: Tilts,
+    noisy: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -69,8 +70,10 @@ prop_compose! {
             2 => prop::collection::vec(0.05..0.2, 3..9).prop_map(Body::Polygon),
         ],
         tilts in prop_oneof![6 => Just(Tilts::Gain), 1 => Just(Tilts::Feedback)],
+        // Not too often: half of the resources have no answer with it.
+        noisy in prop::bool::weighted(0.3),
     ) -> Made {
-        Made { fields, above, body, tilts }
+        Made { fields, above, body, tilts, noisy }
     }
 }
 
@@ -108,7 +111,7 @@ impl Made {
                 _ if row.path.starts_with("table.feedback.") => tilts == Tilts::Feedback,
                 // A table with limits soon ends its run; let some do.
                 _ if row.path.starts_with("table.limits.") => self.above < 0.2,
-                _ => group != "noise" || !is_point,
+                _ => group != "noise" || (self.noisy && !is_point),
             };
             let needed = match row.name {
                 Name::TargetHeight => said(Name::EnergyGain) && !still,
@@ -204,7 +207,9 @@ fn hold(resource: &Resource, parameters: impl Strategy<Value = Value>, cases: u3
         answered.set(answered.get() + u32::from(is_answered));
     });
     println!("{}: {} of {cases} answered", resource.path, answered.get());
-    assert!(answered.get() * 5 >= cases, "{}: only {} of {cases} answered", resource.path, answered.get());
+    // Two fifths to nearly all are: what is made up must not be refused before it is tried. That fewer than this are by chance
+    // happens once in a million times.
+    assert!(answered.get() * 10 >= cases, "{}: only {} of {cases} answered", resource.path, answered.get());
 }
 
 /// Whether the request was answered and not refused. Panics where anything is wrong.
