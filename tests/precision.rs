@@ -196,3 +196,15 @@ async fn every_format_has_every_point() {
     let pixels = server.get(&format!("{asked}&format=png")).await.expect(200);
     assert_eq!((pixels.media_type(), pixels.header("cache-control")), ("image/png", Some("no-store")));
 }
+
+#[tokio::test]
+async fn what_the_map_alone_looks_at_ends_no_run() {
+    let server = Server::start();
+    let limited = "preset=triangle-polygon&scene.table.limits.tilt=0&impacts=5&methods.0=map&methods.1=extended";
+    let answer = server.get(&format!("/v1/precision?{limited}")).await.expect(200);
+    assert!(points(&answer).iter().all(|point| point["outcome"] == "completed"), "{}", answer.text());
+    let notes = answer.json()["notes"].to_string();
+    assert!(notes.contains("table.limits end none of these runs") && notes.contains("no other vertex ends"), "{notes}");
+    let run = server.get("/v1/trajectories?preset=triangle-polygon&scene.table.limits.tilt=0").await.json();
+    assert_eq!(run["outcome"]["kind"], "beyond_limits");
+}

@@ -255,6 +255,12 @@ pub fn chart(
         points.push(point(&subject, method, setting, done));
         progress(points.len() as u64, of);
     }
+    if scene.rules().limits.is_some() {
+        notes.push("table.limits end none of these runs: no method but the map looks at them".to_owned());
+    }
+    if scene.vertices().is_some() {
+        notes.push("no other vertex ends any of these runs: no method but the map looks for them".to_owned());
+    }
     if let Some(coarsest) = left_out.into_iter().reduce(f64::max) {
         notes.push(format!(
             "steps of {coarsest} s and finer are left out: they would take more than about {} steps",

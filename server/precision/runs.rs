@@ -92,7 +92,7 @@ impl<'a> Subject<'a> {
     ) -> Result<Result<Done, String>, Cancelled> {
         cancel.check()?;
         Ok(match kind {
-            Kind::Map => self.map(self.scene.rules()),
+            Kind::Map => self.map(self.rules()),
             Kind::MapFree => self.map(self.free()),
             Kind::Extended => Ok(Done {
                 outcome: self.reference.outcome,
@@ -118,7 +118,7 @@ impl<'a> Subject<'a> {
     /// The same for the clock: nothing is made ready, counted or kept that is not the run itself.
     pub(super) fn race(&self, kind: Kind, setting: Option<Setting>, cancel: &Cancel) {
         match kind {
-            Kind::Map => _ = black_box(self.bounce(self.scene.rules(), |_| ())),
+            Kind::Map => _ = black_box(self.bounce(self.rules(), |_| ())),
             Kind::MapFree => _ = black_box(self.bounce(self.free(), |_| ())),
             Kind::Extended => _ = black_box(run_extended(self.scene, self.impacts, |contact| _ = black_box(contact.n))),
             Kind::Linear => {
@@ -134,8 +134,13 @@ impl<'a> Subject<'a> {
         }
     }
 
+    /// Those that every method has; the map alone looks at what the table can do.
+    fn rules(&self) -> Rules {
+        Rules { limits: None, ..self.scene.rules() }
+    }
+
     fn free(&self) -> Rules {
-        Rules { holds_energy: false, ..self.scene.rules() }
+        Rules { holds_energy: false, ..self.rules() }
     }
 
     fn map(&self, rules: Rules) -> Result<Done, String> {
@@ -185,7 +190,7 @@ impl<'a> Subject<'a> {
     }
 
     fn simulate(&self, method: integrators::Method, rod: &Rod, cancel: &Cancel) -> Option<integrators::Simulation> {
-        let (rules, release) = (self.scene.rules(), self.scene.release());
+        let (rules, release) = (self.rules(), self.scene.release());
         let most = limits::PRECISION_STEPS;
         simulate(method, (rod, &rules, release), self.impacts, most, &mut || !cancel.is_set())
     }
