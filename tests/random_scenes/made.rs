@@ -1,0 +1,164 @@
+//! Scenes made up at random, and the requests that ask for them.
+
+use equipoise_physics::scene::{FIELDS, Kind, Name, VERTICES};
+use proptest::prelude::*;
+use serde_json::{Map, Value, json};
+
+/// Values that a lab would have; the others come from the whole range of their field.
+pub(super) const USUAL: [(Name, f64, f64); 14] = [
+    (Name::ContactDistance, 0.05, 0.5),
+    (Name::RadiusOfGyration, 0.03, 0.5),
+    (Name::Gravity, 1.0, 10.0),
+    (Name::Incline, 0.1, 1.57),
+    (Name::Restitution, 0.3, 1.0),
+    (Name::Friction, 0.0, 0.6),
+    (Name::TiltGain, 0.5, 3.0),
+    (Name::EnergyGain, -0.1, 0.3),
+    (Name::TargetHeight, 0.2, 0.8),
+    (Name::Theta, -0.3, 0.3),
+    (Name::ThetaDot, -2.0, 2.0),
+    (Name::XDot, -0.5, 0.5),
+    (Name::TimingSd, 0.0, 0.002),
+    (Name::AngleSd, 0.0, 0.01),
+];
+
+/// What a random scene is made of: where in its range each field is, if it is said; and what bounces.
+#[derive(Clone, Debug)]
+pub(super) struct Made {
+    fields: Vec<Option<(f64, bool)>>,
+    above: f64,
+    body: Body,
+    tilts: Tilts,
+    noisy: bool,
+}
+
+#[derive(Clone, Debug)]
+enum Body {
+    Preset(usize),
+    Rod,
+    Point,
+    /// Radii of the corners, in turn.
+    Polygon(Vec<f64>),
+}
+
+/// What moves the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Tilts {
+    Gain,
+    Feedback,
+}
+
+prop_compose! {
+    pub(super) fn made()(
+        fields in prop::collection::vec(prop::option::weighted(0.35, (0.0..=1.0, prop::bool::weighted(0.15))), FIELDS.len()),
+        above in 0.0..1.0,
+        body in prop_oneof![
+            2 => (0..64_usize).prop_map(Body::Preset),
+            5 => Just(Body::Rod),
+            1 => Just(Body::Point),
+            2 => prop::collection::vec(0.05..0.2, 3..9).prop_map(Body::Polygon),
+        ],
+        tilts in prop_oneof![6 => Just(Tilts::Gain), 1 => Just(Tilts::Feedback)],
+        // Not too often: half of the resources have no answer with it.
+        noisy in prop::bool::weighted(0.3),
+    ) -> Made {
+        Made { fields, above, body, tilts, noisy }
+    }
+}
+
+impl Made {
+    /// The scene of a request, with its preset if it has one. Mostly it does not contradict itself.
+    pub(super) fn put_into(&self, request: &mut Value, presets: &[String], plain: bool) {
+        let mut scene = json!({});
+        let tilts = if plain { Tilts::Gain } else { self.tilts };
+        let is_point = matches!(self.body, Body::Point);
+        match &self.body {
+            Body::Preset(index) => request["preset"] = json!(presets[index % presets.len()]),
+            Body::Rod => {}
+            Body::Point => put(&mut scene, Name::PointMass.row().path, json!(true)),
+            Body::Polygon(radii) => {
+                let corner = |(index, radius): (usize, &f64)| {
+                    let angle = std::f64::consts::TAU * (index as f64 / radii.len() as f64 - 0.25);
+                    json!([radius * angle.cos(), radius * angle.sin()])
+                };
+                put(&mut scene, VERTICES, radii.iter().enumerate().map(corner).collect());
+            }
+        }
+        let said = |name: Name| self.fields[name as usize].is_some();
+        let still = self.fields[Name::Strike as usize].is_some_and(|(share, _)| share >= 0.5);
+        for row in &FIELDS {
+            let group = row.group();
+            let fits = match row.name {
+                Name::Friction | Name::Slide if plain => false,
+                _ if plain && ["table.feedback.", "noise."].iter().any(|group| row.path.starts_with(group)) => false,
+                Name::PointMass => false,
+                Name::ContactDistance | Name::RadiusOfGyration => matches!(self.body, Body::Rod),
+                Name::ContactVertex => false,
+                Name::Theta | Name::ThetaDot | Name::Friction | Name::Slide | Name::Law if is_point => false,
+                Name::EnergyGain | Name::AssumedRestitution if still => false,
+                Name::TiltGain => tilts == Tilts::Gain,
+                _ if row.path.starts_with("table.feedback.") => tilts == Tilts::Feedback,
+                // A table with limits soon ends its run; let some do.
+                _ if row.path.starts_with("table.limits.") => self.above < 0.2,
+                _ => group != "noise" || (self.noisy && !is_point),
+            };
+            let needed = match row.name {
+                Name::TargetHeight => said(Name::EnergyGain) && !still,
+                _ => row.required && !matches!(self.body, Body::Preset(_)),
+            };
+            if fits && (said(row.name) || needed) {
+                put(&mut scene, row.path, self.value(row.name));
+            }
+        }
+        if tilts == Tilts::Feedback && matches!(self.body, Body::Preset(_)) {
+            put(&mut scene, Name::TiltGain.row().path, Value::Null);
+        }
+        if !matches!(self.body, Body::Preset(_)) {
+            let length = scene.pointer("/body/contact_distance").and_then(Value::as_f64).unwrap_or(0.3);
+            put(&mut scene, Name::Height.row().path, json!(length * (1.0 + self.above)));
+        }
+        if scene != json!({}) {
+            request["scene"] = scene;
+        }
+    }
+
+    fn value(&self, name: Name) -> Value {
+        let (share, anything) = self.fields[name as usize].unwrap_or((0.5, false));
+        match name.row().kind {
+            Kind::Number { minimum, maximum } => {
+                let usual = USUAL.iter().find(|(usual, ..)| *usual == name && !anything);
+                let (low, high) = usual.map_or((minimum, maximum), |(_, low, high)| (*low, *high));
+                json!((low + share * (high - low)).clamp(minimum, maximum))
+            }
+            Kind::Integer { maximum } => json!((share * maximum as f64) as u64),
+            Kind::Choice(words) => json!(words[((share * words.len() as f64) as usize).min(words.len() - 1)]),
+            Kind::Flag => json!(true),
+        }
+    }
+}
+
+fn put(scene: &mut Value, path: &str, value: Value) {
+    let mut at = scene;
+    for part in path.split('.') {
+        at = at.as_object_mut().expect("a group").entry(part).or_insert_with(|| Value::Object(Map::new()));
+    }
+    *at = value;
+}
+
+/// The query that says the same as a body. A value that is taken back is the word for it.
+pub(super) fn query(body: &Value) -> String {
+    fn below(path: &str, value: &Value, into: &mut Vec<(String, String)>) {
+        let inner = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+        match value {
+            Value::Object(fields) => fields.iter().for_each(|(name, value)| below(&inner(name), value, into)),
+            Value::Array(items) => {
+                items.iter().enumerate().for_each(|(index, item)| below(&inner(&index.to_string()), item, into));
+            }
+            Value::String(text) => into.push((path.to_owned(), text.clone())),
+            other => into.push((path.to_owned(), other.to_string())),
+        }
+    }
+    let mut parameters = Vec::new();
+    below("", body, &mut parameters);
+    form_urlencoded::Serializer::new(String::new()).extend_pairs(parameters).finish()
+}
