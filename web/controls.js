@@ -1,7 +1,7 @@
 // The controls beside the scene: run, step, speed, gain, kick. They say what was asked for; what follows is the page's.
 
 import { aim } from './form.js';
-import { h, symbol } from './dom.js';
+import { h, steady, symbol } from './dom.js';
 import { fixed, number, parse } from './numbers.js';
 import { FASTEST, SLOWEST } from './link.js';
 
@@ -11,7 +11,7 @@ import { FASTEST, SLOWEST } from './link.js';
  * @property {() => void} step
  * @property {() => void} restart
  * @property {(speed: number) => void} speed
- * @property {(gain: number, final: boolean) => void} gain
+ * @property {(gain: number | null, final: boolean) => void} gain
  * @property {(velocities: Record<string, number>) => void} kick
  */
 
@@ -49,6 +49,9 @@ export class Controls {
   #asked;
   /** @type {import('./api.js').Field | null} */
   #gainField = null;
+  /** @type {number | null} */
+  #gainSet = null;
+  #speedSet = 1;
 
   /**
    * @param {HTMLElement} root
@@ -59,6 +62,14 @@ export class Controls {
     this.#run.addEventListener('click', asked.toggle);
     this.#step.addEventListener('click', asked.step);
     this.#restart.addEventListener('click', asked.restart);
+    steady(this.#speed, () => { const speed = this.#speedSet; return () => this.setSpeed(speed); });
+    steady(this.#gain, () => {
+      const gain = this.#gainSet;
+      return () => {
+        this.setGain(gain);
+        this.#asked.gain(gain, false);
+      };
+    });
     this.#speed.addEventListener('input', () => this.#showSpeed(speedAt(this.#speed.valueAsNumber)));
     this.#speed.addEventListener('change', () => asked.speed(speedAt(this.#speed.valueAsNumber)));
     this.#gain.addEventListener('input', () => this.#gained(false));
@@ -96,6 +107,7 @@ export class Controls {
 
   /** @param {number | null} gain */
   setGain(gain) {
+    this.#gainSet = gain;
     if (!this.#gainField || document.activeElement === this.#gain && gain === this.#gain.valueAsNumber) return;
     aim(this.#gain, this.#gainField, gain);
     this.#gainShown.textContent = fixed(gain, 3);
@@ -103,6 +115,7 @@ export class Controls {
 
   /** @param {number} speed */
   setSpeed(speed) {
+    this.#speedSet = speed;
     this.#speed.value = String(Math.round((Math.log(speed) - slow) / span * SLIDER_STEPS));
     this.#showSpeed(speed);
   }

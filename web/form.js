@@ -1,6 +1,6 @@
 // The form of a scene, made from the server's table of fields. Keeps what was typed, right or wrong; does not judge a scene: the server does.
 
-import { h, symbol } from './dom.js';
+import { h, steady, symbol } from './dom.js';
 import { number, parse, quantity, unitAfter } from './numbers.js';
 import { pathOf, setAt, valueAt } from './api.js';
 
@@ -131,6 +131,18 @@ export class Form {
       input = typed;
       // Nobody finds one number among trillions with a slider.
       const moved = field.kind === 'integer' && (field.maximum ?? Infinity) > 1e6 ? null : h('input', { type: 'range', 'aria-label': `${field.title}, slider`, tabindex: 0 });
+      if (moved) {
+        steady(moved, () => {
+          const row = /** @type {Row} */ (this.#rows.get(field.path));
+          const { exact } = row;
+          const text = typed.value;
+          return () => {
+            row.exact = exact;
+            typed.value = text;
+            this.#edited(field.path, false);
+          };
+        });
+      }
       for (const [event, final] of /** @type {const} */ ([['input', false], ['change', true]])) {
         moved?.addEventListener(event, () => { typed.value = moved.value; this.#edited(field.path, final, true); });
       }

@@ -33,6 +33,8 @@ let chosen = null;
 /** @type {Form | null} */
 let form = null;
 let speed = 1;
+/** What was typed when the run began. @type {Scene} */
+let releasedAs = {};
 /** Those below the fold, which come after the first plot. @type {import('./panels.js').Panels | null} */
 let panels = null;
 /** What acts on all charts of the impacts, after the first plot too. @type {import('./planes/acts.js').Acts | null} */
@@ -41,6 +43,8 @@ let acts = null;
 let panelLink = new URLSearchParams();
 /** @type {import('./panels.js').Judged | null} */
 let judged = null;
+/** Whether the run has lost the server, and whether the newest scene has no verdict for want of one. */
+let [away, unjudged] = [false, false];
 /** The last thing sent to the run, to know whose error comes back. @type {'kick' | 'set' | 'other'} */
 let lastSent = 'other';
 
@@ -48,7 +52,11 @@ const run = new Run({
   changed: showRun,
   struck: () => { for (const plot of plots) invalidate(plot); acts?.struck(); view.redraw(); },
   cleared: () => { for (const plot of plots) plot.clear(); acts?.cleared(); view.reset(); },
-  lost: (seconds) => connectionNotice(seconds, () => run.retry()),
+  lost: (seconds) => {
+    connectionNotice(seconds, () => run.retry());
+    if (!Number.isNaN(seconds)) away = true;
+    else if (away) back();
+  },
   refused: (problem) => {
     clearNotice('connection');
     const homeless = form?.blame(problem.errors) ?? [];
@@ -116,7 +124,10 @@ function savesOf(id, title, view) {
 function unplayed() {
   const typed = form?.read().scene;
   const { asked } = run;
-  return typed && asked ? fields.filter((field) => !same(playedAt(typed, field), playedAt(asked, field))) : [];
+  if (!typed || !asked) return [];
+  // What was left open at the release the server has filled in.
+  const open = (/** @type {Field} */ { path }) => [typed, releasedAs].every((scene) => valueAt(scene, path) === undefined) && same(valueAt(asked, path), valueAt(run.released ?? {}, path));
+  return fields.filter((field) => !same(playedAt(typed, field), playedAt(asked, field)) && !open(field));
 }
 
 /** The page's address says what is shown: the run while there is one, else what is typed. */
@@ -142,6 +153,7 @@ const askSoon = settled(120, async () => {
   const mine = asking = new AbortController();
   try {
     const answer = await get(`v1/stability?${query}`, mine.signal);
+    unjudged = false;
     form?.blame([]);
     verdict.show(answer, () => get(`v1/stability?${query}&basin=true`, mine.signal));
     circle.show(answer);
@@ -151,6 +163,7 @@ const askSoon = settled(120, async () => {
   } catch (error) {
     if (mine.signal.aborted) return;
     circle.show(null);
+    unjudged = !(error instanceof Problem);
     if (error instanceof Problem && error.errors.length > 0) {
       const homeless = form?.blame(error.errors) ?? [];
       verdict.fail(homeless.length > 0 ? homeless.join(' ') : 'The server does not take this scene; the parameter is marked below.');
@@ -178,6 +191,13 @@ const sendChanges = settled(100, () => {
   run.set(changes);
 });
 
+/** The server is there again: what it has missed is made up for. */
+function back() {
+  away = false;
+  if (unjudged) ask();
+  sendChanges();
+}
+
 /**
  * @param {string} path
  * @param {boolean} final
@@ -190,6 +210,7 @@ function edited(path, final) {
     circle.preview(value);
   }
   if (final && run.active && fields.find((field) => field.path === path)?.live) sendChanges();
+  nameScene();
   view.draft(scene);
   plots[2].redraw();
   panels?.sceneChanged();
@@ -205,6 +226,7 @@ function start() {
     return form?.focusError();
   }
   query.set('speed', String(speed));
+  releasedAs = form.read().scene;
   clearNotice('run');
   lastSent = 'other';
   run.start(query);
@@ -260,27 +282,41 @@ const plain = (text) => text.replaceAll('κ_', 'κ');
 /** The case that a scene is, if it is one. @param {Scene} scene */
 const caseOf = (scene) => cases.find((one) => fields.every((field) => same(playedAt(one.scene, field), playedAt(scene, field)))) ?? null;
 
+/** Says which case the typed scene is, or what of it is another. */
+function nameScene() {
+  const typed = form?.read().scene ?? {};
+  const one = chosen;
+  const other = one ? fields.filter((field) => !same(playedAt(typed, field), playedAt(one.scene, field))) : [];
+  const shows = byId('case-shows');
+  chooser.value = one?.name ?? '';
+  document.title = one ? `${plain(one.title)}${other.length > 0 ? ', changed' : ''} · equipoise` : 'equipoise';
+  if (!one || other.length === 0) return shows.replaceChildren(...prose(one?.shows ?? 'A scene of your own.'));
+  const named = other.slice(0, 3).map(({ title }) => title.toLowerCase()).join(', ');
+  shows.replaceChildren(`Changed from the case: ${named}${other.length > 3 ? ` and ${other.length - 3} more` : ''}. `, h('button', { type: 'button', id: 'case-back', click: () => choose(one) }, 'Back to the case'));
+}
+
 /** Shows a scene without running it. @param {Scene} scene */
 function present(scene) {
   form?.fill(scene);
   controls.setGain(valueAt(scene, GAIN) ?? null);
   controls.setSpeed(speed);
-  chooser.value = chosen?.name ?? '';
-  byId('case-shows').replaceChildren(...prose(chosen?.shows ?? 'A scene of your own.'));
-  document.title = chosen ? `${plain(chosen.title)} · equipoise` : 'equipoise';
+  nameScene();
   plots[2].redraw();
   view.draft(scene);
   panels?.sceneChanged();
   ask();
 }
 
-/** Releases what is typed with these values in it. @param {Record<string, number>} values */
+/** Releases what is typed with these values in it; the way back leads to the run before. @param {Record<string, number>} values */
 function launch(values) {
+  addressNow();
+  history.pushState(null, '', location.href);
   for (const [path, value] of Object.entries(values)) form?.put(path, value);
   run.reset();
   const scene = form?.read().scene ?? {};
   controls.setGain(valueAt(scene, GAIN) ?? null);
   circle.preview(valueAt(scene, GAIN) ?? null);
+  nameScene();
   view.draft(scene);
   panels?.sceneChanged();
   ask();
@@ -321,6 +357,7 @@ function restore(search) {
   query.set('speed', String(speed));
   for (const { set } of interventionsOf(link.run)) for (const [path, value] of Object.entries(set)) setAt(scene, path, value);
   present(scene);
+  releasedAs = form?.read().scene ?? {};
   run.start(query);
 }
 
@@ -357,7 +394,10 @@ async function begin() {
   // The plots of the first look are drawn in the next frame; what nobody sees yet comes after.
   await new Promise((resolve) => requestAnimationFrame(resolve));
   performance.mark('first plot');
-  const [{ Panels }, { listenToKeys }, { Acts }] = await Promise.all([import('./panels.js'), import('./keys.js'), import('./planes/acts.js')]);
+  const late = await Promise.all([import('./panels.js'), import('./keys.js'), import('./planes/acts.js')]).catch(() => null);
+  // A browser remembers a module that it did not get, so that only a fresh page gets it.
+  if (!late) return notice('server', ['Part of the page did not load. ', h('button', { type: 'button', click: () => location.reload() }, 'Load it again')], { caution: true });
+  const [{ Panels }, { listenToKeys }, { Acts }] = late;
   listenToKeys(KEYS);
   panels = new Panels(byId('main'), { fields, query: typedQuery, scene: () => form?.read().scene ?? {}, chosen: () => chosen, played: playedQuery, launch, play, changed: address },
     (id, dropped) => (dropped.length > 0 ? notWhole(`link-${id}`, dropped) : clearNotice(`link-${id}`)));
@@ -372,6 +412,13 @@ byId('share').addEventListener('click', (event) => {
   void copy(/** @type {HTMLElement} */ (event.currentTarget), location.href);
 });
 addEventListener('popstate', () => restore(location.search));
+/** The focus to the first control of a panel, which may only come now. @param {HTMLElement} body */
+async function focusIn(body) {
+  const first = () => /** @type {HTMLElement | null} */ (body.querySelector('input, select, button'));
+  while (!first()) await new Promise((resolve) => new MutationObserver((_, observer) => { observer.disconnect(); resolve(null); }).observe(body, { childList: true, subtree: true }));
+  first()?.focus({ preventScroll: true });
+}
+
 /** @type {import('./keys.js').Key[]} */
 const KEYS = [
   { keys: [' '], label: 'Space', name: 'Run, pause, resume', act: toggle },
@@ -380,7 +427,7 @@ const KEYS = [
   { keys: ['k'], label: 'k', name: 'Kick', act: () => { if (run.active) controls.kick(); } },
   { keys: ['1', '2', '3', '4', '5'], label: '1 – 5', name: 'Cases 1 to 5 of the paper', act: (key) => { const one = cases.find(({ name }) => name === `case-${key}`); if (one) choose(one); } },
   { keys: ['[', ']'], label: '[ ]', name: 'Slower, faster', act: (key) => setSpeed((key === '[' ? SPEEDS.findLast((one) => one < speed) : SPEEDS.find((one) => one > speed)) ?? speed) },
-  { keys: ['m'], label: 'm', name: 'Go to the stability map', act: () => { byId('map').scrollIntoView(); /** @type {HTMLElement | null} */ (document.querySelector('#map-body :is(input, select, button)'))?.focus({ preventScroll: true }); } },
+  { keys: ['m'], label: 'm', name: 'Go to the stability map', act: () => { byId('map').scrollIntoView(); void focusIn(byId('map-body')); } },
   { keys: ['s'], label: 's', name: 'Copy the link', act: () => byId('share').click() },
   { keys: ['e'], label: 'e', name: 'Save the impacts as CSV', act: () => { const path = impactsPath(); if (path) h('a', { href: `${path}&format=csv`, download: 'equipoise-impacts.csv' }).click(); } },
 ];

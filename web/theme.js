@@ -25,4 +25,5 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
 });
 
 export const SANS = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", Arial, sans-serif';
-export const SERIF = '"STIX Two Text", "Cambria", "Georgia", "Times New Roman", "Liberation Serif", serif';
+// What else a system has for serif may lose the dot of θ̇ within the letter.
+export const SERIF = `"STIX Two Text", "Cambria", "Georgia", "Times New Roman", "Liberation Serif", ${SANS}`;

@@ -278,7 +278,7 @@ impl Scene {
         if let Some(Noise { timing_sd, angle_sd, seed, .. }) = self.noise {
             let name = if timing_sd == 0.0 { Name::AngleSd } else { Name::TimingSd };
             let detail = format!(
-                "the table errs by {timing_sd} s in time and {angle_sd} rad in angle (standard deviations; seed {seed},                  model `{}`)",
+                "the table errs by {timing_sd} s in time and {angle_sd} rad in angle (standard deviations; seed {seed}, model `{}`)",
                 self.shown(Name::NoiseModel)
             );
             step(Rung::Noise, name, detail);

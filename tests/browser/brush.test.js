@@ -263,7 +263,7 @@ test('by touch a tap points and the second one there starts; the page still scro
   const { page, clean } = await paused('?preset=case-1', 10, { hasTouch: true });
   const box = page.locator('#plane-angle .canvas-box');
   await box.scrollIntoViewIfNeeded();
-  assert.equal(await box.evaluate((element) => getComputedStyle(element).touchAction), 'pan-y');
+  assert.equal(await box.evaluate((element) => getComputedStyle(element).touchAction), 'pan-y pinch-zoom');
   await wake(page);
   const { x, y, width, height } = await box.boundingBox();
   const before = page.url();

@@ -25,6 +25,8 @@ export function listen(box, picture, acts) {
   /** @type {{x: number, y: number, id: number} | null} */
   let pressed = null;
   let dragging = false;
+  /** The cell that a finger has tapped last. @type {Cell | null} */
+  let tapped = null;
 
   /** @param {PointerEvent} event */
   const place = (event) => {
@@ -71,7 +73,10 @@ export function listen(box, picture, acts) {
     release();
     if (cell) {
       point(cell, false);
-      return acts.take(cell);
+      // A finger cannot look before it acts: its first tap points, its second one there acts.
+      const again = tapped?.column === cell.column && tapped.row === cell.row;
+      tapped = again ? null : cell;
+      return event.pointerType === 'touch' && !again ? undefined : acts.take(cell);
     }
     if (!selection || selection.right - selection.left < THINNEST || selection.bottom - selection.top < THINNEST) return;
     const { left, top, width, height, x, y } = picture.frame;

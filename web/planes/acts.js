@@ -58,8 +58,17 @@ export class Acts {
       for (const event of ['focus', 'blur']) box.addEventListener(event, () => { this.#keyed = event === 'focus'; invalidate(this); });
     }
     const root = /** @type {HTMLElement} */ (bar.parentElement);
-    root.addEventListener('dragover', (event) => event.preventDefault());
-    root.addEventListener('drop', (event) => {
+    // Wherever on the page: a file beside the charts is meant for them, not for the browser.
+    const over = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes('Files') ?? false;
+    addEventListener('dragover', (event) => {
+      if (!over(event)) return;
+      event.preventDefault();
+      root.classList.add('awaited');
+    });
+    addEventListener('dragleave', (event) => { if (!event.relatedTarget) root.classList.remove('awaited'); });
+    addEventListener('drop', (event) => {
+      root.classList.remove('awaited');
+      if (!over(event)) return;
       event.preventDefault();
       void this.#take(event.dataTransfer?.files[0]);
     });
