@@ -20,6 +20,9 @@ const MAX_STEPS: u32 = 64;
 /// Share of a root below which what a Newton step leaves out no longer counts.
 const NEGLIGIBLE: f64 = 1e-33;
 
+/// One unit in the last place, as a share.
+const UNIT: f64 = 2e-32;
+
 /// One contact of a run, as [`crate::map::Contact`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
@@ -170,8 +173,8 @@ impl Orbit {
             contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
             return contact;
         }
-        if strike.contact_rise <= zero {
-            contact.ending = Some(Ending::Sinking { contact_rise: strike.contact_rise.to_f64() });
+        if !strike.rises(state.y_dot, UNIT) {
+            contact.ending = Some(Ending::Sinking { contact_rise: strike.contact_rise.to_f64().min(0.0) });
             return contact;
         }
         let flight = self.rod.flight(&strike);
@@ -182,8 +185,7 @@ impl Orbit {
         if rules.settles {
             if self.first_flight == zero {
                 self.first_flight = t;
-            }
-            if t < DoubleDouble::from_f64(SETTLED_SHARE) * self.first_flight {
+            } else if t < DoubleDouble::from_f64(SETTLED_SHARE) * self.first_flight {
                 let rest = t / (DoubleDouble::from_f64(1.0) - t / self.last_flight);
                 let (flight_time, settle_time) = (t.to_f64(), (self.t + rest).to_f64());
                 contact.ending = Some(Ending::Settled { flight_time, settle_time });
@@ -229,7 +231,7 @@ pub fn in_doubles(state: &State<DoubleDouble>) -> State {
 /// no strike or no next contact.
 pub fn bounce(rod: &Rod<DoubleDouble>, state: &State<DoubleDouble>) -> Option<(DoubleDouble, State<DoubleDouble>)> {
     let strike = rod.strike(state);
-    let flies = strike.push.to_f64() < 0.0 && strike.contact_rise.to_f64() > 0.0;
+    let flies = strike.push.to_f64() < 0.0 && strike.rises(state.y_dot, UNIT);
     let flight = rod.flight(&strike);
     let t = flies.then(|| first_contact(&flight).ok())??;
     Some((t, flight.end(t)))

@@ -237,6 +237,19 @@ impl<N: Number> Rod<N> {
     }
 }
 
+/// Of how many units in the last place a contact point has to rise: what is less is the rounding of a rise of 0.
+const RISE_UNITS: f64 = 8.0;
+
+impl<N: Number> Strike<N> {
+    /// Whether the contact point rises from the table, by more than rounding. `y_dot` is ẏ before, m/s; `unit` the relative size of one
+    /// unit in the last place.
+    #[inline(always)]
+    pub fn rises(&self, y_dot: N, unit: f64) -> bool {
+        let terms = y_dot.to_f64().abs() + self.after.y_dot.to_f64().abs() + self.approach.to_f64().abs();
+        self.contact_rise.to_f64() > RISE_UNITS * unit * terms
+    }
+}
+
 impl Rod<f64> {
     /// The paper's plain case: struck so that every bounce keeps its energy, e = 1, g = 9.81 m/s². Lengths l and ρ in m, tilt
     /// gain κ.

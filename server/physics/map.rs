@@ -235,8 +235,8 @@ impl<B: Body> Orbit<B> {
             contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
             return contact;
         }
-        if strike.contact_rise <= 0.0 {
-            contact.ending = Some(Ending::Sinking { contact_rise: strike.contact_rise });
+        if !strike.rises(state.y_dot, f64::EPSILON) {
+            contact.ending = Some(Ending::Sinking { contact_rise: strike.contact_rise.min(0.0) });
             return contact;
         }
         let arrival = match self.body.fly(&coming, &strike) {
@@ -264,6 +264,7 @@ impl<B: Body> Orbit<B> {
     fn settle(&mut self, flight_time: f64) -> Option<Ending> {
         if self.first_flight == 0.0 {
             self.first_flight = flight_time;
+            return None;
         }
         (flight_time < SETTLED_SHARE * self.first_flight).then(|| {
             let ratio = flight_time / self.last_flight;

@@ -249,8 +249,8 @@ impl Scene {
                 Some(Ending::Toppled { theta, limit: self.topple_angle })
             } else if strike.push >= 0.0 {
                 Some(Ending::Separating { approach: strike.approach })
-            } else if strike.contact_rise <= 0.0 {
-                Some(Ending::Sinking { contact_rise: strike.contact_rise })
+            } else if !strike.rises(here.state.y_dot, f64::EPSILON) {
+                Some(Ending::Sinking { contact_rise: strike.contact_rise.min(0.0) })
             } else {
                 (n >= impacts).then_some(Ending::Completed)
             };

@@ -1,5 +1,6 @@
 //! What a scene may ask beyond the plain rod: feedback, beliefs, limits, and the ladder of models that tells what each was good for.
 
+use equipoise_physics::extended;
 use equipoise_physics::map::{Ending, run};
 use equipoise_physics::model::Rung;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -113,6 +114,31 @@ fn an_energy_gain_that_does_not_make_up_the_loss_lets_the_run_settle() {
         let Ending::Settled { settle_time, .. } = ending else { panic!("κ_E = {energy_gain}: {ending:?}") };
         assert!((settle_time - t).abs() < 1e-12 * t, "κ_E = {energy_gain}: {settle_time} {t}");
         assert!(orbit.contacts() < 1000);
+    }
+}
+
+/// e = 0 on a flat table that stands still: the contact point is left at ẏ_c = 0 exactly, whatever rounding makes of it.
+#[test]
+fn a_strike_that_gives_nothing_back_ends_the_run() {
+    for step in 0..400 {
+        let share = f64::from(step) / 400.0;
+        let values = [
+            (Name::Restitution, 0.0),
+            (Name::TiltGain, 0.0),
+            (Name::Theta, 2.0 * share - 1.0),
+            (Name::ThetaDot, if step % 2 == 0 { 0.0 } else { 5.0 - 13.0 * share }),
+            (Name::Friction, if step % 4 < 2 { 0.0 } else { 0.3 }),
+        ];
+        let mut draft = draft(&values);
+        draft.set(Name::Strike, Some(Value::Choice("still"))).unwrap();
+        let scene = draft.build().unwrap();
+        let mut orbit = scene.orbit().unwrap();
+        let ending = run(&mut orbit, 20, |_| true).unwrap();
+        assert!(matches!(ending, Ending::Sinking { .. } | Ending::Toppled { .. }), "{values:?}: {ending:?}");
+        assert_eq!(orbit.contacts(), 1, "{values:?}: {ending:?}");
+        let mut exact = scene.extended_orbit().unwrap();
+        let with_more = extended::run(&mut exact, 20, |contact| contact.n == 1);
+        assert_eq!(with_more.map(Ending::name), Some(ending.name()), "{values:?}");
     }
 }
 
