@@ -203,13 +203,14 @@ impl ErrorEstimate {
         self.fly(&flight, flight_time, 0.0);
     }
 
-    /// Adds what the strike rounds: the impulse along its own direction, the energy along the velocity, and each sum.
+    /// Adds what the strike rounds: the impulse along its own direction, the energy along the velocity, the tilt, and each sum.
     #[inline(always)]
     fn round_strike(&self, strike: &mut Strike<Number8>, energy: &mut Number8) {
         let before = &self.state;
         let (l, rho) = (self.rod.contact_distance.value, self.rod.radius_of_gyration.value);
         let (sin_alpha, cos_alpha) = crate::trig::sin_cos(strike.alpha.value);
-        let (sin_beta, _) = crate::trig::sin_cos((1.0 - self.rod.tilt_gain.value) * before.theta.value);
+        let beta = (1.0 - self.rod.tilt_gain.value) * before.theta.value;
+        let (sin_beta, cos_beta) = crate::trig::sin_cos(beta);
         let (impulse, turn) = (strike.impulse_normal.value, l * sin_beta / (rho * rho));
         let State { theta, x_dot, y_dot, theta_dot } = &mut strike.after;
         let terms = (cos_alpha * before.y_dot.value).abs()
@@ -236,9 +237,22 @@ impl ErrorEstimate {
             self.rounding * (2.0 * theta_dot.value.abs() + 3.0 * (impulse * turn).abs()),
             self.rounding * energy_parts,
         ];
+        // α and β are rounded before their sines are: a table that is turned a little, by which the impulse changes so much.
+        let turned = self.rounding * (strike.alpha.value.abs() + beta.abs());
+        let across =
+            cos_alpha * before.x_dot.value + sin_alpha * before.y_dot.value + l * cos_beta * before.theta_dot.value;
+        let lever = l * sin_beta / rho;
+        let change = gain * across + 2.0 * impulse * lever * (l * cos_beta / rho) / (1.0 + lever * lever);
         let mut directions = [
             [0.0, -sin_alpha * along, cos_alpha * along, turn * along, 0.0],
             [0.0, x_dot.value * stretch, y_dot.value * stretch, theta_dot.value * stretch, 0.0],
+            [
+                0.0,
+                turned * (-cos_alpha * impulse - sin_alpha * change),
+                turned * (-sin_alpha * impulse + cos_alpha * change),
+                turned * (turn * change - l * cos_beta / (rho * rho) * impulse),
+                0.0,
+            ],
         ];
         if let Some(friction) = self.friction {
             // The impulse along the table takes the place of the energy, which is not held with friction. It follows the normal one, and
@@ -249,7 +263,9 @@ impl ErrorEstimate {
                 + (sin_alpha * before.y_dot.value).abs()
                 + (arm * before.theta_dot.value).abs();
             let terms = if friction.slide == Slide::Matched { 0.0 } else { terms };
-            let aside = self.rounding * (2.0 * terms + 3.0 * tangential.abs()) + along * (tangential / impulse).abs();
+            let aside = self.rounding * (2.0 * terms + 3.0 * tangential.abs())
+                + along * (tangential / impulse).abs()
+                + turned * (2.0 * impulse.abs() + strike.normal_velocity.value.abs());
             directions[1] = [0.0, cos_alpha * aside, sin_alpha * aside, arm / (rho * rho) * aside, 0.0];
         }
         add([theta, x_dot, y_dot, theta_dot, energy], &sums, &directions);
@@ -331,7 +347,7 @@ fn spread<const K: usize>(number: &Dual<K>) -> f64 {
 /// Adds independent errors to five numbers: one to each, and two along directions. Their covariance gains D, and is factored
 /// again into as many directions as there are numbers (Cholesky); the directions of parameters stay.
 #[inline(always)]
-fn add(numbers: [&mut Number8; STATES], sums: &[f64; STATES], directions: &[[f64; STATES]; 2]) {
+fn add<const N: usize>(numbers: [&mut Number8; STATES], sums: &[f64; STATES], directions: &[[f64; STATES]; N]) {
     let mut covariance = [[0.0; STATES]; STATES];
     for row in 0..STATES {
         for column in 0..=row {

@@ -75,6 +75,24 @@ fn bounds_hold_over_random_scenes() {
     }
 }
 
+/// A table that turns far for a small angle: the rounding of α itself.
+#[test]
+fn bounds_hold_over_large_tilt_gains() {
+    let mut source = random::Random(2029);
+    let (mut worst, mut all) = (0.0_f64, Vec::new());
+    for _ in 0..20 * RUNS {
+        let mut draft = scenes::scene(&mut source, scenes::Kind::Regular).draft();
+        draft.set(Name::TiltGain, Some(Value::Number(source.size(5.0, 100.0)))).unwrap();
+        draft.set(Name::Theta, Some(Value::Number(source.size(0.1, 0.7)))).unwrap();
+        draft.set(Name::XDot, Some(Value::Number(source.size(0.1, 40.0)))).unwrap();
+        let (share, ratios) = compare(&draft.build().unwrap(), 20);
+        worst = worst.max(share);
+        all.extend(ratios);
+    }
+    println!("error/bound at most {worst:.2}, bound/error {:.1}, {} contacts", median(&mut all), all.len());
+    assert!(worst <= 1.0 && all.len() > 500, "an error is {worst} of its bound, {} contacts", all.len());
+}
+
 #[test]
 fn bounds_hold_over_random_scenes_with_friction() {
     use scenes::Kind::{Chaotic, Feedback, Grazing, Regular, Small, Spinning, Still};
