@@ -15,6 +15,9 @@ use nalgebra::{DMatrix, DVector, Matrix4};
 /// Remainder of the equations, in parts of the scene's speed, up to which they count as solved.
 pub(super) const SOLVED: f64 = 1e-11;
 
+/// Speed at the contacts, in parts of the scene's, up to which a body rests on the table.
+const AT_REST: f64 = 1e-6;
+
 /// Remainder and step that rounding allows no better than.
 const ROUNDING: f64 = 1e-15;
 
@@ -279,7 +282,11 @@ pub(super) fn correct(course: &Course<'_>, period: usize, guess: Place, plane: &
         steps += 1;
     }
     let residual = closed.residual().max(off(&place).abs());
-    if residual <= SOLVED {
+    // At rest on the table all is closed, and nothing bounces.
+    let speed = closed.states.iter().map(|state| state.y_dot.abs()).fold(0.0, f64::max);
+    if speed <= AT_REST * course.start.speed {
+        Err(Failure::AtRest { speed })
+    } else if residual <= SOLVED {
         Ok(Solution { place, closed, steps })
     } else {
         Err(Failure::NoConvergence { residual, steps })

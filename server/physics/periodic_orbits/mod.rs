@@ -78,6 +78,11 @@ pub enum Failure {
         /// Steps taken.
         steps: u32,
     },
+    /// The iteration came to the body at rest on the table.
+    AtRest {
+        /// Largest |ẏ| before a contact, m/s.
+        speed: f64,
+    },
     /// The scene itself does not allow it here.
     Scene(String),
     /// Nobody wants it any more.
@@ -95,6 +100,11 @@ impl std::fmt::Display for Failure {
                 "Newton's iteration found no orbit: after {steps} steps the equations are off by {residual} (no unit; \
                  {} is taken as solved)",
                 closed::SOLVED
+            ),
+            Self::AtRest { speed } => write!(
+                formatter,
+                "Newton's iteration came to the body at rest on the table (ẏ = {speed} m/s), which bounces no more: \
+                 give another guess"
             ),
             Self::Scene(why) => formatter.write_str(why),
             Self::Cancelled => formatter.write_str("cancelled"),

@@ -200,3 +200,26 @@ fn orbits_of_period_three_and_four_spring_from_the_resonances() {
         [(1.38, 0.005), (1.39, 0.015), (1.4, 0.02)].map(|(kappa, theta)| come_back(kappa, 3, theta, 0.4).max_theta());
     assert!(angles[0] < angles[1] && angles[1] < angles[2] && angles[0] < 0.13, "{angles:?}");
 }
+
+/// With energy feedback nothing holds the energy of the orbit, and a body at rest comes back to where it is as well.
+#[test]
+fn a_body_at_rest_is_no_orbit() {
+    let scene = scene(&[
+        (Name::ContactDistance, 0.133_333_333_333_333_33),
+        (Name::RadiusOfGyration, 0.0943),
+        (Name::Restitution, 0.8),
+        (Name::TiltGain, 1.586_879_881_383_113_3),
+        (Name::EnergyGain, 0.293_585_777_945_332_1),
+        (Name::TargetHeight, 0.2),
+        (Name::Height, 0.2),
+        (Name::Theta, 0.1),
+    ]);
+    let guess = State {
+        theta: -0.287_964_957_657_113_1,
+        x_dot: 0.0,
+        y_dot: -0.809_501_632_179_172_8,
+        theta_dot: 2.022_569_393_062_793,
+    };
+    let found = find(&Setting::of(&scene).unwrap(), 2, &guess);
+    assert!(matches!(found, Err(Failure::AtRest { .. })), "{found:?}");
+}
