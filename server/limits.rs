@@ -106,7 +106,7 @@ pub struct Limits {
     #[arg(value_parser = seconds(1..=31_536_000))]
     pub live_idle_time: Duration,
 
-    /// Time a shutdown waits for answers under way before it cuts them off. Longer than the dearest request takes
+    /// Time a shutdown waits for answers under way before it cuts them off. Longer than any but a large region takes
     #[arg(long, env = "EQUIPOISE_SHUTDOWN_TIME", value_name = "SECONDS", default_value = "8")]
     #[arg(value_parser = seconds(0..=3600))]
     pub shutdown_time: Duration,
@@ -211,6 +211,10 @@ pub const REGION_SIDE: u64 = 100_000;
 /// Work of one block of a region, the piece that a thread takes at a time, in bounces of lanes: some 10 ms, so that a
 /// request beside it does not wait longer.
 pub const REGION_BLOCK_WORK: u64 = 1_000_000;
+
+/// What a bounce of a region costs that no lane can make, in bounces of lanes: a rod steered by feedback takes 9, a polygon and a
+/// point 17, one with noise 25.
+pub const REGION_ALONE_PRICE: u64 = 20;
 
 /// Cells of one block: at least so many that lanes are full, at most so many that rows come as they are done.
 pub const REGION_BLOCK_CELLS: RangeInclusive<u64> = 64..=2048;
@@ -365,5 +369,7 @@ pub const LIVE_RETRY_TIME: Duration = Duration::from_secs(1);
 /// Work of writing one impact, in bounces.
 pub const LIVE_IMPACT_PRICE: u64 = 10;
 
-/// Work of catching up with an old `epoch` or `from`: 0.1 s of one core.
-pub const LIVE_CATCH_UP: Limit = Limit { name: "work of catching up with this run", most: 1_000_000, unit: "bounces" };
+/// Work of catching up with an old `epoch` or `from`: a run of `LIVE_IMPACTS` to its end, so that whoever was cut off comes back
+/// to any, and its last impacts told anew. Some 0.7 s of one core, and 2 s with noise.
+pub const LIVE_CATCH_UP: Limit =
+    Limit { name: "work of catching up with this run", most: LIVE_IMPACTS + 1_000_000, unit: "bounces" };

@@ -86,6 +86,12 @@ impl Region {
         draft.build().ok()
     }
 
+    /// Whether all runs go in lanes, by those at its corners; the others take many times as long.
+    pub fn fits_lanes(&self) -> bool {
+        let corners = [(0, 0), (self.x.count - 1, 0), (0, self.y.count - 1), (self.x.count - 1, self.y.count - 1)];
+        corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(|scene| fits_a_lane(&scene)))
+    }
+
     /// Some cells, counted row after row; none if `go_on` said `false`, which is asked every few thousand bounces.
     pub fn cells(&self, numbers: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Cell>> {
         let first = numbers.start;
@@ -143,8 +149,9 @@ impl Region {
                 },
             );
         }
+        let mut bounces = 0;
         for (index, scene) in alone {
-            let end = if stopped { None } else { run_alone(&scene, self.impacts, go_on) };
+            let end = if stopped { None } else { run_alone(&scene, self.impacts, &mut bounces, go_on) };
             stopped |= end.is_none();
             cells[index] = end.map_or(NOTHING, |end| self.cell(&end));
         }
@@ -218,6 +225,11 @@ fn cross(mut low: [f64; 2], mut high: [f64; 2], function: impl Fn([f64; 2]) -> O
     middle(low, high)
 }
 
+/// Whether its run can go in a lane, if it meets the table.
+fn fits_a_lane(scene: &Scene) -> bool {
+    scene.running_model().in_lanes().is_some() && scene.rules().limits.is_none()
+}
+
 /// The start of a run that can go in a lane, with its friction.
 fn start_of(scene: &Scene) -> Option<(Start, Option<Friction>)> {
     let (rod, friction) = scene.running_model().in_lanes()?;
@@ -227,7 +239,7 @@ fn start_of(scene: &Scene) -> Option<(Start, Option<Friction>)> {
 }
 
 /// None once `go_on` said `false`. What never meets the table has ended before its first contact.
-fn run_alone(scene: &Scene, impacts: u64, go_on: &mut dyn FnMut() -> bool) -> Option<End> {
+fn run_alone(scene: &Scene, impacts: u64, bounces: &mut u64, go_on: &mut dyn FnMut() -> bool) -> Option<End> {
     let mut orbit = match scene.orbit() {
         Ok(orbit) => orbit,
         Err(none) => return Some(End { impacts: 0, outcome: none.ending(0.0, 0.0).into(), max_theta: 0.0 }),
@@ -235,7 +247,9 @@ fn run_alone(scene: &Scene, impacts: u64, go_on: &mut dyn FnMut() -> bool) -> Op
     let mut max_theta: f64 = 0.0;
     let ending = run(&mut orbit, impacts, |contact| {
         max_theta = max_theta.max(contact.state.theta.abs());
-        !contact.n.is_multiple_of(4096) || go_on()
+        // Over all runs of a block: one alone may be shorter.
+        *bounces += 1;
+        !bounces.is_multiple_of(1024) || go_on()
     })?;
     Some(End { impacts: orbit.contacts(), outcome: ending.into(), max_theta })
 }

@@ -117,8 +117,11 @@ impl Request {
 
     /// What its runs cost, in bounces of lanes.
     pub fn bounces(&self) -> u64 {
-        let runs = matches!(self.region.quantity, Quantity::Survival | Quantity::MaxTheta);
-        self.cells().saturating_mul(if runs { self.region.impacts } else { 10 })
+        if !matches!(self.region.quantity, Quantity::Survival | Quantity::MaxTheta) {
+            return self.cells().saturating_mul(10);
+        }
+        let price = if self.region.fits_lanes() { 1 } else { limits::REGION_ALONE_PRICE };
+        self.cells().saturating_mul(self.region.impacts).saturating_mul(price)
     }
 }
 
