@@ -206,7 +206,7 @@ async fn what_is_no_run_or_not_to_be_had_is_a_problem() {
         get(address, &format!("/v1/live/events?{query}"), headers).await.problem().await["status"].as_u64().unwrap()
     };
     assert_eq!(status("preset=case-9", "").await, 422);
-    assert_eq!(status("preset=case-1&epoch=0", "").await, 422, "too old to catch up with");
+    assert_eq!(status("preset=case-1&epoch=0&from=1", "").await, 422, "too old to catch up with");
     assert_eq!(status("preset=case-1", "accept: application/json\r\n").await, 406);
     assert_eq!(status("preset=case-1&format=csv", "").await, 406);
     assert_eq!(status("preset=case-1", "origin: http://elsewhere.example\r\n").await, 403);

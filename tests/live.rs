@@ -277,7 +277,7 @@ async fn interventions_are_limited() {
 #[tokio::test]
 async fn an_epoch_too_old_is_refused() {
     let (_, address) = start().await;
-    let mut client = open(address, "/v1/live?preset=case-1&epoch=0").await;
+    let mut client = open(address, "/v1/live?preset=case-1&epoch=0&from=1").await;
     let problem = client.next().await;
     assert_eq!(
         (problem["type"].as_str(), problem["title"].as_str()),

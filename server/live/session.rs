@@ -393,7 +393,7 @@ impl Session {
                 (self.first, self.catching_up, self.next_pump) = (1, false, Instant::now());
                 self.outbox.forget_impacts();
                 self.greet(now);
-                return Ok(());
+                run = self.run.clone();
             }
         }
         run.clock.forget_beyond(limits::LIVE_CLOCK_ENTRIES);
