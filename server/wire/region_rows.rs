@@ -1,9 +1,11 @@
 //! The cells of a region as rows of CSV and NDJSON, each written as soon as it is whole.
 
-use equipoise_physics::region::{Cell, Region};
+use equipoise_physics::region::{Cell, Quantity, Region};
+use equipoise_physics::scene::Name;
 use serde::Serialize;
 
 use super::region::{Counts, Outcomes, Request, Values, outcome_name, quantity_name, written};
+use super::table::with_unit;
 use crate::http::Format;
 
 /// Writes the cells of a tile as they come, one row after the other.
@@ -31,8 +33,12 @@ impl Rows {
     /// What stands before all rows: in CSV the names of the two fields, the quantity and `outcome`.
     pub fn begin(&self) -> Vec<u8> {
         let Region { x, y, quantity, .. } = self.request.region;
-        let names = [x.name.row().path, y.name.row().path, quantity_name(quantity), "outcome"];
-        if self.is_csv { format!("{}\r\n", names.join(",")).into_bytes() } else { Vec::new() }
+        if !self.is_csv {
+            return Vec::new();
+        }
+        let field = |name: Name| with_unit(name.row().path, name.row().unit);
+        let value = with_unit(quantity_name(quantity), if quantity == Quantity::MaxTheta { "rad" } else { "" });
+        format!("{},{},{value},outcome\r\n", field(x.name), field(y.name)).into_bytes()
     }
 
     /// The rows that these cells make whole.

@@ -15,6 +15,14 @@ pub struct Column {
     pub cells: Cells,
 }
 
+/// A name and its unit as they stand in the header of CSV: `rad/s` is `_rad_per_s`.
+pub fn with_unit(name: &str, unit: &str) -> String {
+    match unit {
+        "" | "1" => name.to_owned(),
+        _ => format!("{name}_{}", unit.replace('/', "_per_").replace('·', "_").replace('²', "2")),
+    }
+}
+
 /// The values of a column.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
