@@ -6,7 +6,7 @@ use axum::body::{Body, Bytes};
 use axum::http::{HeaderValue, Response, StatusCode, header};
 
 use super::encode;
-use super::etag::EntityTag;
+use super::etag::{EntityTag, Held};
 use super::leaf::Source;
 use super::negotiate::{self, Encoding, Format};
 use super::outlet::{Outlet, computed_at_once, computed_in_turns};
@@ -77,11 +77,12 @@ impl Ask {
         let parts = [resource.name, BUILD, format.name(), encoding.name()].map(str::as_bytes);
         let tag = EntityTag::of(&[parts[0], parts[1], parts[2], parts[3], canonical]);
         // A query is a GET or a HEAD; on POST the precondition has no such meaning.
-        let mut response = if self.source == Source::Query && tag.is_held_by(&self.headers) {
-            status_only(StatusCode::NOT_MODIFIED)
-        } else {
-            answer.await?
-        };
+        let held = if self.source == Source::Query { tag.held_by(&self.headers) } else { Held::Nothing };
+        let mut response = if held == Held::This { status_only(StatusCode::NOT_MODIFIED) } else { answer.await? };
+        if held == Held::Anything {
+            // That there is one at all is known only now.
+            response = status_only(StatusCode::NOT_MODIFIED);
+        }
         response.headers_mut().insert(header::ETAG, tag.header());
         response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);
         Ok(response)

@@ -9,6 +9,17 @@ use super::negotiate::list;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EntityTag(String);
 
+/// What of a resource a client says it has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Held {
+    /// What is asked for.
+    This,
+    /// Whatever there is of it, if there is anything.
+    Anything,
+    /// Nothing, or something else.
+    Nothing,
+}
+
 impl EntityTag {
     /// The tag of everything that determines an answer's bytes. The parts are told apart by their lengths.
     pub fn of(parts: &[&[u8]]) -> Self {
@@ -26,10 +37,15 @@ impl EntityTag {
     }
 
     /// Whether the client has it already: `If-None-Match` lists it (compared weakly, as on GET) or is `*`.
-    pub fn is_held_by(&self, headers: &HeaderMap) -> bool {
-        let held = list(headers, &header::IF_NONE_MATCH);
+    pub fn held_by(&self, headers: &HeaderMap) -> Held {
+        let listed = list(headers, &header::IF_NONE_MATCH);
         // Our own tags have no comma, so splitting a foreign one that has does no harm.
-        held.split(',').map(str::trim).any(|tag| tag == "*" || tag.strip_prefix("W/").unwrap_or(tag) == self.0)
+        let mut tags = listed.split(',').map(str::trim);
+        match tags.find(|tag| *tag == "*" || tag.strip_prefix("W/").unwrap_or(tag) == self.0) {
+            Some("*") => Held::Anything,
+            Some(_) => Held::This,
+            None => Held::Nothing,
+        }
     }
 }
 
@@ -54,17 +70,17 @@ mod tests {
         let tag = EntityTag::of(&[b"x"]);
         let own = &tag.0;
         for (held, expected) in [
-            (own.clone(), true),
-            (format!("W/{own}"), true),
-            (format!("\"other\", {own}"), true),
-            ("*".to_owned(), true),
-            ("\"other\"".to_owned(), false),
-            (own.trim_matches('"').to_owned(), false),
-            (String::new(), false),
+            (own.clone(), Held::This),
+            (format!("W/{own}"), Held::This),
+            (format!("\"other\", {own}"), Held::This),
+            ("*".to_owned(), Held::Anything),
+            ("\"other\"".to_owned(), Held::Nothing),
+            (own.trim_matches('"').to_owned(), Held::Nothing),
+            (String::new(), Held::Nothing),
         ] {
             let headers: HeaderMap = [(header::IF_NONE_MATCH, held.parse().unwrap())].into_iter().collect();
-            assert_eq!(tag.is_held_by(&headers), expected, "{held}");
+            assert_eq!(tag.held_by(&headers), expected, "{held}");
         }
-        assert!(!tag.is_held_by(&HeaderMap::new()));
+        assert_eq!(tag.held_by(&HeaderMap::new()), Held::Nothing);
     }
 }

@@ -7,7 +7,7 @@ use axum::http::{HeaderMap, Response, StatusCode, header};
 
 use super::answer::{REVALIDATED, ok, status_only};
 use super::encode;
-use super::etag::EntityTag;
+use super::etag::{EntityTag, Held};
 use super::negotiate::{self, Encoding};
 use super::problem::Problem;
 
@@ -32,7 +32,7 @@ impl Fixed {
             _ => (Encoding::Identity, &self.identity),
         };
         let tag = EntityTag::of(&[self.media_type.as_bytes(), bytes]);
-        let mut response = match tag.is_held_by(headers) {
+        let mut response = match tag.held_by(headers) != Held::Nothing {
             true => status_only(StatusCode::NOT_MODIFIED),
             false => ok(self.media_type, encoding, bytes.clone()),
         };
