@@ -271,6 +271,9 @@ impl Summary {
             let detail = "the scene has no noise, so all runs are alike: give noise.timing_sd or noise.angle_sd";
             notes.push(detail.to_owned());
         }
+        if !matches!(ensemble.scene.value(Name::NoiseRun), None | Some(Value::Integer(0))) {
+            notes.push("noise.run is not looked at: the runs are those of all numbers".to_owned());
+        }
         if survived > 0 {
             notes.push(format!(
                 "mean_impacts counts runs that outlast all contacts as {impacts}, so it is a lower bound"
