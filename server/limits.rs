@@ -366,8 +366,8 @@ pub const LIVE_SILENCE_TIME: Duration = Duration::from_secs(60);
 /// Time after which a client of events that was cut off is told to come back.
 pub const LIVE_RETRY_TIME: Duration = Duration::from_secs(1);
 
-/// Work of writing one impact, in bounces.
-pub const LIVE_IMPACT_PRICE: u64 = 10;
+/// Work of writing one impact and reading it, in bounces: no client wants more than some 100,000 of them at once.
+pub const LIVE_IMPACT_PRICE: u64 = 100;
 
 /// Work of catching up with an old `epoch` or `from`: a run of `LIVE_IMPACTS` to its end, so that whoever was cut off comes back
 /// to any, and its last impacts told anew. Some 0.7 s of one core, and 2 s with noise.

@@ -290,9 +290,12 @@ function nameScene() {
   const shows = byId('case-shows');
   chooser.value = one?.name ?? '';
   document.title = one ? `${plain(one.title)}${other.length > 0 ? ', changed' : ''} · equipoise` : 'equipoise';
-  if (!one || other.length === 0) return shows.replaceChildren(...prose(one?.shows ?? 'A scene of your own.'));
   const named = other.slice(0, 3).map(({ title }) => title.toLowerCase()).join(', ');
-  shows.replaceChildren(`Changed from the case: ${named}${other.length > 3 ? ` and ${other.length - 3} more` : ''}. `, h('button', { type: 'button', id: 'case-back', click: () => choose(one) }, 'Back to the case'));
+  const words = other.length > 0 ? `Changed from the case: ${named}${other.length > 3 ? ` and ${other.length - 3} more` : ''}. ` : one?.shows ?? 'A scene of your own.';
+  // A button that is being pressed has to stay.
+  if (shows.dataset.words === words) return;
+  shows.dataset.words = words;
+  shows.replaceChildren(...prose(words), one && other.length > 0 ? h('button', { type: 'button', id: 'case-back', click: () => { if (chosen) choose(chosen); } }, 'Back to the case') : '');
 }
 
 /** Shows a scene without running it. @param {Scene} scene */

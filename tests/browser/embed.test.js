@@ -25,7 +25,7 @@ test('the contract names every panel', async () => {
 for (const [id, sign] of Object.entries(SIGNS)) {
   test(`the panel ${id} stands alone`, async () => {
     const { page, clean } = await stage.page('?preset=case-1&speed=2', { path: `embed/${id}`, sign, viewport: { width: 480, height: 360 }, colorScheme: 'dark' });
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth), 0);
+    assert.deepEqual(await page.evaluate(() => [document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]), [0, 0]);
     assert.equal(await page.locator('.card').count(), 1);
     await page.evaluate(axe);
     const { violations } = await page.evaluate(() => globalThis.axe.run(document, { rules: { 'page-has-heading-one': { enabled: false } } }));

@@ -34,6 +34,29 @@ test('what is no number is said so, kept, and not sent', async () => {
   clean();
 });
 
+test('a finger that scrolls past a slider changes nothing', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2345', { hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
+  const fingers = await page.context().newCDPSession(page);
+  const touch = (type, ...touchPoints) => fingers.send('Input.dispatchTouchEvent', { type, touchPoints });
+  for (const [slider, field, value] of [['#gain', '#field-table-tilt_gain', '1.1'], ['.field:has(#field-release-theta) input[type=range]', '#field-release-theta', '0.2345'], ['#speed', null, null]]) {
+    const track = page.locator(slider);
+    await track.evaluate((element) => element.scrollIntoView({ block: 'center' }));
+    const { x, y, width, height } = await track.boundingBox();
+    const [before, top] = await page.evaluate((element) => [document.querySelector(element).value, scrollY], slider);
+    await touch('touchStart', { x: x + width * 0.9, y: y + height / 2, id: 1 });
+    for (let step = 1; step <= 12; step += 1) {
+      await touch('touchMove', { x: x + width * 0.9, y: y + height / 2 - 20 * step, id: 1 });
+      await page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
+    }
+    await touch('touchEnd');
+    await page.waitForFunction((from) => scrollY > from + 50, top);
+    await page.evaluate(() => new Promise((done) => setTimeout(done, 300)));
+    assert.equal(await track.inputValue(), before, slider);
+    if (field) assert.equal(await page.inputValue(field), value);
+  }
+  clean();
+});
+
 test('what the server says of a field stays while another is no number', async () => {
   const { page } = await stage.page('?preset=case-1');
   await page.fill('#field-table-tilt_gain', '200');

@@ -44,6 +44,47 @@ test('going back restores the case before', async () => {
   clean();
 });
 
+test('what is changed of a case is named, and one goes back to it', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await page.fill('#field-contact-friction', '0.5');
+  await page.fill('#field-release-theta', '0');
+  const shows = page.locator('#case-shows');
+  await shows.filter({ hasText: 'Changed from the case: friction, angle.' }).waitFor();
+  assert.match(await page.title(), /, changed/);
+  await page.click('#case-back');
+  await shows.filter({ hasText: 'never falls' }).waitFor();
+  assert.equal(await page.inputValue('#field-release-theta'), '0.3');
+  clean();
+});
+
+test('going back after a click in a plane restores the run before', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await page.click('#run');
+  await reachImpact(page, 4);
+  await page.click('#kick');
+  await page.waitForFunction(() => /kick/.test(location.search));
+  const epoch = await page.evaluate(() => new URLSearchParams(location.search).get('epoch'));
+  const box = page.locator('#plane-angle .canvas-box');
+  await box.scrollIntoViewIfNeeded();
+  const { width, height } = await box.boundingBox();
+  await box.click({ position: { x: width * 0.6, y: height * 0.45 } });
+  await page.waitForFunction((before) => { const now = new URLSearchParams(location.search); return now.get('epoch') && now.get('epoch') !== before && !/kick/.test(location.search); }, epoch);
+  await page.goBack();
+  await page.waitForFunction((before) => new URLSearchParams(location.search).get('epoch') === before && /kick/.test(location.search), epoch);
+  await reachImpact(page, 5);
+  clean();
+});
+
+test('what does not load after the first look is said, and asked for again', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  await page.route('**/panels.js', (route) => route.abort());
+  await page.reload();
+  await page.locator('.notice', { hasText: 'Part of the page did not load' }).waitFor();
+  await page.unroute('**/panels.js');
+  await page.getByRole('button', { name: 'Load it again' }).click();
+  await page.locator('#map').waitFor();
+});
+
 const BROKEN = [
   ['preset=case-99', /case “case-99”/],
   ['preset=case-1&scene.table.tilt_gain=5000', /tilt gain.*5000.*−100 to 100/i],
@@ -73,9 +114,10 @@ test('interventions that are not whole are dropped from a run that is joined', a
   clean();
 });
 
-test('a run too old to catch up with is told, and its scene kept', async () => {
+test('a run too old to be told whole is shown where it is by now', async () => {
   const { page, wrongs } = await stage.page('?preset=case-2&scene.table.tilt_gain=1.15&epoch=1000');
-  await page.locator('.notice', { hasText: 'did not take this run' }).waitFor();
+  await reachPhase(page, 'ended');
+  await page.locator('#outcome', { hasText: '10000000' }).waitFor();
   assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.15');
   await page.click('#run');
   await reachImpact(page, 2);

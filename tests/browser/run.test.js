@@ -147,6 +147,24 @@ test('a server that goes away for three seconds and comes back loses no impact',
   assert.deepEqual(seen, seen.map((_, index) => seen[0] - index), 'every number once');
 });
 
+test('what was missed while the server was away is made up for', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  await verdict(page);
+  await page.click('#run');
+  await reachImpact(page, 2);
+  await stage.stopServer();
+  await page.locator('.notice', { hasText: 'Connection lost' }).waitFor();
+  const gain = page.locator('#field-table-tilt_gain');
+  await gain.fill('1.3');
+  await gain.press('Tab');
+  await page.locator('#verdict', { hasText: 'does not answer' }).waitFor();
+  await stage.startServer();
+  await reachPhase(page, 'running');
+  await page.waitForFunction(() => /interventions\.0\.set\.table\.tilt_gain=1\.3/.test(location.search));
+  await page.locator('#verdict', { hasText: 'decided by' }).waitFor();
+  assert.equal(await page.locator('#restart').innerText(), 'Restart');
+});
+
 test('a server that comes back between a try and the question why it failed is not given up', async () => {
   const { page } = await stage.page('?preset=case-1', { prepare: () => {
     const real = globalThis.fetch;
