@@ -67,6 +67,7 @@ impl Outline {
         if contact_vertex >= count {
             return Err(PolygonError::NoSuchVertex { contact_vertex, count });
         }
+        let vertices = &vertices.about_the_first();
         let (centre, radius_of_gyration) = vertices.centre_and_radius();
         if !LENGTHS.contains(&radius_of_gyration) {
             return Err(PolygonError::RadiusOfGyration(radius_of_gyration));

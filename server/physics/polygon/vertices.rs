@@ -97,21 +97,27 @@ impl Vertices {
         if area < 0.0 { Err(PolygonError::Clockwise) } else { Ok(()) }
     }
 
+    /// The same polygon with its first vertex at 0, so that no digit depends on where it lies.
+    pub(super) fn about_the_first(&self) -> Self {
+        let origin = self.places[0];
+        let mut moved = *self;
+        for place in &mut moved.places[..self.count] {
+            *place = minus(*place, origin);
+        }
+        moved
+    }
+
     /// The centre of gravity of an even sheet, and ρ about it, m.
     ///
-    /// Both are sums over the triangles between the edges and a point; that is a vertex and then the centre itself, so
-    /// that neither depends on where the polygon lies.
+    /// Both are sums over the triangles between the edges and a point; that is 0, best a vertex, and then the centre itself.
     pub(super) fn centre_and_radius(&self) -> ([f64; 2], f64) {
-        let origin = self.places[0];
         let (mut double_area, mut moment) = (0.0, [0.0; 2]);
         for (_, a, b) in self.edges() {
-            let (a, b) = (minus(a, origin), minus(b, origin));
             let part = cross(a, b);
             double_area += part;
             moment = [moment[0] + part * (a[0] + b[0]), moment[1] + part * (a[1] + b[1])];
         }
         let centre = moment.map(|it| it / (3.0 * double_area));
-        let centre = [origin[0] + centre[0], origin[1] + centre[1]];
         let mut inertia = 0.0;
         for (_, a, b) in self.edges() {
             let (a, b) = (minus(a, centre), minus(b, centre));

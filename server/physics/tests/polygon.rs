@@ -334,3 +334,14 @@ fn lengths_are_those_of_a_rod() {
     }
     assert_eq!(FARTHEST, *LENGTHS.end());
 }
+
+/// Whose doubles far from the origin are those near it, moved without rounding.
+#[test]
+fn no_digit_is_lost_by_lying_far_away() {
+    let near = [[0.0, 0.0], [0.00390625, 0.009765625], [-0.00390625, 0.01171875]];
+    let far = near.map(|[x, y]| [x + 9.5, y - 8.25]);
+    let (near, far) = (outline(&near, 0).unwrap(), outline(&far, 0).unwrap());
+    assert_eq!(near.contact_distance(), far.contact_distance());
+    assert_eq!(near.radius_of_gyration(), far.radius_of_gyration());
+    assert_eq!(near.vertices(), far.vertices());
+}
