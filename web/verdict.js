@@ -1,10 +1,12 @@
 // The verdict in words with the numbers that carry it. Not for asking the server.
 
-import { evidence } from './evidence.js';
 import { h, prose, symbol } from './dom.js';
 import { number, quantity } from './numbers.js';
 
 /** @typedef {import('./api.js').Stability} Stability */
+
+/** What is beyond the linear map, once its code is there: nothing of the first look. @type {typeof import('./evidence.js').evidence | null} */
+let evidence = null;
 
 /** @type {Record<string, string>} */
 const DECIDERS = { linear: 'the linear map', nonlinear: 'the run', boundary: 'the boundary' };
@@ -20,6 +22,8 @@ const SIGNS = { none: '–', unstable: '▲', beyond: '◆', stable: '●' };
 
 export class Verdict {
   #root;
+  /** @type {Stability | null} */
+  #newest = null;
   // Only the words are spoken, not the table of numbers at every turn of a knob.
   #spoken = h('p', { class: 'unseen', role: 'status' });
 
@@ -38,6 +42,7 @@ export class Verdict {
   /** @param {string} words @param {() => void} [retry] */
   fail(words, retry) {
     this.busy(false);
+    this.#newest = null;
     this.#spoken.textContent = `No verdict. ${words}`;
     this.#root.replaceChildren(h('p', { class: 'verdict-words none' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, '–'), ' No verdict'),
       h('p', { class: 'muted' }, words), retry ? h('button', { type: 'button', click: retry }, 'Try again') : '');
@@ -46,6 +51,13 @@ export class Verdict {
   /** @param {Stability} answer @param {() => Promise<Stability>} measureBasin */
   show(answer, measureBasin) {
     this.busy(false);
+    this.#newest = answer;
+    if (!evidence) {
+      void import('./evidence.js').then((module) => {
+        evidence = module.evidence;
+        if (this.#newest === answer) this.show(answer, measureBasin);
+      }, () => null);
+    }
     const { verdict, decided_by: decider, reason, agree, linear, boundary, nonlinear, drift_speed: drift, notes } = answer;
     const manner = kind(verdict);
     const words = verdict === null ? 'No verdict' : verdict[0].toUpperCase() + verdict.slice(1);
@@ -79,7 +91,7 @@ export class Verdict {
         decider ? h('span', { class: 'chip' }, `decided by ${DECIDERS[decider] ?? decider}`) : '',
         agree === null ? '' : h('span', { class: `chip ${agree ? '' : 'caution'}` }, agree ? 'linear map and run agree' : 'linear map and run disagree')),
       h('dl', { class: 'numbers' }, ...rows.map(([name, value, meaning]) => h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning ?? '')))),
-      evidence(answer, measureBasin),
+      evidence?.(answer, measureBasin) ?? '',
       h('details', { class: 'model' }, h('summary', {}, `Model: ${answer.model.name.replaceAll('_', ' ')}`), h('p', { class: 'muted' }, ...prose(answer.model.reason)),
         ...notes.map((note) => h('p', { class: 'muted' }, ...prose(note)))));
     // What somebody opened stays open while the numbers in it change.

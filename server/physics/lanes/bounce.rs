@@ -62,6 +62,9 @@ pub(crate) struct Scratch {
     pub(crate) apart: [u64; WIDTH],
 }
 
+/// A contact point that rises faster does so by more than rounding ([`Strike::rises`]), at any speed up to the limit, m/s.
+const SURE_RISE: f64 = 1e-8;
+
 /// Most Newton steps of a common bounce: nearly all take one, few two.
 const STEPS: u32 = 3;
 
@@ -317,17 +320,10 @@ impl Moving {
         self.energy[lane] = energy;
     }
 
-    /// Puts what a strike in `before` gives into a lane, with the energy that the run should have after it; sets it apart where the run
-    /// may end there.
+    /// Puts what a strike gives into a lane, with the energy that the run should have after it; sets it apart where the run may end
+    /// there.
     #[inline(always)]
-    pub(super) fn struck<L: Lane>(
-        &mut self,
-        lane: usize,
-        before: &Self,
-        strike: &Strike<L>,
-        energy: f64,
-        scratch: &mut Scratch,
-    ) {
+    pub(super) fn struck<L: Lane>(&mut self, lane: usize, strike: &Strike<L>, energy: f64, scratch: &mut Scratch) {
         let after = strike.after.map(L::to_f64);
         self.set(lane, &after, energy);
         scratch.y_dot[lane] = after.y_dot;
@@ -335,7 +331,7 @@ impl Moving {
             (strike.push.to_f64() < 0.0)
                 & (after.x_dot.abs() <= 0.5 * SPEED_LIMIT)
                 & (after.y_dot.abs() <= 0.5 * SPEED_LIMIT)
-                & strike.rises(L::from_f64(before.y_dot[lane]), f64::EPSILON),
+                & (strike.contact_rise.to_f64() > SURE_RISE),
         );
     }
 

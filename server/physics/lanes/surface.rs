@@ -49,7 +49,7 @@ impl Surface for Smooth {
             // Where none is held, the one that there is: then nothing is corrected.
             let held = if rods.settles(lane) { strike.energy } else { number(moving.energy[lane]) };
             let energy = rod.hold_energy(&mut strike, held);
-            next.struck(lane, moving, &strike, energy.to_f64(), scratch);
+            next.struck(lane, &strike, energy.to_f64(), scratch);
         }
     }
 
@@ -90,7 +90,7 @@ impl Rough {
             let friction = Friction { coefficient: self.coefficient[lane], law, slide };
             let before = moving.state(lane).map(number);
             let strike = friction.strike(&rod, &before, &tilt, None, number(rods.leverage(lane)), as_it_is);
-            next.struck(lane, moving, &strike, moving.energy[lane], scratch);
+            next.struck(lane, &strike, moving.energy[lane], scratch);
         }
     }
 }
