@@ -19,8 +19,8 @@ use tiles::{Map, ask};
 /// Of the map whose cost is worked out.
 const CELLS: f64 = 1e9;
 
-/// Cells of a tile of the script in `docs/clients`.
-const TILE_CELLS: f64 = 250_000.0;
+/// Cells of a tile of the script in `docs/clients`, with 1000 impacts.
+const TILE_CELLS: f64 = 100_000.0;
 
 /// Only an example, of what a core-hour of a rented machine may be.
 const PRICE: f64 = 0.05;
@@ -172,7 +172,7 @@ fn write_overhead(server: &Program, text: &mut String) -> io::Result<f64> {
         text,
         "## A tile besides its cells\n\n\
          A request for one cell of one impact, over a connection of its own: {:.2} ms of a core and {:.2} ms by the clock. The script's \
-         tiles have\nup to {} cells. The server held {:.0} MiB after all of this.\n",
+         tiles have\nup to {} cells of 1000 impacts. The server held {:.0} MiB after all of this.\n",
         1e3 * each_s,
         1e3 * wall_s / REQUESTS as f64,
         grouped(TILE_CELLS),

@@ -450,7 +450,7 @@ def main():
     parser.add_argument("--workers", type=int, default=4, help="processes that ask, each for a tile at a time (4)")
     parser.add_argument("--format", nargs="+", choices=["ndjson", "csv"], help="of the result (ndjson for maps, csv for ensembles)")
     parser.add_argument("--tile-size", type=int, help="cells or runs of a tile, at most, where a row is no more (250000 or 2000)")
-    parser.add_argument("--tile-bounces", type=int, default=250_000_000, help="the same for its work (250000000)")
+    parser.add_argument("--tile-bounces", type=int, default=100_000_000, help="the same for its work, in bounces of lanes (100000000; a server counts 20 for one that is in none)")
     parser.add_argument("--patience", type=float, default=600, help="seconds without an answer after which a tile is given up (600)")
     options = parser.parse_args()
 
