@@ -98,6 +98,7 @@ export function steady(slider, hold) {
     if (!scrolled) return;
     told.stopImmediatePropagation();
     putBack?.();
+    if (event === 'change') scrolled = false;
   });
 }
 
