@@ -176,8 +176,7 @@ class Regions:
         frame = asked(job, first, "json", 0, lambda answer: json.load(answer, parse_float=str, parse_int=str), {})
         if "stop" in frame:
             sys.exit(frame["stop"])
-        names = [*(axis["parameter"] for axis in frame["axes"]), frame["quantity"], "outcome"]
-        out.write(",".join(names).encode() + b"\r\n")
+        out.write(header_of(job, first))
         outcomes = {str(code): f",{name}\r\n" for code, name in enumerate(frame["outcome_names"])}
         for place in job["places"]:
             with open(place, "rb") as file:
@@ -220,10 +219,7 @@ class Ensembles:
     def write_csv(job, out):
         """The curve of all runs, from counts that add up and angles that are sorted together, contact by contact."""
         first = {**job["request"], "impacts": 1, "tile": {"index": 0, "of": job["request"]["runs"]}}
-        header = asked(job, first, "csv", 0, lambda answer: {"line": answer.readline()}, {})
-        if "stop" in header:
-            sys.exit(header["stop"])
-        out.write(header["line"])
+        out.write(header_of(job, first))
         at_risk, ended, places = [], [], []
         for place in job["places"]:
             with open(place, "rb") as file:
@@ -340,6 +336,14 @@ def is_there(job, index):
             return is_whole(file, size_of(job, index))
     except FileNotFoundError:
         return False
+
+
+def header_of(job, request):
+    """The first line of the CSV that answers a request."""
+    header = asked(job, request, "csv", 0, lambda answer: {"line": answer.readline()}, {})
+    if "stop" in header:
+        sys.exit(header["stop"])
+    return header["line"]
 
 
 def size_of(job, index):
