@@ -32,9 +32,9 @@ impl Fixed {
             _ => (Encoding::Identity, &self.identity),
         };
         let tag = EntityTag::of(&[self.media_type.as_bytes(), bytes]);
-        let mut response = match tag.held_by(headers) != Held::Nothing {
-            true => status_only(StatusCode::NOT_MODIFIED),
-            false => ok(self.media_type, encoding, bytes.clone()),
+        let mut response = match tag.held_by(headers) {
+            Held::This | Held::Anything => status_only(StatusCode::NOT_MODIFIED),
+            Held::Nothing => ok(self.media_type, encoding, bytes.clone()),
         };
         response.headers_mut().insert(header::ETAG, tag.header());
         response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);

@@ -5,7 +5,7 @@
 //! forget that the next bounce turns what the last one stretched; a covariance does not.
 
 use crate::contact_time;
-use crate::double_double::DoubleDouble;
+use crate::double_double::{self, DoubleDouble};
 use crate::dual::Dual;
 use crate::extended;
 use crate::flight::Flight;
@@ -26,9 +26,6 @@ const REPEATING: f64 = 0.15;
 
 /// Half a unit in the last place, as a share: the most that one rounding is off.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;
-
-/// The same for numbers of 31 digits: a fifth of what is proved for their operations, ten times what they do.
-const EXTENDED_ROUNDING: f64 = 2e-32;
 
 /// Rounding of the states (five directions), and of three parameters, which is the same at every bounce.
 const DIRECTIONS: usize = 8;
@@ -70,7 +67,7 @@ impl Scene {
 
     /// The same of [`crate::extended`].
     pub fn extended_error_estimate(&self, first: f64) -> ErrorEstimate {
-        self.estimate(first, EXTENDED_ROUNDING)
+        self.estimate(first, double_double::ROUNDING)
     }
 
     fn estimate(&self, first: f64, unit: f64) -> ErrorEstimate {

@@ -5,7 +5,7 @@
 //! certificate of [`crate::contact_time`]; the root is then lifted by Newton's iteration.
 
 use crate::contact_time::{self, TooManyPieces};
-use crate::double_double::DoubleDouble;
+use crate::double_double::{DoubleDouble, ROUNDING};
 use crate::flight::Flight;
 use crate::friction::Friction;
 use crate::impact::{Rod, State, Strike};
@@ -19,9 +19,6 @@ const MAX_STEPS: u32 = 64;
 
 /// Share of a root below which what a Newton step leaves out no longer counts.
 const NEGLIGIBLE: f64 = 1e-33;
-
-/// One unit in the last place, as a share.
-const UNIT: f64 = 2e-32;
 
 /// One contact of a run, as [`crate::map::Contact`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,7 +170,7 @@ impl Orbit {
             contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
             return contact;
         }
-        if !strike.rises(state.y_dot, UNIT) {
+        if !strike.rises(state.y_dot, ROUNDING) {
             contact.ending = Some(Ending::Sinking { contact_rise: strike.contact_rise.to_f64().min(0.0) });
             return contact;
         }
@@ -231,7 +228,7 @@ pub fn in_doubles(state: &State<DoubleDouble>) -> State {
 /// no strike or no next contact.
 pub fn bounce(rod: &Rod<DoubleDouble>, state: &State<DoubleDouble>) -> Option<(DoubleDouble, State<DoubleDouble>)> {
     let strike = rod.strike(state);
-    let flies = strike.push.to_f64() < 0.0 && strike.rises(state.y_dot, UNIT);
+    let flies = strike.push.to_f64() < 0.0 && strike.rises(state.y_dot, ROUNDING);
     let flight = rod.flight(&strike);
     let t = flies.then(|| first_contact(&flight).ok())??;
     Some((t, flight.end(t)))

@@ -3,6 +3,7 @@
 //! Not here: which threads do it, and how it is drawn.
 
 use crate::friction::Friction;
+use crate::impact::Rod;
 use crate::map::run;
 use crate::scene::{Draft, Name, Scene, Value};
 use crate::stability::Linear;
@@ -89,7 +90,7 @@ impl Region {
     /// Whether all runs go in lanes, by those at its corners; the others take many times as long.
     pub fn fits_lanes(&self) -> bool {
         let corners = [(0, 0), (self.x.count - 1, 0), (0, self.y.count - 1), (self.x.count - 1, self.y.count - 1)];
-        corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(|scene| fits_a_lane(&scene)))
+        corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(|scene| in_lanes(&scene).is_some()))
     }
 
     /// Some cells, counted row after row; none if `go_on` said `false`, which is asked every few thousand bounces.
@@ -225,17 +226,16 @@ fn cross(mut low: [f64; 2], mut high: [f64; 2], function: impl Fn([f64; 2]) -> O
     middle(low, high)
 }
 
-/// Whether its run can go in a lane, if it meets the table.
-fn fits_a_lane(scene: &Scene) -> bool {
-    scene.running_model().in_lanes().is_some() && scene.rules().limits.is_none()
+/// What bounces, if its run can go in a lane: where the table is limited, it goes alone.
+fn in_lanes(scene: &Scene) -> Option<(Rod, Option<Friction>)> {
+    scene.running_model().in_lanes().filter(|_| scene.rules().limits.is_none())
 }
 
 /// The start of a run that can go in a lane, with its friction.
 fn start_of(scene: &Scene) -> Option<(Start, Option<Friction>)> {
-    let (rod, friction) = scene.running_model().in_lanes()?;
+    let (rod, friction) = in_lanes(scene)?;
     let (_, state) = rod.fall(scene.release()).ok()?;
-    let start = Start { rod, rules: scene.rules(), state };
-    start.fits().then_some((start, friction))
+    Some((Start { rod, rules: scene.rules(), state }, friction))
 }
 
 /// None once `go_on` said `false`. What never meets the table has ended before its first contact.

@@ -36,17 +36,12 @@ impl Start {
     fn energy(&self) -> f64 {
         self.rod.strike(&self.state).energy
     }
-
-    /// Whether it can run in lanes: one whose table is limited goes alone.
-    pub fn fits(&self) -> bool {
-        self.rules.limits.is_none()
-    }
 }
 
 /// Runs of up to `impacts` contacts: `next` gives one after the other with a number of its own, `done` takes them as they
 /// end, in any order. `go_on` is asked every few thousand bounces; after a `false` no more are run.
 ///
-/// Every start has to [fit](Start::fits).
+/// No table may be limited: lanes do not look.
 pub fn sweep(
     impacts: u64,
     mut next: impl FnMut() -> Option<(usize, Start)>,

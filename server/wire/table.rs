@@ -15,7 +15,7 @@ pub struct Column {
     pub cells: Cells,
 }
 
-/// A name and its unit as they stand in the header of CSV: `rad/s` is `_rad_per_s`.
+/// A name and its unit as they stand in the header of CSV: `rad/s` and `rad_per_s` are `_rad_per_s`.
 pub fn with_unit(name: &str, unit: &str) -> String {
     match unit {
         "" | "1" => name.to_owned(),
@@ -139,13 +139,7 @@ impl Table {
 
     /// RFC 4180, with a header; what does not exist is empty.
     pub fn to_csv(&self) -> Vec<u8> {
-        let header: Vec<String> = self
-            .0
-            .iter()
-            .map(
-                |Column { name, unit, .. }| if unit.is_empty() { (*name).to_owned() } else { format!("{name}_{unit}") },
-            )
-            .collect();
+        let header: Vec<String> = self.0.iter().map(|Column { name, unit, .. }| with_unit(name, unit)).collect();
         let mut out = header.join(",").into_bytes();
         out.extend_from_slice(b"\r\n");
         for row in 0..self.rows() {
