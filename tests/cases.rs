@@ -46,7 +46,9 @@ async fn verdicts_and_limits_are_those_of_the_physics() {
     let verdict = async |preset: &str| server.get(&format!("/v1/stability?preset={preset}&impacts=3000")).await.json();
     for (preset, critical) in [("case-1", 1.5), ("case-2", 1.502), ("case-4", 1.2857), ("case-5", 1.2857)] {
         let stability = verdict(preset).await;
-        assert_eq!(stability["verdict"], "elliptic, 3000 bounces survived", "{preset}");
+        // Energy feedback makes an elliptic bounce weakly unstable.
+        let class = if matches!(preset, "case-4" | "case-5") { "weakly unstable" } else { "elliptic" };
+        assert_eq!(stability["verdict"], format!("{class}, 3000 bounces survived"), "{preset}");
         assert_eq!(stability["agree"], true, "{preset}");
         close(&stability["linear"]["tilt_gain"]["critical"], critical, 5e-5);
     }
@@ -63,7 +65,10 @@ async fn the_boundary_is_soft_or_hard_by_more_than_eigenvalues() {
     let verdict = async |target: &str| server.get(&format!("/v1/stability?{target}")).await.json();
     let soft = verdict("preset=critical-soft&impacts=20000").await;
     close(&soft["boundary"]["coefficient"], 2.0 / 3.0, 1e-12);
-    assert_eq!((&soft["verdict"], &soft["decided_by"]), (&json!("bounded beyond the boundary"), &json!("boundary")));
+    assert_eq!(
+        (&soft["verdict"], &soft["decided_by"]),
+        (&json!("bounded beyond the boundary, 20000 bounces survived"), &json!("boundary"))
+    );
     let hard = verdict("preset=critical-hard").await;
     close(&hard["boundary"]["coefficient"], -0.188, 5e-4);
     assert_eq!((&hard["verdict"], &hard["decided_by"]), (&json!("unstable"), &json!("boundary")));

@@ -60,7 +60,7 @@ async fn resonances_of_order_3_and_4_are_named_where_they_are() {
 #[tokio::test]
 async fn beyond_the_boundary_the_period_two_orbit_is_named() {
     let answer = verdict("scene.table.tilt_gain=1.505&scene.release.theta=0.01").await;
-    assert_eq!(answer["verdict"], "bounded beyond the boundary");
+    assert_eq!(answer["verdict"], "bounded beyond the boundary, 2000 bounces survived");
     assert!(answer["reason"].as_str().unwrap().contains("period-2 orbit at θ = ±0.1"), "{}", answer["reason"]);
     assert!(answer["rotation_number"].is_null() && says(&answer, "rotation_number is null"));
 }
@@ -105,4 +105,86 @@ async fn what_cannot_be_said_is_null_with_its_reason() {
         assert!(answer["chaos"].is_null(), "{query}");
         assert!(says(&answer, "chaos is null") || says(&answer, "chaos and predictable_impacts are null"), "{query}");
     }
+}
+
+/// The answer of another preset.
+async fn of(preset: &str, query: &str) -> Value {
+    Server::start().get(&format!("/v1/stability?preset={preset}&{query}")).await.expect(200).json()
+}
+
+#[tokio::test]
+async fn energy_feedback_is_weakly_unstable_or_weakly_attracting() {
+    for preset in ["case-4", "case-5"] {
+        let answer = of(preset, "").await;
+        assert_eq!(answer["verdict"], "weakly unstable, 2000 bounces survived", "{preset}");
+        assert_eq!(answer["decided_by"], "lyapunov");
+        assert_eq!(answer["linear"]["class"], "elliptic");
+        assert_eq!(answer["lyapunov"]["kind"], "repelling");
+        assert!((number(&answer, "/lyapunov/coefficient") - 0.0221).abs() < 2e-4);
+    }
+    let answer = of("case-5", "scene.table.tilt_gain=1.2").await;
+    assert_eq!(answer["verdict"], "weakly attracting, 2000 bounces survived");
+    assert_eq!(
+        (&answer["lyapunov"]["kind"], &answer["lyapunov"]["escape_impacts"]),
+        (&"attracting".into(), &Value::Null)
+    );
+}
+
+#[tokio::test]
+async fn a_run_that_leaves_in_the_end_is_not_called_outside_the_basin() {
+    for (theta, fall) in [(0.04, 1332), (0.02, 5354), (0.01, 21453)] {
+        let query = format!("scene.table.energy_gain=0.45&scene.table.target_height=0.2&scene.release.theta={theta}");
+        let short = verdict(&query).await;
+        let long = verdict(&format!("{query}&impacts=30000")).await;
+        assert!(short["verdict"].as_str().unwrap().starts_with("weakly unstable"), "{}", short["verdict"]);
+        assert_eq!(long["verdict"], format!("weakly unstable, this run ended at bounce {fall}"));
+        assert!((number(&short, "/lyapunov/escape_impacts") / f64::from(fall) - 1.0).abs() < 0.02);
+        for answer in [short, long] {
+            assert_eq!(answer["decided_by"], "lyapunov");
+            assert!(!answer["reason"].as_str().unwrap().contains("basin"), "{}", answer["reason"]);
+        }
+    }
+}
+
+#[tokio::test]
+async fn lyapunov_is_null_with_a_note_where_it_does_not_apply() {
+    for (preset, query) in [("case-1", ""), ("case-3", ""), ("point-mass", ""), ("still-lossy", "")] {
+        let answer = of(preset, query).await;
+        assert!(answer["lyapunov"].is_null() && says(&answer, "lyapunov"), "{preset}: {}", answer["notes"]);
+    }
+}
+
+#[tokio::test]
+async fn a_soft_loss_of_stability_is_told_from_a_hard_one() {
+    // Past the upper end of κ_E the height flips softly.
+    let query = "scene.table.target_height=0.2&scene.release.height=0.21&scene.release.theta=0.01";
+    let within = verdict(&format!("{query}&scene.table.energy_gain=0.1")).await;
+    let upper = number(&within, "/linear/energy_gain/upper");
+    let beyond = verdict(&format!("{query}&scene.table.energy_gain={}", 1.03 * upper)).await;
+    assert_eq!(beyond["verdict"], "bounded beyond the boundary, 2000 bounces survived", "{}", beyond["reason"]);
+    assert_eq!(beyond["decided_by"], "boundary");
+    let end = |answer: &Value, parameter: &str| {
+        let ends = answer["loss_of_stability"].as_array().unwrap().clone();
+        ends.into_iter().find(|end| end["parameter"] == parameter).unwrap_or_else(|| panic!("{parameter}: {answer}"))
+    };
+    let heights = &end(&beyond, "table.energy_gain")["heights"];
+    assert!(heights[0].as_f64().unwrap() < 0.2 && heights[1].as_f64().unwrap() > 0.2, "{heights}");
+    assert!(end(&within, "table.energy_gain")["heights"].is_null());
+    // At its gain margin the law of the controller is lost softly, to a swing.
+    let law = Server::start().get("/v1/controllers?preset=case-1").await.expect(200).json();
+    let upper = number(&law, "/gain_margin/upper");
+    let gains = ["x", "theta", "x_dot", "theta_dot"]
+        .map(|name| {
+            format!(
+                "scene.table.feedback.{name}={}",
+                1.001 * upper * number(&law, &format!("/scene/table/feedback/{name}"))
+            )
+        })
+        .join("&");
+    let answer = verdict(&format!("{gains}&scene.table.tilt_gain=null&scene.release.theta=0.05&impacts=20000")).await;
+    assert_eq!(answer["verdict"], "bounded beyond the boundary, 20000 bounces survived", "{}", answer["reason"]);
+    let end = end(&answer, "table.feedback");
+    assert_eq!((&end["kind"], &end["bifurcation"]), (&"soft".into(), &"neimark_sacker".into()));
+    assert!((end["swing"].as_f64().unwrap() - 0.125).abs() < 0.01, "{end}");
+    assert!((number(&answer, "/nonlinear/max_theta") - 0.125).abs() < 0.02);
 }

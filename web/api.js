@@ -40,6 +40,8 @@
  * @property {{theta: number, x_dot: number, y_dot: number, theta_dot: number | null, flight_time: number, apex_height: number} | null} fixed_point
  * @property {Linear | null} linear
  * @property {{coefficient: number, kind: string} | null} boundary
+ * @property {{parameter: string, value: number, bifurcation: string, coefficient: number, kind: string, swing: number | null, heights: [number, number] | null}[] | null} loss_of_stability
+ * @property {{coefficient: number, kind: string, escape_impacts: number | null, detail: string} | null} lyapunov
  * @property {{outcome: string, impacts: number, t: number, max_theta: number, demand: {tilt: number, tilt_rate: number, speed: number, stroke: number} | null, detail: string} | null} nonlinear
  * @property {number | null} drift_speed
  * @property {boolean | null} agree

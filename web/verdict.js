@@ -9,13 +9,13 @@ import { number, quantity } from './numbers.js';
 let evidence = null;
 
 /** @type {Record<string, string>} */
-const DECIDERS = { linear: 'the linear map', nonlinear: 'the run', boundary: 'the boundary' };
+const DECIDERS = { linear: 'the linear map', nonlinear: 'the run', boundary: 'the boundary', lyapunov: 'the third order' };
 
 /** How sure, in a sign that does not need its colour. @param {string | null} verdict */
 function kind(verdict) {
   if (verdict === null) return 'none';
-  if (verdict.startsWith('unstable')) return 'unstable';
-  return verdict.startsWith('bounded') ? 'beyond' : 'stable';
+  if (verdict.startsWith('unstable') || /this run ended/.test(verdict)) return 'unstable';
+  return /^(bounded|weakly unstable)/.test(verdict) ? 'beyond' : 'stable';
 }
 
 const SIGNS = { none: '–', unstable: '▲', beyond: '◆', stable: '●' };
@@ -58,7 +58,7 @@ export class Verdict {
         if (this.#newest === answer) this.show(answer, measureBasin);
       }, () => null);
     }
-    const { verdict, decided_by: decider, reason, agree, linear, boundary, nonlinear, drift_speed: drift, notes } = answer;
+    const { verdict, decided_by: decider, reason, agree, linear, boundary, lyapunov, loss_of_stability: losses, nonlinear, drift_speed: drift, notes } = answer;
     const manner = kind(verdict);
     const words = verdict === null ? 'No verdict' : verdict[0].toUpperCase() + verdict.slice(1);
     this.#spoken.textContent = `Verdict: ${words}`;
@@ -76,6 +76,16 @@ export class Verdict {
     const energy = linear?.energy_gain;
     if (energy && energy.value !== 0) rows.push([symbol('κ_E'), `${quantity(energy.value, 's²/m²')} of ${number(energy.upper)}`, `energy gain: λ ${number(energy.eigenvalue)}`]);
     if (boundary?.coefficient != null) rows.push([symbol('C'), number(boundary.coefficient, 3), `boundary: ${boundary.kind}`]);
+    if (lyapunov) {
+      const escape = lyapunov.escape_impacts;
+      rows.push([symbol('ℓ'), quantity(lyapunov.coefficient, '/rad²', 3), `swing: ${lyapunov.kind}${escape === null ? '' : `, leaves in about ${number(escape, 3)} impacts`}`]);
+    }
+    for (const { parameter, value, kind: manner, swing, heights } of losses ?? []) {
+      if (parameter === 'table.tilt_gain') continue;
+      const settles = swing !== null ? `, here to ±${quantity(swing, 'rad', 3)}` : heights ? `, here to ${heights.map((height) => quantity(height, 'm', 3)).join(' and ')} in turn` : '';
+      const name = parameter === 'table.feedback' ? ['gains ×', number(value, 4)] : [symbol('κ_E'), quantity(value, 's²/m²', 4)];
+      rows.push([name[0], name[1], `stability is lost there: ${manner}${settles}`]);
+    }
     if (drift != null) rows.push([symbol('c'), quantity(drift, 'm/s', 3), 'drift of the whole']);
     if (nonlinear) rows.push(['max |θ|', quantity(nonlinear.max_theta, 'rad'), `${number(nonlinear.impacts, 6)} impacts: ${nonlinear.outcome}`]);
     const asked = nonlinear?.demand;

@@ -1,8 +1,10 @@
-//! The verdict on a scene: what the linear analysis, the boundary coefficient and the run say, weighed against each other.
+//! The verdict on a scene: what the linear analysis, the normal forms and the run say, weighed against each other.
 //!
-//! Not here: how any of them comes about ([`crate::stability`], [`crate::regularity`]).
+//! Not here: how any of them comes about ([`crate::stability`], [`crate::lyapunov`], [`crate::loss`], [`crate::regularity`]).
 
 use crate::grip::Grip;
+use crate::loss::{End, Loss, Settles, losses};
+use crate::lyapunov::{Kind, Lyapunov, lyapunov};
 use crate::map::Ending;
 use crate::regularity::{CHAOTIC, Chaos};
 use crate::scene::Scene;
@@ -15,7 +17,11 @@ pub enum Verdict {
     StableInPlace,
     /// The linear analysis says that the angle circles, and the run did for as long as it was watched; no theorem says more.
     Elliptic,
-    /// At or beyond κ_c, yet bounded around the period-2 orbit.
+    /// The angle circles in first order, and the swing dies out in third.
+    WeaklyAttracting,
+    /// The angle circles in first order, and every swing grows in third.
+    WeaklyUnstable,
+    /// At or beyond an end of the linear verdict, yet bounded around what branches off there, for as long as it was watched.
     BoundedBeyondBoundary,
     /// It falls, or would from a start a little aside.
     Unstable,
@@ -28,8 +34,10 @@ pub enum DecidedBy {
     Linear,
     /// The run of the scene.
     Nonlinear,
-    /// The boundary coefficient.
+    /// How stability is lost at an end of the linear verdict.
     Boundary,
+    /// The first Lyapunov coefficient.
+    Lyapunov,
 }
 
 impl DecidedBy {
@@ -39,6 +47,7 @@ impl DecidedBy {
             Self::Linear => "linear",
             Self::Nonlinear => "nonlinear",
             Self::Boundary => "boundary",
+            Self::Lyapunov => "lyapunov",
         }
     }
 }
@@ -56,13 +65,41 @@ pub struct Judgement {
     pub reason: String,
 }
 
+/// What the second and third derivatives of the map say about a fixed point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HigherOrder {
+    /// At κ_c.
+    pub boundary: Option<Boundary>,
+    /// Of a swing about the fixed point, or why there is none.
+    pub lyapunov: Result<Lyapunov, String>,
+    /// At each end of the linear verdict for which it is derived.
+    pub losses: Vec<Loss>,
+    /// Why it is not derived for others.
+    pub notes: Vec<String>,
+}
+
+impl HigherOrder {
+    /// What they say about a scene.
+    pub fn of(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Self {
+        let boundary = scene.boundary(fixed_point);
+        let (losses, notes) = losses(scene, fixed_point, linear, boundary);
+        Self { boundary, lyapunov: lyapunov(scene, fixed_point, linear), losses, notes }
+    }
+
+    /// The soft loss at an end, and where the scene settles beyond it.
+    pub(crate) fn settled_beyond(&self, end: End) -> Option<(&Loss, Settles)> {
+        let loss = self.losses.iter().find(|loss| loss.end == end && loss.is_soft() && loss.settles.is_some())?;
+        Some((loss, loss.settles?))
+    }
+}
+
 impl Scene {
-    /// Weighs the linear verdict, the boundary coefficient, the run and how regular it is against each other.
+    /// Weighs the linear verdict, the higher orders, the run and how regular it is against each other.
     pub fn judge(
         &self,
         fixed_point: &FixedPoint,
         linear: &Linear,
-        boundary: Option<Boundary>,
+        higher: &HigherOrder,
         run: &Nonlinear,
         chaos: Option<Chaos>,
     ) -> Judgement {
@@ -73,17 +110,39 @@ impl Scene {
         let undisturbed = start.theta == 0.0 && start.theta_dot == 0.0;
         let kappa = self.tilt_gain;
         let critical = linear.critical_tilt_gain;
+        let boundary = higher.boundary;
+        let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
         if linear.energy_eigenvalue.abs() > 1.0 + PARABOLIC {
-            let reason = format!(
+            let grows = format!(
                 "energy_gain is {} s²/m² and must be between 0 and {}: deviations of the height grow by {} a bounce",
                 self.energy_gain, linear.upper_energy_gain, linear.energy_eigenvalue
             );
-            return judgement(Verdict::Unstable, DecidedBy::Linear, reason);
+            let Some((_, Settles::Heights { heights: [low, high], angle_bounded })) =
+                higher.settled_beyond(End::EnergyGain)
+            else {
+                return judgement(Verdict::Unstable, DecidedBy::Linear, grows);
+            };
+            let softly = format!("{grows}, softly: bounces settle on heights of {low} m and {high} m in turn");
+            return match (angle_bounded, survived) {
+                (true, true) => {
+                    let reason = format!("{softly}, on which the angle stays bounded, and the run survived");
+                    judgement(Verdict::BoundedBeyondBoundary, DecidedBy::Boundary, reason)
+                }
+                (true, false) => judgement(Verdict::Unstable, DecidedBy::Nonlinear, format!("{softly}, but {fell}")),
+                (false, _) => {
+                    let reason = format!("{softly}, on which the angle does not stay bounded");
+                    judgement(Verdict::Unstable, DecidedBy::Linear, reason)
+                }
+            };
         }
         if let Some(closed) = &linear.closed_loop {
-            return self.judge_law(closed, run);
+            return self.judge_law(closed, higher, run);
         }
-        let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
+        if let Ok(found) = &higher.lyapunov
+            && found.kind != Kind::Neutral
+        {
+            return self.judge_swing(found, run, agree);
+        }
         if !survived && linear.class != Class::Hyperbolic && linear.class != Class::Parabolic {
             let cone = self.stick_cone().filter(|cone| start.theta.abs() > *cone).map_or_else(String::new, |cone| {
                 format!(", and theta {} rad outside the stick cone, |θ| up to about {cone} rad", start.theta)
@@ -162,10 +221,17 @@ impl Scene {
                 Verdict::BoundedBeyondBoundary,
                 DecidedBy::Nonlinear,
                 format!(
-                    "tilt_gain {kappa} is beyond κ_c = {critical}, yet the run stayed within |θ| ≤ {} rad{}",
+                    "tilt_gain {kappa} is beyond κ_c = {critical}, yet the run of {} bounces stayed within |θ| ≤ {} rad{}{}",
+                    run.impacts,
                     run.max_theta,
                     self.period_two(fixed_point)
-                        .map_or_else(String::new, |theta| format!(", around the period-2 orbit at θ = ±{theta} rad"))
+                        .map_or_else(String::new, |theta| format!(", around the period-2 orbit at θ = ±{theta} rad")),
+                    match boundary {
+                        Some(Boundary { coefficient }) if coefficient <= 0.0 => format!(
+                            "; C = {coefficient} is not positive, so stability is lost hard and a longer run may still fall"
+                        ),
+                        _ => String::new(),
+                    }
                 ),
             ),
             Class::Hyperbolic => {
@@ -176,5 +242,32 @@ impl Scene {
                 judgement(Verdict::Unstable, DecidedBy::Linear, reason)
             }
         }
+    }
+
+    /// The verdict where the swing grows or dies out in third order.
+    fn judge_swing(&self, found: &Lyapunov, run: &Nonlinear, agree: bool) -> Judgement {
+        let Lyapunov { coefficient, amplitude, .. } = found;
+        let (verdict, course) = match found.escape_impacts() {
+            Some(impacts) => {
+                (Verdict::WeaklyUnstable, format!("grows and leaves upright after about {impacts} bounces"))
+            }
+            None if found.kind == Kind::Repelling => (Verdict::WeaklyUnstable, "would grow".to_owned()),
+            None => (Verdict::WeaklyAttracting, "dies out".to_owned()),
+        };
+        let outcome = match (run.ending == Ending::Completed, verdict) {
+            (true, _) => format!("this run of {} bounces came to |θ| = {} rad", run.impacts, run.max_theta),
+            (false, Verdict::WeaklyAttracting) => format!(
+                "this run ended as `{}` at contact {}: its start is outside the basin",
+                run.ending.name(),
+                run.impacts
+            ),
+            (false, _) => format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts),
+        };
+        let reason = format!(
+            "with energy_gain {} s²/m² the angle circles in first order only: the amplitude obeys dA/dn = ℓA³ with ℓ = {coefficient} per \
+             bounce and rad², so a swing like this one, of {amplitude} rad, {course}; {outcome}",
+            self.energy_gain
+        );
+        Judgement { verdict, decided_by: DecidedBy::Lyapunov, agree, reason }
     }
 }

@@ -3,11 +3,14 @@
 use equipoise_physics::basin::{self, NoBasin};
 use equipoise_physics::control::BounceModel;
 use equipoise_physics::grip::Grip;
+use equipoise_physics::loss::{self, Settles};
+use equipoise_physics::lyapunov;
+use equipoise_physics::map::Ending;
 use equipoise_physics::margins::Tolerances;
 use equipoise_physics::regularity::WATCHED;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::{self, Linear, Nonlinear};
-use equipoise_physics::verdict::{Judgement, Verdict};
+use equipoise_physics::verdict::{HigherOrder, Judgement, Verdict};
 use serde::Serialize;
 
 use super::controller;
@@ -74,6 +77,64 @@ struct Boundary {
 }
 
 #[derive(Debug, Clone, Serialize)]
+struct Lyapunov {
+    coefficient: f64,
+    kind: &'static str,
+    escape_impacts: Option<u64>,
+    detail: String,
+}
+
+/// Distance of the rotation from a quarter turn, in turns a bounce, within which the resonance is named.
+const NEAR_QUARTER: f64 = 0.02;
+
+impl From<&lyapunov::Lyapunov> for Lyapunov {
+    fn from(found: &lyapunov::Lyapunov) -> Self {
+        let lyapunov::Lyapunov { coefficient, kind, amplitude, from_quarter } = *found;
+        let mut detail = format!(
+            "the amplitude A of a swing, the largest |θ| of its linear ellipse, obeys dA/dn = ℓA³ a bounce to third order; A is {amplitude} \
+             rad at the first contact of this release"
+        );
+        if from_quarter <= NEAR_QUARTER {
+            detail += &format!(
+                "; the rotation is within {from_quarter} turns of the strong resonance 1/4, where ℓ is not defined: the nearer, the \
+                 smaller the swings for which it holds"
+            );
+        }
+        Self { coefficient, kind: kind.name(), escape_impacts: found.escape_impacts(), detail }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct LossOfStability {
+    parameter: &'static str,
+    value: f64,
+    bifurcation: &'static str,
+    coefficient: f64,
+    kind: &'static str,
+    swing: Option<f64>,
+    heights: Option<[f64; 2]>,
+}
+
+impl From<&loss::Loss> for LossOfStability {
+    fn from(loss: &loss::Loss) -> Self {
+        let (swing, heights) = match loss.settles {
+            None => (None, None),
+            Some(Settles::Swing(swing)) => (Some(swing), None),
+            Some(Settles::Heights { heights, .. }) => (None, Some(heights)),
+        };
+        Self {
+            parameter: loss.end.name(),
+            value: loss.value,
+            bifurcation: loss.bifurcation.name(),
+            coefficient: loss.coefficient,
+            kind: loss.kind(),
+            swing,
+            heights,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
 struct NonlinearPart {
     outcome: &'static str,
     impacts: u64,
@@ -94,6 +155,8 @@ pub struct Stability<'a> {
     fixed_point: Option<FixedPoint>,
     linear: Option<LinearPart>,
     boundary: Option<Boundary>,
+    loss_of_stability: Option<Vec<LossOfStability>>,
+    lyapunov: Option<Lyapunov>,
     nonlinear: NonlinearPart,
     drift_speed: Option<f64>,
     agree: Option<bool>,
@@ -139,11 +202,17 @@ impl Request {
 
 /// The verdict in words; what a run showed stands in it with its length.
 fn words(verdict: Verdict, run: &Nonlinear) -> String {
-    match verdict {
-        Verdict::StableInPlace => "stable in place".to_owned(),
-        Verdict::Elliptic => format!("elliptic, {} bounces survived", run.impacts),
-        Verdict::BoundedBeyondBoundary => "bounded beyond the boundary".to_owned(),
-        Verdict::Unstable => "unstable".to_owned(),
+    let Nonlinear { impacts, ending, .. } = run;
+    let survived = format!("{impacts} bounces survived");
+    match (verdict, *ending == Ending::Completed) {
+        (Verdict::StableInPlace, _) => "stable in place".to_owned(),
+        (Verdict::Elliptic, _) => format!("elliptic, {survived}"),
+        (Verdict::WeaklyAttracting, true) => format!("weakly attracting, {survived}"),
+        (Verdict::WeaklyAttracting, false) => format!("weakly attracting, but this run ended at bounce {impacts}"),
+        (Verdict::WeaklyUnstable, true) => format!("weakly unstable, {survived}"),
+        (Verdict::WeaklyUnstable, false) => format!("weakly unstable, this run ended at bounce {impacts}"),
+        (Verdict::BoundedBeyondBoundary, _) => format!("bounded beyond the boundary, {survived}"),
+        (Verdict::Unstable, _) => "unstable".to_owned(),
     }
 }
 
@@ -190,6 +259,8 @@ impl<'a> Stability<'a> {
             fixed_point: None,
             linear: None,
             boundary: None,
+            loss_of_stability: None,
+            lyapunov: None,
             nonlinear: NonlinearPart {
                 outcome: run.ending.name(),
                 impacts: run.impacts,
@@ -233,15 +304,15 @@ impl<'a> Stability<'a> {
         }
         match scene.fixed_point() {
             Err(why) => {
-                notes.push(format!("verdict, fixed_point, linear, boundary, agree, rotation_number, chaos and predictable_impacts are null: {why}"));
+                notes.push(format!("verdict, fixed_point, linear, boundary, loss_of_stability, lyapunov, agree, rotation_number, chaos and predictable_impacts are null: {why}"));
                 answer.reason = why;
             }
             Ok(fixed_point) => {
                 let linear = scene.linear(&fixed_point);
-                let boundary = scene.boundary(&fixed_point);
+                let higher = HigherOrder::of(scene, &fixed_point, &linear);
                 let evidence = Evidence::new(scene, &fixed_point, &linear, impacts);
                 let Judgement { verdict, decided_by, agree, reason } =
-                    scene.judge(&fixed_point, &linear, boundary, &run, evidence.chaos());
+                    scene.judge(&fixed_point, &linear, &higher, &run, evidence.chaos());
                 answer.verdict = Some(words(verdict, &run));
                 answer.decided_by = Some(decided_by.name());
                 answer.agree = Some(agree);
@@ -256,8 +327,15 @@ impl<'a> Stability<'a> {
                         run.max_theta
                     ));
                 }
-                answer.boundary =
-                    boundary.map(|boundary| Boundary { coefficient: boundary.coefficient, kind: boundary.kind() });
+                answer.boundary = higher
+                    .boundary
+                    .map(|boundary| Boundary { coefficient: boundary.coefficient, kind: boundary.kind() });
+                answer.loss_of_stability = Some(higher.losses.iter().map(LossOfStability::from).collect());
+                notes.extend(higher.notes);
+                match &higher.lyapunov {
+                    Ok(found) => answer.lyapunov = Some(found.into()),
+                    Err(why) => notes.push(format!("lyapunov is null: {why}")),
+                }
                 if linear.residue.is_some() && linear.rotation.is_none() {
                     notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
                 }
@@ -405,6 +483,13 @@ impl<'a> Stability<'a> {
             },
             number("basin_theta", "rad", self.basin.as_ref().map(|it| it.theta)),
             number("basin_unbroken", "rad", self.basin.as_ref().map(|it| it.unbroken)),
+            number("lyapunov_coefficient", "per_rad2", self.lyapunov.as_ref().map(|it| it.coefficient)),
+            word("lyapunov_kind", self.lyapunov.as_ref().map(|it| it.kind)),
+            Column {
+                name: "escape_impacts",
+                unit: "",
+                cells: Cells::SparseCounts(vec![self.lyapunov.as_ref().and_then(|it| it.escape_impacts)]),
+            },
         ])
     }
 }

@@ -17,13 +17,8 @@ pub struct Margin {
 
 /// The margin of a stable closed loop, from A and A − BK of at most four states.
 pub fn margin(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> Margin {
-    let p = characteristic(open);
-    let n: Vec<f64> = characteristic(closed).iter().zip(&p).map(|(closed, open)| closed - open).collect();
-    let mut places = imaginary_part(&n, &p);
-    places.extend([-1.0, 1.0]);
     let mut margin = Margin { lower: None, upper: None };
-    for cosine in places {
-        let factor = -real_part(&p, &n, cosine) / real_part(&n, &n, cosine);
+    for factor in crossings(open, closed) {
         if factor < 1.0 {
             margin.lower = Some(margin.lower.map_or(factor, |lower| lower.max(factor)));
         } else if factor > 1.0 && factor.is_finite() {
@@ -31,6 +26,15 @@ pub fn margin(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> Margin {
         }
     }
     margin
+}
+
+/// The factors on the gain at which some eigenvalue is on the unit circle, in no order; not all of them are finite.
+pub fn crossings(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> Vec<f64> {
+    let p = characteristic(open);
+    let n: Vec<f64> = characteristic(closed).iter().zip(&p).map(|(closed, open)| closed - open).collect();
+    let mut places = imaginary_part(&n, &p);
+    places.extend([-1.0, 1.0]);
+    places.into_iter().map(|cosine| -real_part(&p, &n, cosine) / real_part(&n, &n, cosine)).collect()
 }
 
 /// Coefficients of det(zI − M), the constant one first, after Faddeev and Le Verrier.

@@ -10,11 +10,12 @@ pub mod riccati;
 use crate::grip::Grip;
 use crate::impact::Rod;
 use crate::jacobian::{eigenvalues, modulus};
+use crate::loss::{End, Settles};
 use crate::map::Ending;
 use crate::rig::{Gains, Steering};
 use crate::scene::{BodyShape, Scene};
 use crate::stability::{FixedPoint, Nonlinear};
-use crate::verdict::{DecidedBy, Judgement, Verdict};
+use crate::verdict::{DecidedBy, HigherOrder, Judgement, Verdict};
 use margin::{Margin, margin};
 use nalgebra::{Complex, DMatrix, Matrix3, Matrix4, RowVector4, Vector3, Vector4};
 
@@ -138,8 +139,8 @@ impl Scene {
         model.closed_loop(gain, gain[0] != 0.0)
     }
 
-    /// Whether a law with feedback is stable in place, by its closed loop and a run.
-    pub(crate) fn judge_law(&self, closed: &ClosedLoop, run: &Nonlinear) -> Judgement {
+    /// Whether a law with feedback is stable in place, by its closed loop, its normal form and a run.
+    pub(crate) fn judge_law(&self, closed: &ClosedLoop, higher: &HigherOrder, run: &Nonlinear) -> Judgement {
         let survived = run.ending == Ending::Completed;
         let (stable, radius) = (closed.is_stable(), closed.spectral_radius);
         let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
@@ -161,14 +162,26 @@ impl Scene {
                     "{fell}, although the closed loop has spectral radius {radius}: the start is outside the basin"
                 ),
             ),
-            (false, _) => (
-                Verdict::Unstable,
-                DecidedBy::Linear,
-                format!(
-                    "a small deviation does not die out: the closed loop has spectral radius {radius}, which must be below 1; {}",
-                    if survived { "this run has not left yet".to_owned() } else { fell }
-                ),
-            ),
+            (false, _) => {
+                let grows = format!(
+                    "a small deviation does not die out: the closed loop has spectral radius {radius}, which must be below 1"
+                );
+                match (higher.settled_beyond(End::FeedbackFactor), survived) {
+                    (Some((loss, Settles::Swing(swing))), true) => (
+                        Verdict::BoundedBeyondBoundary,
+                        DecidedBy::Boundary,
+                        format!(
+                            "{grows}; but stability is lost softly, at {} times these gains ({}), so that a swing grows to about \
+                             {swing} rad and no further; this run came to {} rad",
+                            loss.value,
+                            loss.bifurcation.name(),
+                            run.max_theta
+                        ),
+                    ),
+                    (_, true) => (Verdict::Unstable, DecidedBy::Linear, format!("{grows}; this run has not left yet")),
+                    (_, false) => (Verdict::Unstable, DecidedBy::Linear, format!("{grows}; {fell}")),
+                }
+            }
         };
         Judgement { verdict, decided_by, agree: stable == survived, reason }
     }

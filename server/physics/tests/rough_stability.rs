@@ -10,7 +10,7 @@ use equipoise_physics::region::{Axis, Quantity, Region};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::Class;
 use equipoise_physics::sweep::Outcome;
-use equipoise_physics::verdict::Verdict;
+use equipoise_physics::verdict::{HigherOrder, Verdict};
 
 const L: f64 = 0.4 / 3.0;
 const RHO: f64 = 0.094_280_904_158_206_35;
@@ -138,7 +138,9 @@ fn a_table_that_only_tilts_falls_and_the_verdict_says_why() {
     let nonlinear = scene.nonlinear(1000, || true).unwrap();
     assert!(nonlinear.impacts <= 10, "{nonlinear:?}");
     let point = scene.fixed_point().unwrap();
-    let judgement = scene.judge(&point, &scene.linear(&point), scene.boundary(&point), &nonlinear, None);
+    let linear = scene.linear(&point);
+    let higher = HigherOrder::of(&scene, &point, &linear);
+    let judgement = scene.judge(&point, &linear, &higher, &nonlinear, None);
     assert_eq!(judgement.verdict, Verdict::Unstable);
     assert!(judgement.agree && judgement.reason.contains("sticks for any friction above 0"), "{}", judgement.reason);
     assert!(scene.drift_speed().is_none() && scene.boundary(&point).is_none());

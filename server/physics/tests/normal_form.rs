@@ -1,0 +1,408 @@
+//! Normal forms of the bounce: the first Lyapunov coefficient against its closed form and against runs, and soft or hard ends
+//! of stability against what runs beyond them do.
+
+use equipoise_physics::control::BounceModel;
+use equipoise_physics::jacobian::jacobian_at;
+use equipoise_physics::loss::{End, Loss, Settles, losses};
+use equipoise_physics::lyapunov::{Kind, Lyapunov, lyapunov};
+use equipoise_physics::map::{Ending, run};
+use equipoise_physics::normal_form::Bounce;
+use equipoise_physics::periodic_orbits::branch::Kind as Bifurcation;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+#[path = "support/random.rs"]
+mod random;
+
+use random::Random;
+
+const FEEDBACK: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+
+/// A scene of numbers, on a table that slides along as `slide` says.
+fn scene_on(slide: &'static str, values: &[(Name, f64)]) -> Scene {
+    let mut draft = Draft::default();
+    for &(name, value) in values {
+        draft.set(name, Some(Value::Number(value))).unwrap();
+    }
+    draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
+    draft.build().unwrap()
+}
+
+fn scene(values: &[(Name, f64)]) -> Scene {
+    scene_on("none", values)
+}
+
+/// The paper's body with these values beside it.
+fn paper(values: &[(Name, f64)]) -> Scene {
+    let mut all =
+        vec![(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0), (Name::Height, 0.2)];
+    all.extend_from_slice(values);
+    scene(&all)
+}
+
+/// The paper's cases 4 and 5 at a tilt gain and a small angle, released at the target height.
+fn case_4(tilt_gain: f64, theta: f64) -> Scene {
+    paper(&[
+        (Name::Incline, std::f64::consts::FRAC_PI_4),
+        (Name::Restitution, 0.5),
+        (Name::EnergyGain, 0.165),
+        (Name::TargetHeight, 0.25),
+        (Name::Height, 0.25),
+        (Name::TiltGain, tilt_gain),
+        (Name::Theta, theta),
+    ])
+}
+
+fn coefficient(scene: &Scene) -> Result<Lyapunov, String> {
+    let fixed_point = scene.fixed_point().unwrap();
+    lyapunov(scene, &fixed_point, &scene.linear(&fixed_point))
+}
+
+fn ends(scene: &Scene) -> Vec<Loss> {
+    let fixed_point = scene.fixed_point().unwrap();
+    let linear = scene.linear(&fixed_point);
+    losses(scene, &fixed_point, &linear, scene.boundary(&fixed_point)).0
+}
+
+/// λ S G² R³ (1 − 2R) / (V⁴ [λ² + 16(1 − λ)R(1 − R)]) with S = ρ²[1 + κ²ρ²/((κ − 1)²l²)].
+fn closed_form(scene: &Scene) -> f64 {
+    let rod = scene.parameters::<f64>();
+    let fixed_point = scene.fixed_point().unwrap();
+    let linear = scene.linear(&fixed_point);
+    let (residue, loop_gain) = (linear.residue.unwrap(), 1.0 - linear.energy_eigenvalue);
+    let (rho_squared, kappa) = (rod.radius_of_gyration.powi(2), rod.tilt_gain);
+    let s = rho_squared * (1.0 + kappa * kappa * rho_squared / ((kappa - 1.0) * rod.contact_distance).powi(2));
+    let below = loop_gain * loop_gain + 16.0 * (1.0 - loop_gain) * residue * (1.0 - residue);
+    loop_gain * s * rod.gravity.powi(2) * residue.powi(3) * (1.0 - 2.0 * residue) / (fixed_point.speed.powi(4) * below)
+}
+
+/// A rod of any size with energy feedback, a residue from 0.03 to 0.97 and a loop gain (1 + e)κ_E V² from 0.02 to 1.9.
+fn random_values(random: &mut Random, stuck: bool) -> Vec<(Name, f64)> {
+    let length = random.between(0.05, 0.5);
+    let rho = length * random.between(0.3, 1.2);
+    let above = length * random.between(0.2, 2.0);
+    let turning = rho * rho + if stuck { length * length } else { 0.0 };
+    let width = turning / (2.0 * above * length);
+    let restitution = random.between(0.0, 1.0);
+    let gravity = 9.81;
+    vec![
+        (Name::ContactDistance, length),
+        (Name::RadiusOfGyration, rho),
+        (Name::TiltGain, 1.0 + width * random.between(0.03, 0.97)),
+        (Name::Restitution, restitution),
+        (Name::EnergyGain, random.between(0.02, 1.9) / ((1.0 + restitution) * 2.0 * gravity * above)),
+        (Name::TargetHeight, length + above),
+        (Name::Height, length + above),
+    ]
+}
+
+#[test]
+fn the_coefficient_is_its_closed_form() {
+    let mut random = Random(11);
+    let (mut repelling, mut attracting) = (0, 0);
+    for _ in 0..500 {
+        let scene = scene(&random_values(&mut random, false));
+        let (found, expected) = (coefficient(&scene).unwrap(), closed_form(&scene));
+        let residue = scene.linear(&scene.fixed_point().unwrap()).residue.unwrap();
+        let error = (found.coefficient - expected).abs();
+        assert!(error <= 1e-9 * expected.abs() + 1e-12, "R = {residue}: {} and {expected}", found.coefficient);
+        match found.kind {
+            Kind::Repelling => repelling += 1,
+            Kind::Attracting => attracting += 1,
+            Kind::Neutral => {}
+        }
+        assert_eq!(found.kind == Kind::Repelling, residue < 0.5);
+        assert_eq!(found.escape_impacts(), None, "upright never leaves");
+    }
+    assert!(repelling > 100 && attracting > 100);
+}
+
+#[test]
+fn the_coefficients_of_the_papers_cases_are_those_measured() {
+    let measured = [
+        (1.02, 0.03199),
+        (1.05, 0.03266),
+        (1.1, 0.0221),
+        (1.14, 0.0020),
+        (1.15, -0.0057),
+        (1.2, -0.0785),
+        (1.25, -0.3670),
+    ];
+    for (tilt_gain, expected) in measured {
+        let found = coefficient(&case_4(tilt_gain, 0.01)).unwrap().coefficient;
+        assert!((found - expected).abs() <= 0.02 * expected.abs() + 5e-5, "κ = {tilt_gain}: {found} and {expected}");
+    }
+}
+
+/// ℓ as a run shows it: 1/A² falls by 2ℓ a bounce. A² is the quadratic form of (ρθ, ρθ̇) that the linear map keeps, averaged
+/// over many bounces at both ends.
+fn measured(scene: &Scene, impacts: u64) -> f64 {
+    let fixed_point = scene.fixed_point().unwrap();
+    let linear = jacobian_at(
+        &scene.model(),
+        0.0,
+        &equipoise_physics::impact::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 },
+        1,
+    )
+    .unwrap()
+    .matrix;
+    // For M = (a b; c d) of determinant 1: −c u² + (a − d) u v + b v² is kept, and the largest |u| on it is u² = 4b/(4 − trace²).
+    let (a, b, c, d) = (linear[(0, 0)], linear[(0, 3)], linear[(3, 0)], linear[(3, 3)]);
+    let rho = scene.parameters::<f64>().radius_of_gyration;
+    let per_form = 4.0 * b / (4.0 - (a + d) * (a + d)) / (rho * rho);
+    let mut orbit = scene.orbit().unwrap();
+    let window = impacts / 10;
+    let (mut early, mut late) = (0.0, 0.0);
+    let ending = run(&mut orbit, impacts, |contact| {
+        let (u, v) = (rho * contact.state.theta, rho * contact.state.theta_dot);
+        let square = (-c * u * u + (a - d) * u * v + b * v * v) * per_form;
+        if contact.n <= window {
+            early += 1.0 / (square * window as f64);
+        } else if contact.n > impacts - window {
+            late += 1.0 / (square * window as f64);
+        }
+        true
+    });
+    assert_eq!(ending, Some(Ending::Completed));
+    (early - late) / (2.0 * (impacts - window) as f64)
+}
+
+#[test]
+fn runs_grow_and_shrink_by_it() {
+    for tilt_gain in [1.02, 1.05, 1.1, 1.2, 1.25] {
+        let scene = case_4(tilt_gain, 0.02);
+        let (found, run) = (coefficient(&scene).unwrap().coefficient, measured(&scene, 5_000));
+        assert!((run / found - 1.0).abs() < 0.03, "κ = {tilt_gain}: {found}, in a run {run}");
+    }
+}
+
+#[test]
+fn matched_friction_has_it_too() {
+    let mut random = Random(5);
+    for _ in 0..12 {
+        let mut values = random_values(&mut random, true);
+        values.extend([(Name::Friction, 0.8), (Name::Theta, 0.01)]);
+        let scene = scene_on("matched", &values);
+        let found = coefficient(&scene).unwrap().coefficient;
+        let run = measured(&scene, 4_000);
+        assert!((run - found).abs() <= 0.05 * found.abs() + 1e-3, "{values:?}: {found}, in a run {run}");
+    }
+}
+
+#[test]
+fn every_start_of_a_repelling_bounce_leaves_when_it_says() {
+    for (theta, fall) in [(0.04, 1332), (0.02, 5354), (0.01, 21453)] {
+        let scene =
+            paper(&[(Name::TiltGain, 1.1), (Name::EnergyGain, 0.45), (Name::TargetHeight, 0.2), (Name::Theta, theta)]);
+        let mut orbit = scene.orbit().unwrap();
+        let ending = run(&mut orbit, 30_000, |_| true).unwrap();
+        assert!(ending != Ending::Completed && orbit.contacts() == fall, "{ending:?} at {}", orbit.contacts());
+        let escape = coefficient(&scene).unwrap().escape_impacts().unwrap();
+        assert!((escape as f64 / fall as f64 - 1.0).abs() < 0.02, "{escape} and {fall}");
+    }
+}
+
+#[test]
+fn it_is_null_with_a_reason_where_it_does_not_apply() {
+    let why = |scene: &Scene| coefficient(scene).unwrap_err();
+    assert!(why(&paper(&[(Name::TiltGain, 1.1)])).contains("energy_gain is 0"));
+    // κ = 1 + R·Gρ²/(V²l) with R = ½: a quarter turn a bounce.
+    let rod = case_4(1.1, 0.0);
+    let fixed_point = rod.fixed_point().unwrap();
+    let critical = rod.linear(&fixed_point).critical_tilt_gain;
+    assert!(why(&case_4(0.5 * (1.0 + critical), 0.1)).contains("strong resonance"));
+    assert!(why(&case_4(1.5, 0.1)).contains("does not circle"));
+    let upper = rod.linear(&fixed_point).upper_energy_gain;
+    assert!(
+        why(&paper(&[(Name::TiltGain, 1.1), (Name::EnergyGain, 1.1), (Name::TargetHeight, 0.2)]))
+            .contains("does not settle")
+    );
+    assert!(upper > 0.165);
+}
+
+/// Weights under which laws are designed.
+const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
+
+/// A rod with `factor` times the law that is best under the weights, and the factor above 1 at which it is lost.
+fn steered(body: &[(Name, f64)], factor: impl Fn(f64) -> f64) -> Option<(Scene, f64)> {
+    let rod = scene(&[body, &[(Name::TiltGain, 1.1)]].concat());
+    let fixed_point = rod.fixed_point().unwrap();
+    let model = BounceModel::new(&rod.parameters(), fixed_point.speed, rod.grip());
+    let design = model.design(WEIGHTS.0, WEIGHTS.1).ok()?;
+    let upper = model.closed_loop(design.gain, true)?.margin?.upper?;
+    let gain = design.gain.map(|gain| factor(upper) * gain);
+    let values: Vec<_> = body.iter().copied().chain(FEEDBACK.into_iter().zip(gain)).collect();
+    Some((scene(&values), upper))
+}
+
+fn feedback_loss(scene: &Scene) -> Loss {
+    let ends = ends(scene);
+    let mut ends = ends.into_iter().filter(|loss| loss.end == End::FeedbackFactor);
+    ends.next().expect("an end of the feedback")
+}
+
+#[test]
+fn a_law_just_beyond_its_margin_settles_on_the_swing_that_it_says() {
+    let body = [
+        (Name::ContactDistance, 0.4 / 3.0),
+        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
+        (Name::Height, 0.2),
+        (Name::Theta, 0.05),
+    ];
+    for (beyond, tolerance) in [(1.001, 0.1), (1.0001, 0.02)] {
+        let (scene, _) = steered(&body, |upper| beyond * upper).unwrap();
+        let loss = feedback_loss(&scene);
+        assert!(loss.is_soft() && (loss.value - 1.0 / beyond).abs() < 1e-9, "{loss:?}");
+        let Some(Settles::Swing(swing)) = loss.settles else { panic!("{loss:?}") };
+        let mut largest: f64 = 0.0;
+        let ending = run(&mut scene.orbit().unwrap(), 200_000, |contact| {
+            if contact.n > 190_000 {
+                largest = largest.max(contact.state.theta.abs());
+            }
+            true
+        });
+        assert_eq!(ending, Some(Ending::Completed));
+        assert!((largest / swing - 1.0).abs() < tolerance, "{beyond}: {swing}, in a run {largest}");
+        if beyond == 1.001 {
+            assert!((largest - 0.125).abs() < 1e-3, "{largest}");
+        }
+    }
+}
+
+#[test]
+fn soft_and_hard_laws_do_what_they_are_called() {
+    let mut random = Random(3);
+    let (mut soft, mut hard) = (0, 0);
+    for _ in 0..60 {
+        let length = random.between(0.05, 0.5);
+        let body = [
+            (Name::ContactDistance, length),
+            (Name::RadiusOfGyration, length * random.between(0.3, 1.2)),
+            (Name::Height, length * random.between(1.2, 3.0)),
+            (Name::Theta, random.size(5e-4, 2e-3)),
+        ];
+        let Some((scene, _)) = steered(&body, |upper| 1.0002 * upper) else { continue };
+        let loss = feedback_loss(&scene);
+        let mut largest: f64 = 0.0;
+        let ending = run(&mut scene.orbit().unwrap(), 300_000, |contact| {
+            if contact.n > 290_000 {
+                largest = largest.max(contact.state.theta.abs());
+            }
+            true
+        })
+        .unwrap();
+        match loss.settles {
+            Some(Settles::Swing(swing)) if swing < 0.1 => {
+                soft += 1;
+                assert_eq!(ending, Ending::Completed, "{body:?} {loss:?}");
+                assert!((largest / swing - 1.0).abs() < 0.1, "{body:?}: {loss:?}, in a run {largest}");
+            }
+            Some(_) => {}
+            None => {
+                hard += 1;
+                // Nothing small holds it: it falls, or ends far away.
+                assert!(
+                    !loss.is_soft() && (ending != Ending::Completed || largest > 0.2),
+                    "{body:?} {loss:?} {largest}"
+                );
+            }
+        }
+    }
+    assert!(soft > 5, "{soft} soft, {hard} hard");
+}
+
+#[test]
+fn the_margins_of_a_stable_law_have_both_their_ends() {
+    let body = [(Name::ContactDistance, 0.2), (Name::RadiusOfGyration, 0.12), (Name::Height, 0.3), (Name::Theta, 0.01)];
+    let (scene, upper) = steered(&body, |_| 1.0).unwrap();
+    let ends: Vec<_> = ends(&scene).into_iter().filter(|loss| loss.end == End::FeedbackFactor).collect();
+    assert_eq!(ends.len(), 2);
+    assert!(ends[0].value < 1.0 && (ends[1].value - upper).abs() < 1e-9 * upper);
+    assert!(ends.iter().all(|loss| loss.settles.is_none()));
+}
+
+#[test]
+fn beyond_its_upper_end_the_energy_gain_flips_to_two_heights() {
+    let mut random = Random(17);
+    for _ in 0..40 {
+        let mut values = random_values(&mut random, false);
+        let upper = {
+            let scene = scene(&values);
+            scene.linear(&scene.fixed_point().unwrap()).upper_energy_gain
+        };
+        // At the end itself the coefficient is that of the map.
+        values[4].1 = upper;
+        let at = scene(&values);
+        let fixed_point = at.fixed_point().unwrap();
+        let from_map = Bounce::of(&at, &fixed_point).unwrap();
+        let loss = ends(&at).into_iter().find(|loss| loss.end == End::EnergyGain).unwrap();
+        assert_eq!((loss.bifurcation, loss.kind()), (Bifurcation::PeriodDoubling, "soft"));
+        assert!((from_map.height_eigenvalue() + 1.0).abs() < 1e-12);
+        assert!((from_map.height_flip() / loss.coefficient - 1.0).abs() < 1e-12);
+        values[4].1 = upper * random.between(1.005, 1.05);
+        values[6].1 += 1e-3 * values[0].1;
+        let beyond = scene(&values);
+        let rod = beyond.parameters::<f64>();
+        let loss = ends(&beyond).into_iter().find(|loss| loss.end == End::EnergyGain).unwrap();
+        let Some(Settles::Heights { heights, .. }) = loss.settles else { panic!("{loss:?}") };
+        let mut last = [0.0; 2];
+        let ending = run(&mut beyond.orbit().unwrap(), 20_000, |contact| {
+            let height = rod.contact_distance + contact.state.y_dot.powi(2) / (2.0 * rod.gravity);
+            last = [last[1], height];
+            true
+        });
+        assert_eq!(ending, Some(Ending::Completed));
+        last.sort_by(f64::total_cmp);
+        for (run, said) in last.iter().zip(heights) {
+            assert!((run / said - 1.0).abs() < 1e-9, "{last:?} and {heights:?}");
+        }
+    }
+}
+
+#[test]
+fn the_angle_on_two_heights_is_judged_over_both() {
+    let at = |tilt_gain: f64, theta: f64| {
+        paper(&[
+            (Name::EnergyGain, 0.785),
+            (Name::TargetHeight, 0.2),
+            (Name::TiltGain, tilt_gain),
+            (Name::Theta, theta),
+            (Name::Height, 0.21),
+        ])
+    };
+    let bounded = |tilt_gain: f64| match ends(&at(tilt_gain, 0.0)).into_iter().find(|loss| loss.end == End::EnergyGain)
+    {
+        Some(Loss { settles: Some(Settles::Heights { angle_bounded, .. }), .. }) => angle_bounded,
+        other => panic!("{other:?}"),
+    };
+    let survives = |tilt_gain: f64| {
+        run(&mut at(tilt_gain, 1e-6).orbit().unwrap(), 3_000, |contact| contact.state.theta.abs() < 1e-2)
+            == Some(Ending::Completed)
+    };
+    for tilt_gain in [0.99, 1.05, 1.1, 1.3, 1.6] {
+        assert_eq!(bounded(tilt_gain), survives(tilt_gain), "κ = {tilt_gain}");
+    }
+}
+
+#[test]
+fn the_odd_derivative_is_that_of_the_jacobian() {
+    let mut random = Random(23);
+    for slide in ["none", "matched"] {
+        for _ in 0..20 {
+            let mut values = random_values(&mut random, slide == "matched");
+            if slide == "matched" {
+                values.push((Name::Friction, 0.4));
+            }
+            let scene = scene_on(slide, &values);
+            let fixed_point = scene.fixed_point().unwrap();
+            let state =
+                equipoise_physics::impact::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
+            let whole = jacobian_at(&scene.model(), 0.0, &state, 1).unwrap().matrix;
+            let odd = Bounce::of(&scene, &fixed_point).unwrap().odd_derivative();
+            for (row, &r) in [0, 1, 3].iter().enumerate() {
+                for (column, &c) in [0, 1, 3].iter().enumerate() {
+                    assert!((odd[(row, column)] - whole[(r, c)]).abs() < 1e-12 * (1.0 + whole[(r, c)].abs()));
+                }
+            }
+        }
+    }
+}
