@@ -55,3 +55,56 @@ async fn what_has_no_answer_is_refused_with_its_reason() {
         assert!(answer.json()["detail"].as_str().unwrap().contains(part), "{query}: {}", answer.json());
     }
 }
+
+#[tokio::test]
+async fn with_energy_feedback_the_symmetric_orbit_is_the_one_asked_for_or_none() {
+    let server = Server::start();
+    let ask = |theta: f64| {
+        format!(
+            "/v1/periodic-orbits?preset=case-1&scene.table.tilt_gain=1.4&scene.table.energy_gain=0.2&scene.table.target_height=0.2\
+             &family=symmetric&theta={theta}"
+        )
+    };
+    for theta in [0.05, 0.2, -0.4, 0.9] {
+        let refused = server.get(&ask(theta)).await.expect(422);
+        assert_eq!(refused.pointers(), ["/theta"]);
+        assert!(refused.json()["detail"].as_str().unwrap().contains("target height"), "{}", refused.json());
+    }
+    // The error names the angle that there is, either way.
+    let refused = server.get(&ask(0.05)).await.expect(422).json();
+    let detail = refused["detail"].as_str().unwrap();
+    let named = detail.split("through theta ").nth(1).and_then(|rest| rest.split(' ').next()).expect(detail);
+    for theta in [named.parse::<f64>().unwrap(), -named.parse::<f64>().unwrap()] {
+        let orbit = server.get(&ask(theta)).await.expect(200).json();
+        assert!((orbit["states"]["theta"][0].as_f64().unwrap() - theta).abs() < 1e-6, "{}", orbit["states"]);
+        assert_eq!(orbit["least_period"], 2);
+    }
+}
+
+#[tokio::test]
+async fn eigenvalues_are_those_that_jacobians_gives_at_the_same_state() {
+    let server = Server::start();
+    let scene = "preset=case-1&scene.table.tilt_gain=1.24&scene.table.energy_gain=0.2&scene.table.target_height=0.2";
+    let orbit = server
+        .get(&format!(
+            "/v1/periodic-orbits?{scene}&period=4&guess.theta=0.2&guess.x_dot=0&guess.theta_dot=0&guess.y_dot=-1.1"
+        ))
+        .await
+        .expect(200)
+        .json();
+    let state = |name: &str| orbit["states"][name][0].as_f64().unwrap();
+    let [theta, x_dot, y_dot, theta_dot] = ["theta", "x_dot", "y_dot", "theta_dot"].map(state);
+    let jacobian = server
+        .get(&format!(
+            "/v1/jacobians?{scene}&period=4&at.state.theta={theta}&at.state.x_dot={x_dot}&at.state.y_dot={y_dot}&at.state.theta_dot={theta_dot}"
+        ))
+        .await
+        .expect(200)
+        .json();
+    for n in 0..4 {
+        for part in ["re", "im"] {
+            let [one, other] = [&orbit, &jacobian].map(|answer| answer["eigenvalues"][n][part].as_f64().unwrap());
+            assert!((one - other).abs() < 1e-8, "{n}: {one} and {other}");
+        }
+    }
+}

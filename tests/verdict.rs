@@ -184,7 +184,7 @@ async fn a_soft_loss_of_stability_is_told_from_a_hard_one() {
     let answer = verdict(&format!("{gains}&scene.table.tilt_gain=null&scene.release.theta=0.05&impacts=20000")).await;
     assert_eq!(answer["verdict"], "bounded beyond the boundary, 20000 bounces survived", "{}", answer["reason"]);
     let end = end(&answer, "table.feedback");
-    assert_eq!((&end["kind"], &end["bifurcation"]), (&"soft".into(), &"neimark_sacker".into()));
+    assert_eq!((&end["kind"], &end["bifurcation"]), (&"soft".into(), &"period_doubling".into()));
     assert!((end["swing"].as_f64().unwrap() - 0.125).abs() < 0.01, "{end}");
     assert!((number(&answer, "/nonlinear/max_theta") - 0.125).abs() < 0.02);
 }

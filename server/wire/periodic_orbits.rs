@@ -3,6 +3,7 @@
 use equipoise_physics::periodic_orbits::branch::{Branch, Point, Start, Sweep, follow};
 use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
 use equipoise_physics::scene::{Field, Kind, Name, Scene, Value, field};
+use nalgebra::Complex;
 use serde::{Serialize, Serializer};
 
 use super::jacobian::{Eigenvalue, read_state};
@@ -205,9 +206,18 @@ impl<'a> PeriodicOrbits<'a> {
         };
         let orbit = match &branch {
             Some(branch) => branch.points[branch.start].orbit.clone(),
-            None => one(&setting, period, request.start, &mut notes).map_err(refuse)?,
+            None => one(scene, &setting, period, request.start, &mut notes).map_err(refuse)?,
         };
-        notes.push("one eigenvalue is 1 by the drift, and one more by the energy where no feedback sets it".to_owned());
+        notes.push(
+            if setting.energy.is_some() {
+                "one eigenvalue is 1 by the drift, and one more by the energy, which nothing sets"
+            } else if orbit.multipliers.eigenvalues.contains(&Complex::new(1.0, 0.0)) {
+                "one eigenvalue is 1 by the drift"
+            } else {
+                "with energy feedback no eigenvalue of this orbit is 1: neither its energy nor its drift is free"
+            }
+            .to_owned(),
+        );
         if orbit.least_period < period {
             notes.push(format!("this orbit repeats after {} contacts already", orbit.least_period));
         }
@@ -294,7 +304,13 @@ impl<'a> PeriodicOrbits<'a> {
 }
 
 /// The orbit of the scene itself.
-fn one(setting: &Setting, period: usize, start: Start, notes: &mut Vec<String>) -> Result<PeriodicOrbit, Failure> {
+fn one(
+    scene: &Scene,
+    setting: &Setting,
+    period: usize,
+    start: Start,
+    notes: &mut Vec<String>,
+) -> Result<PeriodicOrbit, Failure> {
     match start {
         Start::Upright => find(setting, period, &setting.upright()),
         Start::Near(state) => find(setting, period, &state),
@@ -303,6 +319,9 @@ fn one(setting: &Setting, period: usize, start: Start, notes: &mut Vec<String>) 
                 let kappa = setting.rod.tilt_gain;
                 Failure::Scene(format!("no mirror-symmetric orbit passes theta {theta} rad at tilt_gain {kappa}"))
             })?;
+            if setting.energy.is_none() {
+                has_target_height(scene, theta)?;
+            }
             let own = Setting { energy: setting.energy.map(|_| setting.rod.energy(&state)), ..*setting };
             if setting.energy.is_some() {
                 notes.push("the energy is that of the symmetric orbit through theta, not of the release".to_owned());
@@ -310,6 +329,24 @@ fn one(setting: &Setting, period: usize, start: Start, notes: &mut Vec<String>) 
             find(&own, period, &state)
         }
     }
+}
+
+/// Angle, rad, up to which a symmetric orbit is the one that was asked for.
+const SAME_THETA: f64 = 1e-6;
+
+/// Checks that with energy feedback the symmetric orbit through an angle is the one of the scene's target height.
+fn has_target_height(scene: &Scene, theta: f64) -> Result<(), Failure> {
+    let found = scene.fixed_point().ok().and_then(|fixed_point| scene.period_two(&fixed_point));
+    if found.is_some_and(|found| (found - theta.abs()).abs() <= SAME_THETA) {
+        return Ok(());
+    }
+    let kappa = scene.number(Name::TiltGain).unwrap_or_default();
+    let there =
+        found.map_or_else(|| "there is none".to_owned(), |found| format!("that is the one through theta {found} rad"));
+    Err(Failure::Scene(format!(
+        "theta is {theta} rad; with energy_gain a symmetric orbit must have the target height, and at tilt_gain {kappa} {there}: give \
+         that angle, or sweep a parameter"
+    )))
 }
 
 fn number(name: &'static str, unit: &'static str, cells: impl Iterator<Item = f64>) -> Column {

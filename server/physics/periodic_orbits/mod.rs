@@ -17,7 +17,7 @@ use crate::map::{Ending, Orbit, Rules};
 use crate::model::Model;
 use crate::scene::Scene;
 use closed::{Course, Plane, Solution, correct};
-use multipliers::Multipliers;
+use multipliers::{Known, Multipliers};
 use nalgebra::SVector;
 
 /// What an orbit is sought in: a rod and what closes the equations.
@@ -156,7 +156,8 @@ impl PeriodicOrbit {
         };
         let repeats = |shift: usize| (0..period).all(|n| far(&states[n], &states[(n + shift) % period]) < SAME);
         let least_period = (1..=period).find(|&n| period.is_multiple_of(n) && repeats(n)).unwrap_or(period);
-        let multipliers = Multipliers::new(&closed.product(), setting.energy.is_none())
+        let known = if setting.energy.is_some() { Known::EnergyAndDrift } else { Known::Drift };
+        let multipliers = Multipliers::new(&closed.product(), known)
             .ok_or_else(|| Failure::Scene("the eigenvalues of this orbit are beyond double precision".to_owned()))?;
         let orbit = Self {
             least_period,

@@ -1,11 +1,24 @@
-//! What the derivative over a period says: eigenvalues, Greene's residue, and whether small deviations stay small.
+//! The derivative over a period, judged: eigenvalues, Greene's residue, and whether small deviations stay small.
 //!
-//! One eigenvalue is 1 by the drift, and one more by the energy where nothing steers it. They make the matrix defective,
-//! so the others come from the characteristic polynomial with those factors divided out, never from an iteration on it.
+//! Where nothing steers the energy, one eigenvalue is 1 by the energy and one by the drift. With energy feedback the one of the
+//! drift is 1 at the upright bounce and at mirror-symmetric orbits of period 2, and not at others. Such eigenvalues make the matrix
+//! defective, so the others come from the characteristic polynomial with those factors divided out, never from an iteration on it.
 
 use crate::jacobian::{modulus, sort_eigenvalues};
 use crate::stability::PARABOLIC;
-use nalgebra::{Complex, Matrix3, Matrix4};
+use nalgebra::{Complex, Matrix3, Matrix4, Schur};
+
+/// det(I − M) up to which an eigenvalue of M is 1, for an M of entries about 1.
+const ONE: f64 = 1e-11;
+
+/// The eigenvalues of an orbit that are 1 for a reason known beforehand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Known {
+    /// One of the energy and one of the drift: nothing steers the energy.
+    EnergyAndDrift,
+    /// None but that of the drift, if it is 1: energy feedback.
+    Drift,
+}
 
 /// The verdict on an orbit.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,41 +34,63 @@ pub struct Multipliers {
 }
 
 impl Multipliers {
-    /// Of the derivative over a period; `steered` where feedback sets the energy.
-    pub(super) fn new(product: &Matrix4<f64>, steered: bool) -> Option<Self> {
+    /// Of the derivative over a period.
+    pub(super) fn new(product: &Matrix4<f64>, known: Known) -> Option<Self> {
         let trace = product.trace();
         let second = 0.5 * (trace * trace - (product * product).trace());
         // What rounding does to the coefficients grows with the entries.
         let slack = 1e-8 + 1e-14 * product.norm_squared();
-        if steered {
-            // (λ − 1)(λ³ − aλ² + bλ − c)
-            let a = trace - 1.0;
-            let b = second - a;
-            let c = product.determinant();
-            let companion = Matrix3::new(a, -b, c, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
-            let schur = nalgebra::Schur::try_new(companion, f64::EPSILON, 10_000)?;
-            let roots: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
-            let tests = [1.0 - a + b - c, 1.0 + a + b + c, 1.0 - b + c * (a - c)];
-            Some(Self::judge(roots.clone(), 0.25 * (2.0 - pair(&roots).re), tests, c.abs() < 1.0, slack))
-        } else {
-            // (λ − 1)²(λ² − aλ + b)
-            let a = trace - 2.0;
-            let b = second - 2.0 * a - 1.0;
-            let half = 0.5 * a;
-            let under = half * half - b;
-            let roots = if under < 0.0 {
-                let height = (-under).sqrt();
-                vec![Complex::new(half, height), Complex::new(half, -height)]
-            } else {
-                let large = half + if half < 0.0 { -under.sqrt() } else { under.sqrt() };
-                let small = if large == 0.0 { 0.0 } else { b / large };
-                vec![Complex::new(large, 0.0), Complex::new(small, 0.0)]
-            };
-            let mut all = roots;
-            all.push(Complex::new(1.0, 0.0));
-            Some(Self::judge(all, 0.25 * (2.0 - a), [1.0 - a + b, 1.0 + a + b, 1.0 - b], true, slack))
-        }
-        .filter(|found| found.residue.is_finite())
+        let found = match known {
+            Known::Drift if !has_one(product) => Self::of_all(product, slack)?,
+            Known::Drift => {
+                // (λ − 1)(λ³ − aλ² + bλ − c)
+                let a = trace - 1.0;
+                let b = second - a;
+                let c = product.determinant();
+                let companion = Matrix3::new(a, -b, c, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+                let schur = Schur::try_new(companion, f64::EPSILON, 10_000)?;
+                let roots: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
+                let tests = [1.0 - a + b - c, 1.0 + a + b + c, 1.0 - b + c * (a - c)];
+                Self::judge(roots.clone(), 0.25 * (2.0 - pair(&roots).re), tests, c.abs() < 1.0, slack)
+            }
+            Known::EnergyAndDrift => {
+                // (λ − 1)²(λ² − aλ + b)
+                let a = trace - 2.0;
+                let b = second - 2.0 * a - 1.0;
+                let half = 0.5 * a;
+                let under = half * half - b;
+                let roots = if under < 0.0 {
+                    let height = (-under).sqrt();
+                    vec![Complex::new(half, height), Complex::new(half, -height)]
+                } else {
+                    let large = half + if half < 0.0 { -under.sqrt() } else { under.sqrt() };
+                    let small = if large == 0.0 { 0.0 } else { b / large };
+                    vec![Complex::new(large, 0.0), Complex::new(small, 0.0)]
+                };
+                let mut all = roots;
+                all.push(Complex::new(1.0, 0.0));
+                Self::judge(all, 0.25 * (2.0 - a), [1.0 - a + b, 1.0 + a + b, 1.0 - b], true, slack)
+            }
+        };
+        found.residue.is_finite().then_some(found)
+    }
+
+    /// Of a derivative of which no eigenvalue is known.
+    fn of_all(product: &Matrix4<f64>, slack: f64) -> Option<Self> {
+        let schur = Schur::try_new(*product, f64::EPSILON, 10_000)?;
+        let mut eigenvalues: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
+        sort_eigenvalues(&mut eigenvalues);
+        let one = Complex::new(1.0, 0.0);
+        let distances =
+            |from: Complex<f64>| eigenvalues.iter().map(move |value| from - value).product::<Complex<f64>>();
+        let circle: Complex<f64> = pairs(4).map(|(i, j)| one - eigenvalues[i] * eigenvalues[j]).product();
+        // det(I + M) is the product of all −1 − λ: four signs.
+        let tests = [distances(one).re, distances(-one).re, circle.re];
+        let inside = eigenvalues.iter().all(|value| modulus(*value) <= 1.0 + slack);
+        let at = |place: f64| eigenvalues.iter().any(|value| modulus(*value - Complex::new(place, 0.0)) <= PARABOLIC);
+        let stable = (!at(1.0) && !at(-1.0)).then_some(inside);
+        let residue = 0.25 * (2.0 - pair(&eigenvalues).re);
+        Some(Self { eigenvalues, residue, stable, tests })
     }
 
     fn judge(roots: Vec<Complex<f64>>, residue: f64, tests: [f64; 3], contracts: bool, slack: f64) -> Self {
@@ -74,6 +109,12 @@ impl Multipliers {
     }
 }
 
+/// Whether an eigenvalue is 1 but for rounding.
+fn has_one(product: &Matrix4<f64>) -> bool {
+    let distance = (Matrix4::identity() - product).determinant();
+    distance.abs() <= ONE * (1.0 + product.norm_squared())
+}
+
 /// λ + λ' of the pair that belongs to the angle: the complex one, or that whose product is nearest to 1, as it is exactly
 /// where the orbit is its own reverse.
 fn pair(roots: &[Complex<f64>]) -> Complex<f64> {
@@ -81,7 +122,11 @@ fn pair(roots: &[Complex<f64>]) -> Complex<f64> {
         let complex = roots[one].im != 0.0 && roots[other].im == -roots[one].im;
         if complex { -1.0 } else { modulus(roots[one] * roots[other] - Complex::new(1.0, 0.0)) }
     };
-    let (one, other) =
-        [(0, 1), (0, 2), (1, 2)].into_iter().min_by(|x, y| away(x.0, x.1).total_cmp(&away(y.0, y.1))).unwrap_or((0, 1));
+    let (one, other) = pairs(roots.len()).min_by(|x, y| away(x.0, x.1).total_cmp(&away(y.0, y.1))).unwrap_or((0, 1));
     roots[one] + roots[other]
+}
+
+/// Every pair of places below `count`, the first before the second.
+fn pairs(count: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..count).flat_map(move |one| (one + 1..count).map(move |other| (one, other)))
 }

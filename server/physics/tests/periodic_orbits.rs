@@ -3,10 +3,13 @@
 mod paper;
 
 use equipoise_physics::impact::State;
+use equipoise_physics::jacobian::{eigenvalues, jacobian};
 use equipoise_physics::map::Orbit;
+use equipoise_physics::model::Model;
 use equipoise_physics::periodic_orbits::branch::{Branch, Kind, Start, Sweep, follow};
 use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use nalgebra::Complex;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
     let mut draft = Draft::default();
@@ -222,4 +225,45 @@ fn a_body_at_rest_is_no_orbit() {
     };
     let found = find(&Setting::of(&scene).unwrap(), 2, &guess);
     assert!(matches!(found, Err(Failure::AtRest { .. })), "{found:?}");
+}
+
+/// The largest difference between the eigenvalues of an orbit and those of the derivative over its period.
+fn off_the_jacobian(setting: &Setting, orbit: &PeriodicOrbit) -> f64 {
+    let matrix = jacobian(&Model::Rod(setting.rod), &orbit.states[0], orbit.states.len() as u64).unwrap().matrix;
+    let mut expected = eigenvalues(&matrix).unwrap();
+    let mut largest: f64 = 0.0;
+    for found in &orbit.multipliers.eigenvalues {
+        let away = |value: &Complex<f64>| (value - found).norm();
+        let (place, _) =
+            expected.iter().enumerate().min_by(|one, other| away(one.1).total_cmp(&away(other.1))).unwrap();
+        largest = largest.max(away(&expected.swap_remove(place)) / found.norm().max(1.0));
+    }
+    largest
+}
+
+#[test]
+fn with_energy_feedback_eigenvalues_are_those_of_the_derivative() {
+    let scene = scene(&[(Name::TiltGain, 1.24), (Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2)]);
+    let setting = Setting::of(&scene).unwrap();
+    let orbit = find(&setting, 4, &State { theta: 0.2, x_dot: 0.0, y_dot: -1.1, theta_dot: 0.0 }).unwrap();
+    assert!(off_the_jacobian(&setting, &orbit) < 1e-8, "{:?}", orbit.multipliers);
+    // No eigenvalue is 1, which was imposed once.
+    let one = Complex::new(1.0, 0.0);
+    let nearest = orbit.multipliers.eigenvalues.iter().map(|value| (value - one).norm()).fold(f64::INFINITY, f64::min);
+    assert!((nearest - 0.0019).abs() < 1e-4, "{:?}", orbit.multipliers);
+    // Other orbits along a branch, and the upright bounce, whose drift has the eigenvalue 1.
+    let branch = tilt(&scene, 2, Start::Symmetric(0.1), 1.2, 1.6, 40).unwrap();
+    assert!(branch.points.len() > 10);
+    for point in branch.points.iter().filter(|point| point.change.is_none()) {
+        let setting = Setting::of(&self::scene(&[
+            (Name::TiltGain, point.parameter),
+            (Name::EnergyGain, 0.2),
+            (Name::TargetHeight, 0.2),
+        ]))
+        .unwrap();
+        let off = off_the_jacobian(&setting, &point.orbit);
+        assert!(off < 1e-6, "{}: {off} {:?}", point.parameter, point.orbit.multipliers);
+    }
+    let upright = find(&setting, 1, &setting.upright()).unwrap();
+    assert!(upright.multipliers.eigenvalues.contains(&one) && off_the_jacobian(&setting, &upright) < 1e-12);
 }
