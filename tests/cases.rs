@@ -193,3 +193,136 @@ async fn friction_is_named_where_it_acts_and_refused_where_nothing_is_derived() 
         assert!(answer.text().contains("not available with friction"), "{target}: {}", answer.text());
     }
 }
+
+/// What `/v1/scenes` prints and computes of a quantity, and the scene it is computed from.
+async fn quoted(server: &Server, name: &str, quantity: &str) -> (Option<f64>, f64, Value) {
+    let preset = server.get(&format!("/v1/scenes/{name}")).await.json();
+    let all = preset["computed"].as_array().unwrap();
+    let index = all.iter().position(|it| it["quantity"] == quantity).unwrap_or_else(|| panic!("{name}: {quantity}"));
+    let changes = all[index].get("with").cloned().unwrap_or(json!({}));
+    (preset["printed"][index]["value"].as_f64(), all[index]["value"].as_f64().unwrap(), changes)
+}
+
+fn column(run: &Value, name: &str) -> Vec<f64> {
+    run["impacts"][name].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
+}
+
+fn near(value: f64, expected: f64, tolerance: f64) {
+    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
+}
+
+/// Formulas as the paper prints them, evaluated, against what holds by other resources.
+#[tokio::test]
+async fn formulas_of_the_paper_stand_beside_what_holds() {
+    let server = Server::start();
+    let (l, gravity) = (0.4 / 3.0, 9.81_f64);
+    let squared = 2.0 * gravity * (0.2 - l);
+    let weight = gravity * 2.0 / 225.0;
+
+    let (printed, computed, _) = quoted(&server, "case-1", "fixed_point.y_dot").await;
+    near(printed.unwrap(), -(2.0 * gravity * (0.2 - l * 0.3_f64.cos())).sqrt(), 5e-5);
+    near(computed, -squared.sqrt(), 1e-12);
+
+    // Eq. (15): the imaginary part with 2ẏ*²l before the roots, and with 2ẏ*√l.
+    let (printed, computed, _) = quoted(&server, "case-1", "angle_eigenvalue.im").await;
+    let roots = 0.1_f64.sqrt() * (weight - 0.1 * squared * l).sqrt() / weight;
+    near(printed.unwrap(), 2.0 * squared * l * roots, 5e-5);
+    near(computed, 2.0 * (squared * l).sqrt() * roots, 1e-12);
+    near(0.6_f64.hypot(computed), 1.0, 1e-12);
+
+    let (printed, computed, _) = quoted(&server, "case-1", "jacobian.determinant").await;
+    let run = server.get("/v1/trajectories?preset=case-1&impacts=2").await.json();
+    // −ẏ_c⁺ of the first strike over ẏ_c⁻ of the next; over the flight ẏ_c = ẏ + lθ̇ sin θ, and ẏ falls by Gτ.
+    let at = |name: &str, n: usize| run["impacts"][name][n].as_f64().unwrap();
+    let rise = at("y_dot", 1) + gravity * at("flight_time", 0) + l * at("theta_dot", 1) * at("theta", 0).sin();
+    near(computed, -rise / at("contact_speed", 1), 1e-12);
+    near(printed.unwrap(), 1.0, 0.0);
+    assert!((computed - 1.0).abs() > 1e-4, "{computed}");
+
+    // Eq. (38): two bounces from V₄ = (1, 0, 0, 0), with the matrix of another resource.
+    let (printed, computed, _) = quoted(&server, "critical-soft", "angle_eigenvector.second").await;
+    let matrix = server.get("/v1/jacobians?preset=critical-soft").await.json()["matrix"].clone();
+    let entry = |row: usize, column: usize| matrix[row][column].as_f64().unwrap();
+    let times = |vector: [f64; 4]| [0, 1, 2, 3].map(|row| (0..4).map(|k| entry(row, k) * vector[k]).sum::<f64>());
+    let once = times([1.0, 0.0, 0.0, 0.0]);
+    let twice = times(once);
+    near(twice[3] / once[3], computed, 1e-12);
+    near(printed.unwrap(), -computed, 1e-12);
+
+    let (printed, computed, _) = quoted(&server, "case-4", "energy_gain.eigenvalue").await;
+    near(printed.unwrap(), 1.0 - 0.165 / 1.653, 5e-3);
+    near(computed, 1.0 - 2.0 * 0.165 / 0.823_773_736_637_888_7, 1e-12);
+    let (printed, computed, _) = quoted(&server, "case-5", "gravity.in_plane").await;
+    assert!(printed.is_none());
+    near(computed, 6.937, 5e-4);
+    let (printed, computed, _) = quoted(&server, "case-2-figure", "release.theta_dot").await;
+    assert_eq!((printed, computed), (Some(0.1), 0.2));
+}
+
+/// What the paper saw in its simulations, against runs of the same scenes.
+#[tokio::test]
+async fn ranges_and_ends_of_the_paper_stand_beside_what_runs_do() {
+    let server = Server::start();
+    let lasts = async |preset: &str, changes: &str| {
+        let verdict = server.get(&format!("/v1/stability?preset={preset}&impacts=10000&{changes}")).await.json();
+        verdict["nonlinear"]["outcome"] == "completed"
+    };
+    let (printed, angle, _) = quoted(&server, "case-1", "theta.bounded").await;
+    assert_eq!((printed, angle), (Some(0.4), 0.33));
+    assert!(lasts("case-1", "scene.release.theta=0.33").await && !lasts("case-1", "scene.release.theta=0.34").await);
+    let (printed, angle, _) = quoted(&server, "critical-soft", "theta.bounded").await;
+    assert_eq!((printed, angle), (Some(0.15), 0.11));
+    assert!(lasts("critical-soft", "scene.release.theta=0.1").await);
+    assert!(!lasts("critical-soft", "scene.release.theta=0.15").await);
+    let (printed, gain, changes) = quoted(&server, "critical-soft", "tilt_gain.bounded").await;
+    assert_eq!((printed, &changes), (Some(1.5), &json!({"release": {"theta": 0.15}})));
+    near(gain, 1.47, 1e-12);
+    let from = "scene.release.theta=0.15&scene.table.tilt_gain";
+    assert!(lasts("case-1", &format!("{from}=1.47")).await && !lasts("case-1", &format!("{from}=1.48")).await);
+
+    // Case 4: η goes to its target, the energy does not.
+    let run = server.get("/v1/trajectories?preset=case-4&impacts=4000").await.json();
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (printed, energy, _) = quoted(&server, "case-4", "energy.settled").await;
+    near(energy, mean(&column(&run, "energy")[2000..]), 1e-9);
+    near(energy, 1.895, 5e-4);
+    assert!(energy > 1.09 * printed.unwrap());
+    let (printed, vertical, _) = quoted(&server, "case-4", "vertical_energy.settled").await;
+    near(vertical, 1.7275, 5e-5);
+    near(vertical, printed.unwrap(), 5e-3);
+
+    // Case 5: not like the lossless case.
+    let (printed, growth, _) = quoted(&server, "case-5", "theta.growth").await;
+    let run = server.get("/v1/trajectories?preset=case-5&impacts=30000").await.json();
+    let largest = |angles: &[f64]| angles.iter().fold(0.0, |most: f64, theta| most.max(theta.abs()));
+    let angles = column(&run, "theta");
+    near(growth, largest(&angles[29_000..]) / largest(&angles[..1000]), 1e-12);
+    near(largest(&angles[29_000..]), 0.3539, 5e-5);
+    assert_eq!(printed, Some(1.0));
+
+    // Friction: at the computed one a larger energy gain gives more contacts, a little above it none does.
+    let (_, friction, _) = quoted(&server, "case-4", "friction.helped").await;
+    near(friction, 0.029, 0.0);
+    let contacts = async |friction: f64, gain: f64| {
+        let changes = format!("scene.contact.friction={friction}&scene.table.energy_gain={gain}");
+        let run = server.get(&format!("/v1/trajectories?preset=case-4&impacts=100&{changes}")).await.json();
+        run["outcome"]["impacts"].as_u64().unwrap()
+    };
+    let gains = [0.25, 0.33, 0.41, 0.5, 0.58, 0.66, 0.74, 0.82];
+    let mut helped = [false; 4];
+    for (index, friction) in [0.02, 0.029, 0.05, 0.1].into_iter().enumerate() {
+        let before = contacts(friction, 0.165).await;
+        for gain in gains {
+            helped[index] |= contacts(friction, gain).await > before;
+        }
+    }
+    assert_eq!(helped, [true, true, false, false]);
+
+    let (printed, spin, changes) = quoted(&server, "still-lossy", "settled.theta_dot").await;
+    let body = json!({"preset": "still-lossy", "scene": changes, "impacts": 1000});
+    let run = server.post("/v1/trajectories", &body).await.json();
+    assert_eq!(run["outcome"]["kind"], "settled");
+    near(spin, *column(&run, "theta_dot").last().unwrap(), 0.0);
+    assert_eq!(printed, Some(0.0));
+    assert!(spin > 2.0, "{spin}");
+}

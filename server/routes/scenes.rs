@@ -8,7 +8,7 @@ use axum::routing::get;
 use serde::Serialize;
 
 use super::App;
-use crate::compute::Price;
+use crate::compute::{Cancel, Cancelled, Price};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::wire::fields::Fields;
 use crate::wire::presets;
@@ -24,34 +24,40 @@ pub fn routes() -> Router<App> {
 async fn scenes(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     #[derive(Serialize)]
     struct Scenes {
-        scenes: Vec<presets::Shown>,
+        scenes: Vec<&'static presets::Shown>,
     }
-    fixed(&app, &ask, "scenes", || Scenes {
-        scenes: presets::all().iter().filter_map(presets::Preset::shown).collect(),
+    let price = presets::all().iter().map(presets::Preset::price).sum();
+    fixed(&app, &ask, "scenes", price, |cancel| {
+        let go_on = || !cancel.is_set();
+        Some(Scenes { scenes: presets::all().iter().map(|preset| preset.shown(&go_on)).collect::<Option<_>>()? })
     })
     .await
 }
 
 async fn scene(State(app): State<App>, Path(name): Path<String>, ask: Ask) -> Result<Response<Body>, Problem> {
-    let Some(shown) = presets::find(&name).and_then(presets::Preset::shown) else {
+    let Some(preset) = presets::find(&name) else {
         let names = presets::names().join(", ");
         return Err(Problem::not_found(format!("there is no scene of this name; there are {names}")));
     };
-    fixed(&app, &ask, &format!("scenes/{name}"), || shown).await
+    let price = preset.price();
+    fixed(&app, &ask, &format!("scenes/{name}"), price, |cancel| preset.shown(&|| !cancel.is_set())).await
 }
 
 async fn fields(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
-    fixed(&app, &ask, "fields", Fields::all).await
+    fixed(&app, &ask, "fields", 0, |_| Some(Fields::all())).await
 }
 
-/// An answer that depends on nothing but the build.
+/// An answer that depends on nothing but the build; none where its client has gone.
 async fn fixed<T: Serialize>(
     app: &App,
     ask: &Ask,
     canonical: &str,
-    answer: impl FnOnce() -> T + Send + 'static,
+    price: u64,
+    answer: impl FnOnce(&Cancel) -> Option<T> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
     const RESOURCE: Resource = Resource { name: "fixed", formats: &[Format::Json] };
     ask.read(|_| Some(()))?;
-    ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), Price::bounces(0), move |_, _| super::json(&answer())).await
+    let price = Price::bounces(price);
+    let compute = move |_, cancel: &Cancel| super::json(&answer(cancel).ok_or(Cancelled)?);
+    ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), price, compute).await
 }

@@ -100,8 +100,8 @@ impl Evidence {
             Some(rotation) => {
                 if rotation.measured.is_none() {
                     notes.push(format!(
-                        "rotation_number.measured is null: the run stands at the fixed point or lasted {watched} impacts, fewer \
-                         than about {FEWEST}"
+                        "rotation_number.measured is null: it takes {FEWEST} turns aside from the fixed point, and {watched} impacts \
+                         were watched"
                     ));
                 }
                 for order in [3, 4] {

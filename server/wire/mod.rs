@@ -13,6 +13,7 @@ pub mod ladder;
 pub mod margins;
 pub mod nearest_vertex;
 pub mod outcome;
+mod paper;
 pub mod periodic_orbits;
 pub mod precision;
 pub mod presets;

@@ -1,11 +1,12 @@
 //! The scenes that everybody starts from: the paper's cases and those beside them, with what the paper prints and what
 //! holds.
 
-use equipoise_physics::scene::{Draft, Scene};
+use equipoise_physics::scene::Draft;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
+use super::paper::Quantity;
 use super::scene::{self, Resolved};
 use crate::http::{Errors, Source};
 
@@ -23,6 +24,9 @@ pub struct Preset {
     scene: Value,
     #[serde(default)]
     printed: Vec<Printed>,
+    /// As answered, once somebody has asked for it.
+    #[serde(skip)]
+    shown: OnceLock<Shown>,
 }
 
 /// A number as the paper prints it, and why it is another where it is.
@@ -30,27 +34,14 @@ pub struct Preset {
 #[serde(deny_unknown_fields)]
 struct Printed {
     quantity: Quantity,
-    value: f64,
+    /// None where the paper leaves it out.
+    value: Option<f64>,
     r#where: String,
     #[serde(default)]
     why: Option<String>,
-}
-
-/// What printed and computed values are of.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-enum Quantity {
-    #[serde(rename = "tilt_gain.critical")]
-    CriticalTiltGain,
-    #[serde(rename = "fixed_point.y_dot")]
-    FixedPointSpeed,
-    #[serde(rename = "energy_gain.upper")]
-    UpperEnergyGain,
-    #[serde(rename = "energy.target")]
-    TargetEnergy,
-    #[serde(rename = "body.radius_of_gyration")]
-    RadiusOfGyration,
-    #[serde(rename = "angle_eigenvalue.critical")]
-    CriticalEigenvalue,
+    /// What of the scene is changed for the computed value.
+    #[serde(default)]
+    with: Option<Value>,
 }
 
 /// A number of a preset, printed or computed.
@@ -59,10 +50,12 @@ pub struct Quoted {
     quantity: Quantity,
     symbol: &'static str,
     unit: &'static str,
-    value: f64,
+    value: Option<f64>,
     r#where: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     why: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with: Option<Value>,
 }
 
 /// A preset as it is answered.
@@ -100,64 +93,48 @@ impl Preset {
         draft
     }
 
-    /// Itself with its scene resolved and the printed values beside those that hold. None for a scene that does not build,
-    /// of which there is none.
-    pub fn shown(&self) -> Option<Shown> {
+    /// Itself with its scene resolved and the printed values beside those that hold, some of which are of runs: computed once. None
+    /// where `go_on` says no before it is.
+    pub fn shown(&self, go_on: &dyn Fn() -> bool) -> Option<&Shown> {
+        if self.shown.get().is_none() {
+            let shown = self.compute(go_on).filter(|_| go_on())?;
+            // Another thread that was faster has set the same.
+            let _ = self.shown.set(shown);
+        }
+        self.shown.get()
+    }
+
+    /// What it costs to show, in bounces.
+    pub fn price(&self) -> u64 {
+        if self.shown.get().is_some() { 0 } else { self.printed.iter().map(|it| it.quantity.price()).sum() }
+    }
+
+    fn compute(&self, go_on: &dyn Fn() -> bool) -> Option<Shown> {
+        // A test builds every preset.
         let scene = self.draft().build().ok()?;
-        let quoted = |printed: &Printed, value, r#where, why| {
-            let (symbol, unit) = printed.quantity.symbol_and_unit();
-            Quoted { quantity: printed.quantity, symbol, unit, value, r#where, why }
-        };
         Some(Shown {
             name: self.name.clone(),
             title: self.title.clone(),
             shows: self.shows.clone(),
             scene: serde_json::to_value(Resolved(&scene)).ok()?,
-            printed: self.printed.iter().map(|it| quoted(it, it.value, it.r#where.clone(), None)).collect(),
-            computed: self
-                .printed
-                .iter()
-                .filter_map(|it| {
-                    let (value, source) = it.quantity.compute(&scene)?;
-                    Some(quoted(it, value, source.to_owned(), it.why.clone()))
-                })
-                .collect(),
+            printed: self.printed.iter().map(Printed::quoted).collect(),
+            computed: self.printed.iter().filter_map(|it| it.computed(self.draft(), go_on)).collect(),
         })
     }
 }
 
-impl Quantity {
-    fn symbol_and_unit(self) -> (&'static str, &'static str) {
-        match self {
-            Self::CriticalTiltGain => ("κ_c", "1"),
-            Self::FixedPointSpeed => ("ẏ*", "m/s"),
-            Self::UpperEnergyGain => ("κ_E,max", "s²/m²"),
-            Self::TargetEnergy => ("E", "m²/s²"),
-            Self::RadiusOfGyration => ("ρ", "m"),
-            Self::CriticalEigenvalue => ("λ at κ_c", "1"),
-        }
+impl Printed {
+    fn quoted(&self) -> Quoted {
+        let (symbol, unit) = self.quantity.symbol_and_unit();
+        let Self { quantity, value, .. } = *self;
+        Quoted { quantity, symbol, unit, value, r#where: self.r#where.clone(), why: None, with: None }
     }
 
-    fn compute(self, scene: &Scene) -> Option<(f64, &'static str)> {
-        let fixed_point = scene.fixed_point().ok()?;
-        let linear = scene.linear(&fixed_point);
-        Some(match self {
-            Self::CriticalTiltGain => {
-                (linear.critical_tilt_gain, "eq. (18), with V on the energy surface of the fixed point")
-            }
-            Self::FixedPointSpeed => (-fixed_point.speed, "the fixed point"),
-            Self::UpperEnergyGain => (linear.upper_energy_gain, "2/((1 + e)V²)"),
-            // E = ½V² + Gl = G y*, from the top of the bounce.
-            Self::TargetEnergy => (scene.gravity() * fixed_point.apex_height, "G y*"),
-            Self::RadiusOfGyration => match scene.outline() {
-                Some(outline) => (outline.radius_of_gyration(), "the vertices"),
-                None => {
-                    // Isosceles triangle of base b and height h: ρ² = b²/24 + h²/18.
-                    ((0.1_f64 * 0.1 / 24.0 + 0.2 * 0.2 / 18.0).sqrt(), "b²/24 + h²/18 = ρ², base 0.1 m, height 0.2 m")
-                }
-            },
-            Self::CriticalEigenvalue => (-1.0, "R = 1: period doubling, with one Jordan block"),
-        })
+    fn computed(&self, mut draft: Draft, go_on: &dyn Fn() -> bool) -> Option<Quoted> {
+        let scene = scene::apply(&mut draft, self.with.as_ref(), "", Source::Json, &mut Errors::default())?;
+        let (value, source) = self.quantity.compute(&scene, go_on)?;
+        let (value, r#where) = (Some(value), source.to_owned());
+        Some(Quoted { value, r#where, why: self.why.clone(), with: self.with.clone(), ..self.quoted() })
     }
 }
 
@@ -165,25 +142,50 @@ impl Quantity {
 mod tests {
     use super::*;
 
+    fn shown(preset: &Preset) -> &Shown {
+        preset.shown(&|| true).unwrap()
+    }
+
     #[test]
     fn every_preset_builds_and_computes_what_it_quotes() {
         for preset in all() {
             let mut errors = Errors::default();
             let built = scene::apply(&mut Draft::default(), Some(&preset.scene), "", Source::Json, &mut errors);
             assert!(built.is_some(), "{}: {errors:?}", preset.name);
-            let shown = preset.shown().unwrap();
+            let shown = shown(preset);
             assert_eq!(shown.printed.len(), shown.computed.len(), "{}", preset.name);
+            assert!(shown.computed.iter().all(|it| it.value.is_some_and(f64::is_finite)), "{}", preset.name);
         }
     }
 
     #[test]
     fn a_value_that_differs_from_the_printed_one_says_why() {
         for preset in all() {
-            let shown = preset.shown().unwrap();
+            let shown = shown(preset);
             for (printed, computed) in shown.printed.iter().zip(&shown.computed) {
-                let same = (printed.value - computed.value).abs() <= 0.004 * printed.value.abs();
+                let (Some(print), Some(value)) = (printed.value, computed.value) else {
+                    assert!(computed.why.is_some(), "{}: {printed:?} {computed:?}", preset.name);
+                    continue;
+                };
+                let same = (print - value).abs() <= 0.004 * print.abs();
                 assert!(same || computed.why.is_some(), "{}: {printed:?} {computed:?}", preset.name);
             }
         }
+    }
+
+    #[test]
+    fn whoever_leaves_ends_the_work_and_leaves_nothing_half_done() {
+        let preset = find("case-1").unwrap().clone();
+        let fresh = Preset { shown: OnceLock::new(), ..preset };
+        assert!(fresh.price() > 100_000);
+        let asked = std::cell::Cell::new(0);
+        let leave = || {
+            asked.set(asked.get() + 1);
+            asked.get() < 3
+        };
+        assert!(fresh.shown(&leave).is_none());
+        assert!(asked.get() < 100, "asked {} times after the client had gone", asked.get());
+        assert_eq!(fresh.shown(&|| true).unwrap().computed.len(), fresh.printed.len());
+        assert_eq!(fresh.price(), 0);
     }
 }

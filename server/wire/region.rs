@@ -334,7 +334,15 @@ impl Serialize for Answer {
         let boundary = region.boundary(limits::REGION_BOUNDARY_NODES);
         let mut notes = vec!["scene is one of the region; x and y replace its two fields".to_owned()];
         if self.cells.iter().any(|cell| cell.value.is_none()) {
-            notes.push("a value is null where the scene cannot be, or has no fixed point".to_owned());
+            let beside = match region.quantity {
+                Quantity::Survival | Quantity::MaxTheta => "",
+                Quantity::SpectralRadius => ", has no fixed point or has noise",
+                Quantity::Residue => {
+                    ", has no fixed point or has noise; and where the angle has no block of its own: of a point mass, with \
+                     state feedback, and where friction holds the contact"
+                }
+            };
+            notes.push(format!("a value is null where the scene cannot be{beside}"));
         }
         Json {
             scene: Resolved(scene),

@@ -9,7 +9,7 @@ use equipoise_physics::map::Ending;
 use equipoise_physics::margins::Tolerances;
 use equipoise_physics::regularity::WATCHED;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::{self, Linear, Nonlinear};
+use equipoise_physics::stability::{self, JUDGED, Linear, Nonlinear};
 use equipoise_physics::verdict::{HigherOrder, Judgement, Verdict};
 use serde::Serialize;
 
@@ -299,6 +299,8 @@ impl<'a> Stability<'a> {
                  tilts, so nothing drifts, the angle has no block of its own, and no tilt_gain balances"
                     .to_owned(),
             );
+        } else if let Some(error) = scene.beyond(&JUDGED) {
+            notes.push(format!("drift_speed is null: {}", error.detail));
         } else if answer.drift_speed.is_none() {
             notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
         }

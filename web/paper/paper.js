@@ -30,7 +30,7 @@ function show(root, chosen) {
     const printed = chosen.printed[index];
     const differs = Boolean(computed.why) || !same(printed?.value ?? null, computed.value);
     const name = h('th', { scope: 'row' }, computed.symbol ? symbol(computed.symbol) : computed.quantity, h('span', { class: 'muted name' }, ...computed.quantity.split(/(?<=[._])/).flatMap((part) => [part, h('wbr')])));
-    const row = h('tr', { class: differs ? 'differs' : '' }, name, cell(printed), cell(computed), h('td', {}, differs ? '≠' : printed?.value == null ? '' : '='));
+    const row = h('tr', { class: differs ? 'differs' : '' }, name, cell(printed), cell(computed), h('td', {}, printed?.value == null ? '' : differs ? '≠' : '='));
     return computed.why ? [row, h('tr', { class: 'why' }, h('td', { colspan: 4 }, ...prose(computed.why[0].toUpperCase() + computed.why.slice(1))))] : [row];
   });
   root.replaceChildren(h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Printed and computed values' }, h('table', { class: 'paper' },
