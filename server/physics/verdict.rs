@@ -249,7 +249,7 @@ impl Scene {
         let Lyapunov { coefficient, amplitude, .. } = found;
         let (verdict, course) = match found.escape_impacts() {
             Some(impacts) => {
-                (Verdict::WeaklyUnstable, format!("grows and leaves upright after about {impacts} bounces"))
+                (Verdict::WeaklyUnstable, format!("grows, and leaves upright after about {impacts} bounces"))
             }
             None if found.kind == Kind::Repelling => (Verdict::WeaklyUnstable, "would grow".to_owned()),
             None => (Verdict::WeaklyAttracting, "dies out".to_owned()),
@@ -264,8 +264,8 @@ impl Scene {
             (false, _) => format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts),
         };
         let reason = format!(
-            "with energy_gain {} s²/m² the angle circles in first order only: the amplitude obeys dA/dn = ℓA³ with ℓ = {coefficient} per \
-             bounce and rad², so a swing like this one, of {amplitude} rad, {course}; {outcome}",
+            "with energy_gain {} s²/m² the angle circles in first order only: to third order the amplitude obeys dA/dn = ℓA³ with \
+             ℓ = {coefficient} per bounce and rad², so a swing of {amplitude} rad, as here, {course}; {outcome}",
             self.energy_gain
         );
         Judgement { verdict, decided_by: DecidedBy::Lyapunov, agree, reason }
