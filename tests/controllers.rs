@@ -106,6 +106,47 @@ async fn a_scene_needs_no_law_to_be_given_one() {
     assert_eq!((outcome.as_str(), at_rest(&states) <= 200), ("completed", true), "{}", at_rest(&states));
 }
 
+/// κ = 1 + R·G(ρ² + s)/(V²l) with R = 0.2, s = l² on a contact that sticks to a table that moves along and 0 without friction.
+#[tokio::test]
+async fn the_proportional_law_beside_it_has_the_residue_of_case_1() {
+    let server = Server::start();
+    let base =
+        json!({"body": {"contact_distance": 0.2, "radius_of_gyration": 0.1}, "release": {"height": 0.3, "theta": 0.1}});
+    // V² = 2·9.81·(0.3 − 0.2), and to a target height of 0.4 twice that.
+    for (scene, kappa) in [
+        (json!({}), 1.05),
+        (json!({"table": {"feedback": {"theta": -1.3}}}), 1.05),
+        (json!({"table": {"slide": "matched"}, "contact": {"friction": 0.3}}), 1.25),
+        (json!({"table": {"energy_gain": 0.1, "target_height": 0.4}}), 1.025),
+        (json!({"table": {"tilt_gain": 1.0}}), 1.0),
+        (json!({"table": {"tilt_gain": 1.3}}), 1.3),
+    ] {
+        let mut whole = base.clone();
+        for (group, values) in scene.as_object().unwrap() {
+            whole[group] = values.clone();
+        }
+        let answer = server.post("/v1/controllers", &json!({"scene": whole})).await.expect(200);
+        let target = answer.json()["regions"]["proportional"].as_str().unwrap().to_owned();
+        let query = target.split_once('?').unwrap().1.split_once("&x.parameter").unwrap().0.to_owned();
+        let stability = server.get(&format!("/v1/stability?{query}")).await.expect(200).json();
+        let told = number(&stability, "/scene/table/tilt_gain");
+        assert!((told - kappa).abs() < 1e-12, "{scene}: {told} {kappa}");
+        if whole["table"].get("tilt_gain").is_none() {
+            let residue = number(&stability, "/linear/residue");
+            assert!((residue - 0.2).abs() < 1e-12, "{scene}: {residue}");
+        }
+    }
+    // A scene without a law and one with κ = 1 are two questions.
+    let mut tags = Vec::new();
+    for table in [json!({}), json!({"tilt_gain": 1.0})] {
+        let mut whole = base.clone();
+        whole["table"] = table;
+        let answer = server.post("/v1/controllers", &json!({"scene": whole})).await.expect(200);
+        tags.push(answer.header("etag").unwrap().to_owned());
+    }
+    assert_ne!(tags[0], tags[1]);
+}
+
 #[tokio::test]
 async fn basins_are_a_request_away() {
     let server = Server::start();

@@ -2,7 +2,7 @@
 
 mod support;
 
-use serde_json::json;
+use serde_json::{Value, json};
 use support::Server;
 
 #[tokio::test]
@@ -125,5 +125,51 @@ async fn a_tolerance_is_held_with_friction_too() {
         let run = server.get(&format!("/v1/trajectories?{rough}&tolerance={tolerance:e}")).await.json();
         assert_eq!(run["method"]["name"], method, "{}", run["method"]);
         assert!(run["impacts"]["error_estimate"][99].as_f64().unwrap() <= tolerance);
+    }
+}
+
+/// Contacts that lose their speed come to rest: at the same contact whoever asks, and at the same time.
+#[tokio::test]
+async fn a_contact_that_loses_its_speed_has_settled_everywhere() {
+    let server = Server::start();
+    let rod = "scene.body.contact_distance=0.5388&scene.body.radius_of_gyration=0.1672&scene.release.height=0.56\
+               &scene.release.theta=0.28&scene.release.theta_dot=0.88&scene.release.x_dot=0.17&scene.contact.friction=0.91";
+    // With 31 digits they are words.
+    let positive = |flight: &Value| match flight {
+        Value::String(digits) => digits.parse::<f64>().unwrap() > 0.0,
+        flight => flight.as_f64().unwrap() > 0.0,
+    };
+    // The table makes up all that the strike loses along its normal; a heavy body, which keeps cos 2α of its rise at e = 1; and a dead
+    // stop on a table that stands still.
+    let heavy = "scene.body.contact_distance=0.01&scene.body.radius_of_gyration=5&scene.release.height=0.3\
+                 &scene.release.theta=0.5&scene.contact.friction=10";
+    for (rod, table, contacts) in [
+        (rod, "scene.contact.restitution=0&scene.table.tilt_gain=2.08", 8),
+        (heavy, "scene.contact.restitution=1&scene.table.tilt_gain=1", 35),
+        (rod, "scene.contact.restitution=0&scene.table.tilt_gain=0.3&scene.table.strike=still", 1),
+    ] {
+        let query = format!("{rod}&{table}");
+        let mut times = Vec::new();
+        for method in ["map", "extended"] {
+            let run =
+                server.get(&format!("/v1/trajectories?{query}&impacts=100&method={method}")).await.expect(200).json();
+            assert_eq!(run["outcome"]["kind"], "settled", "{method} {table}: {}", run["outcome"]);
+            assert_eq!(run["outcome"]["impacts"], contacts, "{method} {table}: {}", run["outcome"]);
+            let flights = run["impacts"]["flight_time"].as_array().unwrap();
+            let (last, others) = flights.split_last().unwrap();
+            assert!(last.is_null() && others.iter().all(positive), "{flights:?}");
+            times.push(run["outcome"]["settle_time"].as_f64().unwrap());
+        }
+        assert!((times[0] - times[1]).abs() < 1e-12, "{table}: {times:?}");
+        let region = format!(
+            "/v1/regions?{query}&x.parameter=release.x&x.from=0&x.to=1&x.count=2&y.parameter=topple_angle&y.from=1.5&y.to=1.6\
+             &y.count=2&impacts=100"
+        );
+        let map = server.get(&region).await.expect(200).json();
+        assert_eq!((&map["counts"]["settled"], &map["values"][1][1]), (&json!(4), &json!(contacts)), "{table}");
+        let ensemble = server.get(&format!("/v1/ensembles?{query}&runs=5&impacts=100")).await.expect(200).json();
+        assert_eq!(ensemble["counts"]["settled"], 5, "{table}: {}", ensemble["counts"]);
+        let verdict = server.get(&format!("/v1/stability?{query}")).await.expect(200).json();
+        assert_eq!(verdict["nonlinear"]["outcome"], "settled", "{table}: {}", verdict["nonlinear"]);
     }
 }

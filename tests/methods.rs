@@ -146,3 +146,20 @@ async fn decimals_are_the_same_in_every_format() {
     assert!(ask("ndjson").await.text().contains(&format!("\"theta\":\"{digits}\"")));
     assert!(ask("svg").await.text().starts_with("<svg"));
 }
+
+/// Exactly upright there is nothing to grow, however far κ is beyond its critical value.
+#[tokio::test]
+async fn the_linear_solution_keeps_an_upright_body_upright() {
+    let server = Server::start();
+    for tilt_gain in [1.6, 30.0] {
+        let query =
+            format!("preset=case-1&scene.release.theta=0&scene.table.tilt_gain={tilt_gain}&impacts=5000&method=linear");
+        let run = server.get(&format!("/v1/trajectories?{query}")).await.expect(200).json();
+        assert_eq!((&run["outcome"]["kind"], &run["outcome"]["impacts"]), (&json!("completed"), &json!(5000)));
+        for name in ["theta", "x_dot", "y_dot", "theta_dot", "error_estimate"] {
+            let largest = run["impacts"][name].as_array().unwrap().iter().map(|value| value.as_f64().unwrap().abs());
+            let largest = largest.fold(0.0, f64::max);
+            assert!(largest < if name == "y_dot" { 2.0 } else { 1e-9 }, "κ = {tilt_gain}: {name} {largest}");
+        }
+    }
+}

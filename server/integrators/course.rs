@@ -3,7 +3,8 @@
 //! Not here: how they move the rod.
 
 use equipoise_physics::impact::{Rod, State, Strike};
-use equipoise_physics::map::{self, Release, Rules, SETTLED_SHARE, SPEED_LIMIT};
+use equipoise_physics::map::{self, Release, Rules, SPEED_LIMIT};
+use equipoise_physics::settling::{Rebound, SETTLED_SHARE, stay, time_to_rest};
 
 use super::motion::Motion;
 use super::{Ending, Impact, Work};
@@ -38,6 +39,8 @@ pub(super) struct Course<'a> {
     /// The flights before the last contact, s; 0 until there are some.
     first_flight: f64,
     last_flight: f64,
+    /// How the contact point left the last contact.
+    rebound: Rebound,
 }
 
 impl<'a> Course<'a> {
@@ -49,8 +52,19 @@ impl<'a> Course<'a> {
         most_steps: u64,
         go_on: &'a mut dyn FnMut() -> bool,
     ) -> Self {
-        let (impacts, work) = (Vec::new(), Work::default());
-        Self { rod, release, impacts, work, rules, wanted, most_steps, go_on, first_flight: 0.0, last_flight: 0.0 }
+        Self {
+            rod,
+            release,
+            impacts: Vec::new(),
+            work: Work::default(),
+            rules,
+            wanted,
+            most_steps,
+            go_on,
+            first_flight: 0.0,
+            last_flight: 0.0,
+            rebound: Rebound { rise: 0.0, along_normal: 0.0, rounding: 0.0 },
+        }
     }
 
     /// The rod at t = 0. Whether the release is a contact already is read as the map reads it.
@@ -110,15 +124,17 @@ impl<'a> Course<'a> {
     }
 
     /// After a contact: whether there can be a flight.
-    pub(super) fn leave(&self, state: &State, contact_rise: f64) -> Result<(), Halt> {
+    pub(super) fn leave(&mut self, state: &State, rebound: Rebound) -> Result<(), Halt> {
         let spin = self.rod.contact_distance * state.theta_dot;
         let speed_squared = state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin;
         if speed_squared.is_nan() || speed_squared > SPEED_LIMIT * SPEED_LIMIT {
             return Err(map::Ending::Diverged { speed: speed_squared.sqrt() }.into());
         }
-        if contact_rise <= 0.0 {
-            return Err(map::Ending::Sinking { contact_rise }.into());
+        if !rebound.rises() {
+            let t = self.impacts.last().map_or(0.0, |impact| impact.t);
+            return Err(stay(&rebound, self.rules.settles, t).into());
         }
+        self.rebound = rebound;
         // Where a run can settle, the flight after its last contact decides too.
         if !self.rules.settles && self.impacts.len() as u64 >= self.wanted {
             return Err(map::Ending::Completed.into());
@@ -129,9 +145,14 @@ impl<'a> Course<'a> {
     /// A contact without duration: [`Course::contact`] and [`Course::leave`], and the velocities changed.
     pub(super) fn strike(&mut self, t: f64, motion: &mut Motion) -> Result<Strike, Halt> {
         let strike = self.contact(t, motion)?;
-        self.leave(&strike.after, strike.contact_rise)?;
+        self.leave(&strike.after, self.rebound_of(&strike, motion))?;
         motion.velocity = [strike.after.x_dot, strike.after.y_dot, strike.after.theta_dot];
         Ok(strike)
+    }
+
+    /// How the contact point leaves a contact without duration.
+    pub(super) fn rebound_of(&self, strike: &Strike, before: &Motion) -> Rebound {
+        strike.rebound(self.rod.contact_distance, strike.rise_rounding(before.velocity[1], f64::EPSILON))
     }
 
     fn settle(&mut self, t: f64) -> Result<(), Halt> {
@@ -140,8 +161,8 @@ impl<'a> Course<'a> {
         if self.first_flight == 0.0 {
             self.first_flight = flight_time;
         }
-        if flight_time < SETTLED_SHARE * self.first_flight {
-            let settle_time = before.t + flight_time / (1.0 - flight_time / self.last_flight);
+        if flight_time < SETTLED_SHARE * self.first_flight && self.rebound.is_slow() {
+            let settle_time = before.t + time_to_rest(flight_time, self.last_flight);
             return Err(map::Ending::Settled { flight_time, settle_time }.into());
         }
         self.last_flight = flight_time;

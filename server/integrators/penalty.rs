@@ -10,6 +10,7 @@ use std::convert::Infallible;
 use std::f64::consts::PI;
 
 use equipoise_physics::impact::Strike;
+use equipoise_physics::settling::Rebound;
 
 use super::course::{Course, Halt};
 use super::motion::Motion;
@@ -41,7 +42,7 @@ pub(super) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
                     break;
                 }
             }
-            course.leave(&motion.state(), motion.contact_velocity(course.rod.contact_distance)[1])?;
+            course.leave(&motion.state(), spring.rebound(&motion))?;
             gap = course.gap(&motion);
         }
         course.step(steps * step, &motion)?;
@@ -96,6 +97,13 @@ impl Spring {
         };
         let ((x, x_rate), (y, y_rate)) = (along(0), along(1));
         (x + y, x_rate + y_rate)
+    }
+
+    /// The contact point as the table lets go of it. It is never at rest: a spring gives something back.
+    fn rebound(&self, motion: &Motion) -> Rebound {
+        let velocity = motion.contact_velocity(self.contact_distance);
+        let along_normal = velocity[0] * self.normal[0] + velocity[1] * self.normal[1];
+        Rebound { rise: velocity[1], along_normal, rounding: 0.0 }
     }
 
     fn force(&self, motion: &Motion, elapsed: f64) -> f64 {

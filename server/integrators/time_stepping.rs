@@ -31,7 +31,7 @@ pub(super) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
         // While a contact stays closed, only a table that is approached strikes again.
         if closed && (!was_closed || course.rod.strike(&middle.state()).push < 0.0) {
             let strike = course.contact(t + half, &middle)?;
-            course.leave(&strike.after, strike.contact_rise)?;
+            course.leave(&strike.after, course.rebound_of(&strike, &middle))?;
             let direction = per_impulse(&middle.state(), &strike);
             let turn = course.rod.radius_of_gyration * direction[2];
             let weight = direction[0] * direction[0] + direction[1] * direction[1] + turn * turn;

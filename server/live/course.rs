@@ -223,6 +223,21 @@ mod tests {
     }
 
     #[test]
+    fn friction_that_comes_later_lets_the_run_settle() {
+        let mut run = case("case-1");
+        let rough = [
+            (Name::Friction, Value::Number(2.0)),
+            (Name::TiltGain, Value::Number(2.5)),
+            (Name::Restitution, Value::Number(0.0)),
+            (Name::Strike, Value::Choice("still")),
+        ];
+        run.set(3, &rough).unwrap();
+        let last = contacts(&run, 100).pop().unwrap();
+        let settled = matches!(last.ending, Some(Ending::Settled { settle_time, .. }) if settle_time == last.t);
+        assert!(settled && last.n == 3, "{last:?}");
+    }
+
+    #[test]
     fn catching_up_begins_where_it_was_asked_to() {
         let run = case("case-1");
         let all = contacts(&run, 30);

@@ -130,6 +130,12 @@ pub trait Body: Copy {
     /// Keeps rounding off the energy of a strike: as [`Rod::hold_energy`].
     fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64;
 
+    /// Size of a rise of the contact point after a strike that is rounding, m/s.
+    #[inline(always)]
+    fn rise_rounding(&self, before: &State, strike: &Strike) -> f64 {
+        strike.rise_rounding(before.y_dot, f64::EPSILON)
+    }
+
     /// The flight after the strike of a contact.
     ///
     /// # Errors

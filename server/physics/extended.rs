@@ -7,11 +7,12 @@
 use crate::contact_time::{self, TooManyPieces};
 use crate::double_double::{DoubleDouble, ROUNDING};
 use crate::flight::Flight;
-use crate::friction::Friction;
+use crate::friction::{self, Friction};
 use crate::impact::{Rod, State, Strike};
-use crate::map::{Ending, Rules, SETTLED_SHARE, SPEED_LIMIT};
+use crate::map::{Ending, Rules, SPEED_LIMIT};
 use crate::number::Number;
 use crate::scene::{BodyShape, Scene};
+use crate::settling::{SETTLED_SHARE, stay, time_to_rest};
 use crate::trig;
 
 /// Most Newton steps of a lift: one does, except where the rod grazes the table.
@@ -170,8 +171,14 @@ impl Orbit {
             contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
             return contact;
         }
-        if !strike.rises(state.y_dot, ROUNDING) {
-            contact.ending = Some(Ending::Sinking { contact_rise: strike.contact_rise.to_f64().min(0.0) });
+        let rounding = match self.friction {
+            None => strike.rise_rounding(state.y_dot, ROUNDING),
+            Some(_) => friction::rise_rounding(&self.rod, &state, &strike, ROUNDING),
+        };
+        let rebound = || strike.rebound(self.rod.contact_distance, rounding);
+        let rises = strike.contact_rise.to_f64() > rounding;
+        if !rises {
+            contact.ending = Some(stay(&rebound(), rules.settles, self.t.to_f64()));
             return contact;
         }
         let flight = self.rod.flight(&strike);
@@ -182,9 +189,10 @@ impl Orbit {
         if rules.settles {
             if self.first_flight == zero {
                 self.first_flight = t;
-            } else if t < DoubleDouble::from_f64(SETTLED_SHARE) * self.first_flight {
-                let rest = t / (DoubleDouble::from_f64(1.0) - t / self.last_flight);
-                let (flight_time, settle_time) = (t.to_f64(), (self.t + rest).to_f64());
+            } else if t < DoubleDouble::from_f64(SETTLED_SHARE) * self.first_flight && rebound().is_slow() {
+                let flight_time = t.to_f64();
+                let rest = time_to_rest(flight_time, self.last_flight.to_f64());
+                let settle_time = (self.t + DoubleDouble::from(rest)).to_f64();
                 contact.ending = Some(Ending::Settled { flight_time, settle_time });
                 return contact;
             }
@@ -237,14 +245,17 @@ pub fn bounce(rod: &Rod<DoubleDouble>, state: &State<DoubleDouble>) -> Option<(D
 /// The length of a flight: the root certified in doubles, lifted.
 fn first_contact(flight: &Flight<DoubleDouble>) -> Result<DoubleDouble, TooManyPieces> {
     let start = in_doubles(&flight.start);
-    let rounded = Flight {
+    let mut rounded = Flight {
         start,
         sin_cos_theta: (flight.sin_cos_theta.0.to_f64(), flight.sin_cos_theta.1.to_f64()),
         clearance: flight.clearance.to_f64(),
         contact_distance: flight.contact_distance.to_f64(),
         gravity: flight.gravity.to_f64(),
     };
-    let root = contact_time::first_contact(&rounded)?;
+    let root = match short_flight(flight, &mut rounded) {
+        Some(root) => root,
+        None => contact_time::first_contact(&rounded)?,
+    };
     let mut t = DoubleDouble::from_f64(root);
     let mut last = f64::INFINITY;
     for _ in 0..MAX_STEPS {
@@ -258,7 +269,12 @@ fn first_contact(flight: &Flight<DoubleDouble>) -> Result<DoubleDouble, TooManyP
         // The second derivative too (Chebyshev): its term is so small that doubles hold it. What that leaves out is of third
         // order in the step.
         let bent = 0.5 * step.to_f64() * gap.bend.to_f64() / gap.slope.to_f64();
-        t = t - (step + DoubleDouble::from(step.to_f64() * bent));
+        let next = t - (step + DoubleDouble::from(step.to_f64() * bent));
+        // The trivial root at the start is no contact.
+        if next.to_f64() <= 0.0 {
+            break;
+        }
+        t = next;
         let stiffness = (rounded.gravity + rounded.bulge()) / gap.slope.to_f64().abs() + start.theta_dot.abs();
         if size * (size * stiffness) * (size * stiffness) <= NEGLIGIBLE * root {
             break;
@@ -266,6 +282,33 @@ fn first_contact(flight: &Flight<DoubleDouble>) -> Result<DoubleDouble, TooManyP
         last = size;
     }
     Ok(t)
+}
+
+/// Largest share of the rise that doubles may miss where the root is looked for in them.
+const RESOLVED: f64 = 0.01;
+
+/// The length of a flight that rises too slowly for doubles, whose sum ẏ + lθ̇ sin θ is rounding: 2ẏ_c/(G − lθ̇² cos θ), where that is
+/// so short that the gap is concave all the way, so that it has no other root. Where it is not, the contact point goes on rising, and
+/// `rounded` is made to rise.
+fn short_flight(flight: &Flight<DoubleDouble>, rounded: &mut Flight) -> Option<f64> {
+    if rounded.clearance != 0.0 {
+        return None;
+    }
+    let State { y_dot, theta_dot, .. } = flight.start;
+    let rise = (y_dot + flight.contact_distance * theta_dot * flight.sin_cos_theta.0).to_f64();
+    let State { y_dot, theta_dot, .. } = rounded.start;
+    let turned = rounded.contact_distance * theta_dot * rounded.sin_cos_theta.0;
+    let missed = (y_dot + turned - rise).abs();
+    if rise <= 0.0 || missed <= RESOLVED * rise {
+        return None;
+    }
+    let bend = rounded.gravity - rounded.bulge() * rounded.sin_cos_theta.1;
+    let root = 2.0 * rise / bend;
+    if bend > 0.0 && 10.0 * rounded.bulge() * theta_dot.abs() * root <= bend {
+        return Some(root);
+    }
+    rounded.start.y_dot += 4.0 * f64::EPSILON * (y_dot.abs() + turned.abs());
+    None
 }
 
 /// The angle of a velocity from straight down, rad: that in doubles, turned by the little that is left. Its square is lost.

@@ -4,7 +4,7 @@
 //! One formula in any kind of number; which way it takes is decided in `f64`, by whoever asks. Flights are the rod's, and what else
 //! a contact needs is in [`crate::rig`]. Not here: error bounds and linear verdicts.
 
-use crate::impact::{Rod, State, Strike, Tilt};
+use crate::impact::{RISE_UNITS, Rod, State, Strike, Tilt};
 use crate::map::Plan;
 use crate::number::Number;
 
@@ -286,6 +286,18 @@ impl Friction {
             Slide::Matched => tangential_velocity(rod, before, tilt),
         }
     }
+}
+
+/// As [`Strike::rise_rounding`], of a strike with friction. Where the contact sticks, the velocity that is left of it is a difference
+/// of terms that are 1 + l²/ρ² times as large.
+#[inline(always)]
+pub(crate) fn rise_rounding<N: Number>(rod: &Rod<N>, before: &State<N>, strike: &Strike<N>, unit: f64) -> f64 {
+    let size = |number: N| number.to_f64().abs();
+    let (length, rho) = (rod.contact_distance.to_f64(), rod.radius_of_gyration.to_f64());
+    let lever = length / rho;
+    let struck = (1.0 + lever * lever) * (size(strike.impulse_normal) + size(strike.impulse_tangential));
+    strike.rise_rounding(before.y_dot, unit)
+        + RISE_UNITS * unit * (size(before.x_dot) + length * size(before.theta_dot) + struck)
 }
 
 /// Velocity of the contact point along the table, m/s.

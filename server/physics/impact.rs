@@ -4,6 +4,7 @@
 
 use crate::friction::Mode;
 use crate::number::Number;
+use crate::settling::Rebound;
 
 /// Angle and velocities of the rod just before a contact; the horizontal place is carried beside it, since nothing
 /// depends on it.
@@ -237,16 +238,32 @@ impl<N: Number> Rod<N> {
     }
 }
 
-/// Of how many units in the last place a contact point has to rise: what is less is the rounding of a rise of 0.
-const RISE_UNITS: f64 = 8.0;
+/// Minimum rise of the contact point, in units in the last place of the terms of its sum. Anything smaller is rounding noise around
+/// zero.
+pub(crate) const RISE_UNITS: f64 = 8.0;
 
 impl<N: Number> Strike<N> {
     /// Whether the contact point rises from the table, by more than rounding. `y_dot` is ẏ before, m/s; `unit` the relative size of one
     /// unit in the last place.
     #[inline(always)]
     pub fn rises(&self, y_dot: N, unit: f64) -> bool {
+        self.contact_rise.to_f64() > self.rise_rounding(y_dot, unit)
+    }
+
+    /// Size of a rise that is rounding, m/s, of a strike without friction: arguments as for [`Strike::rises`].
+    #[inline(always)]
+    pub fn rise_rounding(&self, y_dot: N, unit: f64) -> f64 {
         let terms = y_dot.to_f64().abs() + self.after.y_dot.to_f64().abs() + self.approach.to_f64().abs();
-        self.contact_rise.to_f64() > RISE_UNITS * unit * terms
+        RISE_UNITS * unit * terms
+    }
+
+    /// The contact point, `contact_distance` (m) from the centre of gravity, just after the strike.
+    #[cold]
+    pub fn rebound(&self, contact_distance: N, rounding: f64) -> Rebound {
+        let (sin_alpha, cos_alpha) = self.alpha.sincos();
+        let aside = self.after.x_dot + contact_distance * self.after.theta_dot * self.sin_cos_theta.1;
+        let along_normal = cos_alpha * self.contact_rise - sin_alpha * aside;
+        Rebound { rise: self.contact_rise.to_f64(), along_normal: along_normal.to_f64(), rounding }
     }
 }
 

@@ -48,6 +48,7 @@ pub mod region;
 pub mod regularity;
 pub mod rig;
 pub mod scene;
+pub mod settling;
 pub mod stability;
 pub mod sweep;
 pub mod taylor;

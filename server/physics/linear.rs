@@ -21,6 +21,9 @@ pub const SAFETY: f64 = 1.5;
 /// Points at which what a bounce leaves out is looked at: phases of half a turn, or bounces of a run.
 const SAMPLES: u64 = 12;
 
+/// Largest exponent of a growth that is multiplied as it is: e^709 is the largest double.
+const MOST_GROWTH: f64 = 600.0;
+
 /// The linear solution of one run.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearSolution {
@@ -40,8 +43,6 @@ pub struct LinearSolution {
     start: State,
     t: f64,
     x: f64,
-    /// |v|² − 2Gl(1 − cos θ), m²/s².
-    energy: f64,
     /// The most that bounces leave out where the angle circles: at any time, and more on the approach to the wanted energy.
     circling: [LeftOut; 2],
 }
@@ -100,7 +101,12 @@ impl Scene {
         let (Model::Rod(rod), Some(residue)) = (self.model(), linear.residue) else {
             return Err("a point mass has no angle; its eq. (5) is exact".to_owned());
         };
-        let orbit = self.orbit().map_err(|_| "the first contact is not found".to_owned())?;
+        // What is left out is counted against the powers that are taken, so those of R = 0 or 1 are not of a residue beside it.
+        let residue = if linear.class == Class::Parabolic { residue.round() } else { residue };
+        let unknown = |_| "the first contact is not found".to_owned();
+        self.orbit().map_err(|_| unknown(()))?;
+        // In 31 digits: of a release just above the table doubles lose digits of the clearance.
+        let orbit = self.extended_orbit().map_err(|_| unknown(()))?;
         let feeds_back = self.energy_gain != 0.0;
         if feeds_back && linear.energy_eigenvalue.abs() >= 1.0 {
             let eigenvalue = linear.energy_eigenvalue;
@@ -113,9 +119,6 @@ impl Scene {
             _ if residue < 0.0 => 2.0 * libm::asinh((-residue).sqrt()),
             _ => 2.0 * libm::asinh(f64::max(residue - 1.0, 0.0).sqrt()),
         };
-        let start = *orbit.state();
-        let spin = rod.radius_of_gyration * start.theta_dot;
-        let (_, versine) = trig::sin_versine(start.theta);
         let mut solution = LinearSolution {
             extended: self.parameters(),
             speed: fixed_point.speed,
@@ -124,11 +127,9 @@ impl Scene {
             class: linear.class,
             exponent,
             energy_eigenvalue: feeds_back.then_some(linear.energy_eigenvalue),
-            start,
-            t: orbit.t(),
-            x: orbit.x(),
-            energy: start.x_dot * start.x_dot + start.y_dot * start.y_dot + spin * spin
-                - 2.0 * rod.gravity * rod.contact_distance * versine,
+            start: extended::in_doubles(orbit.state()),
+            t: orbit.t().to_f64(),
+            x: orbit.x().to_f64(),
             rod,
             circling: [LeftOut::default(); 2],
         };
@@ -148,10 +149,22 @@ impl LinearSolution {
     /// The state just before impact `n` (from 1), and how far it may be off.
     pub fn impact(&self, n: u64) -> LinearImpact {
         let m = n.saturating_sub(1);
+        if m == 0 {
+            return self.first();
+        }
         let (theta, u) = self.angle(m);
         let (state, along) = (self.state(theta, u, m), self.x_along(m, theta));
         let (error_estimate, t_error) = self.errors(m, &state);
         LinearImpact { t: self.t + self.time(m), x: self.x + along, state, error_estimate, t_error }
+    }
+
+    /// The state at the end of the fall: nothing is left out there, and it is known but for its last digit.
+    fn first(&self) -> LinearImpact {
+        let Self { start, t, x, .. } = *self;
+        let rho = self.rod.radius_of_gyration;
+        let sizes = [rho * start.theta, start.x_dot, start.y_dot, rho * start.theta_dot];
+        let largest = sizes.into_iter().map(f64::abs).fold(0.0, f64::max);
+        LinearImpact { t, x, state: start, error_estimate: f64::EPSILON * largest, t_error: f64::EPSILON * t }
     }
 
     fn start_u(&self) -> f64 {
@@ -187,9 +200,28 @@ impl LinearSolution {
         if m == 0 {
             return (theta, u);
         }
-        let (now, before) = (self.chebyshev(m), self.chebyshev(m - 1));
         let (next_theta, next_u) = self.step(theta, u);
+        if self.grows_beyond_doubles(m) {
+            return (self.grown(m, next_theta, theta), self.grown(m, next_u, u));
+        }
+        let (now, before) = (self.chebyshev(m), self.chebyshev(m - 1));
         (now * next_theta - before * theta, now * next_u - before * u)
+    }
+
+    /// Whether U of index m − 1 may be beyond the range of doubles, however small what it multiplies.
+    fn grows_beyond_doubles(&self, m: u64) -> bool {
+        self.class == Class::Hyperbolic && m as f64 * self.exponent > MOST_GROWTH
+    }
+
+    /// U_{m−1} `next` − U_{m−2} `start` where the U are beyond doubles: e^((m−1)s)/(2 sinh s) · (eˢ `next` ∓ `start`), the growing part
+    /// alone. It stays 0 where that is 0.
+    fn grown(&self, m: u64, next: f64, start: f64) -> f64 {
+        let turns = self.residue > 0.5;
+        let start = if turns { -start } else { start };
+        let growing = (libm::exp(self.exponent) * next - start) / (2.0 * libm::sinh(self.exponent));
+        let half = libm::exp(0.5 * (m - 1) as f64 * self.exponent);
+        let size = if growing == 0.0 { 0.0 } else { growing * half * half };
+        if turns && m.is_multiple_of(2) { -size } else { size }
     }
 
     fn step(&self, theta: f64, u: f64) -> (f64, f64) {
@@ -217,11 +249,51 @@ impl LinearSolution {
         State { theta, x_dot, y_dot, theta_dot }
     }
 
+    /// −√(ẏ₀² − (ẋ² − ẋ₀²) − ρ²(θ̇² − θ̇₀²) + 2Gl(cos θ₀ − cos θ)), each difference by its factors.
     fn on_energy(&self, theta: f64, x_dot: f64, theta_dot: f64) -> f64 {
-        let spin = self.rod.radius_of_gyration * theta_dot;
-        let (_, versine) = trig::sin_versine(theta);
-        let weight = self.rod.gravity * self.rod.contact_distance;
-        -f64::max(self.energy - x_dot * x_dot - spin * spin + 2.0 * weight * versine, 0.0).sqrt()
+        let Self { start, rod, .. } = self;
+        let rho = rod.radius_of_gyration;
+        let aside = (x_dot - start.x_dot) * (x_dot + start.x_dot);
+        let turned = rho * (theta_dot - start.theta_dot) * rho * (theta_dot + start.theta_dot);
+        let (half_sum, _) = trig::sin_cos(0.5 * (theta + start.theta));
+        let (half_way, _) = trig::sin_cos(0.5 * (theta - start.theta));
+        let sunk = 4.0 * rod.gravity * rod.contact_distance * half_sum * half_way;
+        -f64::max(start.y_dot * start.y_dot - aside - turned + sunk, 0.0).sqrt()
+    }
+
+    /// The most that rounding puts ẏ off, m/s: of each sum, and of gravity.
+    fn y_rounding(&self, m: u64, state: &State) -> f64 {
+        let Self { start, rod, speed, .. } = self;
+        let unit = 4.0 * f64::EPSILON;
+        if let Some(eigenvalue) = self.energy_eigenvalue {
+            return unit * (speed.abs() + m as f64 * (power(eigenvalue, m) * self.start_excess()).abs());
+        }
+        let square = |one: f64, other: f64| one * one + other * other;
+        let rho = rod.radius_of_gyration;
+        let (sine, _) = trig::sin_cos(0.5 * (state.theta.abs() + start.theta.abs()));
+        let terms = square(start.y_dot, state.y_dot)
+            + square(start.x_dot, state.x_dot)
+            + square(rho * start.theta_dot, rho * state.theta_dot)
+            + 4.0 * rod.gravity * rod.contact_distance * sine * sine;
+        unit * terms / state.y_dot.abs().max(f64::MIN_POSITIVE)
+    }
+
+    /// The most that rounding puts θ and u off after `m` bounces: of the phase, which grows with m, and of each product.
+    fn angle_rounding(&self, m: u64) -> (f64, f64) {
+        let (theta, u) = (self.start.theta, self.start_u());
+        if theta == 0.0 && u == 0.0 {
+            return (0.0, 0.0);
+        }
+        let (now, before) = (self.chebyshev(m).abs(), self.chebyshev(m - 1).abs());
+        // How fast U changes with the phase.
+        let slope = match self.class {
+            Class::Elliptic => 0.5 / (self.residue * (1.0 - self.residue)).sqrt(),
+            Class::Parabolic => 0.0,
+            _ => now + 1.0 / libm::sinh(self.exponent),
+        };
+        let off = f64::EPSILON * (4.0 * now.max(before) + m as f64 * self.exponent * slope);
+        let steep = 4.0 * self.residue.abs();
+        (off * ((2.0 + steep) * theta.abs() + u.abs()), off * (2.0 * u.abs() + steep * theta.abs()))
     }
 
     /// Σ of the flight times, 2|ẏ|/G at the end of each.
@@ -315,8 +387,8 @@ impl LinearSolution {
                     let left = (m - 1).saturating_sub(*k);
                     let (now, before) = (self.chebyshev(left + 1), self.chebyshev(left));
                     let terms = [
-                        (now * (1.0 - 4.0 * self.residue) - before).abs() * out.theta + now.abs() * out.u,
-                        4.0 * (self.residue * now).abs() * out.theta + (now - before).abs() * out.u,
+                        grown(now * (1.0 - 4.0 * self.residue) - before, out.theta) + grown(now, out.u),
+                        grown(4.0 * self.residue * now, out.theta) + grown(now - before, out.u),
                         out.drift,
                         out.t,
                     ];
@@ -332,14 +404,30 @@ impl LinearSolution {
         // The samples are compared with flights from their own ẏ.
         t += count * 2.0 * y_dot / self.rod.gravity;
         let rho = self.rod.radius_of_gyration;
+        let (theta_rounding, u_rounding) = self.angle_rounding(m);
+        (theta, u) = (theta + theta_rounding, u + u_rounding);
+        let reached = (self.flight_time * state.theta_dot).abs().max(self.start_u().abs());
+        // 2Vκθ a bounce, which the drift is left of, is rounded each time.
+        let widest = if self.class == Class::Elliptic {
+            (self.start.theta.abs() + self.start_u().abs()) / sine
+        } else {
+            self.start.theta.abs().max(state.theta.abs())
+        };
+        // What bounces leave out is taken at the linear state: an error as large as the deviation itself is no longer that of a few.
+        let lost = theta.max(u) > widest.max(reached);
+        let pushed = 2.0 * (self.speed * self.rod.tilt_gain).abs() * widest;
+        let speeds = self.start.x_dot.abs() + state.x_dot.abs();
+        drift += 4.0 * f64::EPSILON * (speeds + count * pushed);
         let lever = if self.is_at_lower_end() {
             drift += 2.0 * (self.speed * self.rod.tilt_gain).abs() * count * theta;
             0.0
         } else {
-            self.lever().abs()
+            let lever = self.lever().abs();
+            drift += 4.0 * f64::EPSILON * lever * (self.start_u().abs() + (self.flight_time * state.theta_dot).abs());
+            lever
         };
         let x_dot = lever * u + drift;
-        let spin = rho * u / self.flight_time;
+        let spin = rho * u / self.flight_time + 4.0 * f64::EPSILON * (rho * state.theta_dot).abs();
         if self.energy_eigenvalue.is_none() {
             let (sin, _) = trig::sin_cos(state.theta);
             let weight = self.rod.gravity * self.rod.contact_distance;
@@ -350,16 +438,17 @@ impl LinearSolution {
                 + spin * spin)
                 / state.y_dot.abs().max(f64::MIN_POSITIVE);
         }
-        // Rounding: of the phase, which grows with m, and of each sum.
-        let size =
-            self.start.theta.abs().max(self.start_u().abs()) / if self.class == Class::Elliptic { sine } else { 1.0 };
-        let phase = f64::EPSILON * (4.0 + count * self.exponent) * size.max(state.theta.abs());
-        let speed = self.speed.abs() + self.start.x_dot.abs() + state.x_dot.abs();
-        let rounding = 4.0 * f64::EPSILON * speed + phase * (rho.max(rho / self.flight_time) + 2.0 * lever);
-        let largest = (rho * theta).max(x_dot).max(y_dot).max(spin);
-        let bound = SAFETY * (largest + rounding);
-        let t_bound = SAFETY * (t + 4.0 * f64::EPSILON * (self.t + count * self.flight_time));
-        (if bound.is_nan() { f64::INFINITY } else { bound }, if t_bound.is_nan() { f64::INFINITY } else { t_bound })
+        y_dot += self.y_rounding(m, state);
+        let bound = SAFETY * (rho * theta).max(x_dot).max(y_dot).max(spin);
+        // 1 − λ^m and 1 − λ are both rounded.
+        let late =
+            if decay < 1.0 { count * self.start_excess().abs() / ((1.0 - decay) * self.rod.gravity) } else { 0.0 };
+        let late = if self.energy_eigenvalue.is_some() { late } else { 0.0 };
+        let t_bound = SAFETY * (t + 4.0 * f64::EPSILON * (self.t + count * self.flight_time + late));
+        (
+            if lost || bound.is_nan() { f64::INFINITY } else { bound },
+            if lost || t_bound.is_nan() { f64::INFINITY } else { t_bound },
+        )
     }
 
     /// The most that bounces leave out at any phase, with ẏ within `aside` of its fixed point, and with the first excess of it.
@@ -394,9 +483,14 @@ impl LinearSolution {
             if last.replace(k) == Some(k) {
                 continue;
             }
-            let (theta, u) = self.angle(k);
-            let state = self.state(theta, u, k);
-            samples.push((k, self.worst_about(theta, u, state.x_dot, state.y_dot + self.speed, aside)));
+            let at = |k: u64| {
+                let (theta, u) = self.angle(k);
+                let state = self.state(theta, u, k);
+                self.worst_about(theta, u, state.x_dot, state.y_dot + self.speed, aside)
+            };
+            // The angle turns at each bounce where R > ½, and ẋ is not alike on both sides.
+            let other = if self.residue > 0.5 && k + 1 < m { at(k + 1) } else { LeftOut::default() };
+            samples.push((k, at(k).or(other)));
         }
         // A bounce more, so that the gaps between samples add up to m.
         if let Some(&(_, out)) = samples.last() {
@@ -404,6 +498,11 @@ impl LinearSolution {
         }
         samples
     }
+}
+
+/// What is left of a size after a growth that may be infinite: nothing of nothing.
+fn grown(growth: f64, size: f64) -> f64 {
+    if size == 0.0 { 0.0 } else { growth.abs() * size }
 }
 
 /// base^m for |base| ≤ 1.

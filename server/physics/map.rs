@@ -7,13 +7,12 @@ use crate::demand::{Limits, Pose};
 use crate::dispatch::{Work, dispatch};
 use crate::impact::{State, Strike};
 pub use crate::outcome::Ending;
+pub use crate::settling::SETTLED_SHARE;
+use crate::settling::{stay, time_to_rest};
 
 /// Fastest speed, m/s, of the centre of gravity or of the contact point about it, that a run may reach: beyond it
 /// doubles no longer resolve a flight, and only a wrong energy feedback gets there.
 pub const SPEED_LIMIT: f64 = 1e6;
-
-/// A run that loses energy has settled (Zeno) when a flight is shorter than this share of its first.
-pub const SETTLED_SHARE: f64 = 1e-9;
 
 /// What decides, beside the physics, when a run ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -235,8 +234,11 @@ impl<B: Body> Orbit<B> {
             contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
             return contact;
         }
-        if !strike.rises(state.y_dot, f64::EPSILON) {
-            contact.ending = Some(Ending::Sinking { contact_rise: strike.contact_rise.min(0.0) });
+        let rounding = self.body.rise_rounding(&state, &strike);
+        let rises = strike.contact_rise > rounding;
+        if !rises {
+            let rebound = strike.rebound(self.body.contact_distance(), rounding);
+            contact.ending = Some(stay(&rebound, self.rules.settles, contact.t));
             return contact;
         }
         let arrival = match self.body.fly(&coming, &strike) {
@@ -248,7 +250,7 @@ impl<B: Body> Orbit<B> {
         };
         let flight_time = arrival.t;
         if self.rules.settles
-            && let Some(ending) = self.settle(flight_time)
+            && let Some(ending) = self.settle(flight_time, &strike, rounding)
         {
             contact.ending = Some(ending);
             return contact;
@@ -261,14 +263,15 @@ impl<B: Body> Orbit<B> {
         contact
     }
 
-    fn settle(&mut self, flight_time: f64) -> Option<Ending> {
+    fn settle(&mut self, flight_time: f64, strike: &Strike, rounding: f64) -> Option<Ending> {
         if self.first_flight == 0.0 {
             self.first_flight = flight_time;
             return None;
         }
-        (flight_time < SETTLED_SHARE * self.first_flight).then(|| {
-            let ratio = flight_time / self.last_flight;
-            Ending::Settled { flight_time, settle_time: self.t.value + flight_time / (1.0 - ratio) }
+        let is_short = flight_time < SETTLED_SHARE * self.first_flight;
+        (is_short && strike.rebound(self.body.contact_distance(), rounding).is_slow()).then(|| {
+            let settle_time = self.t.value + time_to_rest(flight_time, self.last_flight);
+            Ending::Settled { flight_time, settle_time }
         })
     }
 }

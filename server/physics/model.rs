@@ -173,7 +173,7 @@ impl Scene {
                 BodyShape::Rod { .. } => self.topple_angle,
                 BodyShape::Point => f64::INFINITY,
             },
-            settles: !self.keeps_energy(),
+            settles: !self.keeps_energy() || self.friction != 0.0,
             holds_energy: self.keeps_energy() && !self.is_rough() && self.noise.is_none(),
             limits: self.limits,
         }
@@ -351,6 +351,11 @@ impl Body for Model {
     #[inline(always)]
     fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
         either!(self, body => Body::hold_energy(body, strike, energy))
+    }
+
+    #[inline(always)]
+    fn rise_rounding(&self, before: &State, strike: &Strike) -> f64 {
+        either!(self, body => body.rise_rounding(before, strike))
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@
 
 use crate::contact_time::{first_contact, first_descent};
 use crate::flight::Flight;
-use crate::friction::{Friction, Law, Slide, as_it_is};
+use crate::friction::{self, Friction, Law, Slide, as_it_is};
 use crate::impact::{Rod, State, Strike, Tilt};
 use crate::map::{Arrival, Body, Coming, NoContact, Plan, Release, Touch};
 use crate::noise::{Draw, Noise, Reading};
@@ -202,6 +202,14 @@ impl Body for Rig {
 
     fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
         self.rod.hold_energy(strike, energy)
+    }
+
+    #[inline(always)]
+    fn rise_rounding(&self, before: &State, strike: &Strike) -> f64 {
+        match self.friction {
+            Some(_) => friction::rise_rounding(&self.rod, before, strike, f64::EPSILON),
+            None => strike.rise_rounding(before.y_dot, f64::EPSILON),
+        }
     }
 
     #[inline(never)]

@@ -22,7 +22,7 @@ const FEEDBACK: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::Feedbac
 /// Weights that keep the table's tilts small enough that laws hold from afar.
 const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
 
-/// Share of the stable tilt gains at which α = κθ is shown beside a law where the scene has no κ: that of the paper's first case.
+/// Residue of the α = κθ that is shown beside a law where the scene has no κ: that of the paper's first case.
 const PROPORTIONAL: f64 = 0.2;
 
 /// Points of the way of the eigenvalues over the factor on the gain.
@@ -31,8 +31,10 @@ const FACTORS: usize = 160;
 /// What is asked for.
 #[derive(Debug, Clone, Copy)]
 pub struct Request {
-    /// The scene, with whatever law it has.
+    /// The scene, with whatever law it has; with a tilt gain where it has none, since a scene needs one to be built.
     pub scene: Scene,
+    /// κ, if the scene has one.
+    tilt_gain: Option<f64>,
     grip: Grip,
     state: [f64; 4],
     input: f64,
@@ -49,6 +51,10 @@ impl Request {
             input = weights.number("input", 1e-6..=1e6, "").unwrap_or(input);
         });
         let mut draft = draft?;
+        let tilt_gain = match draft.get(Name::TiltGain) {
+            Some(Value::Number(kappa)) => Some(kappa),
+            _ => None,
+        };
         // A law is what is asked for, so there need not be one.
         if draft.get(Name::TiltGain).is_none() && FEEDBACK.iter().all(|&name| draft.get(name).is_none()) {
             set(&mut draft, Name::TiltGain, Some(1.0));
@@ -61,12 +67,12 @@ impl Request {
             Some(true) if scene.value(Name::Slide) == Some(Value::Choice("matched")) => Grip::Matched,
             Some(true) => Grip::Held,
         };
-        Some(Self { scene, grip, state, input })
+        Some(Self { scene, tilt_gain, grip, state, input })
     }
 
     /// All that determines the answer beside the scene.
     pub fn rest(&self) -> impl Serialize {
-        (contact_name(self.grip), self.state, self.input)
+        (contact_name(self.grip), self.state, self.input, self.tilt_gain)
     }
 }
 
@@ -186,7 +192,7 @@ impl Controller {
     /// # Errors
     /// Why there is none.
     pub fn compute(request: &Request) -> Result<Self, Refusal> {
-        let Request { scene, grip, state, input } = *request;
+        let Request { scene, tilt_gain, grip, state, input } = *request;
         let slow = || ("/weights", "the eigenvalues of this law did not converge".to_owned());
         let place = scene.bounce_in_place().map_err(|why| ("/scene", format!("there is no law to design: {why}")))?;
         let rod: Rod = scene.parameters();
@@ -224,7 +230,7 @@ impl Controller {
             given,
             regions: Regions {
                 designed: region(&designed, &place),
-                proportional: region(&proportional(&scene, &rod, &place)?, &place),
+                proportional: region(&proportional(&scene, tilt_gain, &rod, &place)?, &place),
             },
             notes: Vec::new(),
             linear_model: model,
@@ -395,15 +401,17 @@ fn designed(scene: &Scene, gain: [f64; 4]) -> Result<Scene, Refusal> {
     draft.build().map_err(unbuilt)
 }
 
-/// The scene with α = κθ: its own κ, or one that holds without friction.
-fn proportional(scene: &Scene, rod: &Rod, place: &FixedPoint) -> Result<Scene, Refusal> {
+/// The scene with α = κθ: its own κ, or the one of residue [`PROPORTIONAL`]; on a contact that sticks to a table that only tilts,
+/// where no κ holds, that of the contact without friction.
+fn proportional(scene: &Scene, tilt_gain: Option<f64>, rod: &Rod, place: &FixedPoint) -> Result<Scene, Refusal> {
     let mut draft = scene.draft();
     for name in FEEDBACK {
         set(&mut draft, name, None);
     }
-    let rho = rod.radius_of_gyration;
-    let width = rod.gravity * rho * rho / (place.speed * place.speed * rod.contact_distance);
-    let kappa = scene.number(Name::TiltGain).unwrap_or((1.0 + PROPORTIONAL * width).min(100.0));
+    let (length, rho) = (rod.contact_distance, rod.radius_of_gyration);
+    let turning = if scene.grip() == Grip::Matched { rho * rho + length * length } else { rho * rho };
+    let width = rod.gravity * turning / (place.speed * place.speed * length);
+    let kappa = tilt_gain.unwrap_or_else(|| (1.0 + PROPORTIONAL * width).min(100.0));
     set(&mut draft, Name::TiltGain, Some(kappa));
     draft.build().map_err(unbuilt)
 }

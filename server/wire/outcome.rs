@@ -78,6 +78,10 @@ impl Outcome {
                 ),
                 Some(("contact_rise", contact_rise, 0.0, "m/s")),
             ),
+            Ending::Settled { flight_time: 0.0, .. } => (
+                format!("{at}, the strike left the contact point at rest: the bounces end there"),
+                Some(("flight_time", 0.0, 0.0, "s")),
+            ),
             Ending::Settled { flight_time, settle_time } => (
                 format!("{at}, the next flight would take {flight_time} s; the bounces end at t = {settle_time} s"),
                 Some(("flight_time", flight_time, 0.0, "s")),

@@ -63,7 +63,7 @@ pub(crate) struct Scratch {
 }
 
 /// A contact point that rises faster does so by more than rounding ([`Strike::rises`]), at any speed up to the limit, m/s.
-const SURE_RISE: f64 = 1e-8;
+pub(super) const SURE_RISE: f64 = 1e-8;
 
 /// Most Newton steps of a common bounce: nearly all take one, few two.
 const STEPS: u32 = 3;
@@ -267,6 +267,12 @@ impl Rods {
         self.leverage[lane]
     }
 
+    /// l²/ρ² of the one in a lane.
+    #[inline(always)]
+    pub(super) fn lever_squared(&self, lane: usize) -> f64 {
+        self.contact_distance[lane] * self.contact_distance[lane] * self.leverage[lane]
+    }
+
     /// Whether the run in a lane can settle.
     #[inline(always)]
     pub(super) fn settles(&self, lane: usize) -> bool {
@@ -321,9 +327,16 @@ impl Moving {
     }
 
     /// Puts what a strike gives into a lane, with the energy that the run should have after it; sets it apart where the run may end
-    /// there.
+    /// there. A contact point that rises faster than `sure_rise`, m/s, does so by more than rounding.
     #[inline(always)]
-    pub(super) fn struck<L: Lane>(&mut self, lane: usize, strike: &Strike<L>, energy: f64, scratch: &mut Scratch) {
+    pub(super) fn struck<L: Lane>(
+        &mut self,
+        lane: usize,
+        strike: &Strike<L>,
+        energy: f64,
+        sure_rise: f64,
+        scratch: &mut Scratch,
+    ) {
         let after = strike.after.map(L::to_f64);
         self.set(lane, &after, energy);
         scratch.y_dot[lane] = after.y_dot;
@@ -331,7 +344,7 @@ impl Moving {
             (strike.push.to_f64() < 0.0)
                 & (after.x_dot.abs() <= 0.5 * SPEED_LIMIT)
                 & (after.y_dot.abs() <= 0.5 * SPEED_LIMIT)
-                & (strike.contact_rise.to_f64() > SURE_RISE),
+                & (strike.contact_rise.to_f64() > sure_rise),
         );
     }
 

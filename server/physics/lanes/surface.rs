@@ -3,7 +3,7 @@
 //! Each has a loop of its own over the lanes, so that the one without pays nothing for the other. Not here: where the table
 //! is then, and the flight after ([`super::bounce`]).
 
-use super::bounce::{Moving, Rods, Scratch};
+use super::bounce::{Moving, Rods, SURE_RISE, Scratch};
 use super::number::Lane;
 use super::{Lanes, WIDTH};
 use crate::friction::{Friction, Law, Slide, as_it_is};
@@ -49,7 +49,7 @@ impl Surface for Smooth {
             // Where none is held, the one that there is: then nothing is corrected.
             let held = if rods.settles(lane) { strike.energy } else { number(moving.energy[lane]) };
             let energy = rod.hold_energy(&mut strike, held);
-            next.struck(lane, &strike, energy.to_f64(), scratch);
+            next.struck(lane, &strike, energy.to_f64(), SURE_RISE, scratch);
         }
     }
 
@@ -57,6 +57,9 @@ impl Surface for Smooth {
         midst.advance(rods.rod(lane), Rules { holds_energy: !rods.settles(lane), ..rods.rules(lane) })
     }
 }
+
+/// As [`SURE_RISE`], for a contact with friction and l = 0: 1 + l²/ρ² times as much for others ([`crate::friction::rise_rounding`]).
+const ROUGH_SURE_RISE: f64 = 10.0 * SURE_RISE;
 
 /// With friction, of one law and one way to slide in all lanes.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +93,8 @@ impl Rough {
             let friction = Friction { coefficient: self.coefficient[lane], law, slide };
             let before = moving.state(lane).map(number);
             let strike = friction.strike(&rod, &before, &tilt, None, number(rods.leverage(lane)), as_it_is);
-            next.struck(lane, &strike, moving.energy[lane], scratch);
+            let lever_squared = rods.lever_squared(lane);
+            next.struck(lane, &strike, moving.energy[lane], ROUGH_SURE_RISE * (1.0 + lever_squared), scratch);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The linear solution is nowhere farther from the run with 31 digits than it says, and seldom much nearer.
 
 use equipoise_physics::double_double::DoubleDouble;
+use equipoise_physics::method::Method;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 #[path = "support/random.rs"]
@@ -152,5 +153,143 @@ fn the_closed_form_is_the_power_of_the_matrix() {
                 assert!((ours.x - x).abs() <= allowed, "{kind:?} {n}: {} {x}", ours.x);
             }
         }
+    }
+}
+
+/// Scenes of all sizes and kinds, released close above the table, fast and aslant too.
+fn wide(random: &mut Random, number: usize) -> Option<Scene> {
+    let length = random.size(1e-2, 5.0).abs();
+    let rho = length * random.size(0.05, 3.0).abs();
+    let above = length * random.size(1e-7, 3.0).abs();
+    let amplitude = random.size(1e-9, 0.5).abs();
+    let gravity = random.size(0.1, 100.0).abs();
+    let incline = if number.is_multiple_of(2) { std::f64::consts::FRAC_PI_2 } else { random.between(0.05, 1.5) };
+    let theta = amplitude * random.between(-1.0, 1.0);
+    // Either height above a table of its own, or above the place where the contact point is at this angle.
+    let height = if number.is_multiple_of(3) { length * theta.cos() + above } else { length + above };
+    let speed = (2.0 * gravity * incline.sin() * above).sqrt();
+    let width = rho * rho / (2.0 * above * length);
+    let residue = match number % 5 {
+        0..=2 => random.between(0.01, 0.99),
+        3 => random.size(1e-3, 2.0),
+        _ => 1.0 + random.size(1e-12, 1e-2),
+    };
+    let mut values = vec![
+        (Name::ContactDistance, length),
+        (Name::RadiusOfGyration, rho),
+        (Name::Gravity, gravity),
+        (Name::Incline, incline),
+        (Name::TiltGain, 1.0 + residue * width),
+        (Name::Height, height),
+        (Name::Theta, theta),
+        (Name::ThetaDot, amplitude * speed / length * random.between(-3.0, 3.0)),
+        (Name::XDot, amplitude * speed * random.between(-2.0, 2.0)),
+        (Name::YDot, if number.is_multiple_of(4) { speed * random.between(-2.0, 2.0) } else { 0.0 }),
+        (Name::Restitution, random.between(0.0, 1.0)),
+    ];
+    if number % 7 == 0 {
+        values.push((Name::EnergyGain, random.between(0.02, 0.95) / (2.0 * gravity * incline.sin() * above)));
+        values.push((Name::TargetHeight, length + above * random.between(0.8, 1.2)));
+    }
+    let mut draft = Draft::default();
+    for (name, number) in values {
+        draft.set(name, Some(Value::Number(number))).ok()?;
+    }
+    draft.build().ok()
+}
+
+#[test]
+fn bounds_hold_over_scenes_of_all_sizes() {
+    let mut random = Random(6);
+    let (mut compared, mut failed) = (0, Vec::new());
+    for number in 0..6000 {
+        let Some(scene) = wide(&mut random, number) else { continue };
+        let mut ours = Vec::new();
+        let told = scene.run_by(Method::Linear, 100, |impact| {
+            ours.push((impact.contact, impact.error_estimate));
+            true
+        });
+        if told.is_err() {
+            continue;
+        }
+        let mut exact = scene.extended_orbit().unwrap();
+        let rho = exact.rod().radius_of_gyration.to_f64();
+        for (contact, bound) in ours {
+            let reference = exact.advance();
+            let off = |ours: f64, exact: DoubleDouble| (exact - ours.into()).to_f64().abs();
+            let error = (rho * off(contact.state.theta, reference.state.theta))
+                .max(off(contact.state.x_dot, reference.state.x_dot))
+                .max(off(contact.state.y_dot, reference.state.y_dot))
+                .max(rho * off(contact.state.theta_dot, reference.state.theta_dot));
+            if bound.is_finite() {
+                compared += 1;
+                if error > bound {
+                    failed.push((number, contact.n, error / bound, bound));
+                    break;
+                }
+            }
+            if reference.flight_time.is_none() {
+                break;
+            }
+        }
+    }
+    println!("{compared} bounds, {} of runs below an error: {failed:?}", failed.len());
+    assert!(compared > 50_000 && failed.is_empty(), "{compared} {failed:?}");
+}
+
+/// Upright and at rest but for the bounce, beyond κ_c: nothing grows from nothing, however long it is watched.
+#[test]
+fn an_upright_body_stays_upright_at_any_gain() {
+    for (kappa, x_dot) in [(1.7, 0.0), (5.0, 0.0), (60.0, 0.1), (0.5, -0.2), (-40.0, 0.0)] {
+        let mut draft = Draft::default();
+        for (name, number) in [
+            (Name::ContactDistance, 0.4 / 3.0),
+            (Name::RadiusOfGyration, 0.094),
+            (Name::TiltGain, kappa),
+            (Name::Height, 0.3),
+            (Name::XDot, x_dot),
+        ] {
+            draft.set(name, Some(Value::Number(number))).unwrap();
+        }
+        let scene = draft.build().unwrap();
+        let mut last = 0;
+        let ending = scene.run_by(Method::Linear, 20_000, |impact| {
+            let state = impact.contact.state;
+            assert_eq!((state.theta, state.theta_dot), (0.0, 0.0), "κ = {kappa}, contact {}", impact.contact.n);
+            // The sum of the bounces, exact but for rounding.
+            assert!((state.x_dot - x_dot).abs() <= 1e-15 && impact.error_estimate < 1e-9, "κ = {kappa}: {impact:?}");
+            last = impact.contact.n;
+            true
+        });
+        assert_eq!((ending.unwrap().unwrap().name(), last), ("completed", 20_000), "κ = {kappa}");
+    }
+}
+
+/// The least angle that doubles have grows too, to where the body topples.
+#[test]
+fn the_least_angle_grows_beyond_the_range_of_its_growth() {
+    for kappa in [1.7, 60.0, -40.0] {
+        let mut draft = Draft::default();
+        for (name, number) in [
+            (Name::ContactDistance, 0.4 / 3.0),
+            (Name::RadiusOfGyration, 0.094),
+            (Name::TiltGain, kappa),
+            (Name::Height, 0.3),
+            (Name::Theta, 1e-310),
+        ] {
+            draft.set(name, Some(Value::Number(number))).unwrap();
+        }
+        let scene = draft.build().unwrap();
+        let growth = scene.linear(&scene.fixed_point().unwrap()).spectral_radius();
+        let mut last = (0, 0.0);
+        let ending = scene.run_by(Method::Linear, 20_000, |impact| {
+            last = (impact.contact.n, impact.contact.state.theta);
+            assert!(last.1.is_finite(), "κ = {kappa}: {impact:?}");
+            true
+        });
+        assert_ne!(ending.unwrap().unwrap().name(), "completed", "κ = {kappa}: {last:?}");
+        // From 1e-310 to some tenths.
+        let contacts = (0.5_f64.ln() - 1e-310_f64.ln()) / growth.ln();
+        assert!((last.0 as f64 - contacts).abs() <= 3.0 + 3.0 / growth.ln(), "κ = {kappa}: {last:?} {contacts}");
     }
 }
