@@ -15,6 +15,41 @@ pub const SPEED_LIMIT: f64 = 1e6;
 /// A run that loses energy has settled (Zeno) when a flight is shorter than this share of its first.
 pub const SETTLED_SHARE: f64 = 1e-9;
 
+/// Contacts between two questions of whether to go on: far less than a millisecond for any body, its derivatives included.
+pub const LOOK: u64 = 128;
+
+/// What it takes to begin a run, in contacts.
+const BEGINNING: u64 = 8;
+
+/// Asks whether to go on, every [`LOOK`] contacts of many runs, each of which may be shorter.
+pub(crate) struct Looks<'a> {
+    contacts: u64,
+    go_on: &'a mut dyn FnMut() -> bool,
+}
+
+impl<'a> Looks<'a> {
+    /// Nothing done yet.
+    pub(crate) fn new(go_on: &'a mut dyn FnMut() -> bool) -> Self {
+        Self { contacts: 0, go_on }
+    }
+
+    /// Whether to begin a run.
+    pub(crate) fn begin(&mut self) -> bool {
+        self.pass(BEGINNING)
+    }
+
+    /// Whether to go on after a contact.
+    pub(crate) fn contact(&mut self) -> bool {
+        self.pass(1)
+    }
+
+    fn pass(&mut self, contacts: u64) -> bool {
+        let before = self.contacts / LOOK;
+        self.contacts += contacts;
+        self.contacts / LOOK == before || (self.go_on)()
+    }
+}
+
 /// What decides, beside the physics, when a run ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {

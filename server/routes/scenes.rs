@@ -8,7 +8,7 @@ use axum::routing::get;
 use serde::Serialize;
 
 use super::App;
-use crate::compute::Price;
+use crate::compute::{Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::wire::fields::Fields;
 use crate::wire::presets;
@@ -49,9 +49,12 @@ async fn fixed<T: Serialize>(
     app: &App,
     ask: &Ask,
     canonical: &str,
-    answer: impl FnOnce() -> T + Send + 'static,
+    answer: impl FnOnce() -> T + Clone + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
     const RESOURCE: Resource = Resource { name: "fixed", formats: &[Format::Json] };
     ask.read(|_| Some(()))?;
-    ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), Price::bounces(0), move |_, _| super::json(&answer())).await
+    ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), Price::bounces(0), move |_, turn: &Turn| {
+        super::json(&answer(), turn)
+    })
+    .await
 }
