@@ -143,7 +143,6 @@ async fn whoever_leaves_frees_the_core() {
         "/v1/stability?preset=case-1&impacts=20000&basin=true",
         "/v1/ladder?preset=case-1-noise&scene.release.theta=0.1&impacts=100000",
         "/v1/precision?preset=case-1&impacts=1000",
-        "/v1/periodic-orbits?preset=case-1&sweep.parameter=table.tilt_gain&sweep.from=1.05&sweep.to=1.9&sweep.points=2000",
         &format!("{MAP}&x.count=1000&y.count=1000&impacts=1&quantity=residue"),
         &format!("{MAP}&x.count=300&y.count=300&impacts=1000&scene.noise.timing_sd=0.001"),
         ENSEMBLE,

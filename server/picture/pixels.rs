@@ -53,11 +53,7 @@ pub fn png(svg: &str, go_on: impl Fn() -> bool) -> Result<Vec<u8>, NoPixels> {
 }
 
 /// As [`resvg::render`], node by node.
-fn draw(
-    group: &Group,
-    pixels: &mut PixmapMut<'_>,
-    check: &impl Fn() -> Result<(), NoPixels>,
-) -> Result<(), NoPixels> {
+fn draw(group: &Group, pixels: &mut PixmapMut<'_>, check: &impl Fn() -> Result<(), NoPixels>) -> Result<(), NoPixels> {
     for node in group.children() {
         check()?;
         match node {
