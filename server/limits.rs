@@ -198,6 +198,10 @@ pub const ORBIT_PERIOD: u64 = 64;
 /// Points of one branch of periodic orbits. A picture shows no more.
 pub const BRANCH_POINTS: u64 = 2000;
 
+/// Work beyond that of a bounce, in bounces, of finding the end of a flight of many turns: its pieces are ten at most
+/// (`contact_time::MAX_PIECES` with some for rounding), 25 ns each, and the root in the last.
+pub const SPINNING_PRICE: u64 = 8;
+
 /// Work of designing a law, in bounces: the picture follows its eigenvalues over a hundred and more gains, some 1.5 ms.
 pub const CONTROLLER_PRICE: u64 = 20_000;
 
@@ -271,6 +275,13 @@ pub const BATCH_WAIT_TIME: Duration = Duration::from_secs(RETRY_AFTER_S as u64);
 /// another thread and back is worth.
 pub const INLINE_BOUNCES: u64 = 2048;
 
+/// Time of such work on the async thread, after which it is begun anew on another: several times what its price says, for the
+/// few scenes whose bounces are dearer. One client has at most half of these threads at a time.
+pub const INLINE_TIME: Duration = Duration::from_millis(1);
+
+/// Time that work computes before others have their turn: with a few waiting, a request waits some hundredths of a second.
+pub const TURN_TIME: Duration = Duration::from_millis(10);
+
 /// How far threads that compute stand back behind those that answer, in steps of the system's 19: a third of the weight.
 pub const COMPUTE_NICENESS: i32 = 5;
 
@@ -279,6 +290,9 @@ pub const RETRY_AFTER_S: u32 = 2;
 
 /// Bytes of answer that are compressed or copied between two looks at whether the client is still there: under 10 ms.
 pub const GZIP_STEP_BYTES: usize = 128 * 1024;
+
+/// Bytes of JSON that are written between two such looks: 2 ms where they are numbers of 32 digits.
+pub const JSON_STEP_BYTES: usize = 16 * 1024;
 
 // --- Connections ---
 

@@ -22,7 +22,7 @@ mod tests {
     use tower::ServiceExt;
 
     use crate::BUILD;
-    use crate::compute::{Cancel, Price};
+    use crate::compute::{Price, Turn};
     use crate::config::Config;
     use crate::http::{Ask, Errors, Format, Problem, REQUEST_ID, Resource};
     use crate::limits::{self, Limits};
@@ -140,9 +140,9 @@ mod tests {
         let price = Price::bounces(count).times(100).within(&app.config.limits.of_work())?;
         let canonical = serde_json::to_vec(&(count, factor)).expect("numbers");
         let metrics = app.metrics.clone();
-        let compute = move |format: Format, cancel: &Cancel| {
+        let compute = move |format: Format, turn: &Turn| {
             let squares: Vec<f64> = (0..count).map(|n| (n * n) as f64 * factor).collect();
-            cancel.check()?;
+            turn.check()?;
             metrics.bounces.inc_by(count);
             Ok(match format {
                 Format::Csv => {

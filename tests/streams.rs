@@ -128,6 +128,38 @@ async fn who_hears_of_progress_may_leave() {
     }
 }
 
+/// Whatever it was that somebody asked for, and whatever was done of it when he left: the run, the rows, the pixels.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn whoever_leaves_frees_the_core() {
+    let (app, address) = start().await;
+    let long = "/v1/trajectories?preset=case-1&impacts=100000";
+    for target in [
+        long,
+        &format!("{long}&format=csv"),
+        &format!("{long}&format=ndjson"),
+        &format!("{long}&format=png"),
+        "/v1/trajectories?preset=case-1&impacts=100000&method=extended",
+        "/v1/trajectories?preset=case-1&impacts=100000&tolerance=1e-6",
+        "/v1/stability?preset=case-1&impacts=20000&basin=true",
+        "/v1/ladder?preset=case-1-noise&scene.release.theta=0.1&impacts=100000",
+        "/v1/precision?preset=case-1&impacts=1000",
+        &format!("{MAP}&x.count=1000&y.count=1000&impacts=1&quantity=residue"),
+        &format!("{MAP}&x.count=300&y.count=300&impacts=1000&scene.noise.timing_sd=0.001"),
+        ENSEMBLE,
+    ] {
+        // Sooner and later, so as to meet all parts of the work; some is over by then.
+        let mut met = 0;
+        for wait in [1, 30, 100, 300, 1000] {
+            let socket = ask(address, target).await;
+            tokio::time::sleep(Duration::from_millis(wait)).await;
+            met += app.pool.running().get();
+            drop(socket);
+            freed(&app, target).await;
+        }
+        assert!(met > 0, "{target} is answered at once");
+    }
+}
+
 /// Compressed lines can be read as they come, too.
 #[tokio::test]
 async fn progress_is_not_kept_back_by_its_compression() {

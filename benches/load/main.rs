@@ -1,5 +1,5 @@
 //! The program under load: `cargo bench --bench load` measures everything and writes `docs/load.md`; with `-- --only rates`, `overload`,
-//! `live`, `slow` or `soak` it measures one thing and prints it.
+//! `live`, `slow`, `spinning` or `soak` it measures one thing and prints it.
 //!
 //! The program is a process of its own, but its clients share the machine with it: their time is in every figure. Ratios hold
 //! on a noisy machine; absolute figures want a quiet one.
@@ -11,6 +11,7 @@ mod program;
 mod rates;
 mod slow;
 mod soak;
+mod spinning;
 
 use std::fmt::Write;
 use std::io;
@@ -44,6 +45,7 @@ enum Part {
     Overload,
     Live,
     Slow,
+    Spinning,
     Soak,
 }
 
@@ -57,7 +59,7 @@ async fn main() -> io::Result<()> {
     let maximum = getrlimit(Resource::Nofile).maximum;
     let _ = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
     let mut report = introduction();
-    for part in [Part::Rates, Part::Overload, Part::Live, Part::Slow, Part::Soak] {
+    for part in [Part::Rates, Part::Overload, Part::Live, Part::Slow, Part::Spinning, Part::Soak] {
         if arguments.only.is_some_and(|only| only != part) {
             continue;
         }
@@ -66,6 +68,7 @@ async fn main() -> io::Result<()> {
             Part::Overload => overload::measure().await?,
             Part::Live => live::measure().await?,
             Part::Slow => slow::measure().await?,
+            Part::Spinning => spinning::measure().await?,
             Part::Soak => soak::measure(Duration::from_secs_f64(60.0 * arguments.minutes)).await?,
         };
         println!("{section}");

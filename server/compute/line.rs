@@ -53,13 +53,23 @@ impl Line {
                 return Permit(Some(self.clone()));
             }
             let (sender, receiver) = oneshot::channel();
-            match state.flows.iter_mut().find(|(known, _)| *known == flow) {
-                Some((_, waiting)) => waiting.push_back(sender),
-                None => state.flows.push_back((flow, [sender].into())),
-            }
+            state.waiting(flow).push_back(sender);
             receiver
         };
         receiver.await.expect("senders are dropped by their receivers alone")
+    }
+
+    /// The same for who is about to give a permit back in the midst of its work: it waits from now on, before all else of its
+    /// flow, so that a peer's work is ended in the order in which it was begun.
+    pub(super) fn take_again(self: &Arc<Self>, flow: Flow) -> impl Future<Output = Permit> + use<> {
+        let (sender, receiver) = oneshot::channel();
+        self.state().waiting(flow).push_front(sender);
+        async { receiver.await.expect("senders are dropped by their receivers alone") }
+    }
+
+    /// Whether another than `flow` waits.
+    pub(super) fn is_wanted_by_others(&self, flow: Flow) -> bool {
+        self.state().flows.iter().any(|(other, _)| *other != flow)
     }
 
     /// Gives a permit that somebody had to the next, if anybody waits.
@@ -80,6 +90,15 @@ impl Line {
 }
 
 impl State {
+    /// Those of a flow who wait.
+    fn waiting(&mut self, flow: Flow) -> &mut VecDeque<oneshot::Sender<Permit>> {
+        let place = self.flows.iter().position(|(known, _)| *known == flow).unwrap_or_else(|| {
+            self.flows.push_back((flow, VecDeque::new()));
+            self.flows.len() - 1
+        });
+        &mut self.flows[place].1
+    }
+
     /// Who is next. If nobody is, one more permit is free.
     fn next(&mut self) -> Option<oneshot::Sender<Permit>> {
         while let Some((flow, mut waiting)) = self.flows.pop_front() {
@@ -131,6 +150,32 @@ mod tests {
         }
         assert_eq!(order, [0, 1, 2, 0, 2, 0, 0]);
         assert!(line.try_take().is_some());
+    }
+
+    #[test]
+    fn who_comes_back_is_before_its_own_and_after_others() {
+        let line = Line::new(1);
+        let flows = [Flow::Short(peer(1)), Flow::Short(peer(2))];
+        let mut held = line.try_take();
+        assert!(!line.is_wanted_by_others(flows[0]));
+        let mut own = Box::pin(line.take(flows[0]));
+        assert!((&mut own).now_or_never().is_none() && !line.is_wanted_by_others(flows[0]));
+        let mut other = Box::pin(line.take(flows[1]));
+        assert!((&mut other).now_or_never().is_none() && line.is_wanted_by_others(flows[0]));
+        // Its flow is the next in any case, and then the other's.
+        let mut again = Box::pin(line.take_again(flows[0]));
+        drop(held.take());
+        held = (&mut again).now_or_never();
+        assert!(held.is_some() && (&mut own).now_or_never().is_none());
+        let mut again = Box::pin(line.take_again(flows[0]));
+        drop(held.take());
+        let others = (&mut other).now_or_never();
+        assert!(others.is_some() && (&mut again).now_or_never().is_none());
+        drop(others);
+        held = (&mut again).now_or_never();
+        assert!(held.is_some() && (&mut own).now_or_never().is_none());
+        drop(held);
+        assert!(own.now_or_never().is_some());
     }
 
     #[test]

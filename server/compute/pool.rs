@@ -1,4 +1,5 @@
-//! Runs work beside the async threads, as much at a time as there are cores, with a short queue and a no beyond it.
+//! Runs work beside the async threads, as much at a time as there are cores, with a short queue and a no beyond it. Work that is
+//! hardly worth the way there is done on them, for a short time.
 
 use std::fmt;
 use std::sync::Arc;
@@ -10,10 +11,12 @@ use tokio::task::spawn_blocking;
 use tokio::time::timeout;
 
 use super::cancel::{Cancel, OnDrop};
+use super::gate::{Gate, Slot};
 use super::line::{Flow, Line, Permit};
 use super::peer::Peer;
 use super::price::Price;
 use super::shares::{NoShare, Share, Shares};
+use super::turn::Turn;
 use super::turns::Turns;
 use crate::limits::{self, Limits};
 
@@ -24,6 +27,8 @@ pub struct Pool {
     places: Shares,
     /// Permits to run.
     line: Arc<Line>,
+    /// Slots on the async threads.
+    gate: Gate,
     /// Bytes of results that are still to be taken.
     results: Shares,
     count: usize,
@@ -75,6 +80,7 @@ impl Pool {
         Self {
             places: Shares::new(permits * (1 + limits.queue)),
             line: Line::new(permits),
+            gate: Gate::new(permits),
             results: Shares::new(limits.held_bytes),
             count: permits,
             queue_time: limits.queue_time,
@@ -104,24 +110,51 @@ impl Pool {
         &self.queued
     }
 
-    /// Does `work`: at once if it is cheap, else on another thread when it is its turn. If the future is dropped, the
-    /// flag that `work` is given is set, and work that waits is never begun. A panic in `work` goes on here.
+    /// Does `work`: at once if it is cheap, else on another thread when it is its turn. Work that is cheap by its price and not
+    /// by the clock is begun anew on another thread. If the future is dropped, the flag that `work` is given is set, and work
+    /// that waits is never begun. A panic in `work` goes on here.
     pub async fn run<T, E>(
         &self,
         price: Price,
-        work: impl FnOnce(&Cancel) -> Result<T, E> + Send + 'static,
+        work: impl FnOnce(&Turn) -> Result<T, E> + Clone + Send + 'static,
     ) -> Result<T, E>
     where
         T: Send + 'static,
         E: From<Refused> + Send + 'static,
     {
-        if price.as_bounces() <= limits::INLINE_BOUNCES {
-            let _running = Counted::one(&self.running);
-            return work(&Cancel::never());
+        if price.as_bounces() <= limits::INLINE_BOUNCES
+            && let Some(result) = self.run_inline(work.clone()).await
+        {
+            return result;
         }
-        let permit = self.turn().await?;
+        self.run_apart(work).await
+    }
+
+    /// Does `work` on this thread, when one more work of the peer's may be; none where it takes too long.
+    pub async fn run_inline<T>(&self, work: impl FnOnce(&Turn) -> T) -> Option<T> {
+        let _slot = self.slot().await;
+        let _running = Counted::one(&self.running);
+        let turn = Turn::inline();
+        let result = work(&turn);
+        (!turn.overran()).then_some(result)
+    }
+
+    /// The right to work on this thread, which ends with the next await.
+    pub async fn slot(&self) -> Slot {
+        self.gate.enter(self.peer).await
+    }
+
+    /// Does `work` on another thread when it is its turn, which ends and comes again while it goes on. Otherwise as `run`.
+    pub async fn run_apart<T, E>(&self, work: impl FnOnce(&Turn) -> Result<T, E> + Send + 'static) -> Result<T, E>
+    where
+        T: Send + 'static,
+        E: From<Refused> + Send + 'static,
+    {
+        let (place, permit) = self.turn().await?;
+        let (line, flow, runtime) = (self.line.clone(), Flow::Short(self.peer), Handle::current());
         // The permit goes along: it is free again when the work has ended, not when its result is no longer wanted.
-        self.apart(permit, work).await
+        let work = move |cancel: &Cancel| work(&Turn::permitted(cancel.clone(), permit, line, flow, runtime));
+        self.apart(place, work).await
     }
 
     /// Does long `work` on another thread when it is its turn. It computes in turns only, on as many threads as there are
@@ -237,17 +270,66 @@ mod tests {
     async fn cheap_work_stays_on_its_thread_and_dear_work_leaves_it() {
         let pool = Pool::new(1, &Limits::default());
         let here = std::thread::current().id();
-        let thread = |_: &Cancel| Ok::<_, Refused>(std::thread::current().id());
+        let thread = |_: &Turn| Ok::<_, Refused>(std::thread::current().id());
         assert_eq!(pool.run(Price::bounces(1), thread).await, Ok(here));
         assert_ne!(pool.run(dear(), thread).await, Ok(here));
+    }
+
+    #[tokio::test]
+    async fn work_that_turns_out_dear_is_done_elsewhere() {
+        let pool = Pool::new(1, &Limits::default());
+        let here = std::thread::current().id();
+        let dear = move |turn: &Turn| {
+            let begin = Instant::now();
+            while begin.elapsed() < 3 * limits::INLINE_TIME {
+                if !turn.go_on() {
+                    assert_eq!(std::thread::current().id(), here);
+                    return Err(Refused::Late { waited_s: 0 });
+                }
+            }
+            Ok(std::thread::current().id())
+        };
+        assert_ne!(pool.run(Price::bounces(1), dear).await.unwrap(), here);
+        assert_eq!((pool.running().get(), pool.queued().get()), (0, 0));
+    }
+
+    /// Two endless works of one peer, each of which says when it computes, and a third of another peer's.
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    async fn a_turn_ends_in_the_midst_of_work() {
+        let pool = Pool::new(1, &Limits::default());
+        let [one, other] = [1, 2].map(|last| pool.of(Peer::at([192, 0, 2, last].into())));
+        let endless = |pool: Pool| {
+            let (begun, begin) = tokio::sync::oneshot::channel();
+            let work = move |turn: &Turn| {
+                let _ = begun.send(());
+                while turn.go_on() {}
+                Ok::<_, Refused>(())
+            };
+            (tokio::spawn(async move { pool.run_apart(work).await }), begin)
+        };
+        let (first, begun) = endless(one.clone());
+        begun.await.unwrap();
+        // Of the same peer: it waits for the first, which does not end.
+        let (second, mut begun) = endless(one);
+        let done = other.run_apart(|turn| Ok::<_, Refused>(turn.go_on()));
+        assert_eq!(timeout(Duration::from_secs(5), done).await.expect("a turn"), Ok(true));
+        assert!(begun.try_recv().is_err());
+        // Whoever goes away in the midst of its work or between two turns frees the permit.
+        first.abort();
+        timeout(Duration::from_secs(5), begun).await.expect("a turn").unwrap();
+        second.abort();
+        assert_eq!(
+            timeout(Duration::from_secs(5), other.run_apart(|_| Ok::<_, Refused>(7))).await.expect("a turn"),
+            Ok(7)
+        );
     }
 
     #[tokio::test]
     async fn dropping_the_future_cancels_the_work_and_frees_the_permit() {
         let pool = Pool::new(1, &Limits::default());
         let (ended, end) = mpsc::channel();
-        let work = pool.run(dear(), move |cancel| {
-            while !cancel.is_set() {
+        let work = pool.run(dear(), move |turn| {
+            while turn.go_on() {
                 std::thread::yield_now();
             }
             ended.send(Instant::now()).unwrap();
@@ -267,7 +349,7 @@ mod tests {
         let (release, gate) = mpsc::channel::<()>();
         let busy = tokio::spawn({
             let pool = pool.clone();
-            async move { pool.run(dear(), move |_| Ok::<_, Refused>(gate.recv().is_err())).await }
+            async move { pool.run_apart(move |_| Ok::<_, Refused>(gate.recv().is_err())).await }
         });
         let waiting: Vec<_> = (0..QUEUE)
             .map(|_| {

@@ -5,7 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::{Cancel, Cancelled};
+use super::{Cancel, Cancelled, Turn};
 
 /// What was measured of one piece of work.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,12 +38,12 @@ struct Watched<'w, 'a> {
     looks_s: Vec<f64>,
 }
 
-/// Times all pieces of work in turns, and says of each when it has been `timed`.
+/// Times all pieces of work in turns, and says of each when it has been `timed`. Others have their turn between two looks.
 pub fn time(
     works: &mut [Work<'_>],
     bounds: Bounds,
     timed: &mut dyn FnMut(),
-    cancel: &Cancel,
+    turn: &Turn,
 ) -> Result<Vec<Timing>, Cancelled> {
     let goes_on = |watch: &Watched<'_, '_>| {
         let looks = watch.looks_s.len();
@@ -52,7 +52,7 @@ pub fn time(
     };
     let mut watched = Vec::with_capacity(works.len());
     for work in works {
-        let first = look(work, 1, cancel)?;
+        let first = look(work, 1, turn)?;
         let times = (bounds.look.as_secs_f64() / first.as_secs_f64().max(1e-9)).ceil().clamp(1.0, 1e6) as u32;
         let mut watch = Watched { work, times, spent: first, looks_s: Vec::new() };
         // The first look finds caches cold, which long work does not feel.
@@ -66,7 +66,7 @@ pub fn time(
     }
     while watched.iter().any(goes_on) {
         for watch in watched.iter_mut().filter(|watch| goes_on(watch)) {
-            let taken = look(watch.work, watch.times, cancel)?;
+            let taken = look(watch.work, watch.times, turn)?;
             watch.spent += taken;
             watch.looks_s.push(taken.as_secs_f64() / f64::from(watch.times));
             if !goes_on(watch) {
@@ -77,13 +77,13 @@ pub fn time(
     Ok(watched.into_iter().map(|watch| timing(watch.looks_s)).collect())
 }
 
-fn look(work: &mut Work<'_>, times: u32, cancel: &Cancel) -> Result<Duration, Cancelled> {
+fn look(work: &mut Work<'_>, times: u32, turn: &Turn) -> Result<Duration, Cancelled> {
     let start = Instant::now();
     for _ in 0..times {
-        work(cancel);
+        work(turn.cancel());
     }
     let taken = start.elapsed();
-    cancel.check().map(|()| taken)
+    turn.check().map(|()| taken)
 }
 
 fn timing(mut looks_s: Vec<f64>) -> Timing {
@@ -111,7 +111,7 @@ mod tests {
             }),
         ];
         let mut timed = Vec::new();
-        let timings = time(&mut works, BOUNDS, &mut || timed.push(long.get()), &Cancel::never()).unwrap();
+        let timings = time(&mut works, BOUNDS, &mut || timed.push(long.get()), &Turn::alone()).unwrap();
         drop(works);
         assert_eq!((timings[0].repeats, timings[1].repeats, long.get()), (5, 1, 1));
         assert_eq!(timed, [1, 1], "each is said once");
@@ -121,8 +121,7 @@ mod tests {
 
     #[test]
     fn what_nobody_waits_for_is_given_up() {
-        let cancel = Cancel::never();
         let mut works: Vec<Work<'_>> = vec![Box::new(|cancel| cancel.set())];
-        assert_eq!(time(&mut works, BOUNDS, &mut || {}, &cancel), Err(Cancelled));
+        assert_eq!(time(&mut works, BOUNDS, &mut || {}, &Turn::alone()), Err(Cancelled));
     }
 }

@@ -1,5 +1,5 @@
 //! Long work in turns: cut into blocks of a few milliseconds, each of which waits for its own permit, so that requests
-//! beside it wait for a block and not for the whole.
+//! beside it wait for a block and not for the whole. A block that takes longer passes its permit on in between.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,8 +8,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
 
 use super::cancel::{Cancel, Cancelled};
-use super::line::{Flow, Line, Permit};
+use super::line::{Flow, Line};
 use super::peer::Peer;
+use super::turn::Turn;
 
 /// What one piece of long work gets its turns from.
 #[derive(Debug)]
@@ -24,15 +25,10 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// The flag that says whether anybody still waits.
-    pub fn cancel(&self) -> &Cancel {
-        &self.cancel
-    }
-
     /// Does `work` when it is its turn.
-    pub fn take<T>(&self, work: impl FnOnce() -> T) -> Result<T, Cancelled> {
-        let _turn = self.turn().ok_or(Cancelled)?;
-        Ok(work())
+    pub fn take<T>(&self, work: impl FnOnce(&Turn) -> T) -> Result<T, Cancelled> {
+        let turn = self.turn().ok_or(Cancelled)?;
+        Ok(work(&turn))
     }
 
     /// Calls `work` for each block from 0 to `blocks` on all threads, in turns, and hands the results to `done` in the
@@ -41,19 +37,19 @@ impl Turns {
     pub fn spread<T: Send>(
         &self,
         blocks: usize,
-        work: impl Fn(usize) -> Option<T> + Sync,
+        work: impl Fn(usize, &Turn) -> Option<T> + Sync,
         done: impl FnMut(T) + Send,
     ) -> Result<(), Cancelled> {
         let next = AtomicUsize::new(0);
         let order = Mutex::new(Order { next: 0, waiting: BTreeMap::new(), done });
         let take = || {
             while next.load(Ordering::Relaxed) < blocks {
-                let Some(_turn) = self.turn() else { return };
+                let Some(turn) = self.turn() else { return };
                 let block = next.fetch_add(1, Ordering::Relaxed);
                 if block >= blocks {
                     return;
                 }
-                let Some(result) = work(block) else {
+                let Some(result) = work(block, &turn) else {
                     next.store(blocks, Ordering::Relaxed);
                     return;
                 };
@@ -72,14 +68,16 @@ impl Turns {
     }
 
     /// Waits, on this thread, as long as somebody waits for the result.
-    fn turn(&self) -> Option<Permit> {
-        self.runtime.block_on(async {
+    fn turn(&self) -> Option<Turn> {
+        let flow = Flow::Long(self.peer);
+        let permit = self.runtime.block_on(async {
             tokio::select! {
                 biased;
                 () = self.cancel.wait() => None,
-                permit = self.line.take(Flow::Long(self.peer)) => Some(permit),
+                permit = self.line.take(flow) => Some(permit),
             }
-        })
+        })?;
+        Some(Turn::permitted(self.cancel.clone(), permit, self.line.clone(), flow, self.runtime.clone()))
     }
 }
 
@@ -125,7 +123,7 @@ mod tests {
 
     fn squares(turns: &Turns, blocks: usize) -> Result<Vec<usize>, Failed> {
         let mut squares = Vec::new();
-        turns.spread(blocks, |block| Some(block * block), |square| squares.push(square))?;
+        turns.spread(blocks, |block, _| Some(block * block), |square| squares.push(square))?;
         Ok(squares)
     }
 
@@ -145,7 +143,7 @@ mod tests {
         let begun = Arc::new(AtomicU64::new(0));
         let count = begun.clone();
         let work = move |turns: &Turns| {
-            let work = |block| {
+            let work = |block, _: &Turn| {
                 count.fetch_add(1, Ordering::Relaxed);
                 (block != 3).then_some(())
             };
@@ -168,7 +166,7 @@ mod tests {
             let (pool, count, begun, steps) = (pool.clone(), blocks_done.clone(), begun.clone(), steps.clone());
             long.push(tokio::spawn(async move {
                 let work = move |turns: &Turns| {
-                    let block = |_| {
+                    let block = |_, _: &Turn| {
                         let _ = begun.send(());
                         // A block lasts until the test lets it end.
                         steps.lock().unwrap().recv().ok()?;

@@ -9,10 +9,10 @@ use super::encode;
 use super::etag::{EntityTag, Held};
 use super::leaf::Source;
 use super::negotiate::{self, Encoding, Format};
-use super::outlet::{Outlet, computed_at_once, computed_in_turns};
+use super::outlet::{Outlet, computed_apart, computed_in_turns};
 use super::problem::Problem;
 use super::request::Ask;
-use crate::compute::{Cancel, Cancelled, Pool, Price, Turns};
+use crate::compute::{Cancelled, Pool, Price, Turn, Turns};
 use crate::{BUILD, limits};
 
 /// A resource as far as negotiation and entity tags go.
@@ -38,7 +38,7 @@ impl Ask {
         resource: &Resource,
         canonical: &[u8],
         price: Price,
-        compute: impl FnOnce(Format, &Cancel) -> Result<Vec<u8>, Problem> + Send + 'static,
+        compute: impl FnOnce(Format, &Turn) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
         self.tagged(
@@ -94,14 +94,13 @@ impl Ask {
         &self,
         pool: &Pool,
         resource: &Resource,
-        price: Price,
         streamed: &[Format],
-        compute: impl FnOnce(Format, &Cancel, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+        compute: impl FnOnce(Format, &Turn, &mut Outlet) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
-        let (price, streams) = (with_drawing(price, format), streamed.contains(&format));
+        let streams = streamed.contains(&format);
         let pool = pool.of(self.peer);
-        let mut response = computed_at_once(&pool, price, (format, encoding), streams, compute).await?;
+        let mut response = computed_apart(&pool, (format, encoding), streams, compute).await?;
         response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
         Ok(response)
     }
@@ -129,12 +128,12 @@ async fn computed(
     format: Format,
     encoding: Encoding,
     price: Price,
-    compute: impl FnOnce(Format, &Cancel) -> Result<Vec<u8>, Problem> + Send + 'static,
+    compute: impl FnOnce(Format, &Turn) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
     // Compression is part of the work: it takes as long as computing, and ends with it when the client goes away.
-    let work = move |cancel: &Cancel| {
-        let bytes = compute(format, cancel)?;
-        Ok::<_, Problem>(if encoding == Encoding::Gzip { encode::gzip(&bytes, cancel)? } else { bytes })
+    let work = move |turn: &Turn| {
+        let bytes = compute(format, turn)?;
+        Ok::<_, Problem>(if encoding == Encoding::Gzip { encode::gzip(&bytes, turn)? } else { bytes })
     };
     let bytes = pool.run(with_drawing(price, format), work).await?;
     Ok(ok(format.media_type(), encoding, Bytes::from_owner(pool.hold(bytes))))
@@ -185,7 +184,7 @@ mod tests {
     async fn get(query: &str, headers: &[(&str, &str)], work: &'static AtomicUsize) -> Response<Body> {
         let request = headers.iter().fold(Request::get(query), |request, (name, value)| request.header(*name, *value));
         let ask = Ask::from_request(request.body(Body::empty()).unwrap(), &Limits::default()).await.unwrap();
-        let compute = |format: Format, _: &Cancel| {
+        let compute = |format: Format, _: &Turn| {
             work.fetch_add(1, Ordering::Relaxed);
             Ok(format.name().repeat(1000).into_bytes())
         };

@@ -19,7 +19,7 @@ use super::answer::ok;
 use super::encode;
 use super::negotiate::{Encoding, Format};
 use super::problem::Problem;
-use crate::compute::{Cancel, Cancelled, Pool, Price, Turns};
+use crate::compute::{Cancelled, Pool, Turn, Turns};
 
 /// Where work puts the bytes of its answer.
 #[derive(Debug)]
@@ -47,10 +47,10 @@ impl Outlet {
     }
 
     /// Sends an answer as a whole.
-    pub fn send_whole(&mut self, answer: Vec<u8>, cancel: &Cancel) -> Result<(), Cancelled> {
+    pub fn send_whole(&mut self, answer: Vec<u8>, turn: &Turn) -> Result<(), Cancelled> {
         match &mut self.gzip {
             None => self.send(answer),
-            Some(gzip) => encode::feed(gzip, &answer, cancel)?,
+            Some(gzip) => encode::feed(gzip, &answer, turn)?,
         }
         Ok(())
     }
@@ -118,22 +118,21 @@ pub(super) async fn computed_in_turns(
     in_pieces(pool, (format, encoding), streams, work).await
 }
 
-/// The same of work that keeps its permit from its beginning to its end.
-pub(super) async fn computed_at_once(
+/// The same of work that is done on one thread.
+pub(super) async fn computed_apart(
     pool: &Pool,
-    price: Price,
     (format, encoding): (Format, Encoding),
     streams: bool,
-    compute: impl FnOnce(Format, &Cancel, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+    compute: impl FnOnce(Format, &Turn, &mut Outlet) -> Result<(), Problem> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
     let working = pool.clone();
     let work = |mut outlet: Outlet| async move {
-        let compute = move |cancel: &Cancel| {
-            compute(format, cancel, &mut outlet)?;
+        let compute = move |turn: &Turn| {
+            compute(format, turn, &mut outlet)?;
             outlet.finish();
             Ok(())
         };
-        working.run(price, compute).await
+        working.run_apart(compute).await
     };
     in_pieces(pool, (format, encoding), streams, work).await
 }

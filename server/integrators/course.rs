@@ -23,8 +23,8 @@ impl From<map::Ending> for Halt {
     }
 }
 
-/// Steps between two questions whether to go on: under a millisecond.
-const STEPS_PER_QUESTION: u64 = 2048;
+/// Steps between two questions whether to go on: far under a millisecond.
+const STEPS_PER_QUESTION: u64 = 128;
 
 /// A run that a method is on.
 pub(super) struct Course<'a> {

@@ -6,14 +6,14 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use equipoise_physics::demand::{Demand, Meter};
-use equipoise_physics::map::{Contact, Ending, Orbit};
+use equipoise_physics::map::{Contact, Ending, LOOK, Orbit};
 use equipoise_physics::model::Model;
 use equipoise_physics::scene::Scene;
 
 use super::address::Asked;
 use super::messages::Impact;
 use super::run::Run;
-use crate::compute::{Cancel, Cancelled, Limit, OverBudget, Price};
+use crate::compute::{Cancelled, Limit, OverBudget, Price, Turn};
 use crate::http::Problem;
 use crate::limits;
 use crate::wire::outcome::Outcome;
@@ -121,11 +121,12 @@ impl Course {
     }
 }
 
-/// A bounce, and half of one for every half turn of the flight after it, whose contact is looked for turn by turn.
+/// A bounce, and one more for each turn of the flight after it, whose contact is looked for turn by turn: in a few of them, however
+/// many there are.
 fn price(contact: &Contact) -> Price {
     let spin = contact.strike.map_or(0.0, |strike| strike.after.theta_dot.abs());
     let turns = spin * contact.flight_time.unwrap_or_default() / (2.0 * PI);
-    Price::bounces(1 + turns as u64)
+    Price::bounces(1 + (turns as u64).min(limits::SPINNING_PRICE))
 }
 
 /// Why there is nothing to catch up with.
@@ -142,7 +143,7 @@ pub enum NotCaughtUp {
 ///
 /// # Errors
 /// Where that costs more than `limit`.
-pub fn catch_up(asked: &Asked, until: f64, limit: &Limit, cancel: &Cancel) -> Result<Course, NotCaughtUp> {
+pub fn catch_up(asked: &Asked, until: f64, limit: &Limit, turn: &Turn) -> Result<Course, NotCaughtUp> {
     let Asked { run, from } = asked;
     let mut course = Course::new(run);
     let mut begin = None;
@@ -159,8 +160,8 @@ pub fn catch_up(asked: &Asked, until: f64, limit: &Limit, cancel: &Cancel) -> Re
         let (_, price) = course.advance(run);
         spent = spent.and(price).within(limit).map_err(NotCaughtUp::OverBudget)?;
         if spent.as_bounces() >= looked {
-            looked = spent.as_bounces() + 1024;
-            cancel.check().map_err(|Cancelled| NotCaughtUp::Cancelled)?;
+            looked = spent.as_bounces() + LOOK;
+            turn.check().map_err(|Cancelled| NotCaughtUp::Cancelled)?;
         }
     }
     Ok(begin.unwrap_or(course))
@@ -243,13 +244,13 @@ mod tests {
         let all = contacts(&run, 30);
         let until = all[19].t;
         let begin =
-            |from| catch_up(&Asked { run: run.clone(), from }, until, &PLENTY, &Cancel::never()).unwrap().next_n();
+            |from| catch_up(&Asked { run: run.clone(), from }, until, &PLENTY, &Turn::alone()).unwrap().next_n();
         assert_eq!(
             [begin(None), begin(Some(7)), begin(Some(20)), begin(Some(21)), begin(Some(25))].map(Option::unwrap),
             [20, 7, 20, 21, 21]
         );
         let early = Asked { run: run.clone(), from: None };
-        assert_eq!(catch_up(&early, -5.0, &PLENTY, &Cancel::never()).unwrap().next_n(), Some(1));
+        assert_eq!(catch_up(&early, -5.0, &PLENTY, &Turn::alone()).unwrap().next_n(), Some(1));
     }
 
     #[test]
@@ -257,18 +258,18 @@ mod tests {
         let limit = Limit { most: 100, ..PLENTY };
         let ask = |from| Asked { run: case("case-1"), from };
         let until = contacts(&case("case-1"), 200)[49].t;
-        assert!(catch_up(&ask(None), until, &limit, &Cancel::never()).is_ok());
-        let over = catch_up(&ask(Some(1)), until, &limit, &Cancel::never()).unwrap_err();
+        assert!(catch_up(&ask(None), until, &limit, &Turn::alone()).is_ok());
+        let over = catch_up(&ask(Some(1)), until, &limit, &Turn::alone()).unwrap_err();
         assert!(matches!(over, NotCaughtUp::OverBudget(_)));
-        assert!(catch_up(&ask(None), 1e6, &limit, &Cancel::never()).is_err());
+        assert!(catch_up(&ask(None), 1e6, &limit, &Turn::alone()).is_err());
     }
 
     #[test]
     fn a_run_that_has_ended_is_told_from_its_last_impact() {
         let run = case("case-3");
-        let course = catch_up(&Asked { run: run.clone(), from: None }, 1e6, &PLENTY, &Cancel::never()).unwrap();
+        let course = catch_up(&Asked { run: run.clone(), from: None }, 1e6, &PLENTY, &Turn::alone()).unwrap();
         assert_eq!(course.next_n(), Some(49));
-        let course = catch_up(&Asked { run, from: Some(60) }, 1e6, &PLENTY, &Cancel::never()).unwrap();
+        let course = catch_up(&Asked { run, from: Some(60) }, 1e6, &PLENTY, &Turn::alone()).unwrap();
         assert_eq!(course.outcome().unwrap().kind, "sinking");
     }
 }

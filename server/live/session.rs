@@ -21,7 +21,7 @@ use super::messages::{self, Ack, Frame, Hello, Said};
 use super::order::Order;
 use super::outbox::Outbox;
 use super::run::Run;
-use crate::compute::{Cancel, Limit, Pool, Price};
+use crate::compute::{Limit, Pool, Turn};
 use crate::http::{FieldError, Problem};
 use crate::limits;
 use crate::wire::scene::has_angle;
@@ -134,13 +134,13 @@ pub async fn caught_up(asked: &Asked, place: &Place) -> Result<Course, Problem> 
     let until = asked.run.clock.run_time(wall_now());
     let limit = place.bounds.catch_up;
     let little = Limit { most: limit.most.min(limits::INLINE_BOUNCES), ..limit };
-    let course = match course::catch_up(asked, until, &little, &Cancel::never()) {
-        Err(NotCaughtUp::OverBudget(_)) => {
+    let course = match place.pool.run_inline(|turn| course::catch_up(asked, until, &little, turn)).await {
+        None | Some(Err(NotCaughtUp::OverBudget(_))) => {
             let asked = asked.clone();
-            let work = move |cancel: &Cancel| course::catch_up(&asked, until, &limit, cancel).map_err(Problem::from);
-            place.pool.run(Price::bounces(limit.most), work).await?
+            let work = move |turn: &Turn| course::catch_up(&asked, until, &limit, turn).map_err(Problem::from);
+            place.pool.run_apart(work).await?
         }
-        other => other?,
+        Some(other) => other?,
     };
     place.bounces.inc_by(course.next_n().unwrap_or_default());
     Ok(course)
@@ -195,9 +195,11 @@ impl Session {
         self.greet(wall_now());
         loop {
             while self.catching_up && self.outbox.is_empty() {
+                let _slot = self.place.pool.slot().await;
                 self.pump(wall_now());
             }
             if !self.catching_up && Instant::now() >= self.next_pump {
+                let _slot = self.place.pool.slot().await;
                 self.place.lags.observe(self.next_pump.elapsed().as_secs_f64());
                 self.pump(wall_now());
             }
@@ -218,6 +220,7 @@ impl Session {
                         None | Some(Ok(Message::Close(_))) => return None,
                         Some(Err(_)) => return Some((close_code::SIZE, "a message too large, or no WebSocket frame")),
                         Some(Ok(message)) => {
+                            let _slot = self.place.pool.slot().await;
                             if let Some(close) = self.hear(&message) {
                                 return Some(close);
                             }

@@ -10,9 +10,13 @@ use crate::number::{Number, Real};
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
-/// Most pieces that one flight may be cut into. The ranges of a scene allow 25,000; a run whose energy feedback drives it
-/// beyond that ends as `diverged`.
-pub const MAX_PIECES: u32 = 1 << 17;
+/// Most pieces that one flight may be cut into, whatever its gravity and spin.
+///
+/// The contact point can be at y = 0 only while the centre of gravity is within l of it: once on the way up, once on the way
+/// down. In there it is at or above y = 0 when it points up and at or below it when it points down, so it comes down within
+/// three half turns. A turn has two inflections: that is at most 5 pieces each way. The rest is for rounding; a flight of so
+/// many turns that its angle has no digits left passes the limit, and its run ends as `diverged`.
+pub const MAX_PIECES: u32 = 32;
 
 /// Most Newton steps for one root: a double root (grazing) halves its error a step, all others square it.
 const MAX_STEPS: u32 = 128;
@@ -52,7 +56,7 @@ pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, 
     let rises = start.slope > 0.0 || (start.slope == 0.0 && start.bend > 0.0);
     let above = start.value > 0.0 || (start.value == 0.0 && rises);
     if flight.bulge() > flight.gravity {
-        return first_descent_spinning(*flight, Uncounted, above, limit);
+        return first_descent_spinning(*flight, Uncounted, above, limit, &mut { MAX_PIECES });
     }
     if !above && start.slope <= 0.0 {
         return Ok(None);
@@ -157,11 +161,24 @@ fn guess_from_above(flight: &Flight) -> f64 {
 
 /// The time by which the centre of gravity has fallen to y = −l, so that the contact came before or is there.
 fn latest_contact(flight: &Flight) -> f64 {
+    passes(flight, room(flight)).1
+}
+
+/// The time before which the centre of gravity is lower than y = −l; none where it stays so.
+fn earliest_contact(flight: &Flight) -> Option<f64> {
+    let (room, y_dot) = (room(flight), flight.start.y_dot);
+    if room >= 0.0 {
+        return Some(0.0);
+    }
+    (y_dot > 0.0 && y_dot * y_dot + 2.0 * flight.gravity * room >= 0.0).then(|| passes(flight, room).0)
+}
+
+/// Height of the centre of gravity above y = −l at the start, m.
+fn room(flight: &Flight) -> f64 {
     let (sin, cos) = flight.sin_cos_theta;
     // 1 + cos θ, near a rod that stands on its head too.
     let rise = if cos < 0.0 { sin * sin / (1.0 - cos) } else { 1.0 + cos };
-    let room = flight.clearance + flight.contact_distance * rise;
-    passes(flight, room).1
+    flight.clearance + flight.contact_distance * rise
 }
 
 /// When the centre of gravity was and will be `drop`, m, lower than at the start, s: the roots of ½Gt² − ẏt − d, neither from a
@@ -259,11 +276,12 @@ impl<N: Real> Step<N> {
 #[cold]
 #[inline(never)]
 fn first_contact_spinning(flight: Flight, eye: impl Eye) -> Result<f64, TooManyPieces> {
-    let t = first_descent_spinning(flight, eye, true, f64::INFINITY)?;
+    let t = first_descent_spinning(flight, eye, true, f64::INFINITY, &mut { MAX_PIECES })?;
     Ok(t.unwrap_or_else(|| latest_contact(&flight)))
 }
 
-/// [`first_descent_before`] where l θ̇² > G, of a point that starts `above` y = 0 or below it.
+/// [`first_descent_before`] where l θ̇² > G, of a point that starts `above` y = 0 or below it. `budget` is how many pieces it may
+/// look at, and then how many of them are left.
 #[cold]
 #[inline(never)]
 fn first_descent_spinning(
@@ -271,22 +289,24 @@ fn first_descent_spinning(
     eye: impl Eye,
     mut above: bool,
     limit: f64,
+    budget: &mut u32,
 ) -> Result<Option<f64>, TooManyPieces> {
     let pieces = Pieces::new(&flight, eye);
     let latest = latest_contact(&flight);
     let end = latest.min(limit);
-    // While the centre of gravity is higher than l, the rod cannot reach the table.
+    // While the centre of gravity is lower than −l, the point is below the table.
+    let Some(enters) = earliest_contact(&flight) else { return Ok(None) };
+    // While it is higher than l, the rod cannot reach the table.
     let State { y_dot, .. } = flight.start;
     let (sin, cos) = flight.sin_cos_theta;
     let versine = if cos > 0.0 { sin * sin / (1.0 + cos) } else { 1.0 - cos };
     let height = flight.clearance - flight.contact_distance * versine;
     let reach = y_dot * y_dot + 2.0 * flight.gravity * height;
     let (leaves, returns) = if reach > 0.0 { passes(&flight, height) } else { (end, end) };
-    let mut budget = MAX_PIECES;
-    for (from, to) in [(0.0, leaves.min(end)), (returns.max(0.0), end)] {
-        above |= reach > 0.0 && from > 0.0;
+    for (from, to, comes_back) in [(enters, leaves.min(end), false), (returns.max(enters), end, returns > 0.0)] {
+        above |= reach > 0.0 && comes_back;
         if from < to
-            && let Some(t) = pieces.first_down_crossing(from, to, &mut above, &mut budget)?
+            && let Some(t) = pieces.first_down_crossing(from, to, &mut above, budget)?
         {
             return Ok(Some(t));
         }
@@ -411,3 +431,7 @@ impl<'a, E: Eye> Pieces<'a, E> {
         Some(t)
     }
 }
+
+#[cfg(test)]
+#[path = "contact_time_tests.rs"]
+mod tests;

@@ -4,7 +4,7 @@
 //! Every run is watched for the same number of contacts, so none is lost sight of before the last: the survival curve of
 //! Kaplan and Meier is the share of runs still going, and its intervals are binomial. Not here: which threads do it.
 
-use crate::map::{Ending, run};
+use crate::map::{Ending, Looks, run};
 use crate::outcome::Outcome;
 use crate::scene::Scene;
 use std::ops::Range;
@@ -66,11 +66,15 @@ impl Ensemble {
         (0..count).map(|index| 1 + index * (self.impacts - 1) / count.saturating_sub(1).max(1)).collect()
     }
 
-    /// Some of the runs, counted from 0; none if `go_on` said `false`, which is asked every thousand bounces.
+    /// Some of the runs, counted from 0; none if `go_on` said `false`, which is asked every hundred contacts.
     pub fn runs(&self, numbers: Range<u64>, go_on: &mut dyn FnMut() -> bool) -> Option<Runs> {
         let watched = self.watched();
         let mut found = Runs { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
+        let mut looks = Looks::new(go_on);
         for number in numbers {
+            if !looks.begin() {
+                return None;
+            }
             let mut orbit = match self.scene.orbit_of(number) {
                 Ok(orbit) => orbit,
                 Err(none) => {
@@ -86,14 +90,11 @@ impl Ensemble {
                     }
                     next += 1;
                 }
-                !contact.n.is_multiple_of(1024) || go_on()
+                looks.contact()
             })?;
             found.ends.push(End { impacts: orbit.contacts(), outcome: ending.into() });
-            if !go_on() {
-                return None;
-            }
         }
-        Some(found)
+        go_on().then_some(found)
     }
 }
 

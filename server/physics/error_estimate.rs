@@ -11,7 +11,7 @@ use crate::extended;
 use crate::flight::Flight;
 use crate::friction::{Friction, Slide};
 use crate::impact::{Rod, State, Strike};
-use crate::map::Contact;
+use crate::map::{Contact, LOOK};
 use crate::model::{Model, Rung};
 use crate::number::Number;
 use crate::scene::Scene;
@@ -131,7 +131,7 @@ impl Scene {
                 return Some(n);
             }
             let contact = orbit.advance();
-            if contact.flight_time.is_none() || (n.is_multiple_of(1024) && !go_on()) {
+            if contact.flight_time.is_none() || (n.is_multiple_of(LOOK) && !go_on()) {
                 break;
             }
             estimate.pass(&contact);

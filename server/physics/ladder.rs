@@ -4,7 +4,7 @@
 
 use crate::demand::{Demand, Meter};
 use crate::impact::State;
-use crate::map::Ending;
+use crate::map::{Ending, LOOK};
 use crate::method::Method;
 use crate::model::{Forced, Rung};
 use crate::scene::{Name, Scene, Value};
@@ -99,7 +99,7 @@ impl Scene {
                 let contact = &impact.contact;
                 meter.look(contact);
                 course.push(Here { t: contact.t, x: contact.x, state: contact.state });
-                !contact.n.is_multiple_of(1024) || go_on()
+                !contact.n.is_multiple_of(LOOK) || go_on()
             });
             let run = match run {
                 Err(why) => Err(why),

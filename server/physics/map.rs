@@ -14,6 +14,41 @@ use crate::settling::{stay, time_to_rest};
 /// doubles no longer resolve a flight, and only a wrong energy feedback gets there.
 pub const SPEED_LIMIT: f64 = 1e6;
 
+/// Contacts between two questions of whether to go on: far less than a millisecond for any body, its derivatives included.
+pub const LOOK: u64 = 128;
+
+/// What it takes to begin a run, in contacts.
+const BEGINNING: u64 = 8;
+
+/// Asks whether to go on, every [`LOOK`] contacts of many runs, each of which may be shorter.
+pub(crate) struct Looks<'a> {
+    contacts: u64,
+    go_on: &'a mut dyn FnMut() -> bool,
+}
+
+impl<'a> Looks<'a> {
+    /// Nothing done yet.
+    pub(crate) fn new(go_on: &'a mut dyn FnMut() -> bool) -> Self {
+        Self { contacts: 0, go_on }
+    }
+
+    /// Whether to begin a run.
+    pub(crate) fn begin(&mut self) -> bool {
+        self.pass(BEGINNING)
+    }
+
+    /// Whether to go on after a contact.
+    pub(crate) fn contact(&mut self) -> bool {
+        self.pass(1)
+    }
+
+    fn pass(&mut self, contacts: u64) -> bool {
+        let before = self.contacts / LOOK;
+        self.contacts += contacts;
+        self.contacts / LOOK == before || (self.go_on)()
+    }
+}
+
 /// What decides, beside the physics, when a run ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {

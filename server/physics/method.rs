@@ -8,7 +8,7 @@ use crate::double_double::DoubleDouble;
 use crate::extended;
 use crate::impact::State;
 use crate::linear::LinearSolution;
-use crate::map::{self, Body, Coming, Contact, Ending};
+use crate::map::{self, Body, Coming, Contact, Ending, LOOK};
 use crate::model::Rung;
 use crate::scene::Scene;
 use crate::stability::Class;
@@ -156,7 +156,7 @@ impl Scene {
                 return false;
             }
             largest = f64::max(largest, bound);
-            !impact.contact.n.is_multiple_of(1024) || go_on()
+            !impact.contact.n.is_multiple_of(LOOK) || go_on()
         });
         match (run, lost) {
             (Err(why), _) => Some(Reach::None(why)),

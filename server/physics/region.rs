@@ -4,7 +4,7 @@
 
 use crate::friction::Friction;
 use crate::impact::Rod;
-use crate::map::run;
+use crate::map::{Looks, run};
 use crate::scene::{Draft, Name, Scene, Value};
 use crate::stability::Linear;
 use crate::sweep::{End, Outcome, Start, sweep, sweep_rough};
@@ -72,6 +72,9 @@ pub struct Cell {
     pub outcome: Option<Outcome>,
 }
 
+/// Cells between two looks at whether to go on, where there are no runs: the linear analysis of the dearest takes 10 µs.
+const CELLS_A_LOOK: usize = 64;
+
 const NOTHING: Cell = Cell { value: None, outcome: None };
 
 impl Region {
@@ -93,13 +96,14 @@ impl Region {
         corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(|scene| in_lanes(&scene).is_some()))
     }
 
-    /// Some cells, counted row after row; none if `go_on` said `false`, which is asked every few thousand bounces.
+    /// Some cells, counted row after row; none if `go_on` said `false`, which is asked every hundred
+    /// contacts, and for lanes every few thousand.
     pub fn cells(&self, numbers: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Cell>> {
         let first = numbers.start;
         let mut cells = vec![NOTHING; numbers.len()];
         if matches!(self.quantity, Quantity::Residue | Quantity::SpectralRadius) {
             for (index, cell) in cells.iter_mut().enumerate() {
-                if index.is_multiple_of(4096) && !go_on() {
+                if index.is_multiple_of(CELLS_A_LOOK) && !go_on() {
                     return None;
                 }
                 cell.value = self.linear((first + index) % self.x.count, (first + index) / self.x.count);
@@ -150,13 +154,14 @@ impl Region {
                 },
             );
         }
-        let mut bounces = 0;
-        for (index, scene) in alone {
-            let end = if stopped { None } else { run_alone(&scene, self.impacts, &mut bounces, go_on) };
-            stopped |= end.is_none();
-            cells[index] = end.map_or(NOTHING, |end| self.cell(&end));
+        if stopped {
+            return None;
         }
-        (!stopped).then_some(cells)
+        let mut looks = Looks::new(go_on);
+        for (index, scene) in alone {
+            cells[index] = self.cell(&run_alone(&scene, self.impacts, &mut looks)?);
+        }
+        Some(cells)
     }
 
     fn cell(&self, end: &End) -> Cell {
@@ -239,7 +244,10 @@ fn start_of(scene: &Scene) -> Option<(Start, Option<Friction>)> {
 }
 
 /// None once `go_on` said `false`. What never meets the table has ended before its first contact.
-fn run_alone(scene: &Scene, impacts: u64, bounces: &mut u64, go_on: &mut dyn FnMut() -> bool) -> Option<End> {
+fn run_alone(scene: &Scene, impacts: u64, looks: &mut Looks<'_>) -> Option<End> {
+    if !looks.begin() {
+        return None;
+    }
     let mut orbit = match scene.orbit() {
         Ok(orbit) => orbit,
         Err(none) => return Some(End { impacts: 0, outcome: none.ending(0.0, 0.0).into(), max_theta: 0.0 }),
@@ -247,9 +255,7 @@ fn run_alone(scene: &Scene, impacts: u64, bounces: &mut u64, go_on: &mut dyn FnM
     let mut max_theta: f64 = 0.0;
     let ending = run(&mut orbit, impacts, |contact| {
         max_theta = max_theta.max(contact.state.theta.abs());
-        // Over all runs of a block: one alone may be shorter.
-        *bounces += 1;
-        !bounces.is_multiple_of(1024) || go_on()
+        looks.contact()
     })?;
     Some(End { impacts: orbit.contacts(), outcome: ending.into(), max_theta })
 }

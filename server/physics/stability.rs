@@ -8,7 +8,7 @@ use crate::control::ClosedLoop;
 use crate::demand::{Demand, Meter};
 use crate::grip::Grip;
 use crate::jacobian::{modulus, sort_eigenvalues};
-use crate::map::{Ending, run};
+use crate::map::{Ending, LOOK, run};
 use crate::model::Rung;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::trig;
@@ -403,7 +403,7 @@ impl Scene {
             meter.look(contact);
             max_theta = max_theta.max(contact.state.theta.abs());
             t = contact.t;
-            !contact.n.is_multiple_of(1024) || go_on()
+            !contact.n.is_multiple_of(LOOK) || go_on()
         })?;
         Some(Nonlinear { ending, impacts: orbit.contacts(), t, max_theta, demand: meter.most })
     }

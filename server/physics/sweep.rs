@@ -104,7 +104,7 @@ struct Sweep<S, Next, Done, GoOn> {
 }
 
 /// How often `go_on` is asked, in bounces of all lanes.
-const LOOK: u64 = 1024;
+const LOOK: u64 = 256;
 
 impl<S, Next, Done, GoOn> Work for Sweep<S, Next, Done, GoOn>
 where

@@ -5,9 +5,9 @@
 
 use std::sync::{Arc, LazyLock};
 
-use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::tiny_skia::{Pixmap, PixmapMut, Transform};
 use resvg::usvg::fontdb::Database;
-use resvg::usvg::{Options, Tree};
+use resvg::usvg::{Group, Node, Options, Tree};
 
 use crate::limits;
 
@@ -36,7 +36,7 @@ pub enum NoPixels {
     Unfit,
 }
 
-/// Draws an SVG of this server at its own size, a pixel for each px. `go_on` is asked between the steps, some 10 ms each.
+/// Draws an SVG of this server at its own size, a pixel for each px. `go_on` is asked between the steps.
 pub fn png(svg: &str, go_on: impl Fn() -> bool) -> Result<Vec<u8>, NoPixels> {
     let check = || if go_on() { Ok(()) } else { Err(NoPixels::Cancelled) };
     check()?;
@@ -48,9 +48,27 @@ pub fn png(svg: &str, go_on: impl Fn() -> bool) -> Result<Vec<u8>, NoPixels> {
         return Err(NoPixels::Unfit);
     }
     let mut pixels = Pixmap::new(size.width(), size.height()).ok_or(NoPixels::Unfit)?;
-    resvg::render(&tree, Transform::identity(), &mut pixels.as_mut());
-    check()?;
+    draw(tree.root(), &mut pixels.as_mut(), &check)?;
     written(size.width(), size.height(), &pixels.take_demultiplied()).map_err(|_| NoPixels::Unfit)
+}
+
+/// As [`resvg::render`], node by node.
+fn draw(group: &Group, pixels: &mut PixmapMut<'_>, check: &impl Fn() -> Result<(), NoPixels>) -> Result<(), NoPixels> {
+    for node in group.children() {
+        check()?;
+        match node {
+            Node::Group(group) if !group.should_isolate() && group.transform().is_identity() => {
+                draw(group, pixels, check)?;
+            }
+            // Drawn alone, a node is moved to the origin; this moves it back. One without a size has no pixels.
+            _ => {
+                if let Some(place) = node.abs_layer_bounding_box() {
+                    resvg::render_node(node, Transform::from_translate(place.x(), place.y()), pixels);
+                }
+            }
+        }
+    }
+    check()
 }
 
 fn written(width: u32, height: u32, pixels: &[u8]) -> Result<Vec<u8>, png::EncodingError> {

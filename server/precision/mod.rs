@@ -9,7 +9,7 @@ mod runs;
 use equipoise_physics::scene::Scene;
 
 use crate::compute::stopwatch::{self, Bounds, Timing, Work};
-use crate::compute::{Cancel, Cancelled};
+use crate::compute::{Cancel, Cancelled, Turn};
 use crate::limits;
 use runs::{Done, Subject};
 
@@ -228,9 +228,9 @@ pub fn chart(
     impacts: u64,
     methods: &[Method],
     progress: &mut dyn FnMut(u64, u64),
-    cancel: &Cancel,
+    turn: &Turn,
 ) -> Result<Chart, Cancelled> {
-    let subject = Subject::new(scene, impacts);
+    let subject = Subject::new(scene, impacts, turn)?;
     let reference = subject.reference();
     let scale = power_of_ten(reference.t / reference.impacts.max(1) as f64);
     let mut notes = Vec::new();
@@ -251,7 +251,7 @@ pub fn chart(
     progress(0, of);
     let mut points = Vec::with_capacity(wanted.len());
     for (method, setting) in wanted {
-        let done = subject.run(method.kind, setting, cancel)?;
+        let done = subject.run(method.kind, setting, turn)?;
         points.push(point(&subject, method, setting, done));
         progress(points.len() as u64, of);
     }
@@ -267,7 +267,7 @@ pub fn chart(
             limits::PRECISION_STEPS
         ));
     }
-    measure(&subject, &mut points, progress, cancel)?;
+    measure(&subject, &mut points, progress, turn)?;
     mark(&mut points, |point| point.cost_ns().map(|cost| cost[1]), |point| &mut point.pareto);
     mark(&mut points, Point::evaluations_per_impact, |point| &mut point.pareto_evaluations);
     Ok(Chart { reference, points, notes })
@@ -317,7 +317,7 @@ fn measure(
     subject: &Subject<'_>,
     points: &mut [Point],
     progress: &mut dyn FnMut(u64, u64),
-    cancel: &Cancel,
+    turn: &Turn,
 ) -> Result<(), Cancelled> {
     let of = 2 * points.len() as u64;
     let mut ran: Vec<&mut Point> = points.iter_mut().filter(|point| point.outcome != "unavailable").collect();
@@ -335,7 +335,7 @@ fn measure(
         done += 1;
         progress(done, of);
     };
-    let timings = stopwatch::time(&mut works, bounds, &mut timed, cancel)?;
+    let timings = stopwatch::time(&mut works, bounds, &mut timed, turn)?;
     for (point, timing) in ran.iter_mut().zip(timings) {
         point.timing = Some(timing);
     }

@@ -7,13 +7,13 @@ use equipoise_physics::double_double::DoubleDouble;
 use equipoise_physics::extended;
 use equipoise_physics::impact::{Rod, State};
 use equipoise_physics::linear::LinearSolution;
-use equipoise_physics::map::{self, Ending, Orbit, Rules};
+use equipoise_physics::map::{self, Ending, LOOK, Orbit, Rules};
 use equipoise_physics::model::Model;
 use equipoise_physics::number::Number;
 use equipoise_physics::scene::Scene;
 
 use super::{Kind, Reference, Setting};
-use crate::compute::{Cancel, Cancelled};
+use crate::compute::{Cancel, Cancelled, Turn};
 use crate::integrators::{self, Location, simulate};
 use crate::limits;
 
@@ -39,20 +39,22 @@ pub(super) struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    pub(super) fn new(scene: &'a Scene, impacts: u64) -> Self {
+    pub(super) fn new(scene: &'a Scene, impacts: u64, turn: &Turn) -> Result<Self, Cancelled> {
         let zero = DoubleDouble::from_f64(0.0);
         let mut state = State { theta: zero, x_dot: zero, y_dot: zero, theta_dot: zero };
         let mut reference = Reference { outcome: Ending::Completed.name(), impacts: 0, t: 0.0, rounding: 0.0 };
         let ending = run_extended(scene, impacts, |contact| {
             state = contact.state;
             (reference.impacts, reference.t) = (contact.n, contact.t.to_f64());
+            !contact.n.is_multiple_of(LOOK) || turn.go_on()
         });
+        turn.check()?;
         reference.outcome = ending.map_or("diverged", Ending::name);
         let mut subject =
             Self { scene, impacts, model: scene.model(), linear: scene.linear_solution(), reference, state };
         let size = subject.size(&[state.theta, state.x_dot, state.y_dot, state.theta_dot].map(DoubleDouble::to_f64));
         subject.reference.rounding = f64::EPSILON * size;
-        subject
+        Ok(subject)
     }
 
     pub(super) fn reference(&self) -> Reference {
@@ -88,9 +90,9 @@ impl<'a> Subject<'a> {
         &self,
         kind: Kind,
         setting: Option<Setting>,
-        cancel: &Cancel,
+        turn: &Turn,
     ) -> Result<Result<Done, String>, Cancelled> {
-        cancel.check()?;
+        turn.check()?;
         Ok(match kind {
             Kind::Map => self.map(self.rules()),
             Kind::MapFree => self.map(self.free()),
@@ -109,7 +111,7 @@ impl<'a> Subject<'a> {
                 evaluations: Some(self.impacts),
             }),
             _ => match self.general(kind, setting) {
-                Ok((method, rod)) => Ok(self.simulated(method, &rod, cancel)?),
+                Ok((method, rod)) => Ok(self.simulated(method, &rod, turn)?),
                 Err(reason) => Err(reason),
             },
         })
@@ -120,7 +122,11 @@ impl<'a> Subject<'a> {
         match kind {
             Kind::Map => _ = black_box(self.bounce(self.rules(), |_| ())),
             Kind::MapFree => _ = black_box(self.bounce(self.free(), |_| ())),
-            Kind::Extended => _ = black_box(run_extended(self.scene, self.impacts, |contact| _ = black_box(contact.n))),
+            Kind::Extended => {
+                _ = black_box(run_extended(self.scene, self.impacts, |contact| {
+                    black_box(contact.n) > 0 && !cancel.is_set()
+                }))
+            }
             Kind::Linear => {
                 if let Ok(solution) = &self.linear {
                     (1..=self.impacts).for_each(|n| _ = black_box(solution.impact(n)));
@@ -128,7 +134,7 @@ impl<'a> Subject<'a> {
             }
             _ => {
                 if let Ok((method, rod)) = self.general(kind, setting) {
-                    _ = black_box(self.simulate(method, &rod, cancel));
+                    _ = black_box(self.simulate(method, &rod, &mut || !cancel.is_set()));
                 }
             }
         }
@@ -189,14 +195,19 @@ impl<'a> Subject<'a> {
         Ok((method, rod))
     }
 
-    fn simulate(&self, method: integrators::Method, rod: &Rod, cancel: &Cancel) -> Option<integrators::Simulation> {
+    fn simulate(
+        &self,
+        method: integrators::Method,
+        rod: &Rod,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<integrators::Simulation> {
         let (rules, release) = (self.rules(), self.scene.release());
         let most = limits::PRECISION_STEPS;
-        simulate(method, (rod, &rules, release), self.impacts, most, &mut || !cancel.is_set())
+        simulate(method, (rod, &rules, release), self.impacts, most, go_on)
     }
 
-    fn simulated(&self, method: integrators::Method, rod: &Rod, cancel: &Cancel) -> Result<Done, Cancelled> {
-        let simulation = self.simulate(method, rod, cancel).ok_or(Cancelled)?;
+    fn simulated(&self, method: integrators::Method, rod: &Rod, turn: &Turn) -> Result<Done, Cancelled> {
+        let simulation = self.simulate(method, rod, &mut || turn.go_on()).ok_or(Cancelled)?;
         let last = simulation.impacts.last();
         let work = simulation.work;
         Ok(Done {
@@ -209,10 +220,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-fn run_extended(scene: &Scene, impacts: u64, mut visit: impl FnMut(&extended::Contact)) -> Option<Ending> {
+fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::Contact) -> bool) -> Option<Ending> {
     let mut orbit = scene.extended_orbit().ok()?;
-    extended::run(&mut orbit, impacts, |contact| {
-        visit(contact);
-        true
-    })
+    extended::run(&mut orbit, impacts, visit)
 }

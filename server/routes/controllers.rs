@@ -7,7 +7,7 @@ use axum::http::Response;
 use axum::routing::get;
 
 use super::App;
-use crate::compute::{Cancel, Price};
+use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::limits;
 use crate::wire::controller::{Controller, Request};
@@ -24,14 +24,16 @@ pub(super) async fn controllers(State(app): State<App>, ask: Ask) -> Result<Resp
     let request = ask.read(Request::read)?;
     let price = Price::bounces(limits::CONTROLLER_PRICE).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&request.scene, &request.rest());
-    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
         let controller =
             Controller::compute(&request).map_err(|(pointer, detail)| Problem::invalid_at(pointer, detail))?;
         match format {
-            Format::Csv => Ok(controller.to_table().to_csv()),
-            Format::Ndjson => Ok(controller.to_table().to_ndjson(&controller.end())),
-            Format::Svg | Format::Png => super::picture(controller.to_picture(), format, cancel),
-            _ => super::json(&controller),
+            Format::Csv => Ok(controller.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?),
+            Format::Ndjson => {
+                Ok(controller.to_table().to_ndjson(&controller.end(), || turn.go_on()).ok_or(Cancelled)?)
+            }
+            Format::Svg | Format::Png => super::picture(controller.to_picture(), format, turn),
+            _ => super::json(&controller, turn),
         }
     })
     .await

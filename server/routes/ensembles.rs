@@ -8,7 +8,7 @@ use axum::routing::get;
 use equipoise_physics::ensemble::{Runs, quantiles};
 
 use super::App;
-use crate::compute::Turns;
+use crate::compute::{Cancelled, Turn, Turns};
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
 use crate::limits;
 use crate::wire::ensemble::{Answer, Request};
@@ -36,13 +36,12 @@ pub(super) async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Respon
     let canonical = super::canonical(&ensemble.scene, &rest);
     let metrics = app.metrics.clone();
     ask.respond_in_turns(&app.pool, &RESOURCE, &canonical, &STREAMED, move |format, turns: &Turns, out: &mut Outlet| {
-        let cancel = turns.cancel();
         // A matter of the request alone, not that it would show.
         let block = (limits::ENSEMBLE_BLOCK_WORK / ensemble.impacts).max(1);
         let (numbers, all) = (request.numbers(), request.runs());
-        let compute = |number: usize| {
+        let compute = |number: usize, turn: &Turn| {
             let first = numbers.start + number as u64 * block;
-            let runs = ensemble.runs(first..(first + block).min(numbers.end), &mut || !cancel.is_set())?;
+            let runs = ensemble.runs(first..(first + block).min(numbers.end), &mut || turn.go_on())?;
             metrics.bounces.inc_by(runs.ends.iter().map(|end| end.impacts).sum());
             Some(runs)
         };
@@ -59,7 +58,7 @@ pub(super) async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Respon
         })?;
         let angles = std::mem::take(&mut runs.angles);
         let (mut sorted, mut found) = (Vec::with_capacity(angles.len()), Vec::with_capacity(angles.len()));
-        let sort = |place: usize| {
+        let sort = |place: usize, _: &Turn| {
             let mut angles = angles[place].clone();
             angles.sort_unstable_by(f64::total_cmp);
             let quantiles = quantiles(&angles);
@@ -70,16 +69,16 @@ pub(super) async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Respon
             sorted.push(angles);
             found.push(quantiles);
         })?;
-        turns.take(|| {
+        turns.take(|turn| {
             let answer = Answer::new(&request, &runs, sorted, &found);
             let bytes = match format {
-                Format::Csv => answer.rows().to_csv(),
-                Format::Ndjson => answer.rows().to_ndjson(answer.summary()),
-                Format::Progress => progress::end(&super::json(&answer)?),
-                Format::Svg | Format::Png => super::picture(answer.to_picture(), format, cancel)?,
-                _ => super::json(&answer)?,
+                Format::Csv => answer.rows().to_csv(|| turn.go_on()).ok_or(Cancelled)?,
+                Format::Ndjson => answer.rows().to_ndjson(answer.summary(), || turn.go_on()).ok_or(Cancelled)?,
+                Format::Progress => progress::end(&super::json(&answer, turn)?),
+                Format::Svg | Format::Png => super::picture(answer.to_picture(), format, turn)?,
+                _ => super::json(&answer, turn)?,
             };
-            Ok(out.send_whole(bytes, cancel)?)
+            Ok(out.send_whole(bytes, turn)?)
         })?
     })
     .await

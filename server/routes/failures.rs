@@ -8,7 +8,7 @@ use axum::routing::get;
 use serde::Serialize;
 
 use super::App;
-use crate::compute::{Cancel, Cancelled, Price};
+use crate::compute::{Cancelled, Price, Turn};
 use crate::gallery::{self, CASES};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::picture::chart;
@@ -27,10 +27,10 @@ async fn failures(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Pr
     const RESOURCE: Resource = Resource { name: "failures", formats: &[Format::Json] };
     ask.read(|_| Some(()))?;
     let price = Price::bounces(CASES.iter().map(|case| case.price).sum());
-    ask.respond(&app.pool, &RESOURCE, b"", price, move |_, cancel: &Cancel| {
+    ask.respond(&app.pool, &RESOURCE, b"", price, move |_, turn: &Turn| {
         // Every case is a few milliseconds, and between two of them somebody may have gone away.
-        let each = CASES.iter().map(|case| if cancel.is_set() { None } else { Some(Failure::compute(case)) });
-        super::json(&Failures { failures: each.collect::<Option<_>>().ok_or(Cancelled)? })
+        let each = CASES.iter().map(|case| if turn.go_on() { Some(Failure::compute(case)) } else { None });
+        super::json(&Failures { failures: each.collect::<Option<_>>().ok_or(Cancelled)? }, turn)
     })
     .await
 }
@@ -43,9 +43,9 @@ async fn failure(State(app): State<App>, Path(name): Path<String>, ask: Ask) -> 
     };
     ask.read(|_| Some(()))?;
     let price = Price::bounces(case.price);
-    ask.respond(&app.pool, &RESOURCE, case.name.as_bytes(), price, move |format, cancel: &Cancel| match format {
-        Format::Svg | Format::Png => super::picture(chart(&case.picture()), format, cancel),
-        _ => super::json(&Failure::compute(case)),
+    ask.respond(&app.pool, &RESOURCE, case.name.as_bytes(), price, move |format, turn: &Turn| match format {
+        Format::Svg | Format::Png => super::picture(chart(&case.picture()), format, turn),
+        _ => super::json(&Failure::compute(case), turn),
     })
     .await
 }

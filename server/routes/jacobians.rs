@@ -8,7 +8,7 @@ use axum::routing::get;
 use equipoise_physics::stability::JUDGED;
 
 use super::App;
-use crate::compute::{Cancel, Price};
+use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::limits;
 use crate::wire::jacobian::{At, Jacobian, Method, price};
@@ -34,14 +34,17 @@ pub(super) async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Respon
     let price = Price::bounces(price(&scene.model(), at, period, method)).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &(at, period, method));
     let metrics = app.metrics.clone();
-    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, _: &Cancel| {
-        let jacobian = Jacobian::compute(&scene, at, period, method)
-            .map_err(|(pointer, detail)| Problem::invalid_at(pointer, detail))?;
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
+        let jacobian = match Jacobian::compute(&scene, at, period, method, || turn.go_on()) {
+            Ok(jacobian) => jacobian,
+            Err(Some((pointer, detail))) => return Err(Problem::invalid_at(pointer, detail)),
+            Err(None) => return Err(Cancelled.into()),
+        };
         metrics.bounces.inc_by(period);
         match format {
-            Format::Csv => Ok(jacobian.to_table().to_csv()),
-            Format::Ndjson => Ok(jacobian.to_table().to_ndjson(&jacobian)),
-            _ => super::json(&jacobian),
+            Format::Csv => Ok(jacobian.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?),
+            Format::Ndjson => Ok(jacobian.to_table().to_ndjson(&jacobian, || turn.go_on()).ok_or(Cancelled)?),
+            _ => super::json(&jacobian, turn),
         }
     })
     .await

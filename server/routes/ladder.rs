@@ -7,7 +7,7 @@ use axum::http::Response;
 use axum::routing::get;
 
 use super::App;
-use crate::compute::{Cancel, Cancelled, Price};
+use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::wire::ladder::{Ladder, Request};
 use crate::wire::scene;
@@ -28,13 +28,13 @@ pub(super) async fn ladder(State(app): State<App>, ask: Ask) -> Result<Response<
     let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &request);
     let metrics = app.metrics.clone();
-    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
-        let ladder = Ladder::compute(&scene, &request, || !cancel.is_set()).ok_or(Cancelled)?;
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
+        let ladder = Ladder::compute(&scene, &request, || turn.go_on()).ok_or(Cancelled)?;
         metrics.bounces.inc_by(ladder.bounces());
         match format {
-            Format::Csv => Ok(ladder.to_table().to_csv()),
-            Format::Ndjson => Ok(ladder.to_table().to_ndjson(&ladder.end())),
-            _ => super::json(&ladder),
+            Format::Csv => Ok(ladder.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?),
+            Format::Ndjson => Ok(ladder.to_table().to_ndjson(&ladder.end(), || turn.go_on()).ok_or(Cancelled)?),
+            _ => super::json(&ladder, turn),
         }
     })
     .await

@@ -21,6 +21,7 @@ pub mod scenes;
 pub mod stability;
 pub mod trajectories;
 
+use std::io;
 use std::sync::Arc;
 
 use axum::Router;
@@ -29,10 +30,10 @@ use equipoise_physics::scene::Scene;
 use serde::Serialize;
 use tokio::sync::watch;
 
-use crate::compute::{Cancel, Cancelled, Pool, Shares};
+use crate::compute::{Cancelled, Pool, Shares, Turn};
 use crate::config::Config;
 use crate::http::{Format, Problem};
-use crate::limits::Limits;
+use crate::limits::{self, Limits};
 use crate::picture::{NoPixels, png};
 use crate::wire::scene::Resolved;
 use metrics::Metrics;
@@ -114,16 +115,49 @@ pub fn all() -> Router<App> {
 }
 
 /// An answer as JSON.
-fn json(answer: &impl Serialize) -> Result<Vec<u8>, Problem> {
-    serde_json::to_vec(answer).map_err(|_| Problem::internal())
+fn json(answer: &impl Serialize, turn: &Turn) -> Result<Vec<u8>, Problem> {
+    let mut out = Watched { bytes: Vec::new(), look: 0, turn };
+    match serde_json::to_writer(&mut out, answer) {
+        Ok(()) => Ok(out.bytes),
+        Err(error) if error.is_io() => Err(Cancelled.into()),
+        Err(_) => Err(Problem::internal()),
+    }
+}
+
+/// Bytes in memory, as long as somebody waits for them.
+struct Watched<'a> {
+    bytes: Vec<u8>,
+    /// How many there are at the next look.
+    look: usize,
+    turn: &'a Turn,
+}
+
+impl io::Write for Watched<'_> {
+    fn write(&mut self, piece: &[u8]) -> io::Result<usize> {
+        self.write_all(piece).map(|()| piece.len())
+    }
+
+    #[inline]
+    fn write_all(&mut self, piece: &[u8]) -> io::Result<()> {
+        self.bytes.extend_from_slice(piece);
+        if self.bytes.len() >= self.look {
+            self.turn.check().map_err(io::Error::other)?;
+            self.look = self.bytes.len() + limits::JSON_STEP_BYTES;
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// A picture as it is asked for: as it was drawn, or in pixels.
-fn picture(svg: String, format: Format, cancel: &Cancel) -> Result<Vec<u8>, Problem> {
+fn picture(svg: String, format: Format, turn: &Turn) -> Result<Vec<u8>, Problem> {
     if format == Format::Svg {
         return Ok(svg.into_bytes());
     }
-    png(&svg, || !cancel.is_set()).map_err(|none| match none {
+    png(&svg, || turn.go_on()).map_err(|none| match none {
         NoPixels::Cancelled => Cancelled.into(),
         NoPixels::Unfit => Problem::internal(),
     })

@@ -7,7 +7,7 @@ use axum::http::Response;
 use axum::routing::get;
 
 use super::App;
-use crate::compute::{Cancel, Cancelled, Price};
+use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::wire::periodic_orbits::{PeriodicOrbits, Request};
 use crate::wire::scene;
@@ -31,23 +31,23 @@ pub(super) async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<
     let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &request);
     let metrics = app.metrics.clone();
-    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
-        let orbits = match PeriodicOrbits::compute(&scene, &request, || !cancel.is_set()) {
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
+        let orbits = match PeriodicOrbits::compute(&scene, &request, || turn.go_on()) {
             Ok(orbits) => orbits,
             Err(Some((pointer, detail))) => return Err(Problem::invalid_at(pointer, detail)),
             Err(None) => return Err(Cancelled.into()),
         };
         metrics.bounces.inc_by(orbits.bounces());
         match format {
-            Format::Csv => Ok(orbits.to_table().to_csv()),
-            Format::Ndjson => Ok(orbits.to_table().to_ndjson(&orbits.end())),
+            Format::Csv => Ok(orbits.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?),
+            Format::Ndjson => Ok(orbits.to_table().to_ndjson(&orbits.end(), || turn.go_on()).ok_or(Cancelled)?),
             Format::Svg | Format::Png => {
                 let picture = orbits.to_picture();
                 let picture =
                     picture.ok_or_else(|| Problem::invalid_at("/sweep", "the picture is of a branch; give a sweep"))?;
-                super::picture(picture, format, cancel)
+                super::picture(picture, format, turn)
             }
-            _ => super::json(&orbits),
+            _ => super::json(&orbits, turn),
         }
     })
     .await

@@ -7,7 +7,7 @@ use axum::http::Response;
 use axum::routing::get;
 
 use super::App;
-use crate::compute::Cancel;
+use crate::compute::{Cancelled, Turn};
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
 use crate::wire::precision::{Precision, Request};
 use crate::wire::progress::{self, Progress};
@@ -32,25 +32,25 @@ pub(super) async fn precision(State(app): State<App>, ask: Ask) -> Result<Respon
         let request = Request::read(reader);
         Some((scene?, request?))
     })?;
-    let price = request.price().within(&app.config.limits.of_work())?;
+    request.price().within(&app.config.limits.of_work())?;
     let metrics = app.metrics.clone();
-    let compute = move |format: Format, cancel: &Cancel, out: &mut Outlet| {
+    let compute = move |format: Format, turn: &Turn, out: &mut Outlet| {
         let mut lines = Progress::default();
         let mut tell = |done, of| {
             if STREAMED.contains(&format) {
                 out.send(lines.line(done, of));
             }
         };
-        let precision = Precision::compute(&scene, &request, &mut tell, cancel)?;
+        let precision = Precision::compute(&scene, &request, &mut tell, turn)?;
         metrics.bounces.inc_by(precision.bounces());
         let bytes = match format {
-            Format::Csv => precision.to_table().to_csv(),
-            Format::Ndjson => precision.to_table().to_ndjson(&precision.end()),
-            Format::Progress => progress::end(&super::json(&precision)?),
-            Format::Svg | Format::Png => super::picture(precision.to_picture(), format, cancel)?,
-            _ => super::json(&precision)?,
+            Format::Csv => precision.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?,
+            Format::Ndjson => precision.to_table().to_ndjson(&precision.end(), || turn.go_on()).ok_or(Cancelled)?,
+            Format::Progress => progress::end(&super::json(&precision, turn)?),
+            Format::Svg | Format::Png => super::picture(precision.to_picture(), format, turn)?,
+            _ => super::json(&precision, turn)?,
         };
-        Ok(out.send_whole(bytes, cancel)?)
+        Ok(out.send_whole(bytes, turn)?)
     };
-    ask.respond_afresh(&app.pool, &RESOURCE, price, &STREAMED, compute).await
+    ask.respond_afresh(&app.pool, &RESOURCE, &STREAMED, compute).await
 }

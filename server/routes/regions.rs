@@ -7,7 +7,7 @@ use axum::http::Response;
 use axum::routing::get;
 
 use super::App;
-use crate::compute::Turns;
+use crate::compute::{Turn, Turns};
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
 use crate::wire::region::{Answer, Request};
 use crate::wire::region_rows::Rows;
@@ -34,11 +34,11 @@ pub(super) async fn regions(State(app): State<App>, ask: Ask) -> Result<Response
     let canonical = super::canonical_of(&(Resolved(&request.scene), rest));
     let metrics = app.metrics.clone();
     ask.respond_in_turns(&app.pool, &RESOURCE, &canonical, &STREAMED, move |format, turns: &Turns, out: &mut Outlet| {
-        let (cells, block, cancel) = (request.numbers(), request.block_cells(), turns.cancel());
+        let (cells, block) = (request.numbers(), request.block_cells());
         let blocks = cells.len().div_ceil(block);
-        let compute = |number| {
+        let compute = |number: usize, turn: &Turn| {
             let first = cells.start + number * block;
-            let computed = region.cells(first..(first + block).min(cells.end), &mut || !cancel.is_set())?;
+            let computed = region.cells(first..(first + block).min(cells.end), &mut || turn.go_on())?;
             metrics.bounces.inc_by(request.bounces_of(&computed));
             Some(computed)
         };
@@ -51,13 +51,13 @@ pub(super) async fn regions(State(app): State<App>, ask: Ask) -> Result<Response
         }
         let mut all = Vec::with_capacity(cells.len());
         turns.spread(blocks, compute, |cells| all.extend(cells))?;
-        turns.take(|| {
+        turns.take(|turn| {
             let answer = Answer::new(request, all);
             let bytes = match format {
-                Format::Svg | Format::Png => super::picture(answer.to_picture(), format, cancel)?,
-                _ => super::json(&answer)?,
+                Format::Svg | Format::Png => super::picture(answer.to_picture(), format, turn)?,
+                _ => super::json(&answer, turn)?,
             };
-            Ok(out.send_whole(bytes, cancel)?)
+            Ok(out.send_whole(bytes, turn)?)
         })?
     })
     .await

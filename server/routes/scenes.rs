@@ -8,7 +8,7 @@ use axum::routing::get;
 use serde::Serialize;
 
 use super::App;
-use crate::compute::{Cancel, Cancelled, Price};
+use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::wire::fields::Fields;
 use crate::wire::presets;
@@ -27,8 +27,8 @@ async fn scenes(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Prob
         scenes: Vec<&'static presets::Shown>,
     }
     let price = presets::all().iter().map(presets::Preset::price).sum();
-    fixed(&app, &ask, "scenes", price, |cancel| {
-        let go_on = || !cancel.is_set();
+    fixed(&app, &ask, "scenes", price, |turn| {
+        let go_on = || turn.go_on();
         Some(Scenes { scenes: presets::all().iter().map(|preset| preset.shown(&go_on)).collect::<Option<_>>()? })
     })
     .await
@@ -40,7 +40,7 @@ async fn scene(State(app): State<App>, Path(name): Path<String>, ask: Ask) -> Re
         return Err(Problem::not_found(format!("there is no scene of this name; there are {names}")));
     };
     let price = preset.price();
-    fixed(&app, &ask, &format!("scenes/{name}"), price, |cancel| preset.shown(&|| !cancel.is_set())).await
+    fixed(&app, &ask, &format!("scenes/{name}"), price, |turn| preset.shown(&|| turn.go_on())).await
 }
 
 async fn fields(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
@@ -53,11 +53,11 @@ async fn fixed<T: Serialize>(
     ask: &Ask,
     canonical: &str,
     price: u64,
-    answer: impl FnOnce(&Cancel) -> Option<T> + Send + 'static,
+    answer: impl FnOnce(&Turn) -> Option<T> + Clone + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
     const RESOURCE: Resource = Resource { name: "fixed", formats: &[Format::Json] };
     ask.read(|_| Some(()))?;
     let price = Price::bounces(price);
-    let compute = move |_, cancel: &Cancel| super::json(&answer(cancel).ok_or(Cancelled)?);
+    let compute = move |_, turn: &Turn| super::json(&answer(turn).ok_or(Cancelled)?, turn);
     ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), price, compute).await
 }

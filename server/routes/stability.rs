@@ -7,7 +7,7 @@ use axum::http::Response;
 use axum::routing::get;
 
 use super::App;
-use crate::compute::{Cancel, Cancelled, Price};
+use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::wire::scene;
 use crate::wire::stability::{Request, Stability};
@@ -29,14 +29,14 @@ pub(super) async fn stability(State(app): State<App>, ask: Ask) -> Result<Respon
     let price = Price::bounces(Stability::price(&request)).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &request.canonical());
     let metrics = app.metrics.clone();
-    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
-        let stability = Stability::compute(&scene, &request, || !cancel.is_set()).ok_or(Cancelled)?;
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
+        let stability = Stability::compute(&scene, &request, || turn.go_on()).ok_or(Cancelled)?;
         metrics.bounces.inc_by(stability.bounces());
         match format {
-            Format::Csv => Ok(stability.to_table().to_csv()),
-            Format::Ndjson => Ok(stability.to_table().to_ndjson(&stability.end())),
-            Format::Svg | Format::Png => super::picture(stability.to_picture(), format, cancel),
-            _ => super::json(&stability),
+            Format::Csv => Ok(stability.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?),
+            Format::Ndjson => Ok(stability.to_table().to_ndjson(&stability.end(), || turn.go_on()).ok_or(Cancelled)?),
+            Format::Svg | Format::Png => super::picture(stability.to_picture(), format, turn),
+            _ => super::json(&stability, turn),
         }
     })
     .await

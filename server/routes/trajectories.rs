@@ -8,7 +8,7 @@ use axum::routing::get;
 use equipoise_physics::map::Contact;
 
 use super::App;
-use crate::compute::{Cancel, Cancelled, Price};
+use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::live::address;
 use crate::live::course::Course;
@@ -32,23 +32,23 @@ pub(super) async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Res
     let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(run.scene(), &(request, address::url(&run)));
     let metrics = app.metrics.clone();
-    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
         let mut course = Course::up_to(&run, request.impacts);
         let mut contacts = std::iter::from_fn(|| course.next_n().map(|_| course.advance(&run).0));
         // What nobody changes, and what never meets the table, is the scene's own run.
         let changed = (!run.interventions().is_empty() && run.scene().orbit().is_ok())
             .then_some(&mut contacts as &mut dyn Iterator<Item = Contact>);
-        let trajectory = match Trajectory::compute(run.scene(), &request, changed, || !cancel.is_set()) {
+        let trajectory = match Trajectory::compute(run.scene(), &request, changed, || turn.go_on()) {
             Ok(trajectory) => trajectory,
             Err(Some((pointer, detail))) => return Err(Problem::invalid_at(pointer, detail)),
             Err(None) => return Err(Cancelled.into()),
         };
         metrics.bounces.inc_by(trajectory.outcome.impacts);
         match format {
-            Format::Csv => Ok(trajectory.impacts.to_csv()),
-            Format::Ndjson => Ok(trajectory.impacts.to_ndjson(&trajectory.end())),
-            Format::Svg | Format::Png => super::picture(trajectory.to_picture(), format, cancel),
-            _ => super::json(&trajectory),
+            Format::Csv => Ok(trajectory.impacts.to_csv(|| turn.go_on()).ok_or(Cancelled)?),
+            Format::Ndjson => Ok(trajectory.impacts.to_ndjson(&trajectory.end(), || turn.go_on()).ok_or(Cancelled)?),
+            Format::Svg | Format::Png => super::picture(trajectory.to_picture(), format, turn),
+            _ => super::json(&trajectory, turn),
         }
     })
     .await

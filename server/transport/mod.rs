@@ -130,7 +130,7 @@ fn is_of_one_connection(error: &io::Error) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compute::{Cancel, Cancelled, Pool, Price};
+    use crate::compute::{Cancelled, Pool, Price, Turn};
     use crate::config::Config;
     use crate::http::Problem;
     use crate::router::router;
@@ -212,9 +212,9 @@ mod tests {
         let pool = Pool::new(1, &Limits::default());
         let work = get(async move || {
             let dear = Price::bounces(limits::INLINE_BOUNCES + 1);
-            let endless = move |cancel: &Cancel| -> Result<String, Problem> {
+            let endless = move |turn: &Turn| -> Result<String, Problem> {
                 begun.send(()).unwrap();
-                while !cancel.is_set() {
+                while turn.go_on() {
                     std::thread::yield_now();
                 }
                 ended.send(()).unwrap();

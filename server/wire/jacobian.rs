@@ -2,7 +2,7 @@
 
 use equipoise_physics::impact::State;
 use equipoise_physics::jacobian::{self, Linearization, MOST_SIDES, TIED};
-use equipoise_physics::map::run;
+use equipoise_physics::map::{LOOK, run};
 use equipoise_physics::model::Model;
 use equipoise_physics::point::Point;
 use equipoise_physics::scene::Scene;
@@ -13,7 +13,7 @@ use serde::{Serialize, Serializer};
 use super::outcome::Outcome;
 use super::scene::{Resolved, has_angle};
 use super::table::{Cells, Column, Table};
-use super::trajectory::Choice;
+use super::trajectory::{Choice, Refused};
 use crate::http::Reader;
 use crate::limits;
 
@@ -157,9 +157,15 @@ impl<'a> Jacobian<'a> {
     ///
     /// # Errors
     /// Why there is no derivative, as a JSON pointer and a sentence.
-    pub fn compute(scene: &'a Scene, at: At, period: u64, method: Method) -> Result<Self, (&'static str, String)> {
+    pub fn compute(
+        scene: &'a Scene,
+        at: At,
+        period: u64,
+        method: Method,
+        go_on: impl FnMut() -> bool,
+    ) -> Result<Self, Refused> {
         let model = scene.model();
-        let (x, state) = place(scene, at)?;
+        let (x, state) = place(scene, at, go_on)?;
         let derivative = match method {
             Method::Exact => jacobian::jacobian_at(&model, x, &state, period),
             Method::FiniteDifference => jacobian::finite_difference_at(&model, x, &state, period, STEP),
@@ -177,7 +183,7 @@ impl<'a> Jacobian<'a> {
         let Linearization { matrix, flight_time, contact_speed, contact_mode, one_sided, .. } = derivative;
         let matrices = || std::iter::once(&matrix).chain(one_sided.iter().map(|side| &side.matrix));
         if !matrices().flat_map(|matrix| matrix.iter()).all(|entry| entry.is_finite()) {
-            return Err((pointer, format!("the derivative over {period} contacts is beyond double precision")));
+            return Err(Some((pointer, format!("the derivative over {period} contacts is beyond double precision"))));
         }
         let mut notes = vec![format!(
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
@@ -210,7 +216,7 @@ impl<'a> Jacobian<'a> {
                 eigenvalues: eigenvalues_of(&side.matrix, pointer)?.into_iter().map(Eigenvalue::from).collect(),
             })
         });
-        let one_sided = one_sided.collect::<Result<Vec<_>, _>>()?;
+        let one_sided = one_sided.collect::<Result<Vec<_>, (&'static str, String)>>()?;
         if linear.is_some() && residue.is_none() {
             let why = if has_angle(scene) {
                 "the contact sticks to a table that only tilts, so the angle has no block of its own"
@@ -276,7 +282,7 @@ impl<'a> Jacobian<'a> {
 }
 
 /// The state at which to differentiate.
-fn place(scene: &Scene, at: At) -> Result<(f64, State), (&'static str, String)> {
+fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64, State), Refused> {
     match at {
         At::FixedPoint => {
             let fixed_point =
@@ -286,7 +292,10 @@ fn place(scene: &Scene, at: At) -> Result<(f64, State), (&'static str, String)> 
         At::State(x, state) if has_angle(scene) => Ok((x, state)),
         At::State(x, State { theta, x_dot, y_dot, theta_dot }) => {
             if theta != 0.0 || theta_dot != 0.0 {
-                return Err(("/at/state", "a point mass has no theta and no theta_dot; leave them out".to_owned()));
+                return Err(Some((
+                    "/at/state",
+                    "a point mass has no theta and no theta_dot; leave them out".to_owned(),
+                )));
             }
             Ok((x, Point::state(x_dot, y_dot)))
         }
@@ -295,14 +304,15 @@ fn place(scene: &Scene, at: At) -> Result<(f64, State), (&'static str, String)> 
             let mut last = (orbit.x(), *orbit.state());
             let ending = run(&mut orbit, impact, |contact| {
                 last = (contact.x, contact.state);
-                true
+                !contact.n.is_multiple_of(LOOK) || go_on()
             });
+            let ending = ending.ok_or(None)?;
             if orbit.contacts() < impact {
-                let why = ending.map_or("", |ending| ending.name());
-                return Err((
+                let why = ending.name();
+                return Err(Some((
                     "/at/impact",
                     format!("impact is {impact}, but the run ends as `{why}` at contact {}", orbit.contacts()),
-                ));
+                )));
             }
             Ok(last)
         }

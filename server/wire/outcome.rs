@@ -3,7 +3,7 @@
 //! Not here: what ends a run, which is physics.
 
 use equipoise_physics::demand::Excess;
-use equipoise_physics::map::{Ending, Touch};
+use equipoise_physics::map::{Ending, SPEED_LIMIT, Touch};
 use serde::Serialize;
 
 /// How a run ended.
@@ -86,9 +86,15 @@ impl Outcome {
                 format!("{at}, the next flight would take {flight_time} s; the bounces end at t = {settle_time} s"),
                 Some(("flight_time", flight_time, 0.0, "s")),
             ),
+            Ending::Diverged { speed } if speed <= SPEED_LIMIT => (
+                format!(
+                    "after contact {impacts}, t = {t} s, the body turns so often that doubles do not resolve its next contact"
+                ),
+                None,
+            ),
             Ending::Diverged { speed } => (
                 format!("{at}, the strike gave a speed of {speed} m/s, beyond what doubles resolve"),
-                Some(("speed", speed, equipoise_physics::map::SPEED_LIMIT, "m/s")),
+                Some(("speed", speed, SPEED_LIMIT, "m/s")),
             ),
         };
         let settle_time = match ending {

@@ -4,7 +4,7 @@
 //! Not here: the printed values, which stand with the presets.
 
 use equipoise_physics::jacobian::jacobian_at;
-use equipoise_physics::map::{Contact, Ending, run};
+use equipoise_physics::map::{Contact, Ending, LOOK, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::trig;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -171,7 +171,7 @@ fn end_of(
     let mut orbit = scene.orbit().ok()?;
     let ending = run(&mut orbit, impacts, |contact| {
         visit(contact);
-        !contact.n.is_multiple_of(1024) || go_on()
+        !contact.n.is_multiple_of(LOOK) || go_on()
     })?;
     Some((ending, orbit.contacts()))
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::scene::Resolved;
 use super::table::{Cells, Column, Table};
 use super::trajectory::Choice;
-use crate::compute::{Cancel, Cancelled, Price};
+use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Reader, leaf};
 use crate::limits;
 use crate::picture::{Series, SpeedAccuracy, speed_accuracy};
@@ -126,9 +126,9 @@ impl<'a> Precision<'a> {
         scene: &'a Scene,
         request: &Request,
         progress: &mut dyn FnMut(u64, u64),
-        cancel: &Cancel,
+        turn: &Turn,
     ) -> Result<Self, Cancelled> {
-        let chart = chart(scene, request.impacts, &request.methods, progress, cancel)?;
+        let chart = chart(scene, request.impacts, &request.methods, progress, turn)?;
         let named = |method: &Method| Named { name: method.name, title: method.title, about: method.about };
         let mut notes = vec![
             "cost is measured on this machine while it serves others; steps, evaluations and errors are the same everywhere"

@@ -117,6 +117,9 @@ impl Cells {
     }
 }
 
+/// Rows between two looks at whether to go on: one of numbers of 32 digits takes 70 µs.
+const ROWS_A_LOOK: usize = 32;
+
 /// Columns of equal length; as JSON an object of arrays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table(pub Vec<Column>);
@@ -137,12 +140,15 @@ impl Table {
         self.0.first().map_or(0, |column| column.cells.len())
     }
 
-    /// RFC 4180, with a header; what does not exist is empty.
-    pub fn to_csv(&self) -> Vec<u8> {
+    /// RFC 4180, with a header; what does not exist is empty. None once `go_on`, which is asked now and then, said `false`.
+    pub fn to_csv(&self, go_on: impl Fn() -> bool) -> Option<Vec<u8>> {
         let header: Vec<String> = self.0.iter().map(|Column { name, unit, .. }| with_unit(name, unit)).collect();
         let mut out = header.join(",").into_bytes();
         out.extend_from_slice(b"\r\n");
         for row in 0..self.rows() {
+            if row.is_multiple_of(ROWS_A_LOOK) && !go_on() {
+                return None;
+            }
             for (index, column) in self.0.iter().enumerate() {
                 if index > 0 {
                     out.push(b',');
@@ -151,13 +157,16 @@ impl Table {
             }
             out.extend_from_slice(b"\r\n");
         }
-        out
+        Some(out)
     }
 
-    /// One JSON object a row, then `{"end": …}`, so that a truncated answer shows.
-    pub fn to_ndjson(&self, end: &impl Serialize) -> Vec<u8> {
+    /// One JSON object a row, then `{"end": …}`, so that a truncated answer shows. None as in [`Table::to_csv`].
+    pub fn to_ndjson(&self, end: &impl Serialize, go_on: impl Fn() -> bool) -> Option<Vec<u8>> {
         let mut out = Vec::new();
         for row in 0..self.rows() {
+            if row.is_multiple_of(ROWS_A_LOOK) && !go_on() {
+                return None;
+            }
             for (index, column) in self.0.iter().enumerate() {
                 out.extend_from_slice(if index == 0 { b"{\"" } else { b",\"" });
                 out.extend_from_slice(column.name.as_bytes());
@@ -169,7 +178,7 @@ impl Table {
         out.extend_from_slice(b"{\"end\":");
         let _ = serde_json::to_writer(&mut out, end);
         out.extend_from_slice(b"}\n");
-        out
+        Some(out)
     }
 }
 
@@ -191,11 +200,11 @@ mod tests {
             r#"{"n":[1,2],"t":[0.1,1e+21],"flight_time":[0.5,null],"contact_mode":["stick",null],"why":[null,"a, \"b\""]}"#
         );
         assert_eq!(
-            String::from_utf8(table.to_csv()).unwrap(),
+            String::from_utf8(table.to_csv(|| true).unwrap()).unwrap(),
             "n,t_s,flight_time_s,contact_mode,why\r\n1,0.1,0.5,stick,\r\n2,1e+21,,,\"a, \"\"b\"\"\"\r\n"
         );
         assert_eq!(
-            String::from_utf8(table.to_ndjson(&"done")).unwrap(),
+            String::from_utf8(table.to_ndjson(&"done", || true).unwrap()).unwrap(),
             "{\"n\":1,\"t\":0.1,\"flight_time\":0.5,\"contact_mode\":\"stick\",\"why\":null}\n\
              {\"n\":2,\"t\":1e+21,\"flight_time\":null,\"contact_mode\":null,\"why\":\"a, \\\"b\\\"\"}\n{\"end\":\"done\"}\n"
         );

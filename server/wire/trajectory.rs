@@ -1,7 +1,7 @@
 //! The answer of `trajectories`: the contacts of a run as a table, how it ended, and its flights where they are asked for.
 
 use equipoise_physics::demand::{Demand, Meter};
-use equipoise_physics::map::{Body, Contact};
+use equipoise_physics::map::{Body, Contact, LOOK};
 use equipoise_physics::method::{self, Impact, Method};
 use equipoise_physics::model::{Forced, Rung};
 use equipoise_physics::scene::{Name, Scene};
@@ -293,7 +293,7 @@ impl<'a> Trajectory<'a> {
             if predictable.is_none() && lost {
                 predictable = Some(contact.n - 1);
             }
-            !contact.n.is_multiple_of(256) || go_on()
+            !contact.n.is_multiple_of(LOOK) || go_on()
         };
         let run = match changed {
             None => scene.run_by(method, impacts, visit),

@@ -2,7 +2,7 @@
 //! polygon, which are no single value.
 //!
 //! Parsers, query strings, live changes, error texts and forms are derived from these rows; nothing else lists them.
-//! The ranges are generous for a lab and bound the work of one flight (at most 25,000 convex pieces).
+//! The ranges are generous for a lab. The work of one flight does not depend on them ([`crate::contact_time::MAX_PIECES`]).
 
 use crate::polygon::MAX_VERTICES;
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -151,9 +151,22 @@ fn a_fast_one_from_below_comes_round_and_down_again() {
     assert_eq!(found(&Flight { clearance: -0.3, ..wheel }), None);
 }
 
+/// A planned plane that is all but vertical: gravity along its normal is small, so that the body is below it for ever so long.
 #[test]
-fn what_would_take_too_long_says_so() {
-    // For hours its centre rises towards the height from which the point could reach y = 0.
-    let endless = Flight { gravity: 1e-9, ..flight(0.5, 200.0, 4e-5, -2.4, 1.0) };
-    assert!(first_descent(&endless).is_err());
+fn what_is_below_for_hours_is_not_looked_at_turn_by_turn() {
+    // Its centre rises from 1.52 m below to 0.72 m below in eleven hours; once within 1 m the point comes up and down in a turn.
+    let slow = Flight { gravity: 1e-9, ..flight(0.5, 200.0, 4e-5, -2.4, 1.0) };
+    let enters = (4e-5 - (1.6e-9_f64 - 2e-9 * (1.4 - 0.5_f64.cos())).sqrt()) / 1e-9;
+    let down = found(&slow).expect("it comes up");
+    assert!((enters..enters + 3.0).contains(&down), "{down} s, and it is near from {enters} s on");
+    assert!(slow.gap(down).value.abs() < 1e-9 && slow.gap(down).slope < 0.0, "{:?}", slow.gap(down));
+    // One that rises to 1.02 m below and no further.
+    assert_eq!(found(&Flight { clearance: -2.7, ..slow }), None);
+}
+
+#[test]
+fn an_angle_without_digits_says_so() {
+    // It is away for six centuries and turns 3e16 times, of which a double resolves every eighth.
+    let endless = Flight { gravity: 1e-6, ..flight(0.5, 1e7, 1e4, 1.1, 1.0) };
+    assert!(first_contact(&endless).is_err() && first_descent(&endless).is_err());
 }

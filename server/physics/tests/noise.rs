@@ -78,3 +78,35 @@ fn a_release_on_the_table_is_struck_about_then() {
         }
     }
 }
+
+/// A body that spins fast in little gravity over a plane that is planned nearly vertical: the flights to it last for days, and each
+/// is computed to its end.
+#[test]
+fn a_nearly_vertical_plan_is_met_or_missed() {
+    let mut draft = paper::scene(-46.3055, 0.0).draft();
+    for (name, value) in [
+        (Name::Gravity, 0.1),
+        (Name::Incline, 0.01),
+        (Name::ContactDistance, 1.0),
+        (Name::RadiusOfGyration, 1.0),
+        (Name::Height, 100.0),
+        (Name::ThetaDot, 164.18),
+        (Name::XDot, 59.06),
+        (Name::YDot, 100.0),
+        (Name::ToppleAngle, std::f64::consts::PI),
+        (Name::TimingSd, 0.01),
+        (Name::AngleSd, 0.01),
+    ] {
+        draft.set(name, Some(Value::Number(value))).unwrap();
+    }
+    draft.set(Name::NoiseModel, Some(Value::Choice("plan"))).unwrap();
+    draft.set(Name::Seed, Some(Value::Integer(1))).unwrap();
+    let ends = ends(&draft.build().unwrap(), 2000, 1);
+    for outcome in ["missed", "toppled"] {
+        assert!(ends.iter().any(|(_, name)| *name == outcome), "none is {outcome}");
+    }
+    let undecided = ends.iter().filter(|(_, name)| *name == "diverged").count();
+    assert_eq!(undecided, 0, "flights to the plan given up");
+    // The one that took 131,072 pieces and had no end.
+    assert_eq!(ends[22], (1, "toppled"));
+}

@@ -1,0 +1,119 @@
+//! The right to compute for a while, which work asks whether to go on.
+//!
+//! A turn ends by the clock, in the midst of whatever is computed: who holds a permit passes it on to the next and waits for
+//! another. So others wait for a turn and not for the work, whatever a piece of it turns out to take. The clock decides when
+//! work is done and never what comes out of it.
+
+use std::cell::{Cell, RefCell};
+use std::sync::Arc;
+use std::time::Instant;
+
+use tokio::runtime::Handle;
+
+use super::cancel::{Cancel, Cancelled};
+use super::line::{Flow, Line, Permit};
+use crate::limits;
+
+/// A turn to compute. Work asks it every millisecond or so whether to go on.
+#[derive(Debug)]
+pub struct Turn {
+    cancel: Cancel,
+    began: Cell<Instant>,
+    way: Way,
+}
+
+/// Where the turn is taken.
+#[derive(Debug)]
+enum Way {
+    /// Where nobody else wants it.
+    Alone,
+    /// On an async thread, for a short time.
+    Inline {
+        /// Whether that was too short.
+        overran: Cell<bool>,
+    },
+    /// Beside them, with a permit.
+    Permitted {
+        /// None only after the work was cancelled.
+        permit: RefCell<Option<Permit>>,
+        line: Arc<Line>,
+        flow: Flow,
+        runtime: Handle,
+    },
+}
+
+impl Turn {
+    /// A turn without end, for work that someone waits for in any case.
+    pub fn alone() -> Self {
+        Self::new(Cancel::never(), Way::Alone)
+    }
+
+    pub(super) fn inline() -> Self {
+        Self::new(Cancel::never(), Way::Inline { overran: Cell::new(false) })
+    }
+
+    /// A turn with a permit that `flow` got in `line`.
+    pub(super) fn permitted(cancel: Cancel, permit: Permit, line: Arc<Line>, flow: Flow, runtime: Handle) -> Self {
+        Self::new(cancel, Way::Permitted { permit: RefCell::new(Some(permit)), line, flow, runtime })
+    }
+
+    fn new(cancel: Cancel, way: Way) -> Self {
+        Self { cancel, began: Cell::new(Instant::now()), way }
+    }
+
+    /// Whether to go on: not where nobody waits for the result any more. Passes the permit on where it is time to, and then
+    /// comes back with the next one. Costs a look at the clock; in a loop of nanoseconds ask every hundred rounds.
+    pub fn go_on(&self) -> bool {
+        if self.cancel.is_set() {
+            return false;
+        }
+        match &self.way {
+            Way::Alone => true,
+            Way::Inline { overran } => {
+                overran.set(self.began.get().elapsed() >= limits::INLINE_TIME);
+                !overran.get()
+            }
+            Way::Permitted { permit, line, flow, runtime } => {
+                if self.began.get().elapsed() < limits::TURN_TIME {
+                    return true;
+                }
+                if line.is_wanted_by_others(*flow) {
+                    // Back in the line before the permit is passed on, so that the order of the line is kept.
+                    let next = line.take_again(*flow);
+                    permit.take();
+                    let next = runtime.block_on(async {
+                        tokio::select! {
+                            biased;
+                            () = self.cancel.wait() => None,
+                            permit = next => Some(permit),
+                        }
+                    });
+                    if next.is_none() {
+                        return false;
+                    }
+                    permit.replace(next);
+                }
+                self.began.set(Instant::now());
+                true
+            }
+        }
+    }
+
+    /// [`Turn::go_on`] as an error, for `?`.
+    ///
+    /// # Errors
+    /// Where nobody waits for the result any more.
+    pub fn check(&self) -> Result<(), Cancelled> {
+        if self.go_on() { Ok(()) } else { Err(Cancelled) }
+    }
+
+    /// The flag that says whether anybody still waits, for work that is not to be interrupted.
+    pub fn cancel(&self) -> &Cancel {
+        &self.cancel
+    }
+
+    /// Whether an inline turn was too short for the work.
+    pub(super) fn overran(&self) -> bool {
+        matches!(&self.way, Way::Inline { overran } if overran.get())
+    }
+}
