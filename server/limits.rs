@@ -305,6 +305,13 @@ pub const GZIP_STEP_BYTES: usize = 128 * 1024;
 /// network does.
 pub const STALL_BYTES: usize = 64 * 1024;
 
+/// Time after which a client that waits with its sending half closed is sent a byte for the second time, to see whether it is still
+/// there; each next time after three times as long as it has waited. The last of the nine bytes of a status line goes out after 22 s.
+pub const PRESENCE_TIME: Duration = Duration::from_millis(10);
+
+/// Zeros before the size of a chunk that may be sent for that. Clients read up to sixteen digits, of which a size has eight at most.
+pub const PRESENCE_ZEROS: usize = 8;
+
 /// When connections give way, one in so many does at once: finding out which takes longer than closing them.
 pub const CONNECTIONS_AT_ONCE: usize = 64;
 

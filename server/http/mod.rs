@@ -19,6 +19,7 @@ pub mod query;
 pub mod reader;
 pub mod request;
 mod token;
+pub mod transfer;
 
 pub use answer::Resource;
 pub use asked::{Asked, REQUEST_ID};
