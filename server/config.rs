@@ -10,7 +10,7 @@ use clap::builder::Resettable;
 use clap::{CommandFactory, FromArgMatches, Parser};
 
 use crate::compute::Network;
-use crate::http::{Origin, Token};
+use crate::http::{HostName, Origin, Token};
 use crate::limits::Limits;
 
 /// Says whether a bouncing object can be balanced: a page and an HTTP API.
@@ -42,11 +42,22 @@ pub struct Config {
     #[arg(long, env = "EQUIPOISE_ALLOW_ORIGIN", value_name = "ORIGIN", value_delimiter = ',')]
     pub allow_origin: Vec<Origin>,
 
+    /// Answer to this name too. Without a token, and listening to this machine alone, the server answers to localhost, to
+    /// addresses and to such names, so that no page of another site can give its own name to it (DNS rebinding). Elsewhere
+    /// any name is answered to unless one is given here. May be given again
+    #[arg(long, env = "EQUIPOISE_ALLOW_HOST", value_name = "NAME", value_delimiter = ',')]
+    pub allow_host: Vec<HostName>,
+
+    /// Let pages of any site show pictures of this server, and its panels in frames. Otherwise what costs work is refused
+    /// to pages of other sites, but for those of --allow-origin
+    #[arg(long, env = "EQUIPOISE_ALLOW_EMBEDDING")]
+    pub allow_embedding: bool,
+
     /// The path under which a proxy shows this server, as in /rig. Requests are taken with it and without
     #[arg(long, env = "EQUIPOISE_BASE_PATH", value_name = "PATH", default_value = "", hide_default_value = true)]
     pub base_path: BasePath,
 
-    /// Believe this proxy, or every one in a network, who asks, as its `X-Forwarded-For` says at its end. Otherwise all its
+    /// Believe the proxy with this address, or every one in a network, who asks, as its `X-Forwarded-For` says at its end. Otherwise all its
     /// clients share what one is given. May be given again
     #[arg(long, env = "EQUIPOISE_TRUST_PROXY", value_name = "ADDRESS[/BITS]", value_delimiter = ',')]
     pub trust_proxy: Vec<Network>,
@@ -62,6 +73,23 @@ impl Config {
         self.permits.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
     }
 
+    /// The names that are answered to beside those of the machine itself; none where every name is.
+    ///
+    /// With a token no list is needed: a page that gives its own name to this server has neither the token nor a cookie.
+    pub fn hosts(&self) -> Option<&[HostName]> {
+        let is_open_to_pages = self.token.is_none() && self.listens_to_itself();
+        (is_open_to_pages || !self.allow_host.is_empty()).then_some(&self.allow_host)
+    }
+
+    /// Whether only programs on this machine can connect.
+    fn listens_to_itself(&self) -> bool {
+        let Ok(address) = self.listen.parse::<SocketAddr>() else {
+            let name = self.listen.rsplit_once(':').map_or(self.listen.as_str(), |(name, _)| name);
+            return name.eq_ignore_ascii_case("localhost");
+        };
+        address.ip().to_canonical().is_loopback()
+    }
+
     /// What is open to whom, in a sentence, to whoever starts a server that listens here.
     pub fn openness(&self, address: SocketAddr) -> String {
         let whom = match address.ip() {
@@ -75,7 +103,9 @@ impl Config {
         };
         let origins: String =
             self.allow_origin.iter().map(|origin| format!("; pages of {origin} may ask too")).collect();
-        format!("open to {whom}: {with}{origins}")
+        let hosts: String = self.allow_host.iter().map(|host| format!("; it answers to the name {host} too")).collect();
+        let embedding = if self.allow_embedding { "; pages of any site may show its pictures and panels" } else { "" };
+        format!("open to {whom}: {with}{origins}{hosts}{embedding}")
     }
 }
 
@@ -182,6 +212,28 @@ mod tests {
         let said = say("192.0.2.1:80", &guarded);
         assert!(said.contains("with the token") && said.contains("https://lab.example"), "{said}");
         assert!(!said.contains("0123456789abcdef"));
+    }
+
+    #[test]
+    fn names_are_looked_at_where_a_page_of_another_site_could_ask() {
+        let hosts = |arguments: &[&str]| {
+            let config = parsed(arguments).unwrap();
+            config.hosts().map(|hosts| hosts.iter().map(ToString::to_string).collect::<Vec<_>>())
+        };
+        for listen in ["127.0.0.1:8080", "127.9.9.9:1", "[::1]:0", "[::ffff:127.0.0.1]:0", "localhost:8080"] {
+            assert_eq!(hosts(&["--listen", listen]), Some(vec![]), "{listen}");
+            assert_eq!(hosts(&["--listen", listen, "--token", "0123456789abcdef"]), None, "{listen}");
+        }
+        let named = ["--allow-host", "rig.lab,Rig", "--allow-host", "a.example"];
+        for listen in ["0.0.0.0:80", "[::]:80", "192.0.2.1:80", "lab.example:80"] {
+            assert_eq!(hosts(&["--listen", listen]), None, "{listen}");
+            let all = [&["--listen", listen], named.as_slice()].concat();
+            assert_eq!(hosts(&all), Some(["rig.lab", "rig", "a.example"].map(str::to_owned).into()), "{listen}");
+        }
+        assert!(parsed(&["--allow-host", "http://rig.lab:80"]).unwrap_err().contains("without scheme and port"));
+        let said =
+            parsed(&[&named[..], &["--allow-embedding"]].concat()).unwrap().openness("127.0.0.1:80".parse().unwrap());
+        assert!(said.contains("the name rig.lab too") && said.ends_with("pictures and panels"), "{said}");
     }
 
     #[test]

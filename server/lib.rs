@@ -10,6 +10,7 @@ pub mod http;
 pub mod integrators;
 pub mod limits;
 pub mod live;
+pub mod memory;
 pub mod middleware;
 pub mod picture;
 pub mod precision;

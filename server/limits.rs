@@ -6,12 +6,14 @@
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
+use std::sync::LazyLock;
 use std::time::Duration;
 
 use clap::builder::Resettable;
 use clap::{Args, Command, FromArgMatches};
 
 use crate::compute::Limit;
+use crate::memory;
 
 /// The limits that can be set: those of load, which depend on the machine and on who uses it. What is said here is what
 /// `--help` says.
@@ -68,9 +70,9 @@ pub struct Limits {
     pub answer: u64,
 
     /// Memory for answers that are computed and not yet sent. One client has at most as much as is left, so half of it; beyond
-    /// that it is told to read first
-    #[arg(long, env = "EQUIPOISE_HELD_BYTES", value_name = "BYTES", default_value = "1073741824")]
-    #[arg(value_parser = within::<usize>(1024 * 1024..=1 << 44, "bytes"))]
+    /// that it is told to read first. If not set, a quarter of the memory that the process may have, and at most 1 GiB
+    #[arg(long, env = "EQUIPOISE_HELD_BYTES", value_name = "BYTES", default_value = HELD_BYTES.as_str())]
+    #[arg(value_parser = within::<usize>(HELD_BYTES_LEAST as usize..=1 << 44, "bytes"))]
     pub held_bytes: usize,
 
     /// Requests that may wait for each of the permits. One client takes at most as many places as are left, so half of
@@ -132,6 +134,14 @@ impl Limits {
     pub fn of_answer(&self) -> Limit {
         Limit { name: "size of the answer", most: self.answer, unit: "numbers" }
     }
+}
+
+/// Default of [`Limits::held_bytes`] on this machine, as text.
+static HELD_BYTES: LazyLock<String> = LazyLock::new(|| held_bytes(memory::allowed()).to_string());
+
+/// Memory for answers out of what the process may have. As much again goes to what is computed, and the rest to connections.
+fn held_bytes(allowed: Option<u64>) -> u64 {
+    allowed.map_or(HELD_BYTES_MOST, |allowed| allowed / HELD_BYTES_SHARE).clamp(HELD_BYTES_LEAST, HELD_BYTES_MOST)
 }
 
 /// As when nothing is set, whatever the environment says.
@@ -288,6 +298,15 @@ pub const COMPUTE_NICENESS: i32 = 5;
 /// What `Retry-After` says on a 503, seconds: about the time of one request at its dearest.
 pub const RETRY_AFTER_S: u32 = 2;
 
+/// One part in so many of the memory that the process may have is for answers that are not yet sent, if nothing is set.
+const HELD_BYTES_SHARE: u64 = 4;
+
+/// Bytes for such answers, at least: a smaller one would be told to read what it has not been sent.
+const HELD_BYTES_LEAST: u64 = 1024 * 1024;
+
+/// The same at most, if nothing is set: a dozen answers of the largest size.
+const HELD_BYTES_MOST: u64 = 1024 * 1024 * 1024;
+
 /// Bytes of answer that are compressed or copied between two looks at whether the client is still there: under 10 ms.
 pub const GZIP_STEP_BYTES: usize = 128 * 1024;
 
@@ -299,6 +318,13 @@ pub const JSON_STEP_BYTES: usize = 16 * 1024;
 /// Bytes of its answer that a slow client has to take in the time to stall: at the default time some 2 KB/s, which any
 /// network does.
 pub const STALL_BYTES: usize = 64 * 1024;
+
+/// Time after which a client that waits with its sending half closed is sent a byte for the second time, to see whether it is still
+/// there; each next time after three times as long as it has waited. The last of the nine bytes of a status line goes out after 22 s.
+pub const PRESENCE_TIME: Duration = Duration::from_millis(10);
+
+/// Zeros before the size of a chunk that may be sent for that. Clients read up to sixteen digits, of which a size has eight at most.
+pub const PRESENCE_ZEROS: usize = 8;
 
 /// When connections give way, one in so many does at once: finding out which takes longer than closing them.
 pub const CONNECTIONS_AT_ONCE: usize = 64;
@@ -387,3 +413,18 @@ pub const LIVE_IMPACT_PRICE: u64 = 100;
 /// to any, and its last impacts told anew. Some 0.7 s of one core, and 2 s with noise.
 pub const LIVE_CATCH_UP: Limit =
     Limit { name: "work of catching up with this run", most: LIVE_IMPACTS + 1_000_000, unit: "bounces" };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_are_held_in_a_share_of_the_memory_there_is() {
+        for (allowed, held) in
+            [(None, 1 << 30), (Some(64 << 30), 1 << 30), (Some(512 << 20), 128 << 20), (Some(0), 1 << 20)]
+        {
+            assert_eq!(held_bytes(allowed), held, "{allowed:?}");
+        }
+        assert!(Limits::default().held_bytes as u64 <= HELD_BYTES_MOST);
+    }
+}

@@ -41,6 +41,8 @@ async fn run(mut config: Config) -> Result<(), String> {
     let listener = TcpListener::bind(&config.listen).await.map_err(|error| cannot_listen(&config.listen, &error))?;
     let address = listener.local_addr().map_err(|error| error.to_string())?;
     let stop = stop_signal().map_err(|error| format!("cannot listen for signals: {error}"))?;
+    // A name has become an address.
+    config.listen = address.to_string();
     let openness = config.openness(address);
     // Nobody has to read it.
     let _ = writeln!(io::stdout(), "equipoise {BUILD} serves http://{address}{}/\n{openness}", config.base_path);

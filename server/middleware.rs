@@ -2,15 +2,15 @@
 
 use std::any::Any;
 use std::io::{Write, stderr};
-use std::net::IpAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use axum::Router;
 use axum::body::{Body, to_bytes};
-use axum::extract::{MatchedPath, Request, State};
+use axum::extract::{ConnectInfo, MatchedPath, Request, State};
 use axum::http::uri::PathAndQuery;
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, Version, header};
 use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::{IntoResponse, Redirect, Response};
 use serde::Serialize;
@@ -22,7 +22,7 @@ use tower_http::cors::CorsLayer;
 use crate::compute::Peer;
 use crate::config::Config;
 use crate::http::problem::{MEDIA_TYPE, shortened};
-use crate::http::{Asked, Origin, Problem, REQUEST_ID, peer};
+use crate::http::{Asked, HostName, Origin, Problem, REQUEST_ID, Token, host, peer, site, transfer};
 use crate::routes::App;
 use crate::{BUILD, limits};
 
@@ -30,17 +30,20 @@ use crate::{BUILD, limits};
 ///
 /// 1. `received` puts the headers on that every answer has, knows who asks and under which id, and writes the log: all that
 ///    happens to a request happens within it.
-/// 2. CORS, if there are origins to allow: before the token, which a browser does not send when it asks whether it may.
-/// 3. `told` makes a problem of every error that libraries answer with on their own: 405, refused upgrades … Up to here they
+/// 2. `addressed` refuses what is not meant for this server, or is in a form that it does not know: before CORS, which would
+///    tell a page of a name that is not ours that it may ask.
+/// 3. CORS, if there are origins to allow: before the token, which a browser does not send when it asks whether it may.
+/// 4. `told` makes a problem of every error that libraries answer with on their own: 405, refused upgrades … Up to here they
 ///    stand around the router as a whole, because it adds `Allow` outside of the layers of its routes.
-/// 4. `guarded` lets nobody past without the token, if there is one.
-/// 5. `measured` knows the route's template, so it stands within; outside of panics, which are counted as well.
-/// 6. Panics become a 500.
-/// 7. `bounded` refuses a URL before anybody reads it.
+/// 5. `guarded` lets nobody past without the token, if there is one, and no work for a page of another site.
+/// 6. `measured` knows the route's template, so it stands within; outside of panics, which are counted as well.
+/// 7. Panics become a 500.
+/// 8. `bounded` refuses a URL before anybody reads it.
 ///
 /// HEAD needs no layer: the router answers it like GET and leaves out the body. Bodies are bounded where they are read.
 pub fn surround(router: Router<App>, app: App) -> Router {
-    let door = Arc::new(Door { base: app.base_path.clone(), config: app.config.clone() });
+    let hosts = app.config.hosts().map(Into::into);
+    let door = Arc::new(Door { base: app.base_path.clone(), config: app.config.clone(), hosts });
     let origins = &app.config.allow_origin;
     let cors = (!origins.is_empty()).then(|| cors(origins));
     let within = ServiceBuilder::new()
@@ -49,6 +52,7 @@ pub fn surround(router: Router<App>, app: App) -> Router {
         .layer(from_fn(bounded));
     let around = ServiceBuilder::new()
         .layer(from_fn_with_state(door.clone(), received))
+        .layer(from_fn_with_state(door.clone(), addressed))
         .layer(option_layer(cors))
         .layer(from_fn(told))
         .layer(from_fn_with_state(door, guarded));
@@ -60,13 +64,17 @@ pub fn surround(router: Router<App>, app: App) -> Router {
 struct Door {
     base: Arc<str>,
     config: Arc<Config>,
+    /// The names that are answered to; none where every name is.
+    hosts: Option<Vec<HostName>>,
 }
 
 impl Door {
     /// Who asks: the peer of the connection or, if that is a proxy to be believed, whom it names.
     fn peer(&self, request: &Request) -> Peer {
         let peer = peer(request.extensions());
-        if !self.config.trust_proxy.iter().any(|proxies| proxies.has(peer)) {
+        // The whole address: a peer of IPv6 is a network.
+        let from = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(from)| from.ip());
+        if !from.is_some_and(|from| self.config.trust_proxy.iter().any(|proxies| proxies.has(from))) {
             return peer;
         }
         // The last one is what the proxy itself has seen; those before it anybody can send.
@@ -136,11 +144,34 @@ struct Line<'a> {
     ms: f64,
 }
 
-/// A target without the secret that may be in it.
+/// A target without the secret that may be in it, however its name is written: it ends where the name does.
 fn shown(uri: &Uri) -> String {
     let target = uri.path_and_query().map_or("*", PathAndQuery::as_str);
-    let end = target.find(TOKEN_PARAMETER).map_or(target.len(), |start| start + TOKEN_PARAMETER.len());
+    let end = end_of_name(target.as_bytes()).unwrap_or(target.len());
     target[..end].chars().take(limits::URL_BYTES).collect()
+}
+
+/// End of the first `token=` in a target, of which any character may be percent-encoded, in either case.
+fn end_of_name(target: &[u8]) -> Option<usize> {
+    let escaped = |place: usize| {
+        let digits = target.get(place..)?.strip_prefix(b"%")?.get(..2)?;
+        let digits = Some(digits).filter(|digits| digits.iter().all(u8::is_ascii_hexdigit))?;
+        u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok()
+    };
+    // Each character with where it ends.
+    let mut characters = Vec::with_capacity(target.len());
+    let mut place = 0;
+    while place < target.len() {
+        let (byte, length) = escaped(place).map_or((target[place], 1), |byte| (byte, 3));
+        place += length;
+        characters.push((byte, place));
+    }
+    let name = [TOKEN_PARAMETER.as_bytes(), b"="].concat();
+    let found = characters.windows(name.len()).find(|window| {
+        let letters = window.iter().map(|(byte, _)| byte);
+        letters.zip(&name).all(|(byte, letter)| byte.eq_ignore_ascii_case(letter))
+    });
+    found.and_then(|window| Some(window.last()?.1))
 }
 
 /// Takes the base path away, where a proxy has left it on. The page there has relative addresses, which need its slash.
@@ -173,24 +204,56 @@ pub fn seal(headers: &mut HeaderMap) {
     }
 }
 
-/// What a browser is given the token by, once.
-const TOKEN_PARAMETER: &str = "token=";
+/// Parameter by which a browser is given the token, once.
+const TOKEN_PARAMETER: &str = "token";
+
+async fn addressed(State(door): State<Arc<Door>>, request: Request, next: Next) -> Response {
+    let headers = request.headers();
+    // A test without a socket speaks no version of HTTP.
+    let version = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|_| request.version());
+    let is_named = host::check_form(version.unwrap_or(Version::HTTP_10), headers);
+    let is_ours = is_named
+        .and_then(|()| door.hosts.as_ref().map_or(Ok(()), |allowed| host::check_name(request.uri(), headers, allowed)));
+    match is_ours.and_then(|()| transfer::check(headers)) {
+        Ok(()) => next.run(request).await,
+        Err(problem) => problem.into_response(),
+    }
+}
 
 async fn guarded(State(door): State<Arc<Door>>, request: Request, next: Next) -> Response {
-    let Some(token) = &door.config.token else { return next.run(request).await };
+    match refused(&door.config, &request) {
+        Some(answer) => answer,
+        None => next.run(request).await,
+    }
+}
+
+/// The answer to who may not ask: without the token, or for a page of another site. A browser that brings the token is sent on
+/// with its cookie.
+fn refused(config: &Config, request: &Request) -> Option<Response> {
+    let (origins, embedding) = (&config.allow_origin, config.allow_embedding);
+    let checked = || site::check(request.method(), request.uri().path(), request.headers(), origins, embedding);
+    let by_token = config.token.as_ref().and_then(|token| unauthorized(token, request));
+    by_token.or_else(|| checked().err().map(IntoResponse::into_response))
+}
+
+fn unauthorized(token: &Token, request: &Request) -> Option<Response> {
     let (path, query) = (request.uri().path(), request.uri().query().unwrap_or_default());
     if path.starts_with("/health/") || token.is_in(request.headers()) {
-        return next.run(request).await;
+        return None;
     }
-    let (given, others): (Vec<_>, Vec<_>) = query.split('&').partition(|part| part.starts_with(TOKEN_PARAMETER));
-    if path == "/" && given.first().is_some_and(|given| token.is(&given[TOKEN_PARAMETER.len()..])) {
+    let given = |part: &str| {
+        let (name, value) = form_urlencoded::parse(part.as_bytes()).next()?;
+        (name == TOKEN_PARAMETER).then(|| value.into_owned())
+    };
+    let (tokens, others): (Vec<_>, Vec<_>) = query.split('&').partition(|part| given(part).is_some());
+    if path == "/" && tokens.first().and_then(|part| given(part)).is_some_and(|offered| token.is(&offered)) {
         let page = if others.is_empty() { "./".to_owned() } else { format!("./?{}", others.join("&")) };
         let mut response = Redirect::to(&page).into_response();
         response.headers_mut().insert(header::SET_COOKIE, token.cookie());
         response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
-        return response;
+        return Some(response);
     }
-    Problem::unauthorized().into_response()
+    Some(Problem::unauthorized().into_response())
 }
 
 async fn measured(State(app): State<App>, route: Option<MatchedPath>, request: Request, next: Next) -> Response {
@@ -251,4 +314,25 @@ async fn bounded(request: Request, next: Next) -> Response {
 /// The answer where there is no route.
 pub async fn not_found(uri: Uri) -> Problem {
     Problem::not_found(format!("there is nothing at {}; /docs says what there is", shortened(uri.path())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_target_is_shown_up_to_the_secret_however_its_name_is_written() {
+        for (target, said) in [
+            ("/?preset=case-1&token=SECRET", "/?preset=case-1&token="),
+            ("/?%74oken=SECRET&a=b", "/?%74oken="),
+            ("/?t%6fk%65n%3DSECRET", "/?t%6fk%65n%3D"),
+            ("/?TO%4BEN=SECRET", "/?TO%4BEN="),
+            ("/token=SECRET", "/token="),
+            ("/v1/scenes?a=%22%0a%", "/v1/scenes?a=%22%0a%"),
+            ("/?a=%+7&%zz%7", "/?a=%+7&%zz%7"),
+            ("/?%2574oken=1", "/?%2574oken=1"),
+        ] {
+            assert_eq!(shown(&target.parse().unwrap()), said);
+        }
+    }
 }

@@ -8,7 +8,7 @@ use axum::http::Method;
 use clap::Parser;
 use equipoise::config::Config;
 use serde_json::json;
-use support::socket::{open, refused, start_with, try_open};
+use support::socket::{open, refused, start, start_with, try_open};
 use support::{Answer, Server};
 use tokio::io::{AsyncReadExt, AsyncWriteExt, copy_bidirectional};
 use tokio::net::{TcpListener, TcpStream};
@@ -57,6 +57,14 @@ async fn a_browser_is_given_a_cookie_once_and_loses_nothing_of_the_address() {
     assert_eq!(answer.header("cache-control"), Some("no-store"));
     let (cookie, rest) = answer.header("set-cookie").unwrap().split_once(';').unwrap();
     assert_eq!(rest, " HttpOnly; SameSite=Lax");
+    // It is derived from the token, the same way by every server that has it, and says nothing of it.
+    assert!(!cookie.contains(TOKEN) && cookie.len() == "equipoise_token=".len() + 64, "{cookie}");
+    let again = Server::with(&guarded()).get(&format!("/?%74oken=%30{}", &TOKEN[1..])).await.expect(303);
+    assert_eq!(again.header("location"), Some("./"));
+    assert_eq!(again.header("set-cookie").unwrap().split_once(';').unwrap().0, cookie);
+    let other = Server::with(&config(&["--token", &TOKEN.replace('0', "1")]));
+    other.get_with("/v1/scenes", &[("cookie", cookie)]).await.expect(401);
+    server.get_with("/v1/scenes", &[("cookie", &format!("equipoise_token={TOKEN}"))]).await.expect(401);
     for target in ["/?preset=case-2", "/v1/stability?preset=case-1&format=svg"] {
         server.get_with(target, &[("cookie", cookie)]).await.expect(200);
     }
@@ -67,7 +75,11 @@ async fn a_live_run_asks_for_the_token_too() {
     let (_, address) = start_with(&guarded()).await;
     assert_eq!(refused(address, "/v1/live?preset=case-1", &[]).await["status"], 401);
     let bearer = format!("Bearer {TOKEN}");
-    let cookie = format!("equipoise_token={TOKEN}");
+    let welcome = get(address, &format!("/?token={TOKEN}")).await;
+    let cookie =
+        welcome.lines().find_map(|line| line.strip_prefix("set-cookie: ")?.split(';').next()).unwrap().to_owned();
+    let itself = format!("equipoise_token={TOKEN}");
+    assert_eq!(refused(address, "/v1/live?preset=case-1", &[("cookie", &itself)]).await["status"], 401);
     let offered = format!("equipoise.v1, equipoise.token.{TOKEN}");
     for (name, value) in [("authorization", &bearer), ("cookie", &cookie), ("sec-websocket-protocol", &offered)] {
         let (mut client, protocol) = try_open(address, "/v1/live?preset=case-1", &[(name, value)]).await.unwrap();
@@ -128,6 +140,128 @@ async fn live_runs_keep_to_the_same_list() {
     let url = "/v1/live?preset=case-1";
     assert!(try_open(address, url, &[("origin", "https://lab.example")]).await.is_ok());
     assert_eq!(refused(address, url, &[("origin", "https://else.example")]).await["status"], 403);
+}
+
+/// The status of an answer over a socket, and its body.
+async fn told(address: SocketAddr, request: &str, headers: &[&str]) -> (u16, String) {
+    let mut socket = TcpStream::connect(address).await.unwrap();
+    let headers: String = headers.iter().map(|header| format!("{header}\r\n")).collect();
+    socket.write_all(format!("{request} HTTP/1.1\r\n{headers}connection: close\r\n\r\n").as_bytes()).await.unwrap();
+    let mut answer = String::new();
+    socket.read_to_string(&mut answer).await.unwrap();
+    let (head, body) = answer.split_once("\r\n\r\n").unwrap();
+    (head.split(' ').nth(1).unwrap().parse().unwrap(), body.to_owned())
+}
+
+/// A page of another site that lets its own name lead to this machine is of the same origin to the browser, and reads nothing.
+#[tokio::test]
+async fn a_name_that_is_not_the_servers_is_not_answered_to() {
+    let (app, address) = start().await;
+    let port = address.port();
+    let own = ["localhost", "a.localhost", "127.0.0.1", "[::1]", "192.0.2.7"];
+    for host in own {
+        assert_eq!(told(address, "GET /v1/scenes", &[&format!("host: {host}:{port}")]).await.0, 200, "{host}");
+    }
+    let post = ["content-type: application/json", "content-length: 0"];
+    for host in ["evil.example", "localhost.evil.example", "rig.lab", "127.0.0.1.nip.io", "rig"] {
+        let named = format!("host: {host}:{port}");
+        // As a browser says it there: the same origin, the same site.
+        let origin = format!("origin: http://{host}:{port}");
+        for (request, more) in [
+            ("GET /", &[][..]),
+            ("GET /health/live", &[]),
+            ("GET /v1/stability?preset=case-1", &["sec-fetch-site: same-origin"]),
+            ("GET /v1/live/events?preset=case-1", &[&origin]),
+            ("POST /v1/stability", &post),
+            ("OPTIONS /v1/stability", &[]),
+        ] {
+            let (status, body) = told(address, request, &[&[named.as_str()], more].concat()).await;
+            assert_eq!(status, 421, "{host}: {request}: {body}");
+            assert!(body.contains("--allow-host") && body.contains("Misdirected Request"), "{body}");
+        }
+        let own = format!("http://{host}:{port}");
+        let headers = [("host", named.strip_prefix("host: ").unwrap()), ("origin", &own)];
+        assert_eq!(refused(address, "/v1/live?preset=case-1", &headers).await["status"], 421);
+    }
+    assert_eq!(told(address, "GET http://evil.example/v1/scenes", &["host: localhost"]).await.0, 421);
+    assert_eq!(app.metrics.live_sessions.get(), 0);
+}
+
+#[tokio::test]
+async fn names_that_are_allowed_are_answered_to() {
+    let status = async |arguments: &[&str], host: &str| {
+        let (_, address) = start_with(&config(arguments)).await;
+        told(address, "GET /health/live", &[&format!("host: {host}")]).await.0
+    };
+    let allowed = ["--allow-host", "rig.lab.example,rig"];
+    for (host, expected) in [("rig.lab.example", 200), ("RIG.", 200), ("localhost", 200), ("lab.example", 421)] {
+        assert_eq!(status(&allowed, host).await, expected, "{host}");
+        assert_eq!(status(&[&allowed[..], &["--listen", "0.0.0.0:80"]].concat(), host).await, expected, "{host}");
+        // A page that gives its own name to the server has neither the token nor the cookie; a network has many names.
+        assert_eq!(status(&["--token", TOKEN], host).await, 200, "{host}");
+        assert_eq!(status(&["--listen", "0.0.0.0:80"], host).await, 200, "{host}");
+    }
+}
+
+#[tokio::test]
+async fn a_page_of_another_site_sets_no_server_to_work() {
+    let (_, closed) = start_with(&config(&["--allow-origin", "https://lab.example"])).await;
+    let (_, open) = start_with(&config(&["--allow-embedding"])).await;
+    let picture = "GET /v1/stability?preset=case-1&format=svg";
+    let cross = ["host: localhost", "sec-fetch-site: cross-site"];
+    let status = async |address, request: &str, more: &[&str]| {
+        let json = ["content-type: application/json", "content-length: 19"];
+        let json = if request.starts_with("POST") { &json[..] } else { &[] };
+        // After a refusal nobody reads the body.
+        let body = if request.starts_with("POST") { "{\"preset\":\"case-1\"}" } else { "" };
+        let mut socket = TcpStream::connect(address).await.unwrap();
+        let headers: String = [&cross, json, more].concat().iter().map(|header| format!("{header}\r\n")).collect();
+        let whole = format!("{request} HTTP/1.1\r\n{headers}connection: close\r\n\r\n{body}");
+        socket.write_all(whole.as_bytes()).await.unwrap();
+        let mut answer = [0; 12];
+        socket.read_exact(&mut answer).await.unwrap();
+        std::str::from_utf8(&answer[9..]).unwrap().parse::<u16>().unwrap()
+    };
+    for request in [
+        picture,
+        "HEAD /v1/stability?preset=case-1",
+        "GET /v1/live/events?preset=case-1",
+        "GET /v1/regions?preset=case-1",
+        "GET /v1/failures",
+        "POST /v1/stability",
+        "POST /v1/batches/stability",
+    ] {
+        assert_eq!(status(closed, request, &[]).await, 403, "{request}");
+        assert_eq!(status(closed, request, &["origin: https://else.example"]).await, 403, "{request}");
+        assert_eq!(status(open, request, &["sec-fetch-mode: cors", "sec-fetch-dest: empty"]).await, 403, "{request}");
+        let allowed = status(closed, request, &["origin: https://lab.example"]).await;
+        assert!(![403, 421].contains(&allowed), "{request}: {allowed}");
+    }
+    let headers = [("sec-fetch-site", "cross-site"), ("host", "localhost")];
+    assert_eq!(refused(closed, "/v1/live?preset=case-1", &headers).await["status"], 403);
+    // A link that somebody follows, and not one that a page fetches for them before.
+    let visit = ["sec-fetch-mode: navigate", "sec-fetch-dest: document", "sec-fetch-user: ?1"];
+    assert_eq!(status(closed, picture, &visit).await, 200);
+    assert_eq!(status(closed, picture, &[&visit[..], &["sec-purpose: prefetch"]].concat()).await, 403);
+    assert_eq!(status(closed, "POST /v1/stability", &visit).await, 403);
+    // Pictures and panels in its page.
+    for (request, destination) in [(picture, "image"), ("GET /embed/map?preset=case-1", "iframe")] {
+        let shown = [format!("sec-fetch-dest: {destination}")];
+        let shown = [shown[0].as_str(), "sec-fetch-mode: no-cors"];
+        assert_eq!(status(closed, request, &shown).await, 403, "{request}");
+        assert_eq!(status(open, request, &shown).await, 200, "{request}");
+    }
+    // What costs nothing, and whoever is no page of another site.
+    for request in ["GET /", "GET /docs", "GET /v1/scenes", "GET /v1/fields", "GET /embed/map", "GET /openapi.json"] {
+        assert_eq!(status(closed, request, &[]).await, 200, "{request}");
+    }
+    for site in ["same-origin", "same-site", "none"] {
+        let said = format!("sec-fetch-site: {site}");
+        assert_eq!(told(closed, picture, &["host: localhost", &said]).await.0, 200, "{site}");
+    }
+    // A browser asks first whether a page may, and says then too that it is of another site.
+    let preflight = ["origin: https://lab.example", "access-control-request-method: POST"];
+    assert_eq!(status(closed, "OPTIONS /v1/stability", &preflight).await, 200);
 }
 
 #[tokio::test]

@@ -8,6 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use axum::http::Method;
+use equipoise::config::Config;
 use serde_json::{Map, Value, json};
 use support::csv::Table;
 use support::{Answer, Server};
@@ -186,9 +187,10 @@ async fn every_address_in_the_files_is_answered() {
     let server = Server::start();
     let mut found = vec![("dashboards.md".to_owned(), fs::read_to_string(folder().join("dashboards.md")).unwrap())];
     files(&folder().join("dashboards"), &mut found);
-    let mut count = 0;
+    let embedding = Server::with(&Config { allow_embedding: true, ..Config::default() });
+    let (mut count, mut shown_count) = (0, 0);
     for (file, text) in found {
-        for rest in text.split(HOST).skip(1) {
+        for (place, rest) in text.split(HOST).skip(1).enumerate() {
             let end = rest.find(|c: char| c.is_whitespace() || "\"'`)<>\\".contains(c)).unwrap_or(rest.len());
             let target = filled_in(&rest[..end]).replace("&amp;", "&");
             let target = if target.is_empty() { "/" } else { &target };
@@ -196,10 +198,22 @@ async fn every_address_in_the_files_is_answered() {
             let method = if target.starts_with("/v1/live/events") { Method::HEAD } else { Method::GET };
             let answer = server.send(method, target, &[], "").await;
             assert_eq!(answer.status.as_u16(), 200, "{file}: {target}: {}", String::from_utf8_lossy(&answer.body));
+            // As a browser asks for a picture or a frame of a page of another site, if the server may be shown there.
+            let before = text.split(HOST).take(place + 1).last().unwrap_or_default();
+            let shown = [("<img", "image"), ("<iframe", "iframe")]
+                .into_iter()
+                .find(|(tag, _)| before.rfind('<').is_some_and(|start| before[start..].starts_with(tag)));
+            if let Some((_, destination)) = shown {
+                let headers = [("sec-fetch-site", "cross-site"), ("sec-fetch-dest", destination)];
+                embedding.get_with(target, &headers).await.expect(200);
+                server.get_with(target, &headers).await.expect(403);
+                shown_count += 1;
+            }
             count += 1;
         }
     }
     assert!(count >= 8, "{count} addresses");
+    assert_eq!(shown_count, 5, "pictures and frames");
 }
 
 #[tokio::test]

@@ -355,7 +355,7 @@ async fn an_ensemble_ends_with_its_reader() {
     for size in ["runs=20000&impacts=5000", "runs=1000&impacts=100000"] {
         let mut socket = TcpStream::connect(address).await.unwrap();
         let target = format!("{CASE_1}&scene.release.theta=0.1&{size}");
-        socket.write_all(format!("GET {target} HTTP/1.1\r\nhost: x\r\n\r\n").as_bytes()).await.unwrap();
+        socket.write_all(format!("GET {target} HTTP/1.1\r\nhost: localhost\r\n\r\n").as_bytes()).await.unwrap();
         while app.pool.running().get() == 0 {
             tokio::time::sleep(Duration::from_millis(1)).await;
         }

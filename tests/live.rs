@@ -257,6 +257,43 @@ async fn messages_are_limited_in_size_and_number() {
     }
 }
 
+/// A client's frame with the key 0, which leaves its payload as it is.
+fn frame(first: u8, payload: &[u8]) -> Vec<u8> {
+    [&[first, 0x80 | u8::try_from(payload.len()).unwrap(), 0, 0, 0, 0], payload].concat()
+}
+
+#[tokio::test]
+async fn what_cannot_be_read_is_closed_with_the_code_that_says_why() {
+    let (app, address) = start().await;
+    let oversize = [&[0x81, 0xff], u64::MAX.to_be_bytes().as_slice(), &[0; 4]].concat();
+    for (broken, code, what) in [
+        (frame(0xf1, b"{}"), 1002, "reserved bits"),
+        (frame(0x83, b"{}"), 1002, "an opcode that there is not"),
+        (frame(0x8b, b""), 1002, "a control frame that there is not"),
+        (vec![0x81, 0x02, b'{', b'}'], 1002, "no mask"),
+        (frame(0x09, b""), 1002, "a ping in pieces"),
+        (frame(0x80, b"{}"), 1002, "the next piece of nothing"),
+        ([frame(0x01, b"{"), frame(0x81, b"}")].concat(), 1002, "a message within a message"),
+        (frame(0x88, b"x"), 1002, "half a close code"),
+        (frame(0x88, &[3, 0xed]), 1002, "a close code that nobody may send"),
+        (frame(0x81, b"\xff\xfe"), 1007, "text that is not UTF-8"),
+        ([frame(0x01, b"\xc3"), frame(0x80, b"(")].concat(), 1007, "the same in pieces"),
+        (frame(0x88, b"\x03\xe8\xff"), 1007, "the reason of a close that is not UTF-8"),
+        (oversize, 1009, "a frame of 2^64 - 1 bytes"),
+    ] {
+        let mut client = open(address, "/v1/live?preset=case-1").await;
+        client.socket.get_mut().write_all(&broken).await.unwrap();
+        assert_eq!(client.closed().await, Some(code), "{what}");
+    }
+    timeout(SOON, async {
+        while app.metrics.live_sessions.get() > 0 {
+            tokio::time::sleep(Duration::from_millis(5)).await;
+        }
+    })
+    .await
+    .expect("a session goes on for nobody");
+}
+
 #[tokio::test]
 async fn interventions_are_limited() {
     let (_, address) = start().await;
@@ -326,7 +363,7 @@ async fn what_is_no_run_or_no_websocket_is_a_problem() {
     assert_eq!(refused(address, "/v1/live?preset=case-1", &[]).await["status"], 503);
     let plain = async |head: &str| {
         let mut socket = TcpStream::connect(address).await.unwrap();
-        socket.write_all(format!("{head}host: x\r\nconnection: close\r\n\r\n").as_bytes()).await.unwrap();
+        socket.write_all(format!("{head}host: localhost\r\nconnection: close\r\n\r\n").as_bytes()).await.unwrap();
         let mut answer = String::new();
         socket.read_to_string(&mut answer).await.unwrap();
         answer

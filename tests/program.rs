@@ -25,8 +25,12 @@ struct Program {
 
 impl Program {
     fn start(arguments: &[&str]) -> Self {
+        Self::start_at("127.0.0.1:0", arguments)
+    }
+
+    fn start_at(listen: &str, arguments: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_equipoise"))
-            .args(["--listen", "127.0.0.1:0"])
+            .args(["--listen", listen])
             .args(arguments)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -63,7 +67,7 @@ impl Program {
 
     async fn send(&self, target: &str, headers: &str) -> TcpStream {
         let mut socket = TcpStream::connect(self.address).await.unwrap();
-        let request = format!("GET {target} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n{headers}\r\n");
+        let request = format!("GET {target} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n{headers}\r\n");
         socket.write_all(request.as_bytes()).await.unwrap();
         socket
     }
@@ -132,6 +136,8 @@ fn it_refuses_what_it_cannot_keep_to() {
     assert!(code == Some(2) && said.contains("openssl rand -hex 16"), "{said}");
     let (code, help) = run(&["--help"]);
     assert_eq!(code, Some(0));
+    let (code, said) = run(&["--allow-host", "http://rig.lab:8080"]);
+    assert!(code == Some(2) && said.contains("without scheme and port"), "{said}");
     for word in ["--region-work <BOUNCES>", "EQUIPOISE_LIVE_SESSIONS", "[default: 16384]", "--trust-proxy"] {
         assert!(help.contains(word), "{word} is not in {help}");
     }
@@ -147,16 +153,60 @@ async fn each_request_is_a_line_of_the_log_and_no_line_has_the_token() {
         .await;
     program.get(&format!("/?preset=case-1&token={token}"), "").await;
     program.get("/none", &bearer).await;
+    program.get(&format!("/?a=1&%74oken={token}&b=2"), "").await;
+    program.get(&format!("/v1/scenes?TOK%65N%3d{token}"), &bearer).await;
     program.stop();
     let (_, log) = program.end().await;
     assert!(!log.contains(token), "{log}");
     let lines: Vec<Value> = log.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let told: Vec<_> =
         lines.iter().map(|line| (line["target"].as_str().unwrap(), line["status"].as_u64().unwrap())).collect();
-    assert_eq!(told, [("/v1/scenes?a=%22%0a", 422), ("/?preset=case-1&token=", 303), ("/none", 404)]);
+    assert_eq!(
+        told,
+        [
+            ("/v1/scenes?a=%22%0a", 422),
+            ("/?preset=case-1&token=", 303),
+            ("/none", 404),
+            ("/?a=1&%74oken=", 303),
+            ("/v1/scenes?TOK%65N%3d", 422),
+        ]
+    );
     assert_eq!((lines[0]["id"].as_str(), lines[0]["peer"].as_str()), (Some("lab-1"), Some("192.0.2.7")));
     assert_eq!((lines[1]["peer"].as_str(), lines[1]["method"].as_str()), (Some("127.0.0.1"), Some("GET")));
     assert!(lines[0]["ms"].as_f64().unwrap() > 0.0);
+}
+
+/// Of IPv6 as of IPv4: another address of the same 64 bits is not the proxy that is trusted.
+#[tokio::test]
+async fn a_proxy_is_believed_by_its_whole_address() {
+    let named = "x-forwarded-for: 192.0.2.7\r\n";
+    let mut peers = Vec::new();
+    for trusted in ["::2", "::1", "::/64"] {
+        let program = Program::start_at("[::1]:0", &["--access-log", "--trust-proxy", trusted]);
+        program.get("/health/live", named).await;
+        program.stop();
+        let (_, log) = program.end().await;
+        let line: Value = serde_json::from_str(&log).unwrap();
+        peers.push(line["peer"].as_str().unwrap().to_owned());
+    }
+    assert_eq!(peers, ["::", "192.0.2.7", "192.0.2.7"]);
+}
+
+/// The memory for answers follows the memory that the process may have; a limit of its own is one that a test can set.
+#[test]
+fn answers_are_held_in_a_share_of_what_the_process_may_have() {
+    let help = |limit: &str| {
+        let script = format!("ulimit {limit} && exec \"$0\" --help");
+        let output = Command::new("sh").args(["-c", &script, env!("CARGO_BIN_EXE_equipoise")]).output().unwrap();
+        let help = String::from_utf8(output.stdout).unwrap();
+        let (_, held) = help.split_once("--held-bytes").unwrap_or_else(|| panic!("{help}"));
+        let (_, default) = held.split_once("[default:").unwrap();
+        default.split_once(']').unwrap().0.trim().parse::<u64>().unwrap()
+    };
+    assert_eq!(help("-d 1048576"), 256 << 20);
+    assert_eq!(help("-v 2097152"), 512 << 20);
+    let without = help("-c 0");
+    assert!((1 << 20..=1 << 30).contains(&without), "{without}");
 }
 
 /// One client fills all that it may; others are still computed for, and what cannot wait is told so.
@@ -212,9 +262,9 @@ async fn who_keeps_the_server_waiting_is_let_go() {
     let program = Program::start(&[times.as_slice(), &["--held-bytes", "10000000"]].concat());
     for (begin, end) in [
         ("GET / HT", ""),
-        ("GET /health/live HTTP/1.1\r\nhost: x\r\n\r\n", "HTTP/1.1 200"),
+        ("GET /health/live HTTP/1.1\r\nhost: localhost\r\n\r\n", "HTTP/1.1 200"),
         (
-            "POST /v1/stability HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\ncontent-length: 9\r\n\r\n{",
+            "POST /v1/stability HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: 9\r\n\r\n{",
             "HTTP/1.1 408",
         ),
     ] {
@@ -253,7 +303,7 @@ async fn silent_clients_keep_nobody_out() {
         let begin: &[u8] = match index % 3 {
             0 => b"",
             1 => b"GET /v1/scenes HTTP/1.1\r\nho",
-            _ => b"POST /v1/stability HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\ncontent-length: 9\r\n\r\n{",
+            _ => b"POST /v1/stability HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: 9\r\n\r\n{",
         };
         socket.write_all(begin).await.unwrap();
         silent.push(socket);

@@ -21,7 +21,7 @@ const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=
 
 async fn ask(address: std::net::SocketAddr, target: &str) -> TcpStream {
     let mut socket = TcpStream::connect(address).await.unwrap();
-    let request = format!("GET {target} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n");
+    let request = format!("GET {target} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n");
     socket.write_all(request.as_bytes()).await.unwrap();
     socket
 }

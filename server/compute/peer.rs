@@ -34,20 +34,19 @@ impl From<SocketAddr> for Peer {
     }
 }
 
-/// Peers whose addresses begin alike.
+/// Addresses that begin alike. Of whole addresses, not of peers: to trust one is not to trust all that share its 64 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Network {
-    first: Peer,
+    first: IpAddr,
     bits: u32,
 }
 
 impl Network {
-    /// Whether this peer is one of them.
-    pub fn has(self, peer: Peer) -> bool {
+    /// Whether this address is one of them.
+    pub fn has(self, address: IpAddr) -> bool {
         let same = |one: u128, other: u128, width: u32| (one ^ other).checked_shr(width - self.bits).unwrap_or(0) == 0;
-        match (self.first.0, peer.0) {
+        match (self.first, address.to_canonical()) {
             (IpAddr::V4(first), IpAddr::V4(address)) => same(first.to_bits().into(), address.to_bits().into(), 32),
-            // A peer is 64 bits of it, whatever else is asked for.
             (IpAddr::V6(first), IpAddr::V6(address)) => same(first.to_bits(), address.to_bits(), 128),
             _ => false,
         }
@@ -61,8 +60,8 @@ impl FromStr for Network {
         let (address, bits) = text.split_once('/').map_or((text, None), |(address, bits)| (address, Some(bits)));
         let why = || "it must be an address, or a network as in 10.244.0.0/16".to_owned();
         let address: IpAddr = address.parse().map_err(|_| why())?;
-        let first = Peer::at(address);
-        let width = if first.0.is_ipv4() { 32 } else { 128 };
+        let first = address.to_canonical();
+        let width = if first.is_ipv4() { 32 } else { 128 };
         // An address of version 4 that is written as one of version 6 has two ways of counting its bits.
         let is_mixed = address != address.to_canonical();
         let bits = match bits {
@@ -87,16 +86,18 @@ mod tests {
     }
 
     #[test]
-    fn a_network_has_the_peers_that_begin_as_it_does() {
-        let has =
-            |network: &str, address: &str| network.parse::<Network>().unwrap().has(Peer::at(address.parse().unwrap()));
+    fn a_network_has_the_addresses_that_begin_as_it_does() {
+        let has = |network: &str, address: &str| network.parse::<Network>().unwrap().has(address.parse().unwrap());
         for (network, within, without) in [
             ("192.0.2.1", "192.0.2.1", "192.0.2.2"),
             ("::ffff:192.0.2.1", "192.0.2.1", "192.0.2.2"),
             ("10.244.0.0/16", "10.244.255.1", "10.245.0.1"),
             ("10.244.0.0/15", "10.245.0.1", "10.246.0.1"),
             ("0.0.0.0/0", "203.0.113.9", "2001:db8::1"),
-            ("2001:db8:0:7::1", "2001:db8:0:7::2", "2001:db8:0:8::1"),
+            ("192.0.2.1", "::ffff:192.0.2.1", "::ffff:192.0.2.2"),
+            ("2001:db8:0:7::1", "2001:db8:0:7::1", "2001:db8:0:7::2"),
+            ("2001:db8:0:7::1/64", "2001:db8:0:7::2", "2001:db8:0:8::1"),
+            ("2001:db8:0:7::/126", "2001:db8:0:7::3", "2001:db8:0:7::4"),
             ("2001:db8::/32", "2001:db8:ffff::1", "2001:db9::1"),
             ("::/0", "2001:db8::1", "192.0.2.1"),
         ] {

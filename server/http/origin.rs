@@ -48,7 +48,7 @@ pub fn check(headers: &HeaderMap, allowed: &[Origin]) -> Result<(), Problem> {
     let Some(origin) = headers.get(header::ORIGIN) else { return Ok(()) };
     let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
     let is_own = origin.to_str().ok().zip(host).is_some_and(|(origin, host)| is_same_host(origin, host));
-    if is_own || allowed.iter().any(|allowed| allowed.0 == origin) {
+    if is_own || is_among(headers, allowed) {
         return Ok(());
     }
     let shown = shortened(&String::from_utf8_lossy(origin.as_bytes()));
@@ -57,6 +57,11 @@ pub fn check(headers: &HeaderMap, allowed: &[Origin]) -> Result<(), Problem> {
          --allow-origin"
     );
     Err(Problem::other(StatusCode::FORBIDDEN, detail))
+}
+
+/// Whether a request is of a page of one of these origins.
+pub fn is_among(headers: &HeaderMap, allowed: &[Origin]) -> bool {
+    headers.get(header::ORIGIN).is_some_and(|origin| allowed.iter().any(|allowed| allowed.0 == origin))
 }
 
 fn is_same_host(origin: &str, host: &str) -> bool {

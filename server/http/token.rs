@@ -2,12 +2,17 @@
 //!
 //! Programs send `Authorization: Bearer`. A browser sends no header of a page's choosing with a WebSocket, a picture or a frame,
 //! so it keeps a cookie; and a page of another origin, which has no cookie here, offers the token as a subprotocol.
+//!
+//! The cookie is not the token but its HMAC: who reads a browser's files, or a server on another port of this host, to which the
+//! browser sends the cookie as well, does not learn the token. Replicas with one token derive the same cookie.
 
 use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
 
 use axum::http::{HeaderMap, HeaderValue, header};
+use hmac::{Hmac, Mac};
+use sha2::Sha256;
 use subtle::ConstantTimeEq;
 
 use crate::limits;
@@ -15,12 +20,19 @@ use crate::limits;
 /// The name of the cookie.
 const COOKIE: &str = "equipoise_token";
 
+/// Message of which the cookie is the HMAC. Another one makes all cookies invalid.
+const COOKIE_MESSAGE: &[u8] = b"equipoise cookie 1";
+
 /// What stands before the token where it is offered as a subprotocol of a WebSocket.
 const SUBPROTOCOL: &str = "equipoise.token.";
 
-/// A secret that is whole wherever it has to stand: in a URL, a cookie, a subprotocol.
+/// A secret that is whole wherever it has to stand: in a URL, a header, a subprotocol.
 #[derive(Clone, PartialEq, Eq)]
-pub struct Token(Arc<str>);
+pub struct Token {
+    secret: Arc<str>,
+    /// Value of the cookie: HMAC-SHA-256 under the secret, in hexadecimal digits.
+    derived: Arc<str>,
+}
 
 impl FromStr for Token {
     type Err = String;
@@ -31,8 +43,14 @@ impl FromStr for Token {
             && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte));
         let (low, high) = (most.start(), most.end());
         let why = || format!("it must have {low} to {high} letters, digits or -._~, as `openssl rand -hex 16` gives");
-        if is_fine { Ok(Self(text.into())) } else { Err(why()) }
+        if is_fine { Ok(Self { secret: text.into(), derived: derived(text).into() }) } else { Err(why()) }
     }
+}
+
+fn derived(secret: &str) -> String {
+    let mut mac = Hmac::<Sha256>::new_from_slice(secret.as_bytes()).expect("HMAC takes a key of any length");
+    mac.update(COOKIE_MESSAGE);
+    mac.finalize().into_bytes().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl fmt::Debug for Token {
@@ -44,10 +62,14 @@ impl fmt::Debug for Token {
 impl Token {
     /// Whether this is it. How long that takes says nothing about how much of it was right.
     pub fn is(&self, offered: &str) -> bool {
-        self.0.as_bytes().ct_eq(offered.as_bytes()).into()
+        self.secret.as_bytes().ct_eq(offered.as_bytes()).into()
     }
 
-    /// Whether a request carries it.
+    fn is_derived(&self, cookie: &str) -> bool {
+        self.derived.as_bytes().ct_eq(cookie.as_bytes()).into()
+    }
+
+    /// Whether a request carries it, or the cookie that is derived from it.
     pub fn is_in(&self, headers: &HeaderMap) -> bool {
         let parts = |name, separator| {
             let values = headers.get_all(name).into_iter().filter_map(|value| value.to_str().ok());
@@ -57,16 +79,16 @@ impl Token {
             let (scheme, token) = part.split_once(' ')?;
             scheme.eq_ignore_ascii_case("bearer").then(|| token.trim_start())
         });
-        let cookie = parts(header::COOKIE, ';').filter_map(|part| part.strip_prefix(COOKIE)?.strip_prefix('='));
+        let mut cookie = parts(header::COOKIE, ';').filter_map(|part| part.strip_prefix(COOKIE)?.strip_prefix('='));
         let subprotocol = parts(header::SEC_WEBSOCKET_PROTOCOL, ',').filter_map(|part| part.strip_prefix(SUBPROTOCOL));
-        bearer.chain(cookie).chain(subprotocol).any(|offered| self.is(offered))
+        bearer.chain(subprotocol).any(|offered| self.is(offered)) || cookie.any(|cookie| self.is_derived(cookie))
     }
 
-    /// What makes a browser keep it, for the folder of the page that it opened, out of reach of scripts and of requests
+    /// What makes a browser keep what is derived from it, for the folder of the page that it opened, out of reach of scripts and of requests
     /// that pages of other sites make.
     pub fn cookie(&self) -> HeaderValue {
-        let cookie = format!("{COOKIE}={}; HttpOnly; SameSite=Lax", self.0);
-        HeaderValue::from_str(&cookie).expect("a token is ASCII")
+        let cookie = format!("{COOKIE}={}; HttpOnly; SameSite=Lax", self.derived);
+        HeaderValue::from_str(&cookie).expect("digits are ASCII")
     }
 }
 
@@ -82,7 +104,11 @@ mod tests {
         };
         assert!(carries(header::AUTHORIZATION, "Bearer 0123456789abcdef"));
         assert!(carries(header::AUTHORIZATION, "bearer  0123456789abcdef"));
-        assert!(carries(header::COOKIE, "a=b; equipoise_token=0123456789abcdef; c=d"));
+        // Python: hmac.new(b"0123456789abcdef", b"equipoise cookie 1", "sha256").hexdigest()
+        assert!(carries(
+            header::COOKIE,
+            "a=b; equipoise_token=f5be863bbd70e3eb88f5e103042b7d4c5fe637fe1d7bb98053f72a296a19cd9d; c=d"
+        ));
         assert!(carries(header::SEC_WEBSOCKET_PROTOCOL, "equipoise.v1, equipoise.token.0123456789abcdef"));
         for wrong in [
             "0123456789abcdef",
@@ -93,7 +119,9 @@ mod tests {
         ] {
             assert!(!carries(header::AUTHORIZATION, wrong), "{wrong}");
         }
-        assert!(!carries(header::COOKIE, "token=0123456789abcdef"));
+        for wrong in ["token=0123456789abcdef", "equipoise_token=0123456789abcdef", "equipoise_token="] {
+            assert!(!carries(header::COOKIE, wrong), "{wrong}");
+        }
         assert!(!token.is_in(&HeaderMap::new()));
         let cookie = token.cookie();
         let (kept, _) = cookie.to_str().unwrap().split_once(';').unwrap();
@@ -107,5 +135,6 @@ mod tests {
         }
         let token: Token = "0123456789abcdef".parse().unwrap();
         assert!(!format!("{token:?}").contains("0123"));
+        assert!(!token.cookie().to_str().unwrap().contains("0123456789abcdef"));
     }
 }

@@ -74,7 +74,7 @@ pub fn tell(
     });
     let incoming = stream::once(async {
         let _ = gone.await;
-        Ok::<_, Infallible>(Message::Close(None))
+        Ok(Message::Close(None))
     });
     tokio::spawn(async move {
         let _held = held;

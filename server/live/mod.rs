@@ -5,6 +5,7 @@
 pub mod address;
 pub mod bounds;
 pub mod clock;
+pub mod close;
 pub mod course;
 pub mod events;
 pub mod messages;

@@ -16,6 +16,7 @@ use tokio::time::{sleep_until, timeout};
 
 use super::address::{self, Asked, NO_ANGLE};
 use super::bounds::{Allowance, Bounds};
+use super::close::{Close, Unreadable};
 use super::course::{self, Course, NotCaughtUp};
 use super::messages::{self, Ack, Frame, Hello, Said};
 use super::order::Order;
@@ -50,9 +51,6 @@ impl Place {
     }
 }
 
-/// How a session ends; none if the client has ended it.
-type Close = Option<(u16, &'static str)>;
-
 /// The server's clock, unix ms.
 pub fn wall_now() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
@@ -73,10 +71,10 @@ impl From<Frame> for Message {
 
 /// Tells a client its run until it leaves, breaks a bound, or the server is `closing`. What there is to tell first has been
 /// found by [`caught_up`].
-pub async fn serve<E: Send>(
+pub async fn serve(
     asked: Asked,
     course: Result<Course, Problem>,
-    mut incoming: impl Stream<Item = Result<Message, E>> + Unpin + Send,
+    mut incoming: impl Stream<Item = Result<Message, Unreadable>> + Unpin + Send,
     outgoing: impl Sink<Frame> + Unpin + Send + 'static,
     place: Place,
     closing: impl Future<Output = ()> + Send,
@@ -185,9 +183,9 @@ impl Session {
         }
     }
 
-    async fn run<E>(
+    async fn run(
         &mut self,
-        incoming: &mut (impl Stream<Item = Result<Message, E>> + Unpin),
+        incoming: &mut (impl Stream<Item = Result<Message, Unreadable>> + Unpin),
         sender: &mpsc::Sender<Frame>,
         closing: impl Future<Output = ()>,
     ) -> Close {
@@ -218,7 +216,7 @@ impl Session {
                     self.last_heard = Instant::now();
                     match message {
                         None | Some(Ok(Message::Close(_))) => return None,
-                        Some(Err(_)) => return Some((close_code::SIZE, "a message too large, or no WebSocket frame")),
+                        Some(Err(unreadable)) => return unreadable.close(),
                         Some(Ok(message)) => {
                             let _slot = self.place.pool.slot().await;
                             if let Some(close) = self.hear(&message) {

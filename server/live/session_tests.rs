@@ -1,6 +1,5 @@
 //! A session over channels in the place of a socket: what happens to clients that are slow, silent or idle.
 
-use std::convert::Infallible;
 use std::time::Duration;
 
 use axum::extract::ws::Message;
@@ -12,6 +11,7 @@ use tokio::time::{sleep, timeout};
 use super::address::Asked;
 use super::bounds::Bounds;
 use super::clock::Clock;
+use super::close::Unreadable;
 use super::messages::Frame;
 use super::run::Run;
 use super::run::tests::case;
@@ -20,7 +20,7 @@ use crate::limits::Limits;
 
 /// The client's ends of a connection that takes one message at a time.
 struct Client {
-    says: Sender<Result<Message, Infallible>>,
+    says: Sender<Result<Message, Unreadable>>,
     hears: Receiver<Message>,
 }
 

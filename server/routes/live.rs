@@ -17,6 +17,7 @@ use crate::http::{Ask, Format, Problem, Resource, origin};
 use crate::limits;
 use crate::live::address::{self, PATH};
 use crate::live::bounds::Bounds;
+use crate::live::close::Unreadable;
 use crate::live::events::{self, Wanted};
 use crate::live::session::{self, Place};
 
@@ -50,10 +51,24 @@ async fn live(State(app): State<App>, upgrade: Upgrade, ask: Ask) -> Result<Resp
     Ok(upgrade.on_upgrade(async move |socket| {
         let _counted = counted;
         let (outgoing, incoming) = socket.split();
+        let incoming = incoming.map(|message| message.map_err(unreadable));
         let outgoing = outgoing.with(|frame| ready(Ok::<_, axum::Error>(Message::from(frame))));
         let course = session::caught_up(&asked, &place).await;
         session::serve(asked, course, incoming, outgoing, place, app.closing()).await;
     }))
+}
+
+/// What the library says of a message that it cannot read.
+fn unreadable(error: axum::Error) -> Unreadable {
+    use tungstenite::Error::{Capacity, Protocol, Utf8};
+    use tungstenite::error::ProtocolError::ResetWithoutClosingHandshake;
+    match error.into_inner().downcast_ref() {
+        Some(Capacity(_)) => Unreadable::TooLarge,
+        Some(Utf8(_)) => Unreadable::NotUtf8,
+        Some(Protocol(ResetWithoutClosingHandshake)) => Unreadable::Gone,
+        Some(Protocol(_)) => Unreadable::Broken,
+        _ => Unreadable::Gone,
+    }
 }
 
 /// Here a run that cannot be caught up with is refused at once: a client of events sees the status, and comes back only

@@ -5,6 +5,7 @@
 mod body;
 mod places;
 mod stream;
+mod wire;
 
 use std::convert::Infallible;
 use std::io::{self, Write};
@@ -14,6 +15,7 @@ use std::time::Duration;
 
 use axum::Router;
 use axum::body::Body;
+use axum::extract::ConnectInfo;
 use axum::http::Request;
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
@@ -29,7 +31,8 @@ use crate::compute::Peer;
 use crate::limits::{self, Limits};
 use body::Awaited;
 use places::Places;
-use stream::Stream;
+use stream::{Stream, told};
+use wire::{Wire, attended};
 
 /// Serves until `stop`, then waits for the answers under way, but not for ever.
 pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop: impl Future<Output = ()>) {
@@ -38,6 +41,8 @@ pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop:
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new())
         .header_read_timeout(limits.head_time)
+        // Whether a client that has closed its sending half is still there is found out here.
+        .half_close(true)
         .max_buf_size(limits::HEAD_BYTES)
         .max_headers(limits::HEADERS);
     let mut stop = pin!(stop);
@@ -45,36 +50,48 @@ pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop:
         let next = async {
             let (socket, from) = accept(&listener).await;
             let peer = Peer::from(from);
-            (socket, peer, places.take(peer).await)
+            (socket, from, peer, places.take(peer).await)
         };
-        let (socket, peer, taken) = tokio::select! {
+        let (socket, from, peer, taken) = tokio::select! {
             next = next => next,
             () = &mut stop => break,
         };
-        let stream = Stream::new(socket, taken.place().clone(), limits.stall_time);
-        let (router, place) = (router.clone(), taken.place().clone());
+        let (receiving, sending) = socket.into_split();
+        let wire = Wire::new(sending);
+        let stream = Stream::new(receiving, wire.clone(), taken.place().clone(), limits.stall_time);
+        let (router, place, answering) = (router.clone(), taken.place().clone(), wire.clone());
         let service = service_fn(move |mut request: Request<Incoming>| {
-            request.extensions_mut().insert(peer);
-            let (router, place) = (router.clone(), place.clone());
+            let extensions = request.extensions_mut();
+            extensions.insert(peer);
+            extensions.insert(ConnectInfo(from));
+            let (router, place, wire) = (router.clone(), place.clone(), answering.clone());
             async move {
+                let version = request.version();
                 place.answers(true);
+                wire.begins(version);
                 let request = request.map(|body| Body::new(Awaited::new(body, place.clone())));
                 let answer = router.oneshot(request).await;
                 place.answers(false);
-                Ok::<_, Infallible>(answer.unwrap_or_else(|never| match never {}))
+                Ok::<_, Infallible>(wire.sends(version, answer.unwrap_or_else(|never| match never {})))
             }
         });
         let connection = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
-        let mut closing = closing.subscribe();
+        let (mut closing, stall_time) = (closing.subscribe(), limits.stall_time);
         tokio::spawn(async move {
             let mut connection = pin!(connection);
-            // An error is a client that left or broke the protocol; it has been told what can be told.
-            tokio::select! {
-                _ = &mut connection => return,
+            let closes = async { drop(closing.wait_for(|closing| *closing).await) };
+            let ended = tokio::select! {
+                ended = attended(connection.as_mut(), &wire) => ended,
                 () = taken.gives_way() => return,
-                _ = closing.wait_for(|closing| *closing) => connection.as_mut().graceful_shutdown(),
+                () = closes => {
+                    connection.as_mut().graceful_shutdown();
+                    attended(connection.as_mut(), &wire).await
+                }
+            };
+            // Another error is a client that left or broke the protocol; it has been told what can be told.
+            if let (Some(Err(error)), Some(status)) = (ended, wire.bare_error()) {
+                wire.end_with(&told(status, &error), stall_time).await;
             }
-            let _ = connection.await;
         });
     }
     drop(listener);
@@ -196,7 +213,7 @@ mod tests {
     async fn a_stop_ends_idle_connections_and_accepts_no_more() {
         let (address, stop, serving) = start().await;
         let mut idle = TcpStream::connect(address).await.unwrap();
-        idle.write_all(b"GET /health/live HTTP/1.1\r\nhost: x\r\n\r\n").await.unwrap();
+        idle.write_all(b"GET /health/live HTTP/1.1\r\nhost: localhost\r\n\r\n").await.unwrap();
         let mut answer = [0; 15];
         idle.read_exact(&mut answer).await.unwrap();
         assert_eq!(&answer, b"HTTP/1.1 200 OK");
@@ -224,7 +241,7 @@ mod tests {
         });
         let (address, _stop, _serving) = start_with(Router::new().route("/", work)).await;
         let mut socket = TcpStream::connect(address).await.unwrap();
-        socket.write_all(b"GET / HTTP/1.1\r\nhost: x\r\n\r\n").await.unwrap();
+        socket.write_all(b"GET / HTTP/1.1\r\nhost: localhost\r\n\r\n").await.unwrap();
         begin.recv().await.unwrap();
         drop(socket);
         timeout(Duration::from_secs(1), end.recv()).await.expect("the work goes on for nobody");

@@ -7,36 +7,36 @@ use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::Duration;
 
-use axum::http::StatusCode;
+use axum::http::{StatusCode, header};
 use axum::response::IntoResponse;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
-use tokio::net::TcpStream;
+use tokio::net::tcp::OwnedReadHalf;
 use tokio::time::{Sleep, sleep};
 
 use super::places::Place;
-use crate::http::Problem;
+use super::wire::Wire;
+use crate::http::{Problem, transfer};
 use crate::limits;
 use crate::middleware::seal;
 
-/// A socket that puts a problem in the place of a bare error, and gives up on a client that does not read.
+/// A socket that withholds a bare error, and gives up on a client that does not read.
 #[derive(Debug)]
 pub(super) struct Stream {
-    socket: TcpStream,
+    socket: OwnedReadHalf,
+    wire: Arc<Wire>,
     place: Arc<Place>,
-    /// What is still to be written in the place of a bare error.
-    instead: Option<Vec<u8>>,
     /// Runs while the socket takes too little, and what it has taken since.
     stall: Option<(Pin<Box<Sleep>>, usize)>,
     stall_time: Duration,
 }
 
 impl Stream {
-    pub(super) fn new(socket: TcpStream, place: Arc<Place>, stall_time: Duration) -> Self {
-        Self { socket, place, instead: None, stall: None, stall_time }
+    pub(super) fn new(socket: OwnedReadHalf, wire: Arc<Wire>, place: Arc<Place>, stall_time: Duration) -> Self {
+        Self { socket, wire, place, stall: None, stall_time }
     }
 
     fn poll_socket(&mut self, context: &mut Context<'_>, buffers: &[IoSlice<'_>]) -> Poll<io::Result<usize>> {
-        let written = Pin::new(&mut self.socket).poll_write_vectored(context, buffers);
+        let written = self.wire.poll_write(context, buffers);
         if let Poll::Ready(written) = written {
             self.place.moved();
             let (took, offered) =
@@ -63,37 +63,26 @@ impl AsyncWrite for Stream {
         buffers: &[IoSlice<'_>],
     ) -> Poll<io::Result<usize>> {
         let this = self.get_mut();
-        if this.instead.is_none() {
-            this.instead = buffers.first().and_then(|head| bare_error(head)).map(told);
+        if let Some(status) = buffers.first().and_then(|head| bare_error(head)) {
+            // To the library, it has been written.
+            this.wire.withhold(status);
+            return Poll::Ready(Ok(buffers.iter().map(|buffer| buffer.len()).sum()));
         }
-        let Some(mut rest) = this.instead.take() else {
-            return this.poll_socket(context, buffers);
-        };
-        while !rest.is_empty() {
-            match this.poll_socket(context, &[IoSlice::new(&rest)]) {
-                Poll::Ready(Ok(0)) => return Poll::Ready(Err(io::ErrorKind::WriteZero.into())),
-                Poll::Ready(Ok(written)) => drop(rest.drain(..written)),
-                Poll::Ready(Err(error)) => return Poll::Ready(Err(error)),
-                Poll::Pending => {
-                    this.instead = Some(rest);
-                    return Poll::Pending;
-                }
-            }
-        }
-        // To the library, its own head has been written.
-        Poll::Ready(Ok(buffers.iter().map(|buffer| buffer.len()).sum()))
+        this.poll_socket(context, buffers)
     }
 
     fn is_write_vectored(&self) -> bool {
         true
     }
 
-    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.socket).poll_flush(context)
+    fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        self.wire.flushed();
+        Poll::Ready(Ok(()))
     }
 
-    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.socket).poll_shutdown(context)
+    fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        // After a bare error there is still something to say.
+        Poll::Ready(if self.wire.bare_error().is_some() { Ok(()) } else { self.wire.shutdown() })
     }
 }
 
@@ -108,6 +97,9 @@ impl AsyncRead for Stream {
     }
 }
 
+/// Words of the library for a request whose last transfer coding is not `chunked`, which to it is as wrong as any other.
+const UNKNOWN_CODING: &str = "invalid transfer-encoding parsed";
+
 /// The status of an error that the HTTP library answers with by itself: a head without a body, and without the header
 /// that all answers of this server have.
 fn bare_error(head: &[u8]) -> Option<StatusCode> {
@@ -119,9 +111,11 @@ fn bare_error(head: &[u8]) -> Option<StatusCode> {
     is_bare.then_some(status)
 }
 
-/// The whole answer, head and body, that says what the bare error only hints at.
-fn told(status: StatusCode) -> Vec<u8> {
+/// The whole answer, head and body, that says what the bare error only hints at. `error` is why the library has ended the
+/// connection.
+pub(super) fn told(status: StatusCode, error: &hyper::Error) -> Vec<u8> {
     let problem = match status {
+        _ if error.to_string() == UNKNOWN_CODING => transfer::not_implemented(None),
         StatusCode::URI_TOO_LONG => Problem::url_too_long("more than 65534"),
         StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE => {
             let (headers, bytes) = (limits::HEADERS, limits::HEAD_BYTES);
@@ -129,11 +123,12 @@ fn told(status: StatusCode) -> Vec<u8> {
         }
         _ => Problem::other(status, "the request is not valid HTTP/1.1"),
     };
-    let body = problem.to_json();
+    let (status, body) = (problem.status(), problem.to_json());
     let mut response = problem.into_response();
     seal(response.headers_mut());
     let mut answer =
         format!("HTTP/1.1 {status}\r\nconnection: close\r\ncontent-length: {}\r\n", body.len()).into_bytes();
+    response.headers_mut().remove(header::CONNECTION);
     for (name, value) in response.headers() {
         for part in [name.as_str().as_bytes(), b": ", value.as_bytes(), b"\r\n"] {
             answer.extend_from_slice(part);

@@ -169,10 +169,16 @@ fn hold_everywhere(answer: &Answer) {
 #[track_caller]
 fn hold_to_operation(method: &Method, operation: &Value, answer: &Answer) {
     let request = &answer.request;
-    if answer.status == StatusCode::UNAUTHORIZED {
-        return hold_to_response(method, &DOCUMENT["components"]["responses"]["Unauthorized"], answer);
-    }
     let responses = operation["responses"].as_object().expect("responses");
+    let of_any = match answer.status {
+        StatusCode::UNAUTHORIZED => Some("Unauthorized"),
+        StatusCode::MISDIRECTED_REQUEST => Some("Misdirected"),
+        StatusCode::FORBIDDEN if !responses.contains_key("403") => Some("CrossSite"),
+        _ => None,
+    };
+    if let Some(name) = of_any {
+        return hold_to_response(method, &DOCUMENT["components"]["responses"][name], answer);
+    }
     let response = responses.get(answer.status.as_str()).unwrap_or_else(|| {
         panic!("{request}: the contract has no {}; the answer: {}", answer.status, answer.excerpt());
     });
