@@ -280,6 +280,9 @@ pub const RETRY_AFTER_S: u32 = 2;
 /// Bytes of answer that are compressed or copied between two looks at whether the client is still there: under 10 ms.
 pub const GZIP_STEP_BYTES: usize = 128 * 1024;
 
+/// Bytes of answer that are written between two looks at whether the client is still there: under 2 ms, whatever they say.
+pub const WRITE_STEP_BYTES: usize = 64 * 1024;
+
 // --- Connections ---
 
 /// Bytes of its answer that a slow client has to take in the time to stall: at the default time some 2 KB/s, which any

@@ -2,9 +2,14 @@
 
 mod support;
 
+use std::time::{Duration, Instant};
+
 use equipoise_physics::double_double::DoubleDouble;
 use serde_json::{Value, json};
+use support::socket::start;
 use support::{Answer, Server};
+use tokio::io::AsyncWriteExt;
+use tokio::net::TcpStream;
 
 fn number(value: &Value) -> DoubleDouble {
     match value {
@@ -145,4 +150,34 @@ async fn decimals_are_the_same_in_every_format() {
     assert!(ask("csv").await.text().contains(&format!(",{digits},")));
     assert!(ask("ndjson").await.text().contains(&format!("\"theta\":\"{digits}\"")));
     assert!(ask("svg").await.text().starts_with("<svg"));
+}
+
+/// Whoever leaves frees the core: while the run is computed, and while its millions of digits are written in whatever format.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn an_answer_ends_with_its_reader() {
+    let (app, address) = start().await;
+    for (is_written, request) in [
+        (false, "method=extended&format=json"),
+        (false, "tolerance=1e-14&format=csv"),
+        (true, "method=extended&format=json"),
+        (true, "method=extended&format=csv"),
+        (true, "method=extended&format=ndjson"),
+        (true, "method=map&format=json"),
+    ] {
+        let computed = app.metrics.bounces.get();
+        let mut socket = TcpStream::connect(address).await.unwrap();
+        let target = format!("/v1/trajectories?preset=case-1&impacts=100000&{request}");
+        socket.write_all(format!("GET {target} HTTP/1.1\r\nhost: localhost\r\n\r\n").as_bytes()).await.unwrap();
+        while app.pool.running().get() == 0 || (is_written && app.metrics.bounces.get() == computed) {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+        drop(socket);
+        let left = Instant::now();
+        // Some ms, where nothing else wants the cores.
+        while app.pool.running().get() > 0 {
+            assert!(left.elapsed() < Duration::from_secs(1), "{request}: the work goes on for nobody");
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+        println!("{request}, written {is_written}: given up after {:.1} ms", 1e3 * left.elapsed().as_secs_f64());
+    }
 }

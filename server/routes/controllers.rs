@@ -28,10 +28,10 @@ pub(super) async fn controllers(State(app): State<App>, ask: Ask) -> Result<Resp
         let controller =
             Controller::compute(&request).map_err(|(pointer, detail)| Problem::invalid_at(pointer, detail))?;
         match format {
-            Format::Csv => Ok(controller.to_table().to_csv()),
-            Format::Ndjson => Ok(controller.to_table().to_ndjson(&controller.end())),
+            Format::Csv => super::csv(&controller.to_table(), cancel),
+            Format::Ndjson => super::ndjson(&controller.to_table(), &controller.end(), cancel),
             Format::Svg | Format::Png => super::picture(controller.to_picture(), format, cancel),
-            _ => super::json(&controller),
+            _ => super::json(&controller, cancel),
         }
     })
     .await

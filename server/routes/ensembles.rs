@@ -73,11 +73,11 @@ pub(super) async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Respon
         turns.take(|| {
             let answer = Answer::new(&request, &runs, sorted, &found);
             let bytes = match format {
-                Format::Csv => answer.rows().to_csv(),
-                Format::Ndjson => answer.rows().to_ndjson(answer.summary()),
-                Format::Progress => progress::end(&super::json(&answer)?),
+                Format::Csv => super::csv(&answer.rows(), cancel)?,
+                Format::Ndjson => super::ndjson(&answer.rows(), answer.summary(), cancel)?,
+                Format::Progress => progress::end(&super::json(&answer, cancel)?),
                 Format::Svg | Format::Png => super::picture(answer.to_picture(), format, cancel)?,
-                _ => super::json(&answer)?,
+                _ => super::json(&answer, cancel)?,
             };
             Ok(out.send_whole(bytes, cancel)?)
         })?

@@ -30,7 +30,7 @@ async fn failures(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Pr
     ask.respond(&app.pool, &RESOURCE, b"", price, move |_, cancel: &Cancel| {
         // Every case is a few milliseconds, and between two of them somebody may have gone away.
         let each = CASES.iter().map(|case| if cancel.is_set() { None } else { Some(Failure::compute(case)) });
-        super::json(&Failures { failures: each.collect::<Option<_>>().ok_or(Cancelled)? })
+        super::json(&Failures { failures: each.collect::<Option<_>>().ok_or(Cancelled)? }, cancel)
     })
     .await
 }
@@ -45,7 +45,7 @@ async fn failure(State(app): State<App>, Path(name): Path<String>, ask: Ask) -> 
     let price = Price::bounces(case.price);
     ask.respond(&app.pool, &RESOURCE, case.name.as_bytes(), price, move |format, cancel: &Cancel| match format {
         Format::Svg | Format::Png => super::picture(chart(&case.picture()), format, cancel),
-        _ => super::json(&Failure::compute(case)),
+        _ => super::json(&Failure::compute(case), cancel),
     })
     .await
 }

@@ -34,14 +34,14 @@ pub(super) async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Respon
     let price = Price::bounces(price(&scene.model(), at, period, method)).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &(at, period, method));
     let metrics = app.metrics.clone();
-    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, _: &Cancel| {
+    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
         let jacobian = Jacobian::compute(&scene, at, period, method)
             .map_err(|(pointer, detail)| Problem::invalid_at(pointer, detail))?;
         metrics.bounces.inc_by(period);
         match format {
-            Format::Csv => Ok(jacobian.to_table().to_csv()),
-            Format::Ndjson => Ok(jacobian.to_table().to_ndjson(&jacobian)),
-            _ => super::json(&jacobian),
+            Format::Csv => super::csv(&jacobian.to_table(), cancel),
+            Format::Ndjson => super::ndjson(&jacobian.to_table(), &jacobian, cancel),
+            _ => super::json(&jacobian, cancel),
         }
     })
     .await

@@ -32,9 +32,9 @@ pub(super) async fn ladder(State(app): State<App>, ask: Ask) -> Result<Response<
         let ladder = Ladder::compute(&scene, &request, || !cancel.is_set()).ok_or(Cancelled)?;
         metrics.bounces.inc_by(ladder.bounces());
         match format {
-            Format::Csv => Ok(ladder.to_table().to_csv()),
-            Format::Ndjson => Ok(ladder.to_table().to_ndjson(&ladder.end())),
-            _ => super::json(&ladder),
+            Format::Csv => super::csv(&ladder.to_table(), cancel),
+            Format::Ndjson => super::ndjson(&ladder.to_table(), &ladder.end(), cancel),
+            _ => super::json(&ladder, cancel),
         }
     })
     .await

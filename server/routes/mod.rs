@@ -31,10 +31,12 @@ use tokio::sync::watch;
 
 use crate::compute::{Cancel, Cancelled, Pool, Shares};
 use crate::config::Config;
+use crate::http::output::written;
 use crate::http::{Format, Problem};
 use crate::limits::Limits;
 use crate::picture::{NoPixels, png};
 use crate::wire::scene::Resolved;
+use crate::wire::table::Table;
 use metrics::Metrics;
 
 /// What routes share. Cheap to clone.
@@ -114,8 +116,18 @@ pub fn all() -> Router<App> {
 }
 
 /// An answer as JSON.
-fn json(answer: &impl Serialize) -> Result<Vec<u8>, Problem> {
-    serde_json::to_vec(answer).map_err(|_| Problem::internal())
+fn json(answer: &impl Serialize, cancel: &Cancel) -> Result<Vec<u8>, Problem> {
+    written(cancel, |out| Ok(serde_json::to_writer(out, answer)?))
+}
+
+/// A table as CSV.
+fn csv(table: &Table, cancel: &Cancel) -> Result<Vec<u8>, Problem> {
+    written(cancel, |out| table.write_csv(out))
+}
+
+/// A table as NDJSON, and what ends it.
+fn ndjson(table: &Table, end: &impl Serialize, cancel: &Cancel) -> Result<Vec<u8>, Problem> {
+    written(cancel, |out| table.write_ndjson(end, out))
 }
 
 /// A picture as it is asked for: as it was drawn, or in pixels.
@@ -138,4 +150,25 @@ fn canonical(scene: &Scene, rest: &impl Serialize) -> Vec<u8> {
 fn canonical_of(request: &impl Serialize) -> Vec<u8> {
     // Writing to memory does not fail.
     serde_json::to_vec(request).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::table::{Cells, Column};
+    use equipoise_physics::double_double::DoubleDouble;
+
+    #[test]
+    fn a_large_table_is_not_written_for_nobody() {
+        let cells = Cells::Decimals(vec![Some(DoubleDouble::from(0.1)); 100_000]);
+        let table = Table(vec![Column { name: "t", unit: "s", cells }]);
+        let ways: [fn(&Table, &Cancel) -> Result<Vec<u8>, Problem>; 3] =
+            [|table, cancel| json(table, cancel), csv, |table, cancel| ndjson(table, &"end", cancel)];
+        for write in ways {
+            assert!(write(&table, &Cancel::never()).unwrap().len() > 3_000_000);
+            let cancel = Cancel::default();
+            cancel.set();
+            assert_eq!(write(&table, &cancel).unwrap_err().status(), 503);
+        }
+    }
 }

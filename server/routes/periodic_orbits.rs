@@ -39,15 +39,15 @@ pub(super) async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<
         };
         metrics.bounces.inc_by(orbits.bounces());
         match format {
-            Format::Csv => Ok(orbits.to_table().to_csv()),
-            Format::Ndjson => Ok(orbits.to_table().to_ndjson(&orbits.end())),
+            Format::Csv => super::csv(&orbits.to_table(), cancel),
+            Format::Ndjson => super::ndjson(&orbits.to_table(), &orbits.end(), cancel),
             Format::Svg | Format::Png => {
                 let picture = orbits.to_picture();
                 let picture =
                     picture.ok_or_else(|| Problem::invalid_at("/sweep", "the picture is of a branch; give a sweep"))?;
                 super::picture(picture, format, cancel)
             }
-            _ => super::json(&orbits),
+            _ => super::json(&orbits, cancel),
         }
     })
     .await

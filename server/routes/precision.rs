@@ -44,11 +44,11 @@ pub(super) async fn precision(State(app): State<App>, ask: Ask) -> Result<Respon
         let precision = Precision::compute(&scene, &request, &mut tell, cancel)?;
         metrics.bounces.inc_by(precision.bounces());
         let bytes = match format {
-            Format::Csv => precision.to_table().to_csv(),
-            Format::Ndjson => precision.to_table().to_ndjson(&precision.end()),
-            Format::Progress => progress::end(&super::json(&precision)?),
+            Format::Csv => super::csv(&precision.to_table(), cancel)?,
+            Format::Ndjson => super::ndjson(&precision.to_table(), &precision.end(), cancel)?,
+            Format::Progress => progress::end(&super::json(&precision, cancel)?),
             Format::Svg | Format::Png => super::picture(precision.to_picture(), format, cancel)?,
-            _ => super::json(&precision)?,
+            _ => super::json(&precision, cancel)?,
         };
         Ok(out.send_whole(bytes, cancel)?)
     };

@@ -55,7 +55,7 @@ pub(super) async fn regions(State(app): State<App>, ask: Ask) -> Result<Response
             let answer = Answer::new(request, all);
             let bytes = match format {
                 Format::Svg | Format::Png => super::picture(answer.to_picture(), format, cancel)?,
-                _ => super::json(&answer)?,
+                _ => super::json(&answer, cancel)?,
             };
             Ok(out.send_whole(bytes, cancel)?)
         })?

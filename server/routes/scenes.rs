@@ -53,5 +53,8 @@ async fn fixed<T: Serialize>(
 ) -> Result<Response<Body>, Problem> {
     const RESOURCE: Resource = Resource { name: "fixed", formats: &[Format::Json] };
     ask.read(|_| Some(()))?;
-    ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), Price::bounces(0), move |_, _| super::json(&answer())).await
+    ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), Price::bounces(0), move |_, cancel| {
+        super::json(&answer(), cancel)
+    })
+    .await
 }

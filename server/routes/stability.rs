@@ -33,10 +33,10 @@ pub(super) async fn stability(State(app): State<App>, ask: Ask) -> Result<Respon
         let stability = Stability::compute(&scene, &request, || !cancel.is_set()).ok_or(Cancelled)?;
         metrics.bounces.inc_by(stability.bounces());
         match format {
-            Format::Csv => Ok(stability.to_table().to_csv()),
-            Format::Ndjson => Ok(stability.to_table().to_ndjson(&stability.end())),
+            Format::Csv => super::csv(&stability.to_table(), cancel),
+            Format::Ndjson => super::ndjson(&stability.to_table(), &stability.end(), cancel),
             Format::Svg | Format::Png => super::picture(stability.to_picture(), format, cancel),
-            _ => super::json(&stability),
+            _ => super::json(&stability, cancel),
         }
     })
     .await

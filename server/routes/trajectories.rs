@@ -45,10 +45,10 @@ pub(super) async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Res
         };
         metrics.bounces.inc_by(trajectory.outcome.impacts);
         match format {
-            Format::Csv => Ok(trajectory.impacts.to_csv()),
-            Format::Ndjson => Ok(trajectory.impacts.to_ndjson(&trajectory.end())),
+            Format::Csv => super::csv(&trajectory.impacts, cancel),
+            Format::Ndjson => super::ndjson(&trajectory.impacts, &trajectory.end(), cancel),
             Format::Svg | Format::Png => super::picture(trajectory.to_picture(), format, cancel),
-            _ => super::json(&trajectory),
+            _ => super::json(&trajectory, cancel),
         }
     })
     .await
