@@ -152,6 +152,23 @@ async fn decimals_are_the_same_in_every_format() {
     assert!(ask("svg").await.text().starts_with("<svg"));
 }
 
+/// The price is that of a run to its last contact, and even so the longest one is within the work of a request.
+#[tokio::test]
+async fn the_longest_run_may_be_asked_for_by_every_method() {
+    let server = Server::start();
+    for method in ["method=map", "method=linear", "method=extended", "tolerance=1e-3", "tolerance=1e-20"] {
+        let target = format!(
+            "/v1/trajectories?preset=case-1&scene.release.theta=0.9&scene.topple_angle=0.8&impacts=100000&{method}"
+        );
+        let run = server.get(&target).await.expect(200).json();
+        assert_eq!(run["outcome"]["kind"], "toppled", "{method}");
+    }
+    // Where the angle does not circle an impact of the linear solution takes 31 digits and some 30 µs.
+    let dear = server.get("/v1/trajectories?preset=critical-hard&impacts=100000&method=linear").await.expect(422);
+    assert!(dear.text().contains("work of this request would be 52"), "{}", dear.text());
+    server.get("/v1/trajectories?preset=critical-hard&impacts=10&method=linear").await.expect(200);
+}
+
 /// Whoever leaves frees the core: while the run is computed, and while its millions of digits are written in whatever format.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn an_answer_ends_with_its_reader() {

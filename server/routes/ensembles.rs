@@ -31,7 +31,7 @@ pub(super) async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Respon
     let request = ask.read(Request::read)?;
     let ensemble = request.ensemble;
     app.config.limits.of_answer().admit(request.angles())?;
-    app.config.limits.of_ensemble_work().admit(request.runs().saturating_mul(ensemble.impacts))?;
+    app.config.limits.of_ensemble_work().admit(request.price())?;
     let rest = (ensemble.runs, ensemble.impacts, request.tile, request.angles);
     let canonical = super::canonical(&ensemble.scene, &rest);
     let metrics = app.metrics.clone();

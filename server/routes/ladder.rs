@@ -25,7 +25,7 @@ pub(super) async fn ladder(State(app): State<App>, ask: Ask) -> Result<Response<
         let request = Request::read(reader);
         Some((scene?, request))
     })?;
-    let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
+    let price = Price::bounces(request.price(&scene)).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &request);
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {

@@ -26,7 +26,7 @@ pub(super) async fn stability(State(app): State<App>, ask: Ask) -> Result<Respon
         let request = Request::read(reader);
         Some((scene?, request))
     })?;
-    let price = Price::bounces(Stability::price(&request)).within(&app.config.limits.of_work())?;
+    let price = Price::bounces(Stability::price(&scene, &request)).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &request.canonical());
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {

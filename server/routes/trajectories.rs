@@ -29,7 +29,7 @@ pub(super) async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Res
         Some((run?, request))
     })?;
     app.config.limits.of_answer().admit(request.numbers())?;
-    let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
+    let price = Price::bounces(request.price(run.scene())).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(run.scene(), &(request, address::url(&run)));
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, cancel: &Cancel| {
