@@ -54,13 +54,13 @@ pub struct Limits {
 
     /// Work of one region, in bounces of lanes, a sixth of a plain one each: some 20 s of two cores for a million cells of
     /// 2000 contacts. It is computed in turns with others' requests, and stopped as soon as its client is gone
-    #[arg(long, env = "EQUIPOISE_REGION_WORK", value_name = "BOUNCES", default_value = "2000000000")]
+    #[arg(long, env = "EQUIPOISE_REGION_WORK", value_name = "BOUNCES", default_value = "2200000000")]
     #[arg(value_parser = within::<u64>(1000..=1_000_000_000_000, "bounces"))]
     pub region_work: u64,
 
-    /// Work of one ensemble, in bounces, which with noise take two to four times as long as plain ones: some 10 s of two
-    /// cores. In turns and stopped like that of a region
-    #[arg(long, env = "EQUIPOISE_ENSEMBLE_WORK", value_name = "BOUNCES", default_value = "100000000")]
+    /// Work of one ensemble, in bounces of the plain rod; one with noise counts as three of them: some 14 s of two cores. In
+    /// turns and stopped like that of a region
+    #[arg(long, env = "EQUIPOISE_ENSEMBLE_WORK", value_name = "BOUNCES", default_value = "400000000")]
     #[arg(value_parser = within::<u64>(1000..=1_000_000_000_000, "bounces"))]
     pub ensemble_work: u64,
 
@@ -195,6 +195,9 @@ pub const ERRORS: usize = 64;
 
 // --- What a request may cost ---
 
+/// Work of any answer, however little there is to compute, in bounces: what follows from the scene, and writing it down.
+pub const ANSWER_PRICE: u64 = 700;
+
 /// Contacts of one run. With its JSON that is 40 MB; a longer watch of a run is `stability`, which keeps no states.
 pub const IMPACTS: u64 = 100_000;
 
@@ -226,6 +229,18 @@ pub const REGION_SIDE: u64 = 100_000;
 /// request beside it does not wait longer.
 pub const REGION_BLOCK_WORK: u64 = 1_000_000;
 
+/// What a cell of a region costs beside its bounces, in bounces of lanes: its scene, its first flight, and writing it down.
+pub const REGION_CELL_PRICE: u64 = 60;
+
+/// The same of a cell that no lane can run.
+pub const REGION_ALONE_CELL_PRICE: u64 = 350;
+
+/// What a cell costs that shows a number of the linear analysis.
+pub const REGION_LINEAR_CELL_PRICE: u64 = 200;
+
+/// What a region costs beside its cells, in bounces of lanes: its linear boundary and its picture, some 5 ms.
+pub const REGION_ANSWER_PRICE: u64 = 400_000;
+
 /// What a bounce of a region costs that no lane can make, in bounces of lanes: a rod steered by feedback takes 9, a polygon and a
 /// point 17, one with noise 25.
 pub const REGION_ALONE_PRICE: u64 = 20;
@@ -244,6 +259,18 @@ pub const ENSEMBLE_RUNS_IN_TILES: u64 = 1_000_000_000;
 
 /// Work of one block of an ensemble, the runs that a thread takes at a time: some 10 ms, as for regions. One run may be more.
 pub const ENSEMBLE_BLOCK_WORK: u64 = 50_000;
+
+/// What an ensemble costs beside its runs, in bounces: its summary and its picture, some 6 ms.
+pub const ENSEMBLE_ANSWER_PRICE: u64 = 80_000;
+
+/// What a run of an ensemble costs beside its bounces, in bounces: its model and its first flight.
+pub const ENSEMBLE_RUN_PRICE: u64 = 10;
+
+/// What each contact of the survival curve costs, in bounces: its interval, and writing it down.
+pub const ENSEMBLE_CONTACT_PRICE: u64 = 20;
+
+/// What an angle that is kept costs, in bounces: sorting it, and writing it down.
+pub const ENSEMBLE_ANGLE_PRICE: u64 = 2;
 
 /// Contacts at which an ensemble keeps the angle of each run, to sort them for quantiles: with `ENSEMBLE_RUNS` 4 million
 /// numbers, as many as an answer. A picture shows no more.
@@ -271,6 +298,9 @@ pub const PRECISION_REPEATS: usize = 301;
 /// Pixels of one picture. The largest drawing has 0.9 million; a pixel takes four bytes, three times over.
 pub const PICTURE_PIXELS: u64 = 4_000_000;
 
+/// Work of drawing a picture, in bounces: some 0.3 ms.
+pub const SVG_PRICE: u64 = 5000;
+
 /// Work of drawing the pixels of one picture, in bounces: some 30 ms.
 pub const PNG_PRICE: u64 = 400_000;
 
@@ -281,9 +311,9 @@ pub const BATCH_WAITS: u32 = 10;
 /// Time until it tries again: what `RETRY_AFTER_S` asks of clients.
 pub const BATCH_WAIT_TIME: Duration = Duration::from_secs(RETRY_AFTER_S as u64);
 
-/// Work up to this price, in bounces, is done on the async thread at once: some 0.15 ms, hardly more than the way to
-/// another thread and back is worth.
-pub const INLINE_BOUNCES: u64 = 2048;
+/// Work up to this price, in bounces, is done on the async thread at once: some 0.25 ms, not much more than the way to
+/// another thread and back is worth. A run of a hundred contacts is within it.
+pub const INLINE_BOUNCES: u64 = 4096;
 
 /// Time of such work on the async thread, after which it is begun anew on another: several times what its price says, for the
 /// few scenes whose bounces are dearer. One client has at most half of these threads at a time.
@@ -310,8 +340,8 @@ const HELD_BYTES_MOST: u64 = 1024 * 1024 * 1024;
 /// Bytes of answer that are compressed or copied between two looks at whether the client is still there: under 10 ms.
 pub const GZIP_STEP_BYTES: usize = 128 * 1024;
 
-/// Bytes of JSON that are written between two such looks: 2 ms where they are numbers of 32 digits.
-pub const JSON_STEP_BYTES: usize = 16 * 1024;
+/// Bytes of answer that are written between two looks at whether the client is still there: under 2 ms, whatever they say.
+pub const WRITE_STEP_BYTES: usize = 64 * 1024;
 
 // --- Connections ---
 

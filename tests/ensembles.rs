@@ -345,7 +345,7 @@ async fn what_cannot_be_asked_is_named() {
         assert_eq!(server.post("/v1/ensembles", &body).await.expect(422).pointers(), pointers, "{body}");
     }
     let dear = server.get(&format!("{CASE_1}&runs=20000&impacts=10000")).await.expect(422);
-    assert!(dear.text().contains("would be 200000000 bounces; the limit is 100000000 bounces"), "{}", dear.text());
+    assert!(dear.text().contains("would be 608480000 bounces; the limit is 400000000 bounces"), "{}", dear.text());
 }
 
 /// Whoever leaves frees the cores, be it in the midst of one long run.

@@ -2,9 +2,14 @@
 
 mod support;
 
+use std::time::{Duration, Instant};
+
 use equipoise_physics::double_double::DoubleDouble;
 use serde_json::{Value, json};
+use support::socket::start;
 use support::{Answer, Server};
+use tokio::io::AsyncWriteExt;
+use tokio::net::TcpStream;
 
 fn number(value: &Value) -> DoubleDouble {
     match value {
@@ -161,5 +166,52 @@ async fn the_linear_solution_keeps_an_upright_body_upright() {
             let largest = largest.fold(0.0, f64::max);
             assert!(largest < if name == "y_dot" { 2.0 } else { 1e-9 }, "κ = {tilt_gain}: {name} {largest}");
         }
+    }
+}
+
+/// The price is that of a run to its last contact, and even so the longest one is within the work of a request.
+#[tokio::test]
+async fn the_longest_run_may_be_asked_for_by_every_method() {
+    let server = Server::start();
+    for method in ["method=map", "method=linear", "method=extended", "tolerance=1e-3", "tolerance=1e-20"] {
+        let target = format!(
+            "/v1/trajectories?preset=case-1&scene.release.theta=0.9&scene.topple_angle=0.8&impacts=100000&{method}"
+        );
+        let run = server.get(&target).await.expect(200).json();
+        assert_eq!(run["outcome"]["kind"], "toppled", "{method}");
+    }
+    // Where the angle does not circle an impact of the linear solution takes 31 digits and some 30 µs.
+    let dear = server.get("/v1/trajectories?preset=critical-hard&impacts=100000&method=linear").await.expect(422);
+    assert!(dear.text().contains("work of this request would be 52"), "{}", dear.text());
+    server.get("/v1/trajectories?preset=critical-hard&impacts=10&method=linear").await.expect(200);
+}
+
+/// Whoever leaves frees the core: while the run is computed, and while its millions of digits are written in whatever format.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn an_answer_ends_with_its_reader() {
+    let (app, address) = start().await;
+    for (is_written, request) in [
+        (false, "method=extended&format=json"),
+        (false, "tolerance=1e-14&format=csv"),
+        (true, "method=extended&format=json"),
+        (true, "method=extended&format=csv"),
+        (true, "method=extended&format=ndjson"),
+        (true, "method=map&format=json"),
+    ] {
+        let computed = app.metrics.bounces.get();
+        let mut socket = TcpStream::connect(address).await.unwrap();
+        let target = format!("/v1/trajectories?preset=case-1&impacts=100000&{request}");
+        socket.write_all(format!("GET {target} HTTP/1.1\r\nhost: localhost\r\n\r\n").as_bytes()).await.unwrap();
+        while app.pool.running().get() == 0 || (is_written && app.metrics.bounces.get() == computed) {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+        drop(socket);
+        let left = Instant::now();
+        // Some ms, where nothing else wants the cores.
+        while app.pool.running().get() > 0 {
+            assert!(left.elapsed() < Duration::from_secs(1), "{request}: the work goes on for nobody");
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+        println!("{request}, written {is_written}: given up after {:.1} ms", 1e3 * left.elapsed().as_secs_f64());
     }
 }

@@ -139,9 +139,13 @@ async fn computed(
     Ok(ok(format.media_type(), encoding, Bytes::from_owner(pool.hold(bytes))))
 }
 
-/// The price of an answer in this format: pixels are work of their own.
+/// The price of an answer in this format: drawing is work of its own, and so are pixels.
 fn with_drawing(price: Price, format: Format) -> Price {
-    if format == Format::Png { price.and(Price::bounces(limits::PNG_PRICE)) } else { price }
+    match format {
+        Format::Svg => price.and(Price::bounces(limits::SVG_PRICE)),
+        Format::Png => price.and(Price::bounces(limits::SVG_PRICE + limits::PNG_PRICE)),
+        _ => price,
+    }
 }
 
 /// 200 with its body and the headers that describe it.

@@ -15,6 +15,7 @@ pub mod lines;
 pub mod negotiate;
 pub mod origin;
 pub mod outlet;
+pub mod output;
 pub mod problem;
 pub mod query;
 pub mod reader;

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 /// Flights beyond what scenes may ask for, with every power of ten as likely.
 fn flights() -> impl Strategy<Value = Flight> {
-    let power = |from: f64, to: f64| (from..to).prop_map(|exponent| libm::exp10(exponent));
+    let power = |from: f64, to: f64| (from..to).prop_map(libm::exp10);
     let either =
         |size: BoxedStrategy<f64>| (size, any::<bool>()).prop_map(|(size, minus)| if minus { -size } else { size });
     let clearance = prop_oneof![Just(0.0), either(power(-4.0, 2.5).boxed())];

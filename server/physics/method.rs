@@ -137,7 +137,7 @@ impl Scene {
     }
 
     /// Whether small deviations circle: elsewhere the linear solution is soon off, and its bound costs as much as a run.
-    fn circles(&self) -> bool {
+    pub fn circles(&self) -> bool {
         self.beyond(&[]).is_none()
             && self.fixed_point().is_ok_and(|point| {
                 self.linear(&point).class == Class::Elliptic && self.linear(&point).residue.is_some()

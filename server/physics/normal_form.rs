@@ -230,11 +230,11 @@ impl Bounce {
     }
 }
 
+/// A complex direction of the odd components.
+type Direction = DVector<Complex<f64>>;
+
 /// The right eigenvector of an eigenvalue, and the left one with left·right = 1 (no conjugate); none where it is double.
-fn eigenvectors(
-    matrix: &DMatrix<f64>,
-    eigenvalue: Complex<f64>,
-) -> Option<(DVector<Complex<f64>>, DVector<Complex<f64>>)> {
+fn eigenvectors(matrix: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<(Direction, Direction)> {
     let right = null_vector(matrix, eigenvalue)?;
     let left = null_vector(&matrix.transpose(), eigenvalue)?;
     let overlap: Complex<f64> = left.iter().zip(right.iter()).map(|(left, right)| left * right).sum();
@@ -242,7 +242,7 @@ fn eigenvectors(
 }
 
 /// A vector of length 1 that (M − λ) takes to nothing, by inverse iteration.
-fn null_vector(matrix: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<DVector<Complex<f64>>> {
+fn null_vector(matrix: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<Direction> {
     let size = matrix.nrows();
     let offset = OFFSET * matrix.amax().max(1.0);
     let shifted = matrix.map(|entry| Complex::new(entry, 0.0))

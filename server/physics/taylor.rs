@@ -108,7 +108,6 @@ impl Mul for Taylor {
 
 impl Div for Taylor {
     type Output = Self;
-    #[expect(clippy::suspicious_arithmetic_impl, reason = "a quotient is a product with the inverse's series")]
     fn div(self, other: Self) -> Self {
         let inverse = 1.0 / other.coefficients[0];
         let square = inverse * inverse;

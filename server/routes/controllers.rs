@@ -7,7 +7,7 @@ use axum::http::Response;
 use axum::routing::get;
 
 use super::App;
-use crate::compute::{Cancelled, Price, Turn};
+use crate::compute::{Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::limits;
 use crate::wire::controller::{Controller, Request};
@@ -28,10 +28,8 @@ pub(super) async fn controllers(State(app): State<App>, ask: Ask) -> Result<Resp
         let controller =
             Controller::compute(&request).map_err(|(pointer, detail)| Problem::invalid_at(pointer, detail))?;
         match format {
-            Format::Csv => Ok(controller.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?),
-            Format::Ndjson => {
-                Ok(controller.to_table().to_ndjson(&controller.end(), || turn.go_on()).ok_or(Cancelled)?)
-            }
+            Format::Csv => super::csv(&controller.to_table(), turn),
+            Format::Ndjson => super::ndjson(&controller.to_table(), &controller.end(), turn),
             Format::Svg | Format::Png => super::picture(controller.to_picture(), format, turn),
             _ => super::json(&controller, turn),
         }

@@ -8,7 +8,7 @@ use axum::routing::get;
 use equipoise_physics::ensemble::{Runs, quantiles};
 
 use super::App;
-use crate::compute::{Cancelled, Turn, Turns};
+use crate::compute::{Turn, Turns};
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
 use crate::limits;
 use crate::wire::ensemble::{Answer, Request};
@@ -31,7 +31,7 @@ pub(super) async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Respon
     let request = ask.read(Request::read)?;
     let ensemble = request.ensemble;
     app.config.limits.of_answer().admit(request.angles())?;
-    app.config.limits.of_ensemble_work().admit(request.runs().saturating_mul(ensemble.impacts))?;
+    app.config.limits.of_ensemble_work().admit(request.price())?;
     let rest = (ensemble.runs, ensemble.impacts, request.tile, request.angles);
     let canonical = super::canonical(&ensemble.scene, &rest);
     let metrics = app.metrics.clone();
@@ -72,8 +72,8 @@ pub(super) async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Respon
         turns.take(|turn| {
             let answer = Answer::new(&request, &runs, sorted, &found);
             let bytes = match format {
-                Format::Csv => answer.rows().to_csv(|| turn.go_on()).ok_or(Cancelled)?,
-                Format::Ndjson => answer.rows().to_ndjson(answer.summary(), || turn.go_on()).ok_or(Cancelled)?,
+                Format::Csv => super::csv(&answer.rows(), turn)?,
+                Format::Ndjson => super::ndjson(&answer.rows(), answer.summary(), turn)?,
                 Format::Progress => progress::end(&super::json(&answer, turn)?),
                 Format::Svg | Format::Png => super::picture(answer.to_picture(), format, turn)?,
                 _ => super::json(&answer, turn)?,

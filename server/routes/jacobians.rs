@@ -42,8 +42,8 @@ pub(super) async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Respon
         };
         metrics.bounces.inc_by(period);
         match format {
-            Format::Csv => Ok(jacobian.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?),
-            Format::Ndjson => Ok(jacobian.to_table().to_ndjson(&jacobian, || turn.go_on()).ok_or(Cancelled)?),
+            Format::Csv => super::csv(&jacobian.to_table(), turn),
+            Format::Ndjson => super::ndjson(&jacobian.to_table(), &jacobian, turn),
             _ => super::json(&jacobian, turn),
         }
     })

@@ -25,15 +25,15 @@ pub(super) async fn ladder(State(app): State<App>, ask: Ask) -> Result<Response<
         let request = Request::read(reader);
         Some((scene?, request))
     })?;
-    let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
+    let price = Price::bounces(request.price(&scene)).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &request);
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
         let ladder = Ladder::compute(&scene, &request, || turn.go_on()).ok_or(Cancelled)?;
         metrics.bounces.inc_by(ladder.bounces());
         match format {
-            Format::Csv => Ok(ladder.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?),
-            Format::Ndjson => Ok(ladder.to_table().to_ndjson(&ladder.end(), || turn.go_on()).ok_or(Cancelled)?),
+            Format::Csv => super::csv(&ladder.to_table(), turn),
+            Format::Ndjson => super::ndjson(&ladder.to_table(), &ladder.end(), turn),
             _ => super::json(&ladder, turn),
         }
     })

@@ -21,7 +21,6 @@ pub mod scenes;
 pub mod stability;
 pub mod trajectories;
 
-use std::io;
 use std::sync::Arc;
 
 use axum::Router;
@@ -32,10 +31,12 @@ use tokio::sync::watch;
 
 use crate::compute::{Cancelled, Pool, Shares, Turn};
 use crate::config::Config;
+use crate::http::output::written;
 use crate::http::{Format, Problem};
-use crate::limits::{self, Limits};
+use crate::limits::Limits;
 use crate::picture::{NoPixels, png};
 use crate::wire::scene::Resolved;
+use crate::wire::table::Table;
 use metrics::Metrics;
 
 /// What routes share. Cheap to clone.
@@ -116,40 +117,17 @@ pub fn all() -> Router<App> {
 
 /// An answer as JSON.
 fn json(answer: &impl Serialize, turn: &Turn) -> Result<Vec<u8>, Problem> {
-    let mut out = Watched { bytes: Vec::new(), look: 0, turn };
-    match serde_json::to_writer(&mut out, answer) {
-        Ok(()) => Ok(out.bytes),
-        Err(error) if error.is_io() => Err(Cancelled.into()),
-        Err(_) => Err(Problem::internal()),
-    }
+    written(&|| turn.go_on(), |out| Ok(serde_json::to_writer(out, answer)?))
 }
 
-/// Bytes in memory, as long as somebody waits for them.
-struct Watched<'a> {
-    bytes: Vec<u8>,
-    /// How many there are at the next look.
-    look: usize,
-    turn: &'a Turn,
+/// A table as CSV.
+fn csv(table: &Table, turn: &Turn) -> Result<Vec<u8>, Problem> {
+    written(&|| turn.go_on(), |out| table.write_csv(out))
 }
 
-impl io::Write for Watched<'_> {
-    fn write(&mut self, piece: &[u8]) -> io::Result<usize> {
-        self.write_all(piece).map(|()| piece.len())
-    }
-
-    #[inline]
-    fn write_all(&mut self, piece: &[u8]) -> io::Result<()> {
-        self.bytes.extend_from_slice(piece);
-        if self.bytes.len() >= self.look {
-            self.turn.check().map_err(io::Error::other)?;
-            self.look = self.bytes.len() + limits::JSON_STEP_BYTES;
-        }
-        Ok(())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
+/// A table as NDJSON, and what ends it.
+fn ndjson(table: &Table, end: &impl Serialize, turn: &Turn) -> Result<Vec<u8>, Problem> {
+    written(&|| turn.go_on(), |out| table.write_ndjson(end, out))
 }
 
 /// A picture as it is asked for: as it was drawn, or in pixels.
@@ -172,4 +150,25 @@ fn canonical(scene: &Scene, rest: &impl Serialize) -> Vec<u8> {
 fn canonical_of(request: &impl Serialize) -> Vec<u8> {
     // Writing to memory does not fail.
     serde_json::to_vec(request).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::table::{Cells, Column};
+    use equipoise_physics::double_double::DoubleDouble;
+
+    #[test]
+    fn a_large_table_is_not_written_for_nobody() {
+        let cells = Cells::Decimals(vec![Some(DoubleDouble::from(0.1)); 100_000]);
+        let table = Table(vec![Column { name: "t", unit: "s", cells }]);
+        type Way = fn(&Table, &Turn) -> Result<Vec<u8>, Problem>;
+        let ways: [Way; 3] = [|table, turn| json(table, turn), csv, |table, turn| ndjson(table, &"end", turn)];
+        for write in ways {
+            let turn = Turn::alone();
+            assert!(write(&table, &turn).unwrap().len() > 3_000_000);
+            turn.cancel().set();
+            assert_eq!(write(&table, &turn).unwrap_err().status(), 503);
+        }
+    }
 }

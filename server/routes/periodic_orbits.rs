@@ -39,8 +39,8 @@ pub(super) async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<
         };
         metrics.bounces.inc_by(orbits.bounces());
         match format {
-            Format::Csv => Ok(orbits.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?),
-            Format::Ndjson => Ok(orbits.to_table().to_ndjson(&orbits.end(), || turn.go_on()).ok_or(Cancelled)?),
+            Format::Csv => super::csv(orbits.to_table(), turn),
+            Format::Ndjson => super::ndjson(orbits.to_table(), &orbits.end(), turn),
             Format::Svg | Format::Png => {
                 let picture = orbits.to_picture();
                 let picture =

@@ -7,7 +7,7 @@ use axum::http::Response;
 use axum::routing::get;
 
 use super::App;
-use crate::compute::{Cancelled, Turn};
+use crate::compute::Turn;
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
 use crate::wire::precision::{Precision, Request};
 use crate::wire::progress::{self, Progress};
@@ -44,8 +44,8 @@ pub(super) async fn precision(State(app): State<App>, ask: Ask) -> Result<Respon
         let precision = Precision::compute(&scene, &request, &mut tell, turn)?;
         metrics.bounces.inc_by(precision.bounces());
         let bytes = match format {
-            Format::Csv => precision.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?,
-            Format::Ndjson => precision.to_table().to_ndjson(&precision.end(), || turn.go_on()).ok_or(Cancelled)?,
+            Format::Csv => super::csv(&precision.to_table(), turn)?,
+            Format::Ndjson => super::ndjson(&precision.to_table(), &precision.end(), turn)?,
             Format::Progress => progress::end(&super::json(&precision, turn)?),
             Format::Svg | Format::Png => super::picture(precision.to_picture(), format, turn)?,
             _ => super::json(&precision, turn)?,

@@ -27,7 +27,7 @@ pub fn routes() -> Router<App> {
 pub(super) async fn regions(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let request = ask.read(Request::read)?;
     app.config.limits.of_answer().admit(request.cells().saturating_mul(2))?;
-    app.config.limits.of_region_work().admit(request.bounces())?;
+    app.config.limits.of_region_work().admit(request.price())?;
     let region = request.region;
     let sides = [region.x, region.y].map(|axis| (axis.name.row().path, axis.from, axis.to, axis.count));
     let rest = (sides, region.impacts, region.quantity as u8, request.tile);

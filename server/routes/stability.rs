@@ -26,15 +26,15 @@ pub(super) async fn stability(State(app): State<App>, ask: Ask) -> Result<Respon
         let request = Request::read(reader);
         Some((scene?, request))
     })?;
-    let price = Price::bounces(Stability::price(&request)).within(&app.config.limits.of_work())?;
+    let price = Price::bounces(Stability::price(&scene, &request)).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &request.canonical());
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
         let stability = Stability::compute(&scene, &request, || turn.go_on()).ok_or(Cancelled)?;
         metrics.bounces.inc_by(stability.bounces());
         match format {
-            Format::Csv => Ok(stability.to_table().to_csv(|| turn.go_on()).ok_or(Cancelled)?),
-            Format::Ndjson => Ok(stability.to_table().to_ndjson(&stability.end(), || turn.go_on()).ok_or(Cancelled)?),
+            Format::Csv => super::csv(&stability.to_table(), turn),
+            Format::Ndjson => super::ndjson(&stability.to_table(), &stability.end(), turn),
             Format::Svg | Format::Png => super::picture(stability.to_picture(), format, turn),
             _ => super::json(&stability, turn),
         }

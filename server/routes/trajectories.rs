@@ -29,7 +29,7 @@ pub(super) async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Res
         Some((run?, request))
     })?;
     app.config.limits.of_answer().admit(request.numbers())?;
-    let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
+    let price = Price::bounces(request.price(run.scene())).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(run.scene(), &(request, address::url(&run)));
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
@@ -45,8 +45,8 @@ pub(super) async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Res
         };
         metrics.bounces.inc_by(trajectory.outcome.impacts);
         match format {
-            Format::Csv => Ok(trajectory.impacts.to_csv(|| turn.go_on()).ok_or(Cancelled)?),
-            Format::Ndjson => Ok(trajectory.impacts.to_ndjson(&trajectory.end(), || turn.go_on()).ok_or(Cancelled)?),
+            Format::Csv => super::csv(&trajectory.impacts, turn),
+            Format::Ndjson => super::ndjson(&trajectory.impacts, &trajectory.end(), turn),
             Format::Svg | Format::Png => super::picture(trajectory.to_picture(), format, turn),
             _ => super::json(&trajectory, turn),
         }

@@ -8,7 +8,7 @@ use equipoise_physics::outcome::Outcome;
 use equipoise_physics::scene::{Kind, Name, Scene, Value};
 use serde::{Serialize, Serializer};
 
-use super::scene::{Resolved, build, has_angle, read_draft};
+use super::scene::{Resolved, bounce_price, build, has_angle, read_draft};
 use super::table::{Cells, Column, Table};
 use super::tile::Tile;
 use super::trajectory::Choice;
@@ -65,6 +65,15 @@ impl Request {
     pub fn runs(&self) -> u64 {
         let numbers = self.numbers();
         numbers.end - numbers.start
+    }
+
+    /// What it costs, in bounces of the plain rod.
+    pub fn price(&self) -> u64 {
+        let Ensemble { scene, impacts, angle_contacts, .. } = &self.ensemble;
+        let bounces = impacts.saturating_mul(bounce_price(scene));
+        let angles = limits::ENSEMBLE_ANGLE_PRICE * angle_contacts.min(impacts);
+        let runs = self.runs().saturating_mul(bounces + limits::ENSEMBLE_RUN_PRICE + angles);
+        runs.saturating_add(impacts * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
     }
 
     /// How many angles are in the answer, at most.

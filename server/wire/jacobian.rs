@@ -343,10 +343,11 @@ pub fn price(model: &Model, at: At, period: u64, method: Method) -> u64 {
         At::Impact(impact) => impact,
         _ => 0,
     };
-    before
+    limits::ANSWER_PRICE
+        + before
         + period
             * match method {
                 Method::Exact => 12,
-                Method::FiniteDifference => 2 * columns + 12,
+                Method::FiniteDifference => 6 * columns + 12,
             }
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::outcome::Outcome;
 use super::scene::Resolved;
 use super::table::{Cells, Column, Table};
-use super::trajectory::{DemandAnswer, ForcedAnswer};
+use super::trajectory::{DemandAnswer, ForcedAnswer, linear_price};
 use crate::http::Reader;
 use crate::limits;
 
@@ -24,9 +24,12 @@ pub struct Request {
 /// Tolerances, m/s.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-15..=10.0;
 
-/// Rungs of the tallest ladder, and the work of one impact on one of them, in bounces of the plain rod: the linear one costs most.
+/// Rungs of the tallest ladder, and the work of one impact on one of them but the linear one, in bounces of the plain rod.
 const RUNGS: u64 = 7;
 const RUNG_PRICE: u64 = 20;
+
+/// Work beside the impacts, in bounces: the linear solution before its first one, and the answer.
+const ONCE_PRICE: u64 = 2500;
 
 impl Request {
     /// Reads everything but the scene.
@@ -37,8 +40,8 @@ impl Request {
     }
 
     /// Its work, in bounces.
-    pub fn price(&self) -> u64 {
-        self.impacts * RUNGS * RUNG_PRICE
+    pub fn price(&self, scene: &Scene) -> u64 {
+        ONCE_PRICE + self.impacts * (RUNGS * RUNG_PRICE + linear_price(&scene.on(Rung::Linear)))
     }
 }
 

@@ -100,7 +100,7 @@ impl Request {
 
     /// How many cells make a block, a matter of the request alone.
     pub fn block_cells(&self) -> usize {
-        let cells = limits::REGION_BLOCK_WORK * self.cells().max(1) / self.bounces().max(1);
+        let cells = limits::REGION_BLOCK_WORK / self.cell_price().max(1);
         let (least, most) = limits::REGION_BLOCK_CELLS.into_inner();
         cells.clamp(least, most) as usize
     }
@@ -115,13 +115,19 @@ impl Request {
         self.region.quantity == Quantity::Survival
     }
 
-    /// What its runs cost, in bounces of lanes.
-    pub fn bounces(&self) -> u64 {
-        if !matches!(self.region.quantity, Quantity::Survival | Quantity::MaxTheta) {
-            return self.cells().saturating_mul(10);
-        }
-        let price = if self.region.fits_lanes() { 1 } else { limits::REGION_ALONE_PRICE };
-        self.cells().saturating_mul(self.region.impacts).saturating_mul(price)
+    /// What it costs, in bounces of lanes.
+    pub fn price(&self) -> u64 {
+        self.cells().saturating_mul(self.cell_price()).saturating_add(limits::REGION_ANSWER_PRICE)
+    }
+
+    /// What one of its cells costs at most.
+    fn cell_price(&self) -> u64 {
+        let (once, bounce) = match self.region.quantity {
+            Quantity::Residue | Quantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),
+            Quantity::Survival | Quantity::MaxTheta if self.region.fits_lanes() => (limits::REGION_CELL_PRICE, 1),
+            Quantity::Survival | Quantity::MaxTheta => (limits::REGION_ALONE_CELL_PRICE, limits::REGION_ALONE_PRICE),
+        };
+        once + bounce * self.region.impacts
     }
 }
 

@@ -312,10 +312,24 @@ pub fn has_angle(scene: &Scene) -> bool {
     scene.value(Name::PointMass).is_none()
 }
 
+/// What a bounce of a scene costs at most, in bounces of the plain rod.
+pub fn bounce_price(scene: &Scene) -> u64 {
+    let dearer = scene.forced().into_iter().map(|forced| if forced.rung == Rung::Noise { 2 } else { 1 });
+    1 + u64::from(!has_angle(scene)) + dearer.sum::<u64>()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use serde_json::json;
+
+    #[test]
+    fn every_rung_above_the_plain_rod_makes_bounces_dearer() {
+        for (preset, price) in [("case-1", 1), ("point-mass", 2), ("triangle-polygon", 2), ("case-1-noise", 3)] {
+            let scene = presets::find(preset).unwrap().draft().build().unwrap();
+            assert_eq!(bounce_price(&scene), price, "{preset}");
+        }
+    }
 
     fn read_json(body: &Value) -> Result<Scene, Vec<(String, String)>> {
         let mut errors = Errors::default();

@@ -18,7 +18,7 @@ use super::evidence::{Basin, Chaos, Evidence, RotationNumber};
 use super::jacobian::Eigenvalue;
 use super::margins::{self, Margins};
 use super::outcome::Outcome;
-use super::scene::{Resolved, has_angle};
+use super::scene::{Resolved, bounce_price, has_angle};
 use super::table::{Cells, Column, Table};
 use super::trajectory::{Choice, DemandAnswer};
 use crate::http::Reader;
@@ -184,6 +184,9 @@ pub struct Request {
 
 /// Work of the margins, in bounces: some ten thousand linear verdicts.
 const MARGINS_PRICE: u64 = 200_000;
+
+/// What a run of the basin costs beside its bounces, in bounces.
+const BASIN_RUN_PRICE: u64 = 10;
 
 impl Request {
     /// Reads everything but the scene.
@@ -413,10 +416,11 @@ impl<'a> Stability<'a> {
 
     /// What it costs at most, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs go
     /// in lanes for a quarter of that each.
-    pub fn price(request: &Request) -> u64 {
+    pub fn price(scene: &Scene, request: &Request) -> u64 {
         let Request { impacts, basin, tolerances } = *request;
-        let basin = if basin { basin::RUNS * impacts / 4 } else { 0 };
-        impacts + 4 * impacts.min(WATCHED) + basin + if tolerances.is_some() { MARGINS_PRICE } else { 0 }
+        let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + impacts / 4) } else { 0 };
+        let run = impacts * bounce_price(scene) + 4 * impacts.min(WATCHED);
+        limits::ANSWER_PRICE + run + basin + if tolerances.is_some() { MARGINS_PRICE } else { 0 }
     }
 
     /// What ends it as NDJSON: the reason and the notes, which are no scalars.

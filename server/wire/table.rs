@@ -1,5 +1,7 @@
 //! A table of results, defined once and written as JSON columns, CSV with units in its header, or NDJSON rows.
 
+use std::io::{self, Write};
+
 use equipoise_physics::double_double::DoubleDouble;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -47,7 +49,16 @@ pub enum Cells {
 }
 
 fn decimals<S: Serializer>(cells: &[Option<DoubleDouble>], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(cells.iter().map(|cell| cell.map(|number| number.to_string())))
+    serializer.collect_seq(cells.iter().map(|cell| cell.map(Digits)))
+}
+
+/// A number of 32 digits as text.
+struct Digits(DoubleDouble);
+
+impl Serialize for Digits {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.0.to_decimal().as_str())
+    }
 }
 
 impl Cells {
@@ -85,7 +96,7 @@ impl Cells {
             Self::Words(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Flags(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Texts(cells) => serde_json::to_writer(out, &cells[row]),
-            Self::Decimals(cells) => serde_json::to_writer(out, &cells[row].map(|number| number.to_string())),
+            Self::Decimals(cells) => serde_json::to_writer(out, &cells[row].map(Digits)),
         };
     }
 
@@ -95,8 +106,9 @@ impl Cells {
             Self::Words(cells) => cells[row],
             Self::Texts(cells) => cells[row].as_deref(),
             Self::Decimals(cells) => {
-                let number = cells[row].map(|number| number.to_string());
-                out.extend_from_slice(number.unwrap_or_default().as_bytes());
+                if let Some(number) = cells[row] {
+                    out.extend_from_slice(number.to_decimal().as_str().as_bytes());
+                }
                 return;
             }
             Self::Counts(_) | Self::Numbers(_) | Self::Sparse(_) | Self::SparseCounts(_) | Self::Flags(_) => {
@@ -116,9 +128,6 @@ impl Cells {
         }
     }
 }
-
-/// Rows between two looks at whether to go on: one of numbers of 32 digits takes 70 µs.
-const ROWS_A_LOOK: usize = 32;
 
 /// Columns of equal length; as JSON an object of arrays.
 #[derive(Debug, Clone, PartialEq)]
@@ -140,51 +149,61 @@ impl Table {
         self.0.first().map_or(0, |column| column.cells.len())
     }
 
-    /// RFC 4180, with a header; what does not exist is empty. None once `go_on`, which is asked now and then, said `false`.
-    pub fn to_csv(&self, go_on: impl Fn() -> bool) -> Option<Vec<u8>> {
+    /// RFC 4180, with a header; what does not exist is empty.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         let header: Vec<String> = self.0.iter().map(|Column { name, unit, .. }| with_unit(name, unit)).collect();
-        let mut out = header.join(",").into_bytes();
-        out.extend_from_slice(b"\r\n");
+        out.write_all(header.join(",").as_bytes())?;
+        out.write_all(b"\r\n")?;
+        let mut line = Vec::new();
         for row in 0..self.rows() {
-            if row.is_multiple_of(ROWS_A_LOOK) && !go_on() {
-                return None;
-            }
+            line.clear();
             for (index, column) in self.0.iter().enumerate() {
                 if index > 0 {
-                    out.push(b',');
+                    line.push(b',');
                 }
-                column.cells.write_csv(row, &mut out);
+                column.cells.write_csv(row, &mut line);
             }
-            out.extend_from_slice(b"\r\n");
+            line.extend_from_slice(b"\r\n");
+            out.write_all(&line)?;
         }
-        Some(out)
+        Ok(())
     }
 
-    /// One JSON object a row, then `{"end": …}`, so that a truncated answer shows. None as in [`Table::to_csv`].
-    pub fn to_ndjson(&self, end: &impl Serialize, go_on: impl Fn() -> bool) -> Option<Vec<u8>> {
-        let mut out = Vec::new();
+    /// One JSON object a row, then `{"end": …}`, so that a truncated answer shows.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_ndjson(&self, end: &impl Serialize, out: &mut impl Write) -> io::Result<()> {
+        let mut line = Vec::new();
         for row in 0..self.rows() {
-            if row.is_multiple_of(ROWS_A_LOOK) && !go_on() {
-                return None;
-            }
+            line.clear();
             for (index, column) in self.0.iter().enumerate() {
-                out.extend_from_slice(if index == 0 { b"{\"" } else { b",\"" });
-                out.extend_from_slice(column.name.as_bytes());
-                out.extend_from_slice(b"\":");
-                column.cells.write_json(row, &mut out);
+                line.extend_from_slice(if index == 0 { b"{\"" } else { b",\"" });
+                line.extend_from_slice(column.name.as_bytes());
+                line.extend_from_slice(b"\":");
+                column.cells.write_json(row, &mut line);
             }
-            out.extend_from_slice(b"}\n");
+            line.extend_from_slice(b"}\n");
+            out.write_all(&line)?;
         }
-        out.extend_from_slice(b"{\"end\":");
-        let _ = serde_json::to_writer(&mut out, end);
-        out.extend_from_slice(b"}\n");
-        Some(out)
+        out.write_all(b"{\"end\":")?;
+        serde_json::to_writer(&mut *out, end)?;
+        out.write_all(b"}\n")
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn text(write: impl FnOnce(&mut Vec<u8>) -> io::Result<()>) -> String {
+        let mut out = Vec::new();
+        write(&mut out).unwrap();
+        String::from_utf8(out).unwrap()
+    }
 
     #[test]
     fn one_table_three_ways() {
@@ -200,11 +219,11 @@ mod tests {
             r#"{"n":[1,2],"t":[0.1,1e+21],"flight_time":[0.5,null],"contact_mode":["stick",null],"why":[null,"a, \"b\""]}"#
         );
         assert_eq!(
-            String::from_utf8(table.to_csv(|| true).unwrap()).unwrap(),
+            text(|out| table.write_csv(out)),
             "n,t_s,flight_time_s,contact_mode,why\r\n1,0.1,0.5,stick,\r\n2,1e+21,,,\"a, \"\"b\"\"\"\r\n"
         );
         assert_eq!(
-            String::from_utf8(table.to_ndjson(&"done", || true).unwrap()).unwrap(),
+            text(|out| table.write_ndjson(&"done", out)),
             "{\"n\":1,\"t\":0.1,\"flight_time\":0.5,\"contact_mode\":\"stick\",\"why\":null}\n\
              {\"n\":2,\"t\":1e+21,\"flight_time\":null,\"contact_mode\":null,\"why\":\"a, \\\"b\\\"\"}\n{\"end\":\"done\"}\n"
         );

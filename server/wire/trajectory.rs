@@ -124,11 +124,25 @@ const NO_BOUND: &str = "no bound is derived for a run that is changed under way"
 const CONTACT_NUMBERS: u64 = 18;
 const SAMPLE_NUMBERS: u64 = 8;
 
-/// What a row costs beside its bounce, and what each method costs an impact with its error estimate, in bounces.
-const ROW_PRICE: u64 = 10;
-const LINEAR_PRICE: u64 = 200;
+/// What each method costs an impact with its error estimate, in bounces, and what the linear solution costs once.
+const LINEAR_ONCE: u64 = 2500;
 const MAP_PRICE: u64 = 8;
-const EXTENDED_PRICE: u64 = 40;
+const EXTENDED_PRICE: u64 = 50;
+
+/// What a contact costs to be written down, compressed as well, in bounces; the same with 31 digits, and a sample of a flight.
+const ROW_PRICE: u64 = 24;
+const LONG_ROW_PRICE: u64 = 60;
+const SAMPLE_PRICE: u64 = 10;
+
+/// What an impact of the linear solution costs with its error estimate, in bounces. Where the angle does not circle, the estimate
+/// of each looks at some of the bounces before it, with 31 digits: at 13, or at 39 where the table looks at the energy.
+pub(super) fn linear_price(scene: &Scene) -> u64 {
+    match scene.number(Name::EnergyGain) {
+        _ if scene.circles() => 20,
+        None | Some(0.0) => 500,
+        Some(_) => 1400,
+    }
+}
 
 impl Request {
     /// Reads everything but the scene.
@@ -158,15 +172,19 @@ impl Request {
     }
 
     /// Its work, in bounces.
-    pub fn price(&self) -> u64 {
-        let method = match (self.method, self.tolerance) {
-            (Some(Method::Linear), _) => LINEAR_PRICE,
-            (Some(Method::Map), _) | (None, None) => MAP_PRICE,
-            (Some(Method::Extended), _) => EXTENDED_PRICE,
-            // Each may be tried, and the dearest run again.
-            (None, Some(_)) => LINEAR_PRICE + MAP_PRICE + 2 * EXTENDED_PRICE,
+    pub fn price(&self, scene: &Scene) -> u64 {
+        let (once, impact) = match (self.method, self.tolerance) {
+            (Some(Method::Linear), _) => (LINEAR_ONCE, linear_price(scene) + ROW_PRICE),
+            (Some(Method::Map), _) | (None, None) => (0, MAP_PRICE + ROW_PRICE),
+            (Some(Method::Extended), _) => (0, EXTENDED_PRICE + LONG_ROW_PRICE),
+            // Each may be tried, the linear one where the angle circles, and the dearest run again.
+            (None, Some(_)) => {
+                let linear = if scene.circles() { linear_price(scene) } else { 0 };
+                (LINEAR_ONCE, linear + MAP_PRICE + 2 * EXTENDED_PRICE + LONG_ROW_PRICE)
+            }
         };
-        self.impacts.saturating_mul(method + ROW_PRICE * (1 + self.samples_per_flight))
+        let each = impact + SAMPLE_PRICE * self.samples_per_flight;
+        self.impacts.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once)
     }
 }
 

@@ -1,14 +1,15 @@
 //! Numbers of 31 digits as decimals, and back: how they travel.
 
 use super::DoubleDouble;
+use super::digits::{DIGITS, digits, in_units};
 use std::fmt;
 use std::str::FromStr;
 
 /// Digits that are written. Reading them gives the number back to half a unit of the last.
 pub const SIGNIFICANT_DIGITS: usize = 32;
 
-/// Digits that are worked with: as many as 128 bits hold.
-const DIGITS: i32 = 37;
+/// Units of the digits that are worked with in one of the last digit that is written.
+const SURPLUS: u128 = 10u128.pow(DIGITS as u32 - SIGNIFICANT_DIGITS as u32);
 
 /// A text that is no decimal number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,53 +21,127 @@ impl fmt::Display for NotADecimal {
     }
 }
 
-/// `value` in units of 10^unit, rounded: exact decimal expansions come from the standard library.
-fn in_units(value: f64, unit: i32) -> i128 {
-    let exponent = exponent(value);
-    let Ok(decimals) = usize::try_from(exponent - unit) else { return 0 };
-    let text = format!("{value:.decimals$e}");
-    let (mantissa, after) = text.split_once('e').unwrap_or((&text, "0"));
-    let digits: String = mantissa.chars().filter(|&character| character != '.').collect();
-    // Rounding 9.99 to 1.00e1 makes the last digit one place larger.
-    let carries = after.parse() != Ok(exponent);
-    digits.parse::<i128>().unwrap_or(0) * if carries { 10 } else { 1 }
+/// A number as text, without an allocation.
+#[derive(Clone, Copy, Debug)]
+pub struct Decimal {
+    bytes: [u8; Self::BYTES],
+    length: usize,
 }
 
-/// Of the first digit of the exact expansion, which may be one less than that of the shortest.
-fn exponent(value: f64) -> i32 {
-    format!("{value:.40e}").split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
-}
+impl Decimal {
+    /// At least the longest: a sign, `0.`, five zeros and all digits.
+    const BYTES: usize = 48;
 
-impl fmt::Display for DoubleDouble {
-    /// At most [`SIGNIFICANT_DIGITS`] digits, without zeros at their end; with an exponent where a plain number would be long.
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.high.is_finite() || self.high == 0.0 {
-            return self.high.fmt(formatter);
+    fn empty() -> Self {
+        Self { bytes: [0; Self::BYTES], length: 0 }
+    }
+
+    /// The text.
+    pub fn as_str(&self) -> &str {
+        std::str::from_utf8(&self.bytes[..self.length]).expect("digits are ASCII")
+    }
+
+    fn push(&mut self, text: &[u8]) {
+        self.bytes[self.length..][..text.len()].copy_from_slice(text);
+        self.length += text.len();
+    }
+
+    fn push_zeros(&mut self, count: usize) {
+        self.bytes[self.length..][..count].fill(b'0');
+        self.length += count;
+    }
+
+    /// An exponent of at most three digits.
+    fn push_exponent(&mut self, exponent: i32) {
+        self.push(if exponent < 0 { b"e-" } else { b"e" });
+        let mut digits = [0; 3];
+        let (mut rest, mut first) = (exponent.unsigned_abs(), digits.len());
+        while rest > 0 {
+            first -= 1;
+            digits[first] = b'0' + (rest % 10) as u8;
+            rest /= 10;
         }
-        let mut exponent = exponent(self.high);
-        let unit = exponent + 1 - DIGITS;
-        let sum = in_units(self.high, unit) + in_units(self.low, unit);
-        let surplus = 10i128.pow(DIGITS as u32 - SIGNIFICANT_DIGITS as u32);
-        let rounded = (sum.abs() + surplus / 2) / surplus;
-        let digits = rounded.to_string();
+        self.push(&digits[first..]);
+    }
+}
+
+/// Writes a number below 10^`places` with zeros before it.
+fn write_digits(mut number: u64, places: &mut [u8]) {
+    const PAIRS: [[u8; 2]; 100] = {
+        let mut pairs = [[0; 2]; 100];
+        let mut number = 0;
+        while number < 100 {
+            pairs[number] = [b'0' + (number / 10) as u8, b'0' + (number % 10) as u8];
+            number += 1;
+        }
+        pairs
+    };
+    for pair in places.rchunks_exact_mut(2) {
+        pair.copy_from_slice(&PAIRS[(number % 100) as usize]);
+        number /= 100;
+    }
+}
+
+impl DoubleDouble {
+    /// The number as a decimal: at most [`SIGNIFICANT_DIGITS`] digits, without zeros at their end; with an exponent where a plain
+    /// number would be long.
+    pub fn to_decimal(&self) -> Decimal {
+        let mut text = Decimal::empty();
+        if self.high.is_nan() {
+            text.push(b"NaN");
+            return text;
+        }
+        if self.high.is_sign_negative() {
+            text.push(b"-");
+        }
+        if self.high.is_infinite() || self.high == 0.0 {
+            text.push(if self.high == 0.0 { b"0" } else { b"inf" });
+            return text;
+        }
+        let (sum, mut exponent) = digits(self);
+        let rounded = (sum.unsigned_abs() + SURPLUS / 2) / SURPLUS;
+        const SPLIT: u128 = 10u128.pow(16);
+        let mut places = [0; SIGNIFICANT_DIGITS + 2];
+        write_digits((rounded / SPLIT) as u64, &mut places[..SIGNIFICANT_DIGITS - 14]);
+        write_digits((rounded % SPLIT) as u64, &mut places[SIGNIFICANT_DIGITS - 14..]);
+        let first = places.iter().position(|&digit| digit != b'0').unwrap_or(places.len() - 1);
         // The low part may have carried the number over a power of ten, either way.
-        exponent += digits.len() as i32 - SIGNIFICANT_DIGITS as i32;
-        let digits = digits.trim_end_matches('0');
-        let sign = if sum < 0 { "-" } else { "" };
+        exponent += 2 - first as i32;
+        let end = places.iter().rposition(|&digit| digit != b'0').map_or(places.len(), |last| last + 1);
+        let digits = &places[first..end];
         match exponent {
-            -6..=-1 => write!(formatter, "{sign}0.{}{digits}", "0".repeat((-1 - exponent) as usize)),
+            -6..=-1 => {
+                text.push(b"0.");
+                text.push_zeros((-1 - exponent) as usize);
+                text.push(digits);
+            }
             0..=20 => {
                 let (whole, rest) = digits.split_at(digits.len().min(exponent as usize + 1));
-                let zeros = "0".repeat(exponent as usize + 1 - whole.len());
-                let point = if rest.is_empty() { "" } else { "." };
-                write!(formatter, "{sign}{whole}{zeros}{point}{rest}")
+                text.push(whole);
+                text.push_zeros(exponent as usize + 1 - whole.len());
+                if !rest.is_empty() {
+                    text.push(b".");
+                    text.push(rest);
+                }
             }
             _ => {
                 let (whole, rest) = digits.split_at(1);
-                let point = if rest.is_empty() { "" } else { "." };
-                write!(formatter, "{sign}{whole}{point}{rest}e{exponent}")
+                text.push(whole);
+                if !rest.is_empty() {
+                    text.push(b".");
+                    text.push(rest);
+                }
+                text.push_exponent(exponent);
             }
         }
+        text
+    }
+}
+
+impl fmt::Display for DoubleDouble {
+    /// As [`DoubleDouble::to_decimal`].
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.to_decimal().as_str())
     }
 }
 

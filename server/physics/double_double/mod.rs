@@ -5,9 +5,13 @@
 //! crate that offers such numbers (`twofloat` 0.8) hold 21 digits.
 
 mod decimal;
+mod digits;
+#[cfg(test)]
+mod digits_tests;
+mod powers;
 mod trig;
 
-pub use decimal::{NotADecimal, SIGNIFICANT_DIGITS};
+pub use decimal::{Decimal, NotADecimal, SIGNIFICANT_DIGITS};
 
 use crate::number::{Number, Real};
 use std::ops::{Add, Div, Mul, Neg, Sub};

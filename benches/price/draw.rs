@@ -1,0 +1,284 @@
+//! Random requests from a seed: every resource that computes, every model, scenes from the whole ranges of their fields.
+
+use equipoise_physics::scene::{FIELDS, Field, Kind};
+use serde_json::{Map, Value, json};
+
+/// Numbers that repeat from run to run (splitmix64, Steele and others, 2014).
+pub(crate) struct Draw(pub(crate) u64);
+
+/// A request to a resource.
+pub(crate) struct Request {
+    pub(crate) body: Value,
+    /// The media type that is asked for.
+    pub(crate) accept: &'static str,
+    pub(crate) gzip: bool,
+}
+
+/// The resources that take a scene.
+pub(crate) const RESOURCES: [&str; 9] = [
+    "trajectories",
+    "jacobians",
+    "stability",
+    "regions",
+    "ensembles",
+    "periodic-orbits",
+    "controllers",
+    "ladder",
+    "precision",
+];
+
+const PRESETS: [&str; 15] = [
+    "case-1",
+    "case-1",
+    "case-1",
+    "case-2",
+    "case-3",
+    "case-4",
+    "case-5",
+    "case-1-noise",
+    "point-mass",
+    "still-lossy",
+    "case-2-figure",
+    "critical-hard",
+    "case-4-noise",
+    "triangle-polygon",
+    "",
+];
+
+impl Draw {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, limit: u64) -> u64 {
+        self.next() % limit
+    }
+
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn chance(&mut self, share: f64) -> bool {
+        self.unit() < share
+    }
+
+    fn one_of<T: Copy>(&mut self, values: &[T]) -> T {
+        values[self.below(values.len() as u64) as usize]
+    }
+
+    /// A whole number up to a limit, small ones as often as large ones.
+    fn count(&mut self, limit: u64) -> u64 {
+        ((limit as f64).powf(self.unit()).round() as u64).clamp(1, limit)
+    }
+
+    /// A value of a field: at an end of its range, anywhere in it, or of any size.
+    fn value(&mut self, field: &Field) -> Value {
+        match field.kind {
+            Kind::Number { minimum, maximum } => {
+                let anywhere = minimum + (maximum - minimum) * self.unit();
+                let sized = 10_f64.powf(-12.0 * self.unit());
+                match self.below(10) {
+                    0 => json!(minimum),
+                    1 => json!(maximum),
+                    2..=4 => json!(anywhere),
+                    5..=7 => json!((maximum * sized).clamp(minimum, maximum)),
+                    _ => json!((minimum * sized).clamp(minimum, maximum)),
+                }
+            }
+            Kind::Integer { maximum } => json!(self.below(maximum)),
+            Kind::Choice(words) => json!(self.one_of(words)),
+            Kind::Flag => json!(true),
+        }
+    }
+
+    /// A preset and changes to it, from none to many: the fewer, the longer runs last.
+    fn scene(&mut self, request: &mut Map<String, Value>) {
+        let preset = self.one_of(&PRESETS);
+        let mut scene = json!({});
+        if preset.is_empty() {
+            put(&mut scene, "body.contact_distance", json!(10_f64.powf(1.0 - 4.0 * self.unit())));
+            put(&mut scene, "body.radius_of_gyration", json!(10_f64.powf(1.0 - 4.0 * self.unit())));
+            put(&mut scene, "release.height", json!(10.0 + 90.0 * self.unit()));
+            put(&mut scene, "table.tilt_gain", json!(1.0 + self.unit()));
+        } else {
+            request.insert("preset".to_owned(), json!(preset));
+        }
+        let wild = self.one_of(&[0.0, 0.0, 0.03, 0.1, 0.4]);
+        for field in &FIELDS {
+            let rare = field.path.starts_with("body.") || field.path.starts_with("table.feedback");
+            if self.chance(if rare { 0.1 * wild } else { wild }) {
+                let value = self.value(field);
+                put(&mut scene, field.path, value);
+            }
+        }
+        // Near upright, so that runs go on; and the models that no preset has.
+        if self.chance(0.6) {
+            put(&mut scene, "release.theta", json!(0.3 * 10_f64.powf(-9.0 * self.unit())));
+        }
+        if self.chance(0.2) {
+            put(&mut scene, "contact.friction", json!(self.unit()));
+            put(&mut scene, "contact.law", json!(self.one_of(&["poisson", "newton", "stronge"])));
+            put(&mut scene, "table.slide", json!(self.one_of(&["matched", "matched", "none"])));
+        }
+        if self.chance(0.2) {
+            put(&mut scene, "noise.timing_sd", json!(10_f64.powf(-1.0 - 8.0 * self.unit())));
+            put(&mut scene, "noise.angle_sd", json!(10_f64.powf(-1.0 - 8.0 * self.unit())));
+            put(&mut scene, "noise.model", json!(self.one_of(&["strike", "plan"])));
+        }
+        if self.chance(0.1) {
+            // State feedback takes the place of the tilt gain.
+            put(&mut scene, "table.tilt_gain", Value::Null);
+            put(&mut scene, "table.feedback.theta", json!(-1.0 - 0.5 * self.unit()));
+            put(&mut scene, "table.feedback.x", json!(self.one_of(&[0.0, 0.018])));
+            put(&mut scene, "table.feedback.x_dot", json!(0.023 * self.unit()));
+            put(&mut scene, "table.feedback.theta_dot", json!(-0.031 * self.unit()));
+        }
+        if self.chance(0.15) {
+            scene["body"] = self.polygon();
+        }
+        request.insert("scene".to_owned(), scene);
+    }
+
+    fn polygon(&mut self) -> Value {
+        let count = 3 + self.below(62);
+        let size = 10_f64.powf(-1.0 - self.unit());
+        let places: Vec<Value> = (0..count)
+            .map(|vertex| {
+                let angle = std::f64::consts::TAU * (vertex as f64 + 0.5) / count as f64;
+                json!([size * angle.sin(), -size * angle.cos() * (0.9 + 0.1 * self.unit())])
+            })
+            .collect();
+        json!({"vertices": places})
+    }
+
+    fn axis(&mut self, count: u64) -> Value {
+        let parameter = self.one_of(&[
+            ("table.tilt_gain", 0.95, 1.6),
+            ("release.theta", 0.0, 0.5),
+            ("release.theta", 0.0, 1e-3),
+            ("release.theta_dot", -200.0, 200.0),
+            ("release.height", 0.2, 100.0),
+            ("contact.restitution", 0.0, 1.0),
+            ("table.energy_gain", 0.0, 0.5),
+            ("gravity", 0.1, 100.0),
+            ("body.radius_of_gyration", 0.01, 1.0),
+        ]);
+        let (parameter, from, to) = parameter;
+        json!({"parameter": parameter, "from": from, "to": to, "count": count})
+    }
+
+    /// A request to a resource. Not every one can be.
+    pub(crate) fn request(&mut self, resource: &str) -> Request {
+        let mut body = Map::new();
+        self.scene(&mut body);
+        let mut set = |name: &str, value: Value| drop(body.insert(name.to_owned(), value));
+        let mut formats = vec!["application/json", "application/json", "text/csv", "application/x-ndjson"];
+        let pictures = ["image/svg+xml", "image/png"];
+        match resource {
+            "trajectories" => {
+                set("impacts", json!(self.count(100_000)));
+                match self.below(5) {
+                    0 => {}
+                    1 => set("tolerance", json!(10_f64.powf(-30.0 * self.unit()))),
+                    _ => set("method", json!(self.one_of(&["map", "linear", "extended"]))),
+                }
+                if self.chance(0.3) {
+                    set("samples_per_flight", json!(self.count(256)));
+                }
+                formats.extend(pictures);
+            }
+            "jacobians" => {
+                match self.below(3) {
+                    0 => set("at", json!({"impact": self.count(10_000)})),
+                    1 => {
+                        let [theta, x_dot, y_dot, theta_dot] = [1e-3, 1e-3, -3.0, 1e-3].map(|size| size * self.unit());
+                        let state = json!({"theta": theta, "x_dot": x_dot, "y_dot": y_dot, "theta_dot": theta_dot});
+                        set("at", json!({ "state": state }));
+                    }
+                    _ => {}
+                }
+                set("period", json!(self.count(1000)));
+                set("method", json!(self.one_of(&["exact", "finite_difference"])));
+            }
+            "stability" => {
+                set("impacts", json!(self.count(100_000)));
+                set("basin", json!(self.chance(0.3)));
+                if self.chance(0.3) {
+                    let off = 10_f64.powf(-3.0 * self.unit() - 0.5);
+                    set("tolerances", json!({"contact_distance": off, "radius_of_gyration": off, "restitution": off}));
+                }
+                formats.extend(pictures);
+            }
+            "regions" => {
+                let (columns, rows) = (self.count(200), self.count(200));
+                set("x", self.axis(columns));
+                set("y", self.axis(rows));
+                set("impacts", json!(self.count(3000)));
+                set("quantity", json!(self.one_of(&["survival", "max_theta", "residue", "spectral_radius"])));
+                formats.extend(pictures);
+            }
+            "ensembles" => {
+                set("runs", json!(self.count(20_000)));
+                set("impacts", json!(self.count(20_000)));
+                set("angles", json!(self.chance(0.3)));
+                formats.extend(pictures);
+            }
+            "periodic-orbits" => {
+                set("period", json!(self.one_of(&[1, 2, 3, 4, 8, 16, 64])));
+                if self.chance(0.6) {
+                    let [theta, x_dot, y_dot, theta_dot] = [0.4, 0.3, -2.0, 2.0].map(|size| size * self.unit());
+                    let guess = json!({"theta": theta, "x_dot": x_dot, "y_dot": y_dot, "theta_dot": theta_dot});
+                    set("guess", guess);
+                } else if self.chance(0.5) {
+                    set("period", json!(2));
+                    set("family", json!("symmetric"));
+                    set("theta", json!(0.6 * self.unit()));
+                }
+                if self.chance(0.5) {
+                    let (parameter, from, to) = self.one_of(&[
+                        ("table.tilt_gain", 1.05, 1.9),
+                        ("release.height", 0.2, 2.0),
+                        ("gravity", 1.0, 50.0),
+                        ("body.radius_of_gyration", 0.05, 0.5),
+                    ]);
+                    let points = 1 + self.count(1999);
+                    set("sweep", json!({"parameter": parameter, "from": from, "to": to, "points": points}));
+                    formats.extend(pictures);
+                }
+            }
+            "precision" => {
+                set("impacts", json!(self.count(1000)));
+                let names = ["map", "map_free", "linear", "extended"];
+                set("methods", json!([self.one_of(&names)]));
+                formats.extend(pictures);
+            }
+            "controllers" => {
+                if self.chance(0.5) {
+                    set("contact", json!(self.one_of(&["frictionless", "stick"])));
+                }
+                formats.extend(pictures);
+            }
+            _ => {
+                set("impacts", json!(self.count(20_000)));
+                set("tolerance", json!(1e-6));
+            }
+        }
+        Request { body: Value::Object(body), accept: self.one_of(&formats), gzip: self.chance(0.5) }
+    }
+}
+
+/// Sets a value of a scene by its dotted path.
+pub(crate) fn put(scene: &mut Value, path: &str, value: Value) {
+    let mut at = scene;
+    for part in path.split('.') {
+        if !at.is_object() {
+            *at = json!({});
+        }
+        at = at.as_object_mut().expect("an object").entry(part).or_insert(Value::Null);
+    }
+    *at = value;
+}

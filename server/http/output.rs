@@ -1,0 +1,95 @@
+//! The bytes of an answer while they are written: a large one takes as long as its computing, and ends like it when nobody waits.
+
+use std::io::{self, Write};
+
+use super::problem::Problem;
+use crate::compute::Cancelled;
+use crate::limits;
+
+/// Bytes in memory, as long as somebody waits for them.
+pub struct Output<'a> {
+    bytes: Vec<u8>,
+    go_on: &'a dyn Fn() -> bool,
+    /// Length from which on to look again whether anybody waits.
+    next_look: usize,
+    is_given_up: bool,
+}
+
+/// The bytes that `write` writes; `go_on` is asked now and then.
+///
+/// # Errors
+/// That the work was given up, once `go_on` said `false`; an error of the server's own where `write` fails for another reason.
+pub fn written(
+    go_on: &dyn Fn() -> bool,
+    write: impl FnOnce(&mut Output<'_>) -> io::Result<()>,
+) -> Result<Vec<u8>, Problem> {
+    let mut output = Output { bytes: Vec::new(), go_on, next_look: limits::WRITE_STEP_BYTES, is_given_up: false };
+    match write(&mut output) {
+        Ok(()) => Ok(output.bytes),
+        Err(_) if output.is_given_up => Err(Cancelled.into()),
+        Err(_) => Err(Problem::internal()),
+    }
+}
+
+impl Write for Output<'_> {
+    #[inline]
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.write_all(bytes).map(|()| bytes.len())
+    }
+
+    #[inline]
+    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.bytes.extend_from_slice(bytes);
+        if self.bytes.len() >= self.next_look {
+            self.next_look = self.bytes.len() + limits::WRITE_STEP_BYTES;
+            if !(self.go_on)() {
+                self.is_given_up = true;
+                return Err(io::Error::other(Cancelled));
+            }
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    #[test]
+    fn bytes_come_out_as_they_go_in() {
+        let bytes = written(&|| true, |out| {
+            (0..100_000_u32).try_for_each(|number| out.write_all(number.to_string().as_bytes()))
+        });
+        let all: String = (0..100_000_u32).map(|number| number.to_string()).collect();
+        assert_eq!(bytes.unwrap(), all.into_bytes());
+    }
+
+    #[test]
+    fn writing_ends_soon_after_nobody_waits() {
+        let has_left = Cell::new(false);
+        let mut rows = 0;
+        let endless = |out: &mut Output<'_>| {
+            loop {
+                rows += 1;
+                if rows == 100 {
+                    has_left.set(true);
+                }
+                out.write_all(&[b'0'; 1000])?;
+            }
+        };
+        assert_eq!(written(&|| !has_left.get(), endless).unwrap_err().status(), 503);
+        assert!(rows <= 100 + limits::WRITE_STEP_BYTES / 1000 + 1, "{rows}");
+    }
+
+    #[test]
+    fn other_failures_are_the_servers_own() {
+        let failed = written(&|| true, |_| Err(io::Error::other("on purpose")));
+        assert_eq!(failed.unwrap_err().status(), 500);
+    }
+}
