@@ -187,7 +187,7 @@ fn wide(random: &mut Random, number: usize) -> Option<Scene> {
         (Name::YDot, if number.is_multiple_of(4) { speed * random.between(-2.0, 2.0) } else { 0.0 }),
         (Name::Restitution, random.between(0.0, 1.0)),
     ];
-    if number % 7 == 0 {
+    if number.is_multiple_of(7) {
         values.push((Name::EnergyGain, random.between(0.02, 0.95) / (2.0 * gravity * incline.sin() * above)));
         values.push((Name::TargetHeight, length + above * random.between(0.8, 1.2)));
     }
