@@ -8,7 +8,7 @@ use crate::dispatch::{Work, dispatch};
 use crate::impact::{State, Strike};
 pub use crate::outcome::Ending;
 pub use crate::settling::SETTLED_SHARE;
-use crate::settling::{stay, time_to_rest};
+use crate::settling::{Rebound, stay, time_to_rest};
 
 /// Fastest speed, m/s, of the centre of gravity or of the contact point about it, that a run may reach: beyond it
 /// doubles no longer resolve a flight, and only a wrong energy feedback gets there.
@@ -269,11 +269,9 @@ impl<B: Body> Orbit<B> {
             contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
             return contact;
         }
-        let rounding = self.body.rise_rounding(&state, &strike);
-        let rises = strike.contact_rise > rounding;
+        let rises = strike.contact_rise > self.body.rise_rounding(&state, &strike);
         if !rises {
-            let rebound = strike.rebound(self.body.contact_distance(), rounding);
-            contact.ending = Some(stay(&rebound, self.rules.settles, contact.t));
+            contact.ending = self.rebound(&contact).map(|rebound| stay(&rebound, self.rules.settles, contact.t));
             return contact;
         }
         let arrival = match self.body.fly(&coming, &strike) {
@@ -285,9 +283,11 @@ impl<B: Body> Orbit<B> {
         };
         let flight_time = arrival.t;
         if self.rules.settles
-            && let Some(ending) = self.settle(flight_time, &strike, rounding)
+            && self.is_short(flight_time)
+            && self.rebound(&contact).is_some_and(|rebound| rebound.is_slow())
         {
-            contact.ending = Some(ending);
+            let settle_time = contact.t + time_to_rest(flight_time, self.last_flight);
+            contact.ending = Some(Ending::Settled { flight_time, settle_time });
             return contact;
         }
         self.last_flight = flight_time;
@@ -298,16 +298,22 @@ impl<B: Body> Orbit<B> {
         contact
     }
 
-    fn settle(&mut self, flight_time: f64, strike: &Strike, rounding: f64) -> Option<Ending> {
+    /// Whether a flight of a run that can settle is too short beside the first.
+    #[inline(always)]
+    fn is_short(&mut self, flight_time: f64) -> bool {
         if self.first_flight == 0.0 {
             self.first_flight = flight_time;
-            return None;
         }
-        let is_short = flight_time < SETTLED_SHARE * self.first_flight;
-        (is_short && strike.rebound(self.body.contact_distance(), rounding).is_slow()).then(|| {
-            let settle_time = self.t.value + time_to_rest(flight_time, self.last_flight);
-            Ending::Settled { flight_time, settle_time }
-        })
+        flight_time < SETTLED_SHARE * self.first_flight
+    }
+
+    /// How the contact point leaves a contact, if there was a strike.
+    #[cold]
+    #[inline(never)]
+    fn rebound(&self, contact: &Contact) -> Option<Rebound> {
+        let strike = contact.strike.as_ref()?;
+        let rounding = self.body.rise_rounding(&contact.state, strike);
+        Some(strike.rebound(self.body.contact_distance(), rounding))
     }
 }
 

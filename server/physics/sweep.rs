@@ -175,6 +175,8 @@ struct Orbits<S> {
     outcome: [Outcome; WIDTH],
     number: [usize; WIDTH],
     busy: Mask,
+    /// Lanes before the first flight of a run that can settle.
+    fresh: Mask,
     /// Whether an angle was too large for [`Near`] lately.
     far: bool,
 }
@@ -208,6 +210,7 @@ impl<S: Surface> Orbits<S> {
             outcome: [Outcome::Completed; WIDTH],
             number: [0; WIDTH],
             busy: 0,
+            fresh: 0,
             far: false,
         }
     }
@@ -229,6 +232,8 @@ impl<S: Surface> Orbits<S> {
         self.surface.set(lane, of);
         self.moving.set(lane, &start.state, start.energy());
         self.moving.max_theta[lane] = 0.0;
+        self.fresh &= !(1 << lane);
+        self.fresh |= u16::from(start.rules.settles) << lane;
         (self.first[lane], self.last[lane]) = (self.turn, last);
         self.outcome[lane] = Outcome::Completed;
     }
@@ -263,12 +268,25 @@ impl<S: Surface> Orbits<S> {
                 bounced = bounce::<Far, S>(&self.surface, &self.rods, &self.moving, &mut next, &mut scratch);
                 self.far = !bounced.near;
             }
+            if self.fresh != 0 {
+                self.begin(&scratch);
+            }
             if !bounced.common {
                 return self.take_common(&next, &scratch.apart);
             }
             self.moving = next;
         }
         0
+    }
+
+    /// Keeps the first flights of runs that can settle; those that were no common ones are made alone.
+    #[inline(never)]
+    fn begin(&mut self, scratch: &Scratch) {
+        for lane in bits(std::mem::take(&mut self.fresh)) {
+            if let Some(first_flight) = scratch.flight_time(lane) {
+                self.rods.begin(lane, first_flight);
+            }
+        }
     }
 
     #[cold]

@@ -25,7 +25,7 @@ pub(crate) struct Rods {
     strike_gain_per_energy: Lanes,
     target_energy: Lanes,
     topple_angle: Lanes,
-    /// Of runs that can settle, s: infinite before it, so that it is made alone; 0 for those that cannot.
+    /// Of runs that can settle, s: [`BEFORE_FLIGHT`] until it is over; 0 for those that cannot.
     first_flight: Lanes,
 }
 
@@ -64,6 +64,9 @@ pub(crate) struct Scratch {
 
 /// A contact point that rises faster does so by more than rounding ([`Strike::rises`]), at any speed up to the limit, m/s.
 pub(super) const SURE_RISE: f64 = 1e-8;
+
+/// Stands for the first flight until it is over, s: so short that no flight is too short beside it, and its share still normal.
+const BEFORE_FLIGHT: f64 = 1e-200;
 
 /// Most Newton steps of a common bounce: nearly all take one, few two.
 const STEPS: u32 = 3;
@@ -204,7 +207,7 @@ fn flight<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &Scratc
 
 /// What stands for the first flight before there is one.
 fn before_flight(rules: &Rules) -> f64 {
-    if rules.settles { f64::INFINITY } else { 0.0 }
+    if rules.settles { BEFORE_FLIGHT } else { 0.0 }
 }
 
 impl Rods {
@@ -286,7 +289,7 @@ impl Rods {
 
     /// Where the run in a lane is.
     pub(crate) fn midst(&self, moving: &Moving, lane: usize) -> Midst {
-        let first_flight = Some(self.first_flight[lane]).filter(|flight| flight.is_finite()).unwrap_or(0.0);
+        let first_flight = Some(self.first_flight[lane]).filter(|&flight| flight != BEFORE_FLIGHT).unwrap_or(0.0);
         Midst { state: moving.state(lane), energy: moving.energy[lane], first_flight }
     }
 }
@@ -356,6 +359,11 @@ impl Moving {
 }
 
 impl Scratch {
+    /// The flight of a lane, s, if its bounce was a common one.
+    pub(crate) fn flight_time(&self, lane: usize) -> Option<f64> {
+        (self.apart[lane] == 0).then_some(self.t[lane])
+    }
+
     /// The tilt in a lane.
     #[inline(always)]
     pub(super) fn tilt<L: Lane>(&self, lane: usize) -> Tilt<L> {
