@@ -5,6 +5,7 @@
 
 pub mod compute;
 pub mod config;
+mod flags;
 pub mod gallery;
 pub mod http;
 pub mod integrators;

@@ -3,9 +3,6 @@
 //! First those that can be set when the server starts, then those that are part of its design. Not here: the ranges of a
 //! scene's fields, which are physics and stand in the table of fields.
 
-use std::fmt::Display;
-use std::ops::RangeInclusive;
-use std::str::FromStr;
 use std::sync::LazyLock;
 use std::time::Duration;
 
@@ -13,6 +10,7 @@ use clap::builder::Resettable;
 use clap::{Args, Command, FromArgMatches};
 
 use crate::compute::Limit;
+use crate::flags::{seconds, within};
 use crate::memory;
 
 /// The limits that can be set: those of load, which depend on the machine and on who uses it. What is said here is what
@@ -150,23 +148,6 @@ impl Default for Limits {
         let command = Self::augment_args(Command::new("equipoise")).mut_args(|arg| arg.env(Resettable::Reset));
         Self::from_arg_matches(&command.get_matches_from([""])).expect("every limit has a default within its range")
     }
-}
-
-/// Reads a whole number within a range.
-fn within<T: FromStr + PartialOrd + Display + Copy>(
-    range: RangeInclusive<T>,
-    unit: &'static str,
-) -> impl Fn(&str) -> Result<T, String> + Clone {
-    move |text| {
-        let value = text.parse().ok().filter(|value| range.contains(value));
-        value.ok_or_else(|| format!("it must be a whole number from {} to {} {unit}", range.start(), range.end()))
-    }
-}
-
-/// Reads a time of whole seconds.
-fn seconds(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<Duration, String> + Clone {
-    let number = within(range, "seconds");
-    move |text| number(text).map(Duration::from_secs)
 }
 
 // --- What a request may be ---

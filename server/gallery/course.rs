@@ -2,10 +2,11 @@
 
 use super::Says;
 use crate::picture::{Curve, Look, Side};
+use equipoise_physics::fixed_point::FixedPoint;
 use equipoise_physics::jacobian::{self, modulus};
 use equipoise_physics::map::{Ending, run};
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::{FixedPoint, PARABOLIC};
+use equipoise_physics::stability::PARABOLIC;
 
 /// θ at the contacts of a run and how it ended.
 pub(super) struct Course {

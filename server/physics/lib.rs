@@ -23,6 +23,7 @@ pub mod dual;
 pub mod ensemble;
 pub mod error_estimate;
 pub mod extended;
+pub mod fixed_point;
 pub mod flight;
 pub mod friction;
 pub mod grip;

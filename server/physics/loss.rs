@@ -7,13 +7,14 @@
 
 use crate::control::margin::crossings;
 use crate::control::{BounceModel, STABLE};
+use crate::fixed_point::FixedPoint;
 use crate::impact::State;
 use crate::jacobian::{eigenvalues, jacobian, modulus};
 use crate::lyapunov::first_contact;
 use crate::normal_form::Bounce;
 use crate::periodic_orbits::branch::Kind as Bifurcation;
 use crate::scene::{Name, Scene};
-use crate::stability::{Boundary, FixedPoint, Linear, PARABOLIC};
+use crate::stability::{Boundary, Linear, PARABOLIC};
 use nalgebra::{Complex, DMatrix, RowVector4};
 
 /// Modulus of an eigenvalue of the angle over two bounces of different height up to which it counts as circling.

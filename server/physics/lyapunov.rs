@@ -5,9 +5,10 @@
 //! η = Gl cos θ + ẏ²/2, which is not the energy; the swing modulates η at twice its own rotation, the table answers with a lag,
 //! and the modulated height pumps or damps the swing.
 
+use crate::fixed_point::FixedPoint;
 use crate::normal_form::{Bounce, RESONANT};
 use crate::scene::Scene;
-use crate::stability::{Class, FixedPoint, Linear, PARABOLIC};
+use crate::stability::{Class, Linear, PARABOLIC};
 use nalgebra::Complex;
 
 /// What the swing about upright does in the long run.

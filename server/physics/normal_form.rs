@@ -8,6 +8,7 @@
 //! manifold of an odd direction bends, to second order, along ẏ only; no odd quadratic term exists; and of the strong resonances
 //! only those of order 1, 2 and 4 matter. Not here: what is concluded from a coefficient ([`crate::verdict`]).
 
+use crate::fixed_point::FixedPoint;
 use crate::friction::{Friction, Slide, as_it_is};
 use crate::impact::{Rod, State};
 use crate::jacobian::{eigenvalues, modulus};
@@ -15,7 +16,6 @@ use crate::model::Model;
 use crate::number::Number;
 use crate::rig::{Gains, Rig, Steering};
 use crate::scene::Scene;
-use crate::stability::FixedPoint;
 use crate::taylor::Taylor;
 use nalgebra::{Complex, DMatrix, DVector};
 

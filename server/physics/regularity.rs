@@ -4,12 +4,13 @@
 //! Not here: what is concluded from it ([`crate::verdict`]).
 
 use crate::dual::Dual;
+use crate::fixed_point::FixedPoint;
 use crate::friction::Friction;
 use crate::impact::{Rod, State};
 use crate::model::Model;
 use crate::rig::{Rig, Steering};
 use crate::scene::Scene;
-use crate::stability::{FixedPoint, Linear};
+use crate::stability::Linear;
 use crate::trig;
 use std::f64::consts::TAU;
 

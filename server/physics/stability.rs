@@ -1,35 +1,21 @@
-//! The fixed point of a scene, its linear verdict in closed form, and what a run of the scene says beside it. What is
-//! concluded from them is [`crate::verdict`].
+//! The linear verdict on a scene in closed form, and what a run of the scene says beside it. What is concluded from them is
+//! [`crate::verdict`].
 //!
 //! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
 //! off by the square root of rounding.
 
-use crate::control::ClosedLoop;
+use crate::control::{BounceModel, ClosedLoop};
 use crate::demand::{Demand, Meter};
+use crate::fixed_point::FixedPoint;
 use crate::grip::Grip;
 use crate::jacobian::{modulus, sort_eigenvalues};
 use crate::map::{Ending, LOOK, run};
-use crate::model::Rung;
-use crate::scene::{BodyShape, Scene, Striking};
+use crate::scene::{BodyShape, Scene};
 use crate::trig;
 use nalgebra::Complex;
 
 /// |R| or |R − 1| up to which the angle is called parabolic; likewise for the energy eigenvalue at ±1.
 pub const PARABOLIC: f64 = 1e-9;
-
-/// The rungs above the plain rod that can be judged linearly.
-pub const JUDGED: [Rung; 3] = [Rung::Rod, Rung::RodWithX, Rung::Friction];
-
-/// The upright bounce in place that a scene is to be balanced on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FixedPoint {
-    /// V = |ẏ*|, m/s.
-    pub speed: f64,
-    /// 2V/G, s.
-    pub flight_time: f64,
-    /// Height of the centre of gravity at the top of the bounce, m.
-    pub apex_height: f64,
-}
 
 /// How the angle moves near the fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,105 +122,6 @@ pub struct Nonlinear {
 }
 
 impl Scene {
-    /// c = ẋ − κρ²θ̇/((κ − 1)l), or ẋ − (κρ² + l²)θ̇/((κ − 1)l) where a matched contact sticks: the mean horizontal speed of a balanced
-    /// run, m/s. None where κ = 1, which drifts off in angle instead, where friction holds the contact, and for a point mass, whose
-    /// drift dies out.
-    pub fn drift_speed(&self) -> Option<f64> {
-        if self.beyond(&[Rung::Friction]).is_some() || self.grip() == Grip::Held {
-            return None;
-        }
-        let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
-        let start = self.start();
-        let excess = self.tilt_gain - 1.0;
-        (excess != 0.0).then(|| {
-            let lever = radius_of_gyration * radius_of_gyration / contact_distance;
-            let stuck = if self.grip() == Grip::Matched { contact_distance } else { 0.0 };
-            start.x_dot - (self.tilt_gain * lever + stuck) * start.theta_dot / excess
-        })
-    }
-
-    /// The fixed point on the energy surface of the release, or that of the target height with energy feedback.
-    ///
-    /// V² = |v₀|² + 2G(y₀ − l) − c²: drift energy never comes back, and what counts is the height above l, not above
-    /// l cos θ as in eq. (10). A matched table with friction lends some more. Friction on one that only tilts takes the
-    /// energy of sideways motion and spin, so there V² = ẏ₀² + 2G(y₀ − l).
-    ///
-    /// # Errors
-    /// Why there is none, in a sentence.
-    pub fn fixed_point(&self) -> Result<FixedPoint, String> {
-        if let Some(error) = self.beyond(&JUDGED) {
-            return Err(error.detail);
-        }
-        if self.feedback().is_some() {
-            return self.bounce_in_place();
-        }
-        if self.is_lossy() {
-            return Err(format!(
-                "{}: every bounce loses energy, so no bounce repeats",
-                match self.strike {
-                    Striking::Still => format!("the table stands still and restitution is {}", self.restitution),
-                    Striking::Compensated => self.belief(),
-                }
-            ));
-        }
-        if self.energy_gain == 0.0 && self.assumed_restitution() < self.restitution {
-            return Err(format!("{}: every bounce gains energy, so no bounce repeats", self.belief()));
-        }
-        let (contact_distance, radius_of_gyration) = match self.body {
-            BodyShape::Rod { contact_distance, radius_of_gyration } => (contact_distance, radius_of_gyration),
-            BodyShape::Point => (0.0, 0.0),
-        };
-        let speed_squared = if let Some(height) = self.target_height {
-            let settled = height + self.height_error();
-            let room = settled - contact_distance;
-            if room <= 0.0 {
-                let why =
-                    if settled == height { String::new() } else { format!(", where {} holds it,", self.belief()) };
-                return Err(format!(
-                    "target_height {settled} m{why} is not above contact_distance {contact_distance} m"
-                ));
-            }
-            2.0 * self.gravity * room
-        } else {
-            let start = self.start();
-            let spin = radius_of_gyration * start.theta_dot;
-            let drift = self.drift_speed().unwrap_or(0.0);
-            let mut kinetic = start.y_dot * start.y_dot;
-            if self.grip() != Grip::Held {
-                kinetic += start.x_dot * start.x_dot + spin * spin + self.lent(drift);
-            }
-            let available = kinetic + 2.0 * self.gravity * (self.release.height - contact_distance);
-            if available - drift * drift <= 0.0 {
-                return Err(format!(
-                    "the release has {available} m²/s² for bouncing upright and the drift at {drift} m/s takes {} m²/s²: no \
-                     upright bounce has that energy",
-                    drift * drift
-                ));
-            }
-            available - drift * drift
-        };
-        let speed = speed_squared.sqrt();
-        Ok(FixedPoint {
-            speed,
-            flight_time: 2.0 * speed / self.gravity,
-            apex_height: contact_distance + speed_squared / (2.0 * self.gravity),
-        })
-    }
-
-    fn belief(&self) -> String {
-        format!("the table believes restitution {} and meets {}", self.assumed_restitution(), self.restitution)
-    }
-
-    /// How far above the target height the energy feedback comes to rest, m: where the strike gain is 2 for an assumed restitution
-    /// ê, κ_E(η* − η) = 2(ê − e)/((1 + e)(1 + ê)). Nothing without feedback, or where ê is e.
-    pub fn height_error(&self) -> f64 {
-        let (e, assumed) = (self.restitution, self.assumed_restitution());
-        if self.energy_gain == 0.0 || e == assumed {
-            return 0.0;
-        }
-        2.0 * (e - assumed) / ((1.0 + e) * (1.0 + assumed) * self.energy_gain * self.gravity)
-    }
-
     /// The linear verdict about a fixed point, in closed form: eq. (14) with the energy term.
     pub fn linear(&self, fixed_point: &FixedPoint) -> Linear {
         let speed_squared = fixed_point.speed * fixed_point.speed;
@@ -406,6 +293,15 @@ impl Scene {
             !contact.n.is_multiple_of(LOOK) || go_on()
         })?;
         Some(Nonlinear { ending, impacts: orbit.contacts(), t, max_theta, demand: meter.most })
+    }
+}
+
+impl Scene {
+    /// What the state feedback of the scene does near a bounce in place; none where it has none.
+    pub fn steered(&self, fixed_point: &FixedPoint) -> Option<ClosedLoop> {
+        let gain = self.feedback()?;
+        let model = BounceModel::new(&self.parameters(), fixed_point.speed, self.grip());
+        model.closed_loop(gain, gain[0] != 0.0)
     }
 }
 

@@ -2,13 +2,15 @@
 //!
 //! Not here: how any of them comes about ([`crate::stability`], [`crate::lyapunov`], [`crate::loss`], [`crate::regularity`]).
 
+use crate::control::{ClosedLoop, STATE};
+use crate::fixed_point::FixedPoint;
 use crate::grip::Grip;
 use crate::loss::{End, Loss, Settles, losses};
 use crate::lyapunov::{Kind, Lyapunov, lyapunov};
 use crate::map::Ending;
 use crate::regularity::{CHAOTIC, Chaos};
 use crate::scene::Scene;
-use crate::stability::{Boundary, Class, FixedPoint, Linear, Nonlinear, PARABOLIC};
+use crate::stability::{Boundary, Class, Linear, Nonlinear, PARABOLIC};
 
 /// The verdict on a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -269,5 +271,52 @@ impl Scene {
             self.energy_gain
         );
         Judgement { verdict, decided_by: DecidedBy::Lyapunov, agree, reason }
+    }
+
+    /// Whether a law with feedback is stable in place, by its closed loop, its normal form and a run.
+    fn judge_law(&self, closed: &ClosedLoop, higher: &HigherOrder, run: &Nonlinear) -> Judgement {
+        let survived = run.ending == Ending::Completed;
+        let (stable, radius) = (closed.is_stable(), closed.spectral_radius);
+        let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
+        let what = if closed.eigenvalues.len() == STATE.len() {
+            "x, theta, x_dot and theta_dot"
+        } else {
+            "theta, x_dot and theta_dot"
+        };
+        let (verdict, decided_by, reason) = match (stable, survived) {
+            (true, true) => (
+                Verdict::StableInPlace,
+                DecidedBy::Linear,
+                format!("every small deviation of {what} dies out: the closed loop has spectral radius {radius}"),
+            ),
+            (true, false) => (
+                Verdict::Unstable,
+                DecidedBy::Nonlinear,
+                format!(
+                    "{fell}, although the closed loop has spectral radius {radius}: the start is outside the basin"
+                ),
+            ),
+            (false, _) => {
+                let grows = format!(
+                    "a small deviation does not die out: the closed loop has spectral radius {radius}, which must be below 1"
+                );
+                match (higher.settled_beyond(End::FeedbackFactor), survived) {
+                    (Some((loss, Settles::Swing(swing))), true) => (
+                        Verdict::BoundedBeyondBoundary,
+                        DecidedBy::Boundary,
+                        format!(
+                            "{grows}; but stability is lost softly, at {} times these gains ({}), so that a swing grows to about \
+                             {swing} rad and no further; this run came to {} rad",
+                            loss.value,
+                            loss.bifurcation.name(),
+                            run.max_theta
+                        ),
+                    ),
+                    (_, true) => (Verdict::Unstable, DecidedBy::Linear, format!("{grows}; this run has not left yet")),
+                    (_, false) => (Verdict::Unstable, DecidedBy::Linear, format!("{grows}; {fell}")),
+                }
+            }
+        };
+        Judgement { verdict, decided_by, agree: stable == survived, reason }
     }
 }

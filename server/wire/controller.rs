@@ -1,10 +1,10 @@
 //! The request and the answer of `controllers`: weights, and the state feedback that is best for them.
 
 use equipoise_physics::control::{BounceModel, ClosedLoop, Design, NoDesign, STATE};
+use equipoise_physics::fixed_point::FixedPoint;
 use equipoise_physics::grip::Grip;
 use equipoise_physics::impact::Rod;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::FixedPoint;
 use serde::Serialize;
 use serde_json::Value as Json;
 
@@ -116,7 +116,7 @@ struct Linear {
 struct Place {
     x: f64,
     #[serde(flatten)]
-    bounce: stability::FixedPoint,
+    bounce: equipoise_physics::fixed_point::FixedPoint,
 }
 
 #[derive(Debug, Clone, Serialize)]

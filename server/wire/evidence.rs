@@ -2,9 +2,12 @@
 //! on each of them. Not for the verdict itself.
 
 use equipoise_physics::basin;
+use equipoise_physics::fixed_point::FixedPoint;
+use equipoise_physics::loss::{self, Settles};
+use equipoise_physics::lyapunov;
 use equipoise_physics::regularity::{self, FEWEST, Regularity, TOLERANCE, WATCHED};
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::{FixedPoint, Linear};
+use equipoise_physics::stability::Linear;
 use serde::Serialize;
 
 /// Distance from 1/3 and 1/4, in turns a bounce, within which they are named.
@@ -58,6 +61,64 @@ impl From<basin::Basin> for Basin {
     fn from(basin: basin::Basin) -> Self {
         let basin::Basin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: _ } = basin;
         Self { theta, impacts, holes, unbroken, tolerance, spacing }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Lyapunov {
+    pub(super) coefficient: f64,
+    pub(super) kind: &'static str,
+    pub(super) escape_impacts: Option<u64>,
+    detail: String,
+}
+
+/// Distance of the rotation from a quarter turn, in turns a bounce, within which the resonance is named.
+const NEAR_QUARTER: f64 = 0.02;
+
+impl From<&lyapunov::Lyapunov> for Lyapunov {
+    fn from(found: &lyapunov::Lyapunov) -> Self {
+        let lyapunov::Lyapunov { coefficient, kind, amplitude, from_quarter } = *found;
+        let mut detail = format!(
+            "the amplitude A of a swing, the largest |θ| of its linear ellipse, obeys dA/dn = ℓA³ a bounce to third order; A is {amplitude} \
+             rad at the first contact of this release"
+        );
+        if from_quarter <= NEAR_QUARTER {
+            detail += &format!(
+                "; the rotation is within {from_quarter} turns of the strong resonance 1/4, where ℓ is not defined: the nearer, the \
+                 smaller the swings for which it holds"
+            );
+        }
+        Self { coefficient, kind: kind.name(), escape_impacts: found.escape_impacts(), detail }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct LossOfStability {
+    parameter: &'static str,
+    value: f64,
+    bifurcation: &'static str,
+    coefficient: f64,
+    kind: &'static str,
+    swing: Option<f64>,
+    heights: Option<[f64; 2]>,
+}
+
+impl From<&loss::Loss> for LossOfStability {
+    fn from(loss: &loss::Loss) -> Self {
+        let (swing, heights) = match loss.settles {
+            None => (None, None),
+            Some(Settles::Swing(swing)) => (Some(swing), None),
+            Some(Settles::Heights { heights, .. }) => (None, Some(heights)),
+        };
+        Self {
+            parameter: loss.end.name(),
+            value: loss.value,
+            bifurcation: loss.bifurcation.name(),
+            coefficient: loss.coefficient,
+            kind: loss.kind(),
+            swing,
+            heights,
+        }
     }
 }
 

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
+use equipoise_physics::fixed_point::JUDGED;
 use equipoise_physics::region::{Axis, Cell, Quantity, Region};
 use equipoise_physics::scene::{Kind, Scene, field};
-use equipoise_physics::stability::JUDGED;
 use equipoise_physics::sweep::Outcome;
 use serde::{Serialize, Serializer};
 

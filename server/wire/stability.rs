@@ -2,19 +2,18 @@
 
 use equipoise_physics::basin::{self, NoBasin};
 use equipoise_physics::control::BounceModel;
+use equipoise_physics::fixed_point::JUDGED;
 use equipoise_physics::grip::Grip;
-use equipoise_physics::loss::{self, Settles};
-use equipoise_physics::lyapunov;
 use equipoise_physics::map::Ending;
 use equipoise_physics::margins::Tolerances;
 use equipoise_physics::regularity::WATCHED;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::{self, JUDGED, Linear, Nonlinear};
+use equipoise_physics::stability::{self, Linear, Nonlinear};
 use equipoise_physics::verdict::{HigherOrder, Judgement, Verdict};
 use serde::Serialize;
 
 use super::controller;
-use super::evidence::{Basin, Chaos, Evidence, RotationNumber};
+use super::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
 use super::jacobian::Eigenvalue;
 use super::margins::{self, Margins};
 use super::outcome::Outcome;
@@ -36,8 +35,10 @@ pub(super) struct FixedPoint {
     apex_height: f64,
 }
 
-impl From<stability::FixedPoint> for FixedPoint {
-    fn from(stability::FixedPoint { speed, flight_time, apex_height }: stability::FixedPoint) -> Self {
+impl From<equipoise_physics::fixed_point::FixedPoint> for FixedPoint {
+    fn from(
+        equipoise_physics::fixed_point::FixedPoint { speed, flight_time, apex_height }: equipoise_physics::fixed_point::FixedPoint,
+    ) -> Self {
         Self { theta: 0.0, x_dot: 0.0, y_dot: -speed, theta_dot: 0.0, flight_time, apex_height }
     }
 }
@@ -74,64 +75,6 @@ struct LinearPart {
 struct Boundary {
     coefficient: f64,
     kind: &'static str,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct Lyapunov {
-    coefficient: f64,
-    kind: &'static str,
-    escape_impacts: Option<u64>,
-    detail: String,
-}
-
-/// Distance of the rotation from a quarter turn, in turns a bounce, within which the resonance is named.
-const NEAR_QUARTER: f64 = 0.02;
-
-impl From<&lyapunov::Lyapunov> for Lyapunov {
-    fn from(found: &lyapunov::Lyapunov) -> Self {
-        let lyapunov::Lyapunov { coefficient, kind, amplitude, from_quarter } = *found;
-        let mut detail = format!(
-            "the amplitude A of a swing, the largest |θ| of its linear ellipse, obeys dA/dn = ℓA³ a bounce to third order; A is {amplitude} \
-             rad at the first contact of this release"
-        );
-        if from_quarter <= NEAR_QUARTER {
-            detail += &format!(
-                "; the rotation is within {from_quarter} turns of the strong resonance 1/4, where ℓ is not defined: the nearer, the \
-                 smaller the swings for which it holds"
-            );
-        }
-        Self { coefficient, kind: kind.name(), escape_impacts: found.escape_impacts(), detail }
-    }
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct LossOfStability {
-    parameter: &'static str,
-    value: f64,
-    bifurcation: &'static str,
-    coefficient: f64,
-    kind: &'static str,
-    swing: Option<f64>,
-    heights: Option<[f64; 2]>,
-}
-
-impl From<&loss::Loss> for LossOfStability {
-    fn from(loss: &loss::Loss) -> Self {
-        let (swing, heights) = match loss.settles {
-            None => (None, None),
-            Some(Settles::Swing(swing)) => (Some(swing), None),
-            Some(Settles::Heights { heights, .. }) => (None, Some(heights)),
-        };
-        Self {
-            parameter: loss.end.name(),
-            value: loss.value,
-            bifurcation: loss.bifurcation.name(),
-            coefficient: loss.coefficient,
-            kind: loss.kind(),
-            swing,
-            heights,
-        }
-    }
 }
 
 #[derive(Debug, Clone, Serialize)]

@@ -10,12 +10,6 @@ pub mod riccati;
 use crate::grip::Grip;
 use crate::impact::Rod;
 use crate::jacobian::{eigenvalues, modulus};
-use crate::loss::{End, Settles};
-use crate::map::Ending;
-use crate::rig::{Gains, Steering};
-use crate::scene::{BodyShape, Scene};
-use crate::stability::{FixedPoint, Nonlinear};
-use crate::verdict::{DecidedBy, HigherOrder, Judgement, Verdict};
 use margin::{Margin, margin};
 use nalgebra::{Complex, DMatrix, Matrix3, Matrix4, RowVector4, Vector3, Vector4};
 
@@ -79,111 +73,6 @@ impl ClosedLoop {
     /// Bounces in which a small deviation becomes a tenth, in the long run; none where it does not.
     pub fn bounces_per_decade(&self) -> Option<f64> {
         self.is_stable().then(|| std::f64::consts::LN_10 / -libm::log(self.spectral_radius.max(f64::MIN_POSITIVE)))
-    }
-}
-
-impl Scene {
-    /// K, where the table feeds the state back, in the order of [`STATE`].
-    pub fn feedback(&self) -> Option<[f64; 4]> {
-        match self.steering {
-            Steering::TiltGain => None,
-            Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) => Some([x, theta, x_dot, theta_dot]),
-        }
-    }
-
-    /// The upright bounce in place that a law with feedback comes to: where the strike neither takes energy nor gives any, on the
-    /// energy of the release where that holds at any height. No drift is left, which is what sets it apart from that of a
-    /// proportional tilt. Friction takes the energy of sideways motion and spin.
-    ///
-    /// # Errors
-    /// Why there is none, in a sentence.
-    pub fn bounce_in_place(&self) -> Result<FixedPoint, String> {
-        if self.body() == BodyShape::Point {
-            return Err("a point mass has no angle to feed back".to_owned());
-        }
-        let rod: Rod = self.parameters();
-        let weight = rod.gravity * rod.contact_distance;
-        let speed_squared = if rod.strike_gain_per_energy != 0.0 {
-            2.0 * (rod.target_energy + (rod.strike_gain - 2.0) / rod.strike_gain_per_energy - weight)
-        } else if rod.strike_gain != 2.0 {
-            return Err(format!(
-                "the table gives back {} of a bounce's normal speed and nothing steers its height, so no bounce repeats",
-                rod.strike_gain - 1.0
-            ));
-        } else {
-            let start = self.start();
-            let spin = rod.radius_of_gyration * start.theta_dot;
-            let mut kinetic = start.y_dot * start.y_dot;
-            if self.grip() == Grip::Smooth {
-                kinetic += start.x_dot * start.x_dot + spin * spin;
-            }
-            kinetic + 2.0 * (rod.gravity * self.release().height - weight)
-        };
-        if !speed_squared.is_finite() || speed_squared <= 0.0 {
-            return Err(format!("the square of its speed would be {speed_squared} m²/s²: there is no upright bounce"));
-        }
-        let speed = speed_squared.sqrt();
-        Ok(FixedPoint {
-            speed,
-            flight_time: 2.0 * speed / rod.gravity,
-            apex_height: rod.contact_distance + speed_squared / (2.0 * rod.gravity),
-        })
-    }
-}
-
-impl Scene {
-    /// What the state feedback of the scene does near a bounce in place; none where it has none.
-    pub fn steered(&self, fixed_point: &FixedPoint) -> Option<ClosedLoop> {
-        let gain = self.feedback()?;
-        let model = BounceModel::new(&self.parameters(), fixed_point.speed, self.grip());
-        model.closed_loop(gain, gain[0] != 0.0)
-    }
-
-    /// Whether a law with feedback is stable in place, by its closed loop, its normal form and a run.
-    pub(crate) fn judge_law(&self, closed: &ClosedLoop, higher: &HigherOrder, run: &Nonlinear) -> Judgement {
-        let survived = run.ending == Ending::Completed;
-        let (stable, radius) = (closed.is_stable(), closed.spectral_radius);
-        let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
-        let what = if closed.eigenvalues.len() == STATE.len() {
-            "x, theta, x_dot and theta_dot"
-        } else {
-            "theta, x_dot and theta_dot"
-        };
-        let (verdict, decided_by, reason) = match (stable, survived) {
-            (true, true) => (
-                Verdict::StableInPlace,
-                DecidedBy::Linear,
-                format!("every small deviation of {what} dies out: the closed loop has spectral radius {radius}"),
-            ),
-            (true, false) => (
-                Verdict::Unstable,
-                DecidedBy::Nonlinear,
-                format!(
-                    "{fell}, although the closed loop has spectral radius {radius}: the start is outside the basin"
-                ),
-            ),
-            (false, _) => {
-                let grows = format!(
-                    "a small deviation does not die out: the closed loop has spectral radius {radius}, which must be below 1"
-                );
-                match (higher.settled_beyond(End::FeedbackFactor), survived) {
-                    (Some((loss, Settles::Swing(swing))), true) => (
-                        Verdict::BoundedBeyondBoundary,
-                        DecidedBy::Boundary,
-                        format!(
-                            "{grows}; but stability is lost softly, at {} times these gains ({}), so that a swing grows to about \
-                             {swing} rad and no further; this run came to {} rad",
-                            loss.value,
-                            loss.bifurcation.name(),
-                            run.max_theta
-                        ),
-                    ),
-                    (_, true) => (Verdict::Unstable, DecidedBy::Linear, format!("{grows}; this run has not left yet")),
-                    (_, false) => (Verdict::Unstable, DecidedBy::Linear, format!("{grows}; {fell}")),
-                }
-            }
-        };
-        Judgement { verdict, decided_by, agree: stable == survived, reason }
     }
 }
 
