@@ -3,6 +3,7 @@
 //! First those that can be set when the server starts, then those that are part of its design. Not here: the ranges of a
 //! scene's fields, which are physics and stand in the table of fields.
 
+use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 use std::time::Duration;
 

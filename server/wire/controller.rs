@@ -116,7 +116,7 @@ struct Linear {
 struct Place {
     x: f64,
     #[serde(flatten)]
-    bounce: equipoise_physics::fixed_point::FixedPoint,
+    bounce: stability::FixedPoint,
 }
 
 #[derive(Debug, Clone, Serialize)]

@@ -2,13 +2,14 @@
 
 use equipoise_physics::basin::{self, NoBasin};
 use equipoise_physics::control::BounceModel;
+use equipoise_physics::fixed_point;
 use equipoise_physics::fixed_point::JUDGED;
 use equipoise_physics::grip::Grip;
 use equipoise_physics::map::Ending;
 use equipoise_physics::margins::Tolerances;
 use equipoise_physics::regularity::WATCHED;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::{self, Linear, Nonlinear};
+use equipoise_physics::stability::{Linear, Nonlinear};
 use equipoise_physics::verdict::{HigherOrder, Judgement, Verdict};
 use serde::Serialize;
 
@@ -35,10 +36,8 @@ pub(super) struct FixedPoint {
     apex_height: f64,
 }
 
-impl From<equipoise_physics::fixed_point::FixedPoint> for FixedPoint {
-    fn from(
-        equipoise_physics::fixed_point::FixedPoint { speed, flight_time, apex_height }: equipoise_physics::fixed_point::FixedPoint,
-    ) -> Self {
+impl From<fixed_point::FixedPoint> for FixedPoint {
+    fn from(fixed_point::FixedPoint { speed, flight_time, apex_height }: fixed_point::FixedPoint) -> Self {
         Self { theta: 0.0, x_dot: 0.0, y_dot: -speed, theta_dot: 0.0, flight_time, apex_height }
     }
 }
