@@ -220,7 +220,7 @@ pub const REGION_ALONE_CELL_PRICE: u64 = 350;
 /// What a cell costs that shows a number of the linear analysis.
 pub const REGION_LINEAR_CELL_PRICE: u64 = 200;
 
-/// What a region costs beside its cells, in bounces of lanes: its linear boundary and its picture, some 5 ms.
+/// What a region costs beside its cells and its linear boundary, in bounces of lanes: its picture, some 5 ms.
 pub const REGION_ANSWER_PRICE: u64 = 400_000;
 
 /// What a bounce of a region costs that no lane can make, in bounces of lanes: a rod steered by feedback takes 9, a polygon and a

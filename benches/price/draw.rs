@@ -144,7 +144,7 @@ impl Draw {
     }
 
     fn polygon(&mut self) -> Value {
-        let count = 3 + self.below(62);
+        let count = 3 + self.below(30);
         let size = 10_f64.powf(-1.0 - self.unit());
         let places: Vec<Value> = (0..count)
             .map(|vertex| {

@@ -75,6 +75,9 @@ pub struct Cell {
 /// Cells between two looks at whether to go on, where there are no runs: the linear analysis of the dearest takes 10 µs.
 const CELLS_A_LOOK: usize = 64;
 
+/// A piece of the linear boundary: a residue, and two points (x, y) between which it is that.
+pub type Segment = (f64, [f64; 2], [f64; 2]);
+
 const NOTHING: Cell = Cell { value: None, outcome: None };
 
 impl Region {
@@ -177,21 +180,28 @@ impl Region {
     /// Where the residue is 0 or 1, the ends of the linear verdict, as line segments (residue, from, to) of points (x, y).
     ///
     /// From a grid of at most `nodes` × `nodes` over the whole region, with every crossing of an edge refined to 1e-12 of
-    /// the region.
-    pub fn boundary(&self, nodes: usize) -> Vec<(f64, [f64; 2], [f64; 2])> {
+    /// the region. None once `go_on` said `false`, which is asked after a hundred scenes or two.
+    pub fn boundary(&self, nodes: usize, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Segment>> {
         let residue = |u: f64, v: f64| {
             let scene = self.scene_at(self.x.at(u), self.y.at(v))?;
             linear(&scene)?.residue
         };
         let (columns, rows) = (self.x.count.clamp(2, nodes), self.y.count.clamp(2, nodes));
         let place = |index: usize, count: usize| index as f64 / (count - 1) as f64;
-        let grid: Vec<Option<f64>> = (0..rows * columns)
-            .map(|index| residue(place(index % columns, columns), place(index / columns, rows)))
-            .collect();
+        let mut grid: Vec<Option<f64>> = Vec::with_capacity(rows * columns);
+        for row in 0..rows {
+            if !go_on() {
+                return None;
+            }
+            grid.extend((0..columns).map(|column| residue(place(column, columns), place(row, rows))));
+        }
         let mut segments = Vec::new();
         for level in [0.0, 1.0] {
             for row in 0..rows - 1 {
                 for column in 0..columns - 1 {
+                    if !go_on() {
+                        return None;
+                    }
                     let corners = [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)];
                     let mut crossings = Vec::new();
                     for edge in 0..4 {
@@ -211,7 +221,7 @@ impl Region {
                 }
             }
         }
-        segments
+        Some(segments)
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Respon
             .unwrap_or(Method::Exact);
         Some((scene?, at?, period, method))
     })?;
-    let price = Price::bounces(price(&scene.model(), at, period, method)).within(&app.config.limits.of_work())?;
+    let price = Price::bounces(price(&scene, at, period, method)).within(&app.config.limits.of_work())?;
     let canonical = super::canonical(&scene, &(at, period, method));
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {

@@ -7,7 +7,7 @@ use axum::http::Response;
 use axum::routing::get;
 
 use super::App;
-use crate::compute::{Turn, Turns};
+use crate::compute::{Cancelled, Turn, Turns};
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
 use crate::wire::region::{Answer, Request};
 use crate::wire::region_rows::Rows;
@@ -52,7 +52,7 @@ pub(super) async fn regions(State(app): State<App>, ask: Ask) -> Result<Response
         let mut all = Vec::with_capacity(cells.len());
         turns.spread(blocks, compute, |cells| all.extend(cells))?;
         turns.take(|turn| {
-            let answer = Answer::new(request, all);
+            let answer = Answer::new(request, all, || turn.go_on()).ok_or(Cancelled)?;
             let bytes = match format {
                 Format::Svg | Format::Png => super::picture(answer.to_picture(), format, turn)?,
                 _ => super::json(&answer, turn)?,

@@ -3,7 +3,6 @@
 use equipoise_physics::impact::State;
 use equipoise_physics::jacobian::{self, Linearization, MOST_SIDES, TIED};
 use equipoise_physics::map::{LOOK, run};
-use equipoise_physics::model::Model;
 use equipoise_physics::point::Point;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::Class;
@@ -11,7 +10,7 @@ use nalgebra::{Complex, DMatrix};
 use serde::{Serialize, Serializer};
 
 use super::outcome::Outcome;
-use super::scene::{Resolved, has_angle};
+use super::scene::{Resolved, bounce_price, has_angle};
 use super::table::{Cells, Column, Table};
 use super::trajectory::{Choice, Refused};
 use crate::http::Reader;
@@ -337,10 +336,10 @@ fn block_residue(matrix: &DMatrix<f64>) -> Option<f64> {
 }
 
 /// What differentiating costs, in bounces of the plain rod.
-pub fn price(model: &Model, at: At, period: u64, method: Method) -> u64 {
-    let columns = jacobian::state_order(model).len() as u64;
+pub fn price(scene: &Scene, at: At, period: u64, method: Method) -> u64 {
+    let columns = jacobian::state_order(&scene.model()).len() as u64;
     let before = match at {
-        At::Impact(impact) => impact,
+        At::Impact(impact) => impact * bounce_price(scene),
         _ => 0,
     };
     limits::ANSWER_PRICE

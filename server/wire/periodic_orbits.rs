@@ -96,7 +96,7 @@ impl Request {
 
     /// What it costs, in bounces of the plain rod: a bounce with derivatives is some twelve of them.
     pub fn price(&self) -> u64 {
-        12 * self.period * self.sweep.map_or(60, |sweep| 6 * sweep.points + 2000)
+        limits::ANSWER_PRICE + 12 * self.period * self.sweep.map_or(60, |sweep| 10 * sweep.points + 2000)
     }
 
     /// Where an error of the start points.

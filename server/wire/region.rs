@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use equipoise_physics::fixed_point::JUDGED;
-use equipoise_physics::region::{Axis, Cell, Quantity, Region};
+use equipoise_physics::region::{self, Axis, Cell, Quantity, Region};
 use equipoise_physics::scene::{Kind, Scene, field};
 use equipoise_physics::sweep::Outcome;
 use serde::{Serialize, Serializer};
@@ -117,7 +117,18 @@ impl Request {
 
     /// What it costs, in bounces of lanes.
     pub fn price(&self) -> u64 {
-        self.cells().saturating_mul(self.cell_price()).saturating_add(limits::REGION_ANSWER_PRICE)
+        // Scenes of the boundary: the nodes of its grid, and some 80 for each of its crossings.
+        let [columns, rows] =
+            [self.region.x, self.region.y].map(|axis| axis.count.clamp(2, limits::REGION_BOUNDARY_NODES) as u64);
+        let scenes = columns * rows + 80 * (columns + rows);
+        let boundary = scenes * (limits::REGION_LINEAR_CELL_PRICE + self.polygon_price());
+        self.cells().saturating_mul(self.cell_price()).saturating_add(boundary + limits::REGION_ANSWER_PRICE)
+    }
+
+    /// What making a scene costs beyond that of a rod: of a polygon each side is held against each other.
+    fn polygon_price(&self) -> u64 {
+        let vertices = self.region.scene.vertices().map_or(0, |vertices| vertices.places().len() as u64);
+        vertices * vertices * 3 / 2
     }
 
     /// What one of its cells costs at most.
@@ -127,7 +138,7 @@ impl Request {
             Quantity::Survival | Quantity::MaxTheta if self.region.fits_lanes() => (limits::REGION_CELL_PRICE, 1),
             Quantity::Survival | Quantity::MaxTheta => (limits::REGION_ALONE_CELL_PRICE, limits::REGION_ALONE_PRICE),
         };
-        once + bounce * self.region.impacts
+        once + self.polygon_price() + bounce * self.region.impacts
     }
 }
 
@@ -165,12 +176,14 @@ fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Axis> {
 pub struct Answer {
     request: Request,
     cells: Vec<Cell>,
+    boundary: Vec<region::Segment>,
 }
 
 impl Answer {
-    /// From the cells of the tile's rows, one row after the other.
-    pub fn new(request: Request, cells: Vec<Cell>) -> Self {
-        Self { request, cells }
+    /// From the cells of the tile's rows, one row after the other; none once `go_on` said no while the boundary was looked for.
+    pub fn new(request: Request, cells: Vec<Cell>, mut go_on: impl FnMut() -> bool) -> Option<Self> {
+        let boundary = request.region.boundary(limits::REGION_BOUNDARY_NODES, &mut go_on)?;
+        Some(Self { request, cells, boundary })
     }
 
     /// The tile as a heat map with the linear boundary over it, as SVG.
@@ -212,7 +225,7 @@ impl Answer {
             scale,
             quantity,
             unit,
-            boundary: &region.boundary(limits::REGION_BOUNDARY_NODES),
+            boundary: &self.boundary,
         })
     }
 
@@ -337,7 +350,6 @@ impl Serialize for Answer {
             let row = axis.name.row();
             Side { parameter: row.path, unit: row.unit, from: axis.from, to: axis.to, count: axis.count }
         };
-        let boundary = region.boundary(limits::REGION_BOUNDARY_NODES);
         let mut notes = vec!["scene is one of the region; x and y replace its two fields".to_owned()];
         if self.cells.iter().any(|cell| cell.value.is_none()) {
             let beside = match region.quantity {
@@ -361,9 +373,10 @@ impl Serialize for Answer {
             values: self.rows().map(|(_, cells)| Values { cells, whole: self.request.is_whole() }).collect(),
             outcomes: self.rows().map(|(_, cells)| Outcomes(cells)).collect(),
             outcome_names: outcome_names().collect(),
-            boundary: boundary
-                .into_iter()
-                .map(|(residue, a, b)| Segment { residue, x: [a[0], b[0]], y: [a[1], b[1]] })
+            boundary: self
+                .boundary
+                .iter()
+                .map(|&(residue, a, b)| Segment { residue, x: [a[0], b[0]], y: [a[1], b[1]] })
                 .collect(),
             counts: self.counts(),
             notes,

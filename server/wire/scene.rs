@@ -314,8 +314,9 @@ pub fn has_angle(scene: &Scene) -> bool {
 
 /// What a bounce of a scene costs at most, in bounces of the plain rod.
 pub fn bounce_price(scene: &Scene) -> u64 {
+    let vertices = scene.vertices().map_or(0, |vertices| vertices.places().len() as u64);
     let dearer = scene.forced().into_iter().map(|forced| if forced.rung == Rung::Noise { 2 } else { 1 });
-    1 + u64::from(!has_angle(scene)) + dearer.sum::<u64>()
+    1 + u64::from(!has_angle(scene)) + vertices / 8 + dearer.sum::<u64>()
 }
 
 #[cfg(test)]

@@ -176,7 +176,7 @@ fn the_stick_cone_shows_in_a_region_over_friction_and_tilt_gain() {
     assert!(inside > 100 && outside > 100, "{inside} {outside}");
     // The boundary of the linear verdict is that of a matched table, for any friction.
     let residues = Region { quantity: Quantity::Residue, y: Axis { from: 2.0, to: 3.0, ..region.y }, ..region };
-    let ends = residues.boundary(9);
+    let ends = residues.boundary(9, &mut || true).unwrap();
     assert!(
         !ends.is_empty()
             && ends
