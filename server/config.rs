@@ -81,7 +81,7 @@ impl Config {
         (is_open_to_pages || !self.allow_host.is_empty()).then_some(&self.allow_host)
     }
 
-    /// Whether only programs on this machine can connect.
+    /// Tells whether only programs on this machine can connect.
     fn listens_to_itself(&self) -> bool {
         let Ok(address) = self.listen.parse::<SocketAddr>() else {
             let name = self.listen.rsplit_once(':').map_or(self.listen.as_str(), |(name, _)| name);

@@ -211,16 +211,16 @@ pub const REGION_SIDE: u64 = 100_000;
 /// request beside it does not wait longer.
 pub const REGION_BLOCK_WORK: u64 = 1_000_000;
 
-/// What a cell of a region costs beside its bounces, in bounces of lanes: its scene, its first flight, and writing it down.
+/// Price of a cell of a region beside its bounces, in bounces of lanes: its scene, its first flight, and writing it down.
 pub const REGION_CELL_PRICE: u64 = 60;
 
 /// The same of a cell that no lane can run.
 pub const REGION_ALONE_CELL_PRICE: u64 = 350;
 
-/// What a cell costs that shows a number of the linear analysis.
+/// Price of a cell that shows a number of the linear analysis.
 pub const REGION_LINEAR_CELL_PRICE: u64 = 200;
 
-/// What a region costs beside its cells and its linear boundary, in bounces of lanes: its picture, some 5 ms.
+/// Price of a region beside its cells and its linear boundary, in bounces of lanes: its picture, some 5 ms.
 pub const REGION_ANSWER_PRICE: u64 = 400_000;
 
 /// What a bounce of a region costs that no lane can make, in bounces of lanes: a rod steered by feedback takes 9, a polygon and a
@@ -242,16 +242,16 @@ pub const ENSEMBLE_RUNS_IN_TILES: u64 = 1_000_000_000;
 /// Work of one block of an ensemble, the runs that a thread takes at a time: some 10 ms, as for regions. One run may be more.
 pub const ENSEMBLE_BLOCK_WORK: u64 = 50_000;
 
-/// What an ensemble costs beside its runs, in bounces: its summary and its picture, some 6 ms.
+/// Price of an ensemble beside its runs, in bounces: its summary and its picture, some 6 ms.
 pub const ENSEMBLE_ANSWER_PRICE: u64 = 80_000;
 
-/// What a run of an ensemble costs beside its bounces, in bounces: its model and its first flight.
+/// Price of a run of an ensemble beside its bounces, in bounces: its model and its first flight.
 pub const ENSEMBLE_RUN_PRICE: u64 = 10;
 
-/// What each contact of the survival curve costs, in bounces: its interval, and writing it down.
+/// Price of each contact of the survival curve, in bounces: its interval, and writing it down.
 pub const ENSEMBLE_CONTACT_PRICE: u64 = 20;
 
-/// What an angle that is kept costs, in bounces: sorting it, and writing it down.
+/// Price of an angle that is kept, in bounces: sorting it, and writing it down.
 pub const ENSEMBLE_ANGLE_PRICE: u64 = 2;
 
 /// Contacts at which an ensemble keeps the angle of each run, to sort them for quantiles: with `ENSEMBLE_RUNS` 4 million

@@ -165,7 +165,7 @@ impl Servers {
         Some(Found { ratio, time_s, price, text: format!("{}{gzip} {}", request.accept, request.body) })
     }
 
-    /// Whether a flight of the scene, or of one at a corner of its region, turns the body many times. A run that carries out plans
+    /// True if a flight of the scene, or of one at a corner of its region, turns the body many times. A run that carries out plans
     /// made for other times may do so anywhere.
     async fn spins(&self, body: &Value) -> bool {
         let model = &body["scene"]["noise"]["model"];
@@ -213,7 +213,7 @@ impl Servers {
     }
 }
 
-/// Whether a resource computes in turns, and its price is that of its runs alone.
+/// Tells whether a resource computes in turns, and its price is that of its runs alone.
 fn in_turns(resource: &str) -> bool {
     ["regions", "ensembles"].contains(&resource)
 }

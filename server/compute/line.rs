@@ -67,7 +67,7 @@ impl Line {
         async { receiver.await.expect("senders are dropped by their receivers alone") }
     }
 
-    /// Whether another than `flow` waits.
+    /// Tells whether another than `flow` waits.
     pub(super) fn is_wanted_by_others(&self, flow: Flow) -> bool {
         self.state().flows.iter().any(|(other, _)| *other != flow)
     }

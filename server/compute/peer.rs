@@ -42,7 +42,7 @@ pub struct Network {
 }
 
 impl Network {
-    /// Whether this address is one of them.
+    /// Tells whether this address is one of them.
     pub fn has(self, address: IpAddr) -> bool {
         let same = |one: u128, other: u128, width: u32| (one ^ other).checked_shr(width - self.bits).unwrap_or(0) == 0;
         match (self.first, address.to_canonical()) {

@@ -29,7 +29,7 @@ enum Way {
     Alone,
     /// On an async thread, for a short time.
     Inline {
-        /// Whether that was too short.
+        /// True if that was too short.
         overran: Cell<bool>,
     },
     /// Beside them, with a permit.
@@ -61,7 +61,7 @@ impl Turn {
         Self { cancel, began: Cell::new(Instant::now()), way }
     }
 
-    /// Whether to go on: not where nobody waits for the result any more. Passes the permit on where it is time to, and then
+    /// Tells whether to go on: not where nobody waits for the result any more. Passes the permit on where it is time to, and then
     /// comes back with the next one. Costs a look at the clock; in a loop of nanoseconds ask every hundred rounds.
     pub fn go_on(&self) -> bool {
         if self.cancel.is_set() {
@@ -112,7 +112,7 @@ impl Turn {
         &self.cancel
     }
 
-    /// Whether an inline turn was too short for the work.
+    /// Tells whether an inline turn was too short for the work.
     pub(super) fn overran(&self) -> bool {
         matches!(&self.way, Way::Inline { overran } if overran.get())
     }

@@ -59,7 +59,7 @@ pub fn check(headers: &HeaderMap, allowed: &[Origin]) -> Result<(), Problem> {
     Err(Problem::other(StatusCode::FORBIDDEN, detail))
 }
 
-/// Whether a request is of a page of one of these origins.
+/// Tells whether a request is of a page of one of these origins.
 pub fn is_among(headers: &HeaderMap, allowed: &[Origin]) -> bool {
     headers.get(header::ORIGIN).is_some_and(|origin| allowed.iter().any(|allowed| allowed.0 == origin))
 }

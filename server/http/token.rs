@@ -69,7 +69,7 @@ impl Token {
         self.derived.as_bytes().ct_eq(cookie.as_bytes()).into()
     }
 
-    /// Whether a request carries it, or the cookie that is derived from it.
+    /// Tells whether a request carries it, or the cookie that is derived from it.
     pub fn is_in(&self, headers: &HeaderMap) -> bool {
         let parts = |name, separator| {
             let values = headers.get_all(name).into_iter().filter_map(|value| value.to_str().ok());

@@ -32,7 +32,7 @@ pub enum End {
 }
 
 impl End {
-    /// Its name in answers: the dotted name of a field of the scene, or of a factor on one.
+    /// Name in answers: the dotted name of a field of the scene, or of a factor on one.
     pub fn name(self) -> &'static str {
         match self {
             Self::TiltGain => Name::TiltGain.row().path,
@@ -42,16 +42,16 @@ impl End {
     }
 }
 
-/// Where a scene beyond an end settles, by the normal form.
+/// The motion on which a scene beyond a soft end settles, by the normal form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Settles {
     /// On a swing of this largest |θ|, rad.
     Swing(f64),
     /// On bounces of two heights in turn.
     Heights {
-        /// Of the centre of gravity at the top, m, the lower one first.
+        /// Heights of the centre of gravity at the top, m, the lower one first.
         heights: [f64; 2],
-        /// Whether the angle stays bounded on them, by the eigenvalues over two bounces.
+        /// True if the angle stays bounded on them, by the eigenvalues over two bounces.
         angle_bounded: bool,
     },
 }
@@ -68,7 +68,7 @@ pub struct Loss {
     /// The coefficient whose sign decides, positive where the loss is soft: C for the tilt gain, s²/m² of the bounce speed for the
     /// energy gain, per bounce and rad² for feedback.
     pub coefficient: f64,
-    /// Where this scene settles, if it is beyond a soft end and the normal form says.
+    /// The motion on which this scene settles, if it is beyond a soft end and the normal form says.
     pub settles: Option<Settles>,
 }
 
@@ -78,7 +78,7 @@ impl Loss {
         Boundary { coefficient: self.coefficient }.kind()
     }
 
-    /// Whether it is soft.
+    /// Tells whether it is soft.
     pub fn is_soft(&self) -> bool {
         self.coefficient > 0.0
     }

@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::stability::{Class, Linear, PARABOLIC};
 use nalgebra::Complex;
 
-/// What the swing about upright does in the long run.
+/// Fate of a swing about upright in the long run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// It grows, from every start but upright itself.
@@ -23,7 +23,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Its name in answers.
+    /// Name in answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Repelling => "repelling",
@@ -38,7 +38,7 @@ impl Kind {
 pub struct Lyapunov {
     /// ℓ of dA/dn = ℓA³, per bounce and rad²; A is the largest |θ| of the linear swing.
     pub coefficient: f64,
-    /// Its sign.
+    /// Sign of the coefficient.
     pub kind: Kind,
     /// A₀ of this release, rad.
     pub amplitude: f64,

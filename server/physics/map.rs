@@ -32,12 +32,12 @@ impl<'a> Looks<'a> {
         Self { contacts: 0, go_on }
     }
 
-    /// Whether to begin a run.
+    /// Tells whether to begin a run.
     pub(crate) fn begin(&mut self) -> bool {
         self.pass(BEGINNING)
     }
 
-    /// Whether to go on after a contact.
+    /// Tells whether to go on after a contact.
     pub(crate) fn contact(&mut self) -> bool {
         self.pass(1)
     }
@@ -298,7 +298,7 @@ impl<B: Body> Orbit<B> {
         contact
     }
 
-    /// Whether a flight of a run that can settle is too short beside the first.
+    /// Tells whether a flight of a run that can settle is too short beside the first.
     #[inline(always)]
     fn is_short(&mut self, flight_time: f64) -> bool {
         if self.first_flight == 0.0 {

@@ -155,7 +155,7 @@ impl Bounce {
         second * second + third
     }
 
-    /// Whether strikes keep the energy, so that the motion stays on a surface of constant energy.
+    /// Tells whether strikes keep the energy, so that the motion stays on a surface of constant energy.
     fn keeps_energy(&self) -> bool {
         self.friction.is_none_or(|friction| friction.coefficient == 0.0)
             && self.rod.strike_gain == 2.0

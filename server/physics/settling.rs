@@ -23,17 +23,17 @@ pub struct Rebound {
 }
 
 impl Rebound {
-    /// Whether the contact point rises from the table, by more than rounding.
+    /// Tells whether the contact point rises from the table, by more than rounding.
     pub fn rises(&self) -> bool {
         self.rise > self.rounding
     }
 
-    /// Whether the contact point is at rest but for rounding.
+    /// Tells whether the contact point is at rest but for rounding.
     pub fn has_stopped(&self) -> bool {
         self.rise.abs() <= self.rounding && self.is_slow()
     }
 
-    /// Whether the contact point is as slow along the table's normal as it is upwards, so that a short flight is not a graze.
+    /// Tells whether the contact point is as slow along the table's normal as it is upwards, so that a short flight is not a graze.
     pub fn is_slow(&self) -> bool {
         self.along_normal.abs() <= REST_RATIO * self.rise.max(self.rounding)
     }

@@ -67,21 +67,21 @@ pub struct Judgement {
     pub reason: String,
 }
 
-/// What the second and third derivatives of the map say about a fixed point.
+/// The evidence of second and third derivatives of the map about a fixed point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HigherOrder {
-    /// At κ_c.
+    /// Boundary coefficient at κ_c.
     pub boundary: Option<Boundary>,
-    /// Of a swing about the fixed point, or why there is none.
+    /// First Lyapunov coefficient of a swing about the fixed point, or why there is none.
     pub lyapunov: Result<Lyapunov, String>,
-    /// At each end of the linear verdict for which it is derived.
+    /// Loss of stability at each end of the linear verdict for which it is derived.
     pub losses: Vec<Loss>,
-    /// Why it is not derived for others.
+    /// Reasons why it is not derived for others.
     pub notes: Vec<String>,
 }
 
 impl HigherOrder {
-    /// What they say about a scene.
+    /// Collects them for a scene.
     pub fn of(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Self {
         let boundary = scene.boundary(fixed_point);
         let (losses, notes) = losses(scene, fixed_point, linear, boundary);
@@ -273,7 +273,7 @@ impl Scene {
         Judgement { verdict, decided_by: DecidedBy::Lyapunov, agree, reason }
     }
 
-    /// Whether a law with feedback is stable in place, by its closed loop, its normal form and a run.
+    /// Tells whether a law with feedback is stable in place, by its closed loop, its normal form and a run.
     fn judge_law(&self, closed: &ClosedLoop, higher: &HigherOrder, run: &Nonlinear) -> Judgement {
         let survived = run.ending == Ending::Completed;
         let (stable, radius) = (closed.is_stable(), closed.spectral_radius);

@@ -44,7 +44,7 @@ pub(super) struct Wire {
 #[derive(Debug)]
 struct State {
     coming: Coming,
-    /// Whether the HTTP library has written all that it had.
+    /// True if the HTTP library has written all that it had.
     is_flushed: bool,
     /// Bytes of the status line that went out ahead of it.
     ahead: usize,

@@ -67,7 +67,7 @@ impl Request {
         numbers.end - numbers.start
     }
 
-    /// What it costs, in bounces of the plain rod.
+    /// Price, in bounces of the plain rod.
     pub fn price(&self) -> u64 {
         let Ensemble { scene, impacts, angle_contacts, .. } = &self.ensemble;
         let bounces = impacts.saturating_mul(bounce_price(scene));

@@ -185,7 +185,7 @@ fn with(scene: &Scene, numbers: &[(Name, f64)]) -> Option<Scene> {
     draft.build().ok()
 }
 
-/// Whether the run of the scene with another number is bounded.
+/// Tells whether the run of the scene with another number is bounded.
 fn is_bounded(scene: &Scene, name: Name, number: f64, go_on: &dyn Fn() -> bool) -> bool {
     let changed = with(scene, &[(name, number)]);
     let end = changed.and_then(|scene| end_of(&scene, BOUNDED, go_on, |_| ()));

@@ -115,7 +115,7 @@ impl Request {
         self.region.quantity == Quantity::Survival
     }
 
-    /// What it costs, in bounces of lanes.
+    /// Price, in bounces of lanes.
     pub fn price(&self) -> u64 {
         // Scenes of the boundary: the nodes of its grid, and some 80 for each of its crossings.
         let [columns, rows] =
@@ -125,13 +125,13 @@ impl Request {
         self.cells().saturating_mul(self.cell_price()).saturating_add(boundary + limits::REGION_ANSWER_PRICE)
     }
 
-    /// What making a scene costs beyond that of a rod: of a polygon each side is held against each other.
+    /// Price of making a scene beyond that of a rod: of a polygon each side is held against each other.
     fn polygon_price(&self) -> u64 {
         let vertices = self.region.scene.vertices().map_or(0, |vertices| vertices.places().len() as u64);
         vertices * vertices * 3 / 2
     }
 
-    /// What one of its cells costs at most.
+    /// Price of one of its cells at most.
     fn cell_price(&self) -> u64 {
         let (once, bounce) = match self.region.quantity {
             Quantity::Residue | Quantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),

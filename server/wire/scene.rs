@@ -312,7 +312,7 @@ pub fn has_angle(scene: &Scene) -> bool {
     scene.value(Name::PointMass).is_none()
 }
 
-/// What a bounce of a scene costs at most, in bounces of the plain rod.
+/// Price of a bounce of a scene at most, in bounces of the plain rod.
 pub fn bounce_price(scene: &Scene) -> u64 {
     let vertices = scene.vertices().map_or(0, |vertices| vertices.places().len() as u64);
     let dearer = scene.forced().into_iter().map(|forced| if forced.rung == Rung::Noise { 2 } else { 1 });

@@ -127,7 +127,7 @@ pub struct Request {
 /// Work of the margins, in bounces: some ten thousand linear verdicts.
 const MARGINS_PRICE: u64 = 200_000;
 
-/// What a run of the basin costs beside its bounces, in bounces.
+/// Price of a run of the basin beside its bounces, in bounces.
 const BASIN_RUN_PRICE: u64 = 10;
 
 impl Request {

@@ -124,17 +124,17 @@ const NO_BOUND: &str = "no bound is derived for a run that is changed under way"
 const CONTACT_NUMBERS: u64 = 18;
 const SAMPLE_NUMBERS: u64 = 8;
 
-/// What each method costs an impact with its error estimate, in bounces, and what the linear solution costs once.
+/// Price of each method an impact with its error estimate, in bounces, and what the linear solution costs once.
 const LINEAR_ONCE: u64 = 2500;
 const MAP_PRICE: u64 = 8;
 const EXTENDED_PRICE: u64 = 50;
 
-/// What a contact costs to be written down, compressed as well, in bounces; the same with 31 digits, and a sample of a flight.
+/// Price of a contact to be written down, compressed as well, in bounces; the same with 31 digits, and a sample of a flight.
 const ROW_PRICE: u64 = 24;
 const LONG_ROW_PRICE: u64 = 60;
 const SAMPLE_PRICE: u64 = 10;
 
-/// What an impact of the linear solution costs with its error estimate, in bounces. Where the angle does not circle, the estimate
+/// Price of an impact of the linear solution with its error estimate, in bounces. Where the angle does not circle, the estimate
 /// of each looks at some of the bounces before it, with 31 digits: at 13, or at 39 where the table looks at the energy.
 pub(super) fn linear_price(scene: &Scene) -> u64 {
     match scene.number(Name::EnergyGain) {

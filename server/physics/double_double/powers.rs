@@ -16,7 +16,7 @@ pub(super) struct Power {
     pub(super) significand: [u64; 3],
     /// Exponent of the significand's last bit.
     pub(super) exponent: i32,
-    /// Whether nothing was cut.
+    /// True if nothing was cut.
     pub(super) is_exact: bool,
 }
 

@@ -171,7 +171,7 @@ impl LinearSolution {
         (now * next_theta - before * theta, now * next_u - before * u)
     }
 
-    /// Whether U of index m − 1 may be beyond the range of doubles, however small what it multiplies.
+    /// Tells whether U of index m − 1 may be beyond the range of doubles, however small what it multiplies.
     fn grows_beyond_doubles(&self, m: u64) -> bool {
         self.class == Class::Hyperbolic && m as f64 * self.exponent > MOST_GROWTH
     }

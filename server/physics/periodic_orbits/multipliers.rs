@@ -109,7 +109,7 @@ impl Multipliers {
     }
 }
 
-/// Whether an eigenvalue is 1 but for rounding.
+/// Tells whether an eigenvalue is 1 but for rounding.
 fn has_one(product: &Matrix4<f64>) -> bool {
     let distance = (Matrix4::identity() - product).determinant();
     distance.abs() <= ONE * (1.0 + product.norm_squared())
