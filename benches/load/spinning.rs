@@ -1,4 +1,4 @@
-//! What one client may take from others with scenes that are as dear as scenes can be: spinning bodies over a planned table that
+//! Load that one client puts on others with the dearest scenes there are: spinning bodies over a planned table that
 //! is nearly vertical.
 
 use std::fmt::Write;

@@ -1,6 +1,6 @@
 //! The gate to the async threads: one peer's work stands on at most half of them at a time, so that they answer others.
 //!
-//! What waits here is not refused, and waits in no queue that others wait in.
+//! Work that waits here is not refused, and waits in no queue that others wait in.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError, Weak};

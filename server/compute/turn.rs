@@ -22,10 +22,10 @@ pub struct Turn {
     way: Way,
 }
 
-/// Where the turn is taken.
+/// The place at which a turn is taken.
 #[derive(Debug)]
 enum Way {
-    /// Where nobody else wants it.
+    /// A thread that nobody else wants.
     Alone,
     /// On an async thread, for a short time.
     Inline {
@@ -102,7 +102,7 @@ impl Turn {
     /// [`Turn::go_on`] as an error, for `?`.
     ///
     /// # Errors
-    /// Where nobody waits for the result any more.
+    /// [`Cancelled`] once nobody waits for the result.
     pub fn check(&self) -> Result<(), Cancelled> {
         if self.go_on() { Ok(()) } else { Err(Cancelled) }
     }

@@ -17,7 +17,7 @@ pub const SPEED_LIMIT: f64 = 1e6;
 /// Contacts between two questions of whether to go on: far less than a millisecond for any body, its derivatives included.
 pub const LOOK: u64 = 128;
 
-/// What it takes to begin a run, in contacts.
+/// Price of beginning a run, in contacts.
 const BEGINNING: u64 = 8;
 
 /// Asks whether to go on, every [`LOOK`] contacts of many runs, each of which may be shorter.

@@ -14,7 +14,7 @@ pub const SAFETY: f64 = 1.5;
 /// Points at which what a bounce leaves out is looked at: phases of half a turn, or bounces of a run.
 const SAMPLES: u64 = 12;
 
-/// What one bounce leaves out, without signs: of θ, u, ẋ beside its law, ẏ and the flight time.
+/// Sizes of the terms that one bounce leaves out: of θ, u, ẋ beside its law, ẏ and the flight time.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LeftOut {
     theta: f64,
@@ -84,7 +84,7 @@ impl LinearSolution {
         (off * ((2.0 + steep) * theta.abs() + u.abs()), off * (2.0 * u.abs() + steep * theta.abs()))
     }
 
-    /// What the bounce from a state leaves out, with 31 digits; infinite where there is no bounce.
+    /// Terms that the bounce from a state leaves out, with 31 digits; infinite where there is no bounce.
     fn left_out(&self, theta: f64, u: f64, x_dot: f64, y_dot: f64) -> LeftOut {
         let number = DoubleDouble::from_f64;
         let tau = number(self.flight_time);
@@ -239,7 +239,7 @@ impl LinearSolution {
         most
     }
 
-    /// What bounces before the `m`-th leave out, some of them, each with its number; the last stands for the end as well.
+    /// Terms that bounces before the `m`-th leave out, some of them, each with its number; the last stands for the end as well.
     fn along(&self, m: u64, aside: f64) -> Vec<(u64, LeftOut)> {
         let mut samples = Vec::new();
         if m == 0 {
@@ -268,7 +268,7 @@ impl LinearSolution {
     }
 }
 
-/// What is left of a size after a growth that may be infinite: nothing of nothing.
+/// Size that is left after a growth that may be infinite: nothing of nothing.
 fn grown(growth: f64, size: f64) -> f64 {
     if size == 0.0 { 0.0 } else { growth.abs() * size }
 }

@@ -49,7 +49,7 @@ pub struct LinearSolution {
 pub struct LinearImpact {
     /// When, s after release.
     pub t: f64,
-    /// Where the centre of gravity is, m.
+    /// Horizontal place of the centre of gravity, m.
     pub x: f64,
     /// Angle and velocities just before it.
     pub state: State,
