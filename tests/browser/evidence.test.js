@@ -12,6 +12,8 @@ const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212'
 const disclose = (page) => page.locator('.evidence:not([open]) summary').click();
 /** What it says once it is opened, without its line for a first look. */
 const words = async (page) => {
+  // It comes after the verdict, with a module of its own.
+  await page.locator('.evidence').waitFor();
   if (await page.locator('.evidence:not([open])').count() > 0) await disclose(page);
   return plain(await page.locator('.evidence dl').innerText());
 };
