@@ -6,16 +6,17 @@ use std::hint::black_box;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as bench_all};
-use equipoise_physics::dispatch::Path;
-use equipoise_physics::extended;
-use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::jacobian::jacobian;
-use equipoise_physics::map::{Orbit, Release, run};
-use equipoise_physics::method::Method;
-use equipoise_physics::model::Model;
-use equipoise_physics::polygon::Vertices;
+use equipoise_physics::batch::batch_run::{Start, sweep_on};
+use equipoise_physics::body::Release;
+use equipoise_physics::body::polygon::Vertices;
+use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::numbers::dispatch::Path;
+use equipoise_physics::run::extended;
+use equipoise_physics::run::method::Method;
+use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::sweep::{Start, sweep_on};
+use equipoise_physics::stability::jacobian::jacobian;
 
 const BOUNCES: u64 = 1000;
 
@@ -44,7 +45,7 @@ fn strike_and_flight(bencher: Bencher) {
         for _ in 0..BOUNCES {
             let strike = rod.strike(&state);
             let flight = rod.flight(&strike);
-            let Ok(t) = equipoise_physics::contact_time::first_contact(&flight) else { break };
+            let Ok(t) = equipoise_physics::bounce::contact_time::first_contact(&flight) else { break };
             state = flight.end(t);
         }
         state
@@ -162,7 +163,8 @@ fn jacobian_product(bencher: Bencher) {
 /// Sine and cosine, ours and the platform's, one after the other.
 #[divan::bench(args = ["ours", "platform"])]
 fn sine_and_cosine(bencher: Bencher, whose: &str) {
-    let function: fn(f64) -> (f64, f64) = if whose == "ours" { equipoise_physics::trig::sin_cos } else { f64::sin_cos };
+    let function: fn(f64) -> (f64, f64) =
+        if whose == "ours" { equipoise_physics::numbers::trig::sin_cos } else { f64::sin_cos };
     bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
         (0..BOUNCES).fold(black_box(0.3), |angle, _| {
             let (sin, cos) = function(angle);

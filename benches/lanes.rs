@@ -8,11 +8,11 @@ use std::thread;
 use std::time::Instant;
 
 use case_1::{ROD, RULES};
-use equipoise_physics::dispatch::{Path, Work, dispatch_on};
-use equipoise_physics::friction::{Law, Slide};
-use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::map::Rules;
-use equipoise_physics::sweep::{Start, sweep_on, sweep_rough_on};
+use equipoise_physics::batch::batch_run::{Start, sweep_on, sweep_rough_on};
+use equipoise_physics::bounce::friction::{Law, Slide};
+use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::numbers::dispatch::{Path, Work, dispatch_on};
+use equipoise_physics::run::orbit::Rules;
 
 const RUNS: usize = 64;
 const BOUNCES: u64 = 2000;

@@ -1,8 +1,9 @@
 //! General simulation methods against the exact map: where they agree, how fast they get there, and scenes on which they are wrong.
 
 use equipoise::integrators::{Impact, Location, Method, Simulation, Work, simulate};
-use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::map::{Contact, Orbit, Release, Rules, run};
+use equipoise_physics::body::Release;
+use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::run::orbit::{Contact, Orbit, Rules, run};
 
 const RULES: Rules =
     Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None };

@@ -4,7 +4,7 @@ mod support;
 
 use std::time::{Duration, Instant};
 
-use equipoise_physics::double_double::DoubleDouble;
+use equipoise_physics::numbers::double_double::DoubleDouble;
 use serde_json::{Value, json};
 use support::socket::start;
 use support::{Answer, Server};

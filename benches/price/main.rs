@@ -243,7 +243,7 @@ fn clock_s() -> f64 {
 
 /// Seconds of a plain bounce now: the median of a few short runs.
 fn bounce_s() -> f64 {
-    use equipoise_physics::map::run;
+    use equipoise_physics::run::orbit::run;
     use equipoise_physics::scene::{Draft, Name, Value};
     const BOUNCES: u64 = 2000;
     let mut draft = Draft::default();

@@ -3,7 +3,7 @@
 use super::course::{Course, eigenvalue, upright};
 use super::{Case, Says, Seen, built, rod, with};
 use crate::picture::{Chart, Curve, Look, Plot, Side};
-use equipoise_physics::map::run;
+use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene};
 
 /// κ = 1: the table follows the rod, and nothing turns it back.

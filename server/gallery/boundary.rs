@@ -3,8 +3,8 @@
 use super::course::{ANGLE, CONTACT, Course, eigenvalue, upright};
 use super::{Case, Says, Seen, built, rod, with};
 use crate::picture::{Chart, Curve, Look, Plot, significant};
-use equipoise_physics::fixed_point::FixedPoint;
 use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::stability::fixed_point::FixedPoint;
 
 /// The paper's rod exactly at κ_c: soft.
 pub(super) const SOFT: Case = Case {

@@ -2,7 +2,7 @@
 
 use super::{Case, Says, Seen, built, rod, rod_of};
 use crate::picture::{Chart, Curve, Look, Plot, Side};
-use equipoise_physics::flight::Flight;
+use equipoise_physics::bounce::flight::Flight;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 /// A rod that chatters as it topples over a table that stands still.

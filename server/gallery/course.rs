@@ -2,11 +2,13 @@
 
 use super::Says;
 use crate::picture::{Curve, Look, Side};
-use equipoise_physics::fixed_point::FixedPoint;
-use equipoise_physics::jacobian::{self, modulus};
-use equipoise_physics::map::{Ending, run};
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::PARABOLIC;
+use equipoise_physics::stability::fixed_point::FixedPoint;
+use equipoise_physics::stability::jacobian;
+use equipoise_physics::stability::jacobian::modulus;
+use equipoise_physics::stability::linear_verdict::PARABOLIC;
 
 /// θ at the contacts of a run and how it ended.
 pub(super) struct Course {
@@ -88,7 +90,7 @@ pub(super) const ANGLE: Side = Side::new("angle at the contact", "|θ|", "rad").
 /// farthest from 1: (re, im).
 fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f64, (f64, f64)) {
     let upright =
-        equipoise_physics::impact::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
+        equipoise_physics::bounce::strike::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
     let matrix = jacobian::jacobian(&scene.model(), &upright, 1).map(|linearization| linearization.matrix);
     let values = matrix.ok().and_then(|matrix| jacobian::eigenvalues(&matrix)).unwrap_or_default();
     let radius = values.iter().copied().map(modulus).fold(0.0, f64::max);

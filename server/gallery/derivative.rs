@@ -2,10 +2,11 @@
 
 use super::{Case, Says, Seen, built, rod, with};
 use crate::picture::{Chart, Curve, Look, Plot, Side};
-use equipoise_physics::impact::State;
-use equipoise_physics::jacobian::{finite_difference, jacobian};
-use equipoise_physics::map::{Body, Orbit, Rules};
+use equipoise_physics::body::Body;
+use equipoise_physics::bounce::strike::State;
+use equipoise_physics::run::orbit::{Orbit, Rules};
 use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::stability::jacobian::{finite_difference, jacobian};
 use nalgebra::DMatrix;
 
 /// A derivative over a long time.

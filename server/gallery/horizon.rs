@@ -3,10 +3,12 @@
 use super::course::{Course, upright};
 use super::{Case, Says, Seen, built, rod, rod_of, with};
 use crate::picture::{Chart, Curve, Look, Plot, Side};
-use equipoise_physics::map::{Ending, Orbit, Release, Rules, run};
-use equipoise_physics::regularity::TOLERANCE;
+use equipoise_physics::batch::batch_run::{Start, sweep_all};
+use equipoise_physics::body::Release;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::{Orbit, Rules, run};
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::sweep::{Start, sweep_all};
+use equipoise_physics::stability::regularity::TOLERANCE;
 
 /// Runs of one ensemble, and how far apart their starts are, rad.
 const RUNS: usize = 256;

@@ -12,8 +12,8 @@ mod horizon;
 mod steps;
 
 use crate::picture::Chart;
-use equipoise_physics::impact::Rod;
-use equipoise_physics::model::Model;
+use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 /// A scene on which a common method is wrong.

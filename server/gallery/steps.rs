@@ -4,7 +4,8 @@ use super::course::Course;
 use super::{Case, Says, Seen, built, rod, rod_of};
 use crate::integrators::{Ending, Location, Method, Simulation, simulate};
 use crate::picture::{Chart, Curve, Look, Plot, Side};
-use equipoise_physics::map::{self, run};
+use equipoise_physics::run::orbit;
+use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 /// A run that falls and is kept up by the steps.
@@ -163,7 +164,7 @@ pub(super) const ZENO: Case = Case {
         let limit = limit(scene);
         let says = |method, simulation: Simulation| {
             let last = simulation.impacts.last().map(|impact| impact.t);
-            let verdict = if matches!(simulation.ending, Ending::Run(map::Ending::Settled { .. })) {
+            let verdict = if matches!(simulation.ending, Ending::Run(orbit::Ending::Settled { .. })) {
                 "settles"
             } else {
                 "goes on"
@@ -239,7 +240,7 @@ fn course(simulation: &Simulation) -> Course {
     let angles = simulation.impacts.iter().map(|impact| impact.state.theta).collect();
     let ending = match simulation.ending {
         Ending::Run(ending) => ending,
-        Ending::Missed { .. } | Ending::OutOfSteps { .. } => map::Ending::Diverged { speed: f64::NAN },
+        Ending::Missed { .. } | Ending::OutOfSteps { .. } => orbit::Ending::Diverged { speed: f64::NAN },
     };
     Course { angles, ending }
 }
@@ -300,8 +301,8 @@ fn limit(scene: &Scene) -> f64 {
 fn settled(scene: &Scene, impacts: u64) -> (&'static str, Option<f64>) {
     let ending = scene.orbit().ok().and_then(|mut orbit| run(&mut orbit, impacts, |_| true));
     let settle_time = match ending {
-        Some(map::Ending::Settled { settle_time, .. }) => Some(settle_time),
+        Some(orbit::Ending::Settled { settle_time, .. }) => Some(settle_time),
         _ => None,
     };
-    (ending.map_or("unknown", map::Ending::name), settle_time)
+    (ending.map_or("unknown", orbit::Ending::name), settle_time)
 }

@@ -10,7 +10,7 @@ use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::ExplicitRungeKutta;
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 use differential_equations::status::Status;
-use equipoise_physics::map::Ending;
+use equipoise_physics::run::ending::Ending;
 
 use super::course::{Course, Halt, bisect};
 use super::motion::Motion;

@@ -2,9 +2,11 @@
 //!
 //! Not here: how they move the rod.
 
-use equipoise_physics::impact::{Rod, State, Strike};
-use equipoise_physics::map::{self, Release, Rules, SPEED_LIMIT};
-use equipoise_physics::settling::{Rebound, SETTLED_SHARE, stay, time_to_rest};
+use equipoise_physics::body::Release;
+use equipoise_physics::bounce::strike::{Rod, State, Strike};
+use equipoise_physics::run::orbit;
+use equipoise_physics::run::orbit::{Rules, SPEED_LIMIT};
+use equipoise_physics::run::settling::{Rebound, SETTLED_SHARE, stay, time_to_rest};
 
 use super::motion::Motion;
 use super::{Ending, Impact, Work};
@@ -17,8 +19,8 @@ pub(super) enum Halt {
     Stopped,
 }
 
-impl From<map::Ending> for Halt {
-    fn from(ending: map::Ending) -> Self {
+impl From<orbit::Ending> for Halt {
+    fn from(ending: orbit::Ending) -> Self {
         Self::Ended(Ending::Run(ending))
     }
 }
@@ -103,22 +105,22 @@ impl<'a> Course<'a> {
         Ok(())
     }
 
-    /// A contact: records it and gives the strike. The checks are those of [`map::Orbit::advance`], in the same order; that the flight
+    /// A contact: records it and gives the strike. The checks are those of [`orbit::Orbit::advance`], in the same order; that the flight
     /// before was too short is known only here, and ends the run at the contact before.
     pub(super) fn contact(&mut self, t: f64, motion: &Motion) -> Result<Strike, Halt> {
         self.settle(t)?;
         let contacts = self.impacts.len() as u64;
         if contacts >= self.wanted {
-            return Err(map::Ending::Completed.into());
+            return Err(orbit::Ending::Completed.into());
         }
         let state = motion.state();
         self.impacts.push(Impact { n: contacts + 1, t, x: motion.place[0], state });
         if state.theta.abs() >= self.rules.topple_angle {
-            return Err(map::Ending::Toppled { theta: state.theta, limit: self.rules.topple_angle }.into());
+            return Err(orbit::Ending::Toppled { theta: state.theta, limit: self.rules.topple_angle }.into());
         }
         let strike = self.rod.strike(&state);
         if strike.push >= 0.0 {
-            return Err(map::Ending::Separating { approach: strike.approach }.into());
+            return Err(orbit::Ending::Separating { approach: strike.approach }.into());
         }
         Ok(strike)
     }
@@ -128,7 +130,7 @@ impl<'a> Course<'a> {
         let spin = self.rod.contact_distance * state.theta_dot;
         let speed_squared = state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin;
         if speed_squared.is_nan() || speed_squared > SPEED_LIMIT * SPEED_LIMIT {
-            return Err(map::Ending::Diverged { speed: speed_squared.sqrt() }.into());
+            return Err(orbit::Ending::Diverged { speed: speed_squared.sqrt() }.into());
         }
         if !rebound.rises() {
             let t = self.impacts.last().map_or(0.0, |impact| impact.t);
@@ -137,7 +139,7 @@ impl<'a> Course<'a> {
         self.rebound = rebound;
         // Where a run can settle, the flight after its last contact decides too.
         if !self.rules.settles && self.impacts.len() as u64 >= self.wanted {
-            return Err(map::Ending::Completed.into());
+            return Err(orbit::Ending::Completed.into());
         }
         Ok(())
     }
@@ -163,7 +165,7 @@ impl<'a> Course<'a> {
         }
         if flight_time < SETTLED_SHARE * self.first_flight && self.rebound.is_slow() {
             let settle_time = before.t + time_to_rest(flight_time, self.last_flight);
-            return Err(map::Ending::Settled { flight_time, settle_time }.into());
+            return Err(orbit::Ending::Settled { flight_time, settle_time }.into());
         }
         self.last_flight = flight_time;
         Ok(())

@@ -11,8 +11,10 @@ mod penalty;
 mod sampling;
 mod time_stepping;
 
-use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::map::{self, Release, Rules};
+use equipoise_physics::body::Release;
+use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::run::orbit;
+use equipoise_physics::run::orbit::Rules;
 
 use course::{Course, Halt};
 
@@ -92,7 +94,7 @@ pub struct Impact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending {
     /// As runs of the map end.
-    Run(map::Ending),
+    Run(orbit::Ending),
     /// The rod is below the table and falls, and no contact was seen.
     Missed {
         /// When that was noticed, s.
@@ -141,7 +143,7 @@ pub struct Simulation {
 /// Runs a method from the release for so many contacts and at most so many steps. `go_on` is asked every few thousand steps, and there
 /// is no answer once it says `false`.
 ///
-/// The reasons for which a run ends are those of [`map::Orbit`], in the same order. Steps that are not positive end as `out_of_steps`.
+/// The reasons for which a run ends are those of [`orbit::Orbit`], in the same order. Steps that are not positive end as `out_of_steps`.
 pub fn simulate(
     method: Method,
     (rod, rules, release): (&Rod, &Rules, &Release),

@@ -2,8 +2,8 @@
 //!
 //! Not here: contacts.
 
-use equipoise_physics::impact::State;
-use equipoise_physics::trig;
+use equipoise_physics::bounce::strike::State;
+use equipoise_physics::numbers::trig;
 
 /// Place and velocity of the rod.
 #[derive(Clone, Copy, Debug, PartialEq)]

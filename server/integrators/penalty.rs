@@ -9,8 +9,8 @@
 use std::convert::Infallible;
 use std::f64::consts::PI;
 
-use equipoise_physics::impact::Strike;
-use equipoise_physics::settling::Rebound;
+use equipoise_physics::bounce::strike::Strike;
+use equipoise_physics::run::settling::Rebound;
 
 use super::course::{Course, Halt};
 use super::motion::Motion;

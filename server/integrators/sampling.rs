@@ -4,8 +4,8 @@
 
 use std::convert::Infallible;
 
-use equipoise_physics::flight::Flight;
-use equipoise_physics::trig;
+use equipoise_physics::bounce::flight::Flight;
+use equipoise_physics::numbers::trig;
 
 use super::course::{Course, Halt, bisect};
 use super::motion::Motion;

@@ -2,12 +2,12 @@
 //! gap at its middle, Newton's restitution between the velocities at its ends.
 //!
 //! With U the relative velocity along the normal, 0 ≤ U⁺ + e U⁻ ⊥ P ≥ 0 while the gap is closed. The table moves as the strike says,
-//! so that impulse comes from [`Rod::strike`](equipoise_physics::impact::Rod::strike); a step's share of gravity is added, which a
+//! so that impulse comes from [`Rod::strike`](equipoise_physics::bounce::strike::Rod::strike); a step's share of gravity is added, which a
 //! closed contact has to carry too. A contact is known to half a step: the method is of order 1.
 
 use std::convert::Infallible;
 
-use equipoise_physics::impact::{State, Strike};
+use equipoise_physics::bounce::strike::{State, Strike};
 
 use super::course::{Course, Halt};
 use super::motion::Motion;

@@ -1,7 +1,7 @@
 //! The URL of a run: read from a request with everything that is wrong, and written so that it reads back as the same
 //! run.
 
-use equipoise_physics::map::Kick;
+use equipoise_physics::body::Kick;
 use equipoise_physics::scene::{FIELDS, Name, Value as FieldValue, field};
 use form_urlencoded::Serializer;
 use serde_json::{Map, Value};

@@ -5,10 +5,11 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use equipoise_physics::demand::{Demand, Meter};
-use equipoise_physics::map::{Contact, Ending, LOOK, Orbit};
-use equipoise_physics::model::Model;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::{Contact, LOOK, Orbit};
 use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::model::Model;
+use equipoise_physics::table::actuator_load::{Demand, Meter};
 
 use super::address::Asked;
 use super::messages::Impact;
@@ -180,7 +181,7 @@ impl From<NotCaughtUp> for Problem {
 mod tests {
     use super::*;
     use crate::live::run::tests::case;
-    use equipoise_physics::map::Kick;
+    use equipoise_physics::body::Kick;
     use equipoise_physics::scene::{Name, Value};
 
     const PLENTY: Limit = Limit { name: "work", most: 1_000_000, unit: "bounces" };

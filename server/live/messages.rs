@@ -2,9 +2,10 @@
 //!
 //! Not here: when it is said, and what a client says (`order`).
 
-use equipoise_physics::impact::State;
-use equipoise_physics::map::{Body, Contact};
-use equipoise_physics::model::Model;
+use equipoise_physics::body::Body;
+use equipoise_physics::bounce::strike::State;
+use equipoise_physics::run::orbit::Contact;
+use equipoise_physics::scene::model::Model;
 use serde::{Serialize, Serializer};
 
 use super::address;

@@ -2,7 +2,7 @@
 //!
 //! Not here: what follows from it (`session`).
 
-use equipoise_physics::map::Kick;
+use equipoise_physics::body::Kick;
 use equipoise_physics::scene::{Name, Value as FieldValue};
 use serde_json::{Map, Value};
 

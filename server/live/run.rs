@@ -2,7 +2,7 @@
 //!
 //! Not here: how it is written in a URL (`address`) and how its impacts are computed (`course`).
 
-use equipoise_physics::map::Kick;
+use equipoise_physics::body::Kick;
 use equipoise_physics::scene::{Field, FieldError, Name, Scene, Value};
 
 use super::clock::Clock;

@@ -2,15 +2,17 @@
 
 use std::hint::black_box;
 
-use equipoise_physics::contact_time;
-use equipoise_physics::double_double::DoubleDouble;
-use equipoise_physics::extended;
-use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::linear::LinearSolution;
-use equipoise_physics::map::{self, Ending, LOOK, Orbit, Rules};
-use equipoise_physics::model::Model;
-use equipoise_physics::number::Number;
+use equipoise_physics::bounce::contact_time;
+use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::numbers::number::Number;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::extended;
+use equipoise_physics::run::linear_solution::LinearSolution;
+use equipoise_physics::run::orbit;
+use equipoise_physics::run::orbit::{LOOK, Orbit, Rules};
 use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::model::Model;
 
 use super::{Kind, Reference, Setting};
 use crate::compute::{Cancel, Cancelled, Turn};
@@ -162,10 +164,10 @@ impl<'a> Subject<'a> {
 
     /// The map from the release on: number and state of the last contact, and how it ended.
     #[inline]
-    fn bounce(&self, rules: Rules, mut visit: impl FnMut(&map::Contact)) -> Option<(u64, State, &'static str)> {
+    fn bounce(&self, rules: Rules, mut visit: impl FnMut(&orbit::Contact)) -> Option<(u64, State, &'static str)> {
         let mut orbit = Orbit::new(self.model, rules, self.scene.release()).ok()?;
         let (mut n, mut state) = (0, *orbit.state());
-        let ending = map::run(&mut orbit, self.impacts, |contact| {
+        let ending = orbit::run(&mut orbit, self.impacts, |contact| {
             (n, state) = (contact.n, contact.state);
             visit(contact);
             true

@@ -5,7 +5,7 @@ use axum::body::Body;
 use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
-use equipoise_physics::ensemble::{Runs, quantiles};
+use equipoise_physics::surveys::ensemble::{Runs, quantiles};
 
 use super::App;
 use crate::compute::{Turn, Turns};

@@ -5,7 +5,7 @@ use axum::body::Body;
 use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
-use equipoise_physics::fixed_point::JUDGED;
+use equipoise_physics::stability::fixed_point::JUDGED;
 
 use super::App;
 use crate::compute::{Cancelled, Price, Turn};

@@ -156,7 +156,7 @@ fn canonical_of(request: &impl Serialize) -> Vec<u8> {
 mod tests {
     use super::*;
     use crate::wire::table::{Cells, Column};
-    use equipoise_physics::double_double::DoubleDouble;
+    use equipoise_physics::numbers::double_double::DoubleDouble;
 
     #[test]
     fn a_large_table_is_not_written_for_nobody() {

@@ -5,7 +5,7 @@ use axum::body::Body;
 use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
-use equipoise_physics::map::Contact;
+use equipoise_physics::run::orbit::Contact;
 
 use super::App;
 use crate::compute::{Cancelled, Price, Turn};

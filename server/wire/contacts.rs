@@ -2,13 +2,13 @@
 //!
 //! Not here: how the run is computed, and how it ended ([`super::trajectory`]).
 
-use equipoise_physics::double_double::DoubleDouble;
-use equipoise_physics::extended;
-use equipoise_physics::impact::{State, Strike};
-use equipoise_physics::map::Body;
-use equipoise_physics::method::Impact;
-use equipoise_physics::model::Model;
+use equipoise_physics::body::Body;
+use equipoise_physics::bounce::strike::{State, Strike};
+use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::run::extended;
+use equipoise_physics::run::method::Impact;
 use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::model::Model;
 
 use super::scene::has_angle;
 use super::table::{Cells, Column, Table};

@@ -1,10 +1,10 @@
 //! The request and the answer of `controllers`: weights, and the state feedback that is best for them.
 
+use equipoise_physics::bounce::strike::Rod;
 use equipoise_physics::control::{BounceModel, ClosedLoop, Design, NoDesign, STATE};
-use equipoise_physics::fixed_point::FixedPoint;
-use equipoise_physics::grip::Grip;
-use equipoise_physics::impact::Rod;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::contact_regime::Grip;
+use equipoise_physics::stability::fixed_point::FixedPoint;
 use serde::Serialize;
 use serde_json::Value as Json;
 

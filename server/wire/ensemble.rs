@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use equipoise_physics::ensemble::{Ensemble, Runs, SHARES, Survival, late_half_life, median_impacts};
-use equipoise_physics::model::Rung;
-use equipoise_physics::outcome::Outcome;
+use equipoise_physics::run::ending::Outcome;
+use equipoise_physics::scene::model::Rung;
 use equipoise_physics::scene::{Kind, Name, Scene, Value};
+use equipoise_physics::surveys::ensemble::{Ensemble, Runs, SHARES, Survival, late_half_life, median_impacts};
 use serde::{Serialize, Serializer};
 
 use super::scene::{Resolved, bounce_price, build, has_angle, read_draft};

@@ -1,13 +1,15 @@
 //! What a verdict has beyond the linear analysis, as it is written in the answer: rotation number, chaos, basin, and the words
 //! on each of them. Not for the verdict itself.
 
-use equipoise_physics::basin;
-use equipoise_physics::fixed_point::FixedPoint;
-use equipoise_physics::loss::{self, Settles};
-use equipoise_physics::lyapunov;
-use equipoise_physics::regularity::{self, FEWEST, Regularity, TOLERANCE, WATCHED};
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::Linear;
+use equipoise_physics::stability::basin;
+use equipoise_physics::stability::fixed_point::FixedPoint;
+use equipoise_physics::stability::linear_verdict::Linear;
+use equipoise_physics::stability::loss_of_stability;
+use equipoise_physics::stability::loss_of_stability::Settles;
+use equipoise_physics::stability::lyapunov;
+use equipoise_physics::stability::regularity;
+use equipoise_physics::stability::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
 use serde::Serialize;
 
 /// Distance from 1/3 and 1/4, in turns a bounce, within which they are named.
@@ -103,8 +105,8 @@ pub(super) struct LossOfStability {
     heights: Option<[f64; 2]>,
 }
 
-impl From<&loss::Loss> for LossOfStability {
-    fn from(loss: &loss::Loss) -> Self {
+impl From<&loss_of_stability::Loss> for LossOfStability {
+    fn from(loss: &loss_of_stability::Loss) -> Self {
         let (swing, heights) = match loss.settles {
             None => (None, None),
             Some(Settles::Swing(swing)) => (Some(swing), None),

@@ -1,11 +1,12 @@
 //! The request and the answer of `jacobians`: where the map is differentiated, and its derivative there.
 
-use equipoise_physics::impact::State;
-use equipoise_physics::jacobian::{self, Linearization, MOST_SIDES, TIED};
-use equipoise_physics::map::{LOOK, run};
-use equipoise_physics::point::Point;
+use equipoise_physics::body::point::Point;
+use equipoise_physics::bounce::strike::State;
+use equipoise_physics::run::orbit::{LOOK, run};
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::Class;
+use equipoise_physics::stability::jacobian;
+use equipoise_physics::stability::jacobian::{Linearization, MOST_SIDES, TIED};
+use equipoise_physics::stability::linear_verdict::Class;
 use nalgebra::{Complex, DMatrix};
 use serde::{Serialize, Serializer};
 

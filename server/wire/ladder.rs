@@ -1,8 +1,8 @@
 //! The answer of `ladder`: the same scene on each rung up to its own, and what each of them changed.
 
-use equipoise_physics::ladder::{Change, Largest, Run, Step};
-use equipoise_physics::model::Rung;
 use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model_hierarchy::{Change, Largest, Run, Step};
 use serde::Serialize;
 
 use super::outcome::Outcome;

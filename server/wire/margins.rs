@@ -1,7 +1,8 @@
 //! Margins under tolerances, as they are asked for and answered.
 
-use equipoise_physics::margins::{self, Sample, Tolerances};
 use equipoise_physics::scene::Scene;
+use equipoise_physics::stability::margins;
+use equipoise_physics::stability::margins::{Sample, Tolerances};
 use serde::Serialize;
 
 use crate::http::Reader;

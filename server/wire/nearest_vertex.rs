@@ -1,8 +1,8 @@
 //! How near the vertices of a polygon come to the table, other than the one that bounces.
 
-use equipoise_physics::map::Contact;
-use equipoise_physics::polygon::{Nearest, Outline};
-use equipoise_physics::trig::sin_cos;
+use equipoise_physics::body::polygon::{Nearest, Outline};
+use equipoise_physics::numbers::trig::sin_cos;
+use equipoise_physics::run::orbit::Contact;
 use serde::Serialize;
 
 /// The vertex that was nearest to the table at any contact of a run.

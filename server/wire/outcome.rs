@@ -2,8 +2,10 @@
 //!
 //! Not here: what ends a run, which is physics.
 
-use equipoise_physics::demand::Excess;
-use equipoise_physics::map::{Ending, SPEED_LIMIT, Touch};
+use equipoise_physics::body::Touch;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::SPEED_LIMIT;
+use equipoise_physics::table::actuator_load::Excess;
 use serde::Serialize;
 
 /// How a run ended.

@@ -3,10 +3,11 @@
 //!
 //! Not here: the printed values, which stand with the presets.
 
-use equipoise_physics::jacobian::jacobian_at;
-use equipoise_physics::map::{Contact, Ending, LOOK, run};
+use equipoise_physics::numbers::trig;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::{Contact, LOOK, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::trig;
+use equipoise_physics::stability::jacobian::jacobian_at;
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 

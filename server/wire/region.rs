@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use equipoise_physics::fixed_point::JUDGED;
-use equipoise_physics::region::{self, Axis, Cell, Quantity, Region};
+use equipoise_physics::batch::batch_run::Outcome;
 use equipoise_physics::scene::{Kind, Scene, field};
-use equipoise_physics::sweep::Outcome;
+use equipoise_physics::stability::fixed_point::JUDGED;
+use equipoise_physics::surveys::stability_map;
+use equipoise_physics::surveys::stability_map::{Axis, Cell, Quantity, Region};
 use serde::{Serialize, Serializer};
 
 use super::scene::{Resolved, build, read_draft};
@@ -176,7 +177,7 @@ fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Axis> {
 pub struct Answer {
     request: Request,
     cells: Vec<Cell>,
-    boundary: Vec<region::Segment>,
+    boundary: Vec<stability_map::Segment>,
 }
 
 impl Answer {

@@ -1,7 +1,7 @@
 //! The cells of a region as rows of CSV and NDJSON, each written as soon as it is whole.
 
-use equipoise_physics::region::{Cell, Quantity, Region};
 use equipoise_physics::scene::Name;
+use equipoise_physics::surveys::stability_map::{Cell, Quantity, Region};
 use serde::Serialize;
 
 use super::region::{Counts, Outcomes, Request, Values, outcome_name, quantity_name, written};

@@ -1,8 +1,8 @@
 //! Scenes as JSON or as dotted query parameters: read field by field from the table of fields, and the vertices of a polygon
 //! beside it; written back with all defaults filled in.
 
-use equipoise_physics::model::Rung;
-use equipoise_physics::polygon::{FARTHEST, MAX_VERTICES, Vertices};
+use equipoise_physics::body::polygon::{FARTHEST, MAX_VERTICES, Vertices};
+use equipoise_physics::scene::model::Rung;
 use equipoise_physics::scene::{Draft, FIELDS, Field, Kind, Name, Scene, VERTICES, Value as FieldValue, field};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};

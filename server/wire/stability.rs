@@ -1,16 +1,17 @@
 //! The answer of `stability`: the verdict, and everything it rests on.
 
-use equipoise_physics::basin::{self, NoBasin};
 use equipoise_physics::control::BounceModel;
-use equipoise_physics::fixed_point;
-use equipoise_physics::fixed_point::JUDGED;
-use equipoise_physics::grip::Grip;
-use equipoise_physics::map::Ending;
-use equipoise_physics::margins::Tolerances;
-use equipoise_physics::regularity::WATCHED;
+use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::{Linear, Nonlinear};
-use equipoise_physics::verdict::{HigherOrder, Judgement, Verdict};
+use equipoise_physics::stability::basin;
+use equipoise_physics::stability::basin::NoBasin;
+use equipoise_physics::stability::contact_regime::Grip;
+use equipoise_physics::stability::fixed_point;
+use equipoise_physics::stability::fixed_point::JUDGED;
+use equipoise_physics::stability::linear_verdict::{Linear, Nonlinear};
+use equipoise_physics::stability::margins::Tolerances;
+use equipoise_physics::stability::regularity::WATCHED;
+use equipoise_physics::stability::verdict::{HigherOrder, Judgement, Verdict};
 use serde::Serialize;
 
 use super::controller;

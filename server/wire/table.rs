@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use equipoise_physics::double_double::DoubleDouble;
+use equipoise_physics::numbers::double_double::DoubleDouble;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 

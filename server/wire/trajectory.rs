@@ -1,10 +1,12 @@
 //! The answer of `trajectories`: the contacts of a run as a table, how it ended, and its flights where they are asked for.
 
-use equipoise_physics::demand::{Demand, Meter};
-use equipoise_physics::map::{Body, Contact, LOOK};
-use equipoise_physics::method::{self, Impact, Method};
-use equipoise_physics::model::{Forced, Rung};
+use equipoise_physics::body::Body;
+use equipoise_physics::run::method;
+use equipoise_physics::run::method::{Impact, Method};
+use equipoise_physics::run::orbit::{Contact, LOOK};
+use equipoise_physics::scene::model::{Forced, Rung};
 use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::table::actuator_load::{Demand, Meter};
 use serde::{Serialize, Serializer};
 
 use super::contacts::{Contacts, Flights};

@@ -5,8 +5,9 @@
 
 use std::time::Instant;
 
-use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::map::{Orbit, Release, Rules, run};
+use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::body::Release;
+use equipoise_physics::run::orbit::{run, Orbit, Rules};
 use rapier2d_f64::prelude::*;
 use serde_json::{Value, json};
 

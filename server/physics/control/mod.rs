@@ -1,15 +1,15 @@
 //! State feedback α = −K·(x, θ, ẋ, θ̇) on the return map of the bounce: the linear model of one bounce about the fixed point,
 //! the gain that is best for given weights (LQR), and what any gain does to the model.
 //!
-//! Linear: how far from upright a law holds is asked of runs ([`crate::region`]). The energy is not fed back here; to first order
-//! it moves by itself ([`crate::stability`]).
+//! Linear: how far from upright a law holds is asked of runs ([`crate::surveys::stability_map`]). The energy is not fed back here; to first order
+//! it moves by itself ([`crate::stability::linear_verdict`]).
 
 pub mod margin;
 pub mod riccati;
 
-use crate::grip::Grip;
-use crate::impact::Rod;
-use crate::jacobian::{eigenvalues, modulus};
+use crate::bounce::strike::Rod;
+use crate::stability::contact_regime::Grip;
+use crate::stability::jacobian::{eigenvalues, modulus};
 use margin::{Margin, margin};
 use nalgebra::{Complex, DMatrix, Matrix3, Matrix4, RowVector4, Vector3, Vector4};
 

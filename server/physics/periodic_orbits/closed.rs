@@ -5,10 +5,10 @@
 //! them nonlinearly; it steers the iteration, and no answer depends on it.
 
 use super::{Failure, Place, Setting, advance};
-use crate::dual::Dual;
-use crate::flight::Flight;
-use crate::impact::{Rod, State};
-use crate::number::Number;
+use crate::bounce::flight::Flight;
+use crate::bounce::strike::{Rod, State};
+use crate::numbers::dual::Dual;
+use crate::numbers::number::Number;
 use crate::scene::{Kind, Name, Scene, Value};
 use nalgebra::{DMatrix, DVector, Matrix4};
 

@@ -12,10 +12,11 @@ mod symmetric;
 
 pub use symmetric::symmetric;
 
-use crate::impact::{Rod, State};
-use crate::map::{Ending, Orbit, Rules};
-use crate::model::Model;
+use crate::bounce::strike::{Rod, State};
+use crate::run::ending::Ending;
+use crate::run::orbit::{Orbit, Rules};
 use crate::scene::Scene;
+use crate::scene::model::Model;
 use closed::{Course, Plane, Solution, correct};
 use multipliers::{Known, Multipliers};
 use nalgebra::SVector;

@@ -4,8 +4,8 @@
 //! drift is 1 at the upright bounce and at mirror-symmetric orbits of period 2, and not at others. Such eigenvalues make the matrix
 //! defective, so the others come from the characteristic polynomial with those factors divided out, never from an iteration on it.
 
-use crate::jacobian::{modulus, sort_eigenvalues};
-use crate::stability::PARABOLIC;
+use crate::stability::jacobian::{modulus, sort_eigenvalues};
+use crate::stability::linear_verdict::PARABOLIC;
 use nalgebra::{Complex, Matrix3, Matrix4, Schur};
 
 /// det(I − M) up to which an eigenvalue of M is 1, for an M of entries about 1.

@@ -4,8 +4,8 @@
 
 use super::closed::Course;
 use super::{Failure, Place};
-use crate::impact::{Rod, State};
-use crate::trig;
+use crate::bounce::strike::{Rod, State};
+use crate::numbers::trig;
 
 /// The orbit through an angle, rad, at the energy that it has; none where V² would not be positive.
 pub fn symmetric(rod: &Rod, theta: f64) -> Option<State> {

@@ -1,15 +1,15 @@
 //! Collects the values of a scene one by one, each checked against its row, and builds the scene from them.
 
-use super::field::{FIELDS, Name, Value};
+use super::fields::{FIELDS, Name, Value};
 use super::{BodyShape, Scene, Striking};
-use crate::demand::Limits;
-use crate::friction::{Law, Slide};
-use crate::impact::State;
-use crate::map::Release;
-use crate::noise::{Noise, Reading};
-use crate::polygon::{FLUSH, Outline, PolygonError, Vertices};
-use crate::rig::{Gains, Steering};
-use crate::trig;
+use crate::body::Release;
+use crate::body::general::{Gains, Steering};
+use crate::body::polygon::{FLUSH, Outline, PolygonError, Vertices};
+use crate::bounce::friction::{Law, Slide};
+use crate::bounce::strike::State;
+use crate::numbers::trig;
+use crate::table::actuator_load::Limits;
+use crate::table::noise::{Noise, Reading};
 
 /// What is wrong with a field, in words with numbers, limits and units.
 #[derive(Clone, Debug, PartialEq)]

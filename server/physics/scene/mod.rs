@@ -1,20 +1,22 @@
 //! What a user may say about a run: the table of fields, a draft that collects values, and the scene it becomes.
 //!
-//! Not here: how a scene is written down (JSON, query strings); which model runs it is [`crate::model`].
+//! Not here: how a scene is written down (JSON, query strings); which model runs it is [`crate::scene::model`].
 
 mod draft;
-mod field;
+mod fields;
+pub mod model;
+pub mod model_hierarchy;
 
 pub use draft::{Draft, FieldError, VERTICES};
-pub use field::{FIELDS, Field, Kind, Name, Value, field};
+pub use fields::{FIELDS, Field, Kind, Name, Value, field};
 
-use crate::demand::Limits;
-use crate::friction::{Law, Slide};
-use crate::impact::State;
-use crate::map::Release;
-use crate::noise::Noise;
-use crate::polygon::{Outline, Vertices};
-use crate::rig::Steering;
+use crate::body::Release;
+use crate::body::general::Steering;
+use crate::body::polygon::{Outline, Vertices};
+use crate::bounce::friction::{Law, Slide};
+use crate::bounce::strike::State;
+use crate::table::actuator_load::Limits;
+use crate::table::noise::Noise;
 
 /// Which body bounces.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,11 @@
 //! The chosen method is within the tolerance, and nearly always the cheapest that would have been, over the random scenes on
 //! which the error estimates are held.
 
-use equipoise_physics::double_double::DoubleDouble;
-use equipoise_physics::extended;
-use equipoise_physics::map::{Body, Ending};
-use equipoise_physics::method::Method;
+use equipoise_physics::body::Body;
+use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::extended;
+use equipoise_physics::run::method::Method;
 use equipoise_physics::scene::Scene;
 
 #[path = "support/random.rs"]

@@ -2,8 +2,8 @@
 
 mod paper;
 
-use equipoise_physics::basin::NoBasin;
-use equipoise_physics::map::Ending;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::stability::basin::NoBasin;
 use paper::scene;
 
 fn survives(tilt_gain: f64, theta: f64, impacts: u64) -> bool {

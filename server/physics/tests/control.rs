@@ -1,12 +1,14 @@
 //! State feedback: the linear model against the bounce itself, the Riccati equation against its plain iteration, margins
 //! against eigenvalues, and laws that have to hold.
 
+use equipoise_physics::body::{Body, Coming};
+use equipoise_physics::bounce::strike::{Rod, State};
 use equipoise_physics::control::{BounceModel, NoDesign, RESIDUAL, STABLE};
-use equipoise_physics::grip::Grip;
-use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::jacobian::{finite_difference_at, jacobian_at};
-use equipoise_physics::map::{Body, Coming, Ending, run};
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::contact_regime::Grip;
+use equipoise_physics::stability::jacobian::{finite_difference_at, jacobian_at};
 use nalgebra::{Matrix4, RowVector4, Vector4};
 
 #[path = "support/random.rs"]

@@ -1,9 +1,9 @@
 //! When a point comes down through y = 0: against dense sampling with bisection, and where the answer is known.
 
-use equipoise_physics::contact_time::{first_contact, first_descent, first_descent_before};
-use equipoise_physics::flight::Flight;
-use equipoise_physics::impact::State;
-use equipoise_physics::trig;
+use equipoise_physics::bounce::contact_time::{first_contact, first_descent, first_descent_before};
+use equipoise_physics::bounce::flight::Flight;
+use equipoise_physics::bounce::strike::State;
+use equipoise_physics::numbers::trig;
 use proptest::prelude::*;
 
 fn flight(theta: f64, theta_dot: f64, y_dot: f64, clearance: f64, contact_distance: f64) -> Flight {

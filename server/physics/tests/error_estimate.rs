@@ -1,8 +1,8 @@
 //! The error estimate is never below the error and seldom far above it, over random scenes of every kind and over the
 //! references. Other seeds than these set its safety factor.
 
-use equipoise_physics::double_double::DoubleDouble;
-use equipoise_physics::map::Body;
+use equipoise_physics::body::Body;
+use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::scene::{FIELDS, Name, Scene, Value};
 
 #[path = "support/random.rs"]

@@ -1,9 +1,10 @@
 //! The map with 31 digits against runs computed with 60, those that are chaotic too; and against the map in doubles.
 
-use equipoise_physics::double_double::DoubleDouble;
-use equipoise_physics::extended::{self, Contact};
-use equipoise_physics::map::Body;
-use equipoise_physics::model::Rung;
+use equipoise_physics::body::Body;
+use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::run::extended;
+use equipoise_physics::run::extended::Contact;
+use equipoise_physics::scene::model::Rung;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use serde_json::Value as Json;
 
@@ -119,7 +120,7 @@ fn a_run_that_settles_does_so_when_it_should() {
     );
     let mut settles_at = None;
     let ending = extended::run(&mut scene.extended_orbit().unwrap(), 100, |contact| {
-        if let Some(equipoise_physics::map::Ending::Settled { settle_time, .. }) = contact.ending {
+        if let Some(equipoise_physics::run::ending::Ending::Settled { settle_time, .. }) = contact.ending {
             settles_at = Some(settle_time);
         }
         true

@@ -1,10 +1,11 @@
 //! Friction: the worked example, the energy of random impacts under each law, and runs with and without a matched table.
 
-use equipoise_physics::friction::{Friction, Law, Mobility, Mode, Slide, as_it_is};
-use equipoise_physics::impact::Rod;
-use equipoise_physics::map::{Body, Coming, Orbit, run};
+use equipoise_physics::body::{Body, Coming};
+use equipoise_physics::bounce::friction::{Friction, Law, Mobility, Mode, Slide, as_it_is};
+use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::numbers::trig;
+use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::trig;
 
 #[path = "support/random.rs"]
 mod random;

@@ -3,12 +3,12 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
 
-use equipoise_physics::contact_time::{first_contact, first_descent};
-use equipoise_physics::flight::Flight;
-use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::jacobian::{finite_difference, jacobian};
-use equipoise_physics::model::Model;
-use equipoise_physics::trig;
+use equipoise_physics::bounce::contact_time::{first_contact, first_descent};
+use equipoise_physics::bounce::flight::Flight;
+use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::numbers::trig;
+use equipoise_physics::scene::model::Model;
+use equipoise_physics::stability::jacobian::{finite_difference, jacobian};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 

@@ -1,11 +1,12 @@
 //! Lanes and one orbit alone are the same: outcome, number of contacts and largest angle, bit for bit, over random rods.
 
-use equipoise_physics::dispatch::Path;
-use equipoise_physics::friction::{Friction, Law, Slide};
-use equipoise_physics::impact::{Rod, State};
-use equipoise_physics::map::{Body, Orbit, Rules, run};
-use equipoise_physics::rig::{Rig, Steering};
-use equipoise_physics::sweep::{End, Outcome, Start, sweep, sweep_on, sweep_rough, sweep_rough_on};
+use equipoise_physics::batch::batch_run::{End, Outcome, Start, sweep, sweep_on, sweep_rough, sweep_rough_on};
+use equipoise_physics::body::Body;
+use equipoise_physics::body::general::{Rig, Steering};
+use equipoise_physics::bounce::friction::{Friction, Law, Slide};
+use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::numbers::dispatch::Path;
+use equipoise_physics::run::orbit::{Orbit, Rules, run};
 use proptest::prelude::*;
 
 prop_compose! {

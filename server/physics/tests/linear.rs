@@ -1,7 +1,7 @@
 //! The linear solution is nowhere farther from the run with 31 digits than it says, and seldom much nearer.
 
-use equipoise_physics::double_double::DoubleDouble;
-use equipoise_physics::method::Method;
+use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::run::method::Method;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 #[path = "support/random.rs"]

@@ -1,7 +1,7 @@
 //! Margins over a box of bodies: closed forms at its corners, and no body inside that does worse.
 
-use equipoise_physics::margins::Tolerances;
 use equipoise_physics::scene::{Name, Scene, Value};
+use equipoise_physics::stability::margins::Tolerances;
 
 mod paper;
 #[path = "support/random.rs"]

@@ -1,6 +1,6 @@
 //! The choice of a method: the cheapest that holds, the same every time, and a refusal where none does.
 
-use equipoise_physics::method::Method;
+use equipoise_physics::run::method::Method;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 /// The paper's body with κ, θ₀ and an energy that is V = 1.14 m/s upright.

@@ -1,6 +1,6 @@
 //! Noise in runs: case 1 with a table that errs by 10 ms, under both readings.
 
-use equipoise_physics::map::run;
+use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 mod paper;

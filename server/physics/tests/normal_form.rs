@@ -2,13 +2,14 @@
 //! of stability against what runs beyond them do.
 
 use equipoise_physics::control::BounceModel;
-use equipoise_physics::jacobian::jacobian_at;
-use equipoise_physics::loss::{End, Loss, Settles, losses};
-use equipoise_physics::lyapunov::{Kind, Lyapunov, lyapunov};
-use equipoise_physics::map::{Ending, run};
-use equipoise_physics::normal_form::Bounce;
 use equipoise_physics::periodic_orbits::branch::Kind as Bifurcation;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::jacobian::jacobian_at;
+use equipoise_physics::stability::loss_of_stability::{End, Loss, Settles, losses};
+use equipoise_physics::stability::lyapunov::{Kind, Lyapunov, lyapunov};
+use equipoise_physics::stability::normal_form::Bounce;
 
 #[path = "support/random.rs"]
 mod random;
@@ -140,7 +141,7 @@ fn measured(scene: &Scene, impacts: u64) -> f64 {
     let linear = jacobian_at(
         &scene.model(),
         0.0,
-        &equipoise_physics::impact::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 },
+        &equipoise_physics::bounce::strike::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 },
         1,
     )
     .unwrap()
@@ -394,8 +395,12 @@ fn the_odd_derivative_is_that_of_the_jacobian() {
             }
             let scene = scene_on(slide, &values);
             let fixed_point = scene.fixed_point().unwrap();
-            let state =
-                equipoise_physics::impact::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
+            let state = equipoise_physics::bounce::strike::State {
+                theta: 0.0,
+                x_dot: 0.0,
+                y_dot: -fixed_point.speed,
+                theta_dot: 0.0,
+            };
             let whole = jacobian_at(&scene.model(), 0.0, &state, 1).unwrap().matrix;
             let odd = Bounce::of(&scene, &fixed_point).unwrap().odd_derivative();
             for (row, &r) in [0, 1, 3].iter().enumerate() {

@@ -2,13 +2,13 @@
 
 mod paper;
 
-use equipoise_physics::impact::State;
-use equipoise_physics::jacobian::{eigenvalues, jacobian};
-use equipoise_physics::map::Orbit;
-use equipoise_physics::model::Model;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::periodic_orbits::branch::{Branch, Kind, Start, Sweep, follow};
 use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
+use equipoise_physics::run::orbit::Orbit;
+use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::jacobian::{eigenvalues, jacobian};
 use nalgebra::Complex;
 
 fn scene(values: &[(Name, f64)]) -> Scene {

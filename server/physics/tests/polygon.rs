@@ -1,11 +1,11 @@
 //! Bodies drawn as polygons: closed forms, invariance, other ways of weighing them, what is no body, and which vertex
 //! touches the table, against sampling.
 
-use equipoise_physics::flight::Flight;
-use equipoise_physics::impact::State;
-use equipoise_physics::polygon::{FARTHEST, LENGTHS, MAX_VERTICES, Outline, PolygonError, Vertices};
+use equipoise_physics::body::polygon::{FARTHEST, LENGTHS, MAX_VERTICES, Outline, PolygonError, Vertices};
+use equipoise_physics::bounce::flight::Flight;
+use equipoise_physics::bounce::strike::State;
+use equipoise_physics::numbers::trig;
 use equipoise_physics::scene::{Kind, Name};
-use equipoise_physics::trig;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 

@@ -1,8 +1,10 @@
 //! Runs of polygons: those of the rod with the same l and ρ, bit for bit, until another vertex touches the table.
 
-use equipoise_physics::map::{Ending, Kick, Orbit, Touch, run};
-use equipoise_physics::model::Rung;
-use equipoise_physics::polygon::Vertices;
+use equipoise_physics::body::polygon::Vertices;
+use equipoise_physics::body::{Kick, Touch};
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::scene::model::Rung;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 const TRIANGLE: [[f64; 2]; 3] = [[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]];
@@ -107,7 +109,7 @@ fn a_vertex_that_comes_down_in_the_fall_ends_the_run_before_its_first_contact() 
     assert_eq!(contacts.len(), 0);
     let Ending::OtherVertex(touch) = ending else { panic!("{ending:?}") };
     let (_, [x, y]) = (touch.vertex, polygon.outline().unwrap().vertices()[touch.vertex]);
-    let (sin, cos) = equipoise_physics::trig::sin_cos(-4.0 * touch.t);
+    let (sin, cos) = equipoise_physics::numbers::trig::sin_cos(-4.0 * touch.t);
     let height = 1.0 - 0.5 * 9.81 * touch.t * touch.t + x * sin + y * cos;
     assert!(height.abs() < 1e-14, "{height}");
 }

@@ -3,10 +3,13 @@
 
 mod paper;
 
-use equipoise_physics::map::{Ending, Orbit};
-use equipoise_physics::model::Model;
-use equipoise_physics::regularity::{Regularity, TOLERANCE, Turns, WATCHED, nearest_resonance, weighted_average};
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::Orbit;
+use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::regularity::{
+    Regularity, TOLERANCE, Turns, WATCHED, nearest_resonance, weighted_average,
+};
 use paper::scene;
 
 fn regularity(scene: &Scene) -> Regularity {
@@ -94,7 +97,7 @@ fn the_period_two_orbit_is_one() {
         let speed_squared =
             rod.gravity * rho * rho * theta * alpha.cos() / (length * ((tilt_gain - 1.0) * theta).sin());
         let speed = speed_squared.sqrt();
-        let start = equipoise_physics::impact::State {
+        let start = equipoise_physics::bounce::strike::State {
             theta,
             x_dot: speed * alpha.tan(),
             y_dot: -speed,

@@ -1,8 +1,9 @@
 //! What a scene may ask beyond the plain rod: feedback, beliefs, limits, and the ladder of models that tells what each was good for.
 
-use equipoise_physics::extended;
-use equipoise_physics::map::{Ending, run};
-use equipoise_physics::model::Rung;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::extended;
+use equipoise_physics::run::orbit::run;
+use equipoise_physics::scene::model::Rung;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 mod paper;

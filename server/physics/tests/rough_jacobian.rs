@@ -1,12 +1,13 @@
 //! Derivatives through impacts with friction: against differences over every mode and law, on both sides of every kind of
 //! kink, under the mirror, and at the fixed point in closed form.
 
-use equipoise_physics::friction::{Friction, Law, Mode, Slide};
-use equipoise_physics::impact::{Rod, State, Strike};
-use equipoise_physics::jacobian::{Linearization, finite_difference, jacobian};
-use equipoise_physics::map::{Body, Coming, Orbit, Rules};
-use equipoise_physics::model::Model;
-use equipoise_physics::rig::{Rig, Steering};
+use equipoise_physics::body::general::{Rig, Steering};
+use equipoise_physics::body::{Body, Coming};
+use equipoise_physics::bounce::friction::{Friction, Law, Mode, Slide};
+use equipoise_physics::bounce::strike::{Rod, State, Strike};
+use equipoise_physics::run::orbit::{Orbit, Rules};
+use equipoise_physics::scene::model::Model;
+use equipoise_physics::stability::jacobian::{Linearization, finite_difference, jacobian};
 use nalgebra::{DMatrix, Matrix4};
 
 #[path = "support/random.rs"]

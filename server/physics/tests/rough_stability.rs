@@ -1,16 +1,18 @@
 //! Stability with friction: eigenvalues against the derivative, drift and energy against long runs, the stick cone, and a table
 //! that only tilts.
 
-use equipoise_physics::friction::Mode;
-use equipoise_physics::grip::Grip;
-use equipoise_physics::impact::State;
-use equipoise_physics::jacobian::{eigenvalues, jacobian};
-use equipoise_physics::map::{Body, Ending, run};
-use equipoise_physics::region::{Axis, Quantity, Region};
+use equipoise_physics::batch::batch_run::Outcome;
+use equipoise_physics::body::Body;
+use equipoise_physics::bounce::friction::Mode;
+use equipoise_physics::bounce::strike::State;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::Class;
-use equipoise_physics::sweep::Outcome;
-use equipoise_physics::verdict::{HigherOrder, Verdict};
+use equipoise_physics::stability::contact_regime::Grip;
+use equipoise_physics::stability::jacobian::{eigenvalues, jacobian};
+use equipoise_physics::stability::linear_verdict::Class;
+use equipoise_physics::stability::verdict::{HigherOrder, Verdict};
+use equipoise_physics::surveys::stability_map::{Axis, Quantity, Region};
 
 const L: f64 = 0.4 / 3.0;
 const RHO: f64 = 0.094_280_904_158_206_35;

@@ -1,9 +1,10 @@
 //! The survival map over κ and θ₀ of the paper's body, against runs one by one: `cargo test -p equipoise-physics --test
 //! survival_map -- --nocapture` prints its outline.
 
-use equipoise_physics::map::{Ending, Orbit, Rules, run};
-use equipoise_physics::region::{Axis, Cell, Quantity, Region};
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::{Orbit, Rules, run};
 use equipoise_physics::scene::{Draft, Name, Value};
+use equipoise_physics::surveys::stability_map::{Axis, Cell, Quantity, Region};
 
 const IMPACTS: u64 = 20_000;
 const COLUMNS: usize = 121;

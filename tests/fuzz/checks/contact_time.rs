@@ -1,13 +1,13 @@
 //! The contact time: that the root is one, that no other comes before it, and that finding it is bounded work. Judged with 31
 //! digits, by a march that cannot step over a root, and by symmetries that hold to the last bit.
 
-use equipoise_physics::contact_time::{
+use equipoise_physics::bounce::contact_time::{
     MAX_PIECES, TooManyPieces, evaluations, first_contact, first_descent, first_descent_before,
 };
-use equipoise_physics::double_double::DoubleDouble;
-use equipoise_physics::flight::Flight;
-use equipoise_physics::impact::State;
-use equipoise_physics::trig;
+use equipoise_physics::bounce::flight::Flight;
+use equipoise_physics::bounce::strike::State;
+use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::numbers::trig;
 use std::f64::consts::TAU;
 
 use super::numbers::Numbers;

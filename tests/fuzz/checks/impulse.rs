@@ -1,13 +1,13 @@
 //! The strike: that it never pulls, keeps to the friction cone, balances momentum and energy, and restores what its law of
 //! restitution says, along the path that the contact takes. Judged with 31 digits from the same velocities.
 
-use equipoise_physics::double_double::DoubleDouble;
-use equipoise_physics::friction::{Friction, Impulse, Law, Mobility, Mode, Slide, as_it_is};
-use equipoise_physics::impact::{Rod, State, Strike};
-use equipoise_physics::map::{Body, Coming};
-use equipoise_physics::number::Real;
+use equipoise_physics::body::{Body, Coming};
+use equipoise_physics::bounce::friction::{Friction, Impulse, Law, Mobility, Mode, Slide, as_it_is};
+use equipoise_physics::bounce::strike::{Rod, State, Strike};
+use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::numbers::number::Real;
+use equipoise_physics::numbers::trig;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::trig;
 
 use super::numbers::Numbers;
 

@@ -1,0 +1,137 @@
+//! What the lanes strike on: a contact without friction, or with it.
+//!
+//! Each has a loop of its own over the lanes, so that the one without pays nothing for the other. Not here: where the table
+//! is then, and the flight after ([`super::bounce`]).
+
+use super::bounce::{Moving, Rods, SURE_RISE, Scratch};
+use super::number::Lane;
+use super::{Lanes, WIDTH};
+use crate::body::general::{Rig, Steering};
+use crate::bounce::friction::{Friction, Law, Slide, as_it_is};
+use crate::run::ending::Ending;
+use crate::run::orbit::{Midst, Rules};
+
+/// A kind of contact.
+pub(crate) trait Surface {
+    /// What sets one lane apart from the others.
+    type Of: Copy;
+
+    /// That of a lane that idles.
+    const IDLE: Self::Of;
+
+    /// Puts another into a lane.
+    fn set(&mut self, lane: usize, of: Self::Of);
+
+    /// The velocities after the strike, in all lanes; those whose run may end here are set apart.
+    fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch);
+
+    /// One contact of one lane by the map itself: where the run is then, or why it ends.
+    fn contact(&self, rods: &Rods, lane: usize, midst: Midst) -> Result<Midst, Ending>;
+}
+
+/// Without friction; rounding is kept off the energy, but not where a run can settle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Smooth;
+
+impl Surface for Smooth {
+    type Of = ();
+    const IDLE: () = ();
+
+    #[inline(always)]
+    fn set(&mut self, _: usize, (): ()) {}
+
+    #[inline(always)]
+    fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) {
+        let number = L::from_f64;
+        for lane in 0..WIDTH {
+            let rod = rods.rod(lane).lift::<L>();
+            let tilt = scratch.tilt::<L>(lane);
+            let mut strike = rod.strike_with(&moving.state(lane).map(number), &tilt, number(rods.leverage(lane)));
+            // Where none is held, the one that there is: then nothing is corrected.
+            let held = if rods.settles(lane) { strike.energy } else { number(moving.energy[lane]) };
+            let energy = rod.hold_energy(&mut strike, held);
+            next.struck(lane, &strike, energy.to_f64(), SURE_RISE, scratch);
+        }
+    }
+
+    fn contact(&self, rods: &Rods, lane: usize, midst: Midst) -> Result<Midst, Ending> {
+        midst.advance(rods.rod(lane), Rules { holds_energy: !rods.settles(lane), ..rods.rules(lane) })
+    }
+}
+
+/// As [`SURE_RISE`], for a contact with friction and l = 0: 1 + l²/ρ² times as much for others ([`crate::bounce::friction::rise_rounding`]).
+const ROUGH_SURE_RISE: f64 = 10.0 * SURE_RISE;
+
+/// With friction, of one law and one way to slide in all lanes.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(crate) struct Rough {
+    coefficient: Lanes,
+    law: Law,
+    slide: Slide,
+}
+
+impl Rough {
+    pub(crate) fn new(law: Law, slide: Slide) -> Self {
+        Self { coefficient: [Self::IDLE; WIDTH], law, slide }
+    }
+
+    /// The loop for one law and way to slide, which are constants in it.
+    #[inline(always)]
+    fn strike_by<L: Lane>(
+        &self,
+        law: Law,
+        slide: Slide,
+        rods: &Rods,
+        moving: &Moving,
+        next: &mut Moving,
+        scratch: &mut Scratch,
+    ) {
+        let number = L::from_f64;
+        for lane in 0..WIDTH {
+            let rod = rods.rod(lane).lift::<L>();
+            let tilt = scratch.tilt::<L>(lane);
+            let friction = Friction { coefficient: self.coefficient[lane], law, slide };
+            let before = moving.state(lane).map(number);
+            let strike = friction.strike(&rod, &before, &tilt, None, number(rods.leverage(lane)), as_it_is);
+            let lever_squared = rods.lever_squared(lane);
+            next.struck(lane, &strike, moving.energy[lane], ROUGH_SURE_RISE * (1.0 + lever_squared), scratch);
+        }
+    }
+}
+
+impl Surface for Rough {
+    type Of = f64;
+    const IDLE: f64 = 1.0;
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, coefficient: f64) {
+        self.coefficient[lane] = coefficient;
+    }
+
+    #[inline(always)]
+    fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) {
+        macro_rules! by {
+            ($($law:ident $slide:ident),*) => {
+                match (self.law, self.slide) {
+                    $((Law::$law, Slide::$slide) => {
+                        self.strike_by::<L>(Law::$law, Slide::$slide, rods, moving, next, scratch);
+                    })*
+                }
+            };
+        }
+        by!(Poisson None, Poisson Matched, Newton None, Newton Matched, Stronge None, Stronge Matched);
+    }
+
+    fn contact(&self, rods: &Rods, lane: usize, midst: Midst) -> Result<Midst, Ending> {
+        let friction = Friction { coefficient: self.coefficient[lane], law: self.law, slide: self.slide };
+        let rig = Rig {
+            rod: rods.rod(lane),
+            steering: Steering::TiltGain,
+            friction: Some(friction),
+            noise: None,
+            outline: None,
+        };
+        midst.advance(rig, rods.rules(lane))
+    }
+}

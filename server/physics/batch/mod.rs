@@ -1,0 +1,4 @@
+//! Many runs at once, several in the lanes of one vector.
+
+pub mod batch_run;
+mod lanes;

@@ -1,0 +1,242 @@
+//! The rod with all that a scene may ask beyond the plain one, each part only where it is asked for: state feedback, friction,
+//! noise, the outline of a polygon.
+//!
+//! A body of its own, so that the plain rod pays for none of it. Each part is another module's: [`crate::bounce::friction`],
+//! [`crate::table::noise`], [`crate::body::polygon`]; here they meet.
+
+use crate::body::polygon::Outline;
+use crate::body::{Arrival, Body, Coming, NoContact, Plan, Release, Touch};
+use crate::bounce::contact_time::{first_contact, first_descent};
+use crate::bounce::flight::Flight;
+use crate::bounce::friction;
+use crate::bounce::friction::{Friction, Law, Slide, as_it_is};
+use crate::bounce::strike::{Rod, State, Strike, Tilt};
+use crate::numbers::number::Number;
+use crate::numbers::trig;
+use crate::table::noise::{Draw, Noise, Reading};
+
+/// Least time, s, from one strike to the next: a table that is timed too early strikes then.
+pub const LEAST_FLIGHT: f64 = 1e-6;
+
+/// How the table's tilt follows from what it senses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Steering<N = f64> {
+    /// α = κθ.
+    TiltGain,
+    /// α = −K·(x, θ, ẋ, θ̇).
+    Feedback(Gains<N>),
+}
+
+/// K of a state feedback.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Gains<N = f64> {
+    /// rad/m.
+    pub x: N,
+    /// 1.
+    pub theta: N,
+    /// rad·s/m.
+    pub x_dot: N,
+    /// s.
+    pub theta_dot: N,
+}
+
+impl<N: Number> Gains<N> {
+    /// α, rad, at a place of the centre of gravity (m) and a state.
+    #[inline(always)]
+    pub fn tilt(&self, x: N, state: &State<N>) -> N {
+        -(self.x * x + self.theta * state.theta + self.x_dot * state.x_dot + self.theta_dot * state.theta_dot)
+    }
+}
+
+impl Steering {
+    /// The table's tilt at a place and a state, in any kind of number.
+    pub(crate) fn tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>) -> Tilt<N> {
+        let Self::Feedback(gains) = self else { return rod.tilt(state.theta) };
+        let [x_gain, theta, x_dot, theta_dot] = [gains.x, gains.theta, gains.x_dot, gains.theta_dot].map(N::from_f64);
+        let alpha = Gains { x: x_gain, theta, x_dot, theta_dot }.tilt(x, state);
+        Tilt::new(state.theta, alpha, state.theta - alpha)
+    }
+}
+
+/// A rod with what a scene asks for beyond the plain one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rig {
+    /// The rod and its table without it.
+    pub rod: Rod,
+    /// How the table tilts.
+    pub steering: Steering,
+    /// Friction and a table that moves along itself.
+    pub friction: Option<Friction>,
+    /// Timing and sensing errors.
+    pub noise: Option<Noise>,
+    /// The vertices of a polygon.
+    pub outline: Option<Outline>,
+}
+
+/// A contact without friction, for a table that moves as planned.
+const SMOOTH: Friction = Friction { coefficient: 0.0, law: Law::Poisson, slide: Slide::None };
+
+impl Rig {
+    /// The table's tilt at a place and a state, the angle sensed with an error (rad).
+    fn tilt(&self, x: f64, state: &State, error: f64) -> Tilt<f64> {
+        let sensed = State { theta: state.theta + error, ..*state };
+        let alpha = match self.steering {
+            // The rod's own, without the rounding of θ − κθ.
+            Steering::TiltGain if error == 0.0 => return self.rod.tilt(state.theta),
+            Steering::TiltGain => self.rod.tilt_gain * sensed.theta,
+            Steering::Feedback(gains) => gains.tilt(x, &sensed),
+        };
+        Tilt::new(state.theta, alpha, state.theta - alpha)
+    }
+
+    /// The rod as a table sees it whose contacts are not at y = 0: the energy of a bounce counts from there.
+    fn seen_at(&self, clearance: f64) -> Rod {
+        Rod { target_energy: self.rod.target_energy - self.rod.gravity * clearance, ..self.rod }
+    }
+
+    fn draw(&self, n: u64) -> Draw {
+        self.noise.map_or(Draw { timing: 0.0, angle: 0.0 }, |noise| noise.draw(n))
+    }
+
+    /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`.
+    fn arrive(&self, flight: &Flight, t: f64, n: u64, x: f64) -> Result<Arrival, NoContact> {
+        let arrival = self.meet_timed(flight, t, n, x)?;
+        if let Some(outline) = &self.outline
+            && let Some(touch) = outline.first_touch(flight, t.min(arrival.t))?
+        {
+            return Err(NoContact::OtherVertex(touch));
+        }
+        Ok(arrival)
+    }
+
+    /// Where a table that strikes about the time `t`, when the contact point is at y = 0, meets the body.
+    fn meet_timed(&self, flight: &Flight, t: f64, n: u64, x: f64) -> Result<Arrival, NoContact> {
+        let Some(noise) = self.noise else { return Ok((t, flight.end(t)).into()) };
+        let Draw { timing, angle } = noise.draw(n);
+        let struck = if timing == 0.0 { t } else { (t + timing).max(LEAST_FLIGHT) };
+        let state = flight.end(struck);
+        match noise.model {
+            Reading::Strike => {
+                let clearance = if timing == 0.0 { 0.0 } else { flight.gap(struck).value };
+                Ok(Arrival { t: struck, state, clearance, plan: None })
+            }
+            Reading::Plan => match self.meet(flight, struck, &state, x + state.x_dot * struck, angle) {
+                // Released onto the table: it is on the plane, whatever was planned for later.
+                Err(NoContact::Missed) if t == 0.0 => Ok((LEAST_FLIGHT, flight.end(LEAST_FLIGHT)).into()),
+                met => met,
+            },
+        }
+    }
+
+    /// Where a flight meets the table that was set out to strike at time `struck` the state `seen` at `x`, with its contact at
+    /// y = 0: a plane that moves along its normal.
+    ///
+    /// Seen from the plane, the body flies as over a level table: with β for θ, and gravity's part along the normal.
+    fn meet(&self, flight: &Flight, struck: f64, seen: &State, x: f64, error: f64) -> Result<Arrival, NoContact> {
+        let tilt = self.tilt(x, seen, error);
+        let Tilt { alpha, sin_alpha, cos_alpha, .. } = tilt;
+        let (table_x, table_y) = self.rod.strike_with(seen, &tilt, self.rod.leverage()).table_velocity;
+        let plan = Plan {
+            alpha,
+            normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
+            tangential_velocity: self.friction.map_or(0.0, |friction| friction.table_speed(&self.rod, seen, &tilt)),
+        };
+        let length = flight.contact_distance;
+        let State { theta, x_dot, y_dot, theta_dot } = flight.start;
+        let (sin, cos) = flight.sin_cos_theta;
+        // The contact point at the start of the flight, from the planned one at the planned time.
+        let across = length * (sin - tilt.sin_theta) - x_dot * struck;
+        let above = flight.clearance * cos_alpha - sin_alpha * across + plan.normal_velocity * struck;
+        let relative = Flight {
+            start: State {
+                theta: theta - alpha,
+                x_dot: 0.0,
+                y_dot: cos_alpha * y_dot - sin_alpha * x_dot - plan.normal_velocity,
+                theta_dot,
+            },
+            sin_cos_theta: (sin * cos_alpha - cos * sin_alpha, cos * cos_alpha + sin * sin_alpha),
+            clearance: above,
+            contact_distance: length,
+            gravity: flight.gravity * cos_alpha,
+        };
+        if relative.gravity <= 0.0 {
+            return Err(NoContact::Missed);
+        }
+        let t = first_descent(&relative)?.ok_or(NoContact::Missed)?.max(LEAST_FLIGHT);
+        Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan) })
+    }
+
+    fn flight(&self, from: &Coming, strike: &Strike) -> Flight {
+        Flight { clearance: from.clearance, ..self.rod.flight(strike) }
+    }
+}
+
+impl Body for Rig {
+    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
+        let (t, _) = self.rod.fall(release)?;
+        self.arrive(&self.rod.flight_from(release), t, 1, release.x)
+    }
+
+    // Out of the loop of the plain rod, which shares its code with this one; likewise below.
+    #[inline(never)]
+    fn strike(&self, coming: &Coming) -> Strike {
+        let Coming { n, x, state, clearance, plan } = coming;
+        let rod = self.seen_at(*clearance);
+        let tilt = match plan {
+            Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
+            None => self.tilt(*x, state, self.draw(*n).angle),
+        };
+        match (&self.friction, plan) {
+            (None, None) => rod.strike_with(state, &tilt, rod.leverage()),
+            (friction, plan) => {
+                let friction = friction.as_ref().unwrap_or(&SMOOTH);
+                friction.strike(&rod, state, &tilt, plan.as_ref(), rod.leverage(), as_it_is)
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn touches(&self, coming: &Coming, strike: &Strike) -> Option<Touch> {
+        let nearest = self.outline.as_ref()?.below_table(trig::sin_cos(coming.state.theta - strike.alpha))?;
+        Some(Touch { vertex: nearest.vertex, t: 0.0 })
+    }
+
+    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
+        self.rod.hold_energy(strike, energy)
+    }
+
+    #[inline(always)]
+    fn rise_rounding(&self, before: &State, strike: &Strike) -> f64 {
+        match self.friction {
+            Some(_) => friction::rise_rounding(&self.rod, before, strike, f64::EPSILON),
+            None => strike.rise_rounding(before.y_dot, f64::EPSILON),
+        }
+    }
+
+    #[inline(never)]
+    fn fly(&self, from: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+        let flight = self.flight(from, strike);
+        let t = if flight.clearance < 0.0 {
+            first_descent(&flight)?.ok_or(NoContact::Sinking)?
+        } else {
+            first_contact(&flight)?
+        };
+        self.arrive(&flight, t, from.n + 1, from.x)
+    }
+
+    fn contact_distance(&self) -> f64 {
+        self.rod.contact_distance
+    }
+
+    fn contact_height(&self, state: &State) -> f64 {
+        Body::contact_height(&self.rod, state)
+    }
+
+    fn energy(&self, state: &State) -> f64 {
+        self.rod.energy(state)
+    }
+
+    fn contact_speed(&self, state: &State) -> f64 {
+        self.rod.contact_speed(state)
+    }
+}

@@ -1,0 +1,256 @@
+//! What bounces, as the map sees it: how it falls, is struck and flies on; and the plain rod as one.
+//!
+//! Not here: the other bodies ([`crate::body::point`], [`crate::body::general`]) and how their runs go on ([`crate::run::orbit`]).
+
+pub mod general;
+pub mod point;
+pub mod polygon;
+
+use crate::bounce::contact_time;
+use crate::bounce::contact_time::TooManyPieces;
+use crate::bounce::flight::Flight;
+use crate::bounce::strike::{Rod, State, Strike};
+
+/// What starts a run: a free body at t = 0, before its first contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Release {
+    /// Horizontal place of the centre of gravity, m.
+    pub x: f64,
+    /// Height of the centre of gravity, m.
+    pub height: f64,
+    /// Angle and velocities.
+    pub state: State,
+}
+
+/// Velocities that something else than the table gives a body, just after a strike.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Kick {
+    /// Added to the horizontal velocity, m/s.
+    pub x_dot: f64,
+    /// Added to the vertical velocity, m/s.
+    pub y_dot: f64,
+    /// Added to the angular velocity, rad/s.
+    pub theta_dot: f64,
+}
+
+/// Where a flight ends: just before a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// Time since the flight began, s.
+    pub t: f64,
+    /// Angle and velocities.
+    pub state: State,
+    /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
+    pub clearance: f64,
+    /// What the table has set out to do, where it planned ahead.
+    pub plan: Option<Plan>,
+}
+
+impl From<(f64, State)> for Arrival {
+    #[inline(always)]
+    fn from((t, state): (f64, State)) -> Self {
+        Self { t, state, clearance: 0.0, plan: None }
+    }
+}
+
+/// A table that moves as it was planned before the contact, whatever it then meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// α, rad.
+    pub alpha: f64,
+    /// The table's velocity along its normal, m/s.
+    pub normal_velocity: f64,
+    /// The table's velocity along itself, m/s.
+    pub tangential_velocity: f64,
+}
+
+/// A contact that is about to happen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coming {
+    /// Its number, from 1.
+    pub n: u64,
+    /// Where the centre of gravity is, m.
+    pub x: f64,
+    /// Angle and velocities just before it.
+    pub state: State,
+    /// As in [`Arrival`], m.
+    pub clearance: f64,
+    /// As in [`Arrival`].
+    pub plan: Option<Plan>,
+}
+
+impl Coming {
+    /// A contact at y = 0, on a table that has planned nothing.
+    #[inline(always)]
+    pub fn at(n: u64, x: f64, state: State) -> Self {
+        Self { n, x, state, clearance: 0.0, plan: None }
+    }
+}
+
+/// Why a flight ends without a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoContact {
+    /// The contact time passed its work limit.
+    TooManyPieces,
+    /// The contact point does not come up to y = 0 again.
+    Sinking,
+    /// The planned table is never met.
+    Missed,
+    /// Another vertex comes down first.
+    OtherVertex(Touch),
+}
+
+impl From<TooManyPieces> for NoContact {
+    fn from(_: TooManyPieces) -> Self {
+        Self::TooManyPieces
+    }
+}
+
+/// A vertex of the body, other than the one that bounces, on the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Its place among the vertices, from 0.
+    pub vertex: usize,
+    /// Time since the last contact, or since the release, s.
+    pub t: f64,
+}
+
+/// A body that bounces: its strike and its flights.
+pub trait Body: Copy {
+    /// The first contact; at t = 0 if it is on the table already and does not rise.
+    ///
+    /// # Errors
+    /// Why there is none; likewise in [`Body::fly`].
+    fn fall(&self, release: &Release) -> Result<Arrival, NoContact>;
+
+    /// The strike at a contact.
+    fn strike(&self, coming: &Coming) -> Strike;
+
+    /// Another vertex that is below the table's line at a strike.
+    #[inline(always)]
+    fn touches(&self, _: &Coming, _: &Strike) -> Option<Touch> {
+        None
+    }
+
+    /// Keeps rounding off the energy of a strike: as [`Rod::hold_energy`].
+    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64;
+
+    /// Size of a rise of the contact point after a strike that is rounding, m/s.
+    #[inline(always)]
+    fn rise_rounding(&self, before: &State, strike: &Strike) -> f64 {
+        strike.rise_rounding(before.y_dot, f64::EPSILON)
+    }
+
+    /// The flight after the strike of a contact.
+    ///
+    /// # Errors
+    /// As [`Body::fall`].
+    fn fly(&self, from: &Coming, strike: &Strike) -> Result<Arrival, NoContact>;
+
+    /// l, m: how far the contact point is from the centre of gravity.
+    fn contact_distance(&self) -> f64;
+
+    /// Height of the centre of gravity above that of the contact point, m.
+    fn contact_height(&self, state: &State) -> f64;
+
+    /// Energy per unit mass ½|v|² + Gy with the contact point at y = 0, m²/s².
+    fn energy(&self, state: &State) -> f64;
+
+    /// Vertical velocity of the contact point, m/s.
+    fn contact_speed(&self, state: &State) -> f64;
+}
+
+impl Rod {
+    /// Time of the first contact (0 if it is on the table already and does not rise), s, and the state just before it.
+    ///
+    /// # Errors
+    /// [`TooManyPieces`] where the contact time passed its work limit; likewise in [`Rod::fly`].
+    pub fn fall(&self, release: &Release) -> Result<(f64, State), TooManyPieces> {
+        let flight = self.flight_from(release);
+        let gap = flight.gap(0.0);
+        if flight.clearance == 0.0 && (gap.slope < 0.0 || (gap.slope == 0.0 && gap.bend <= 0.0)) {
+            return Ok((0.0, release.state));
+        }
+        let t = contact_time::first_contact(&flight)?;
+        Ok((t, flight.end(t)))
+    }
+
+    /// The flight that begins at a release.
+    pub(crate) fn flight_from(&self, release: &Release) -> Flight {
+        let sin_cos_theta = crate::numbers::trig::sin_cos(release.state.theta);
+        let height = self.contact_distance * sin_cos_theta.1;
+        let clearance = release.height - height;
+        // A height typed as l cos θ means a contact, whatever the last digit.
+        let clearance =
+            if clearance <= 4.0 * f64::EPSILON * release.height.abs().max(height.abs()) { 0.0 } else { clearance };
+        Flight {
+            start: release.state,
+            sin_cos_theta,
+            clearance,
+            contact_distance: self.contact_distance,
+            gravity: self.gravity,
+        }
+    }
+
+    /// Length of the flight after a strike, s, and the state at its end.
+    ///
+    /// # Errors
+    /// As [`Rod::fall`].
+    #[inline(always)]
+    pub fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
+        let flight = self.flight(strike);
+        let t = contact_time::first_contact(&flight)?;
+        Ok((t, flight.end(t)))
+    }
+}
+
+impl Body for Rod {
+    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
+        Ok(Rod::fall(self, release)?.into())
+    }
+
+    #[inline(always)]
+    fn strike(&self, coming: &Coming) -> Strike {
+        Rod::strike(self, &coming.state)
+    }
+
+    #[inline(always)]
+    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
+        Rod::hold_energy(self, strike, energy)
+    }
+
+    #[inline(always)]
+    fn fly(&self, _: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+        Ok(Rod::fly(self, strike)?.into())
+    }
+
+    fn contact_distance(&self) -> f64 {
+        self.contact_distance
+    }
+
+    fn contact_height(&self, state: &State) -> f64 {
+        self.contact_distance * crate::numbers::trig::sin_cos(state.theta).1
+    }
+
+    fn energy(&self, state: &State) -> f64 {
+        Rod::energy(self, state)
+    }
+
+    fn contact_speed(&self, state: &State) -> f64 {
+        Rod::contact_speed(self, state)
+    }
+}
+
+impl<N: crate::numbers::number::Number> Rod<N> {
+    /// The flight that follows a strike.
+    #[inline(always)]
+    pub fn flight(&self, strike: &Strike<N>) -> Flight<N> {
+        Flight {
+            start: strike.after,
+            sin_cos_theta: strike.sin_cos_theta,
+            clearance: N::from_f64(0.0),
+            contact_distance: self.contact_distance,
+            gravity: self.gravity,
+        }
+    }
+}

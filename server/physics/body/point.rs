@@ -1,0 +1,70 @@
+//! The point mass of the paper's opening example, eq. (3) to (5): a body without an angle, on a table that tilts by κ
+//! times the angle of its velocity.
+//!
+//! A body of its own, never a cheaper rung of a rod: a rod's table follows the rod's angle. Its arithmetic is that of a
+//! rod whose contact point is its centre of gravity.
+
+use crate::body::{Arrival, Body, Coming, NoContact, Release};
+use crate::bounce::strike::{Rod, State, Strike};
+
+/// A point mass. In its states `theta` is the angle of the velocity from straight down, counter-clockwise, and
+/// `theta_dot` is 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    rod: Rod,
+}
+
+impl Point {
+    /// The point mass with the table, gravity and restitution of `rod`, whose own lengths drop out.
+    pub fn new(rod: Rod) -> Self {
+        Self { rod: Rod { contact_distance: 0.0, radius_of_gyration: 1.0, ..rod } }
+    }
+
+    /// Its parameters, as those of a rod of no length.
+    pub fn parameters(&self) -> &Rod {
+        &self.rod
+    }
+
+    /// The state with these velocities (m/s) just before a contact.
+    pub fn state(x_dot: f64, y_dot: f64) -> State {
+        State { theta: crate::numbers::trig::atan2(x_dot, -y_dot), x_dot, y_dot, theta_dot: 0.0 }
+    }
+
+    fn turned((t, arrival): (f64, State)) -> Arrival {
+        (t, Self::state(arrival.x_dot, arrival.y_dot)).into()
+    }
+}
+
+impl Body for Point {
+    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
+        Ok(Self::turned(self.rod.fall(release)?))
+    }
+
+    fn strike(&self, coming: &Coming) -> Strike {
+        self.rod.strike(&coming.state)
+    }
+
+    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
+        self.rod.hold_energy(strike, energy)
+    }
+
+    fn fly(&self, _: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+        Ok(Self::turned(self.rod.fly(strike)?))
+    }
+
+    fn contact_distance(&self) -> f64 {
+        0.0
+    }
+
+    fn contact_height(&self, _: &State) -> f64 {
+        0.0
+    }
+
+    fn energy(&self, state: &State) -> f64 {
+        self.rod.energy(state)
+    }
+
+    fn contact_speed(&self, state: &State) -> f64 {
+        state.y_dot
+    }
+}

@@ -1,0 +1,437 @@
+//! When a flight ends: the first time at which the contact point comes down to y = 0, found with a certificate and
+//! without sampling. The same for any point of the body, from above or below.
+//!
+//! Where l θ̇² ≤ G the gap is concave and Newton falls onto its one root from the right. A faster spin is cut at the
+//! inflections of the gap into convex and concave pieces, on each of which a down-crossing is found or excluded.
+
+use crate::bounce::flight::{Flight, Gap};
+use crate::bounce::strike::State;
+use crate::numbers::number::{Number, Real};
+use std::cell::Cell;
+use std::f64::consts::TAU;
+
+/// Most pieces that one flight may be cut into, whatever its gravity and spin.
+///
+/// The contact point can be at y = 0 only while the centre of gravity is within l of it: once on the way up, once on the way
+/// down. In there it is at or above y = 0 when it points up and at or below it when it points down, so it comes down within
+/// three half turns. A turn has two inflections: that is at most 5 pieces each way. The rest is for rounding; a flight of so
+/// many turns that its angle has no digits left passes the limit, and its run ends as `diverged`.
+pub const MAX_PIECES: u32 = 32;
+
+/// Most Newton steps for one root: a double root (grazing) halves its error a step, all others square it.
+const MAX_STEPS: u32 = 128;
+
+/// A flight was cut into more than [`MAX_PIECES`] pieces without a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooManyPieces;
+
+/// Time from the start of a flight to its end, s.
+///
+/// The flight must start at or above y = 0; where it starts on it (h₀ = 0) it must leave upwards: t = 0 is not a contact.
+///
+/// # Errors
+/// [`TooManyPieces`] where the work limit is passed.
+#[inline(always)]
+pub fn first_contact(flight: &Flight) -> Result<f64, TooManyPieces> {
+    look_for_contact(flight, Uncounted)
+}
+
+/// When a point first comes *down* through y = 0, s from the start of its flight; none where it never does.
+///
+/// It may start at any height. From below (h₀ < 0, or h₀ = 0 moving down) it has to rise through y = 0 first; one that
+/// rises no further than to y = 0 does not come down through it.
+///
+/// # Errors
+/// [`TooManyPieces`] where the work limit is passed.
+pub fn first_descent(flight: &Flight) -> Result<Option<f64>, TooManyPieces> {
+    first_descent_before(flight, f64::INFINITY)
+}
+
+/// [`first_descent`], if it is up to a time `limit`, s: what lies beyond costs nothing.
+///
+/// # Errors
+/// As [`first_descent`].
+pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, TooManyPieces> {
+    let start = flight.gap(0.0);
+    let rises = start.slope > 0.0 || (start.slope == 0.0 && start.bend > 0.0);
+    let above = start.value > 0.0 || (start.value == 0.0 && rises);
+    if flight.bulge() > flight.gravity {
+        return first_descent_spinning(*flight, Uncounted, above, limit, &mut { MAX_PIECES });
+    }
+    if !above && start.slope <= 0.0 {
+        return Ok(None);
+    }
+    let end = latest_contact(flight).min(limit);
+    if end <= 0.0 {
+        return Ok(None);
+    }
+    let at_end = flight.gap(end);
+    if at_end.value > 0.0 {
+        // At the latest contact only rounding leaves it above.
+        return Ok((end < limit).then_some(end));
+    }
+    if above {
+        return look_for_contact(flight, Uncounted).map(|t| Some(t.min(limit)));
+    }
+    Ok(last_root(flight, Uncounted, 0.0, end, at_end))
+}
+
+/// How many times [`first_contact`] evaluates the gap of a flight. It is done for that, so it is not for loops in a hurry.
+pub fn evaluations(flight: &Flight) -> u64 {
+    let count = Cell::new(0);
+    let _ = look_for_contact(flight, &count);
+    count.get()
+}
+
+/// Who looks at the gap; nothing to pass where nobody counts.
+trait Eye: Copy {
+    fn gap(self, flight: &Flight, t: f64) -> Gap;
+}
+
+#[derive(Clone, Copy)]
+struct Uncounted;
+
+impl Eye for Uncounted {
+    #[inline(always)]
+    fn gap(self, flight: &Flight, t: f64) -> Gap {
+        flight.gap(t)
+    }
+}
+
+impl Eye for &Cell<u64> {
+    fn gap(self, flight: &Flight, t: f64) -> Gap {
+        self.set(self.get() + 1);
+        flight.gap(t)
+    }
+}
+
+#[inline(always)]
+fn look_for_contact(flight: &Flight, eye: impl Eye) -> Result<f64, TooManyPieces> {
+    if flight.bulge() > flight.gravity {
+        return first_contact_spinning(*flight, eye);
+    }
+    let start = if flight.clearance == 0.0 { guess(flight) } else { guess_from_above(flight) };
+    let gap = eye.gap(flight, start);
+    // Where l θ̇² is about G the guess may be off by any power of ten, which Newton's halving would take for ever to make up.
+    if gap.slope < 0.0 && start > 0.0 && gap.value > 0.25 * start * gap.slope {
+        return Ok(newton(flight, eye, start, gap));
+    }
+    let end = latest_contact(flight);
+    Ok(newton(flight, eye, end, eye.gap(flight, end)))
+}
+
+impl<N: Number> Flight<N> {
+    /// l θ̇², m/s²: up to G the gap is concave.
+    #[inline(always)]
+    pub(crate) fn bulge(&self) -> N {
+        self.contact_distance * self.start.theta_dot * self.start.theta_dot
+    }
+}
+
+/// Where to start on a flight from the table.
+///
+/// To fourth order g = v t − a t²/2 − b t³/6 − c t⁴/24. With t = 2v/a · s the root solves s = 1 − P s² − Q s³, inverted
+/// here as a series. It is a start and no more: Newton's first slope decides whether a good one.
+#[inline(always)]
+pub(crate) fn guess<N: Number>(flight: &Flight<N>) -> N {
+    let number = N::from_f64;
+    let State { y_dot, theta_dot, .. } = flight.start;
+    let (sin, cos) = flight.sin_cos_theta;
+    let speed = flight.contact_distance * theta_dot;
+    let bulge = flight.bulge();
+    let v = y_dot + speed * sin;
+    let per_a = number(1.0) / (flight.gravity - bulge * cos);
+    let rough = number(2.0) * v * per_a;
+    let turn = theta_dot * rough;
+    let curl = bulge * per_a;
+    let p = curl * turn * sin * number(1.0 / 3.0);
+    let q = curl * turn * turn * cos * number(1.0 / 12.0);
+    rough * (((number(1.0) - q) - p) + number(2.0) * p * p)
+}
+
+/// Where to start on a flight from above the table: the root of the gap to second order.
+fn guess_from_above(flight: &Flight) -> f64 {
+    let (sin, cos) = flight.sin_cos_theta;
+    let v = flight.start.y_dot + flight.contact_distance * flight.start.theta_dot * sin;
+    let a = flight.gravity - flight.bulge() * cos;
+    let root = (v * v + 2.0 * a * flight.clearance).max(0.0).sqrt();
+    // Neither is a difference.
+    if v < 0.0 { 2.0 * flight.clearance / (root - v) } else { (v + root) / a }
+}
+
+/// The time by which the centre of gravity has fallen to y = −l, so that the contact came before or is there.
+fn latest_contact(flight: &Flight) -> f64 {
+    passes(flight, room(flight)).1
+}
+
+/// The time before which the centre of gravity is lower than y = −l; none where it stays so.
+fn earliest_contact(flight: &Flight) -> Option<f64> {
+    let (room, y_dot) = (room(flight), flight.start.y_dot);
+    if room >= 0.0 {
+        return Some(0.0);
+    }
+    (y_dot > 0.0 && y_dot * y_dot + 2.0 * flight.gravity * room >= 0.0).then(|| passes(flight, room).0)
+}
+
+/// Height of the centre of gravity above y = −l at the start, m.
+fn room(flight: &Flight) -> f64 {
+    let (sin, cos) = flight.sin_cos_theta;
+    // 1 + cos θ, near a rod that stands on its head too.
+    let rise = if cos < 0.0 { sin * sin / (1.0 - cos) } else { 1.0 + cos };
+    flight.clearance + flight.contact_distance * rise
+}
+
+/// When the centre of gravity was and will be `drop`, m, lower than at the start, s: the roots of ½Gt² − ẏt − d, neither from a
+/// difference, which would leave a fall in little gravity few digits.
+fn passes(flight: &Flight, drop: f64) -> (f64, f64) {
+    let y_dot = flight.start.y_dot;
+    let sum = y_dot.abs() + (y_dot * y_dot + 2.0 * flight.gravity * drop).max(0.0).sqrt();
+    let far = sum / flight.gravity;
+    let near = if sum > 0.0 { 2.0 * drop / sum } else { 0.0 };
+    if y_dot < 0.0 { (-far, near) } else { (-near, far) }
+}
+
+/// Newton's iteration on a concave gap from `t`, where the gap is `gap` and falls.
+///
+/// Every iterate after the first is right of the root and they decrease; so one that turns back has met rounding and is
+/// the root. The last step uses the second derivative too, as soon as what it leaves out is below half a unit in the
+/// last place.
+#[inline(always)]
+fn newton(flight: &Flight, eye: impl Eye, mut t: f64, mut gap: Gap) -> f64 {
+    for steps in 0..MAX_STEPS {
+        let step = Step::new(flight, t, &gap);
+        // A step most of the way back to zero would keep the rounding of the longer time.
+        if step.left_out <= step.negligible && step.newton > -0.5 * t {
+            return step.refined;
+        }
+        if steps > 0 && step.newton >= 0.0 {
+            return t;
+        }
+        t += step.newton;
+        gap = eye.gap(flight, t);
+        // The top: a double root, to rounding.
+        if gap.slope >= 0.0 {
+            return t;
+        }
+    }
+    t
+}
+
+/// The last root of a gap that is concave from `from` to `t` and at or below zero there, where it is `gap`; none if it is
+/// below zero all the way.
+///
+/// As [`newton`], which never passes the last root: passing the top proves that there is none, and so does passing `from`,
+/// since the tangent lies above the gap.
+fn last_root(flight: &Flight, eye: impl Eye, from: f64, mut t: f64, mut gap: Gap) -> Option<f64> {
+    for steps in 0..MAX_STEPS {
+        // Above zero at or before the top is a double root to rounding.
+        if gap.slope >= 0.0 || t < from {
+            return (gap.value > 0.0 && t >= from).then_some(t);
+        }
+        let step = Step::new(flight, t, &gap);
+        if step.left_out <= step.negligible {
+            return Some(step.refined);
+        }
+        if steps > 0 && step.newton >= 0.0 {
+            return Some(t);
+        }
+        t += step.newton;
+        gap = eye.gap(flight, t);
+    }
+    None
+}
+
+/// One step from `t`: Newton's, and one that uses the second derivative too.
+pub(crate) struct Step<N> {
+    /// What Newton adds to t.
+    pub(crate) newton: N,
+    /// The better t.
+    pub(crate) refined: N,
+    /// How much more that may be off, at most.
+    pub(crate) left_out: N,
+    /// Half a unit in the last place of t, and less.
+    pub(crate) negligible: N,
+}
+
+impl<N: Real> Step<N> {
+    #[inline(always)]
+    pub(crate) fn new(flight: &Flight<N>, t: N, gap: &Gap<N>) -> Self {
+        let number = N::from_f64;
+        let spin = flight.start.theta_dot.magnitude();
+        let stiffness = flight.gravity + flight.bulge();
+        let per_slope = number(1.0) / gap.slope;
+        let newton = -(gap.value * per_slope);
+        let size = newton.magnitude();
+        let bent = size * stiffness * per_slope.magnitude();
+        Self {
+            newton,
+            refined: t + newton * (number(1.0) - number(0.5) * (gap.bend * per_slope) * newton),
+            left_out: size * bent * (bent + size * spin),
+            negligible: number(f64::EPSILON * 0.25) * t,
+        }
+    }
+}
+
+/// [`first_contact`] where l θ̇² > G.
+#[cold]
+#[inline(never)]
+fn first_contact_spinning(flight: Flight, eye: impl Eye) -> Result<f64, TooManyPieces> {
+    let t = first_descent_spinning(flight, eye, true, f64::INFINITY, &mut { MAX_PIECES })?;
+    Ok(t.unwrap_or_else(|| latest_contact(&flight)))
+}
+
+/// [`first_descent_before`] where l θ̇² > G, of a point that starts `above` y = 0 or below it. `budget` is how many pieces it may
+/// look at, and then how many of them are left.
+#[cold]
+#[inline(never)]
+fn first_descent_spinning(
+    flight: Flight,
+    eye: impl Eye,
+    mut above: bool,
+    limit: f64,
+    budget: &mut u32,
+) -> Result<Option<f64>, TooManyPieces> {
+    let pieces = Pieces::new(&flight, eye);
+    let latest = latest_contact(&flight);
+    let end = latest.min(limit);
+    // While the centre of gravity is lower than −l, the point is below the table.
+    let Some(enters) = earliest_contact(&flight) else { return Ok(None) };
+    // While it is higher than l, the rod cannot reach the table.
+    let State { y_dot, .. } = flight.start;
+    let (sin, cos) = flight.sin_cos_theta;
+    let versine = if cos > 0.0 { sin * sin / (1.0 + cos) } else { 1.0 - cos };
+    let height = flight.clearance - flight.contact_distance * versine;
+    let reach = y_dot * y_dot + 2.0 * flight.gravity * height;
+    let (leaves, returns) = if reach > 0.0 { passes(&flight, height) } else { (end, end) };
+    for (from, to, comes_back) in [(enters, leaves.min(end), false), (returns.max(enters), end, returns > 0.0)] {
+        above |= reach > 0.0 && comes_back;
+        if from < to
+            && let Some(t) = pieces.first_down_crossing(from, to, &mut above, budget)?
+        {
+            return Ok(Some(t));
+        }
+    }
+    Ok((above && latest < limit).then_some(latest))
+}
+
+/// The pieces between the inflections of the gap, at cos(θ + θ̇t) = G/(l θ̇²).
+struct Pieces<'a, E> {
+    flight: &'a Flight,
+    eye: E,
+    /// |θ̇|, and θ seen so that it grows.
+    spin: f64,
+    angle: f64,
+    /// The gap is convex where the angle is within this of a whole turn.
+    half_width: f64,
+}
+
+impl<'a, E: Eye> Pieces<'a, E> {
+    fn new(flight: &'a Flight, eye: E) -> Self {
+        let State { theta, theta_dot, .. } = flight.start;
+        let bulge = flight.contact_distance * theta_dot * theta_dot;
+        Self {
+            flight,
+            eye,
+            spin: theta_dot.abs(),
+            angle: theta * theta_dot.signum(),
+            half_width: crate::numbers::trig::acos(flight.gravity / bulge),
+        }
+    }
+
+    fn gap(&self, t: f64) -> Gap {
+        self.eye.gap(self.flight, t)
+    }
+
+    fn time_of(&self, angle: f64) -> f64 {
+        (angle - self.angle) / self.spin
+    }
+
+    /// `above` is whether the point has been above y = 0, before and after.
+    fn first_down_crossing(
+        &self,
+        from: f64,
+        to: f64,
+        above: &mut bool,
+        budget: &mut u32,
+    ) -> Result<Option<f64>, TooManyPieces> {
+        let angle = self.angle + self.spin * from;
+        let mut turn = ((angle + self.half_width) / TAU).floor();
+        let mut convex = angle - TAU * turn < self.half_width;
+        let (mut a, mut at_a) = (from, self.gap(from));
+        loop {
+            *budget = budget.checked_sub(1).ok_or(TooManyPieces)?;
+            let boundary = if convex {
+                TAU * turn + self.half_width
+            } else {
+                turn += 1.0;
+                TAU * turn - self.half_width
+            };
+            let b = self.time_of(boundary).clamp(a, to);
+            let at_b = self.gap(b);
+            let crossing = match (*above, convex) {
+                (true, true) => self.in_convex(a, at_a, b, at_b),
+                (true, false) => self.in_concave(a, at_a, b, at_b),
+                // What is convex and starts below may rise, and no more.
+                (false, true) => None,
+                (false, false) => self.in_concave_from_below(a, at_a, b, at_b),
+            };
+            *above |= at_b.value > 0.0;
+            if crossing.is_some() || b >= to {
+                return Ok(crossing);
+            }
+            (a, at_a, convex) = (b, at_b, !convex);
+        }
+    }
+
+    /// A concave gap that starts positive, or at zero going up, crosses once if it ends at or below zero.
+    fn in_concave(&self, a: f64, at_a: Gap, b: f64, at_b: Gap) -> Option<f64> {
+        if a > 0.0 && at_a.value <= 0.0 && at_a.slope < 0.0 {
+            return Some(a);
+        }
+        if at_b.value > 0.0 || b <= a {
+            return None;
+        }
+        Some(if at_b.slope < 0.0 { newton(self.flight, self.eye, b, at_b) } else { b })
+    }
+
+    /// A concave gap that starts below zero and ends there crosses twice or not at all.
+    fn in_concave_from_below(&self, a: f64, at_a: Gap, b: f64, at_b: Gap) -> Option<f64> {
+        if at_a.slope <= 0.0 || at_b.value > 0.0 || at_b.slope >= 0.0 || b <= a {
+            return None;
+        }
+        last_root(self.flight, self.eye, a, b, at_b)
+    }
+
+    /// A convex gap falls towards its first zero, if it has one, and Newton from the left never passes it; past the lowest
+    /// point there is none.
+    fn in_convex(&self, a: f64, at_a: Gap, b: f64, at_b: Gap) -> Option<f64> {
+        if at_a.slope >= 0.0 || b <= a {
+            return None;
+        }
+        if at_a.value <= 0.0 {
+            return Some(a);
+        }
+        if at_b.value > 0.0 && at_b.slope <= 0.0 {
+            return None;
+        }
+        let (mut t, mut gap) = (a, at_a);
+        for _ in 0..MAX_STEPS {
+            let next = t - gap.value / gap.slope;
+            if next > b {
+                return if at_b.value > 0.0 { None } else { Some(b) };
+            }
+            if next <= t {
+                break;
+            }
+            (t, gap) = (next, self.gap(next));
+            if gap.slope >= 0.0 {
+                return if gap.value > 0.0 { None } else { Some(t) };
+            }
+        }
+        Some(t)
+    }
+}
+
+#[cfg(test)]
+#[path = "contact_time_tests.rs"]
+mod tests;

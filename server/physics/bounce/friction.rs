@@ -1,0 +1,308 @@
+//! The strike with Coulomb friction: Routh's impulse in the plane, followed along its normal part through sliding, sticking and
+//! slip reversal, with restitution by Poisson, Newton or Stronge.
+//!
+//! One formula in any kind of number; which way it takes is decided in `f64`, by whoever asks. Flights are the rod's, and what else
+//! a contact needs is in [`crate::body::general`]. Not here: error bounds and linear verdicts.
+
+use crate::body::Plan;
+use crate::bounce::strike::{RISE_UNITS, Rod, State, Strike, Tilt};
+use crate::numbers::number::Number;
+
+/// Law of restitution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// The normal impulse of restitution is e times that of compression.
+    Poisson,
+    /// The normal velocity after is −e times that before.
+    Newton,
+    /// The normal work of restitution is e² times that of compression.
+    Stronge,
+}
+
+/// How the table moves along itself at a strike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slide {
+    /// It does not.
+    None,
+    /// As fast as the contact point just before.
+    Matched,
+}
+
+/// What the contact did along the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Nothing held it.
+    Frictionless,
+    /// It slid one way from first to last.
+    Slide,
+    /// It was at rest, or came to rest, and stayed.
+    Stick,
+    /// It came to rest and slid on the other way.
+    ReverseSlide,
+    /// It was at rest and friction could not hold it.
+    SlideThrough,
+}
+
+impl Mode {
+    /// Its name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Frictionless => "frictionless",
+            Self::Slide => "slide",
+            Self::Stick => "stick",
+            Self::ReverseSlide => "reverse_slide",
+            Self::SlideThrough => "slide_through",
+        }
+    }
+}
+
+/// A contact with friction, and how the table moves along itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// μ.
+    pub coefficient: f64,
+    /// Law of restitution.
+    pub law: Law,
+    /// How the table moves along itself.
+    pub slide: Slide,
+}
+
+/// How the contact point's velocity answers to an impulse at it: ∂v_t/∂P_t, ∂v_n/∂P_n and, of either by the other, C.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mobility<N = f64> {
+    /// A = 1 + l² cos²β/ρ².
+    pub tangential: N,
+    /// B = 1 + l² sin²β/ρ².
+    pub normal: N,
+    /// C = l² sin β cos β/ρ².
+    pub cross: N,
+}
+
+/// An impulse per unit mass, m/s, and how it came about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impulse<N = f64> {
+    /// P_n.
+    pub normal: N,
+    /// P_t.
+    pub tangential: N,
+    /// What the contact did.
+    pub mode: Mode,
+}
+
+/// What has to be known of an impact to say which formula holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fork {
+    /// Whether the contact point slides forwards at first: v_t ≥ 0.
+    Forward,
+    /// Whether it comes to rest before the end.
+    Rests,
+    /// Whether friction can hold it then: |C| ≤ μA.
+    Holds,
+    /// Whether it comes to rest while still compressed.
+    RestsEarly,
+}
+
+/// An answer to a [`Fork`], and how far it is from the other: a number that changes its sign there, beside its scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decision {
+    /// Which question.
+    pub fork: Fork,
+    /// The answer that holds.
+    pub answer: bool,
+    /// How far it is from the other answer.
+    pub margin: f64,
+    /// What the margin is small beside, > 0.
+    pub scale: f64,
+}
+
+/// Takes every answer that holds.
+#[inline(always)]
+pub fn as_it_is(decision: Decision) -> bool {
+    decision.answer
+}
+
+impl<N: Number> Mobility<N> {
+    /// Of a contact point l from the centre of gravity, at sine and cosine of β.
+    #[inline(always)]
+    pub fn new(rod: &Rod<N>, sin_beta: N, cos_beta: N) -> Self {
+        let one = N::from_f64(1.0);
+        let lever = rod.contact_distance / rod.radius_of_gyration;
+        let (across, along) = (lever * sin_beta, lever * cos_beta);
+        Self { tangential: one + along * along, normal: one + across * across, cross: across * along }
+    }
+}
+
+impl Friction {
+    /// Routh's impulse at velocities relative to the table just before, along it and along its normal, the latter < 0.
+    ///
+    /// As P_n grows, v_n goes from v_n0 with one slope up to where the sliding ends, and with another beyond. As long as it
+    /// slides, all laws are the same.
+    #[inline(always)]
+    pub fn impulse<N: Number>(
+        &self,
+        mobility: &Mobility<N>,
+        tangential: N,
+        normal: N,
+        restitution: N,
+        mut decide: impl FnMut(Decision) -> bool,
+    ) -> Impulse<N> {
+        let Mobility { tangential: a, normal: b, cross: c } = *mobility;
+        let friction = N::from_f64(self.coefficient);
+        let one = N::from_f64(1.0);
+        let bounced = (one + restitution) * -normal;
+        let (v_t, v_n, cross) = (tangential.to_f64(), normal.to_f64(), c.to_f64());
+        // From rest it goes the way the normal impulse drives it.
+        let forward = if v_t == 0.0 { cross >= 0.0 } else { v_t > 0.0 };
+        let forward = decide(Decision { fork: Fork::Forward, answer: forward, margin: v_t, scale: -v_n });
+        // Friction acts against the sliding.
+        let (slope, driven, speed) = if forward { (-friction, c, tangential) } else { (friction, -c, -tangential) };
+        let first = b + c * slope;
+        let slowing = a * friction - driven;
+        let (end_of_sliding, push) = (first * speed, bounced * slowing);
+        let margin = push.to_f64() - end_of_sliding.to_f64();
+        let mut rests = (slowing.to_f64() > 0.0) & (self.coefficient != 0.0);
+        if rests {
+            rests = decide(Decision { fork: Fork::Rests, answer: margin > 0.0, margin, scale: push.to_f64() });
+        }
+        // Where compression would end if it slid for ever.
+        let alone = -normal / first;
+        if !rests {
+            let end = (one + restitution) * alone;
+            let mode = if self.coefficient == 0.0 {
+                Mode::Frictionless
+            } else if v_t == 0.0 {
+                Mode::SlideThrough
+            } else {
+                Mode::Slide
+            };
+            return Impulse { normal: end, tangential: slope * end, mode };
+        }
+        let hold = (friction * a).to_f64();
+        let margin = hold - cross.abs();
+        let holds = decide(Decision { fork: Fork::Holds, answer: margin >= 0.0, margin, scale: hold });
+        let beyond = if holds {
+            -c / a
+        } else if cross >= 0.0 {
+            -friction
+        } else {
+            friction
+        };
+        let second = b + c * beyond;
+        let turn = speed / slowing;
+        // v_n as the sliding ends.
+        let middle = normal + first * turn;
+        let end = match self.law {
+            Law::Newton => turn + (restitution * -normal - middle) / second,
+            Law::Poisson | Law::Stronge => {
+                let margin = middle.to_f64();
+                let early = decide(Decision { fork: Fork::RestsEarly, answer: margin < 0.0, margin, scale: -v_n });
+                let compression = if early { turn - middle / second } else { alone };
+                match (self.law, early) {
+                    (Law::Stronge, true) => {
+                        // −2 of the work of compression.
+                        let work = middle * middle / second - (normal + middle) * turn;
+                        compression + restitution * (work / second).sqrt()
+                    }
+                    (Law::Stronge, false) => {
+                        // 2 of the work of restitution that is left.
+                        let bounce = restitution * normal;
+                        let rest = (bounce * bounce - middle * middle) / first;
+                        // Not the difference of the root and the velocity, which would cancel.
+                        turn + rest / (middle + (middle * middle + second * rest).sqrt())
+                    }
+                    _ => (one + restitution) * compression,
+                }
+            }
+        };
+        let mode = match (holds, v_t == 0.0) {
+            (true, _) => Mode::Stick,
+            (false, true) => Mode::SlideThrough,
+            (false, false) => Mode::ReverseSlide,
+        };
+        Impulse { normal: end, tangential: slope * turn + beyond * (end - turn), mode }
+    }
+
+    /// The strike of a rod over a table tilted like this, which moves as it was planned if it was.
+    #[inline(always)]
+    pub(crate) fn strike<N: Number>(
+        &self,
+        rod: &Rod<N>,
+        before: &State<N>,
+        tilt: &Tilt<N>,
+        plan: Option<&Plan>,
+        leverage: N,
+        decide: impl FnMut(Decision) -> bool,
+    ) -> Strike<N> {
+        let (zero, one) = (N::from_f64(0.0), N::from_f64(1.0));
+        let mut strike = rod.strike_with(before, tilt, leverage);
+        let Tilt { sin_alpha, cos_alpha, sin_beta, .. } = *tilt;
+        let (across, along) = (rod.contact_distance * sin_beta, rod.contact_distance * tilt.cos_beta());
+        let velocity = tangential_velocity(rod, before, tilt);
+        if let Some(plan) = plan {
+            let speed = N::from_f64(plan.normal_velocity);
+            strike.approach = strike.normal_velocity - speed;
+            strike.push = (one + rod.restitution) * strike.approach;
+            strike.table_velocity = (-(speed * sin_alpha), speed * cos_alpha);
+        }
+        let (table, relative) = match (self.slide, plan) {
+            (Slide::None, _) => (zero, velocity),
+            // Set, not computed: a difference of rounding would slide.
+            (Slide::Matched, None) => (velocity, zero),
+            (Slide::Matched, Some(plan)) => {
+                let speed = N::from_f64(plan.tangential_velocity);
+                (speed, velocity - speed)
+            }
+        };
+        let mobility = Mobility::new(rod, sin_beta, tilt.cos_beta());
+        let impulse = self.impulse(&mobility, relative, strike.approach, rod.restitution, decide);
+        let Impulse { normal, tangential, mode } = impulse;
+        let after = State {
+            theta: before.theta,
+            x_dot: before.x_dot + (tangential * cos_alpha - normal * sin_alpha),
+            y_dot: before.y_dot + (tangential * sin_alpha + normal * cos_alpha),
+            theta_dot: before.theta_dot + (tangential * along + normal * across) * leverage,
+        };
+        let spin = rod.radius_of_gyration * after.theta_dot;
+        let speed_squared = after.x_dot * after.x_dot + after.y_dot * after.y_dot + spin * spin;
+        let (table_x, table_y) = strike.table_velocity;
+        strike.table_velocity = (table_x + table * cos_alpha, table_y + table * sin_alpha);
+        (strike.impulse_normal, strike.impulse_tangential, strike.mode) = (normal, tangential, mode);
+        strike.contact_rise = rod.contact_rise(&after, tilt.sin_theta);
+        strike.energy_gain = N::from_f64(0.5) * (speed_squared - strike.speed_squared);
+        strike.after = after;
+        strike
+    }
+
+    /// The same over a table that tilts by α = κθ, as it is.
+    #[inline(always)]
+    pub(crate) fn strike_by_tilt_gain<N: Number>(&self, rod: &Rod<N>, before: &State<N>) -> Strike<N> {
+        self.strike(rod, before, &rod.tilt(before.theta), None, rod.leverage(), as_it_is)
+    }
+
+    /// The table's velocity along itself where nothing delays it, m/s.
+    pub(crate) fn table_speed(&self, rod: &Rod, before: &State, tilt: &Tilt<f64>) -> f64 {
+        match self.slide {
+            Slide::None => 0.0,
+            Slide::Matched => tangential_velocity(rod, before, tilt),
+        }
+    }
+}
+
+/// As [`Strike::rise_rounding`], of a strike with friction. Where the contact sticks, the velocity that is left of it is a difference
+/// of terms that are 1 + l²/ρ² times as large.
+#[inline(always)]
+pub(crate) fn rise_rounding<N: Number>(rod: &Rod<N>, before: &State<N>, strike: &Strike<N>, unit: f64) -> f64 {
+    let size = |number: N| number.to_f64().abs();
+    let (length, rho) = (rod.contact_distance.to_f64(), rod.radius_of_gyration.to_f64());
+    let lever = length / rho;
+    let struck = (1.0 + lever * lever) * (size(strike.impulse_normal) + size(strike.impulse_tangential));
+    strike.rise_rounding(before.y_dot, unit)
+        + RISE_UNITS * unit * (size(before.x_dot) + length * size(before.theta_dot) + struck)
+}
+
+/// Velocity of the contact point along the table, m/s.
+#[inline(always)]
+fn tangential_velocity<N: Number>(rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
+    let along = rod.contact_distance * tilt.cos_beta();
+    tilt.cos_alpha * before.x_dot + tilt.sin_alpha * before.y_dot + along * before.theta_dot
+}

@@ -1,0 +1,225 @@
+//! Numbers of some 31 digits, as the unevaluated sum of two doubles: the arithmetic of the reference method.
+//!
+//! Only what the bounce needs. No fused operations, so the bits are the same on every CPU; algorithms of T. J. Dekker (1971),
+//! D. E. Knuth (1969) and, with their error bounds, M. Joldes, J.-M. Muller and V. Popescu (2017). The sine and cosine of the
+//! crate that offers such numbers (`twofloat` 0.8) hold 21 digits.
+
+mod decimal;
+mod digits;
+#[cfg(test)]
+mod digits_tests;
+mod powers;
+mod trig;
+
+pub use decimal::{Decimal, NotADecimal, SIGNIFICANT_DIGITS};
+
+use crate::numbers::number::{Number, Real};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// The most that one rounding is off, as a share: a fifth of what is proved for these operations, ten times what they do.
+pub(crate) const ROUNDING: f64 = 2e-32;
+
+/// A number of some 31 digits: `high + low`, where `low` is at most half a unit in the last place of `high`.
+///
+/// A product or quotient is off by less than 1e-31 of itself, a sum by less than 4e-32 of itself.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct DoubleDouble {
+    high: f64,
+    low: f64,
+}
+
+/// a + b and what rounding it lost.
+#[inline(always)]
+const fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let other = sum - a;
+    (sum, (a - (sum - other)) + (b - other))
+}
+
+/// The same where |a| ≥ |b| or a = 0.
+#[inline(always)]
+const fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    (sum, b - (sum - a))
+}
+
+/// Two halves of 26 bits each.
+#[inline(always)]
+const fn split(a: f64) -> (f64, f64) {
+    let scaled = 134_217_729.0 * a;
+    let high = scaled - (scaled - a);
+    (high, a - high)
+}
+
+/// a·b and what rounding it lost.
+#[inline(always)]
+const fn two_product(a: f64, b: f64) -> (f64, f64) {
+    let product = a * b;
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    (product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low)
+}
+
+impl DoubleDouble {
+    /// A constant given as two doubles.
+    const fn of(high: f64, low: f64) -> Self {
+        Self { high, low }
+    }
+
+    /// The nearest double.
+    #[inline(always)]
+    pub fn to_f64(self) -> f64 {
+        self.high
+    }
+
+    #[inline(always)]
+    fn normalized((high, low): (f64, f64)) -> Self {
+        Self { high, low }
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: f64) -> Self {
+        let (product, lost) = two_product(self.high, factor);
+        Self::normalized(fast_two_sum(product, lost + self.low * factor))
+    }
+
+    #[inline(always)]
+    fn squared(self) -> Self {
+        let product = self.high * self.high;
+        let (high, low) = split(self.high);
+        let lost = ((high * high - product) + 2.0 * (high * low)) + low * low;
+        Self::normalized(fast_two_sum(product, lost + 2.0 * (self.high * self.low)))
+    }
+}
+
+impl Add for DoubleDouble {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let (high, lost) = two_sum(self.high, other.high);
+        let (low, lost_low) = two_sum(self.low, other.low);
+        let (high, low) = fast_two_sum(high, lost + low);
+        Self::normalized(fast_two_sum(high, lost_low + low))
+    }
+}
+
+impl Sub for DoubleDouble {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for DoubleDouble {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let (product, lost) = two_product(self.high, other.high);
+        let cross = self.high * other.low + self.low * other.high;
+        Self::normalized(fast_two_sum(product, lost + cross))
+    }
+}
+
+impl Div for DoubleDouble {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let first = self.high / other.high;
+        let rest = self - other.scaled(first);
+        Self::normalized(fast_two_sum(first, rest.high / other.high))
+    }
+}
+
+impl Neg for DoubleDouble {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { high: -self.high, low: -self.low }
+    }
+}
+
+impl From<f64> for DoubleDouble {
+    fn from(value: f64) -> Self {
+        Self::from_f64(value)
+    }
+}
+
+impl Number for DoubleDouble {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        Self { high: value, low: 0.0 }
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.high
+    }
+
+    /// One step of Newton from the root of the leading double, which doubles its digits.
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let near = self.high.sqrt();
+        if near == 0.0 {
+            return Self::from_f64(near);
+        }
+        let rest = self - Self::from_f64(near).squared();
+        Self::normalized(fast_two_sum(near, rest.high / (2.0 * near)))
+    }
+
+    #[inline(always)]
+    fn sincos(self) -> (Self, Self) {
+        let (sin, cos, _) = trig::sin_cos_versine(self);
+        (sin, cos)
+    }
+
+    #[inline(always)]
+    fn sin_versine(self) -> (Self, Self) {
+        let (sin, _, versine) = trig::sin_cos_versine(self);
+        (sin, versine)
+    }
+}
+
+impl Real for DoubleDouble {
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        if self.high < 0.0 { -self } else { self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn number(text: &str) -> DoubleDouble {
+        text.parse().unwrap()
+    }
+
+    fn close(ours: DoubleDouble, exact: &str, share: f64) {
+        let exact = number(exact);
+        let error = ((ours - exact) / exact).to_f64().abs();
+        assert!(error <= share, "{ours} is off {exact} by {error:e}");
+    }
+
+    #[test]
+    fn arithmetic_holds_31_digits() {
+        let (one, three, seven) = (number("1"), number("3"), number("7"));
+        close(one / three, "0.333333333333333333333333333333333333", 1e-32);
+        close(one / three * seven, "2.333333333333333333333333333333333333", 1e-31);
+        close(one / seven - one / three, "-0.190476190476190476190476190476190476", 1e-31);
+        close((seven + seven).sqrt(), "3.74165738677394138558374873231654930176", 1e-31);
+        close((one / seven).squared(), "0.0204081632653061224489795918367346938775", 1e-31);
+        // What is left of a difference of near doubles.
+        assert_eq!(number("1") + number("1e-25") - number("1"), DoubleDouble::from(1e-25));
+    }
+
+    #[test]
+    fn what_is_lost_is_exact() {
+        for (a, b) in [(1.0 / 3.0, 3.0), (1e17, 1.0), (-0.1, 1e5 / 7.0), (5.0, -1.0 / 9.0)] {
+            let (sum, lost) = two_sum(a, b);
+            assert_eq!(sum, a + b);
+            assert_eq!(lost, if a.abs() > b.abs() { b - (sum - a) } else { a - (sum - b) });
+            let (product, lost) = two_product(a, b);
+            assert_eq!(lost, a.mul_add(b, -product));
+        }
+    }
+}

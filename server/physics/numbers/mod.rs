@@ -1,0 +1,9 @@
+//! Kinds of numbers that the formulas of a bounce run on, sine and cosine with the same bits everywhere, and the choice of
+//! instructions.
+
+pub mod dispatch;
+pub mod double_double;
+pub mod dual;
+pub mod number;
+pub mod taylor;
+pub mod trig;

@@ -1,0 +1,66 @@
+//! The little that a formula of the bounce needs of a number, so that each formula is written once and runs on plain
+//! numbers, dual numbers and whatever comes next.
+//!
+//! No ordering on purpose: decisions (which root, which outcome) are taken in `f64` and lifted afterwards.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Arithmetic, root, sine and cosine: enough for the strike, the gap of a flight and its slope.
+pub trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The number that stands for a constant.
+    fn from_f64(value: f64) -> Self;
+
+    /// The nearest double, to decide by.
+    fn to_f64(self) -> f64;
+
+    /// Its square root.
+    fn sqrt(self) -> Self;
+
+    /// Sine and cosine of an angle in rad. Not `sin_cos`, which on `f64` is the platform's.
+    fn sincos(self) -> (Self, Self);
+
+    /// sin u and 1 − cos u of an angle in rad, both with full relative accuracy near zero.
+    fn sin_versine(self) -> (Self, Self);
+}
+
+/// A number with a size: what error bounds need. Still no ordering.
+pub trait Real: Number {
+    /// Its absolute value.
+    fn magnitude(self) -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        self.abs()
+    }
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn sincos(self) -> (Self, Self) {
+        crate::numbers::trig::sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn sin_versine(self) -> (Self, Self) {
+        crate::numbers::trig::sin_versine(self)
+    }
+}

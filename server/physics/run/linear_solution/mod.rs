@@ -1,0 +1,259 @@
+//! The linear solution about the fixed point in closed form, eq. (13) and (20) to (23): the state at any impact at the cost of
+//! one, with a bound on what it leaves out.
+//!
+//! With u = τθ̇ and Greene's residue R the angle goes by θ' = (1 − 4R)θ + u, u' = u − 4Rθ, whose powers are sines (0 < R < 1),
+//! hyperbolic sines or straight lines. Beyond the paper, ẏ is that of the exact energy, so that what is left out is of third
+//! order in the angle; with energy feedback it is ẏ's own eigenvalue, and what is left out is of second.
+//! Not here: the bound itself ([`bound`]), point masses, and tables that stand still, which have no fixed point.
+
+mod bound;
+
+pub use bound::SAFETY;
+
+use crate::bounce::strike::{Rod, State};
+use crate::numbers::double_double::DoubleDouble;
+use crate::numbers::trig;
+use crate::run::extended;
+use crate::scene::Scene;
+use crate::scene::model::Model;
+use crate::stability::linear_verdict::Class;
+
+/// Largest exponent of a growth that is multiplied as it is: e^709 is the largest double.
+const MOST_GROWTH: f64 = 600.0;
+
+/// The linear solution of one run.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearSolution {
+    rod: Rod,
+    extended: Rod<DoubleDouble>,
+    /// V, m/s.
+    speed: f64,
+    /// τ, s.
+    flight_time: f64,
+    residue: f64,
+    class: Class,
+    /// Rotation or growth per bounce, rad or 1.
+    exponent: f64,
+    /// Eigenvalue of ẏ; none where the energy is exact.
+    energy_eigenvalue: Option<f64>,
+    /// Just before the first impact.
+    start: State,
+    t: f64,
+    x: f64,
+    /// The most that bounces leave out where the angle circles: at any time, and more on the approach to the wanted energy.
+    circling: [bound::LeftOut; 2],
+}
+
+/// The linear state just before one impact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearImpact {
+    /// When, s after release.
+    pub t: f64,
+    /// Horizontal place of the centre of gravity, m.
+    pub x: f64,
+    /// Angle and velocities just before it.
+    pub state: State,
+    /// Bound on the largest of |ρδθ| (m), |δẋ|, |δẏ| and |ρδθ̇| (m/s).
+    pub error_estimate: f64,
+    /// Bound on the error of `t`, s.
+    pub t_error: f64,
+}
+
+impl Scene {
+    /// The linear solution of a run of this scene.
+    ///
+    /// # Errors
+    /// Why there is none, in a sentence.
+    pub fn linear_solution(&self) -> Result<LinearSolution, String> {
+        if let Some(error) = self.beyond(&[]) {
+            return Err(error.detail);
+        }
+        let fixed_point = self.fixed_point()?;
+        let linear = self.linear(&fixed_point);
+        let (Model::Rod(rod), Some(residue)) = (self.model(), linear.residue) else {
+            return Err("a point mass has no angle; its eq. (5) is exact".to_owned());
+        };
+        // What is left out is counted against the powers that are taken, so those of R = 0 or 1 are not of a residue beside it.
+        let residue = if linear.class == Class::Parabolic { residue.round() } else { residue };
+        let unknown = |_| "the first contact is not found".to_owned();
+        self.orbit().map_err(|_| unknown(()))?;
+        // In 31 digits: of a release just above the table doubles lose digits of the clearance.
+        let orbit = self.extended_orbit().map_err(|_| unknown(()))?;
+        let feeds_back = self.energy_gain != 0.0;
+        if feeds_back && linear.energy_eigenvalue.abs() >= 1.0 {
+            let eigenvalue = linear.energy_eigenvalue;
+            return Err(format!("energy_gain drives the energy away: the eigenvalue of y_dot is {eigenvalue}"));
+        }
+        let root = |share: f64| 2.0 * libm::asin(share.sqrt());
+        let exponent = match linear.class {
+            Class::Elliptic if residue <= 0.5 => root(residue),
+            Class::Elliptic => std::f64::consts::PI - root(1.0 - residue),
+            _ if residue < 0.0 => 2.0 * libm::asinh((-residue).sqrt()),
+            _ => 2.0 * libm::asinh(f64::max(residue - 1.0, 0.0).sqrt()),
+        };
+        let mut solution = LinearSolution {
+            extended: self.parameters(),
+            speed: fixed_point.speed,
+            flight_time: fixed_point.flight_time,
+            residue,
+            class: linear.class,
+            exponent,
+            energy_eigenvalue: feeds_back.then_some(linear.energy_eigenvalue),
+            start: extended::in_doubles(orbit.state()),
+            t: orbit.t().to_f64(),
+            x: orbit.x().to_f64(),
+            rod,
+            circling: [bound::LeftOut::default(); 2],
+        };
+        if solution.class == Class::Elliptic {
+            solution.circling = solution.on_circle(0.0);
+            if feeds_back {
+                let [always, first] = solution.circling;
+                let aside = always.y_dot.max(first.y_dot) / (1.0 - linear.energy_eigenvalue.abs());
+                solution.circling = solution.on_circle(aside);
+            }
+        }
+        Ok(solution)
+    }
+}
+
+impl LinearSolution {
+    /// The state just before impact `n` (from 1), and how far it may be off.
+    pub fn impact(&self, n: u64) -> LinearImpact {
+        let m = n.saturating_sub(1);
+        if m == 0 {
+            return self.first();
+        }
+        let (theta, u) = self.angle(m);
+        let (state, along) = (self.state(theta, u, m), self.x_along(m, theta));
+        let (error_estimate, t_error) = self.errors(m, &state);
+        LinearImpact { t: self.t + self.time(m), x: self.x + along, state, error_estimate, t_error }
+    }
+
+    fn start_u(&self) -> f64 {
+        self.flight_time * self.start.theta_dot
+    }
+
+    /// How far ẏ starts from its fixed point, m/s.
+    fn start_excess(&self) -> f64 {
+        self.start.y_dot + self.speed
+    }
+
+    fn is_at_lower_end(&self) -> bool {
+        self.class == Class::Parabolic && self.residue < 0.5
+    }
+
+    /// sin mσ / sin σ, or what takes its place: Chebyshev's U of index m − 1 at 1 − 2R.
+    fn chebyshev(&self, m: u64) -> f64 {
+        let count = m as f64;
+        let size = match self.class {
+            Class::Parabolic => count,
+            Class::Elliptic => {
+                let sine = 2.0 * (self.residue * (1.0 - self.residue)).sqrt();
+                return trig::sin_cos(count * self.exponent).0 / sine;
+            }
+            _ => libm::sinh(count * self.exponent) / libm::sinh(self.exponent),
+        };
+        if self.residue > 0.5 && m.is_multiple_of(2) { -size } else { size }
+    }
+
+    /// θ and u after `m` bounces: A^m = U_{m−1} A − U_{m−2}.
+    fn angle(&self, m: u64) -> (f64, f64) {
+        let (theta, u) = (self.start.theta, self.start_u());
+        if m == 0 {
+            return (theta, u);
+        }
+        let (next_theta, next_u) = self.step(theta, u);
+        if self.grows_beyond_doubles(m) {
+            return (self.grown(m, next_theta, theta), self.grown(m, next_u, u));
+        }
+        let (now, before) = (self.chebyshev(m), self.chebyshev(m - 1));
+        (now * next_theta - before * theta, now * next_u - before * u)
+    }
+
+    /// Tells whether U of index m − 1 may be beyond the range of doubles, however small what it multiplies.
+    fn grows_beyond_doubles(&self, m: u64) -> bool {
+        self.class == Class::Hyperbolic && m as f64 * self.exponent > MOST_GROWTH
+    }
+
+    /// U_{m−1} `next` − U_{m−2} `start` where the U are beyond doubles: e^((m−1)s)/(2 sinh s) · (eˢ `next` ∓ `start`), the growing part
+    /// alone. It stays 0 where that is 0.
+    fn grown(&self, m: u64, next: f64, start: f64) -> f64 {
+        let turns = self.residue > 0.5;
+        let start = if turns { -start } else { start };
+        let growing = (libm::exp(self.exponent) * next - start) / (2.0 * libm::sinh(self.exponent));
+        let half = libm::exp(0.5 * (m - 1) as f64 * self.exponent);
+        let size = if growing == 0.0 { 0.0 } else { growing * half * half };
+        if turns && m.is_multiple_of(2) { -size } else { size }
+    }
+
+    fn step(&self, theta: f64, u: f64) -> (f64, f64) {
+        ((1.0 - 4.0 * self.residue) * theta + u, u - 4.0 * self.residue * theta)
+    }
+
+    /// ẋ per u along the motion: ẋ − this·u is the drift and stays.
+    fn lever(&self) -> f64 {
+        self.speed * self.rod.tilt_gain / (2.0 * self.residue)
+    }
+
+    fn state(&self, theta: f64, u: f64, m: u64) -> State {
+        let x_dot = if self.is_at_lower_end() {
+            let count = m as f64;
+            let sum = count * self.start.theta + 0.5 * count * (count - 1.0) * self.start_u();
+            self.start.x_dot - 2.0 * self.speed * self.rod.tilt_gain * sum
+        } else {
+            self.start.x_dot + self.lever() * (u - self.start_u())
+        };
+        let theta_dot = u / self.flight_time;
+        let y_dot = match self.energy_eigenvalue {
+            Some(eigenvalue) => -self.speed + power(eigenvalue, m) * self.start_excess(),
+            None => self.on_energy(theta, x_dot, theta_dot),
+        };
+        State { theta, x_dot, y_dot, theta_dot }
+    }
+
+    /// −√(ẏ₀² − (ẋ² − ẋ₀²) − ρ²(θ̇² − θ̇₀²) + 2Gl(cos θ₀ − cos θ)), each difference by its factors.
+    fn on_energy(&self, theta: f64, x_dot: f64, theta_dot: f64) -> f64 {
+        let Self { start, rod, .. } = self;
+        let rho = rod.radius_of_gyration;
+        let aside = (x_dot - start.x_dot) * (x_dot + start.x_dot);
+        let turned = rho * (theta_dot - start.theta_dot) * rho * (theta_dot + start.theta_dot);
+        let (half_sum, _) = trig::sin_cos(0.5 * (theta + start.theta));
+        let (half_way, _) = trig::sin_cos(0.5 * (theta - start.theta));
+        let sunk = 4.0 * rod.gravity * rod.contact_distance * half_sum * half_way;
+        -f64::max(start.y_dot * start.y_dot - aside - turned + sunk, 0.0).sqrt()
+    }
+
+    /// Σ of the flight times, 2|ẏ|/G at the end of each.
+    fn time(&self, m: u64) -> f64 {
+        let late = self.energy_eigenvalue.map_or(0.0, |eigenvalue| {
+            eigenvalue * (1.0 - power(eigenvalue, m)) / (1.0 - eigenvalue) * self.start_excess()
+        });
+        m as f64 * self.flight_time - 2.0 * late / self.rod.gravity
+    }
+
+    /// Σ ẋτ over the flights.
+    fn x_along(&self, m: u64, theta: f64) -> f64 {
+        let (count, tau) = (m as f64, self.flight_time);
+        if self.is_at_lower_end() {
+            let twice = 0.5 * count * (count + 1.0) * self.start.theta
+                + self.start_u() * (count - 1.0) * count * (count + 1.0) / 6.0;
+            return tau * (count * self.start.x_dot - 2.0 * self.speed * self.rod.tilt_gain * twice);
+        }
+        let turned = theta - self.start.theta - count * self.start_u();
+        tau * (count * self.start.x_dot + self.lever() * turned)
+    }
+}
+
+/// base^m for |base| ≤ 1.
+fn power(base: f64, m: u64) -> f64 {
+    let (mut result, mut square, mut left) = (1.0, base, m);
+    while left > 0 {
+        if left & 1 == 1 {
+            result *= square;
+        }
+        square *= square;
+        left >>= 1;
+    }
+    result
+}

@@ -1,0 +1,10 @@
+//! Runs from contact to contact: how they go on and end, how they are computed (doubles, 31 digits, closed form), and how large
+//! their errors are.
+
+pub mod ending;
+pub mod error_estimate;
+pub mod extended;
+pub mod linear_solution;
+pub mod method;
+pub mod orbit;
+pub mod settling;

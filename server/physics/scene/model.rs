@@ -1,0 +1,382 @@
+//! Chooses the smallest model that is exact for a scene, and says why.
+
+use crate::body::general::{Rig, Steering};
+use crate::body::point::Point;
+use crate::body::polygon::Outline;
+use crate::body::{Arrival, Body, Coming, NoContact, Release, Touch};
+use crate::bounce::friction::{Friction, Slide};
+use crate::bounce::strike::{Rod, State, Strike};
+use crate::numbers::number::Number;
+use crate::run::orbit::{Orbit, Rules};
+use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
+use crate::table::noise::Noise;
+
+/// The rungs of the ladder of models, from the least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rung {
+    /// A point mass: a ladder of its own.
+    Point,
+    /// The angle block of the linearized rod, in closed form.
+    Linear,
+    /// The rod without friction, on a table that looks at its angle and velocities.
+    Rod,
+    /// The same on a table that looks at its place too.
+    RodWithX,
+    /// The rod on a table with friction, or that moves along itself.
+    Friction,
+    /// On a table that errs in time or in the angle that it senses.
+    Noise,
+    /// With the vertices of a polygon, any of which may touch the table.
+    Polygon,
+}
+
+impl Rung {
+    /// Its name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::Linear => "linear",
+            Self::Rod => "rod",
+            Self::RodWithX => "rod_with_x",
+            Self::Friction => "friction",
+            Self::Noise => "noise",
+            Self::Polygon => "polygon",
+        }
+    }
+
+    /// What an impact costs, ns of one core as it was when this table was measured (AMD EPYC, Zen 4, 3.0 GHz; `cargo bench --bench
+    /// bounce rungs`). Fixed, so that the same question gets the same answer.
+    pub fn cost_ns(self) -> f64 {
+        match self {
+            Self::Point => 135.0,
+            Self::Linear => 120.0,
+            Self::Rod => 86.0,
+            Self::RodWithX => 112.0,
+            Self::Friction => 107.0,
+            Self::Noise => 195.0,
+            Self::Polygon => 130.0,
+        }
+    }
+}
+
+/// A step of the ladder that a scene asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Forced {
+    /// The rung.
+    pub rung: Rung,
+    /// The field that asked for it.
+    pub path: &'static str,
+    /// Why it takes that rung, in a sentence.
+    pub detail: String,
+}
+
+/// The model that runs a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a run has one, and it is Copy: the vertices of a polygon stand in it")]
+pub enum Model {
+    /// A rod; its strike gain says which of the rungs it stands on.
+    Rod(Rod),
+    /// A point mass.
+    Point(Point),
+    /// A rod with more than that.
+    Rig(Rig),
+}
+
+impl Model {
+    /// The rod in it, or what a point mass has of one.
+    pub fn rod(&self) -> &Rod {
+        match self {
+            Self::Rod(rod) => rod,
+            Self::Point(point) => point.parameters(),
+            Self::Rig(rig) => &rig.rod,
+        }
+    }
+}
+
+impl Model {
+    /// The rod in it and its friction, if that is all there is.
+    pub(crate) fn in_lanes(&self) -> Option<(Rod, Option<Friction>)> {
+        match *self {
+            Self::Rod(rod) => Some((rod, None)),
+            Self::Rig(Rig {
+                rod,
+                steering: Steering::TiltGain,
+                friction: Some(friction),
+                noise: None,
+                outline: None,
+            }) => Some((rod, Some(friction))),
+            _ => None,
+        }
+    }
+}
+
+impl Scene {
+    /// The smallest model that is exact for the bounces of this scene.
+    ///
+    /// The outline of a polygon is not in it: it ends runs and changes no bounce, so that what is derived for one holds.
+    pub fn model(&self) -> Model {
+        self.model_of(self.noise, None)
+    }
+
+    /// The smallest model that is exact for the runs of this scene, and for where they end.
+    pub fn running_model(&self) -> Model {
+        self.model_of(self.noise, self.outline)
+    }
+
+    fn model_of(&self, noise: Option<Noise>, outline: Option<Outline>) -> Model {
+        let rod = self.parameters();
+        if self.body == BodyShape::Point {
+            return Model::Point(Point::new(rod));
+        }
+        let friction = self.contact_friction();
+        if friction.is_none() && self.steering == Steering::TiltGain && noise.is_none() && outline.is_none() {
+            return Model::Rod(rod);
+        }
+        Model::Rig(Rig { rod, steering: self.steering, friction, noise, outline })
+    }
+
+    /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
+    /// point mass has those of a rod of no length.
+    pub fn parameters<N: Number>(&self) -> Rod<N> {
+        let number = N::from_f64;
+        let (contact_distance, radius_of_gyration) = match self.body {
+            BodyShape::Rod { contact_distance, radius_of_gyration } => (contact_distance, radius_of_gyration),
+            BodyShape::Point => (0.0, 1.0),
+        };
+        let restitution = number(self.restitution);
+        let one_and_restitution = number(1.0) + restitution;
+        let gravity = number(self.full_gravity) * number(self.incline).sincos().0;
+        Rod {
+            contact_distance: number(contact_distance),
+            radius_of_gyration: number(radius_of_gyration),
+            gravity,
+            restitution,
+            tilt_gain: number(self.tilt_gain),
+            strike_gain: match self.strike {
+                Striking::Compensated => match self.assumed_restitution {
+                    // P = −(1 + e)(v_nc − v_table)/B with the table's velocity by ê.
+                    Some(assumed) if assumed != self.restitution => {
+                        number(2.0) * one_and_restitution / (number(1.0) + number(assumed))
+                    }
+                    _ => number(2.0),
+                },
+                Striking::Still => one_and_restitution,
+            },
+            strike_gain_per_energy: one_and_restitution * number(self.energy_gain),
+            target_energy: gravity * number(self.target_height.unwrap_or(0.0)),
+        }
+    }
+
+    /// When its runs end.
+    pub fn rules(&self) -> Rules {
+        Rules {
+            topple_angle: match self.body {
+                BodyShape::Rod { .. } => self.topple_angle,
+                BodyShape::Point => f64::INFINITY,
+            },
+            settles: !self.keeps_energy() || self.friction != 0.0,
+            holds_energy: self.keeps_energy() && !self.is_rough() && self.noise.is_none(),
+            limits: self.limits,
+        }
+    }
+
+    /// What the table believes the restitution to be.
+    pub fn assumed_restitution(&self) -> f64 {
+        self.assumed_restitution.unwrap_or(self.restitution)
+    }
+
+    /// Whether bounces lose energy that nothing gives back.
+    pub fn is_lossy(&self) -> bool {
+        let lost = match self.strike {
+            Striking::Still => self.restitution < 1.0,
+            Striking::Compensated => self.assumed_restitution() > self.restitution,
+        };
+        lost && self.energy_gain == 0.0
+    }
+
+    /// Whether the table takes no energy away. With an energy gain it does where a run has too much, and with a negative one where it
+    /// has too little, down to nothing.
+    fn keeps_energy(&self) -> bool {
+        !self.is_lossy() && self.energy_gain == 0.0
+    }
+
+    /// Its friction, where the contact has some or the table moves along itself.
+    pub(crate) fn contact_friction(&self) -> Option<Friction> {
+        self.is_rough().then_some(Friction { coefficient: self.friction, law: self.law, slide: self.slide })
+    }
+
+    /// Whether the contact has friction or the table moves along itself.
+    pub fn is_rough(&self) -> bool {
+        self.friction != 0.0 || self.slide != Slide::None
+    }
+
+    /// Why what is derived for the plain rod, and for the rungs `known` above it, does not hold for this scene, with the field that
+    /// makes it so; none where it does.
+    pub fn beyond(&self, known: &[Rung]) -> Option<FieldError> {
+        let beyond = |rung| rung != Rung::Polygon && !known.contains(&rung);
+        let Forced { rung, path, .. } = self.forced().into_iter().find(|forced| beyond(forced.rung))?;
+        let shown = crate::scene::field(path).map_or_else(String::new, |row| self.shown(row.name));
+        let what = match rung {
+            Rung::Friction => "with friction",
+            Rung::Noise => "with noise",
+            _ => "with state feedback",
+        };
+        Some(FieldError { path, detail: format!("{path} is {shown}; this is not available {what} in this version") })
+    }
+
+    fn shown(&self, name: Name) -> String {
+        self.value(name).map_or_else(String::new, |value| value.to_string())
+    }
+
+    /// The run of the scene from its release.
+    ///
+    /// # Errors
+    /// Why there is not even a first contact.
+    pub fn orbit(&self) -> Result<Orbit<Model>, NoContact> {
+        Orbit::new(self.running_model(), self.rules(), &self.release)
+    }
+
+    /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.
+    ///
+    /// # Errors
+    /// As [`Scene::orbit`].
+    pub fn orbit_of(&self, run: u64) -> Result<Orbit<Model>, NoContact> {
+        let noise = self.noise.map(|noise| Noise { run, ..noise });
+        Orbit::new(self.model_of(noise, self.outline), self.rules(), &self.release)
+    }
+
+    /// The rung of the ladder that the scene needs.
+    pub fn rung(&self) -> Rung {
+        match self.body {
+            BodyShape::Point => Rung::Point,
+            BodyShape::Rod { .. } => self.forced().last().map_or(Rung::Rod, |forced| forced.rung),
+        }
+    }
+
+    /// What of the scene asked for the rungs above the plain rod, from the least.
+    pub fn forced(&self) -> Vec<Forced> {
+        let mut steps = Vec::new();
+        let mut step = |rung, name: Name, detail| steps.push(Forced { rung, path: name.row().path, detail });
+        if let Steering::Feedback(gains) = self.steering {
+            let (rung, name, seen) = if gains.x == 0.0 {
+                (Rung::Rod, Name::FeedbackTheta, "angle and velocities")
+            } else {
+                (Rung::RodWithX, Name::FeedbackX, "place, angle and velocities")
+            };
+            step(rung, name, format!("feedback tilts the table by {seen} (α = −K·state), in place of α = κθ"));
+        }
+        let (friction, slide) = (self.friction, self.shown(Name::Slide));
+        if friction != 0.0 {
+            let law = self.shown(Name::Law);
+            let detail = format!(
+                "friction is {friction}, so the impulse has a part along the table (law `{law}`, slide `{slide}`)"
+            );
+            step(Rung::Friction, Name::Friction, detail);
+        } else if self.slide != Slide::None {
+            let detail = format!("slide is `{slide}`, so the table moves along itself, and friction is 0");
+            step(Rung::Friction, Name::Slide, detail);
+        }
+        if let Some(Noise { timing_sd, angle_sd, seed, .. }) = self.noise {
+            let name = if timing_sd == 0.0 { Name::AngleSd } else { Name::TimingSd };
+            let detail = format!(
+                "the table errs by {timing_sd} s in time and {angle_sd} rad in angle (standard deviations; seed {seed}, model `{}`)",
+                self.shown(Name::NoiseModel)
+            );
+            step(Rung::Noise, name, detail);
+        }
+        if let Some(vertices) = self.vertices() {
+            let detail = format!(
+                "the body is a polygon of {} vertices, and each of them is looked at in every flight and at every contact",
+                vertices.places().len()
+            );
+            steps.push(Forced { rung: Rung::Polygon, path: VERTICES, detail });
+        }
+        steps
+    }
+
+    /// Why the scene needs its rung, in a sentence.
+    pub fn rung_reason(&self) -> String {
+        let e = self.restitution;
+        if self.body == BodyShape::Point {
+            return "the body is a point: its table follows the angle of its velocity (eq. 3)".to_owned();
+        }
+        if let Some(forced) = self.forced().pop() {
+            return forced.detail;
+        }
+        if self.energy_gain != 0.0 {
+            return format!(
+                "energy_gain is {} s²/m², so the table's speed depends on the energy (eq. 28)",
+                self.energy_gain
+            );
+        }
+        let assumed = self.assumed_restitution();
+        if self.strike == Striking::Still && e < 1.0 {
+            format!("the table stands still and restitution is {e}, so every bounce loses energy (eq. 24)")
+        } else if assumed != e {
+            let way = if assumed > e { "loses" } else { "gains" };
+            format!("the table believes restitution {assumed} and meets {e}, so every bounce {way} energy")
+        } else if e == 1.0 {
+            "nothing is lost at a bounce (eq. 1), and nothing else was asked for".to_owned()
+        } else {
+            format!("the table makes up all that restitution {e} loses (eq. 25), so the run is that of restitution 1")
+        }
+    }
+}
+
+/// Calls the same method of whichever body it is: a branch that a run always takes the same way, not a virtual call.
+macro_rules! either {
+    ($model:expr, $body:ident => $call:expr) => {
+        match $model {
+            Model::Rod($body) => $call,
+            Model::Point($body) => $call,
+            Model::Rig($body) => $call,
+        }
+    };
+}
+
+impl Body for Model {
+    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
+        either!(self, body => Body::fall(body, release))
+    }
+
+    #[inline(always)]
+    fn strike(&self, coming: &Coming) -> Strike {
+        either!(self, body => Body::strike(body, coming))
+    }
+
+    #[inline(always)]
+    fn touches(&self, coming: &Coming, strike: &Strike) -> Option<Touch> {
+        either!(self, body => body.touches(coming, strike))
+    }
+
+    #[inline(always)]
+    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
+        either!(self, body => Body::hold_energy(body, strike, energy))
+    }
+
+    #[inline(always)]
+    fn rise_rounding(&self, before: &State, strike: &Strike) -> f64 {
+        either!(self, body => body.rise_rounding(before, strike))
+    }
+
+    #[inline(always)]
+    fn fly(&self, from: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+        either!(self, body => Body::fly(body, from, strike))
+    }
+
+    fn contact_distance(&self) -> f64 {
+        either!(self, body => body.contact_distance())
+    }
+
+    fn contact_height(&self, state: &State) -> f64 {
+        either!(self, body => body.contact_height(state))
+    }
+
+    fn energy(&self, state: &State) -> f64 {
+        either!(self, body => Body::energy(body, state))
+    }
+
+    fn contact_speed(&self, state: &State) -> f64 {
+        either!(self, body => Body::contact_speed(body, state))
+    }
+}

@@ -1,0 +1,324 @@
+//! The derivative of the map from contact to contact, at any state, by differentiating its formulas with the contact
+//! time implicit; and the same by finite differences, only to compare.
+//!
+//! States here are (ρθ, ẋ, ẏ, ρθ̇) just before a contact, in this order, and then x where the table feeds the state back; (ẋ, ẏ) for
+//! a point mass.
+
+use crate::body::Body;
+use crate::body::general::{Rig, Steering};
+use crate::body::point::Point;
+use crate::bounce::contact_time::first_contact;
+use crate::bounce::flight::Flight;
+use crate::bounce::friction::{Fork, Law, Mode, Slide, as_it_is};
+use crate::bounce::strike::{Rod, State, Strike};
+use crate::numbers::dual::Dual;
+use crate::numbers::number::Number;
+use crate::run::orbit::{Contact, Orbit, Rules};
+use crate::scene::model::Model;
+use nalgebra::{Complex, DMatrix, Schur};
+
+/// The map linearized about one orbit segment.
+#[derive(Clone, Debug)]
+pub struct Linearization {
+    /// Derivative of the state at the end by the state at the start, 4 × 4 (5 × 5 with state feedback, 2 × 2 for a point mass), m/s
+    /// by m/s except for ρθ and x in m.
+    pub matrix: DMatrix<f64>,
+    /// The state at the end.
+    pub end: State,
+    /// Where the centre of gravity is then, m.
+    pub x: f64,
+    /// Length of the flights passed, s.
+    pub flight_time: f64,
+    /// ẏ_c just before the contact nearest to grazing, m/s: derivatives grow without bound as it goes to 0.
+    pub contact_speed: f64,
+    /// What the first contact did along the table.
+    pub contact_mode: Mode,
+    /// Where the map has a kink, its derivatives on all sides of it; else none.
+    pub one_sided: Vec<Side>,
+}
+
+/// A derivative of the map on one side of a kink.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    /// What the contact does along the table on that side.
+    pub contact_mode: Mode,
+    /// As [`Linearization::matrix`].
+    pub matrix: DMatrix<f64>,
+}
+
+/// What decides on the formula of an impact with friction is taken both ways where it is nearer than this share to the other
+/// answer, some thousands of roundings.
+pub const TIED: f64 = 1e-12;
+
+/// Most sides that are told: each contact on a kink doubles them.
+pub const MOST_SIDES: usize = 16;
+
+/// Names of the components of a state, in the order of a matrix's rows and columns.
+pub fn state_order(model: &Model) -> &'static [&'static str] {
+    match model {
+        Model::Rig(Rig { steering: Steering::Feedback(_), .. }) => {
+            &["rho_theta", "x_dot", "y_dot", "rho_theta_dot", "x"]
+        }
+        Model::Rod(_) | Model::Rig(_) => &["rho_theta", "x_dot", "y_dot", "rho_theta_dot"],
+        Model::Point(_) => &["x_dot", "y_dot"],
+    }
+}
+
+/// Derivative of the map over `period` contacts from a state, exact but for rounding.
+///
+/// # Errors
+/// The contact at which the run ends before that, which has no derivative.
+pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
+    jacobian_at(model, 0.0, start, period)
+}
+
+/// [`jacobian`] from a place x, m, on which it depends where the table feeds it back.
+///
+/// # Errors
+/// As [`jacobian`].
+pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
+    let smooth = |matrix| vec![Side { contact_mode: Mode::Frictionless, matrix }];
+    let size = state_order(model).len();
+    along(model, x, start, period, |Contact { x, state, .. }| match model {
+        Model::Rod(rod) => rod_jacobian(rod, state).map(smooth),
+        Model::Point(point) => Some(smooth(point_jacobian(point, state))),
+        // Not derived, and nobody is to take anything else for it.
+        Model::Rig(Rig { noise: Some(_), .. }) => Some(smooth(DMatrix::from_element(size, size, f64::NAN))),
+        // The outline of a polygon ends runs and changes no bounce.
+        Model::Rig(rig) if size == 5 => rig_jacobians::<5>(rig, *x, state),
+        Model::Rig(rig) => rig_jacobians::<4>(rig, *x, state),
+    })
+}
+
+/// The same by central differences with a step of `step` m/s (m for ρθ) in each component.
+///
+/// # Errors
+/// As [`jacobian`]; also where a run that starts one step aside ends.
+pub fn finite_difference(model: &Model, start: &State, period: u64, step: f64) -> Result<Linearization, Box<Contact>> {
+    finite_difference_at(model, 0.0, start, period, step)
+}
+
+/// [`finite_difference`] from a place x, m.
+///
+/// # Errors
+/// As [`finite_difference`].
+pub fn finite_difference_at(
+    model: &Model,
+    x: f64,
+    start: &State,
+    period: u64,
+    step: f64,
+) -> Result<Linearization, Box<Contact>> {
+    let mut linearization = jacobian_at(model, x, start, period)?;
+    let size = state_order(model).len();
+    let mut matrix = DMatrix::zeros(size, size);
+    for column in 0..size {
+        let mut ends = [DMatrix::zeros(size, 1), DMatrix::zeros(size, 1)];
+        for (end, sign) in ends.iter_mut().zip([1.0, -1.0]) {
+            let mut vector = to_vector(model, start, x);
+            vector[column] += sign * step;
+            let (start, x) = from_vector(model, &vector);
+            let Linearization { end: state, x, .. } = along(model, x, &start, period, |_| None)?;
+            *end = to_vector(model, &state, x);
+        }
+        matrix.set_column(column, &((&ends[0] - &ends[1]) / (2.0 * step)).column(0));
+    }
+    linearization.matrix = matrix;
+    Ok(linearization)
+}
+
+/// Eigenvalues, largest modulus first.
+///
+/// A defective pair comes out wrong by the square root of rounding: do not decide stability by them. None if the
+/// iteration does not converge.
+pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
+    let schur = Schur::try_new(matrix.clone(), f64::EPSILON, 10_000)?;
+    let mut values: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
+    sort_eigenvalues(&mut values);
+    Some(values)
+}
+
+/// Modulus of a complex number, with the same bits everywhere.
+pub fn modulus(value: Complex<f64>) -> f64 {
+    libm::hypot(value.re, value.im)
+}
+
+pub(crate) fn sort_eigenvalues(values: &mut [Complex<f64>]) {
+    values.sort_by(|a, b| modulus(*b).total_cmp(&modulus(*a)).then(b.re.total_cmp(&a.re)).then(b.im.total_cmp(&a.im)));
+}
+
+/// Follows the run, multiplying the derivatives that `derivative` gives at each of its contacts.
+fn along(
+    model: &Model,
+    x: f64,
+    start: &State,
+    period: u64,
+    derivatives: impl Fn(&Contact) -> Option<Vec<Side>>,
+) -> Result<Linearization, Box<Contact>> {
+    let size = state_order(model).len();
+    let mut orbit = Orbit::at(*model, Rules::BARE_MAP, *start).moved(x);
+    let mut sides = vec![Side { contact_mode: Mode::Frictionless, matrix: DMatrix::identity(size, size) }];
+    let mut contact_mode = None;
+    let (mut flight_time, mut contact_speed) = (0.0, f64::NEG_INFINITY);
+    for _ in 0..period {
+        let contact = orbit.advance();
+        let Some(flight) = contact.flight_time else { return Err(Box::new(contact)) };
+        contact_mode = contact_mode.or(contact.strike.map(|strike| strike.mode));
+        if let Some(factors) = derivatives(&contact) {
+            sides = multiply(&factors, &sides);
+        }
+        flight_time += flight;
+        contact_speed = f64::max(contact_speed, model.contact_speed(orbit.state()));
+    }
+    Ok(Linearization {
+        matrix: sides[0].matrix.clone(),
+        end: *orbit.state(),
+        x: orbit.x(),
+        flight_time,
+        contact_speed,
+        contact_mode: contact_mode.unwrap_or(Mode::Frictionless),
+        one_sided: if sides.len() > 1 { sides } else { Vec::new() },
+    })
+}
+
+/// Every derivative of a contact after every one of those before it, the main one of both first.
+fn multiply(factors: &[Side], sides: &[Side]) -> Vec<Side> {
+    let pairs = factors.iter().flat_map(|factor| sides.iter().map(move |side| (factor, side)));
+    let product = |(factor, side): (&Side, &Side)| Side {
+        contact_mode: if factors.len() > 1 { factor.contact_mode } else { side.contact_mode },
+        matrix: &factor.matrix * &side.matrix,
+    };
+    pairs.take(MOST_SIDES).map(product).collect()
+}
+
+fn rod_jacobian(rod: &Rod, state: &State) -> Option<DMatrix<f64>> {
+    let root = first_contact(&rod.flight(&rod.strike(state))).ok()?;
+    let lifted: Rod<Dual<4>> = rod.lift();
+    let start = along_all(rod, state);
+    Some(after_flight(&lifted, Dual::from_f64(0.0), &lifted.strike(&start), root))
+}
+
+/// The derivative as the impact went, and those on the other sides of a kink that it lies on.
+///
+/// Coming to rest at once, v_t = 0, is no kink where friction holds: the impulse depends on the sliding before only by where it
+/// ends, and there in the same way from both sides.
+fn rig_jacobians<const K: usize>(rig: &Rig, x: f64, state: &State) -> Option<Vec<Side>> {
+    let rod = &rig.rod;
+    let lifted: Rod<Dual<K>> = rod.lift();
+    let (start, leverage) = (along_all(rod, state), lifted.leverage());
+    let place = if K > 4 { Dual::along(x, 4, 1.0) } else { Dual::from_f64(x) };
+    let tilt = rig.steering.tilt(&lifted, place, &start);
+    let plain = rig.steering.tilt(rod, x, state);
+    let Some(friction) = &rig.friction else {
+        let root = first_contact(&rod.flight(&rod.strike_with(state, &plain, rod.leverage()))).ok()?;
+        let matrix = after_flight(&lifted, place, &lifted.strike_with(&start, &tilt, leverage), root);
+        return Some(vec![Side { contact_mode: Mode::Frictionless, matrix }]);
+    };
+    let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched);
+    let strike = friction.strike(rod, state, &plain, None, rod.leverage(), |decision| {
+        let is_tied = decision.margin.abs() <= TIED * decision.scale;
+        held |= decision.fork == Fork::Holds && decision.answer && !is_tied;
+        if is_tied {
+            tied.push(decision.fork);
+        }
+        as_it_is(decision)
+    });
+    // Without restitution the impact ends where compression does.
+    let ends_early = [Fork::Rests, Fork::RestsEarly].iter().all(|fork| tied.contains(fork));
+    tied.retain(|fork| match fork {
+        Fork::Forward => !held,
+        // The work of compression has no kink where the sliding ends.
+        Fork::RestsEarly => friction.law == Law::Poisson && !ends_early,
+        Fork::Rests | Fork::Holds => true,
+    });
+    let root = first_contact(&rod.flight(&strike)).ok()?;
+    let mut sides: Vec<Side> = Vec::new();
+    for flipped in 0..1_u32 << tied.len() {
+        let mut rests = false;
+        let strike = friction.strike(&lifted, &start, &tilt, None, leverage, |decision| {
+            let at = tied.iter().position(|fork| *fork == decision.fork);
+            let mut answer = decision.answer ^ at.is_some_and(|at| flipped >> at & 1 == 1);
+            answer |= decision.fork == Fork::RestsEarly && ends_early;
+            rests |= decision.fork == Fork::Rests && answer;
+            answer
+        });
+        let contact_mode = match strike.mode {
+            Mode::SlideThrough if !tied.contains(&Fork::Forward) => Mode::SlideThrough,
+            Mode::SlideThrough if rests => Mode::ReverseSlide,
+            Mode::SlideThrough => Mode::Slide,
+            mode => mode,
+        };
+        let side = Side { contact_mode, matrix: after_flight(&lifted, place, &strike, root) };
+        if !sides.contains(&side) {
+            sides.push(side);
+        }
+    }
+    Some(sides)
+}
+
+/// A state that moves along each of its components.
+fn along_all<const K: usize>(rod: &Rod, state: &State) -> State<Dual<K>> {
+    let per_length = 1.0 / rod.radius_of_gyration;
+    State {
+        theta: Dual::along(state.theta, 0, per_length),
+        x_dot: Dual::along(state.x_dot, 1, 1.0),
+        y_dot: Dual::along(state.y_dot, 2, 1.0),
+        theta_dot: Dual::along(state.theta_dot, 3, per_length),
+    }
+}
+
+/// The derivative of the state at the end of a flight that takes `root`, s.
+fn after_flight<const K: usize>(
+    lifted: &Rod<Dual<K>>,
+    place: Dual<K>,
+    strike: &Strike<Dual<K>>,
+    root: f64,
+) -> DMatrix<f64> {
+    let flight: Flight<Dual<K>> = lifted.flight(strike);
+    let t = flight.lift_root(root);
+    let end = flight.end(t);
+    let rho = lifted.radius_of_gyration;
+    rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, place + t * end.x_dot])
+}
+
+fn point_jacobian(point: &Point, state: &State) -> DMatrix<f64> {
+    let State { theta, x_dot, y_dot, .. } = *state;
+    let speed_squared = x_dot * x_dot + y_dot * y_dot;
+    let lifted: Rod<Dual<2>> = point.parameters().lift();
+    let strike = lifted.strike(&State {
+        theta: Dual { value: theta, partials: [-y_dot / speed_squared, x_dot / speed_squared] },
+        x_dot: Dual::along(x_dot, 0, 1.0),
+        y_dot: Dual::along(y_dot, 1, 1.0),
+        theta_dot: Dual::from_f64(0.0),
+    });
+    rows(&[strike.after.x_dot, -strike.after.y_dot])
+}
+
+/// The derivative of the first K of these components.
+fn rows<const K: usize>(components: &[Dual<K>]) -> DMatrix<f64> {
+    DMatrix::from_fn(K, K, |row, column| components[row].partials[column])
+}
+
+fn to_vector(model: &Model, state: &State, x: f64) -> DMatrix<f64> {
+    let size = state_order(model).len();
+    match model {
+        Model::Rod(rod) | Model::Rig(Rig { rod, .. }) => {
+            let rho = rod.radius_of_gyration;
+            let components = [rho * state.theta, state.x_dot, state.y_dot, rho * state.theta_dot, x];
+            DMatrix::from_column_slice(size, 1, &components[..size])
+        }
+        Model::Point(_) => DMatrix::from_column_slice(size, 1, &[state.x_dot, state.y_dot]),
+    }
+}
+
+fn from_vector(model: &Model, vector: &DMatrix<f64>) -> (State, f64) {
+    match model {
+        Model::Rod(rod) | Model::Rig(Rig { rod, .. }) => {
+            let rho = rod.radius_of_gyration;
+            let state =
+                State { theta: vector[0] / rho, x_dot: vector[1], y_dot: vector[2], theta_dot: vector[3] / rho };
+            (state, vector.get(4).copied().unwrap_or(0.0))
+        }
+        Model::Point(_) => (Point::state(vector[0], vector[1]), 0.0),
+    }
+}

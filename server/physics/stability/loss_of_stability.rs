@@ -1,0 +1,221 @@
+//! How stability is lost at the ends of the linear verdict: softly, to a small swing that grows with the distance from the
+//! end, or hard, so that every small start falls.
+//!
+//! At each end one direction of the map is on the unit circle, and its cubic coefficient decides ([`crate::stability::normal_form`]). For
+//! the tilt gain that is C of [`Boundary`]; for the energy gain the height flips; for state feedback a pair or a real eigenvalue
+//! leaves the circle at a factor on the gains.
+
+use crate::bounce::strike::State;
+use crate::control::margin::crossings;
+use crate::control::{BounceModel, STABLE};
+use crate::periodic_orbits::branch::Kind as Bifurcation;
+use crate::scene::{Name, Scene};
+use crate::stability::fixed_point::FixedPoint;
+use crate::stability::jacobian::{eigenvalues, jacobian, modulus};
+use crate::stability::linear_verdict::{Boundary, Linear, PARABOLIC};
+use crate::stability::lyapunov::first_contact;
+use crate::stability::normal_form::Bounce;
+use nalgebra::{Complex, DMatrix, RowVector4};
+
+/// Modulus of an eigenvalue of the angle over two bounces of different height up to which it counts as circling.
+const CIRCLING: f64 = 1.0 + 1e-7;
+
+/// An end of the linear verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// κ_c, the upper end of the tilt gain.
+    TiltGain,
+    /// The upper end of the energy gain.
+    EnergyGain,
+    /// A factor on the gains of the state feedback.
+    FeedbackFactor,
+}
+
+impl End {
+    /// Name in answers: the dotted name of a field of the scene, or of a factor on one.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TiltGain => Name::TiltGain.row().path,
+            Self::EnergyGain => Name::EnergyGain.row().path,
+            Self::FeedbackFactor => "table.feedback",
+        }
+    }
+}
+
+/// The motion on which a scene beyond a soft end settles, by the normal form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Settles {
+    /// On a swing of this largest |θ|, rad.
+    Swing(f64),
+    /// On bounces of two heights in turn.
+    Heights {
+        /// Heights of the centre of gravity at the top, m, the lower one first.
+        heights: [f64; 2],
+        /// True if the angle stays bounded on them, by the eigenvalues over two bounces.
+        angle_bounded: bool,
+    },
+}
+
+/// How stability is lost at an end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loss {
+    /// Which end.
+    pub end: End,
+    /// κ, κ_E (s²/m²) or the factor at which it is.
+    pub value: f64,
+    /// How eigenvalues leave the unit circle there.
+    pub bifurcation: Bifurcation,
+    /// The coefficient whose sign decides, positive where the loss is soft: C for the tilt gain, s²/m² of the bounce speed for the
+    /// energy gain, per bounce and rad² for feedback.
+    pub coefficient: f64,
+    /// The motion on which this scene settles, if it is beyond a soft end and the normal form says.
+    pub settles: Option<Settles>,
+}
+
+impl Loss {
+    /// `soft`, `hard` or `degenerate`.
+    pub fn kind(&self) -> &'static str {
+        Boundary { coefficient: self.coefficient }.kind()
+    }
+
+    /// Tells whether it is soft.
+    pub fn is_soft(&self) -> bool {
+        self.coefficient > 0.0
+    }
+}
+
+/// The ends of a scene's linear verdict for which the loss is derived, and why it is not for others.
+pub fn losses(
+    scene: &Scene,
+    fixed_point: &FixedPoint,
+    linear: &Linear,
+    boundary: Option<Boundary>,
+) -> (Vec<Loss>, Vec<String>) {
+    let (mut found, mut notes) = (Vec::new(), Vec::new());
+    if let Some(Boundary { coefficient }) = boundary {
+        found.push(Loss {
+            end: End::TiltGain,
+            value: linear.critical_tilt_gain,
+            bifurcation: Bifurcation::PeriodDoubling,
+            coefficient,
+            settles: None,
+        });
+    }
+    if linear.energy_eigenvalue < 1.0 {
+        found.push(energy_gain(scene, fixed_point, linear));
+    }
+    if linear.closed_loop.is_some() {
+        match feedback(scene, fixed_point) {
+            Ok(ends) => found.extend(ends),
+            Err(why) => notes.push(format!("loss_of_stability says nothing of table.feedback: {why}")),
+        }
+    }
+    (found, notes)
+}
+
+/// The upper end of κ_E: upright bounces are u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E, which flips at KV² = 2 with the coefficient
+/// 4K = 8/V².
+fn energy_gain(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Loss {
+    let speed_squared = fixed_point.speed * fixed_point.speed;
+    Loss {
+        end: End::EnergyGain,
+        value: linear.upper_energy_gain,
+        bifurcation: Bifurcation::PeriodDoubling,
+        coefficient: 8.0 / speed_squared,
+        settles: two_heights(scene, fixed_point, 1.0 - linear.energy_eigenvalue),
+    }
+}
+
+/// The bounces of two heights beyond the flip, where they attract. With D = 1 + ½KV² their speeds are u² = 2s/K and 2/(Ks),
+/// s + 1/s = D, and a deviation is multiplied by 9 − 2D² over both.
+fn two_heights(scene: &Scene, fixed_point: &FixedPoint, loop_gain: f64) -> Option<Settles> {
+    let sum = 1.0 + 0.5 * loop_gain;
+    let multiplier = 9.0 - 2.0 * sum * sum;
+    if loop_gain <= 2.0 || multiplier.abs() >= 1.0 {
+        return None;
+    }
+    let share = 0.5 * (sum + (sum * sum - 4.0).sqrt());
+    // 2/K, m²/s².
+    let mean = 2.0 * fixed_point.speed * fixed_point.speed / loop_gain;
+    let (low, high) = (mean / share, mean * share);
+    let rod = scene.parameters::<f64>();
+    let height = |speed_squared: f64| rod.contact_distance + speed_squared / (2.0 * rod.gravity);
+    let state = State { theta: 0.0, x_dot: 0.0, y_dot: -high.sqrt(), theta_dot: 0.0 };
+    let angle_bounded = jacobian(&scene.model(), &state, 2).ok().and_then(|twice| {
+        let odd = odd_part(&twice.matrix, scene.feedback().is_some_and(|gain| gain[0] != 0.0));
+        Some(eigenvalues(&odd)?.into_iter().all(|value| modulus(value) <= CIRCLING))
+    });
+    Some(Settles::Heights { heights: [height(low), height(high)], angle_bounded: angle_bounded.unwrap_or(false) })
+}
+
+/// The rows and columns of a derivative that are not of ẏ; x only where it is fed back.
+fn odd_part(matrix: &DMatrix<f64>, with_x: bool) -> DMatrix<f64> {
+    let kept: &[usize] = match (matrix.nrows(), with_x) {
+        (2, _) => &[0],
+        (_, false) => &[0, 1, 3],
+        (_, true) => &[0, 1, 3, 4],
+    };
+    DMatrix::from_fn(kept.len(), kept.len(), |row, column| matrix[(kept[row], kept[column])])
+}
+
+/// The ends of the factors on a state feedback: both margins of a stable loop; of an unstable one the end of the stable range
+/// next to it, if there is one.
+fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<Loss>, String> {
+    let Some(gain) = scene.feedback() else { return Ok(Vec::new()) };
+    let bounce = Bounce::of(scene, fixed_point)?;
+    let start = first_contact(scene)?;
+    let model = BounceModel::new(&scene.parameters(), fixed_point.speed, scene.grip());
+    let with_x = gain[0] != 0.0;
+    let first = usize::from(!with_x);
+    let part = |matrix: nalgebra::Matrix4<f64>| -> DMatrix<f64> {
+        matrix.view((first, first), (4 - first, 4 - first)).clone_owned()
+    };
+    let mut factors = crossings(&part(model.a), &part(model.a - model.b * RowVector4::from(gain)));
+    factors.retain(|factor| factor.is_finite() && *factor > 0.0);
+    factors.extend([0.0, f64::INFINITY]);
+    factors.sort_by(f64::total_cmp);
+    let radius = |factor: f64| {
+        model.closed_loop(gain.map(|gain| factor * gain), with_x).map_or(f64::INFINITY, |it| it.spectral_radius)
+    };
+    let is_stable =
+        |low: f64, high: f64| radius(if high.is_finite() { 0.5 * (low + high) } else { 2.0 * low + 1.0 }) <= STABLE;
+    // The range between two crossings that 1 is in.
+    let above = factors.partition_point(|factor| *factor <= 1.0).min(factors.len() - 1);
+    let (low, high) = (factors[above - 1], factors[above]);
+    let ends = if radius(1.0) <= STABLE {
+        vec![low, high]
+    } else if above >= 2 && is_stable(factors[above - 2], low) {
+        vec![low]
+    } else if above + 1 < factors.len() && is_stable(high, factors[above + 1]) {
+        vec![high]
+    } else {
+        Vec::new()
+    };
+    let own = bounce.odd_eigenvalues().and_then(|values| values.first().copied());
+    let own = own.filter(|value| modulus(*value) > 1.0 + PARABOLIC);
+    ends.into_iter()
+        .filter(|factor| *factor > 0.0 && factor.is_finite())
+        .map(|factor| feedback_end(&bounce, factor, own, start))
+        .collect()
+}
+
+/// The loss at one factor; `own` is the eigenvalue of the scene itself that is beyond the circle, if there is one.
+fn feedback_end(bounce: &Bounce, factor: f64, own: Option<Complex<f64>>, start: [f64; 4]) -> Result<Loss, String> {
+    let there = bounce.with_gains_times(factor);
+    let away = |value: &Complex<f64>| (modulus(*value) - 1.0).abs();
+    let nearest = |values: Vec<Complex<f64>>| values.into_iter().min_by(|one, other| away(one).total_cmp(&away(other)));
+    let eigenvalue = there.odd_eigenvalues().and_then(nearest).ok_or("its eigenvalues do not converge")?;
+    let cubic = there.cubic(eigenvalue, start)?;
+    let coefficient = -cubic.growth_or_zero();
+    let bifurcation = if eigenvalue.im != 0.0 {
+        Bifurcation::NeimarkSacker
+    } else if eigenvalue.re < 0.0 {
+        Bifurcation::PeriodDoubling
+    } else {
+        Bifurcation::Pitchfork
+    };
+    // ln |λ| + ℓA² = 0.
+    let settles =
+        own.filter(|_| coefficient > 0.0).map(|own| Settles::Swing((libm::log(modulus(own)) / coefficient).sqrt()));
+    Ok(Loss { end: End::FeedbackFactor, value: factor, bifurcation, coefficient, settles })
+}

@@ -1,0 +1,108 @@
+//! The first Lyapunov coefficient of a bounce whose angle circles while its height settles: is upright weakly repelling or
+//! weakly attracting?
+//!
+//! The linear verdict calls such a bounce elliptic. With energy feedback (eq. 28) that is wrong either way: the loop holds
+//! η = Gl cos θ + ẏ²/2, which is not the energy; the swing modulates η at twice its own rotation, the table answers with a lag,
+//! and the modulated height pumps or damps the swing.
+
+use crate::scene::Scene;
+use crate::stability::fixed_point::FixedPoint;
+use crate::stability::linear_verdict::{Class, Linear, PARABOLIC};
+use crate::stability::normal_form::{Bounce, RESONANT};
+use nalgebra::Complex;
+
+/// Fate of a swing about upright in the long run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// It grows, from every start but upright itself.
+    Repelling,
+    /// It dies out.
+    Attracting,
+    /// To third order it does neither.
+    Neutral,
+}
+
+impl Kind {
+    /// Name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Repelling => "repelling",
+            Self::Attracting => "attracting",
+            Self::Neutral => "neutral",
+        }
+    }
+}
+
+/// The first Lyapunov coefficient at the fixed point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lyapunov {
+    /// ℓ of dA/dn = ℓA³, per bounce and rad²; A is the largest |θ| of the linear swing.
+    pub coefficient: f64,
+    /// Sign of the coefficient.
+    pub kind: Kind,
+    /// A₀ of this release, rad.
+    pub amplitude: f64,
+    /// Distance of the rotation from a quarter turn a bounce, in turns: the strong resonance at which ℓ is not defined.
+    pub from_quarter: f64,
+}
+
+impl Lyapunov {
+    /// 1/(2ℓA₀²), contacts after which a swing like this release's has left; none where it does not leave.
+    pub fn escape_impacts(&self) -> Option<u64> {
+        let contacts = 0.5 / (self.coefficient * self.amplitude * self.amplitude);
+        // A cast keeps to the range of the type.
+        (self.kind == Kind::Repelling && contacts.is_finite()).then_some(contacts as u64)
+    }
+}
+
+/// The coefficient of a scene about its fixed point, with the amplitude of the scene's release.
+///
+/// # Errors
+/// Why it does not apply, in a sentence.
+pub fn lyapunov(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Result<Lyapunov, String> {
+    if linear.closed_loop.is_some() {
+        return Err("with state feedback small deviations die out or grow in first order already".to_owned());
+    }
+    let bounce = Bounce::of(scene, fixed_point)?;
+    let height = linear.energy_eigenvalue;
+    if height == 1.0 {
+        return Err(
+            "energy_gain is 0, so no direction contracts and a swing has nothing to grow or shrink by".to_owned()
+        );
+    }
+    if height.abs() > 1.0 - PARABOLIC {
+        return Err(format!("the bounce height does not settle (its eigenvalue is {height})"));
+    }
+    let (Class::Elliptic, Some(residue)) = (linear.class, linear.residue) else {
+        return Err("the angle does not circle at this tilt_gain".to_owned());
+    };
+    let cos = 1.0 - 2.0 * residue;
+    let eigenvalue = Complex::new(cos, 2.0 * (residue * (1.0 - residue)).sqrt());
+    let square = eigenvalue * eigenvalue;
+    let away = |value: Complex<f64>| (value - Complex::new(1.0, 0.0)).norm_sqr();
+    if [eigenvalue, square, square * square].into_iter().any(|power| away(power) < RESONANT * RESONANT) {
+        return Err(format!("residue {residue} is at a strong resonance (rotation 0, 1/2 or 1/4 of a turn a bounce)"));
+    }
+    let cubic = bounce.cubic(eigenvalue, first_contact(scene)?)?;
+    let coefficient = cubic.growth_or_zero();
+    let kind = if coefficient > 0.0 {
+        Kind::Repelling
+    } else if coefficient < 0.0 {
+        Kind::Attracting
+    } else {
+        Kind::Neutral
+    };
+    let turns = linear.rotation.unwrap_or_default() / std::f64::consts::TAU;
+    Ok(Lyapunov { coefficient, kind, amplitude: cubic.amplitude, from_quarter: (turns - 0.25).abs() })
+}
+
+/// (ρθ, ẋ, ρθ̇, x) just before the first contact of a scene's run.
+///
+/// # Errors
+/// That there is none, in a sentence.
+pub(crate) fn first_contact(scene: &Scene) -> Result<[f64; 4], String> {
+    let orbit = scene.orbit().map_err(|_| "the release comes to no contact".to_owned())?;
+    let rho = scene.parameters::<f64>().radius_of_gyration;
+    let state = orbit.state();
+    Ok([rho * state.theta, state.x_dot, rho * state.theta_dot, orbit.x()])
+}

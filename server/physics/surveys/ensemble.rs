@@ -1,0 +1,299 @@
+//! Many runs of one scene, each with noise of its own: how many are still going after each contact, and how far from upright
+//! those are.
+//!
+//! Every run is watched for the same number of contacts, so none is lost sight of before the last: the survival curve of
+//! Kaplan and Meier is the share of runs still going, and its intervals are binomial. Not here: which threads do it.
+
+use crate::run::ending::Ending;
+use crate::run::ending::Outcome;
+use crate::run::orbit::{Looks, run};
+use crate::scene::Scene;
+use std::ops::Range;
+
+/// The shares of runs below the quantiles of |θ|.
+pub const SHARES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+
+/// The standard normal deviate with 95 % between it and its negative.
+const DEVIATE: f64 = 1.959_963_984_540_054;
+
+/// Runs of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Ensemble {
+    /// What runs; run k has the noise that its seed gives run k.
+    pub scene: Scene,
+    /// How many runs.
+    pub runs: u64,
+    /// For how many contacts each is watched.
+    pub impacts: u64,
+    /// At how many of them, at most, angles are kept.
+    pub angle_contacts: u64,
+}
+
+/// How one run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct End {
+    /// Contacts, the last included; 0 where there was not even a first one.
+    pub impacts: u64,
+    /// Why.
+    pub outcome: Outcome,
+}
+
+/// What is kept of some runs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Runs {
+    /// How they ended, in their order.
+    pub ends: Vec<End>,
+    /// For each contact of [`Ensemble::watched`], |θ| there in rad of those that went on; in their order.
+    pub angles: Vec<Vec<f64>>,
+}
+
+/// A contact of the survival curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Survival {
+    /// Runs that came to it, or would have come to the first one.
+    pub at_risk: u64,
+    /// Those of them that ended there.
+    pub ended: u64,
+    /// The share of all runs that went on.
+    pub share: f64,
+    /// Where the probability to go on lies, with a confidence of 95 %.
+    pub interval: (f64, f64),
+}
+
+impl Ensemble {
+    /// The contacts at which angles are kept: the first, the last, and evenly spread ones between them.
+    pub fn watched(&self) -> Vec<u64> {
+        let count = self.angle_contacts.min(self.impacts);
+        (0..count).map(|index| 1 + index * (self.impacts - 1) / count.saturating_sub(1).max(1)).collect()
+    }
+
+    /// Some of the runs, counted from 0; none if `go_on` said `false`, which is asked every hundred contacts.
+    pub fn runs(&self, numbers: Range<u64>, go_on: &mut dyn FnMut() -> bool) -> Option<Runs> {
+        let watched = self.watched();
+        let mut found = Runs { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
+        let mut looks = Looks::new(go_on);
+        for number in numbers {
+            if !looks.begin() {
+                return None;
+            }
+            let mut orbit = match self.scene.orbit_of(number) {
+                Ok(orbit) => orbit,
+                Err(none) => {
+                    found.ends.push(End { impacts: 0, outcome: none.ending(0.0, 0.0).into() });
+                    continue;
+                }
+            };
+            let mut next = 0;
+            let ending = run(&mut orbit, self.impacts, |contact| {
+                if watched.get(next) == Some(&contact.n) {
+                    if matches!(contact.ending, None | Some(Ending::Completed)) {
+                        found.angles[next].push(contact.state.theta.abs());
+                    }
+                    next += 1;
+                }
+                looks.contact()
+            })?;
+            found.ends.push(End { impacts: orbit.contacts(), outcome: ending.into() });
+        }
+        go_on().then_some(found)
+    }
+}
+
+impl Runs {
+    /// Adds the runs that come after these.
+    pub fn append(&mut self, others: Self) {
+        self.ends.extend(others.ends);
+        self.angles.resize_with(others.angles.len(), Vec::new);
+        for (angles, others) in self.angles.iter_mut().zip(others.angles) {
+            angles.extend(others);
+        }
+    }
+
+    /// The survival curve, from contact 1 to the last.
+    pub fn survival(&self, impacts: u64) -> Vec<Survival> {
+        let runs = self.ends.len() as u64;
+        let mut ended = vec![0; usize::try_from(impacts).unwrap_or(usize::MAX)];
+        for end in self.ends.iter().filter(|end| end.outcome != Outcome::Completed) {
+            ended[end.impacts.max(1) as usize - 1] += 1;
+        }
+        let mut at_risk = runs;
+        let curve = ended.into_iter().map(|ended| {
+            let left = at_risk - ended;
+            let point =
+                Survival { at_risk, ended, share: left as f64 / runs as f64, interval: wilson_interval(left, runs) };
+            at_risk = left;
+            point
+        });
+        curve.collect()
+    }
+
+    /// How many runs ended so.
+    pub fn count(&self, outcome: Outcome) -> u64 {
+        self.ends.iter().filter(|end| end.outcome == outcome).count() as u64
+    }
+
+    /// Contacts of a run on average, those beyond the last one watched left out.
+    pub fn mean_impacts(&self) -> f64 {
+        self.ends.iter().map(|end| end.impacts).sum::<u64>() as f64 / self.ends.len() as f64
+    }
+}
+
+/// The first contact after which no more than half of the runs go on; none where more than half outlast them all.
+pub fn median_impacts(curve: &[Survival]) -> Option<u64> {
+    curve.iter().position(|point| point.share <= 0.5).map(|place| place as u64 + 1)
+}
+
+/// In how many contacts half of the runs end that have come to the second half of the curve: ln 2 over their rate there, that
+/// of a run that ends with the same probability at each contact. None where none ends there.
+pub fn late_half_life(curve: &[Survival]) -> Option<f64> {
+    let late = &curve[curve.len() / 2..];
+    let ended: u64 = late.iter().map(|point| point.ended).sum();
+    let at_risk: u64 = late.iter().map(|point| point.at_risk).sum();
+    // All that were there ended at once: no rate.
+    (0 < ended && ended < at_risk).then(|| -std::f64::consts::LN_2 / libm::log1p(-(ended as f64 / at_risk as f64)))
+}
+
+/// The interval of 95 % confidence for a probability of which `successes` out of `trials` are known (E. B. Wilson 1927). It
+/// never leaves 0 to 1, and is not empty where all or none succeeded.
+pub fn wilson_interval(successes: u64, trials: u64) -> (f64, f64) {
+    let count = trials as f64;
+    let (share, square) = (successes as f64 / count, DEVIATE * DEVIATE);
+    let middle = share + square / (2.0 * count);
+    let half = DEVIATE * (share * (1.0 - share) / count + square / (4.0 * count * count)).sqrt();
+    let whole = 1.0 + square / count;
+    // Its ends are exact there, whatever rounding says.
+    let lower = if successes == 0 { 0.0 } else { (middle - half) / whole };
+    let upper = if successes == trials { 1.0 } else { (middle + half) / whole };
+    (lower, upper)
+}
+
+/// The quantiles of some values at [`SHARES`], on straight lines between the sorted ones (number 7 of Hyndman and Fan 1996,
+/// what R and NumPy take); none without values, which come sorted.
+pub fn quantiles(values: &[f64]) -> Option<[f64; SHARES.len()]> {
+    let last = values.len().checked_sub(1)?;
+    Some(SHARES.map(|share| {
+        let place = share * last as f64;
+        let below = place.floor();
+        let (low, high) = (values[below as usize], values[(below as usize + 1).min(last)]);
+        low + (place - below) * (high - low)
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Draft, Name, Value};
+
+    fn ends(impacts: u64, ended: &[u64], completed: usize) -> Runs {
+        let fell = ended.iter().map(|&impacts| End { impacts, outcome: Outcome::Toppled });
+        let stood = std::iter::repeat_n(End { impacts, outcome: Outcome::Completed }, completed);
+        Runs { ends: fell.chain(stood).collect(), angles: Vec::new() }
+    }
+
+    #[test]
+    fn wilson_intervals_are_the_published_ones() {
+        // R. G. Newcombe, Statistics in Medicine 17 (1998), table I, method 3.
+        for (successes, trials, lower, upper) in
+            [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)]
+        {
+            let interval = wilson_interval(successes, trials);
+            assert!((interval.0 - lower).abs() < 5e-5 && (interval.1 - upper).abs() < 5e-5, "{interval:?}");
+            let mirrored = wilson_interval(trials - successes, trials);
+            assert!((mirrored.0 - (1.0 - interval.1)).abs() < 1e-15 && (mirrored.1 - (1.0 - interval.0)).abs() < 1e-15);
+        }
+        for trials in [1, 2, 3, 7, 200, 20_000] {
+            for successes in 0..=trials.min(200) {
+                let (lower, upper) = wilson_interval(successes, trials);
+                let share = successes as f64 / trials as f64;
+                assert!(0.0 <= lower && lower <= share && share <= upper && upper <= 1.0, "{successes} {trials}");
+                assert!(lower < upper, "{successes} of {trials}");
+            }
+        }
+    }
+
+    #[test]
+    fn quantiles_are_those_of_numpy() {
+        assert_eq!(quantiles(&[]), None);
+        assert_eq!(quantiles(&[0.3]), Some([0.3; 5]));
+        assert_eq!(quantiles(&[0.0, 1.0, 2.0, 3.0, 4.0]), Some([0.2, 1.0, 2.0, 3.0, 3.8]));
+        assert_eq!(quantiles(&[0.0, 1.0]), Some([0.05, 0.25, 0.5, 0.75, 0.95]));
+    }
+
+    #[test]
+    fn the_curve_counts_who_came_and_who_went_on() {
+        let runs = ends(4, &[1, 3, 3, 4], 4);
+        let curve = runs.survival(4);
+        let counts: Vec<_> = curve.iter().map(|point| (point.at_risk, point.ended, point.share)).collect();
+        assert_eq!(counts, [(8, 1, 0.875), (7, 0, 0.875), (7, 2, 0.625), (5, 1, 0.5)]);
+        assert_eq!(curve[0].interval, wilson_interval(7, 8));
+        assert_eq!((runs.mean_impacts(), median_impacts(&curve)), ((1 + 3 + 3 + 4 * 5) as f64 / 8.0, Some(4)));
+        // A quarter of those at risk end at each of the last two contacts.
+        assert!((late_half_life(&curve).unwrap() - std::f64::consts::LN_2 / (4.0_f64 / 3.0).ln()).abs() < 1e-14);
+        let stands = ends(4, &[1, 1], 4).survival(4);
+        assert_eq!((median_impacts(&stands), late_half_life(&stands)), (None, None));
+        let falls = ends(4, &[1, 1, 4], 0).survival(4);
+        assert_eq!((falls[3].share, falls[3].interval.0, median_impacts(&falls)), (0.0, 0.0, Some(1)));
+    }
+
+    #[test]
+    fn half_of_what_is_left_ends_within_the_half_life() {
+        // A sixth of the runs still there ends at each contact.
+        let mut left = 6_u64.pow(7);
+        let mut ended = Vec::new();
+        for n in 1..=6 {
+            ended.extend(std::iter::repeat_n(n, (left / 6) as usize));
+            left -= left / 6;
+        }
+        let curve = ends(6, &ended, left as usize).survival(6);
+        let half_life = late_half_life(&curve).unwrap();
+        assert!(((5.0_f64 / 6.0).powf(half_life) - 0.5).abs() < 1e-14, "{half_life}");
+    }
+
+    fn falling(runs: u64) -> Ensemble {
+        let mut draft = Draft::default();
+        for (name, value) in [
+            (Name::ContactDistance, 0.4 / 3.0),
+            (Name::RadiusOfGyration, 0.094),
+            (Name::TiltGain, 1.55),
+            (Name::Height, 0.2),
+            (Name::Theta, 0.1),
+        ] {
+            draft.set(name, Some(Value::Number(value))).unwrap();
+        }
+        Ensemble { scene: draft.build().unwrap(), runs, impacts: 50, angle_contacts: 11 }
+    }
+
+    #[test]
+    fn angles_are_those_of_runs_that_went_on() {
+        let ensemble = falling(3);
+        let watched = ensemble.watched();
+        assert_eq!(watched, [1, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50]);
+        let runs = ensemble.runs(0..3, &mut || true).unwrap();
+        let last = runs.ends[0].impacts;
+        assert!((5..50).contains(&last) && runs.count(Outcome::Completed) == 0, "{:?}", runs.ends);
+        for (n, angles) in watched.iter().zip(&runs.angles) {
+            assert_eq!(angles.len(), if *n < last { 3 } else { 0 }, "{n}: {last}");
+        }
+        assert_eq!(runs.angles[0], [0.1; 3]);
+        let mut parts = Runs::default();
+        for number in 0..3 {
+            parts.append(ensemble.runs(number..number + 1, &mut || true).unwrap());
+        }
+        assert_eq!(parts, runs);
+    }
+
+    #[test]
+    fn few_contacts_are_all_watched() {
+        for impacts in 1..=12 {
+            let watched = Ensemble { impacts, ..falling(1) }.watched();
+            assert_eq!(watched.len() as u64, impacts.min(11));
+            assert_eq!((watched[0], watched[watched.len() - 1]), (1, impacts));
+            assert!(watched.is_sorted_by(|one, other| one < other));
+        }
+    }
+
+    #[test]
+    fn nobody_waits_no_more() {
+        assert_eq!(falling(1000).runs(0..1000, &mut || false), None);
+    }
+}

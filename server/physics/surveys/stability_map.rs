@@ -1,0 +1,271 @@
+//! A map of stability over two fields of a scene: how long each cell's run survives, or what the linear analysis says of it.
+//!
+//! Not here: which threads do it, and how it is drawn.
+
+use crate::batch::batch_run::{End, Outcome, Start, sweep, sweep_rough};
+use crate::bounce::friction::Friction;
+use crate::bounce::strike::Rod;
+use crate::run::orbit::{Looks, run};
+use crate::scene::{Draft, Name, Scene, Value};
+use crate::stability::linear_verdict::Linear;
+use std::ops::Range;
+
+/// One side of a region: a field and the values it takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    /// The field, one whose values are numbers.
+    pub name: Name,
+    /// Its first value.
+    pub from: f64,
+    /// Its last value.
+    pub to: f64,
+    /// How many values.
+    pub count: usize,
+}
+
+impl Axis {
+    /// Value number `index`, evenly spaced from `from` to `to`, both exact.
+    pub fn value(&self, index: usize) -> f64 {
+        self.at(index as f64 / (self.count.max(2) - 1) as f64)
+    }
+
+    /// The value at a share of the way.
+    fn at(&self, share: f64) -> f64 {
+        if share == 1.0 { self.to } else { self.from + (self.to - self.from) * share }
+    }
+}
+
+/// What a cell shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Contacts survived.
+    Survival,
+    /// Largest |θ| at a contact, rad.
+    MaxTheta,
+    /// Greene's residue at the fixed point.
+    Residue,
+    /// Largest modulus of an eigenvalue at the fixed point.
+    SpectralRadius,
+}
+
+/// A region: a scene, two of its fields, and for how many contacts each run is watched.
+#[derive(Clone, Copy, Debug)]
+pub struct Region {
+    /// Everything but the two fields.
+    pub scene: Draft,
+    /// The field that grows along a row.
+    pub x: Axis,
+    /// The field that grows from row to row.
+    pub y: Axis,
+    /// Contacts.
+    pub impacts: u64,
+    /// What the cells show.
+    pub quantity: Quantity,
+}
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Its quantity; none where the scene cannot be, or has no fixed point to ask.
+    pub value: Option<f64>,
+    /// How its run ended; none where there was no run.
+    pub outcome: Option<Outcome>,
+}
+
+/// Cells between two looks at whether to go on, where there are no runs: the linear analysis of the dearest takes 10 µs.
+const CELLS_A_LOOK: usize = 64;
+
+/// A piece of the linear boundary: a residue, and two points (x, y) between which it is that.
+pub type Segment = (f64, [f64; 2], [f64; 2]);
+
+const NOTHING: Cell = Cell { value: None, outcome: None };
+
+impl Region {
+    /// The scene of a cell, if it can be: a release may lie below the table, a target height be missing.
+    pub fn scene(&self, column: usize, row: usize) -> Option<Scene> {
+        self.scene_at(self.x.value(column), self.y.value(row))
+    }
+
+    fn scene_at(&self, x: f64, y: f64) -> Option<Scene> {
+        let mut draft = self.scene;
+        draft.set(self.x.name, Some(Value::Number(x))).ok()?;
+        draft.set(self.y.name, Some(Value::Number(y))).ok()?;
+        draft.build().ok()
+    }
+
+    /// Whether all runs go in lanes, by those at its corners; the others take many times as long.
+    pub fn fits_lanes(&self) -> bool {
+        let corners = [(0, 0), (self.x.count - 1, 0), (0, self.y.count - 1), (self.x.count - 1, self.y.count - 1)];
+        corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(|scene| in_lanes(&scene).is_some()))
+    }
+
+    /// Some cells, counted row after row; none if `go_on` said `false`, which is asked every hundred
+    /// contacts, and for lanes every few thousand.
+    pub fn cells(&self, numbers: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Cell>> {
+        let first = numbers.start;
+        let mut cells = vec![NOTHING; numbers.len()];
+        if matches!(self.quantity, Quantity::Residue | Quantity::SpectralRadius) {
+            for (index, cell) in cells.iter_mut().enumerate() {
+                if index.is_multiple_of(CELLS_A_LOOK) && !go_on() {
+                    return None;
+                }
+                cell.value = self.linear((first + index) % self.x.count, (first + index) / self.x.count);
+            }
+            return Some(cells);
+        }
+        let (mut next, mut rough, mut alone, mut stopped) = (0, Vec::new(), Vec::new(), false);
+        let mut contact = None;
+        let count = cells.len();
+        let start = || {
+            while next < count {
+                let index = next;
+                next += 1;
+                let (column, row) = ((first + index) % self.x.count, (first + index) / self.x.count);
+                let Some(scene) = self.scene(column, row) else { continue };
+                match start_of(&scene) {
+                    Some((start, None)) => return Some((index, start)),
+                    Some((start, Some(friction))) => {
+                        contact = Some((friction.law, friction.slide));
+                        rough.push((index, start, friction.coefficient));
+                    }
+                    None => alone.push((index, scene)),
+                }
+            }
+            None
+        };
+        sweep(
+            self.impacts,
+            start,
+            |index, end| cells[index] = self.cell(&end),
+            || {
+                stopped = !go_on();
+                !stopped
+            },
+        );
+        if let (Some(contact), false) = (contact, stopped) {
+            // All of one law and one way to slide: a region is over numbers.
+            let mut rough = rough.into_iter();
+            let done = |index: usize, end| cells[index] = self.cell(&end);
+            sweep_rough(
+                contact,
+                self.impacts,
+                || rough.next(),
+                done,
+                || {
+                    stopped = !go_on();
+                    !stopped
+                },
+            );
+        }
+        if stopped {
+            return None;
+        }
+        let mut looks = Looks::new(go_on);
+        for (index, scene) in alone {
+            cells[index] = self.cell(&run_alone(&scene, self.impacts, &mut looks)?);
+        }
+        Some(cells)
+    }
+
+    fn cell(&self, end: &End) -> Cell {
+        let value = if self.quantity == Quantity::MaxTheta { end.max_theta } else { end.impacts as f64 };
+        Cell { value: Some(value), outcome: Some(end.outcome) }
+    }
+
+    fn linear(&self, column: usize, row: usize) -> Option<f64> {
+        let linear = linear(&self.scene(column, row)?)?;
+        if self.quantity == Quantity::Residue { linear.residue } else { Some(linear.spectral_radius()) }
+    }
+
+    /// Where the residue is 0 or 1, the ends of the linear verdict, as line segments (residue, from, to) of points (x, y).
+    ///
+    /// From a grid of at most `nodes` × `nodes` over the whole region, with every crossing of an edge refined to 1e-12 of
+    /// the region. None once `go_on` said `false`, which is asked after a hundred scenes or two.
+    pub fn boundary(&self, nodes: usize, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Segment>> {
+        let residue = |u: f64, v: f64| {
+            let scene = self.scene_at(self.x.at(u), self.y.at(v))?;
+            linear(&scene)?.residue
+        };
+        let (columns, rows) = (self.x.count.clamp(2, nodes), self.y.count.clamp(2, nodes));
+        let place = |index: usize, count: usize| index as f64 / (count - 1) as f64;
+        let mut grid: Vec<Option<f64>> = Vec::with_capacity(rows * columns);
+        for row in 0..rows {
+            if !go_on() {
+                return None;
+            }
+            grid.extend((0..columns).map(|column| residue(place(column, columns), place(row, rows))));
+        }
+        let mut segments = Vec::new();
+        for level in [0.0, 1.0] {
+            for row in 0..rows - 1 {
+                for column in 0..columns - 1 {
+                    if !go_on() {
+                        return None;
+                    }
+                    let corners = [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)];
+                    let mut crossings = Vec::new();
+                    for edge in 0..4 {
+                        let (a, b) = (corners[edge], corners[(edge + 1) % 4]);
+                        let (Some(at_a), Some(at_b)) = (grid[a.1 * columns + a.0], grid[b.1 * columns + b.0]) else {
+                            continue;
+                        };
+                        if (at_a < level) != (at_b < level) {
+                            let point = |(column, row): (usize, usize)| [place(column, columns), place(row, rows)];
+                            let crossing = cross(point(a), point(b), |[u, v]| residue(u, v).map(|at| at - level));
+                            crossings.push([self.x.at(crossing[0]), self.y.at(crossing[1])]);
+                        }
+                    }
+                    for pair in crossings.chunks_exact(2) {
+                        segments.push((level, pair[0], pair[1]));
+                    }
+                }
+            }
+        }
+        Some(segments)
+    }
+}
+
+fn linear(scene: &Scene) -> Option<Linear> {
+    Some(scene.linear(&scene.fixed_point().ok()?))
+}
+
+/// Where a function changes its sign between two points, by bisection.
+fn cross(mut low: [f64; 2], mut high: [f64; 2], function: impl Fn([f64; 2]) -> Option<f64>) -> [f64; 2] {
+    let negative = |point| function(point).is_some_and(|value| value < 0.0);
+    let side = negative(low);
+    let middle = |low: [f64; 2], high: [f64; 2]| [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
+    for _ in 0..40 {
+        let between = middle(low, high);
+        if negative(between) == side { low = between } else { high = between }
+    }
+    middle(low, high)
+}
+
+/// What bounces, if its run can go in a lane: where the table is limited, it goes alone.
+fn in_lanes(scene: &Scene) -> Option<(Rod, Option<Friction>)> {
+    scene.running_model().in_lanes().filter(|_| scene.rules().limits.is_none())
+}
+
+/// The start of a run that can go in a lane, with its friction.
+fn start_of(scene: &Scene) -> Option<(Start, Option<Friction>)> {
+    let (rod, friction) = in_lanes(scene)?;
+    let (_, state) = rod.fall(scene.release()).ok()?;
+    Some((Start { rod, rules: scene.rules(), state }, friction))
+}
+
+/// None once `go_on` said `false`. What never meets the table has ended before its first contact.
+fn run_alone(scene: &Scene, impacts: u64, looks: &mut Looks<'_>) -> Option<End> {
+    if !looks.begin() {
+        return None;
+    }
+    let mut orbit = match scene.orbit() {
+        Ok(orbit) => orbit,
+        Err(none) => return Some(End { impacts: 0, outcome: none.ending(0.0, 0.0).into(), max_theta: 0.0 }),
+    };
+    let mut max_theta: f64 = 0.0;
+    let ending = run(&mut orbit, impacts, |contact| {
+        max_theta = max_theta.max(contact.state.theta.abs());
+        looks.contact()
+    })?;
+    Some(End { impacts: orbit.contacts(), outcome: ending.into(), max_theta })
+}

@@ -1,0 +1,175 @@
+//! What a run asks of the table: tilt, tilt rate between strikes, speed and stroke. It decides whether a rig can do it.
+//!
+//! Between two strikes nothing of the table touches the body, so how it gets from one to the next is the rig's affair; what is
+//! told here is the least that any rig needs.
+
+use crate::run::orbit::Contact;
+
+/// The table at a strike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// α, rad.
+    pub alpha: f64,
+    /// Its velocity in x and y, m/s.
+    pub velocity: (f64, f64),
+}
+
+/// What is asked of the table, at one strike and on the way to it or at most over a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Demand {
+    /// |α|, rad.
+    pub tilt: f64,
+    /// |Δα| over the time between the strikes, rad/s: less than the largest rate of any way there.
+    pub tilt_rate: f64,
+    /// Speed at a strike, m/s.
+    pub speed: f64,
+    /// Vertical way between the strikes, m: from end to end of the cubic that leaves y = 0 at the one's velocity and comes back to
+    /// it at the other's, the way of least mean square acceleration.
+    pub stroke: f64,
+}
+
+/// How much of each the table can do; infinite where nothing limits it. Units as in [`Demand`].
+pub type Limits = Demand;
+
+/// A limit that a strike goes beyond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Excess {
+    /// Which: a name of [`Demand`]'s.
+    pub quantity: &'static str,
+    /// What the strike asks for.
+    pub value: f64,
+    /// What there is.
+    pub limit: f64,
+    /// The unit of both.
+    pub unit: &'static str,
+}
+
+impl Pose {
+    /// What this strike asks for, after the last one and the flight between them, s, if there was one.
+    #[inline(never)]
+    pub fn demand(&self, last: Option<(Self, f64)>) -> Demand {
+        let (x, y) = self.velocity;
+        let (tilt_rate, stroke) = last.map_or((0.0, 0.0), |(last, time)| {
+            // The least flights are so short that this would be infinite.
+            let rate = ((self.alpha - last.alpha).abs() / time).min(f64::MAX);
+            (rate, stroke(last.velocity.1, y, time))
+        });
+        Demand { tilt: self.alpha.abs(), tilt_rate, speed: (x * x + y * y).sqrt(), stroke }
+    }
+}
+
+/// From end to end of time·s(1 − s)(v₀(1 − s) − v₁s), 0 ≤ s ≤ 1, m.
+fn stroke(v0: f64, v1: f64, time: f64) -> f64 {
+    // Its derivative is 3(v₀ + v₁)s² − (4v₀ + 2v₁)s + v₀, whose roots are both real: the discriminant is v₀² + v₀v₁ + v₁².
+    let height = |s: f64| time * s * (1.0 - s) * (v0 * (1.0 - s) - v1 * s);
+    let half = 2.0 * v0 + v1;
+    let root = (v0 * v0 + v0 * v1 + v1 * v1).sqrt();
+    // Without cancellation: the root of the same sign first, the other from their product v₀/(3(v₀ + v₁)).
+    let large = half + root.copysign(half);
+    let (mut low, mut high) = (0.0_f64, 0.0_f64);
+    for s in [v0 / large, large / (3.0 * (v0 + v1))] {
+        if (0.0..=1.0).contains(&s) {
+            low = low.min(height(s));
+            high = high.max(height(s));
+        }
+    }
+    high - low
+}
+
+/// What a run has demanded so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Meter {
+    /// The most of each.
+    pub most: Demand,
+    /// The last strike and the flight after it, s.
+    last: Option<(Pose, f64)>,
+}
+
+impl Meter {
+    /// Looks at a contact of the run, one after the other; at one without a strike nothing is asked of the table.
+    #[inline(always)]
+    pub fn look(&mut self, contact: &Contact) {
+        let Some(strike) = &contact.strike else { return };
+        let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
+        self.most = self.most.or(pose.demand(self.last));
+        self.last = contact.flight_time.map(|time| (pose, time));
+    }
+}
+
+impl Demand {
+    /// The more of each.
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            tilt: self.tilt.max(other.tilt),
+            tilt_rate: self.tilt_rate.max(other.tilt_rate),
+            speed: self.speed.max(other.speed),
+            stroke: self.stroke.max(other.stroke),
+        }
+    }
+
+    /// By name, with the unit.
+    pub fn quantities(&self) -> [(&'static str, f64, &'static str); 4] {
+        [
+            ("tilt", self.tilt, "rad"),
+            ("tilt_rate", self.tilt_rate, "rad/s"),
+            ("speed", self.speed, "m/s"),
+            ("stroke", self.stroke, "m"),
+        ]
+    }
+
+    /// The first of these limits that `demand` goes beyond.
+    #[inline(never)]
+    pub fn exceeded(&self, demand: &Demand) -> Option<Excess> {
+        let pairs = demand.quantities().into_iter().zip(self.quantities());
+        pairs
+            .filter(|((_, value, _), (_, limit, _))| value > limit)
+            .map(|((quantity, value, unit), (_, limit, _))| Excess { quantity, value, limit, unit })
+            .next()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stroke_is_that_of_the_cubic() {
+        for (v0, v1) in
+            [(0.3, 0.3), (0.3, -0.3), (0.4, 0.1), (-0.2, 0.5), (0.0, 0.2), (0.2, 0.0), (-0.1, -0.1), (0.0, 0.0)]
+        {
+            let time = 0.4;
+            let places = (0..=20_000).map(|step| {
+                let s = f64::from(step) / 20_000.0;
+                time * s * (1.0 - s) * (v0 * (1.0 - s) - v1 * s)
+            });
+            let (low, high) = places.fold((0.0_f64, 0.0_f64), |(low, high), y| (low.min(y), high.max(y)));
+            assert!((stroke(v0, v1, time) - (high - low)).abs() < 1e-9, "{v0} {v1}");
+        }
+    }
+
+    #[test]
+    fn a_table_that_strikes_alike_each_time_swings_to_both_sides() {
+        // v₀ = v₁ = v: the extremes are at s = ½ ± 1/√12, v·time/(6√3) to either side.
+        let expected = 0.5 * 0.2 / (3.0 * 3.0_f64.sqrt());
+        assert!((stroke(0.2, 0.2, 0.5) - expected).abs() < 1e-15);
+    }
+
+    #[test]
+    fn no_flight_is_too_short_for_a_tilt_rate() {
+        let pose = |alpha| Pose { alpha, velocity: (0.0, 0.1) };
+        assert_eq!(pose(0.3).demand(Some((pose(0.1), 1e-20))).tilt_rate, (0.3 - 0.1) / 1e-20);
+        for time in [f64::from_bits(1), 0.0] {
+            assert_eq!(pose(0.3).demand(Some((pose(0.1), time))).tilt_rate, f64::MAX);
+        }
+    }
+
+    #[test]
+    fn the_first_limit_passed_is_named() {
+        let limits = Limits { tilt: 0.3, tilt_rate: f64::INFINITY, speed: 1.0, stroke: 0.1 };
+        let demand = Demand { tilt: 0.2, tilt_rate: 50.0, speed: 1.5, stroke: 0.2 };
+        let excess = limits.exceeded(&demand).unwrap();
+        assert_eq!((excess.quantity, excess.value, excess.limit, excess.unit), ("speed", 1.5, 1.0, "m/s"));
+        assert_eq!(limits.exceeded(&Demand { speed: 1.0, ..demand }).unwrap().quantity, "stroke");
+        assert_eq!(limits.exceeded(&Demand::default()), None);
+    }
+}

@@ -1,0 +1,4 @@
+//! The table: its errors of timing and sensing, and the load that a run puts on its actuators.
+
+pub mod actuator_load;
+pub mod noise;

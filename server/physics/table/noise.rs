@@ -1,0 +1,197 @@
+//! Errors of the table's timing and of the angle it senses: normal deviates as a function of seed, run and contact, so that no
+//! run depends on how many others there are, or on which thread takes it.
+//!
+//! Not here: what an error does to a strike; that is the map's.
+
+use rand_philox::philox4x32_10;
+
+/// What the table does with a wrong time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// The paper's: it meets the object at the wrong time, wherever that then is.
+    Strike,
+    /// What a real table does: it carries out the plan made for the wrong time, and the object meets that plane when it
+    /// gets there.
+    Plan,
+}
+
+impl Reading {
+    /// Its name in scenes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Strike => "strike",
+            Self::Plan => "plan",
+        }
+    }
+}
+
+/// The noise of one run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Standard deviation σ_t of the time that the table acts on, s.
+    pub timing_sd: f64,
+    /// Standard deviation of the angle that it senses, rad.
+    pub angle_sd: f64,
+    /// What it does with a wrong time.
+    pub model: Reading,
+    /// Which errors, of all that there could be.
+    pub seed: u64,
+    /// Which run of them.
+    pub run: u64,
+}
+
+/// The errors at one contact, independent of each other and of those at any other contact, run or seed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Draw {
+    /// Of the time, s.
+    pub timing: f64,
+    /// Of the angle, rad.
+    pub angle: f64,
+}
+
+impl Noise {
+    /// The errors at contact `n`: a block of Philox4x32-10 (Salmon et al. 2011) with the seed as its key and (n, run) as its
+    /// counter is 128 bits, just what one pair of normal deviates takes.
+    pub fn draw(&self, n: u64) -> Draw {
+        let counter = [low(n), high(n), low(self.run), high(self.run)];
+        let [a, b, c, d] = philox4x32_10(counter, [low(self.seed), high(self.seed)]);
+        let [first, second] = normals(joined(a, b), joined(c, d));
+        Draw { timing: self.timing_sd * first, angle: self.angle_sd * second }
+    }
+}
+
+/// Two independent standard normal deviates from 2 × 64 random bits (Box and Muller 1958). The largest there can be is 8.6:
+/// √(−2 ln 2⁻⁵³).
+fn normals(radial: u64, angular: u64) -> [f64; 2] {
+    const TO_UNIT: f64 = 1.0 / (1u64 << 53) as f64;
+    // From 2⁻⁵³ to 1, so that its logarithm is finite.
+    let share = ((radial >> 11) + 1) as f64 * TO_UNIT;
+    let turn = (angular >> 11) as f64 * TO_UNIT;
+    let radius = (-2.0 * libm::log(share)).sqrt();
+    let (sin, cos) = crate::numbers::trig::sin_cos(std::f64::consts::TAU * turn);
+    [radius * cos, radius * sin]
+}
+
+fn low(word: u64) -> u32 {
+    word as u32
+}
+
+fn high(word: u64) -> u32 {
+    (word >> 32) as u32
+}
+
+fn joined(low: u32, high: u32) -> u64 {
+    u64::from(low) | u64::from(high) << 32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UNIT: Noise = Noise { timing_sd: 1.0, angle_sd: 1.0, model: Reading::Strike, seed: 0, run: 0 };
+
+    fn pairs(noise: Noise, count: u64) -> Vec<(f64, f64)> {
+        (1..=count).map(|n| noise.draw(n)).map(|Draw { timing, angle }| (timing, angle)).collect()
+    }
+
+    /// Mean of a product over its pairs.
+    fn mean(pairs: &[(f64, f64)], product: impl Fn(f64, f64) -> f64) -> f64 {
+        pairs.iter().map(|(a, b)| product(*a, *b)).sum::<f64>() / pairs.len() as f64
+    }
+
+    #[test]
+    fn the_generator_gives_its_published_answers() {
+        // Counter, key and block, from kat_vectors of Random123, the reference implementation by its authors.
+        let known: [([u32; 4], [u32; 2], [u32; 4]); 3] = [
+            ([0; 4], [0; 2], [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]),
+            ([u32::MAX; 4], [u32::MAX; 2], [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd]),
+            (
+                [0x243f_6a88, 0x85a3_08d3, 0x1319_8a2e, 0x0370_7344],
+                [0xa409_3822, 0x299f_31d0],
+                [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1],
+            ),
+        ];
+        for (counter, key, block) in known {
+            assert_eq!(philox4x32_10(counter, key), block);
+            // And a draw takes its bits from just this block.
+            let noise = Noise { seed: joined(key[0], key[1]), run: joined(counter[2], counter[3]), ..UNIT };
+            let [first, second] = normals(joined(block[0], block[1]), joined(block[2], block[3]));
+            assert_eq!(noise.draw(joined(counter[0], counter[1])), Draw { timing: first, angle: second });
+        }
+    }
+
+    #[test]
+    fn the_bits_are_the_same_everywhere() {
+        let scaled = Noise { timing_sd: 0.01, angle_sd: 0.002, seed: 42, run: 7, ..UNIT };
+        // As an independent program in another language writes them.
+        let drawn = [1, 2, 1 << 40].map(|n| scaled.draw(n)).map(|draw| (draw.timing, draw.angle));
+        let expected = [
+            (0.006430517087700217, 0.0024874819970712933),
+            (0.0016157004282462736, -0.0006417178356275524),
+            (0.008153461829551659, -0.0013828879717927367),
+        ];
+        assert_eq!(drawn, expected);
+    }
+
+    #[test]
+    fn moments_are_those_of_a_normal_deviate() {
+        let count = 1_000_000;
+        let pairs = pairs(UNIT, count);
+        // Four standard errors of each mean; the standard error of zᵏ is √(E z²ᵏ − (E zᵏ)²)/√count.
+        let within = |mean: f64, expected: f64, spread: f64| {
+            assert!((mean - expected).abs() < 4.0 * spread / (count as f64).sqrt(), "{mean} for {expected}");
+        };
+        for of in [|a: f64, _: f64| a, |_: f64, b: f64| b] {
+            within(mean(&pairs, of), 0.0, 1.0);
+            within(mean(&pairs, |a, b| of(a, b) * of(a, b)), 1.0, 2.0_f64.sqrt());
+            within(mean(&pairs, |a, b| of(a, b).powi(3)), 0.0, 15.0_f64.sqrt());
+            within(mean(&pairs, |a, b| of(a, b).powi(4)), 3.0, 96.0_f64.sqrt());
+        }
+        within(mean(&pairs, |a, b| a * b), 0.0, 1.0);
+        within(mean(&pairs, |a, b| a * a * b * b), 1.0, 8.0_f64.sqrt());
+        let beyond_two = pairs.iter().filter(|(a, _)| a.abs() > 2.0).count() as f64 / count as f64;
+        within(beyond_two, 0.045_500_263_9, 0.208_4);
+    }
+
+    #[test]
+    fn contacts_runs_and_seeds_have_nothing_to_do_with_each_other() {
+        let count = 100_000;
+        let base = pairs(UNIT, count);
+        let others = [
+            pairs(Noise { run: 1, ..UNIT }, count),
+            pairs(Noise { seed: 1, ..UNIT }, count),
+            pairs(Noise { run: 1 << 32, ..UNIT }, count),
+            pairs(Noise { seed: 1 << 32, ..UNIT }, count),
+            pairs(UNIT, count + 1).split_off(1),
+        ];
+        for (which, other) in others.iter().enumerate() {
+            for (of, from) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let pick = |pair: &(f64, f64), place: usize| if place == 0 { pair.0 } else { pair.1 };
+                let both: Vec<_> = base.iter().zip(other).map(|(a, b)| (pick(a, of), pick(b, from))).collect();
+                let correlation = mean(&both, |a, b| a * b);
+                assert!(correlation.abs() < 4.5 / (count as f64).sqrt(), "{which} {of} {from}: {correlation}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_ends_of_the_uniform_are_finite() {
+        for radial in [0, 1, u64::MAX, u64::MAX - 1, 1 << 63] {
+            for angular in [0, 1, u64::MAX, 1 << 62, 1 << 63, 3 << 62] {
+                let [first, second] = normals(radial, angular);
+                assert!(first.abs() < 8.6 && second.abs() < 8.6, "{radial} {angular}: {first} {second}");
+            }
+        }
+        assert_eq!(normals(u64::MAX, 0), [0.0, 0.0]);
+        let [largest, none] = normals(0, 0);
+        assert!((largest - 8.571_674_348_652_906).abs() < 1e-14 && none == 0.0, "{largest}");
+    }
+
+    #[test]
+    fn no_deviation_is_no_error() {
+        let exact = Noise { timing_sd: 0.0, angle_sd: 0.0, ..UNIT };
+        for n in 0..1000 {
+            assert_eq!(exact.draw(n), Draw { timing: 0.0, angle: 0.0 });
+        }
+    }
+}
