@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 use axum::routing::get;
 use axum::{Json, Router};
 use clap::Parser;
+use equipoise::api::App;
 use equipoise::config::Config;
-use equipoise::routes::App;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 

@@ -3,22 +3,21 @@
 //! The library is the server without its command line, so that tests can put requests to its router. The physics is
 //! the crate `equipoise-physics`.
 
+pub mod api;
+pub mod charts;
+pub mod comparison;
 pub mod compute;
 pub mod config;
+pub mod failure_cases;
 mod flags;
-pub mod gallery;
 pub mod http;
 pub mod integrators;
 pub mod limits;
 pub mod live;
 pub mod memory;
-pub mod middleware;
-pub mod picture;
-pub mod precision;
 pub mod router;
-pub mod routes;
+pub mod runs;
 pub mod transport;
-pub mod wire;
 
 /// The version and a hash of everything that can change an answer: equal builds give equal answers.
 pub const BUILD: &str = env!("EQUIPOISE_BUILD");

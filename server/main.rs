@@ -5,9 +5,9 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Parser;
+use equipoise::api::App;
 use equipoise::config::Config;
 use equipoise::limits::Limits;
-use equipoise::routes::App;
 use equipoise::{BUILD, limits, router, transport};
 use mimalloc::MiMalloc;
 use tokio::net::TcpListener;

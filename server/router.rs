@@ -2,12 +2,13 @@
 
 use axum::Router;
 
-use crate::middleware::{not_found, surround};
-use crate::routes::{self, App};
+use crate::api;
+use crate::api::App;
+use crate::http::middleware::{not_found, surround};
 
 /// The whole server.
 pub fn router(app: App) -> Router {
-    surround(routes::all().fallback(not_found), app)
+    surround(api::all().fallback(not_found), app)
 }
 
 #[cfg(test)]
@@ -25,14 +26,15 @@ mod tests {
     use crate::compute::{Price, Turn};
     use crate::config::Config;
     use crate::http::{Ask, Errors, Format, Problem, REQUEST_ID, Resource};
-    use crate::limits::{self, Limits};
+    use crate::limits;
+    use crate::limits::Limits;
 
     async fn send(request: Request<Body>) -> Response<Body> {
         let app = App::new(&Config::default());
         let broken = Router::new()
             .route("/panics", get(async || -> &'static str { panic!("on purpose") }))
             .route("/speaks", get(async || (axum::http::StatusCode::IM_A_TEAPOT, "short and stout")));
-        let router = surround(routes::all().merge(broken).fallback(not_found), app);
+        let router = surround(api::all().merge(broken).fallback(not_found), app);
         router.oneshot(request).await.unwrap()
     }
 

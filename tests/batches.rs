@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use axum::body::Body;
 use axum::http::{Method, Request};
+use equipoise::api::App;
 use equipoise::config::Config;
-use equipoise::routes::App;
 use http_body_util::BodyExt;
 use serde_json::{Value, json};
 use support::Server;

@@ -77,8 +77,8 @@ async fn every_route_is_in_the_contract() {
 
 /// The routes, read from what the router prints of itself for debugging; axum has no other list of them.
 fn routes() -> Vec<String> {
-    let app = equipoise::routes::App::new(&equipoise::config::Config::default());
-    let printed = format!("{:?}", equipoise::routes::all().with_state::<()>(app));
+    let app = equipoise::api::App::new(&equipoise::config::Config::default());
+    let printed = format!("{:?}", equipoise::api::all().with_state::<()>(app));
     let quoted = printed.split('"').skip(1).step_by(2);
     quoted.filter(|text| text.starts_with('/') && !text.contains("__private__axum")).map(str::to_owned).collect()
 }

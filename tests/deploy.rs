@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use equipoise::limits::{self, Limits};
+use equipoise::limits;
+use equipoise::limits::Limits;
 use serde_json::Value;
 use support::Server;
 

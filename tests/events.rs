@@ -7,9 +7,9 @@ mod support;
 use std::net::SocketAddr;
 use std::time::Duration;
 
+use equipoise::api::App;
 use equipoise::compute::Peer;
 use equipoise::limits;
-use equipoise::routes::App;
 use serde_json::{Value, json};
 use support::contract;
 use support::socket::{Row, SOON, held, impacts_in, now_ms, numbers, open, start};

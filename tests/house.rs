@@ -1,7 +1,13 @@
 //! The rules of the house, as tests: what may import what, how long a file may be, what keeps answers the same on every CPU.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use imports::Imports;
+
+#[path = "house/imports.rs"]
+mod imports;
 
 /// A source file: its path under the root, with `/`, and its text.
 struct Source {
@@ -57,14 +63,19 @@ fn none(faults: Vec<String>) {
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
 }
 
-/// A floor of the house, and what must not be heard of there.
+/// A floor of the house, and the names that must not be heard there.
 const FLOORS: &[(&str, &[&str])] = &[
     ("server/physics", &["tokio", "axum", "serde_json", "std::time", "std::thread", "hyper", "equipoise::"]),
-    ("server/gallery", &["axum", "tokio", "serde", "crate::http", "crate::wire", "crate::live", "crate::routes"]),
-    ("server/http", &["equipoise_physics", "crate::wire", "crate::live", "crate::routes"]),
+    (
+        "server/charts",
+        &["axum", "tokio", "serde", "equipoise_physics", "crate::http", "crate::api", "crate::live", "crate::runs"],
+    ),
+    ("server/failure_cases", &["axum", "tokio", "serde", "crate::http", "crate::api", "crate::live", "crate::runs"]),
+    ("server/comparison", &["axum", "tokio", "serde", "crate::http", "crate::api", "crate::live", "crate::runs"]),
+    ("server/http", &["equipoise_physics", "crate::api", "crate::live", "crate::runs"]),
     (
         "server/compute",
-        &["axum", "hyper", "equipoise_physics", "crate::http", "crate::wire", "crate::live", "crate::routes"],
+        &["axum", "hyper", "equipoise_physics", "crate::http", "crate::api", "crate::live", "crate::runs"],
     ),
     (
         "server/integrators",
@@ -77,29 +88,63 @@ const FLOORS: &[(&str, &[&str])] = &[
             "hyper",
             "crate::compute",
             "crate::http",
-            "crate::picture",
-            "crate::wire",
+            "crate::charts",
+            "crate::api",
             "crate::live",
-            "crate::routes",
+            "crate::runs",
         ],
     ),
-    (
-        "server/wire",
-        &[
-            "axum::Router",
-            "axum::routing",
-            "tokio",
-            "crate::live",
-            "crate::routes",
-            "crate::router",
-            "crate::middleware",
-        ],
-    ),
-    ("server/live", &["axum::Router", "axum::routing", "crate::routes", "crate::router", "crate::middleware"]),
-    ("server/transport", &["equipoise_physics", "crate::wire", "crate::live"]),
-    ("server/routes", &["crate::router", "crate::middleware", "crate::transport"]),
-    ("server/limits.rs", &["equipoise_physics", "axum", "crate::http", "crate::wire", "crate::live", "crate::routes"]),
+    ("server/runs", &["axum", "tokio", "crate::live", "crate::router", "crate::http::middleware"]),
+    ("server/live", &["axum::Router", "axum::routing", "crate::router", "crate::http::middleware"]),
+    ("server/api", &["crate::router", "crate::http::middleware", "crate::transport"]),
+    ("server/transport", &["equipoise_physics", "crate::api", "crate::live", "crate::runs"]),
+    ("server/limits.rs", &["equipoise_physics", "axum", "crate::http", "crate::api", "crate::live", "crate::runs"]),
 ];
+
+/// Names that must not be heard in the answers: they compute and are written, and know of no route.
+const ANSWERS: [&str; 5] = ["axum::Router", "axum::routing", "tokio", "crate::live", "crate::router"];
+
+#[test]
+fn answers_know_of_no_route() {
+    let mut faults = Vec::new();
+    for source in sources(&["rs"]).iter().filter(|source| source.is_under("server/api")) {
+        let name = source.path.rsplit('/').next().unwrap_or_default();
+        if ["mod.rs", "live.rs", "batches.rs"].contains(&name) || source.is_under("server/api/ops") {
+            continue;
+        }
+        for (number, line) in source.code() {
+            for name in ANSWERS.iter().filter(|name| mentions(line, name)) {
+                faults.push(format!("{}:{number}: {name} is not for an answer: {}", source.path, line.trim()));
+            }
+        }
+    }
+    none(faults);
+}
+
+#[test]
+fn no_files_import_one_another_in_a_circle() {
+    let sources = sources(&["rs"]);
+    let imports = Imports::read(&sources);
+    assert!(imports.count() > 500, "only {} imports were found", imports.count());
+    none(
+        imports.circles().iter().map(|circle| format!("a circle of {}: {}", circle.len(), circle.join(", "))).collect(),
+    );
+}
+
+/// A folder with more files than this at one level is hard to look through.
+const FILES: usize = 14;
+
+#[test]
+fn folders_are_small() {
+    let mut folders: BTreeMap<String, usize> = BTreeMap::new();
+    for source in sources(&["rs", "js", "mjs", "css"]) {
+        let folder = source.path.rsplit_once('/').map_or("", |(folder, _)| folder).to_owned();
+        *folders.entry(folder).or_default() += 1;
+    }
+    let is_test = |folder: &str| folder.split('/').any(|part| part == "tests");
+    let faults = folders.iter().filter(|(folder, count)| **count > FILES && !is_test(folder));
+    none(faults.map(|(folder, count)| format!("{folder}: {count} files; at most {FILES}")).collect());
+}
 
 #[test]
 fn imports_go_downwards_only() {
@@ -183,7 +228,9 @@ fn no_answer_depends_on_the_platforms_mathematics() {
 fn no_map_without_an_order_decides_over_bytes() {
     let mut faults = Vec::new();
     for source in sources(&["rs"]) {
-        let answers = ["server/physics", "server/wire", "server/routes"].iter().any(|floor| source.is_under(floor));
+        let answers = ["server/physics", "server/api", "server/runs", "server/comparison"]
+            .iter()
+            .any(|floor| source.is_under(floor));
         if !answers || source.path.contains("/tests/") {
             continue;
         }

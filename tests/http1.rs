@@ -5,8 +5,8 @@ mod support;
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
+use equipoise::api::App;
 use equipoise::config::Config;
-use equipoise::routes::App;
 use support::socket::{SOON, start, start_with};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;

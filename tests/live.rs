@@ -34,7 +34,7 @@ async fn a_run_is_told_in_order_with_the_values_of_the_physics() {
     assert!(hello["url"].as_str().unwrap().starts_with("/v1/live?scene."));
     let impacts = client.impacts(20).await;
     assert_eq!(numbers(&impacts), (1..=20).collect::<Vec<_>>());
-    let scene = equipoise::wire::presets::find("case-1").unwrap().draft().build().unwrap();
+    let scene = equipoise::api::scene::presets::find("case-1").unwrap().draft().build().unwrap();
     let mut orbit = scene.orbit().unwrap();
     assert_eq!(hello["flight_time"], orbit.t());
     for impact in impacts {

@@ -5,8 +5,8 @@ mod support;
 use std::io::Write;
 use std::time::{Duration, Instant};
 
+use equipoise::api::App;
 use equipoise::router;
-use equipoise::routes::App;
 use http_body_util::BodyExt;
 use serde_json::{Value, json};
 use support::Server;

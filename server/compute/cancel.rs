@@ -44,7 +44,7 @@ impl Cancel {
     }
 
     /// Waits until it is set.
-    pub(super) async fn wait(&self) {
+    pub(crate) async fn wait(&self) {
         let changed = self.0.changed.notified();
         // Set before the wait began, or it wakes the wait: `notified` counts from its making on.
         if !self.0.is_set.load(Ordering::SeqCst) {
@@ -55,7 +55,7 @@ impl Cancel {
 
 /// Sets a flag when it is dropped: held by whoever waits.
 #[derive(Debug)]
-pub(super) struct OnDrop(pub(super) Cancel);
+pub(crate) struct OnDrop(pub(crate) Cancel);
 
 impl Drop for OnDrop {
     fn drop(&mut self) {

@@ -7,12 +7,12 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use tokio::task::yield_now;
 
-use super::line::{Flow, Line, Permit};
-use super::peer::Peer;
+use crate::compute::fair_queue::{Flow, Line, Permit};
+use crate::compute::peer::Peer;
 
 /// Who works on the async threads. Clones share it.
 #[derive(Debug, Clone)]
-pub(super) struct Gate(Arc<Book>);
+pub(crate) struct Gate(Arc<Book>);
 
 #[derive(Debug)]
 struct Book {
@@ -30,12 +30,12 @@ pub struct Slot {
 
 impl Gate {
     /// A gate to so many threads.
-    pub(super) fn new(threads: usize) -> Self {
+    pub(crate) fn new(threads: usize) -> Self {
         Self(Arc::new(Book { most: threads.div_ceil(2), lines: Mutex::default() }))
     }
 
     /// A slot for `peer`, when it is free.
-    pub(super) async fn enter(&self, peer: Peer) -> Slot {
+    pub(crate) async fn enter(&self, peer: Peer) -> Slot {
         let line = self.line(peer);
         if let Some(permit) = line.try_take() {
             return Slot { _permit: permit };

@@ -10,15 +10,16 @@ use tokio::runtime::Handle;
 use tokio::task::spawn_blocking;
 use tokio::time::timeout;
 
-use super::cancel::{Cancel, OnDrop};
-use super::gate::{Gate, Slot};
-use super::line::{Flow, Line, Permit};
-use super::peer::Peer;
-use super::price::Price;
-use super::shares::{NoShare, Share, Shares};
-use super::turn::Turn;
-use super::turns::Turns;
-use crate::limits::{self, Limits};
+use crate::compute::cancel::{Cancel, OnDrop};
+use crate::compute::fair_queue::{Flow, Line, Permit};
+use crate::compute::gate::{Gate, Slot};
+use crate::compute::peer::Peer;
+use crate::compute::price::Price;
+use crate::compute::quota::{NoShare, Share, Shares};
+use crate::compute::time_slices::Turns;
+use crate::compute::turn::Turn;
+use crate::limits;
+use crate::limits::Limits;
 
 /// Admits work and runs it. Cheap to clone; clones share their permits.
 #[derive(Debug, Clone)]

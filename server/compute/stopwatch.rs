@@ -5,7 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::{Cancel, Cancelled, Turn};
+use crate::compute::{Cancel, Cancelled, Turn};
 
 /// What was measured of one piece of work.
 #[derive(Debug, Clone, Copy, PartialEq)]

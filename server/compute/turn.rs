@@ -10,8 +10,8 @@ use std::time::Instant;
 
 use tokio::runtime::Handle;
 
-use super::cancel::{Cancel, Cancelled};
-use super::line::{Flow, Line, Permit};
+use crate::compute::cancel::{Cancel, Cancelled};
+use crate::compute::fair_queue::{Flow, Line, Permit};
 use crate::limits;
 
 /// A turn to compute. Work asks it every millisecond or so whether to go on.
@@ -48,12 +48,12 @@ impl Turn {
         Self::new(Cancel::never(), Way::Alone)
     }
 
-    pub(super) fn inline() -> Self {
+    pub(crate) fn inline() -> Self {
         Self::new(Cancel::never(), Way::Inline { overran: Cell::new(false) })
     }
 
     /// A turn with a permit that `flow` got in `line`.
-    pub(super) fn permitted(cancel: Cancel, permit: Permit, line: Arc<Line>, flow: Flow, runtime: Handle) -> Self {
+    pub(crate) fn permitted(cancel: Cancel, permit: Permit, line: Arc<Line>, flow: Flow, runtime: Handle) -> Self {
         Self::new(cancel, Way::Permitted { permit: RefCell::new(Some(permit)), line, flow, runtime })
     }
 
@@ -113,7 +113,7 @@ impl Turn {
     }
 
     /// Tells whether an inline turn was too short for the work.
-    pub(super) fn overran(&self) -> bool {
+    pub(crate) fn overran(&self) -> bool {
         matches!(&self.way, Way::Inline { overran } if overran.get())
     }
 }

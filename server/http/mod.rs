@@ -2,37 +2,24 @@
 //!
 //! No physics and no routes here: everything is told in JSON values, bytes and formats.
 
-pub mod answer;
-mod asked;
-mod body;
-pub mod encode;
-pub mod etag;
-pub mod fixed;
-pub mod host;
-pub mod json;
-pub mod leaf;
-pub mod lines;
-pub mod negotiate;
-pub mod origin;
-pub mod outlet;
+pub mod middleware;
+pub mod request;
+pub mod response;
+pub mod security;
+
 pub mod output;
 pub mod problem;
-pub mod query;
-pub mod reader;
-pub mod request;
-pub mod site;
-mod token;
 pub mod transfer;
 
-pub use answer::Resource;
-pub use asked::{Asked, REQUEST_ID};
-pub use host::HostName;
-pub use leaf::Source;
-pub use lines::{Line, Lines};
-pub use negotiate::Format;
-pub use origin::Origin;
-pub use outlet::Outlet;
+pub use crate::http::request::api_request::{Ask, peer};
+pub use crate::http::request::context::{Asked, REQUEST_ID};
+pub use crate::http::request::ndjson::{Line, Lines};
+pub use crate::http::request::reader::{Errors, Reader};
+pub use crate::http::request::scalar::Source;
+pub use crate::http::response::cached::Resource;
+pub use crate::http::response::negotiate::Format;
+pub use crate::http::response::streaming::Outlet;
+pub use crate::http::security::host::HostName;
+pub use crate::http::security::origin::Origin;
+pub use crate::http::security::token::Token;
 pub use problem::{FieldError, Problem};
-pub use reader::{Errors, Reader};
-pub use request::{Ask, peer};
-pub use token::Token;

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use super::problem::Problem;
 use crate::compute::Cancelled;
+use crate::http::problem::Problem;
 use crate::limits;
 
 /// Bytes in memory, as long as somebody waits for them.

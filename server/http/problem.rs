@@ -9,8 +9,8 @@ use axum::response::{IntoResponse, Response};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use super::asked::Asked;
 use crate::compute::{OverBudget, Refused};
+use crate::http::request::context::Asked;
 use crate::limits;
 
 /// One thing wrong with one field.
@@ -48,7 +48,7 @@ impl Problem {
         self
     }
 
-    pub(super) fn header(mut self, name: HeaderName, value: HeaderValue) -> Self {
+    pub(crate) fn header(mut self, name: HeaderName, value: HeaderValue) -> Self {
         self.0.headers.push((name, value));
         self
     }

@@ -2,7 +2,7 @@
 
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 
-use super::problem::{Problem, shortened};
+use crate::http::problem::{Problem, shortened};
 
 /// Refuses a body in a coding that is not understood: 501. The library undoes the last one, `chunked`, and passes over those before
 /// it; a request whose last one is another it refuses by itself, see [`not_implemented`].

@@ -12,8 +12,8 @@ use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 use differential_equations::status::Status;
 use equipoise_physics::run::ending::Ending;
 
-use super::course::{Course, Halt, bisect};
-use super::motion::Motion;
+use crate::integrators::course::{Course, Halt, bisect};
+use crate::integrators::motion::Motion;
 
 struct Flight {
     gravity: f64,
@@ -28,7 +28,7 @@ impl ODE<f64, [f64; 6]> for Flight {
 /// No flight is longer, s: the library wants an end.
 const HORIZON: f64 = 1e6;
 
-pub(super) fn run(course: &mut Course, tolerance: f64) -> Result<Infallible, Halt> {
+pub(crate) fn run(course: &mut Course, tolerance: f64) -> Result<Infallible, Halt> {
     let (mut motion, at_contact) = course.start();
     let mut t = 0.0;
     if at_contact {

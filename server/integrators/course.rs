@@ -4,23 +4,22 @@
 
 use equipoise_physics::body::Release;
 use equipoise_physics::bounce::strike::{Rod, State, Strike};
-use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::{Rules, SPEED_LIMIT};
 use equipoise_physics::run::settling::{Rebound, SETTLED_SHARE, stay, time_to_rest};
 
-use super::motion::Motion;
-use super::{Ending, Impact, Work};
+use crate::integrators::motion::Motion;
+use crate::integrators::{Ending, Impact, Work};
 
 /// Why a method stops.
-pub(super) enum Halt {
+pub(crate) enum Halt {
     /// The run is over.
     Ended(Ending),
     /// Nobody waits for it any more.
     Stopped,
 }
 
-impl From<orbit::Ending> for Halt {
-    fn from(ending: orbit::Ending) -> Self {
+impl From<equipoise_physics::run::ending::Ending> for Halt {
+    fn from(ending: equipoise_physics::run::ending::Ending) -> Self {
         Self::Ended(Ending::Run(ending))
     }
 }
@@ -29,11 +28,11 @@ impl From<orbit::Ending> for Halt {
 const STEPS_PER_QUESTION: u64 = 128;
 
 /// A run that a method is on.
-pub(super) struct Course<'a> {
-    pub(super) rod: Rod,
-    pub(super) release: Release,
-    pub(super) impacts: Vec<Impact>,
-    pub(super) work: Work,
+pub(crate) struct Course<'a> {
+    pub(crate) rod: Rod,
+    pub(crate) release: Release,
+    pub(crate) impacts: Vec<Impact>,
+    pub(crate) work: Work,
     rules: Rules,
     wanted: u64,
     most_steps: u64,
@@ -46,7 +45,7 @@ pub(super) struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         rod: Rod,
         rules: Rules,
         release: Release,
@@ -70,7 +69,7 @@ impl<'a> Course<'a> {
     }
 
     /// The rod at t = 0. Whether the release is a contact already is read as the map reads it.
-    pub(super) fn start(&self) -> (Motion, bool) {
+    pub(crate) fn start(&self) -> (Motion, bool) {
         let State { theta, x_dot, y_dot, theta_dot } = self.release.state;
         let motion =
             Motion { place: [self.release.x, self.release.height, theta], velocity: [x_dot, y_dot, theta_dot] };
@@ -78,20 +77,20 @@ impl<'a> Course<'a> {
     }
 
     /// [`Motion::gap`], counted.
-    pub(super) fn gap(&mut self, motion: &Motion) -> f64 {
+    pub(crate) fn gap(&mut self, motion: &Motion) -> f64 {
         self.work.gaps += 1;
         motion.gap(self.rod.contact_distance)
     }
 
     /// A step of free flight by Runge-Kutta, counted.
-    pub(super) fn fly(&mut self, motion: &Motion, step: f64) -> Motion {
+    pub(crate) fn fly(&mut self, motion: &Motion, step: f64) -> Motion {
         self.work.accelerations += 4;
         let gravity = self.rod.gravity;
         motion.runge_kutta(step, |_, _| [0.0, -gravity, 0.0])
     }
 
     /// Before every step: whether there may be one.
-    pub(super) fn step(&mut self, t: f64, motion: &Motion) -> Result<(), Halt> {
+    pub(crate) fn step(&mut self, t: f64, motion: &Motion) -> Result<(), Halt> {
         if motion.place[1] < -self.rod.contact_distance && motion.velocity[1] <= 0.0 {
             return Err(Halt::Ended(Ending::Missed { t }));
         }
@@ -105,32 +104,36 @@ impl<'a> Course<'a> {
         Ok(())
     }
 
-    /// A contact: records it and gives the strike. The checks are those of [`orbit::Orbit::advance`], in the same order; that the flight
+    /// A contact: records it and gives the strike. The checks are those of [`equipoise_physics::run::orbit::Orbit::advance`], in the same order; that the flight
     /// before was too short is known only here, and ends the run at the contact before.
-    pub(super) fn contact(&mut self, t: f64, motion: &Motion) -> Result<Strike, Halt> {
+    pub(crate) fn contact(&mut self, t: f64, motion: &Motion) -> Result<Strike, Halt> {
         self.settle(t)?;
         let contacts = self.impacts.len() as u64;
         if contacts >= self.wanted {
-            return Err(orbit::Ending::Completed.into());
+            return Err(equipoise_physics::run::ending::Ending::Completed.into());
         }
         let state = motion.state();
         self.impacts.push(Impact { n: contacts + 1, t, x: motion.place[0], state });
         if state.theta.abs() >= self.rules.topple_angle {
-            return Err(orbit::Ending::Toppled { theta: state.theta, limit: self.rules.topple_angle }.into());
+            return Err(equipoise_physics::run::ending::Ending::Toppled {
+                theta: state.theta,
+                limit: self.rules.topple_angle,
+            }
+            .into());
         }
         let strike = self.rod.strike(&state);
         if strike.push >= 0.0 {
-            return Err(orbit::Ending::Separating { approach: strike.approach }.into());
+            return Err(equipoise_physics::run::ending::Ending::Separating { approach: strike.approach }.into());
         }
         Ok(strike)
     }
 
     /// After a contact: whether there can be a flight.
-    pub(super) fn leave(&mut self, state: &State, rebound: Rebound) -> Result<(), Halt> {
+    pub(crate) fn leave(&mut self, state: &State, rebound: Rebound) -> Result<(), Halt> {
         let spin = self.rod.contact_distance * state.theta_dot;
         let speed_squared = state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin;
         if speed_squared.is_nan() || speed_squared > SPEED_LIMIT * SPEED_LIMIT {
-            return Err(orbit::Ending::Diverged { speed: speed_squared.sqrt() }.into());
+            return Err(equipoise_physics::run::ending::Ending::Diverged { speed: speed_squared.sqrt() }.into());
         }
         if !rebound.rises() {
             let t = self.impacts.last().map_or(0.0, |impact| impact.t);
@@ -139,13 +142,13 @@ impl<'a> Course<'a> {
         self.rebound = rebound;
         // Where a run can settle, the flight after its last contact decides too.
         if !self.rules.settles && self.impacts.len() as u64 >= self.wanted {
-            return Err(orbit::Ending::Completed.into());
+            return Err(equipoise_physics::run::ending::Ending::Completed.into());
         }
         Ok(())
     }
 
     /// A contact without duration: [`Course::contact`] and [`Course::leave`], and the velocities changed.
-    pub(super) fn strike(&mut self, t: f64, motion: &mut Motion) -> Result<Strike, Halt> {
+    pub(crate) fn strike(&mut self, t: f64, motion: &mut Motion) -> Result<Strike, Halt> {
         let strike = self.contact(t, motion)?;
         self.leave(&strike.after, self.rebound_of(&strike, motion))?;
         motion.velocity = [strike.after.x_dot, strike.after.y_dot, strike.after.theta_dot];
@@ -153,7 +156,7 @@ impl<'a> Course<'a> {
     }
 
     /// How the contact point leaves a contact without duration.
-    pub(super) fn rebound_of(&self, strike: &Strike, before: &Motion) -> Rebound {
+    pub(crate) fn rebound_of(&self, strike: &Strike, before: &Motion) -> Rebound {
         strike.rebound(self.rod.contact_distance, strike.rise_rounding(before.velocity[1], f64::EPSILON))
     }
 
@@ -165,7 +168,7 @@ impl<'a> Course<'a> {
         }
         if flight_time < SETTLED_SHARE * self.first_flight && self.rebound.is_slow() {
             let settle_time = before.t + time_to_rest(flight_time, self.last_flight);
-            return Err(orbit::Ending::Settled { flight_time, settle_time }.into());
+            return Err(equipoise_physics::run::ending::Ending::Settled { flight_time, settle_time }.into());
         }
         self.last_flight = flight_time;
         Ok(())
@@ -173,7 +176,7 @@ impl<'a> Course<'a> {
 }
 
 /// Halves a stretch of time until its ends are neighbours: `is_above` holds at the answer (or it is 0) and not just after it.
-pub(super) fn bisect(mut end: f64, mut is_above: impl FnMut(f64) -> bool) -> f64 {
+pub(crate) fn bisect(mut end: f64, mut is_above: impl FnMut(f64) -> bool) -> f64 {
     let mut begin = 0.0;
     loop {
         let middle = 0.5 * (begin + end);

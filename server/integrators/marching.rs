@@ -5,10 +5,10 @@
 
 use std::convert::Infallible;
 
-use super::Location;
-use super::course::{Course, Halt, bisect};
+use crate::integrators::Location;
+use crate::integrators::course::{Course, Halt, bisect};
 
-pub(super) fn run(course: &mut Course, step: f64, location: Location) -> Result<Infallible, Halt> {
+pub(crate) fn run(course: &mut Course, step: f64, location: Location) -> Result<Infallible, Halt> {
     let (mut motion, at_contact) = course.start();
     // Steps are counted from the last contact, so that rounding of t does not add up.
     let (mut contact_t, mut steps) = (0.0, 0.0);

@@ -13,7 +13,6 @@ mod time_stepping;
 
 use equipoise_physics::body::Release;
 use equipoise_physics::bounce::strike::{Rod, State};
-use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::Rules;
 
 use course::{Course, Halt};
@@ -94,7 +93,7 @@ pub struct Impact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending {
     /// As runs of the map end.
-    Run(orbit::Ending),
+    Run(equipoise_physics::run::ending::Ending),
     /// The rod is below the table and falls, and no contact was seen.
     Missed {
         /// When that was noticed, s.
@@ -143,7 +142,7 @@ pub struct Simulation {
 /// Runs a method from the release for so many contacts and at most so many steps. `go_on` is asked every few thousand steps, and there
 /// is no answer once it says `false`.
 ///
-/// The reasons for which a run ends are those of [`orbit::Orbit`], in the same order. Steps that are not positive end as `out_of_steps`.
+/// The reasons for which a run ends are those of [`equipoise_physics::run::orbit::Orbit`], in the same order. Steps that are not positive end as `out_of_steps`.
 pub fn simulate(
     method: Method,
     (rod, rules, release): (&Rod, &Rules, &Release),

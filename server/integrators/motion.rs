@@ -7,39 +7,39 @@ use equipoise_physics::numbers::trig;
 
 /// Place and velocity of the rod.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Motion {
+pub(crate) struct Motion {
     /// x and y of the centre of gravity, m, and θ.
-    pub(super) place: [f64; 3],
+    pub(crate) place: [f64; 3],
     /// ẋ, ẏ, θ̇.
-    pub(super) velocity: [f64; 3],
+    pub(crate) velocity: [f64; 3],
 }
 
 impl Motion {
-    pub(super) fn state(&self) -> State {
+    pub(crate) fn state(&self) -> State {
         let [x_dot, y_dot, theta_dot] = self.velocity;
         State { theta: self.place[2], x_dot, y_dot, theta_dot }
     }
 
     /// Height of the contact point over y = 0, m.
-    pub(super) fn gap(&self, contact_distance: f64) -> f64 {
+    pub(crate) fn gap(&self, contact_distance: f64) -> f64 {
         self.place[1] - contact_distance * trig::sin_cos(self.place[2]).1
     }
 
     /// (l sin θ, −l cos θ), from the centre of gravity to the contact point.
-    pub(super) fn arm(&self, contact_distance: f64) -> [f64; 2] {
+    pub(crate) fn arm(&self, contact_distance: f64) -> [f64; 2] {
         let (sin, cos) = trig::sin_cos(self.place[2]);
         [contact_distance * sin, -(contact_distance * cos)]
     }
 
     /// Velocity of the contact point.
-    pub(super) fn contact_velocity(&self, contact_distance: f64) -> [f64; 2] {
+    pub(crate) fn contact_velocity(&self, contact_distance: f64) -> [f64; 2] {
         let [x, y] = self.arm(contact_distance);
         let [x_dot, y_dot, theta_dot] = self.velocity;
         [x_dot - theta_dot * y, y_dot + theta_dot * x]
     }
 
     /// One step of the classical Runge-Kutta method of order 4 (Kutta 1901): four accelerations.
-    pub(super) fn runge_kutta(&self, step: f64, acceleration: impl Fn(&Self, f64) -> [f64; 3]) -> Self {
+    pub(crate) fn runge_kutta(&self, step: f64, acceleration: impl Fn(&Self, f64) -> [f64; 3]) -> Self {
         let half = 0.5 * step;
         let a1 = acceleration(self, 0.0);
         let at2 = self.moved(half, &self.velocity, &a1);

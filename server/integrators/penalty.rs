@@ -12,9 +12,9 @@ use std::f64::consts::PI;
 use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::run::settling::Rebound;
 
-use super::course::{Course, Halt};
-use super::motion::Motion;
-use super::time_stepping::per_impulse;
+use crate::integrators::course::{Course, Halt};
+use crate::integrators::motion::Motion;
+use crate::integrators::time_stepping::per_impulse;
 
 /// Steps of an undamped contact. More make the table softer; with fewer, Runge-Kutta itself damps the contact, which smaller steps do not
 /// mend as they only make the table harder: with 16 it takes 6e-6 of the speed, with 8 2e-4.
@@ -23,7 +23,7 @@ pub const STEPS_PER_CONTACT: f64 = 16.0;
 /// Largest damping ratio for which Runge-Kutta is stable at that stiffness (2ζω₀h < 2.78): restitutions under 0.005 become 0.005.
 const MOST_DAMPING: f64 = 7.0;
 
-pub(super) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
+pub(crate) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
     let damping = damping_ratio(course.rod.restitution);
     let (mut motion, mut meets) = course.start();
     let mut steps = 0.0;

@@ -7,10 +7,10 @@ use std::convert::Infallible;
 use equipoise_physics::bounce::flight::Flight;
 use equipoise_physics::numbers::trig;
 
-use super::course::{Course, Halt, bisect};
-use super::motion::Motion;
+use crate::integrators::course::{Course, Halt, bisect};
+use crate::integrators::motion::Motion;
 
-pub(super) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
+pub(crate) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
     let (mut motion, at_contact) = course.start();
     let mut contact_t = 0.0;
     let mut flight = if at_contact {

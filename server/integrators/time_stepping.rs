@@ -9,10 +9,10 @@ use std::convert::Infallible;
 
 use equipoise_physics::bounce::strike::{State, Strike};
 
-use super::course::{Course, Halt};
-use super::motion::Motion;
+use crate::integrators::course::{Course, Halt};
+use crate::integrators::motion::Motion;
 
-pub(super) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
+pub(crate) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
     let (mut motion, at_contact) = course.start();
     if at_contact {
         course.strike(0.0, &mut motion)?;
@@ -49,7 +49,7 @@ fn drift(motion: &Motion, time: f64) -> Motion {
 }
 
 /// What a unit of impulse along the table's normal does to the velocities: the strike shows it.
-pub(super) fn per_impulse(before: &State, strike: &Strike) -> [f64; 3] {
+pub(crate) fn per_impulse(before: &State, strike: &Strike) -> [f64; 3] {
     let after = strike.after;
     [after.x_dot - before.x_dot, after.y_dot - before.y_dot, after.theta_dot - before.theta_dot]
         .map(|change| change / strike.impulse_normal)

@@ -3,7 +3,8 @@
 use std::time::{Duration, Instant};
 
 use crate::compute::Limit;
-use crate::limits::{self, Limits};
+use crate::limits;
+use crate::limits::Limits;
 
 /// The bounds of one session, so that a test can wait for them.
 #[derive(Debug, Clone, Copy)]

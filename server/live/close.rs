@@ -3,7 +3,7 @@
 use axum::extract::ws::close_code;
 
 /// How a session ends; none if the client has ended it.
-pub(super) type Close = Option<(u16, &'static str)>;
+pub(crate) type Close = Option<(u16, &'static str)>;
 
 /// Reasons for which no message can be read any more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub enum Unreadable {
 
 impl Unreadable {
     /// The close that says so (RFC 6455, section 7.4.1).
-    pub(super) fn close(self) -> Close {
+    pub(crate) fn close(self) -> Close {
         match self {
             Unreadable::TooLarge => Some((close_code::SIZE, "a message too large")),
             Unreadable::NotUtf8 => Some((close_code::INVALID, "text that is not UTF-8")),

@@ -2,16 +2,13 @@
 //!
 //! Not here: how a connection becomes a WebSocket (`routes::live`), and the physics.
 
-pub mod address;
+pub mod client_message;
+pub mod server_message;
+pub mod sse;
+
 pub mod bounds;
-pub mod clock;
 pub mod close;
-pub mod course;
-pub mod events;
-pub mod messages;
-pub mod order;
 pub mod outbox;
-pub mod run;
 pub mod session;
 
 #[cfg(test)]

@@ -4,8 +4,8 @@
 use std::collections::VecDeque;
 use std::time::Instant;
 
-use super::messages::{Columns, Frame, Impact, Said};
 use crate::limits;
+use crate::live::server_message::{Columns, Frame, Impact, Said};
 
 #[derive(Debug)]
 enum Item {
@@ -115,8 +115,8 @@ impl Outbox {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::live::course::Course;
-    use crate::live::run::tests::case;
+    use crate::runs::playback::Course;
+    use crate::runs::run::tests::case;
     use serde_json::{Value, json};
 
     fn pop(outbox: &mut Outbox) -> Value {

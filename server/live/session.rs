@@ -14,18 +14,21 @@ use prometheus_client::metrics::histogram::Histogram;
 use tokio::sync::mpsc;
 use tokio::time::{sleep_until, timeout};
 
-use super::address::{self, Asked, NO_ANGLE};
-use super::bounds::{Allowance, Bounds};
-use super::close::{Close, Unreadable};
-use super::course::{self, Course, NotCaughtUp};
-use super::messages::{self, Ack, Frame, Hello, Said};
-use super::order::Order;
-use super::outbox::Outbox;
-use super::run::Run;
+use crate::api::scene::resolved::has_angle;
 use crate::compute::{Limit, Pool, Turn};
 use crate::http::{FieldError, Problem};
 use crate::limits;
-use crate::wire::scene::has_angle;
+use crate::live::bounds::{Allowance, Bounds};
+use crate::live::client_message::Order;
+use crate::live::close::{Close, Unreadable};
+use crate::live::outbox::Outbox;
+use crate::live::server_message;
+use crate::live::server_message::{Ack, Frame, Hello, Said};
+use crate::runs::playback;
+use crate::runs::playback::{Course, NotCaughtUp};
+use crate::runs::run::Run;
+use crate::runs::run_url;
+use crate::runs::run_url::{Asked, NO_ANGLE};
 
 /// What a session needs of the server.
 #[derive(Debug, Clone)]
@@ -45,7 +48,7 @@ pub struct Place {
 #[cfg(test)]
 impl Place {
     /// One of its own, with these bounds.
-    pub(super) fn alone(bounds: Bounds) -> Self {
+    pub(crate) fn alone(bounds: Bounds) -> Self {
         let pool = Pool::new(1, &limits::Limits::default());
         Self { pool, bounces: Counter::default(), lags: Histogram::new([]), base_path: "".into(), bounds }
     }
@@ -91,7 +94,7 @@ pub async fn serve(
             close
         }
         Err(problem) => {
-            outbox.push(messages::problem(&problem));
+            outbox.push(server_message::problem(&problem));
             let overloaded = problem.status().is_server_error();
             Some(if overloaded { (close_code::AGAIN, "busy") } else { (close_code::POLICY, "over budget") })
         }
@@ -132,10 +135,10 @@ pub async fn caught_up(asked: &Asked, place: &Place) -> Result<Course, Problem> 
     let until = asked.run.clock.run_time(wall_now());
     let limit = place.bounds.catch_up;
     let little = Limit { most: limit.most.min(limits::INLINE_BOUNCES), ..limit };
-    let course = match place.pool.run_inline(|turn| course::catch_up(asked, until, &little, turn)).await {
+    let course = match place.pool.run_inline(|turn| playback::catch_up(asked, until, &little, turn)).await {
         None | Some(Err(NotCaughtUp::OverBudget(_))) => {
             let asked = asked.clone();
-            let work = move |turn: &Turn| course::catch_up(&asked, until, &limit, turn).map_err(Problem::from);
+            let work = move |turn: &Turn| playback::catch_up(&asked, until, &limit, turn).map_err(Problem::from);
             place.pool.run_apart(work).await?
         }
         Some(other) => other?,
@@ -324,7 +327,7 @@ impl Session {
         if !self.allowance.takes(now) {
             let most = self.place.bounds.messages_per_s;
             let detail = format!("more than {most} messages a second, which is the limit");
-            self.outbox.push(messages::problem(&Problem::invalid_at("", detail)));
+            self.outbox.push(server_message::problem(&Problem::invalid_at("", detail)));
             return Some((close_code::POLICY, "too many messages"));
         }
         if !is_order {
@@ -339,7 +342,7 @@ impl Session {
             _ => Err(Problem::invalid_at("", "the message is binary; it must be JSON text")),
         };
         if let Err(problem) = done {
-            self.outbox.push(messages::problem(&problem));
+            self.outbox.push(server_message::problem(&problem));
         }
         None
     }
@@ -398,7 +401,7 @@ impl Session {
             }
         }
         run.clock.forget_beyond(limits::LIVE_CLOCK_ENTRIES);
-        if matches!(order, Order::Set(_) | Order::Kick(_)) && address::is_too_long(&run) {
+        if matches!(order, Order::Set(_) | Order::Kick(_)) && run_url::is_too_long(&run) {
             let most = limits::URL_BYTES;
             let detail = format!("the run's URL would be over the limit of {most} bytes; restart keeps what was set");
             return Err(Problem::invalid_at("", detail));
@@ -407,7 +410,7 @@ impl Session {
         self.next_pump = Instant::now();
         let ack = Ack {
             of: order.name(),
-            url: &format!("{}{}", self.place.base_path, address::url(&self.run)),
+            url: &format!("{}{}", self.place.base_path, run_url::url(&self.run)),
             run_time: self.run.clock.run_time(now),
             now,
             speed: self.run.clock.speed(),

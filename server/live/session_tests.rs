@@ -8,15 +8,15 @@ use serde_json::Value;
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tokio::time::{sleep, timeout};
 
-use super::address::Asked;
-use super::bounds::Bounds;
-use super::clock::Clock;
-use super::close::Unreadable;
-use super::messages::Frame;
-use super::run::Run;
-use super::run::tests::case;
-use super::session::{Place, caught_up, serve, wall_now};
 use crate::limits::Limits;
+use crate::live::bounds::Bounds;
+use crate::live::close::Unreadable;
+use crate::live::server_message::Frame;
+use crate::live::session::{Place, caught_up, serve, wall_now};
+use crate::runs::clock::Clock;
+use crate::runs::run::Run;
+use crate::runs::run::tests::case;
+use crate::runs::run_url::Asked;
 
 /// The client's ends of a connection that takes one message at a time.
 struct Client {

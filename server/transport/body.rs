@@ -8,16 +8,16 @@ use axum::body::{Bytes, HttpBody};
 use http_body::{Frame, SizeHint};
 use hyper::body::Incoming;
 
-use super::places::Place;
+use crate::transport::connection_slots::Place;
 
 /// A body that arrives over a connection with this place.
-pub(super) struct Awaited {
+pub(crate) struct Awaited {
     body: Incoming,
     place: Arc<Place>,
 }
 
 impl Awaited {
-    pub(super) fn new(body: Incoming, place: Arc<Place>) -> Self {
+    pub(crate) fn new(body: Incoming, place: Arc<Place>) -> Self {
         Self { body, place }
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! Not here: what is answered on them.
 
+mod connection_slots;
+
 mod body;
-mod places;
 mod stream;
 mod wire;
 
@@ -28,9 +29,10 @@ use tokio::time::{sleep, timeout};
 use tower::ServiceExt;
 
 use crate::compute::Peer;
-use crate::limits::{self, Limits};
+use crate::limits;
+use crate::limits::Limits;
+use crate::transport::connection_slots::Places;
 use body::Awaited;
-use places::Places;
 use stream::{Stream, told};
 use wire::{Wire, attended};
 
@@ -147,11 +149,11 @@ fn is_of_one_connection(error: &io::Error) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::api::App;
     use crate::compute::{Cancelled, Pool, Price, Turn};
     use crate::config::Config;
     use crate::http::Problem;
     use crate::router::router;
-    use crate::routes::App;
     use axum::routing::get;
     use tokio::io::{AsyncReadExt, AsyncWriteExt};
     use tokio::sync::oneshot;

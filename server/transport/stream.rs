@@ -13,15 +13,15 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::tcp::OwnedReadHalf;
 use tokio::time::{Sleep, sleep};
 
-use super::places::Place;
-use super::wire::Wire;
+use crate::http::middleware::seal;
 use crate::http::{Problem, transfer};
 use crate::limits;
-use crate::middleware::seal;
+use crate::transport::connection_slots::Place;
+use crate::transport::wire::Wire;
 
 /// A socket that withholds a bare error, and gives up on a client that does not read.
 #[derive(Debug)]
-pub(super) struct Stream {
+pub(crate) struct Stream {
     socket: OwnedReadHalf,
     wire: Arc<Wire>,
     place: Arc<Place>,
@@ -31,7 +31,7 @@ pub(super) struct Stream {
 }
 
 impl Stream {
-    pub(super) fn new(socket: OwnedReadHalf, wire: Arc<Wire>, place: Arc<Place>, stall_time: Duration) -> Self {
+    pub(crate) fn new(socket: OwnedReadHalf, wire: Arc<Wire>, place: Arc<Place>, stall_time: Duration) -> Self {
         Self { socket, wire, place, stall: None, stall_time }
     }
 
@@ -113,7 +113,7 @@ fn bare_error(head: &[u8]) -> Option<StatusCode> {
 
 /// The whole answer, head and body, that says what the bare error only hints at. `error` is why the library has ended the
 /// connection.
-pub(super) fn told(status: StatusCode, error: &hyper::Error) -> Vec<u8> {
+pub(crate) fn told(status: StatusCode, error: &hyper::Error) -> Vec<u8> {
     let problem = match status {
         _ if error.to_string() == UNKNOWN_CODING => transfer::not_implemented(None),
         StatusCode::URI_TOO_LONG => Problem::url_too_long("more than 65534"),

@@ -36,7 +36,7 @@ const CLOSED: Interest = Interest::READABLE;
 
 /// The sending half of a connection, and how far it is with the answer.
 #[derive(Debug)]
-pub(super) struct Wire {
+pub(crate) struct Wire {
     socket: OwnedWriteHalf,
     state: Mutex<State>,
 }
@@ -70,7 +70,7 @@ enum Coming {
 }
 
 impl Wire {
-    pub(super) fn new(socket: OwnedWriteHalf) -> Arc<Self> {
+    pub(crate) fn new(socket: OwnedWriteHalf) -> Arc<Self> {
         let state =
             State { coming: Coming::Nothing, is_flushed: true, ahead: 0, zeros: 0, writes: 0, bare_error: None };
         Arc::new(Self { socket, state: Mutex::new(state) })
@@ -85,12 +85,12 @@ impl Wire {
     }
 
     /// An answer is being made.
-    pub(super) fn begins(&self, version: Version) {
+    pub(crate) fn begins(&self, version: Version) {
         self.comes(Coming::Head(if version == Version::HTTP_10 { b"HTTP/1.0 " } else { b"HTTP/1.1 " }));
     }
 
     /// An answer is made, or its pieces will be while it is sent.
-    pub(super) fn sends(self: &Arc<Self>, version: Version, answer: Response<Body>) -> Response<Body> {
+    pub(crate) fn sends(self: &Arc<Self>, version: Version, answer: Response<Body>) -> Response<Body> {
         if answer.body().size_hint().exact().is_some() {
             self.comes(Coming::Nothing);
             return answer;
@@ -101,7 +101,7 @@ impl Wire {
     }
 
     /// Writes what the HTTP library has to write, but for what went out ahead of it.
-    pub(super) fn poll_write(&self, context: &mut Context<'_>, buffers: &[IoSlice<'_>]) -> Poll<io::Result<usize>> {
+    pub(crate) fn poll_write(&self, context: &mut Context<'_>, buffers: &[IoSlice<'_>]) -> Poll<io::Result<usize>> {
         let mut state = self.state();
         state.is_flushed = false;
         let ahead = state.ahead;
@@ -128,22 +128,22 @@ impl Wire {
     }
 
     /// Notes that the HTTP library has written all that it had.
-    pub(super) fn flushed(&self) {
+    pub(crate) fn flushed(&self) {
         self.state().is_flushed = true;
     }
 
     /// Keeps a bare error from being written: [`Wire::bare_error`] is asked for it when the connection has ended, and it is known
     /// what was wrong.
-    pub(super) fn withhold(&self, status: StatusCode) {
+    pub(crate) fn withhold(&self, status: StatusCode) {
         self.state().bare_error = Some(status);
     }
 
-    pub(super) fn bare_error(&self) -> Option<StatusCode> {
+    pub(crate) fn bare_error(&self) -> Option<StatusCode> {
         self.state().bare_error
     }
 
     /// Writes an answer at the end of a connection. Gives up after `time`.
-    pub(super) async fn end_with(&self, mut answer: &[u8], time: Duration) {
+    pub(crate) async fn end_with(&self, mut answer: &[u8], time: Duration) {
         let writing = async {
             while !answer.is_empty() {
                 self.socket.writable().await?;
@@ -159,7 +159,7 @@ impl Wire {
         let _ = timeout(time, writing).await;
     }
 
-    pub(super) fn shutdown(&self) -> io::Result<()> {
+    pub(crate) fn shutdown(&self) -> io::Result<()> {
         match shutdown(self.socket.as_ref(), Shutdown::Write) {
             // The client was faster.
             Err(rustix::io::Errno::NOTCONN) => Ok(()),
@@ -218,7 +218,7 @@ impl Wire {
 
 /// Drives a connection to its end, which it gives, or until its client has gone while it waits for an answer. What is worked on for
 /// the client is dropped with the connection.
-pub(super) async fn attended<C: Future>(mut connection: Pin<&mut C>, wire: &Arc<Wire>) -> Option<C::Output> {
+pub(crate) async fn attended<C: Future>(mut connection: Pin<&mut C>, wire: &Arc<Wire>) -> Option<C::Output> {
     let mut look = None;
     let driven = poll_fn(|context| {
         if let Poll::Ready(ended) = connection.as_mut().poll(context) {

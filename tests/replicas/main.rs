@@ -12,7 +12,8 @@ mod support;
 use std::fmt::Display;
 use std::io::{Write, stdout};
 
-use equipoise::limits::{self, Limits};
+use equipoise::limits;
+use equipoise::limits::Limits;
 use serde_json::json;
 
 use asking::{Answer, Ask, ask, begin};

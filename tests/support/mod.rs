@@ -33,7 +33,7 @@ impl Server {
     }
 
     pub(crate) fn with(config: &equipoise::config::Config) -> Self {
-        Self { router: equipoise::router::router(equipoise::routes::App::new(config)) }
+        Self { router: equipoise::router::router(equipoise::api::App::new(config)) }
     }
 
     pub(crate) async fn get(&self, target: &str) -> Answer {

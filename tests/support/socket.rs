@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+use equipoise::api::App;
 use equipoise::config::Config;
-use equipoise::routes::App;
 use equipoise::{router, transport};
 use futures_util::{SinkExt, StreamExt};
 use serde_json::{Value, json};

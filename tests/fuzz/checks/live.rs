@@ -1,11 +1,12 @@
 //! What a client of a live run says: the URL of the run, and the messages that change it.
 
+use equipoise::api::scene::resolved::{has_angle, value_to_json};
 use equipoise::http::{Errors, Problem, Reader, Source};
 use equipoise::limits;
-use equipoise::live::address::{self, Asked};
-use equipoise::live::order::Order;
-use equipoise::live::run::Run;
-use equipoise::wire::scene::{has_angle, value_to_json};
+use equipoise::live::client_message::Order;
+use equipoise::runs::run::Run;
+use equipoise::runs::run_url;
+use equipoise::runs::run_url::Asked;
 use serde_json::{Map, Value, json};
 
 use super::{problem, query};
@@ -40,7 +41,7 @@ pub(crate) fn check(data: &[u8]) {
         assert_eq!(again, order, "{message}");
         let Some(run) = &mut run else { continue };
         let changed = carried_out(run, &order, n);
-        if !address::is_too_long(&changed) {
+        if !run_url::is_too_long(&changed) {
             *run = changed;
             reads_back(run, None, now(n));
         }
@@ -71,7 +72,7 @@ fn begin(text: &str) -> Option<Run> {
 fn read(fields: &Map<String, Value>, now: u64) -> Result<Asked, Problem> {
     let mut errors = Errors::default();
     let mut reader = Reader::new(fields, String::new(), Source::Query, &mut errors);
-    let asked = address::read(&mut reader, now);
+    let asked = run_url::read(&mut reader, now);
     reader.finish();
     errors.into_result()?;
     Ok(asked.expect("where there is no run, the errors say why"))
@@ -79,13 +80,13 @@ fn read(fields: &Map<String, Value>, now: u64) -> Result<Asked, Problem> {
 
 /// Panics unless the run's URL is that of the run.
 fn reads_back(run: &Run, from: Option<u64>, now: u64) {
-    let url = address::url(run);
+    let url = run_url::url(run);
     let query = url.split_once('?').expect("a query").1;
     let query = from.map_or_else(|| query.to_owned(), |from| format!("{query}&from={from}"));
     let asked = query::tree(&query).and_then(|fields| read(&fields, now));
     let asked = asked.unwrap_or_else(|refused| panic!("{url} was refused: {refused:?}"));
     assert_eq!(asked, Asked { run: run.clone(), from }, "{url}");
-    assert_eq!(address::url(&asked.run), url);
+    assert_eq!(run_url::url(&asked.run), url);
 }
 
 /// The message that says this.

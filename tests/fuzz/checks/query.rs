@@ -1,7 +1,8 @@
 //! The query of a GET: from its text to the tree that it is equivalent to, and to the same scene as the JSON that says the same.
 
-use equipoise::http::{Problem, Source, query};
-use equipoise::wire::scene as wire;
+use equipoise::api::scene::resolved as wire;
+use equipoise::http::request::query;
+use equipoise::http::{Problem, Source};
 use equipoise_physics::scene::{Kind, VERTICES, field};
 use serde_json::{Map, Number, Value};
 

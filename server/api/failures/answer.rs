@@ -1,0 +1,71 @@
+//! A case of the failure gallery as it is answered.
+
+use crate::failure_cases::{Case, Says};
+use equipoise_physics::scene::{FIELDS, Scene};
+use serde::Serialize;
+
+use crate::api::scene::resolved::{Resolved, value_to_json};
+
+/// A case.
+#[derive(Debug, Serialize)]
+pub struct Failure {
+    name: &'static str,
+    title: &'static str,
+    method: &'static str,
+    why: &'static str,
+    scene: serde_json::Value,
+    impacts: u64,
+    says: Vec<Said>,
+    truth: Truth,
+    ask: String,
+    picture: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Said {
+    method: &'static str,
+    verdict: &'static str,
+    value: Option<f64>,
+    unit: Option<&'static str>,
+    right: bool,
+    detail: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Truth {
+    verdict: &'static str,
+    detail: String,
+}
+
+impl Failure {
+    /// Computes what a case says.
+    pub fn compute(case: &Case) -> Self {
+        let (scene, seen) = (case.scene(), case.look());
+        let said = |Says { method, verdict, value, unit, detail }| {
+            let value = value.filter(|value| value.is_finite());
+            Said { method, verdict, value, unit, right: verdict == seen.truth, detail }
+        };
+        Self {
+            name: case.name,
+            title: case.title,
+            method: case.method,
+            why: case.why,
+            scene: serde_json::to_value(Resolved(&scene)).unwrap_or_default(),
+            impacts: case.impacts,
+            says: seen.says.into_iter().map(said).collect(),
+            truth: Truth { verdict: seen.truth, detail: seen.detail },
+            ask: ask(&scene, case.ask),
+            picture: format!("/v1/failures/{}?format=svg", case.name),
+        }
+    }
+}
+
+/// The path of a request of this server, with what the scene says beyond the defaults.
+fn ask(scene: &Scene, (resource, rest): (&str, &str)) -> String {
+    let said = FIELDS.iter().filter_map(|row| {
+        let value = scene.value(row.name).filter(|value| Some(*value) != row.default)?;
+        let value = value_to_json(value);
+        Some(format!("scene.{}={}&", row.path, value.as_str().map_or_else(|| value.to_string(), str::to_owned)))
+    });
+    format!("/v1/{resource}?{}{rest}", said.collect::<String>())
+}

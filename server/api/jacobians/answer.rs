@@ -1,0 +1,353 @@
+//! The request and the answer of `jacobians`: where the map is differentiated, and its derivative there.
+
+use equipoise_physics::body::point::Point;
+use equipoise_physics::bounce::strike::State;
+use equipoise_physics::run::orbit::{LOOK, run};
+use equipoise_physics::scene::Scene;
+use equipoise_physics::stability::jacobian;
+use equipoise_physics::stability::jacobian::{Linearization, MOST_SIDES, TIED};
+use equipoise_physics::stability::linear_verdict::Class;
+use nalgebra::{Complex, DMatrix};
+use serde::{Serialize, Serializer};
+
+use crate::api::scene::resolved::{Resolved, bounce_price, has_angle};
+use crate::api::shared::outcome::Outcome;
+use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::trajectories::answer::{Choice, Refused};
+use crate::http::Reader;
+use crate::limits;
+
+/// Where to differentiate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub enum At {
+    /// At the scene's fixed point.
+    FixedPoint,
+    /// At a place x, m, and a state just before a contact.
+    State(f64, #[serde(serialize_with = "components")] State),
+    /// At a contact of the scene's run.
+    Impact(u64),
+}
+
+/// How to differentiate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Method {
+    /// The formulas themselves.
+    Exact,
+    /// Central differences, to compare.
+    FiniteDifference,
+}
+
+/// Step of the central differences, m/s (m for ρθ): rounding and truncation err about alike.
+pub const STEP: f64 = 1e-6;
+
+impl At {
+    /// Reads `at`.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let Some(value) = reader.value("at") else { return Some(Self::FixedPoint) };
+        if value.is_string() {
+            return reader.choice("at", &[("fixed_point", Self::FixedPoint)]);
+        }
+        let (mut found, mut kinds) = (None, 0);
+        reader.within("at", |at| {
+            if at.has("state") {
+                kinds += 1;
+                let state = at.within("state", |state| {
+                    (state.number("x", -1000.0..=1000.0, "m").unwrap_or(0.0), read_state(state))
+                });
+                found = state.map(|(x, state)| Self::State(x, state));
+            }
+            if at.has("impact") {
+                kinds += 1;
+                found = at.integer("impact", 1..=limits::IMPACTS).map(Self::Impact);
+            }
+            if kinds != 1 {
+                at.refuse_whole("at must be \"fixed_point\", or have either `state` or `impact`");
+            }
+        });
+        found
+    }
+}
+
+fn components<S: Serializer>(state: &State, serializer: S) -> Result<S::Ok, S::Error> {
+    (state.theta, state.x_dot, state.y_dot, state.theta_dot).serialize(serializer)
+}
+
+/// Reads a state just before a contact.
+pub(crate) fn read_state(reader: &mut Reader<'_, '_>) -> State {
+    let values = STATE.map(|(name, limit, unit)| reader.number(name, -limit..=limit, unit));
+    reader.require(&["y_dot"]);
+    let [theta, x_dot, y_dot, theta_dot] = values.map(|value| value.unwrap_or(0.0));
+    State { theta, x_dot, y_dot, theta_dot }
+}
+
+/// Components of a state with their limits and units; as wide as a run can get from the ranges of a scene.
+const STATE: [(&str, f64, &str); 4] = [
+    ("theta", std::f64::consts::PI, "rad"),
+    ("x_dot", 1000.0, "m/s"),
+    ("y_dot", 1000.0, "m/s"),
+    ("theta_dot", 1000.0, "rad/s"),
+];
+
+/// An eigenvalue.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Eigenvalue {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part.
+    pub im: f64,
+    /// Modulus.
+    pub modulus: f64,
+}
+
+impl From<Complex<f64>> for Eigenvalue {
+    fn from(value: Complex<f64>) -> Self {
+        Self { re: value.re, im: value.im, modulus: jacobian::modulus(value) }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct Place {
+    kind: &'static str,
+    impact: Option<u64>,
+    state: PlaceState,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct PlaceState {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    x: Option<f64>,
+    theta: f64,
+    x_dot: f64,
+    y_dot: f64,
+    theta_dot: Option<f64>,
+}
+
+/// The answer.
+#[derive(Debug, Clone, Serialize)]
+pub struct Jacobian<'a> {
+    scene: Resolved<'a>,
+    model: Choice,
+    at: Place,
+    period: u64,
+    method: &'static str,
+    state_order: &'static [&'static str],
+    matrix: Vec<Vec<f64>>,
+    determinant: f64,
+    eigenvalues: Vec<Eigenvalue>,
+    residue: Option<f64>,
+    defective: Option<bool>,
+    flight_time: f64,
+    contact_speed: f64,
+    contact_mode: &'static str,
+    smooth: bool,
+    one_sided: Vec<OneSided>,
+    notes: Vec<String>,
+}
+
+/// The derivative on one side of a kink.
+#[derive(Debug, Clone, Serialize)]
+struct OneSided {
+    contact_mode: &'static str,
+    matrix: Vec<Vec<f64>>,
+    eigenvalues: Vec<Eigenvalue>,
+}
+
+impl<'a> Jacobian<'a> {
+    /// Differentiates the map of a scene.
+    ///
+    /// # Errors
+    /// Why there is no derivative, as a JSON pointer and a sentence.
+    pub fn compute(
+        scene: &'a Scene,
+        at: At,
+        period: u64,
+        method: Method,
+        go_on: impl FnMut() -> bool,
+    ) -> Result<Self, Refused> {
+        let model = scene.model();
+        let (x, state) = place(scene, at, go_on)?;
+        let derivative = match method {
+            Method::Exact => jacobian::jacobian_at(&model, x, &state, period),
+            Method::FiniteDifference => jacobian::finite_difference_at(&model, x, &state, period, STEP),
+        };
+        let pointer = match at {
+            At::FixedPoint => "/at",
+            At::State(..) => "/at/state",
+            At::Impact(_) => "/at/impact",
+        };
+        let derivative = derivative.map_err(|contact| {
+            let why =
+                contact.ending.map_or_else(String::new, |ending| Outcome::new(ending, contact.n, contact.t).detail);
+            (pointer, format!("the map has no derivative here: it does not reach the next contact ({why})"))
+        })?;
+        let Linearization { matrix, flight_time, contact_speed, contact_mode, one_sided, .. } = derivative;
+        let matrices = || std::iter::once(&matrix).chain(one_sided.iter().map(|side| &side.matrix));
+        if !matrices().flat_map(|matrix| matrix.iter()).all(|entry| entry.is_finite()) {
+            return Err(Some((pointer, format!("the derivative over {period} contacts is beyond double precision"))));
+        }
+        let mut notes = vec![format!(
+            "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
+        )];
+        let fed_back = scene.feedback().is_some();
+        let linear = match at {
+            At::FixedPoint if !fed_back => scene.fixed_point().ok().map(|fixed_point| scene.linear(&fixed_point)),
+            _ => None,
+        };
+        let (eigenvalues, residue, defective) = if let Some(linear) = &linear {
+            let values = linear.eigenvalues.iter().map(|&value| power(value, period)).collect::<Vec<_>>();
+            // Greene's residue of the angle's block over the whole period; 1 − 2R = cos σ at period 1.
+            let residue = linear.residue.and_then(|one| if period == 1 { Some(one) } else { block_residue(&matrix) });
+            (values, residue, Some(linear.class == Class::Parabolic))
+        } else {
+            let whose = if fed_back { "a table without state feedback" } else { "a fixed point" };
+            notes.push(format!("residue and defective are null: they belong to {whose}"));
+            (eigenvalues_of(&matrix, pointer)?, None, None)
+        };
+        if !one_sided.is_empty() {
+            notes.push(format!(
+                "smooth is false: what the contact does along the table changes here, or when; the quantity that decides is \
+                 within {TIED} of its scale. matrix is the first of one_sided, which has at most {MOST_SIDES}"
+            ));
+        }
+        let one_sided = one_sided.iter().map(|side| {
+            Ok(OneSided {
+                contact_mode: side.contact_mode.name(),
+                matrix: rows(&side.matrix),
+                eigenvalues: eigenvalues_of(&side.matrix, pointer)?.into_iter().map(Eigenvalue::from).collect(),
+            })
+        });
+        let one_sided = one_sided.collect::<Result<Vec<_>, (&'static str, String)>>()?;
+        if linear.is_some() && residue.is_none() {
+            let why = if has_angle(scene) {
+                "the contact sticks to a table that only tilts, so the angle has no block of its own"
+            } else {
+                "a point mass has no angle to circle"
+            };
+            notes.push(format!("residue is null: {why}"));
+        }
+        Ok(Self {
+            scene: Resolved(scene),
+            model: Choice::model(scene),
+            at: Place {
+                kind: match at {
+                    At::FixedPoint => "fixed_point",
+                    At::State(..) => "state",
+                    At::Impact(_) => "impact",
+                },
+                impact: match at {
+                    At::Impact(impact) => Some(impact),
+                    _ => None,
+                },
+                state: PlaceState {
+                    x: fed_back.then_some(x),
+                    theta: state.theta,
+                    x_dot: state.x_dot,
+                    y_dot: state.y_dot,
+                    theta_dot: has_angle(scene).then_some(state.theta_dot),
+                },
+            },
+            period,
+            method: match method {
+                Method::Exact => "exact",
+                Method::FiniteDifference => "finite_difference",
+            },
+            state_order: jacobian::state_order(&model),
+            determinant: matrix.determinant(),
+            matrix: rows(&matrix),
+            eigenvalues: eigenvalues.into_iter().map(Eigenvalue::from).collect(),
+            residue,
+            defective,
+            flight_time,
+            contact_speed,
+            contact_mode: contact_mode.name(),
+            smooth: one_sided.is_empty(),
+            one_sided,
+            notes,
+        })
+    }
+
+    /// The matrix as a table, a row for each component of the state at the end.
+    pub fn to_table(&self) -> Table {
+        let mut columns = vec![Column {
+            name: "component",
+            unit: "",
+            cells: Cells::Words(self.state_order.iter().map(|&name| Some(name)).collect()),
+        }];
+        for (index, name) in self.state_order.iter().enumerate() {
+            let cells = Cells::Numbers(self.matrix.iter().map(|row| row[index]).collect());
+            columns.push(Column { name, unit: "", cells });
+        }
+        Table(columns)
+    }
+}
+
+/// The state at which to differentiate.
+fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64, State), Refused> {
+    match at {
+        At::FixedPoint => {
+            let fixed_point =
+                scene.fixed_point().map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
+            Ok((0.0, State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 }))
+        }
+        At::State(x, state) if has_angle(scene) => Ok((x, state)),
+        At::State(x, State { theta, x_dot, y_dot, theta_dot }) => {
+            if theta != 0.0 || theta_dot != 0.0 {
+                return Err(Some((
+                    "/at/state",
+                    "a point mass has no theta and no theta_dot; leave them out".to_owned(),
+                )));
+            }
+            Ok((x, Point::state(x_dot, y_dot)))
+        }
+        At::Impact(impact) => {
+            let mut orbit = scene.orbit().map_err(|_| ("/at/impact", "the run has no contact".to_owned()))?;
+            let mut last = (orbit.x(), *orbit.state());
+            let ending = run(&mut orbit, impact, |contact| {
+                last = (contact.x, contact.state);
+                !contact.n.is_multiple_of(LOOK) || go_on()
+            });
+            let ending = ending.ok_or(None)?;
+            if orbit.contacts() < impact {
+                let why = ending.name();
+                return Err(Some((
+                    "/at/impact",
+                    format!("impact is {impact}, but the run ends as `{why}` at contact {}", orbit.contacts()),
+                )));
+            }
+            Ok(last)
+        }
+    }
+}
+
+fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+}
+
+fn eigenvalues_of(matrix: &DMatrix<f64>, pointer: &'static str) -> Result<Vec<Complex<f64>>, (&'static str, String)> {
+    jacobian::eigenvalues(matrix).ok_or((pointer, "the eigenvalues of this derivative did not converge".to_owned()))
+}
+
+fn power(value: Complex<f64>, exponent: u64) -> Complex<f64> {
+    (1..exponent).fold(value, |product, _| product * value)
+}
+
+/// (2 − trace)/4 of the angle's block, which at a fixed point stands alone.
+fn block_residue(matrix: &DMatrix<f64>) -> Option<f64> {
+    (matrix.nrows() == 4).then(|| 0.25 * (2.0 - matrix[(0, 0)] - matrix[(3, 3)]))
+}
+
+/// What differentiating costs, in bounces of the plain rod.
+pub fn price(scene: &Scene, at: At, period: u64, method: Method) -> u64 {
+    let columns = jacobian::state_order(&scene.model()).len() as u64;
+    let before = match at {
+        At::Impact(impact) => impact * bounce_price(scene),
+        _ => 0,
+    };
+    limits::ANSWER_PRICE
+        + before
+        + period
+            * match method {
+                Method::Exact => 12,
+                Method::FiniteDifference => 6 * columns + 12,
+            }
+}

@@ -1,0 +1,223 @@
+//! The answer of `ladder`: the same scene on each rung up to its own, and what each of them changed.
+
+use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model_hierarchy::{Change, Largest, Run, Step};
+use serde::Serialize;
+
+use crate::api::scene::resolved::Resolved;
+use crate::api::shared::outcome::Outcome;
+use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::trajectories::answer::{DemandAnswer, ForcedAnswer, linear_price};
+use crate::http::Reader;
+use crate::limits;
+
+/// What is asked for beside the scene.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Request {
+    /// How many contacts at most, on each rung.
+    pub impacts: u64,
+    /// Difference of the states, m/s, up to which a rung was not needed.
+    pub tolerance: f64,
+}
+
+/// Tolerances, m/s.
+const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-15..=10.0;
+
+/// Rungs of the tallest ladder, and the work of one impact on one of them but the linear one, in bounces of the plain rod.
+const RUNGS: u64 = 7;
+const RUNG_PRICE: u64 = 20;
+
+/// Work beside the impacts, in bounces: the linear solution before its first one, and the answer.
+const ONCE_PRICE: u64 = 2500;
+
+impl Request {
+    /// Reads everything but the scene.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Self {
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
+        let tolerance = reader.number("tolerance", TOLERANCES, "m/s").unwrap_or(1e-3);
+        Self { impacts, tolerance }
+    }
+
+    /// Its work, in bounces.
+    pub fn price(&self, scene: &Scene) -> u64 {
+        ONCE_PRICE + self.impacts * (RUNGS * RUNG_PRICE + linear_price(&scene.on(Rung::Linear)))
+    }
+}
+
+/// The answer.
+#[derive(Debug, Serialize)]
+pub struct Ladder<'a> {
+    scene: Resolved<'a>,
+    impacts: u64,
+    tolerance: f64,
+    /// The rung that the scene is run on.
+    rung: &'static str,
+    /// The lowest rung that would have done.
+    enough: &'static str,
+    reason: String,
+    rungs: Vec<RungAnswer>,
+    #[serde(skip)]
+    bounces: u64,
+}
+
+#[derive(Debug, Serialize)]
+struct RungAnswer {
+    name: &'static str,
+    forced: Option<ForcedAnswer>,
+    scene: serde_json::Value,
+    /// Why it does not apply, where it does not.
+    reason: Option<String>,
+    outcome: Option<Outcome>,
+    demand: Option<DemandAnswer>,
+    cost_ns_per_impact: f64,
+    change: Option<ChangeAnswer>,
+    needed: Option<bool>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct ChangeAnswer {
+    against: &'static str,
+    impacts: u64,
+    same_outcome: bool,
+    t: LargestAnswer,
+    x: LargestAnswer,
+    theta: LargestAnswer,
+    x_dot: LargestAnswer,
+    y_dot: LargestAnswer,
+    theta_dot: LargestAnswer,
+    state: LargestAnswer,
+}
+
+#[derive(Debug, Clone, Copy, Serialize)]
+struct LargestAnswer {
+    difference: f64,
+    impact: Option<u64>,
+}
+
+impl From<Largest> for LargestAnswer {
+    fn from(Largest { value, impact }: Largest) -> Self {
+        Self { difference: value, impact: (impact > 0).then_some(impact) }
+    }
+}
+
+impl ChangeAnswer {
+    fn new(change: &Change, against: &'static str) -> Self {
+        let Change { impacts, t, x, theta, x_dot, y_dot, theta_dot, state, same_outcome } = *change;
+        Self {
+            against,
+            impacts,
+            same_outcome,
+            t: t.into(),
+            x: x.into(),
+            theta: theta.into(),
+            x_dot: x_dot.into(),
+            y_dot: y_dot.into(),
+            theta_dot: theta_dot.into(),
+            state: state.into(),
+        }
+    }
+}
+
+impl<'a> Ladder<'a> {
+    /// Runs a scene on its rungs; none once `go_on` said no.
+    pub fn compute(scene: &'a Scene, request: &Request, go_on: impl FnMut() -> bool) -> Option<Self> {
+        let Request { impacts, tolerance } = *request;
+        let steps = scene.ladder(impacts, go_on)?;
+        let (mut rungs, mut bounces) = (Vec::new(), 0);
+        let (mut below, mut enough) = (None::<Rung>, None::<Rung>);
+        for Step { rung, scene, forced, run } in steps {
+            let (mut reason, mut outcome, mut demand, mut change, mut needed) = (None, None, None, None, None);
+            match run {
+                Err(why) => reason = Some(why),
+                Ok(Run { ending, impacts, t, demand: found_demand, change: found }) => {
+                    demand = Some(found_demand.into());
+                    bounces += impacts;
+                    outcome = Some(Outcome::new(ending, impacts, t));
+                    needed = found.map(|found| !found.same_outcome || found.state.value > tolerance);
+                    change = found.zip(below).map(|(found, below)| ChangeAnswer::new(&found, below.name()));
+                    // Once a rung was needed, so is every one below it.
+                    if needed != Some(false) {
+                        enough = Some(rung);
+                    }
+                    below = Some(rung);
+                }
+            }
+            rungs.push(RungAnswer {
+                name: rung.name(),
+                forced: forced.map(ForcedAnswer::from),
+                scene: crate::api::scene::resolved::to_json(&scene),
+                reason,
+                outcome,
+                demand,
+                cost_ns_per_impact: rung.cost_ns(),
+                change,
+                needed,
+            });
+        }
+        let (rung, enough) = (scene.rung(), enough.unwrap_or(scene.rung()));
+        let reason = if enough == rung {
+            format!(
+                "the scene needs its rung, {}: on the one below it ends otherwise or differs by more than {tolerance} m/s",
+                rung.name()
+            )
+        } else {
+            format!(
+                "{} would have done: up to {}, {impacts} impacts end alike and differ by at most {tolerance} m/s from rung to rung",
+                enough.name(),
+                rung.name()
+            )
+        };
+        let reason = if rungs.len() == 1 { "there is no other rung for this body".to_owned() } else { reason };
+        Some(Self {
+            scene: Resolved(scene),
+            impacts,
+            tolerance,
+            rung: rung.name(),
+            enough: enough.name(),
+            reason,
+            rungs,
+            bounces,
+        })
+    }
+
+    /// Bounces that it took.
+    pub fn bounces(&self) -> u64 {
+        self.bounces
+    }
+
+    /// A row for each rung.
+    pub fn to_table(&self) -> Table {
+        let rungs = &self.rungs;
+        let words = |of: &dyn Fn(&RungAnswer) -> Option<&'static str>| Cells::Words(rungs.iter().map(of).collect());
+        let texts = |of: &dyn Fn(&RungAnswer) -> Option<String>| Cells::Texts(rungs.iter().map(of).collect());
+        let sparse = |of: &dyn Fn(&RungAnswer) -> Option<f64>| Cells::Sparse(rungs.iter().map(of).collect());
+        let counts = |of: &dyn Fn(&RungAnswer) -> Option<u64>| Cells::SparseCounts(rungs.iter().map(of).collect());
+        let flags = |of: &dyn Fn(&RungAnswer) -> Option<bool>| Cells::Flags(rungs.iter().map(of).collect());
+        let change = |of: fn(&ChangeAnswer) -> LargestAnswer| {
+            sparse(&move |rung: &RungAnswer| rung.change.as_ref().map(|change| of(change).difference))
+        };
+        let columns = [
+            ("rung", "", words(&|rung| Some(rung.name))),
+            ("field", "", words(&|rung| rung.forced.as_ref().map(ForcedAnswer::field))),
+            ("outcome", "", words(&|rung| rung.outcome.as_ref().map(|outcome| outcome.kind))),
+            ("impacts", "", counts(&|rung| rung.outcome.as_ref().map(|outcome| outcome.impacts))),
+            ("t", "s", sparse(&|rung| rung.outcome.as_ref().map(|outcome| outcome.t))),
+            ("cost", "ns_per_impact", sparse(&|rung| Some(rung.cost_ns_per_impact))),
+            ("needed", "", flags(&|rung| rung.needed)),
+            ("change_t", "s", change(|change| change.t)),
+            ("change_x", "m", change(|change| change.x)),
+            ("change_theta", "rad", change(|change| change.theta)),
+            ("change_x_dot", "m_per_s", change(|change| change.x_dot)),
+            ("change_y_dot", "m_per_s", change(|change| change.y_dot)),
+            ("change_theta_dot", "rad_per_s", change(|change| change.theta_dot)),
+            ("reason", "", texts(&|rung| rung.reason.clone())),
+        ];
+        Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into())
+    }
+
+    /// What ends it as NDJSON.
+    pub fn end(&self) -> impl Serialize {
+        serde_json::json!({ "rung": self.rung, "enough": self.enough, "reason": self.reason })
+    }
+}

@@ -1,0 +1,175 @@
+//! `/metrics`: what the server counts, as Prometheus text.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::time::Duration;
+
+use axum::Router;
+use axum::extract::State;
+use axum::http::{HeaderMap, HeaderValue, header};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use prometheus_client::encoding::EncodeLabelSet;
+use prometheus_client::encoding::text::encode;
+use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::family::Family;
+use prometheus_client::metrics::gauge::Gauge;
+use prometheus_client::metrics::histogram::Histogram;
+use prometheus_client::metrics::info::Info;
+use prometheus_client::registry::Registry;
+
+use crate::BUILD;
+use crate::api::App;
+use crate::compute::Pool;
+use crate::http::Problem;
+use crate::http::response::negotiate;
+
+/// The resource.
+pub fn routes() -> Router<App> {
+    Router::new().route("/metrics", get(scrape))
+}
+
+/// Everything that is counted.
+#[derive(Debug)]
+pub struct Metrics {
+    registry: Registry,
+    requests: Family<Request, Counter>,
+    durations: Family<Place, Histogram, fn() -> Histogram>,
+    /// Bounces computed for answers and live runs. Whoever computes them counts them.
+    pub bounces: Counter,
+    /// Live runs at the moment (`compute::Counted` keeps it).
+    pub live_sessions: Gauge,
+    /// How late live runs look for the impacts that are due, s.
+    pub live_lags: Histogram,
+}
+
+/// From 0.1 ms, what a small request takes, to 10 s, what none should.
+const BUCKETS_S: [f64; 11] = [1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct Request {
+    method: String,
+    route: String,
+    status: u16,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct Place {
+    method: String,
+    route: String,
+}
+
+impl Metrics {
+    /// Nothing counted yet. The load of `pool` is among what is shown.
+    pub fn new(pool: &Pool) -> Self {
+        let durations: Family<Place, Histogram, fn() -> Histogram> =
+            Family::new_with_constructor(|| Histogram::new(BUCKETS_S));
+        let (requests, bounces, live_sessions) = (Family::default(), Counter::default(), Gauge::default());
+        let live_lags = Histogram::new(BUCKETS_S);
+        let mut registry = Registry::with_prefix("equipoise");
+        registry.register("build", "The build that answers", Info::new([("build", BUILD)]));
+        registry.register("requests", "Requests answered", requests.clone());
+        registry.register("request_duration_seconds", "Time from request head to answer head", durations.clone());
+        registry.register("jobs_running", "Pieces of work being computed", pool.running().clone());
+        registry.register("jobs_queued", "Pieces of work waiting for their turn", pool.queued().clone());
+        registry.register("live_sessions", "Live runs", live_sessions.clone());
+        registry.register("live_lag_seconds", "Time from when an impact was due to its telling", live_lags.clone());
+        registry.register("bounces", "Bounces computed", bounces.clone());
+        Self { registry, requests, durations, bounces, live_sessions, live_lags }
+    }
+
+    /// Counts one answered request. `route` is the template, not the path: clients do not choose how many there are.
+    pub fn answered(&self, method: &str, route: &str, status: u16, duration: Duration) {
+        let method = match method {
+            "GET" | "HEAD" | "POST" | "PUT" | "PATCH" | "DELETE" | "OPTIONS" => method,
+            _ => "other",
+        };
+        let place = Place { method: method.to_owned(), route: route.to_owned() };
+        self.durations.get_or_create(&place).observe(duration.as_secs_f64());
+        self.requests.get_or_create(&Request { method: place.method, route: place.route, status }).inc();
+    }
+}
+
+/// What Prometheus asks for by name.
+const OPEN_METRICS: &str = "application/openmetrics-text";
+
+async fn scrape(State(app): State<App>, headers: HeaderMap) -> Result<Response, Problem> {
+    let mut text = String::new();
+    encode(&mut text, &app.metrics.registry).map_err(|error| {
+        let _ = writeln!(std::io::stderr(), "equipoise: cannot write metrics: {error}");
+        Problem::internal()
+    })?;
+    let media_type = if negotiate::list(&headers, &header::ACCEPT).to_ascii_lowercase().contains(OPEN_METRICS) {
+        "application/openmetrics-text; version=1.0.0; charset=utf-8"
+    } else {
+        text = plain(&text);
+        "text/plain; version=0.0.4; charset=utf-8"
+    };
+    let headers = [
+        (header::CONTENT_TYPE, HeaderValue::from_static(media_type)),
+        (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
+        (header::VARY, HeaderValue::from_static("Accept")),
+    ];
+    Ok((headers, text).into_response())
+}
+
+/// OpenMetrics as the older text that every other collector reads: there a family has the name of its samples, an info is
+/// a gauge, and the end is not marked.
+fn plain(open_metrics: &str) -> String {
+    let families = open_metrics.lines().filter_map(|line| line.strip_prefix("# TYPE ")?.split_once(' '));
+    let families: BTreeMap<&str, &str> = families.collect();
+    let mut text = String::new();
+    for line in open_metrics.lines().filter(|line| *line != "# EOF") {
+        let mut words = line.splitn(4, ' ');
+        match (words.next(), words.next(), words.next(), words.next()) {
+            (Some("#"), Some(keyword @ ("HELP" | "TYPE")), Some(name), Some(rest)) => {
+                let (suffix, kind) = match families.get(name).copied() {
+                    Some("counter") => ("_total", "counter"),
+                    Some("info") => ("_info", "gauge"),
+                    kind => ("", kind.unwrap_or("untyped")),
+                };
+                let rest = if keyword == "TYPE" { kind } else { rest };
+                text += &format!("# {keyword} {name}{suffix} {rest}\n");
+            }
+            _ => text += &format!("{line}\n"),
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_counted_is_shown() {
+        let metrics = Metrics::new(&Pool::new(1, &crate::limits::Limits::default()));
+        metrics.answered("GET", "/v1/scenes", 200, Duration::from_millis(1));
+        metrics.answered("BREW", "none", 405, Duration::from_millis(1));
+        metrics.bounces.inc_by(7);
+        let mut text = String::new();
+        encode(&mut text, &metrics.registry).unwrap();
+        for line in [
+            "equipoise_requests_total{method=\"GET\",route=\"/v1/scenes\",status=\"200\"} 1",
+            "equipoise_requests_total{method=\"other\",route=\"none\",status=\"405\"} 1",
+            "equipoise_bounces_total 7",
+            "equipoise_jobs_running 0",
+        ] {
+            assert!(text.lines().any(|found| found == line), "{line} is not in\n{text}");
+        }
+        let older = plain(&text);
+        for line in [
+            "# HELP equipoise_bounces_total Bounces computed.",
+            "# TYPE equipoise_bounces_total counter",
+            "# TYPE equipoise_build_info gauge",
+            "# TYPE equipoise_jobs_running gauge",
+            "# TYPE equipoise_request_duration_seconds histogram",
+            "equipoise_requests_total{method=\"other\",route=\"none\",status=\"405\"} 1",
+        ] {
+            assert!(older.lines().any(|found| found == line), "{line} is not in\n{older}");
+        }
+        let samples = |text: &str| text.lines().filter(|line| !line.starts_with('#')).count();
+        assert_eq!(samples(&older), samples(&text));
+        assert!(!older.contains("# EOF"), "{older}");
+    }
+}

@@ -1,0 +1,6 @@
+//! Resources for whoever runs the server: health, metrics, the contract, and the page.
+
+pub mod contract;
+pub mod health;
+pub mod metrics;
+pub mod page;

@@ -1,0 +1,85 @@
+//! The page and its files, embedded: `web/index.html` is `/`, `web/docs/index.html` is `/docs`,
+//! `web/embed/index.html` is `/embed/` and the name of a panel, others are by name.
+
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::State;
+use axum::http::{HeaderMap, HeaderValue, header};
+use axum::response::Redirect;
+use axum::routing::get;
+use tower_http::set_header::SetResponseHeaderLayer;
+
+use crate::api::App;
+use crate::http::Problem;
+use crate::http::response::static_asset::Fixed;
+
+include!(concat!(env!("OUT_DIR"), "/assets.rs"));
+
+/// The page of one panel alone, under every name: its script says which there are.
+const EMBED: &str = "embed/index.html";
+
+/// It may stand in a frame of any page: it shows what its address says, holds no secret and changes nothing. Its paths are
+/// relative to the page above it.
+const EMBED_POLICY: HeaderValue =
+    HeaderValue::from_static("default-src 'self'; base-uri 'self'; frame-ancestors *; object-src 'none'");
+
+/// One route for each file, so that a path is known or is not: nothing is looked up by what a client sends.
+pub fn routes() -> Router<App> {
+    let mut router = Router::new();
+    for (name, bytes) in ASSETS.iter().copied() {
+        let fixed = Arc::new(Fixed::new(media_type(name), bytes));
+        let handler = get(async move |State(app): State<App>, headers: HeaderMap| match &app.config.web {
+            None => fixed.answer(&headers),
+            Some(folder) => match tokio::task::block_in_place(|| std::fs::read(folder.join(name))) {
+                Ok(bytes) => Fixed::new(media_type(name), bytes).answer(&headers),
+                Err(error) => Err(Problem::not_found(format!("{name}: {error}"))),
+            },
+        });
+        let handler = match name {
+            EMBED => handler.layer(SetResponseHeaderLayer::overriding(header::CONTENT_SECURITY_POLICY, EMBED_POLICY)),
+            _ => handler,
+        };
+        router = router.route(&format!("/{name}"), handler.clone());
+        router = match name {
+            "index.html" => router.route("/", handler),
+            "docs/index.html" => {
+                router.route("/docs", handler).route("/docs/", get(async || Redirect::permanent("../docs")))
+            }
+            EMBED => router.route("/embed/{panel}", handler),
+            _ => router,
+        };
+    }
+    router
+}
+
+fn media_type(name: &str) -> &'static str {
+    match name.rsplit_once('.').map_or("", |(_, extension)| extension) {
+        "css" => "text/css; charset=utf-8",
+        "html" => "text/html; charset=utf-8",
+        "ico" => "image/x-icon",
+        "js" | "mjs" => "text/javascript; charset=utf-8",
+        "json" | "map" => "application/json",
+        "md" => "text/markdown; charset=utf-8",
+        "png" => "image/png",
+        "svg" => "image/svg+xml",
+        "txt" => "text/plain; charset=utf-8",
+        "wasm" => "application/wasm",
+        "webmanifest" => "application/manifest+json",
+        "woff2" => "font/woff2",
+        _ => "application/octet-stream",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_embedded_file_has_a_media_type_of_its_own() {
+        for (name, _) in ASSETS {
+            let is_licence = !name.contains('.');
+            assert!(is_licence || media_type(name) != "application/octet-stream", "{name} needs a media type");
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! The cells of a region as rows of CSV and NDJSON, each written as soon as it is whole.
+
+use equipoise_physics::scene::Name;
+use equipoise_physics::surveys::stability_map::{Cell, Quantity, Region};
+use serde::Serialize;
+
+use crate::api::regions::answer::{Counts, Outcomes, Request, Values, outcome_name, quantity_name, written};
+use crate::api::shared::table::with_unit;
+use crate::http::Format;
+
+/// Writes the cells of a tile as they come, one row after the other.
+#[derive(Debug)]
+pub struct Rows {
+    request: Request,
+    is_csv: bool,
+    /// The values of x, as CSV has them.
+    columns: Vec<String>,
+    /// The row to come, and its cells so far.
+    row: usize,
+    begun: Vec<Cell>,
+    counts: Counts,
+}
+
+impl Rows {
+    /// Rows of CSV, or else of NDJSON.
+    pub fn new(request: Request, format: Format) -> Self {
+        let x = request.region.x;
+        let is_csv = format == Format::Csv;
+        let columns = if is_csv { (0..x.count).map(|column| written(x.value(column))).collect() } else { Vec::new() };
+        Self { request, is_csv, columns, row: request.rows().start, begun: Vec::new(), counts: Counts::default() }
+    }
+
+    /// What stands before all rows: in CSV the names of the two fields, the quantity and `outcome`.
+    pub fn begin(&self) -> Vec<u8> {
+        let Region { x, y, quantity, .. } = self.request.region;
+        if !self.is_csv {
+            return Vec::new();
+        }
+        let field = |name: Name| with_unit(name.row().path, name.row().unit);
+        let value = with_unit(quantity_name(quantity), if quantity == Quantity::MaxTheta { "rad" } else { "" });
+        format!("{},{},{value},outcome\r\n", field(x.name), field(y.name)).into_bytes()
+    }
+
+    /// The rows that these cells make whole.
+    pub fn add(&mut self, cells: &[Cell]) -> Vec<u8> {
+        self.counts.add(cells);
+        self.begun.extend_from_slice(cells);
+        let columns = self.request.region.x.count;
+        let whole = self.begun.len() - self.begun.len() % columns;
+        let mut out = Vec::new();
+        if whole == 0 {
+            return out;
+        }
+        let rest = self.begun.split_off(whole);
+        let rows = std::mem::replace(&mut self.begun, rest);
+        let rows = rows.chunks_exact(columns);
+        for cells in rows {
+            if self.is_csv {
+                self.write_csv(cells, &mut out)
+            } else {
+                self.write_line(cells, &mut out)
+            }
+            self.row += 1;
+        }
+        out
+    }
+
+    /// What stands after all rows: in NDJSON the line that says that it is all.
+    pub fn end(&self) -> Vec<u8> {
+        #[derive(Serialize)]
+        struct End<'a> {
+            end: &'a Counts,
+        }
+        let mut out = Vec::new();
+        if !self.is_csv {
+            line(&End { end: &self.counts }, &mut out);
+        }
+        out
+    }
+
+    fn write_csv(&self, cells: &[Cell], out: &mut Vec<u8>) {
+        let y = written(self.request.region.y.value(self.row));
+        let whole = self.request.is_whole();
+        for (cell, x) in cells.iter().zip(&self.columns) {
+            let value = match cell.value {
+                Some(value) if whole => (value as u64).to_string(),
+                Some(value) => written(value),
+                None => String::new(),
+            };
+            for part in [x, ",", &y, ",", &value, ",", outcome_name(cell), "\r\n"] {
+                out.extend_from_slice(part.as_bytes());
+            }
+        }
+    }
+
+    fn write_line(&self, cells: &[Cell], out: &mut Vec<u8>) {
+        #[derive(Serialize)]
+        struct Row<'a> {
+            row: usize,
+            y: f64,
+            values: Values<'a>,
+            outcomes: Outcomes<'a>,
+        }
+        let (row, y, whole) = (self.row, self.request.region.y.value(self.row), self.request.is_whole());
+        line(&Row { row, y, values: Values { cells, whole }, outcomes: Outcomes(cells) }, out);
+    }
+}
+
+fn line(value: &impl Serialize, out: &mut Vec<u8>) {
+    // Writing to memory does not fail.
+    let _ = serde_json::to_writer(&mut *out, value);
+    out.push(b'\n');
+}

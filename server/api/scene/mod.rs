@@ -1,0 +1,67 @@
+//! `scenes` and `fields`: what there is to start from, and what a scene may say.
+
+pub mod fields;
+pub mod paper;
+pub mod presets;
+pub mod resolved;
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::{Path, State};
+use axum::http::Response;
+use axum::routing::get;
+use serde::Serialize;
+
+use crate::api::App;
+use crate::api::scene::fields::Fields;
+use crate::compute::{Cancelled, Price, Turn};
+use crate::http::{Ask, Format, Problem, Resource};
+
+/// Its paths.
+pub fn routes() -> Router<App> {
+    Router::new()
+        .route("/v1/scenes", get(scenes))
+        .route("/v1/scenes/{name}", get(scene))
+        .route("/v1/fields", get(fields))
+}
+
+async fn scenes(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+    #[derive(Serialize)]
+    struct Scenes {
+        scenes: Vec<&'static presets::Shown>,
+    }
+    let price = presets::all().iter().map(presets::Preset::price).sum();
+    fixed(&app, &ask, "scenes", price, |turn| {
+        let go_on = || turn.go_on();
+        Some(Scenes { scenes: presets::all().iter().map(|preset| preset.shown(&go_on)).collect::<Option<_>>()? })
+    })
+    .await
+}
+
+async fn scene(State(app): State<App>, Path(name): Path<String>, ask: Ask) -> Result<Response<Body>, Problem> {
+    let Some(preset) = presets::find(&name) else {
+        let names = presets::names().join(", ");
+        return Err(Problem::not_found(format!("there is no scene of this name; there are {names}")));
+    };
+    let price = preset.price();
+    fixed(&app, &ask, &format!("scenes/{name}"), price, |turn| preset.shown(&|| turn.go_on())).await
+}
+
+async fn fields(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+    fixed(&app, &ask, "fields", 0, |_| Some(Fields::all())).await
+}
+
+/// An answer that depends on nothing but the build; none where its client has gone.
+async fn fixed<T: Serialize>(
+    app: &App,
+    ask: &Ask,
+    canonical: &str,
+    price: u64,
+    answer: impl FnOnce(&Turn) -> Option<T> + Clone + Send + 'static,
+) -> Result<Response<Body>, Problem> {
+    const RESOURCE: Resource = Resource { name: "fixed", formats: &[Format::Json] };
+    ask.read(|_| Some(()))?;
+    let price = Price::bounces(price);
+    let compute = move |_, turn: &Turn| crate::api::json(&answer(turn).ok_or(Cancelled)?, turn);
+    ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), price, compute).await
+}

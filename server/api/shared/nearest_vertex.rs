@@ -1,0 +1,26 @@
+//! How near the vertices of a polygon come to the table, other than the one that bounces.
+
+use equipoise_physics::body::polygon::{Nearest, Outline};
+use equipoise_physics::numbers::trig::sin_cos;
+use equipoise_physics::run::orbit::Contact;
+use serde::Serialize;
+
+/// The vertex that was nearest to the table at any contact of a run.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct NearestVertex {
+    vertex: usize,
+    clearance: f64,
+    impact: u64,
+    t: f64,
+}
+
+impl NearestVertex {
+    /// The nearer of the nearest so far and that at a contact.
+    pub(crate) fn or(so_far: Option<Self>, outline: &Outline, contact: &Contact) -> Self {
+        let Nearest { vertex, clearance } = outline.nearest(sin_cos(contact.state.theta - contact.alpha));
+        match so_far {
+            Some(nearest) if nearest.clearance <= clearance => nearest,
+            _ => Self { vertex, clearance, impact: contact.n, t: contact.t },
+        }
+    }
+}

@@ -1,0 +1,445 @@
+//! The answer of `stability`: the verdict, and everything it rests on.
+
+use equipoise_physics::control::BounceModel;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::stability::basin;
+use equipoise_physics::stability::basin::NoBasin;
+use equipoise_physics::stability::contact_regime::Grip;
+use equipoise_physics::stability::fixed_point;
+use equipoise_physics::stability::fixed_point::JUDGED;
+use equipoise_physics::stability::linear_verdict::{Linear, Nonlinear};
+use equipoise_physics::stability::margins::Tolerances;
+use equipoise_physics::stability::regularity::WATCHED;
+use equipoise_physics::stability::verdict::{HigherOrder, Judgement, Verdict};
+use serde::Serialize;
+
+use crate::api::controllers::answer;
+use crate::api::jacobians::answer::Eigenvalue;
+use crate::api::scene::resolved::{Resolved, bounce_price, has_angle};
+use crate::api::shared::outcome::Outcome;
+use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
+use crate::api::stability::margins;
+use crate::api::stability::margins::Margins;
+use crate::api::trajectories::answer::{Choice, DemandAnswer};
+use crate::charts::{Eigenvalues, Spectrum, eigenvalues};
+use crate::http::Reader;
+use crate::limits;
+
+/// The upright bounce in place, as a state just before an impact.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct FixedPoint {
+    theta: f64,
+    x_dot: f64,
+    pub(crate) y_dot: f64,
+    theta_dot: f64,
+    pub(crate) flight_time: f64,
+    apex_height: f64,
+}
+
+impl From<fixed_point::FixedPoint> for FixedPoint {
+    fn from(fixed_point::FixedPoint { speed, flight_time, apex_height }: fixed_point::FixedPoint) -> Self {
+        Self { theta: 0.0, x_dot: 0.0, y_dot: -speed, theta_dot: 0.0, flight_time, apex_height }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct TiltGain {
+    value: f64,
+    lower: f64,
+    critical: f64,
+    margin_below: f64,
+    margin_above: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct EnergyGain {
+    value: f64,
+    upper: f64,
+    eigenvalue: f64,
+    margin: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct LinearPart {
+    class: &'static str,
+    residue: Option<f64>,
+    rotation: Option<f64>,
+    spectral_radius: f64,
+    eigenvalues: Vec<Eigenvalue>,
+    tilt_gain: Option<TiltGain>,
+    energy_gain: EnergyGain,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct Boundary {
+    coefficient: f64,
+    kind: &'static str,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct NonlinearPart {
+    outcome: &'static str,
+    impacts: u64,
+    t: f64,
+    max_theta: f64,
+    demand: DemandAnswer,
+    detail: String,
+}
+
+/// The answer.
+#[derive(Debug, Clone, Serialize)]
+pub struct Stability<'a> {
+    scene: Resolved<'a>,
+    model: Choice,
+    verdict: Option<String>,
+    decided_by: Option<&'static str>,
+    reason: String,
+    fixed_point: Option<FixedPoint>,
+    linear: Option<LinearPart>,
+    boundary: Option<Boundary>,
+    loss_of_stability: Option<Vec<LossOfStability>>,
+    lyapunov: Option<Lyapunov>,
+    nonlinear: NonlinearPart,
+    drift_speed: Option<f64>,
+    agree: Option<bool>,
+    rotation_number: Option<RotationNumber>,
+    chaos: Option<Chaos>,
+    predictable_impacts: Option<u64>,
+    basin: Option<Basin>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    margins: Option<Margins>,
+    notes: Vec<String>,
+    #[serde(skip)]
+    bounces: u64,
+}
+
+/// What is asked for beside the scene.
+#[derive(Debug, Clone, Copy)]
+pub struct Request {
+    /// How many contacts to watch the run for.
+    pub impacts: u64,
+    /// Whether to look for the basin.
+    pub basin: bool,
+    /// How far the body may be off, to know the margins.
+    pub tolerances: Option<Tolerances>,
+}
+
+/// Work of the margins, in bounces: some ten thousand linear verdicts.
+const MARGINS_PRICE: u64 = 200_000;
+
+/// Price of a run of the basin beside its bounces, in bounces.
+const BASIN_RUN_PRICE: u64 = 10;
+
+impl Request {
+    /// Reads everything but the scene.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Self {
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(2000);
+        let basin = reader.boolean("basin").unwrap_or(false);
+        Self { impacts, basin, tolerances: margins::read(reader) }
+    }
+
+    /// Everything that determines the answer beside the scene.
+    pub fn canonical(&self) -> impl Serialize {
+        let off = self.tolerances.map(|off| (off.contact_distance, off.radius_of_gyration, off.restitution));
+        (self.impacts, self.basin, off)
+    }
+}
+
+/// The verdict in words; what a run showed stands in it with its length.
+fn words(verdict: Verdict, run: &Nonlinear) -> String {
+    let Nonlinear { impacts, ending, .. } = run;
+    let survived = format!("{impacts} bounces survived");
+    match (verdict, *ending == Ending::Completed) {
+        (Verdict::StableInPlace, _) => "stable in place".to_owned(),
+        (Verdict::Elliptic, _) => format!("elliptic, {survived}"),
+        (Verdict::WeaklyAttracting, true) => format!("weakly attracting, {survived}"),
+        (Verdict::WeaklyAttracting, false) => format!("weakly attracting, but this run ended at bounce {impacts}"),
+        (Verdict::WeaklyUnstable, true) => format!("weakly unstable, {survived}"),
+        (Verdict::WeaklyUnstable, false) => format!("weakly unstable, this run ended at bounce {impacts}"),
+        (Verdict::BoundedBeyondBoundary, _) => format!("bounded beyond the boundary, {survived}"),
+        (Verdict::Unstable, _) => "unstable".to_owned(),
+    }
+}
+
+impl LinearPart {
+    fn new(scene: &Scene, linear: &Linear) -> Self {
+        let kappa = scene.number(Name::TiltGain).unwrap_or_default();
+        let energy_gain = scene.number(Name::EnergyGain).unwrap_or_default();
+        Self {
+            class: linear.class.name(),
+            residue: linear.residue,
+            rotation: linear.rotation,
+            spectral_radius: linear.spectral_radius(),
+            eigenvalues: linear.eigenvalues.iter().map(|&value| value.into()).collect(),
+            tilt_gain: linear.lower_tilt_gain.is_finite().then_some(TiltGain {
+                value: kappa,
+                lower: linear.lower_tilt_gain,
+                critical: linear.critical_tilt_gain,
+                margin_below: kappa - linear.lower_tilt_gain,
+                margin_above: linear.critical_tilt_gain - kappa,
+            }),
+            energy_gain: EnergyGain {
+                value: energy_gain,
+                upper: linear.upper_energy_gain,
+                eigenvalue: linear.energy_eigenvalue,
+                margin: energy_gain.min(linear.upper_energy_gain - energy_gain),
+            },
+        }
+    }
+}
+
+impl<'a> Stability<'a> {
+    /// Judges a scene by its linear verdict and a run of up to `impacts` contacts, and looks for its basin if asked to;
+    /// `go_on` is asked now and then, and a `false` gives none.
+    pub fn compute(scene: &'a Scene, request: &Request, mut go_on: impl FnMut() -> bool) -> Option<Self> {
+        let Request { impacts, basin, tolerances } = *request;
+        let run = scene.nonlinear(impacts, &mut go_on)?;
+        let mut notes = Vec::new();
+        let mut answer = Self {
+            scene: Resolved(scene),
+            model: Choice::model(scene),
+            verdict: None,
+            decided_by: None,
+            reason: String::new(),
+            fixed_point: None,
+            linear: None,
+            boundary: None,
+            loss_of_stability: None,
+            lyapunov: None,
+            nonlinear: NonlinearPart {
+                outcome: run.ending.name(),
+                impacts: run.impacts,
+                t: run.t,
+                max_theta: run.max_theta,
+                demand: run.demand.into(),
+                detail: Outcome::new(run.ending, run.impacts, run.t).detail,
+            },
+            drift_speed: scene.drift_speed(),
+            agree: None,
+            rotation_number: None,
+            chaos: None,
+            predictable_impacts: None,
+            basin: None,
+            margins: tolerances.map(|tolerances| {
+                Margins::compute(scene, &tolerances, scene.number(Name::TiltGain).unwrap_or_default())
+            }),
+            notes: Vec::new(),
+            bounces: run.impacts,
+        };
+        if !has_angle(scene) {
+            notes.push(
+                "max_theta is of the velocity's angle; residue, rotation, boundary and drift_speed are null: a point \
+                        mass has no angle of its own, and its drift dies out"
+                    .to_owned(),
+            );
+        } else if scene.feedback().is_some() {
+            notes.push(
+                "drift_speed, linear.residue, linear.rotation, linear.tilt_gain, boundary, rotation_number, chaos and \
+                 predictable_impacts are null: with state feedback nothing drifts or circles for ever, and the last two are not derived"
+                    .to_owned(),
+            );
+        } else if scene.grip() == Grip::Held {
+            notes.push(
+                "drift_speed, linear.residue, linear.rotation and linear.tilt_gain are null: the contact sticks to a table that only \
+                 tilts, so nothing drifts, the angle has no block of its own, and no tilt_gain balances"
+                    .to_owned(),
+            );
+        } else if let Some(error) = scene.beyond(&JUDGED) {
+            notes.push(format!("drift_speed is null: {}", error.detail));
+        } else if answer.drift_speed.is_none() {
+            notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
+        }
+        match scene.fixed_point() {
+            Err(why) => {
+                notes.push(format!("verdict, fixed_point, linear, boundary, loss_of_stability, lyapunov, agree, rotation_number, chaos and predictable_impacts are null: {why}"));
+                answer.reason = why;
+            }
+            Ok(fixed_point) => {
+                let linear = scene.linear(&fixed_point);
+                let higher = HigherOrder::of(scene, &fixed_point, &linear);
+                let evidence = Evidence::new(scene, &fixed_point, &linear, impacts);
+                let Judgement { verdict, decided_by, agree, reason } =
+                    scene.judge(&fixed_point, &linear, &higher, &run, evidence.chaos());
+                answer.verdict = Some(words(verdict, &run));
+                answer.decided_by = Some(decided_by.name());
+                answer.agree = Some(agree);
+                answer.reason = reason;
+                if scene.grip() != Grip::Smooth && linear.closed_loop.is_none() {
+                    notes.push("boundary is null: its coefficient is not derived with friction".to_owned());
+                }
+                if let Some(cone) = scene.stick_cone() {
+                    notes.push(format!(
+                        "stick cone: the linear analysis holds where the matched contact sticks, for |θ| up to about {cone} rad \
+                         (μ(ρ² + l²)/(l²|κ − 1|)); this run came to {} rad",
+                        run.max_theta
+                    ));
+                }
+                answer.boundary = higher
+                    .boundary
+                    .map(|boundary| Boundary { coefficient: boundary.coefficient, kind: boundary.kind() });
+                answer.loss_of_stability = Some(higher.losses.iter().map(LossOfStability::from).collect());
+                notes.extend(higher.notes);
+                match &higher.lyapunov {
+                    Ok(found) => answer.lyapunov = Some(found.into()),
+                    Err(why) => notes.push(format!("lyapunov is null: {why}")),
+                }
+                if linear.residue.is_some() && linear.rotation.is_none() {
+                    notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
+                }
+                answer.bounces += evidence.bounces();
+                if linear.closed_loop.is_none() {
+                    evidence.explain(&linear, &mut notes);
+                }
+                answer.predictable_impacts = evidence.predictable_impacts();
+                answer.chaos = evidence.chaos().map(Chaos::from);
+                answer.rotation_number = evidence.rotation().map(RotationNumber::from);
+                let off = scene.height_error();
+                if off != 0.0 {
+                    notes.push(format!(
+                        "the table believes restitution {} and meets {}: the height settles at {} m, {off} m above target_height",
+                        scene.assumed_restitution(),
+                        scene.number(Name::Restitution).unwrap_or_default(),
+                        fixed_point.apex_height
+                    ));
+                }
+                answer.linear = Some(LinearPart::new(scene, &linear));
+                answer.fixed_point = Some(fixed_point.into());
+            }
+        }
+        if basin {
+            match scene.basin(impacts, &mut go_on) {
+                Ok(basin) => {
+                    notes.push(format!(
+                        "basin: released at rest; no hole wider than {} rad was missed, and its edges are known to {} rad",
+                        basin.spacing, basin.tolerance
+                    ));
+                    answer.bounces += basin.bounces;
+                    answer.basin = Some(basin.into());
+                }
+                Err(NoBasin::Stopped) => return None,
+                Err(NoBasin::Because(why)) => notes.push(format!("basin is null: {why}")),
+            }
+        }
+        answer.notes = notes;
+        Some(answer)
+    }
+
+    /// The eigenvalues on the unit circle against κ, as SVG.
+    pub fn to_picture(&self) -> String {
+        if let (Some(gain), Some(place)) = (self.scene.0.feedback(), &self.fixed_point) {
+            let model = BounceModel::new(&self.scene.0.parameters(), -place.y_dot, self.scene.0.grip());
+            let title = format!("Closed loop: {}", self.verdict.as_deref().unwrap_or("no verdict"));
+            return answer::picture(&title, &self.reason, &model, gain);
+        }
+        let values: Vec<(f64, f64)> =
+            self.linear.iter().flat_map(|linear| &linear.eigenvalues).map(|value| (value.re, value.im)).collect();
+        eigenvalues(&Eigenvalues {
+            title: &format!("Eigenvalues of a {}", self.model.name.replace('_', " ")),
+            verdict: self.verdict.as_deref(),
+            reason: &self.reason,
+            linear: self.linear.as_ref().and_then(|linear| {
+                let tilt_gain = linear.tilt_gain.as_ref()?;
+                Some(Spectrum {
+                    eigenvalues: &values,
+                    tilt_gain: tilt_gain.value,
+                    lower: tilt_gain.lower,
+                    critical: tilt_gain.critical,
+                    residue: linear.residue,
+                    rotation: linear.rotation,
+                })
+            }),
+        })
+    }
+
+    /// How many bounces were computed for it: those of its run, of the watch over it and of the basin.
+    pub fn bounces(&self) -> u64 {
+        self.bounces
+    }
+
+    /// What it costs at most, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs go
+    /// in lanes for a quarter of that each.
+    pub fn price(scene: &Scene, request: &Request) -> u64 {
+        let Request { impacts, basin, tolerances } = *request;
+        let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + impacts / 4) } else { 0 };
+        let run = impacts * bounce_price(scene) + 4 * impacts.min(WATCHED);
+        limits::ANSWER_PRICE + run + basin + if tolerances.is_some() { MARGINS_PRICE } else { 0 }
+    }
+
+    /// What ends it as NDJSON: the reason and the notes, which are no scalars.
+    pub fn end(&self) -> impl Serialize {
+        #[derive(Serialize)]
+        struct End {
+            reason: String,
+            notes: Vec<String>,
+        }
+        End { reason: self.reason.clone(), notes: self.notes.clone() }
+    }
+
+    /// The scalars, in one row.
+    pub fn to_table(&self) -> Table {
+        let linear = self.linear.as_ref();
+        let fixed_point = self.fixed_point.as_ref();
+        let tilt_gain = linear.and_then(|it| it.tilt_gain.as_ref());
+        let rotation = self.rotation_number.as_ref();
+        let word = |name, word| Column { name, unit: "", cells: Cells::Words(vec![word]) };
+        let number = |name, unit, value| Column { name, unit, cells: Cells::Sparse(vec![value]) };
+        Table(vec![
+            Column { name: "verdict", unit: "", cells: Cells::Texts(vec![self.verdict.clone()]) },
+            word("decided_by", self.decided_by),
+            Column { name: "agree", unit: "", cells: Cells::Flags(vec![self.agree]) },
+            word("class", linear.map(|it| it.class)),
+            number("residue", "", linear.and_then(|it| it.residue)),
+            number("rotation", "rad", linear.and_then(|it| it.rotation)),
+            number("spectral_radius", "", linear.map(|it| it.spectral_radius)),
+            number("tilt_gain", "", tilt_gain.map(|it| it.value)),
+            number("tilt_gain_lower", "", tilt_gain.map(|it| it.lower)),
+            number("tilt_gain_critical", "", tilt_gain.map(|it| it.critical)),
+            number("energy_gain", "s2_per_m2", linear.map(|it| it.energy_gain.value)),
+            number("energy_gain_upper", "s2_per_m2", linear.map(|it| it.energy_gain.upper)),
+            number("boundary_coefficient", "", self.boundary.as_ref().map(|it| it.coefficient)),
+            word("boundary_kind", self.boundary.as_ref().map(|it| it.kind)),
+            number("drift_speed", "m_per_s", self.drift_speed),
+            word("outcome", Some(self.nonlinear.outcome)),
+            Column { name: "impacts", unit: "", cells: Cells::Counts(vec![self.nonlinear.impacts]) },
+            number("t", "s", Some(self.nonlinear.t)),
+            number("max_theta", "rad", Some(self.nonlinear.max_theta)),
+            number("tilt_gain_margin_below", "", tilt_gain.map(|it| it.margin_below)),
+            number("tilt_gain_margin_above", "", tilt_gain.map(|it| it.margin_above)),
+            number("energy_gain_eigenvalue", "", linear.map(|it| it.energy_gain.eigenvalue)),
+            number("energy_gain_margin", "s2_per_m2", linear.map(|it| it.energy_gain.margin)),
+            number("fixed_point_y_dot", "m_per_s", fixed_point.map(|it| it.y_dot)),
+            number("fixed_point_flight_time", "s", fixed_point.map(|it| it.flight_time)),
+            number("rotation_number_measured", "", rotation.and_then(|it| it.measured)),
+            number("rotation_number_linear", "", rotation.map(|it| it.linear)),
+            Column {
+                name: "resonance_p",
+                unit: "",
+                cells: Cells::SparseCounts(vec![rotation.map(|it| it.resonance.p.into())]),
+            },
+            Column {
+                name: "resonance_q",
+                unit: "",
+                cells: Cells::SparseCounts(vec![rotation.map(|it| it.resonance.q.into())]),
+            },
+            number("resonance_distance", "", rotation.map(|it| it.resonance.distance)),
+            number("chaos_indicator", "", self.chaos.as_ref().map(|it| it.indicator)),
+            Column { name: "chaotic", unit: "", cells: Cells::Flags(vec![self.chaos.as_ref().map(|it| it.chaotic)]) },
+            Column {
+                name: "predictable_impacts",
+                unit: "",
+                cells: Cells::SparseCounts(vec![self.predictable_impacts]),
+            },
+            number("basin_theta", "rad", self.basin.as_ref().map(|it| it.theta)),
+            number("basin_unbroken", "rad", self.basin.as_ref().map(|it| it.unbroken)),
+            number("lyapunov_coefficient", "per_rad2", self.lyapunov.as_ref().map(|it| it.coefficient)),
+            word("lyapunov_kind", self.lyapunov.as_ref().map(|it| it.kind)),
+            Column {
+                name: "escape_impacts",
+                unit: "",
+                cells: Cells::SparseCounts(vec![self.lyapunov.as_ref().and_then(|it| it.escape_impacts)]),
+            },
+        ])
+    }
+}

@@ -1,0 +1,196 @@
+//! What a verdict has beyond the linear analysis, as it is written in the answer: rotation number, chaos, basin, and the words
+//! on each of them. Not for the verdict itself.
+
+use equipoise_physics::scene::Scene;
+use equipoise_physics::stability::basin;
+use equipoise_physics::stability::fixed_point::FixedPoint;
+use equipoise_physics::stability::linear_verdict::Linear;
+use equipoise_physics::stability::loss_of_stability;
+use equipoise_physics::stability::loss_of_stability::Settles;
+use equipoise_physics::stability::lyapunov;
+use equipoise_physics::stability::regularity;
+use equipoise_physics::stability::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
+use serde::Serialize;
+
+/// Distance from 1/3 and 1/4, in turns a bounce, within which they are named.
+const NEAR: f64 = 0.02;
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Resonance {
+    pub(crate) p: u32,
+    pub(crate) q: u32,
+    pub(crate) distance: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct RotationNumber {
+    pub(crate) measured: Option<f64>,
+    pub(crate) linear: f64,
+    pub(crate) resonance: Resonance,
+}
+
+impl From<regularity::Rotation> for RotationNumber {
+    fn from(rotation: regularity::Rotation) -> Self {
+        let regularity::Resonance { p, q, distance } = rotation.resonance;
+        Self { measured: rotation.measured, linear: rotation.linear, resonance: Resonance { p, q, distance } }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Chaos {
+    pub(crate) indicator: f64,
+    pub(crate) chaotic: bool,
+    impacts: u64,
+}
+
+impl From<regularity::Chaos> for Chaos {
+    fn from(chaos: regularity::Chaos) -> Self {
+        Self { indicator: chaos.indicator, chaotic: chaos.chaotic, impacts: chaos.impacts }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Basin {
+    pub(crate) theta: f64,
+    impacts: u64,
+    holes: Vec<(f64, f64)>,
+    pub(crate) unbroken: f64,
+    tolerance: f64,
+    spacing: f64,
+}
+
+impl From<basin::Basin> for Basin {
+    fn from(basin: basin::Basin) -> Self {
+        let basin::Basin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: _ } = basin;
+        Self { theta, impacts, holes, unbroken, tolerance, spacing }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Lyapunov {
+    pub(crate) coefficient: f64,
+    pub(crate) kind: &'static str,
+    pub(crate) escape_impacts: Option<u64>,
+    detail: String,
+}
+
+/// Distance of the rotation from a quarter turn, in turns a bounce, within which the resonance is named.
+const NEAR_QUARTER: f64 = 0.02;
+
+impl From<&lyapunov::Lyapunov> for Lyapunov {
+    fn from(found: &lyapunov::Lyapunov) -> Self {
+        let lyapunov::Lyapunov { coefficient, kind, amplitude, from_quarter } = *found;
+        let mut detail = format!(
+            "the amplitude A of a swing, the largest |θ| of its linear ellipse, obeys dA/dn = ℓA³ a bounce to third order; A is {amplitude} \
+             rad at the first contact of this release"
+        );
+        if from_quarter <= NEAR_QUARTER {
+            detail += &format!(
+                "; the rotation is within {from_quarter} turns of the strong resonance 1/4, where ℓ is not defined: the nearer, the \
+                 smaller the swings for which it holds"
+            );
+        }
+        Self { coefficient, kind: kind.name(), escape_impacts: found.escape_impacts(), detail }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct LossOfStability {
+    parameter: &'static str,
+    value: f64,
+    bifurcation: &'static str,
+    coefficient: f64,
+    kind: &'static str,
+    swing: Option<f64>,
+    heights: Option<[f64; 2]>,
+}
+
+impl From<&loss_of_stability::Loss> for LossOfStability {
+    fn from(loss: &loss_of_stability::Loss) -> Self {
+        let (swing, heights) = match loss.settles {
+            None => (None, None),
+            Some(Settles::Swing(swing)) => (Some(swing), None),
+            Some(Settles::Heights { heights, .. }) => (None, Some(heights)),
+        };
+        Self {
+            parameter: loss.end.name(),
+            value: loss.value,
+            bifurcation: loss.bifurcation.name(),
+            coefficient: loss.coefficient,
+            kind: loss.kind(),
+            swing,
+            heights,
+        }
+    }
+}
+
+/// What the watch over the first contacts says of a scene; nothing for a body without an angle.
+#[derive(Debug)]
+pub(crate) struct Evidence(Option<Regularity>);
+
+impl Evidence {
+    pub(crate) fn new(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear, impacts: u64) -> Self {
+        Self(scene.regularity(fixed_point, linear, impacts))
+    }
+
+    pub(crate) fn bounces(&self) -> u64 {
+        self.0.as_ref().map_or(0, Regularity::bounces)
+    }
+
+    pub(crate) fn rotation(&self) -> Option<regularity::Rotation> {
+        self.0.as_ref()?.rotation
+    }
+
+    pub(crate) fn chaos(&self) -> Option<regularity::Chaos> {
+        self.0.as_ref()?.chaos
+    }
+
+    pub(crate) fn predictable_impacts(&self) -> Option<u64> {
+        self.0.as_ref()?.predictable_impacts(TOLERANCE)
+    }
+
+    /// Why something is null, and what a client should know of the rest.
+    pub(crate) fn explain(&self, linear: &Linear, notes: &mut Vec<String>) {
+        let Some(regularity) = &self.0 else {
+            notes.push(
+                "rotation_number, chaos and predictable_impacts are null: they are of a body with an angle".to_owned(),
+            );
+            return;
+        };
+        let watched = regularity.growth.len();
+        match regularity.rotation {
+            None => notes.push("rotation_number is null: at this tilt_gain small deviations do not circle".to_owned()),
+            Some(rotation) => {
+                if rotation.measured.is_none() {
+                    notes.push(format!(
+                        "rotation_number.measured is null: it takes {FEWEST} turns aside from the fixed point, and {watched} impacts \
+                         were watched"
+                    ));
+                }
+                for order in [3, 4] {
+                    let near = |turns: f64| (turns - 1.0 / f64::from(order)).abs();
+                    let distance = rotation.measured.map_or(f64::INFINITY, near).min(near(rotation.linear));
+                    if distance <= NEAR {
+                        let residue = linear.residue.unwrap_or_default();
+                        notes.push(format!(
+                            "resonance 1/{order}: the rotation number is within {distance} of it (named up to {NEAR}) at residue \
+                             {residue}; near it the basin may have a dent, which the linear verdict does not see"
+                        ));
+                    }
+                }
+            }
+        }
+        if regularity.chaos.is_none() {
+            notes.push(format!(
+                "chaos is null: it takes {WATCHED} impacts aside from the fixed point, and {watched} were watched"
+            ));
+        }
+        if regularity.predictable_impacts(TOLERANCE).is_none() {
+            let growth = regularity.growth.last().copied().unwrap_or_default();
+            notes.push(format!(
+                "predictable_impacts is null: over the {watched} impacts watched, deviations grew by e^{growth}, which does not \
+                 bring rounding up to {TOLERANCE} of the contact speed"
+            ));
+        }
+    }
+}

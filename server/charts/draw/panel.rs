@@ -1,0 +1,130 @@
+//! A panel: a frame with two axes, their grid, ticks and titles. What is drawn inside are marks.
+
+use crate::charts::draw::colour::{AXIS, GRID, INK, PAPER, SOFT_INK, ZERO};
+use crate::charts::draw::marks::line;
+use crate::charts::draw::number::raised;
+use crate::charts::draw::scale::{Range, Scale, Ticks, decades, ticks};
+use crate::charts::draw::svg::{Anchor, Svg, Type};
+use crate::charts::draw::text::{Span, width};
+
+/// Text of ticks, px.
+pub(crate) const TICK_SIZE: f64 = 12.0;
+
+/// Text of axis titles, px.
+pub(crate) const TITLE_SIZE: f64 = 13.5;
+
+/// Where the frame of a panel is, px.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+}
+
+/// What an axis shows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Axis<'a> {
+    /// In words.
+    pub(crate) name: &'a str,
+    /// In a formula.
+    pub(crate) symbol: &'a str,
+    /// Unit; empty for a pure number.
+    pub(crate) unit: &'a str,
+    /// From where to where.
+    pub(crate) range: Range,
+}
+
+/// A frame with its scales.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Panel {
+    pub(crate) frame: Frame,
+    x: Scale,
+    y: Scale,
+}
+
+impl Panel {
+    /// Draws grid, ticks and titles, and gives the panel to draw marks in; `edge` is for after the marks.
+    pub(crate) fn draw(svg: &mut Svg, frame: Frame, x: Axis<'_>, y: Axis<'_>) -> Self {
+        Self::draw_scaled(svg, frame, x, y, [false; 2])
+    }
+
+    /// The same where the ranges of x or y are of logarithms to base ten, and so are the values to put in.
+    pub(crate) fn draw_scaled(svg: &mut Svg, frame: Frame, x: Axis<'_>, y: Axis<'_>, logarithmic: [bool; 2]) -> Self {
+        let panel = Self {
+            frame,
+            x: Scale::linear(x.range, frame.left, frame.left + frame.width),
+            y: Scale::linear(y.range, frame.top + frame.height, frame.top),
+        };
+        panel.draw_axes(svg, x, y, logarithmic);
+        panel
+    }
+
+    /// The place of a point, px; points outside are put on the edge.
+    pub(crate) fn at(&self, x: f64, y: f64) -> (f64, f64) {
+        (self.x.at(x), self.y.at(y))
+    }
+
+    /// Draws the frame over the marks.
+    pub(crate) fn edge(&self, svg: &mut Svg) {
+        let Frame { left, top, width, height } = self.frame;
+        let rectangle = svg.tag("rect").number("x", left).number("y", top).number("width", width);
+        rectangle.number("height", height).word("fill", "none").word("stroke", AXIS).end();
+    }
+
+    fn draw_axes(&self, svg: &mut Svg, x: Axis<'_>, y: Axis<'_>, logarithmic: [bool; 2]) {
+        let choose = |way: usize, range: Range, most: u32| if logarithmic[way] { decades } else { ticks }(range, most);
+        let Frame { left, top, width: across, height } = self.frame;
+        let (right, bottom) = (left + across, top + height);
+        // As many labels as stand side by side with room between them.
+        let ticks_x = (2..=6).rev().map(|most| choose(0, x.range, most)).find(|ticks| crowding(ticks) < 0.75 * across);
+        let ticks_x = ticks_x.unwrap_or_else(|| choose(0, x.range, 2));
+        let ticks_y = choose(1, y.range, 6);
+        svg.tag("rect")
+            .number("x", left)
+            .number("y", top)
+            .number("width", across)
+            .number("height", height)
+            .word("fill", PAPER)
+            .end();
+        let look = Type::new(TICK_SIZE, SOFT_INK);
+        let mut widest: f64 = 0.0;
+        for (value, label) in &ticks_x.marks {
+            let at = self.x.at(*value);
+            line(svg, &[(at, top), (at, bottom)], grid(*value, logarithmic[0]), 1.0, None);
+            line(svg, &[(at, bottom), (at, bottom + 5.0)], AXIS, 1.0, None);
+            svg.text(at, bottom + 19.0, look.anchored(Anchor::Middle), &[Span::Plain(label)]);
+        }
+        for (value, label) in &ticks_y.marks {
+            let at = self.y.at(*value);
+            line(svg, &[(left, at), (right, at)], grid(*value, logarithmic[1]), 1.0, None);
+            line(svg, &[(left - 5.0, at), (left, at)], AXIS, 1.0, None);
+            svg.text(left - 9.0, at + 4.2, look.anchored(Anchor::End), &[Span::Plain(label)]);
+            widest = widest.max(width(label, TICK_SIZE));
+        }
+        let look = Type::new(TITLE_SIZE, INK).anchored(Anchor::Middle);
+        title(svg, left + 0.5 * across, bottom + 40.0, look, x, &ticks_x);
+        title(svg, left - 20.0 - widest, top + 0.5 * height, look.upwards(), y, &ticks_y);
+    }
+}
+
+/// Width of all labels side by side, px.
+fn crowding(ticks: &Ticks) -> f64 {
+    ticks.marks.iter().map(|(_, label)| width(label, TICK_SIZE)).sum()
+}
+
+/// Zero stands out, unless it is the logarithm of 1.
+fn grid(value: f64, is_logarithm: bool) -> &'static str {
+    if value == 0.0 && !is_logarithm { ZERO } else { GRID }
+}
+
+/// The title of an axis: name, symbol, unit and power of ten.
+pub(crate) fn title(svg: &mut Svg, x: f64, y: f64, look: Type, axis: Axis<'_>, ticks: &Ticks) {
+    let unit = match (ticks.power, axis.unit) {
+        (0, "") => String::new(),
+        (0, unit) => format!(" ({unit})"),
+        (power, unit) => format!(" (10{} {unit})", raised(power)).replace(" )", ")"),
+    };
+    let name = format!("{} ", axis.name);
+    svg.text(x, y, look, &[Span::Plain(&name), Span::Symbol(axis.symbol), Span::Plain(&unit)]);
+}

@@ -1,0 +1,82 @@
+//! The pixels of a picture: a drawing of this server, as PNG.
+//!
+//! Only the fonts in `fonts` are used, never those of the system, and no CPU's own instructions but exact ones, so that
+//! the bytes are the same everywhere. Not here: what is drawn, and SVG from elsewhere.
+
+use std::sync::{Arc, LazyLock};
+
+use resvg::tiny_skia::{Pixmap, PixmapMut, Transform};
+use resvg::usvg::fontdb::Database;
+use resvg::usvg::{Group, Node, Options, Tree};
+
+use crate::limits;
+
+/// DejaVu Sans, with the characters that pictures have. It is among the fonts that every SVG names.
+const FONTS: [&[u8]; 3] = [
+    include_bytes!("../fonts/DejaVuSans.ttf"),
+    include_bytes!("../fonts/DejaVuSans-Bold.ttf"),
+    include_bytes!("../fonts/DejaVuSans-Oblique.ttf"),
+];
+
+static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
+    let mut database = Database::new();
+    for font in FONTS {
+        database.load_font_data(font.to_vec());
+    }
+    database.set_sans_serif_family("DejaVu Sans");
+    Arc::new(database)
+});
+
+/// Why there are no pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoPixels {
+    /// `go_on` said so.
+    Cancelled,
+    /// More than `limits::PICTURE_PIXELS`, or no SVG: a mistake of this server.
+    Unfit,
+}
+
+/// Draws an SVG of this server at its own size, a pixel for each px. `go_on` is asked between the steps.
+pub fn png(svg: &str, go_on: impl Fn() -> bool) -> Result<Vec<u8>, NoPixels> {
+    let check = || if go_on() { Ok(()) } else { Err(NoPixels::Cancelled) };
+    check()?;
+    let options = Options { fontdb: DATABASE.clone(), font_family: "DejaVu Sans".to_owned(), ..Options::default() };
+    let tree = Tree::from_str(svg, &options).map_err(|_| NoPixels::Unfit)?;
+    check()?;
+    let size = tree.size().to_int_size();
+    if u64::from(size.width()) * u64::from(size.height()) > limits::PICTURE_PIXELS {
+        return Err(NoPixels::Unfit);
+    }
+    let mut pixels = Pixmap::new(size.width(), size.height()).ok_or(NoPixels::Unfit)?;
+    draw(tree.root(), &mut pixels.as_mut(), &check)?;
+    written(size.width(), size.height(), &pixels.take_demultiplied()).map_err(|_| NoPixels::Unfit)
+}
+
+/// As [`resvg::render`], node by node.
+fn draw(group: &Group, pixels: &mut PixmapMut<'_>, check: &impl Fn() -> Result<(), NoPixels>) -> Result<(), NoPixels> {
+    for node in group.children() {
+        check()?;
+        match node {
+            Node::Group(group) if !group.should_isolate() && group.transform().is_identity() => {
+                draw(group, pixels, check)?;
+            }
+            // Drawn alone, a node is moved to the origin; this moves it back. One without a size has no pixels.
+            _ => {
+                if let Some(place) = node.abs_layer_bounding_box() {
+                    resvg::render_node(node, Transform::from_translate(place.x(), place.y()), pixels);
+                }
+            }
+        }
+    }
+    check()
+}
+
+fn written(width: u32, height: u32, pixels: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
+    let mut out = Vec::new();
+    let mut encoder = png::Encoder::new(&mut out, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    // Fast: drawn once, sent once. Flat areas are small in any case.
+    encoder.set_compression(png::Compression::Fast);
+    encoder.write_header()?.write_image_data(pixels)?;
+    Ok(out)
+}

@@ -1,0 +1,115 @@
+//! The picture of a branch of periodic orbits: largest angle against a parameter, stable solid, unstable dashed.
+
+use crate::charts::draw::colour::{BLUE, INK, SOFT_INK, VERMILION};
+use crate::charts::draw::legend::{Sample, legend};
+use crate::charts::draw::marks::{Point, hollow, line};
+use crate::charts::draw::number::significant;
+use crate::charts::draw::panel::{Axis, Frame, Panel};
+use crate::charts::draw::scale::Range;
+use crate::charts::draw::sheet::{Sheet, Words};
+use crate::charts::draw::svg::{Anchor, Type};
+use crate::charts::draw::text::Span;
+
+/// Angles below this are rounding where 0 is meant, rad.
+const ROUNDING: f64 = 1e-12;
+
+/// A place on the branch where stability changes.
+#[derive(Clone, Copy, Debug)]
+pub struct Change {
+    /// Parameter and largest |θ|.
+    pub at: (f64, f64),
+    /// What changes.
+    pub kind: &'static str,
+}
+
+/// A branch of periodic orbits.
+#[derive(Clone, Copy, Debug)]
+pub struct Branches<'a> {
+    /// What it is, in a few words.
+    pub title: &'a str,
+    /// The parameter in words.
+    pub name: &'a str,
+    /// Its symbol.
+    pub symbol: &'a str,
+    /// Its unit; empty for none.
+    pub unit: &'a str,
+    /// The range asked for.
+    pub ends: (f64, f64),
+    /// Parameter, largest |θ|, and whether it is stable; none where it changes.
+    pub points: &'a [(f64, f64, Option<bool>)],
+    /// Where it changes.
+    pub changes: &'a [Change],
+    /// κ_c, where the parameter is κ.
+    pub critical: Option<f64>,
+}
+
+/// Draws the diagram.
+pub fn branches(drawn: &Branches<'_>) -> String {
+    const ROOM: f64 = 464.0;
+    const FRAME: Frame = Frame { left: 86.0, top: 30.0, width: 600.0, height: 348.0 };
+    let listed: Vec<String> = drawn
+        .changes
+        .iter()
+        .map(|change| {
+            let theta = if change.at.1 < ROUNDING { 0.0 } else { change.at.1 };
+            let (kind, parameter, theta) = (change.kind.replace('_', " "), change.at.0, significant(theta, 3));
+            format!("{kind} at {} (θ = {theta} rad)", significant(parameter, 6))
+        })
+        .collect();
+    let caption = if listed.is_empty() {
+        "Stability does not change on this branch.".to_owned()
+    } else {
+        format!("Stability changes: {}.", listed.join(", "))
+    };
+    let subtitle = format!("largest angle of the orbit against {}", drawn.name.to_lowercase());
+    let description = format!("{}: {subtitle}. {caption}", drawn.title);
+    let words = Words { title: drawn.title, subtitle: &subtitle, caption: &caption, description: &description };
+    let Sheet { mut svg, top } = Sheet::new(720.0, ROOM, words);
+    let frame = Frame { top: top + FRAME.top, ..FRAME };
+    let range = Range::new(drawn.ends.0.min(drawn.ends.1), drawn.ends.0.max(drawn.ends.1));
+    let highest = drawn.points.iter().map(|point| point.1).fold(0.0, f64::max);
+    let tall = Range::new(0.0, f64::max(1.06 * highest, 0.1));
+    let name = drawn.name.to_lowercase();
+    let x = Axis { name: &name, symbol: drawn.symbol, unit: drawn.unit, range };
+    let y = Axis { name: "largest angle", symbol: "|θ|", unit: "rad", range: tall };
+    let panel = Panel::draw(&mut svg, frame, x, y);
+    if let Some(critical) = drawn.critical.filter(|critical| (range.low..=range.high).contains(critical)) {
+        let (at, bottom) = panel.at(critical, 0.0);
+        line(&mut svg, &[(at, frame.top), (at, bottom)], SOFT_INK, 1.0, Some("2 3"));
+        let label = format!(" = {}", significant(critical, 4));
+        let look = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
+        svg.text(at, frame.top - 7.0, look, &[Span::Symbol("κ"), Span::Below("c"), Span::Plain(&label)]);
+    }
+    let dashes = |stable: bool| if stable { (BLUE, None) } else { (VERMILION, Some("6 4")) };
+    let mut run: Vec<Point> = Vec::new();
+    let mut last: Option<bool> = None;
+    for pair in drawn.points.windows(2) {
+        // A change between them is a point of its own, so one of the two knows.
+        let stable = pair[0].2.or(pair[1].2).unwrap_or(false);
+        if last.is_some_and(|last| last != stable) {
+            let (colour, dashes) = dashes(!stable);
+            line(&mut svg, &run, colour, 3.0, dashes);
+            run.clear();
+        }
+        if run.is_empty() {
+            run.push(panel.at(pair[0].0, pair[0].1));
+        }
+        run.push(panel.at(pair[1].0, pair[1].1));
+        last = Some(stable);
+    }
+    if let Some(stable) = last {
+        let (colour, dashes) = dashes(stable);
+        line(&mut svg, &run, colour, 3.0, dashes);
+    }
+    for change in drawn.changes {
+        hollow(&mut svg, panel.at(change.at.0, change.at.1), 5.0, INK);
+    }
+    panel.edge(&mut svg);
+    let entries = [
+        (Sample::Line { colour: BLUE, dashes: None }, "stable"),
+        (Sample::Line { colour: VERMILION, dashes: Some("6 4") }, "unstable"),
+        (Sample::Hollow(INK), "stability changes"),
+    ];
+    legend(&mut svg, 386.0, top + ROOM - 22.0, &entries);
+    svg.finish()
+}

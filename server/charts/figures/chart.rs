@@ -1,0 +1,173 @@
+//! A chart of curves: what holds beside what was said, in one panel or two, linear or logarithmic.
+//!
+//! Not here: which curves, and what they mean.
+
+use crate::charts::draw::colour::{BLUE, GREEN, ORANGE, SOFT_INK, VERMILION};
+use crate::charts::draw::legend::{Sample, legend};
+use crate::charts::draw::marks::{Point, dots, line, ring};
+use crate::charts::draw::panel::{Axis, Frame, Panel};
+use crate::charts::draw::scale::Range;
+use crate::charts::draw::sheet::{Sheet, Words};
+
+/// A picture of one panel or two.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// What it is, in a few words.
+    pub title: &'static str,
+    /// What it shows, in a sentence.
+    pub subtitle: String,
+    /// How to read it, with numbers.
+    pub caption: String,
+    /// The panels; all of their labels stand in one legend.
+    pub plots: Vec<Plot>,
+}
+
+/// A panel with its curves, the first of them undermost.
+#[derive(Clone, Debug)]
+pub struct Plot {
+    /// Along.
+    pub x: Side,
+    /// Upwards.
+    pub y: Side,
+    /// What is drawn.
+    pub curves: Vec<Curve>,
+}
+
+/// What is along an axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Side {
+    /// In words.
+    pub name: &'static str,
+    /// In a formula.
+    pub symbol: &'static str,
+    /// Unit; empty for none.
+    pub unit: &'static str,
+    /// Whether it is logarithmic; values that have no logarithm are left out.
+    pub logarithmic: bool,
+    /// From where to where; around all points where it is not said.
+    pub ends: Option<(f64, f64)>,
+}
+
+/// Points with a meaning.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// Its meaning; nothing where another curve says it already.
+    pub label: &'static str,
+    /// How it is drawn.
+    pub look: Look,
+    /// x and y. Those that are no numbers, or outside of the panel, are left out.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// How a curve is drawn; colour and kind of line tell the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// What holds: a full line.
+    Truth,
+    /// What holds, as dots.
+    TruthDots,
+    /// What was said wrongly: a dashed line.
+    Wrong,
+    /// What was said wrongly, as rings.
+    WrongRings,
+    /// Something else that was said wrongly: a line in short dashes.
+    Second,
+    /// Something to compare with: a thin full line.
+    Beside,
+    /// Something to compare with, as dots.
+    BesideDots,
+    /// A limit: a thin dotted line.
+    Limit,
+}
+
+impl Look {
+    fn sample(self) -> Sample {
+        let full = |colour| Sample::Line { colour, dashes: None };
+        let dashed = |colour, dashes| Sample::Line { colour, dashes: Some(dashes) };
+        match self {
+            Self::Truth => full(BLUE),
+            Self::TruthDots => Sample::Dot { radius: 2.6, colour: BLUE },
+            Self::Wrong => dashed(VERMILION, "7 4"),
+            Self::WrongRings => Sample::Ring(VERMILION),
+            Self::Second => dashed(ORANGE, "3 3"),
+            Self::Beside => full(GREEN),
+            Self::BesideDots => Sample::Dot { radius: 2.2, colour: GREEN },
+            Self::Limit => dashed(SOFT_INK, "1 3"),
+        }
+    }
+}
+
+impl Side {
+    /// A linear axis around all points.
+    pub const fn new(name: &'static str, symbol: &'static str, unit: &'static str) -> Self {
+        Self { name, symbol, unit, logarithmic: false, ends: None }
+    }
+
+    /// The same, logarithmic.
+    pub const fn logarithmic(self) -> Self {
+        Self { logarithmic: true, ..self }
+    }
+
+    /// The same from one value to another.
+    pub const fn between(self, low: f64, high: f64) -> Self {
+        Self { ends: Some((low, high)), ..self }
+    }
+
+    /// Where a value is along it; not a number where it is nowhere.
+    fn place(self, value: f64) -> f64 {
+        match self.logarithmic {
+            true if value > 0.0 => libm::log10(value),
+            true => f64::NAN,
+            false => value,
+        }
+    }
+
+    fn axis(&self, values: impl Iterator<Item = f64>) -> Axis<'_> {
+        let range = match self.ends {
+            Some((low, high)) => Range::new(self.place(low), self.place(high)),
+            None => Range::around(values.map(|value| self.place(value))),
+        };
+        Axis { name: self.name, symbol: self.symbol, unit: self.unit, range }
+    }
+}
+
+/// Draws a chart.
+pub fn chart(drawn: &Chart) -> String {
+    const ROOM: f64 = 424.0;
+    let description = format!("{}: {} {}", drawn.title, drawn.subtitle, drawn.caption);
+    let words =
+        Words { title: drawn.title, subtitle: &drawn.subtitle, caption: &drawn.caption, description: &description };
+    let two = drawn.plots.len() > 1;
+    let (width, across) = if two { (960.0, 350.0) } else { (720.0, 580.0) };
+    let Sheet { mut svg, top } = Sheet::new(width, ROOM, words);
+    let mut entries: Vec<(Sample, &str)> = Vec::new();
+    for (n, plot) in drawn.plots.iter().enumerate() {
+        let frame = Frame { left: 104.0 + 480.0 * n as f64, top: top + 6.0, width: across, height: 332.0 };
+        let points = || plot.curves.iter().flat_map(|curve| curve.points.iter().copied());
+        let (x, y) = (plot.x.axis(points().map(|point| point.0)), plot.y.axis(points().map(|point| point.1)));
+        let panel = Panel::draw_scaled(&mut svg, frame, x, y, [plot.x.logarithmic, plot.y.logarithmic]);
+        for curve in &plot.curves {
+            let placed = curve.points.iter().map(|(x, y)| (plot.x.place(*x), plot.y.place(*y)));
+            let inside = |range: Range, value: f64| (range.low..=range.high).contains(&value);
+            let drawn: Vec<Point> = placed
+                .filter(|place| inside(x.range, place.0) && inside(y.range, place.1))
+                .map(|place| panel.at(place.0, place.1))
+                .collect();
+            let thickness = if matches!(curve.look, Look::Beside | Look::Limit) { 1.6 } else { 2.4 };
+            match curve.look.sample() {
+                Sample::Line { colour, dashes } if !drawn.is_empty() => {
+                    line(&mut svg, &drawn, colour, thickness, dashes);
+                }
+                Sample::Dot { radius, colour } => dots(&mut svg, drawn.into_iter(), radius, colour),
+                Sample::Ring(colour) => drawn.into_iter().for_each(|point| ring(&mut svg, point, 4.5, colour)),
+                _ => {}
+            }
+            if !curve.label.is_empty() {
+                entries.push((curve.look.sample(), curve.label));
+            }
+        }
+        panel.edge(&mut svg);
+    }
+    legend(&mut svg, 0.5 * width, top + ROOM - 22.0, &entries);
+    svg.finish()
+}

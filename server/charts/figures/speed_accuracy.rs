@@ -1,0 +1,173 @@
+//! The picture of speed against accuracy: error over cost, both logarithmic, a symbol and a colour for each method.
+
+use crate::charts::draw::colour::{BLUE, GREEN, INK, ORANGE, PAPER, PURPLE, SKY, SOFT_INK, VERMILION};
+use crate::charts::draw::marks::{Point, line};
+use crate::charts::draw::panel::{Axis, Frame, Panel};
+use crate::charts::draw::scale::Range;
+use crate::charts::draw::sheet::{Sheet, Words};
+use crate::charts::draw::svg::{Svg, Type, fixed};
+use crate::charts::draw::text::Span;
+
+/// What is drawn.
+#[derive(Clone, Debug)]
+pub struct SpeedAccuracy<'a> {
+    /// What it is, in a few words.
+    pub title: &'a str,
+    /// What it shows, in a sentence.
+    pub subtitle: &'a str,
+    /// How to read it, and what is not drawn.
+    pub caption: &'a str,
+    /// What cost is, and its unit.
+    pub cost: (&'a str, &'a str),
+    /// What the error is.
+    pub error: &'a str,
+    /// The methods; their number tells symbol and colour.
+    pub series: &'a [Series<'a>],
+    /// Cost and error of the points that none beats.
+    pub front: &'a [(f64, f64)],
+    /// One unit in the last place of the state.
+    pub rounding: f64,
+}
+
+/// One method.
+#[derive(Clone, Debug)]
+pub struct Series<'a> {
+    /// Its place among all methods.
+    pub number: usize,
+    /// What it is called.
+    pub label: &'a str,
+    /// Quartile, median, quartile of the cost, and the error.
+    pub points: Vec<([f64; 3], f64)>,
+}
+
+/// Colours and outlines; both tell the same.
+const LOOKS: [(&str, Outline); 11] = [
+    (BLUE, &[(-0.9, -0.4), (-0.4, -0.9), (0.4, -0.9), (0.9, -0.4), (0.9, 0.4), (0.4, 0.9), (-0.4, 0.9), (-0.9, 0.4)]),
+    (SKY, &[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)]),
+    (GREEN, &[(0.0, -1.1), (1.1, 0.9), (-1.1, 0.9)]),
+    (INK, &[(-1.0, -0.3), (1.0, -0.3), (1.0, 0.3), (-1.0, 0.3)]),
+    (VERMILION, &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
+    (PURPLE, &[(0.0, 1.1), (1.1, -0.9), (-1.1, -0.9)]),
+    (PURPLE, &[(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)]),
+    (
+        PURPLE,
+        &[
+            (0.0, -0.4),
+            (0.7, -1.1),
+            (1.1, -0.7),
+            (0.4, 0.0),
+            (1.1, 0.7),
+            (0.7, 1.1),
+            (0.0, 0.4),
+            (-0.7, 1.1),
+            (-1.1, 0.7),
+            (-0.4, 0.0),
+            (-1.1, -0.7),
+            (-0.7, -1.1),
+        ],
+    ),
+    (
+        ORANGE,
+        &[
+            (-0.35, -1.2),
+            (0.35, -1.2),
+            (0.35, -0.35),
+            (1.2, -0.35),
+            (1.2, 0.35),
+            (0.35, 0.35),
+            (0.35, 1.2),
+            (-0.35, 1.2),
+            (-0.35, 0.35),
+            (-1.2, 0.35),
+            (-1.2, -0.35),
+            (-0.35, -0.35),
+        ],
+    ),
+    (SOFT_INK, &[(-1.1, 0.0), (0.9, -1.1), (0.9, 1.1)]),
+    (SOFT_INK, &[(1.1, 0.0), (-0.9, -1.1), (-0.9, 1.1)]),
+];
+
+type Outline = &'static [Point];
+
+/// Size of a symbol, px.
+const SIZE: f64 = 5.0;
+
+/// Space between lines of the legend, px.
+const LEADING: f64 = 23.0;
+
+fn symbol(svg: &mut Svg, (x, y): Point, number: usize) {
+    let (colour, outline) = LOOKS[number % LOOKS.len()];
+    let corner = |(index, (right, down)): (usize, &Point)| {
+        let kind = if index == 0 { "M" } else { "L" };
+        format!("{kind}{} {}", fixed(x + SIZE * right), fixed(y + SIZE * down))
+    };
+    let path: String = outline.iter().enumerate().map(corner).collect();
+    let tag = svg.tag("path").word("d", &format!("{path}Z")).word("fill", colour);
+    tag.word("stroke", PAPER).number("stroke-width", 0.8).end();
+}
+
+/// Draws it.
+pub fn speed_accuracy(drawn: &SpeedAccuracy<'_>) -> String {
+    const ROOM: f64 = 470.0;
+    let description = format!("{} {} {}", drawn.title, drawn.subtitle, drawn.caption);
+    let words =
+        Words { title: drawn.title, subtitle: drawn.subtitle, caption: drawn.caption, description: &description };
+    let Sheet { mut svg, top } = Sheet::new(960.0, ROOM, words);
+    let frame = Frame { left: 96.0, top: top + 6.0, width: 580.0, height: 396.0 };
+    // What has no logarithm stands on the lower edge.
+    let place = |value: f64| if value > 0.0 { libm::log10(value) } else { f64::NEG_INFINITY };
+    let points = || drawn.series.iter().flat_map(|series| series.points.iter());
+    let cost = Range::around(points().flat_map(|point| point.0).map(place));
+    let error = Range::around(points().map(|point| point.1).chain([drawn.rounding]).map(place));
+    let x = Axis { name: drawn.cost.0, symbol: "", unit: drawn.cost.1, range: cost };
+    let y = Axis { name: drawn.error, symbol: "", unit: "m or m/s", range: error };
+    let panel = Panel::draw_scaled(&mut svg, frame, x, y, [true; 2]);
+    let at = |cost: f64, error: f64| panel.at(place(cost), place(error));
+
+    let (floor, right) = (at(f64::INFINITY, drawn.rounding).1, frame.left + frame.width);
+    if drawn.rounding > 0.0 {
+        line(&mut svg, &[(frame.left, floor), (right, floor)], SOFT_INK, 1.4, Some("2 3"));
+    }
+    let mut front: Vec<Point> = drawn.front.iter().map(|&(cost, error)| at(cost, error)).collect();
+    front.sort_by(|one, other| one.0.total_cmp(&other.0));
+    if let (Some(&first), Some(&last)) = (front.first(), front.last()) {
+        let mut stairs = vec![(first.0, frame.top)];
+        for point in front {
+            let before = stairs.last().map_or(point.1, |point| point.1);
+            if stairs.len() > 1 {
+                stairs.push((point.0, before));
+            }
+            stairs.push(point);
+        }
+        stairs.push((right, last.1));
+        line(&mut svg, &stairs, INK, 1.6, None);
+    }
+    for series in drawn.series {
+        let colour = LOOKS[series.number % LOOKS.len()].0;
+        let middles: Vec<Point> = series.points.iter().map(|(cost, error)| at(cost[1], *error)).collect();
+        if middles.len() > 1 {
+            line(&mut svg, &middles, colour, 1.2, None);
+        }
+        for ((cost, error), middle) in series.points.iter().zip(middles) {
+            line(&mut svg, &[at(cost[0], *error), at(cost[2], *error)], colour, 2.4, None);
+            symbol(&mut svg, middle, series.number);
+        }
+    }
+    panel.edge(&mut svg);
+
+    let left = right + 26.0;
+    let mut y = frame.top + 12.0;
+    let mut label = |svg: &mut Svg, text: &str, draw: &dyn Fn(&mut Svg, f64)| {
+        draw(svg, y);
+        svg.text(left + 26.0, y + 4.3, Type::new(12.5, SOFT_INK), &[Span::Plain(text)]);
+        y += LEADING;
+    };
+    for series in drawn.series {
+        label(&mut svg, series.label, &|svg, y| symbol(svg, (left + 8.0, y), series.number));
+    }
+    label(&mut svg, "Pareto front", &|svg, y| line(svg, &[(left, y), (left + 18.0, y)], INK, 1.6, None));
+    label(&mut svg, "rounding of doubles", &|svg, y| {
+        line(svg, &[(left, y), (left + 18.0, y)], SOFT_INK, 1.4, Some("2 3"));
+    });
+    svg.finish()
+}

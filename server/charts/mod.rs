@@ -1,0 +1,24 @@
+//! Pictures of answers as SVG, drawn by a small chart layer of our own: sheets, panels with axes, marks, legends.
+//!
+//! A picture is a function of its numbers: the same bytes everywhere, whatever the numbers are. It stands on its own paper,
+//! so that it reads in light and dark pages alike, and carries no style sheet and no script, so that any CSP takes it.
+//! Not here: HTTP, and computing what is drawn.
+
+pub mod draw;
+pub mod figures;
+
+pub use crate::charts::draw::number::significant;
+pub use crate::charts::draw::pixels::{NoPixels, png};
+pub use crate::charts::figures::branches::{Branches, Change, branches};
+pub use crate::charts::figures::chart::{Chart, Curve, Look, Plot, Side, chart};
+pub use crate::charts::figures::closed_loop::{Loop, closed_loop};
+pub use crate::charts::figures::eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
+pub use crate::charts::figures::heat_map::{HeatAxis, HeatMap, heat_map};
+pub use crate::charts::figures::phase_planes::{PhasePlanes, phase_planes};
+pub use crate::charts::figures::speed_accuracy::{Series, SpeedAccuracy, speed_accuracy};
+pub use crate::charts::figures::survival::{AnglesAt, SurvivalAt, SurvivalCurve, survival_curve};
+
+#[cfg(test)]
+mod heat_map_tests;
+#[cfg(test)]
+mod tests;

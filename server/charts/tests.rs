@@ -1,0 +1,217 @@
+//! What holds for every picture, whatever its numbers: well-formed, safe under a strict CSP, the same bytes, bounded.
+
+use super::*;
+
+pub(crate) const AWKWARD: [f64; 12] =
+    [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN, 5e-324, -0.0, 0.0, 1e-12, 1.0, -3.7, 1e17];
+
+/// Checks what must hold for every picture, and gives its text.
+pub(crate) fn sound(picture: &str) -> String {
+    let document = roxmltree::Document::parse(picture).unwrap_or_else(|error| panic!("{error}:\n{picture}"));
+    let root = document.root_element();
+    assert_eq!(root.tag_name().name(), "svg");
+    assert_eq!(root.attribute("role"), Some("img"));
+    for name in ["width", "height", "viewBox"] {
+        assert!(root.attribute(name).is_some(), "{name}");
+    }
+    for name in ["title", "desc"] {
+        assert!(root.children().any(|node| node.has_tag_name(("http://www.w3.org/2000/svg", name))), "{name}");
+    }
+    let known = ["svg", "title", "desc", "rect", "path", "circle", "text", "tspan"];
+    for node in root.descendants().filter(roxmltree::Node::is_element) {
+        assert!(known.contains(&node.tag_name().name()), "{node:?}");
+        for attribute in node.attributes() {
+            let name = attribute.name();
+            assert!(!name.starts_with("on") && name != "style" && name != "href" && name != "class", "{name}");
+            assert!(!attribute.value().contains("NaN") && !attribute.value().contains("inf"), "{attribute:?}");
+        }
+    }
+    root.descendants().filter(roxmltree::Node::is_text).filter_map(|node| node.text()).collect::<Vec<_>>().join("|")
+}
+
+fn planes<'a>(theta: &'a [f64], theta_dot: Option<&'a [f64]>, x_dot: &'a [f64], y_dot: &'a [f64]) -> String {
+    phase_planes(&PhasePlanes { title: "A rod", subtitle: "completed", theta, theta_dot, x_dot, y_dot })
+}
+
+fn spectrum(eigenvalues: &[(f64, f64)]) -> Spectrum<'_> {
+    Spectrum { eigenvalues, tilt_gain: 1.1, lower: 1.0, critical: 1.5, residue: Some(0.2), rotation: Some(0.927) }
+}
+
+fn verdict(linear: Option<Spectrum<'_>>) -> String {
+    eigenvalues(&Eigenvalues { title: "A rod", verdict: Some("unstable"), reason: "it falls", linear })
+}
+
+#[test]
+fn phase_planes_show_every_impact() {
+    let theta: Vec<f64> = (0..100).map(|n| f64::from(n) * 0.003).collect();
+    let picture = planes(&theta, Some(&theta), &theta, &theta);
+    let text = sound(&picture);
+    for wanted in ["θ", "θ̇", "ẋ", "ẏ", " (rad)", " (rad/s)", " (m/s)", "A rod", "last (n = 100)", "100 impacts"]
+    {
+        assert!(text.contains(wanted), "{wanted} is not in {text}");
+    }
+    let dots = picture
+        .lines()
+        .filter(|line| line.contains("round") && line.contains("h0"))
+        .map(|line| line.matches("h0").count());
+    assert_eq!(dots.collect::<Vec<_>>(), [100, 100, 1]);
+}
+
+#[test]
+fn a_point_mass_has_one_plane_and_says_so() {
+    let text = sound(&planes(&[0.1], None, &[0.1], &[-1.0]));
+    assert!(text.contains("no orientation") && !text.contains("θ"), "{text}");
+}
+
+#[test]
+fn no_numbers_break_phase_planes() {
+    for a in AWKWARD {
+        for b in AWKWARD {
+            sound(&planes(&[a, b], Some(&[b, a]), &[a, a], &[b, b]));
+            sound(&planes(&[a], Some(&[b]), &[a], &[b]));
+        }
+    }
+    assert!(sound(&planes(&[], Some(&[]), &[], &[])).contains("no impact"));
+    // Slices of different lengths are a mistake of the caller, not a reason to fall over.
+    sound(&planes(&[1.0], Some(&[]), &[1.0, 2.0], &[0.5]));
+    let text = sound(&planes(&[0.0, f64::NAN], Some(&[0.0, 1.0]), &[0.0, 0.1], &[0.0, 0.1]));
+    assert!(text.contains("1 that are not finite numbers are left out"), "{text}");
+}
+
+#[test]
+fn many_impacts_are_thinned_and_the_caption_says_so() {
+    let many: Vec<f64> = (0..100_000).map(|n| f64::from(n % 977) - 3.3).collect();
+    let picture = planes(&many, Some(&many), &many, &many);
+    let text = sound(&picture);
+    assert!(text.contains("100000 impacts. One in 5 is drawn"), "{text}");
+    assert!(picture.len() < 1_000_000, "{} bytes", picture.len());
+}
+
+#[test]
+fn eigenvalues_say_the_verdict_with_its_numbers() {
+    let text = sound(&verdict(Some(spectrum(&[(0.6, 0.8), (0.6, -0.8), (1.0, 0.0), (1.0, 0.0)]))));
+    for wanted in ["unstable: it falls", " = 1.5", "R = 0.2", "σ = 0.927 rad per bounce", "×2", "Re ", "|λ|"] {
+        assert!(text.contains(wanted), "{wanted} is not in {text}");
+    }
+}
+
+#[test]
+fn without_a_fixed_point_the_picture_gives_the_reason() {
+    let text = sound(&verdict(None));
+    assert!(text.contains("it falls") && text.contains("no fixed point"), "{text}");
+}
+
+#[test]
+fn no_numbers_break_eigenvalues() {
+    for a in AWKWARD {
+        for b in AWKWARD {
+            let pair = [(a, b), (b, a), (1.0, 0.0)];
+            let point = Spectrum { residue: None, rotation: None, ..spectrum(&pair) };
+            for linear in [
+                Spectrum { tilt_gain: a, residue: Some(b), ..spectrum(&pair) },
+                Spectrum { lower: a, critical: b, rotation: Some(a), ..spectrum(&pair) },
+                Spectrum { tilt_gain: a, critical: b, ..point },
+                Spectrum { eigenvalues: &[], residue: Some(a), ..spectrum(&[]) },
+            ] {
+                sound(&verdict(Some(linear)));
+            }
+        }
+    }
+}
+
+#[test]
+fn no_numbers_break_speed_against_accuracy() {
+    for a in AWKWARD {
+        for b in AWKWARD {
+            let series: Vec<_> = (0..12)
+                .map(|number| Series { number, label: "<one>", points: vec![([a, b, a], b), ([1.0; 3], a)] })
+                .collect();
+            let picture = speed_accuracy(&SpeedAccuracy {
+                title: "Cost",
+                subtitle: "error over cost",
+                caption: "none",
+                cost: ("clock time", "ns"),
+                error: "error",
+                series: &series,
+                front: &[(a, b), (b, a)],
+                rounding: a,
+            });
+            assert!(sound(&picture).contains("<one>"));
+        }
+    }
+}
+
+fn ensemble(curve: &[SurvivalAt], angles: &[AnglesAt]) -> String {
+    let subtitle = "12 completed, 8 toppled";
+    survival_curve(&SurvivalCurve { title: "Survival", subtitle, caption: "Wilson", curve, angles })
+}
+
+#[test]
+fn a_survival_curve_says_how_many_were_there() {
+    let at = |n: u64| SurvivalAt { at_risk: 2001 - n, share: 1.0 - n as f64 / 2000.0, interval: (0.0, 1.0) };
+    let curve: Vec<_> = (1..=1000).map(at).collect();
+    let angles = [1, 500, 1000].map(|n| AnglesAt { n, quantiles: [0.0, 0.1, 0.2, 0.3, 0.4] });
+    let text = sound(&ensemble(&curve, &angles));
+    for wanted in ["at risk", "2000", "1801", "1001", "runs still going", "|θ|", " (rad)", "95 % interval", "5 to 95 %"]
+    {
+        assert!(text.contains(wanted), "{wanted} is not in {text}");
+    }
+    let long: Vec<_> = (0..100_000).map(|_| at(1)).collect();
+    let falling: Vec<_> = (0..100_000).map(|n| SurvivalAt { share: 1.0 - n as f64 * 1e-5, ..at(1) }).collect();
+    assert!(ensemble(&long, &[]).len() < 20_000 && ensemble(&falling, &angles).len() < 100_000);
+}
+
+#[test]
+fn no_numbers_break_a_survival_curve() {
+    for a in AWKWARD {
+        for b in AWKWARD {
+            let curve = [SurvivalAt { at_risk: u64::MAX, share: a, interval: (b, a) }; 3];
+            sound(&ensemble(&curve, &[AnglesAt { n: u64::MAX, quantiles: [a, b, a, b, a] }]));
+        }
+    }
+    sound(&ensemble(&[], &[]));
+}
+
+#[test]
+fn text_is_escaped_and_bounded() {
+    let nasty = "<script>&\"'\u{0}\u{ffff}]]>\n".to_owned() + &"x".repeat(5000);
+    let none = Eigenvalues { title: &nasty, verdict: Some(&nasty), reason: &nasty, linear: None };
+    let picture = eigenvalues(&none);
+    let text = sound(&picture);
+    assert!(text.contains("<script>&\"'\u{fffd}\u{fffd}]]>") && !picture.contains("<script"), "{picture}");
+    let data = PhasePlanes { title: &nasty, subtitle: &nasty, theta: &[], theta_dot: None, x_dot: &[], y_dot: &[] };
+    sound(&phase_planes(&data));
+}
+
+#[test]
+fn code_has_no_marks_in_a_picture() {
+    let text =
+        sound(&eigenvalues(&Eigenvalues { title: "A rod", verdict: None, reason: "ends as `sinking`", linear: None }));
+    assert!(text.contains("ends as sinking") && !text.contains('`'), "{text}");
+}
+
+#[test]
+fn an_angle_of_rounding_is_zero_in_a_branch() {
+    let changes =
+        [(1.127e-27, "period_doubling"), (0.25, "fold")].map(|(theta, kind)| Change { at: (1.5, theta), kind });
+    let text = sound(&branches(&Branches {
+        title: "Orbits",
+        name: "Tilt gain",
+        symbol: "κ",
+        unit: "",
+        ends: (1.4, 1.6),
+        points: &[(1.5, 1.127e-27, None), (1.55, 0.25, Some(true))],
+        changes: &changes,
+        critical: None,
+    }));
+    assert!(text.contains("period doubling at 1.5 (θ = 0 rad), fold at 1.5 (θ = 0.25 rad)"), "{text}");
+}
+
+#[test]
+fn the_same_numbers_give_the_same_bytes() {
+    let theta: Vec<f64> = (0..500).map(|n| f64::from(n * n % 97) * 0.01).collect();
+    assert_eq!(planes(&theta, Some(&theta), &theta, &theta), planes(&theta, Some(&theta), &theta, &theta));
+    let pair = [(-1.863_324_958, 0.0), (-0.536_675_042, 0.0), (1.0, 0.0), (1.0, 0.0)];
+    let beyond = Spectrum { tilt_gain: 1.55, residue: Some(1.1), rotation: None, ..spectrum(&pair) };
+    assert_eq!(verdict(Some(beyond)), verdict(Some(beyond)));
+}

@@ -1,0 +1,353 @@
+//! Speed against accuracy: every method over its settings on one scene, what each run costs and how far it ends from the run with 31
+//! digits.
+//!
+//! The work and the errors are the same everywhere; the times are of this machine at this moment. Not here: HTTP, and the methods
+//! themselves.
+
+mod runs;
+
+use equipoise_physics::scene::Scene;
+
+use crate::compute::stopwatch;
+use crate::compute::stopwatch::{Bounds, Timing, Work};
+use crate::compute::{Cancel, Cancelled, Turn};
+use crate::limits;
+use runs::{Done, Subject};
+
+/// A method of the chart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Method {
+    /// Its name in requests and answers.
+    pub name: &'static str,
+    /// The same in words.
+    pub title: &'static str,
+    /// What it is, in a sentence.
+    pub about: &'static str,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Map,
+    MapFree,
+    Linear,
+    Extended,
+    Adaptive,
+    StepEnd,
+    Secant,
+    Bisection,
+    TimeStepping,
+    Penalty,
+    Sampling,
+}
+
+/// All of them, in the order of answers.
+pub const METHODS: [Method; 11] = {
+    const fn method(kind: Kind, name: &'static str, title: &'static str, about: &'static str) -> Method {
+        Method { name, title, about, kind }
+    }
+    [
+        method(
+            Kind::Map,
+            "map",
+            "map",
+            "The map from contact to contact in closed form, which keeps rounding off the energy.",
+        ),
+        method(
+            Kind::MapFree,
+            "map_free",
+            "map, energy left free",
+            "The same map without the correction of its energy.",
+        ),
+        method(
+            Kind::Linear,
+            "linear",
+            "linear solution",
+            "Eq. (13) and (20) to (23) in closed form, any impact at the same cost.",
+        ),
+        method(
+            Kind::Extended,
+            "extended",
+            "map with 31 digits",
+            "The map in double-double numbers: the reference of all errors.",
+        ),
+        method(
+            Kind::Adaptive,
+            "adaptive",
+            "Dormand-Prince 5(4), events",
+            "A library's adaptive Runge-Kutta; contacts located by halving on its dense output.",
+        ),
+        method(
+            Kind::Bisection,
+            "runge_kutta_bisection",
+            "RK4, contact bisected",
+            "Runge-Kutta of order 4 with a fixed step; contacts located to the last digit.",
+        ),
+        method(
+            Kind::Secant,
+            "runge_kutta_secant",
+            "RK4, contact on a chord",
+            "The same; contacts where the chord of the gap over the step is zero.",
+        ),
+        method(
+            Kind::StepEnd,
+            "runge_kutta_step_end",
+            "RK4, contact at step end",
+            "The same; contacts at the end of the step in which they happen.",
+        ),
+        method(
+            Kind::Sampling,
+            "sampling",
+            "sampled flight",
+            "The exact parabola looked at on a grid of times; contacts halved between two looks.",
+        ),
+        method(
+            Kind::TimeStepping,
+            "time_stepping",
+            "Moreau-Jean time stepping",
+            "Velocities and impulses of whole steps, as engines of many contacts do it.",
+        ),
+        method(
+            Kind::Penalty,
+            "penalty",
+            "spring-damper contact",
+            "A stiff spring and a damper for the contact, moved by Runge-Kutta.",
+        ),
+    ]
+};
+
+/// What a method can be told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// `step` or `tolerance`.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Its unit; `1` for none.
+    pub unit: &'static str,
+}
+
+/// One method with one setting.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// The method.
+    pub method: Method,
+    /// Its setting, if it has one.
+    pub setting: Option<Setting>,
+    /// Clock time of the whole run; none where there was no run.
+    pub timing: Option<Timing>,
+    /// Contacts that it saw.
+    pub impacts: u64,
+    /// Steps, looks or bounces.
+    pub steps: u64,
+    /// Evaluations of the equations of motion and of the gap; none in numbers of 31 digits.
+    pub evaluations: Option<u64>,
+    /// Largest of |ρδθ| (m), |δẋ|, |δẏ|, |ρδθ̇| (m/s) just before the reference's last contact.
+    pub error: Option<f64>,
+    /// How its run ended, or `unavailable`.
+    pub outcome: &'static str,
+    /// Why there is no error, or no run.
+    pub reason: Option<String>,
+    /// Whether nothing is both faster and more accurate.
+    pub pareto: bool,
+    /// Whether nothing takes fewer evaluations and is more accurate.
+    pub pareto_evaluations: bool,
+}
+
+impl Point {
+    /// Quartile, median, quartile of the time of a contact, ns.
+    pub fn cost_ns(&self) -> Option<[f64; 3]> {
+        let timing = self.timing.filter(|_| self.impacts > 0)?;
+        Some(timing.quartiles_s.map(|time_s| time_s * 1e9 / self.impacts as f64))
+    }
+
+    /// Evaluations for a contact.
+    pub fn evaluations_per_impact(&self) -> Option<f64> {
+        self.evaluations.filter(|_| self.impacts > 0).map(|count| count as f64 / self.impacts as f64)
+    }
+}
+
+/// How the reference ran.
+#[derive(Clone, Copy, Debug)]
+pub struct Reference {
+    /// How it ended.
+    pub outcome: &'static str,
+    /// Contacts, the last included.
+    pub impacts: u64,
+    /// When the last one was, s.
+    pub t: f64,
+    /// What one unit in the last place of its last state is, m or m/s: no double is surely nearer.
+    pub rounding: f64,
+}
+
+/// The chart of a scene.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// What errors are from.
+    pub reference: Reference,
+    /// All points, method by method.
+    pub points: Vec<Point>,
+    /// What was left out.
+    pub notes: Vec<String>,
+}
+
+/// How many points the methods have at most.
+pub fn most_points(methods: &[Method]) -> u64 {
+    methods.iter().map(|method| method.kind.settings(1.0).len() as u64).sum()
+}
+
+impl Kind {
+    /// Settings from the coarsest, `scale` being the power of ten below the mean flight, s.
+    fn settings(self, scale: f64) -> Vec<Option<Setting>> {
+        let of = |name, unit, values: &[f64]| {
+            values.iter().map(|&value| Some(Setting { name, value, unit })).collect::<Vec<_>>()
+        };
+        match self {
+            Self::Map | Self::MapFree | Self::Linear | Self::Extended => vec![None],
+            Self::Adaptive => of("tolerance", "1", &[1e-4, 1e-6, 1e-8, 1e-10, 1e-12]),
+            _ => of("step", "s", &[10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4].map(|parts| one_digit(scale / parts))),
+        }
+    }
+}
+
+/// The nearest number of one digit, so that steps are what they read.
+fn one_digit(value: f64) -> f64 {
+    format!("{value:.0e}").parse().unwrap_or(value)
+}
+
+/// The power of ten below a time; 1 s for none.
+fn power_of_ten(time: f64) -> f64 {
+    let text = format!("{time:e}");
+    let power = text.split_once('e').filter(|_| time.is_finite() && time > 0.0);
+    power.and_then(|(_, power)| format!("1e{power}").parse().ok()).unwrap_or(1.0)
+}
+
+/// Runs and times `methods` over `impacts` contacts of a scene. `progress` hears how much of how much is done: of each point its run,
+/// and its timing.
+pub fn chart(
+    scene: &Scene,
+    impacts: u64,
+    methods: &[Method],
+    progress: &mut dyn FnMut(u64, u64),
+    turn: &Turn,
+) -> Result<Chart, Cancelled> {
+    let subject = Subject::new(scene, impacts, turn)?;
+    let reference = subject.reference();
+    let scale = power_of_ten(reference.t / reference.impacts.max(1) as f64);
+    let mut notes = Vec::new();
+    let mut wanted = Vec::new();
+    let mut left_out = Vec::new();
+    for &method in methods {
+        for setting in method.kind.settings(scale) {
+            if let Some(Setting { name: "step", value, .. }) = setting
+                && reference.t / value > 0.9 * limits::PRECISION_STEPS as f64
+            {
+                left_out.push(value);
+            } else {
+                wanted.push((method, setting));
+            }
+        }
+    }
+    let of = 2 * wanted.len() as u64;
+    progress(0, of);
+    let mut points = Vec::with_capacity(wanted.len());
+    for (method, setting) in wanted {
+        let done = subject.run(method.kind, setting, turn)?;
+        points.push(point(&subject, method, setting, done));
+        progress(points.len() as u64, of);
+    }
+    if scene.rules().limits.is_some() {
+        notes.push("table.limits end none of these runs: no method but the map looks at them".to_owned());
+    }
+    if scene.vertices().is_some() {
+        notes.push("no other vertex ends any of these runs: no method but the map looks for them".to_owned());
+    }
+    if let Some(coarsest) = left_out.into_iter().reduce(f64::max) {
+        notes.push(format!(
+            "steps of {coarsest} s and finer are left out: they would take more than about {} steps",
+            limits::PRECISION_STEPS
+        ));
+    }
+    measure(&subject, &mut points, progress, turn)?;
+    mark(&mut points, |point| point.cost_ns().map(|cost| cost[1]), |point| &mut point.pareto);
+    mark(&mut points, Point::evaluations_per_impact, |point| &mut point.pareto_evaluations);
+    Ok(Chart { reference, points, notes })
+}
+
+fn point(subject: &Subject<'_>, method: Method, setting: Option<Setting>, done: Result<Done, String>) -> Point {
+    let reference = subject.reference();
+    let mut point = Point {
+        method,
+        setting,
+        timing: None,
+        impacts: 0,
+        steps: 0,
+        evaluations: None,
+        error: None,
+        outcome: "unavailable",
+        reason: None,
+        pareto: false,
+        pareto_evaluations: false,
+    };
+    let done = match done {
+        Ok(done) => done,
+        Err(reason) => return Point { reason: Some(reason), ..point },
+    };
+    (point.impacts, point.steps, point.evaluations) = (done.impacts, done.steps, done.evaluations);
+    point.outcome = done.outcome;
+    if method.kind == Kind::Extended {
+        point.reason = Some("it is the reference that errors are measured from".to_owned());
+    } else if (done.outcome, done.impacts) != (reference.outcome, reference.impacts) {
+        let (outcome, impacts) = (reference.outcome, reference.impacts);
+        point.reason = Some(format!(
+            "its run is {} after {} contacts, and the reference {outcome} after {impacts}",
+            done.outcome, done.impacts
+        ));
+    } else {
+        let error = subject.error(&done.state);
+        point.error = Some(error).filter(|error| error.is_finite());
+        if point.error.is_none() {
+            point.reason = Some("its state is not finite".to_owned());
+        }
+    }
+    point
+}
+
+/// Times all runs there were, in turns.
+fn measure(
+    subject: &Subject<'_>,
+    points: &mut [Point],
+    progress: &mut dyn FnMut(u64, u64),
+    turn: &Turn,
+) -> Result<(), Cancelled> {
+    let of = 2 * points.len() as u64;
+    let mut ran: Vec<&mut Point> = points.iter_mut().filter(|point| point.outcome != "unavailable").collect();
+    let mut works: Vec<Work<'_>> = ran
+        .iter()
+        .map(|point| {
+            let (kind, setting) = (point.method.kind, point.setting);
+            Box::new(move |cancel: &Cancel| subject.race(kind, setting, cancel)) as Work<'_>
+        })
+        .collect();
+    let bounds =
+        Bounds { time: limits::PRECISION_TIME, look: limits::PRECISION_LOOK, repeats: limits::PRECISION_REPEATS };
+    let mut done = of - works.len() as u64;
+    let mut timed = || {
+        done += 1;
+        progress(done, of);
+    };
+    let timings = stopwatch::time(&mut works, bounds, &mut timed, turn)?;
+    for (point, timing) in ran.iter_mut().zip(timings) {
+        point.timing = Some(timing);
+    }
+    Ok(())
+}
+
+/// Marks the points that none beats: at most as dear and as far off as they are, and less in one of the two.
+fn mark(points: &mut [Point], cost: impl Fn(&Point) -> Option<f64>, flag: impl Fn(&mut Point) -> &mut bool) {
+    let places: Vec<Option<(f64, f64)>> = points.iter().map(|point| cost(point).zip(point.error)).collect();
+    for (point, place) in points.iter_mut().zip(&places) {
+        let beats = |own: (f64, f64), other: (f64, f64)| other.0 <= own.0 && other.1 <= own.1 && other != own;
+        *flag(point) = place.is_some_and(|own| !places.iter().flatten().any(|other| beats(own, *other)));
+    }
+}

@@ -1,0 +1,229 @@
+//! One run of one method, for its result or for the clock. Not here: which methods and settings there are.
+
+use std::hint::black_box;
+
+use equipoise_physics::bounce::contact_time;
+use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::numbers::number::Number;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::extended;
+use equipoise_physics::run::linear_solution::LinearSolution;
+use equipoise_physics::run::orbit;
+use equipoise_physics::run::orbit::{LOOK, Orbit, Rules};
+use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::model::Model;
+
+use crate::comparison::{Kind, Reference, Setting};
+use crate::compute::{Cancel, Cancelled, Turn};
+use crate::integrators;
+use crate::integrators::{Location, simulate};
+use crate::limits;
+
+/// What a run came to.
+#[derive(Clone, Debug)]
+pub(crate) struct Done {
+    pub(crate) outcome: &'static str,
+    /// Contacts, the last included, and the state just before that.
+    pub(crate) impacts: u64,
+    pub(crate) state: State,
+    pub(crate) steps: u64,
+    pub(crate) evaluations: Option<u64>,
+}
+
+/// A scene, made ready for all methods.
+pub(crate) struct Subject<'a> {
+    scene: &'a Scene,
+    impacts: u64,
+    model: Model,
+    linear: Result<LinearSolution, String>,
+    reference: Reference,
+    state: State<DoubleDouble>,
+}
+
+impl<'a> Subject<'a> {
+    pub(crate) fn new(scene: &'a Scene, impacts: u64, turn: &Turn) -> Result<Self, Cancelled> {
+        let zero = DoubleDouble::from_f64(0.0);
+        let mut state = State { theta: zero, x_dot: zero, y_dot: zero, theta_dot: zero };
+        let mut reference = Reference { outcome: Ending::Completed.name(), impacts: 0, t: 0.0, rounding: 0.0 };
+        let ending = run_extended(scene, impacts, |contact| {
+            state = contact.state;
+            (reference.impacts, reference.t) = (contact.n, contact.t.to_f64());
+            !contact.n.is_multiple_of(LOOK) || turn.go_on()
+        });
+        turn.check()?;
+        reference.outcome = ending.map_or("diverged", Ending::name);
+        let mut subject =
+            Self { scene, impacts, model: scene.model(), linear: scene.linear_solution(), reference, state };
+        let size = subject.size(&[state.theta, state.x_dot, state.y_dot, state.theta_dot].map(DoubleDouble::to_f64));
+        subject.reference.rounding = f64::EPSILON * size;
+        Ok(subject)
+    }
+
+    pub(crate) fn reference(&self) -> Reference {
+        self.reference
+    }
+
+    /// How far a state is from the reference's last one.
+    pub(crate) fn error(&self, state: &State) -> f64 {
+        let State { theta, x_dot, y_dot, theta_dot } = self.state;
+        let off = |exact: DoubleDouble, value: f64| (exact - DoubleDouble::from_f64(value)).to_f64();
+        let ours = *state;
+        self.size(&[
+            off(theta, ours.theta),
+            off(x_dot, ours.x_dot),
+            off(y_dot, ours.y_dot),
+            off(theta_dot, ours.theta_dot),
+        ])
+    }
+
+    /// The largest part, as a length or a velocity; a point mass has velocities only.
+    fn size(&self, &[theta, x_dot, y_dot, theta_dot]: &[f64; 4]) -> f64 {
+        let rho = match self.model {
+            Model::Rod(rod) => rod.radius_of_gyration,
+            Model::Point(_) => 0.0,
+            Model::Rig(rig) => rig.rod.radius_of_gyration,
+        };
+        let parts = [rho * theta, x_dot, y_dot, rho * theta_dot].map(f64::abs);
+        if parts.iter().any(|part| part.is_nan()) { f64::NAN } else { parts.into_iter().fold(0.0, f64::max) }
+    }
+
+    /// One run for its result; a reason where there is none.
+    pub(crate) fn run(
+        &self,
+        kind: Kind,
+        setting: Option<Setting>,
+        turn: &Turn,
+    ) -> Result<Result<Done, String>, Cancelled> {
+        turn.check()?;
+        Ok(match kind {
+            Kind::Map => self.map(self.rules()),
+            Kind::MapFree => self.map(self.free()),
+            Kind::Extended => Ok(Done {
+                outcome: self.reference.outcome,
+                impacts: self.reference.impacts,
+                state: State { theta: 0.0, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 },
+                steps: self.reference.impacts,
+                evaluations: None,
+            }),
+            Kind::Linear => self.linear.clone().map(|solution| Done {
+                outcome: Ending::Completed.name(),
+                impacts: self.impacts,
+                state: solution.impact(self.impacts).state,
+                steps: self.impacts,
+                evaluations: Some(self.impacts),
+            }),
+            _ => match self.general(kind, setting) {
+                Ok((method, rod)) => Ok(self.simulated(method, &rod, turn)?),
+                Err(reason) => Err(reason),
+            },
+        })
+    }
+
+    /// The same for the clock: nothing is made ready, counted or kept that is not the run itself.
+    pub(crate) fn race(&self, kind: Kind, setting: Option<Setting>, cancel: &Cancel) {
+        match kind {
+            Kind::Map => _ = black_box(self.bounce(self.rules(), |_| ())),
+            Kind::MapFree => _ = black_box(self.bounce(self.free(), |_| ())),
+            Kind::Extended => {
+                _ = black_box(run_extended(self.scene, self.impacts, |contact| {
+                    black_box(contact.n) > 0 && !cancel.is_set()
+                }))
+            }
+            Kind::Linear => {
+                if let Ok(solution) = &self.linear {
+                    (1..=self.impacts).for_each(|n| _ = black_box(solution.impact(n)));
+                }
+            }
+            _ => {
+                if let Ok((method, rod)) = self.general(kind, setting) {
+                    _ = black_box(self.simulate(method, &rod, &mut || !cancel.is_set()));
+                }
+            }
+        }
+    }
+
+    /// Those that every method has; the map alone looks at what the table can do.
+    fn rules(&self) -> Rules {
+        Rules { limits: None, ..self.scene.rules() }
+    }
+
+    fn free(&self) -> Rules {
+        Rules { holds_energy: false, ..self.rules() }
+    }
+
+    fn map(&self, rules: Rules) -> Result<Done, String> {
+        let parameters = self.model.rod();
+        let mut evaluations = 0;
+        let last = self.bounce(rules, |contact| {
+            let flight = contact.strike.filter(|strike| strike.contact_rise > 0.0);
+            evaluations += flight.map_or(0, |strike| contact_time::evaluations(&parameters.flight(&strike)));
+        });
+        let (impacts, state, outcome) = last.ok_or("the first contact is not found")?;
+        Ok(Done { outcome, impacts, state, steps: impacts, evaluations: Some(evaluations) })
+    }
+
+    /// The map from the release on: number and state of the last contact, and how it ended.
+    #[inline]
+    fn bounce(&self, rules: Rules, mut visit: impl FnMut(&orbit::Contact)) -> Option<(u64, State, &'static str)> {
+        let mut orbit = Orbit::new(self.model, rules, self.scene.release()).ok()?;
+        let (mut n, mut state) = (0, *orbit.state());
+        let ending = orbit::run(&mut orbit, self.impacts, |contact| {
+            (n, state) = (contact.n, contact.state);
+            visit(contact);
+            true
+        })?;
+        Some((n, state, ending.name()))
+    }
+
+    fn general(&self, kind: Kind, setting: Option<Setting>) -> Result<(integrators::Method, Rod), String> {
+        use integrators::Method;
+        let Model::Rod(rod) = self.model else {
+            return Err("general methods move a body with an angle of its own, and a point mass has none".to_owned());
+        };
+        let value = setting.map_or(f64::NAN, |setting| setting.value);
+        let runge_kutta = |location| Method::RungeKutta { step: value, location };
+        let method = match kind {
+            Kind::Adaptive => Method::Adaptive { tolerance: value },
+            Kind::StepEnd => runge_kutta(Location::StepEnd),
+            Kind::Secant => runge_kutta(Location::Secant),
+            Kind::Bisection => runge_kutta(Location::Bisection),
+            Kind::TimeStepping => Method::TimeStepping { step: value },
+            Kind::Penalty => Method::Penalty { step: value },
+            Kind::Sampling => Method::Sampling { step: value },
+            Kind::Map | Kind::MapFree | Kind::Linear | Kind::Extended => {
+                return Err("it is no general method".to_owned());
+            }
+        };
+        Ok((method, rod))
+    }
+
+    fn simulate(
+        &self,
+        method: integrators::Method,
+        rod: &Rod,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<integrators::Simulation> {
+        let (rules, release) = (self.rules(), self.scene.release());
+        let most = limits::PRECISION_STEPS;
+        simulate(method, (rod, &rules, release), self.impacts, most, go_on)
+    }
+
+    fn simulated(&self, method: integrators::Method, rod: &Rod, turn: &Turn) -> Result<Done, Cancelled> {
+        let simulation = self.simulate(method, rod, &mut || turn.go_on()).ok_or(Cancelled)?;
+        let last = simulation.impacts.last();
+        let work = simulation.work;
+        Ok(Done {
+            outcome: simulation.ending.name(),
+            impacts: last.map_or(0, |impact| impact.n),
+            state: last.map_or(self.scene.release().state, |impact| impact.state),
+            steps: work.steps,
+            evaluations: Some(work.accelerations + work.gaps),
+        })
+    }
+}
+
+fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::Contact) -> bool) -> Option<Ending> {
+    let mut orbit = scene.extended_orbit().ok()?;
+    extended::run(&mut orbit, impacts, visit)
+}

@@ -1,0 +1,208 @@
+//! Long work in turns: cut into blocks of a few milliseconds, each of which waits for its own permit, so that requests
+//! beside it wait for a block and not for the whole. A block that takes longer passes its permit on in between.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use tokio::runtime::Handle;
+
+use crate::compute::cancel::{Cancel, Cancelled};
+use crate::compute::fair_queue::{Flow, Line};
+use crate::compute::peer::Peer;
+use crate::compute::turn::Turn;
+
+/// What one piece of long work gets its turns from.
+#[derive(Debug)]
+pub struct Turns {
+    pub(crate) cancel: Cancel,
+    /// Permits of the pool, in which the blocks of one peer's long work wait apart from its requests: whatever the number of
+    /// blocks, a request finds at most one of each peer's before it.
+    pub(crate) line: Arc<Line>,
+    pub(crate) peer: Peer,
+    pub(crate) threads: usize,
+    pub(crate) runtime: Handle,
+}
+
+impl Turns {
+    /// Does `work` when it is its turn.
+    pub fn take<T>(&self, work: impl FnOnce(&Turn) -> T) -> Result<T, Cancelled> {
+        let turn = self.turn().ok_or(Cancelled)?;
+        Ok(work(&turn))
+    }
+
+    /// Calls `work` for each block from 0 to `blocks` on all threads, in turns, and hands the results to `done` in the
+    /// order of the blocks, each as soon as it and all before it are there. Ends early where `work` gives none or nobody
+    /// waits any more.
+    pub fn spread<T: Send>(
+        &self,
+        blocks: usize,
+        work: impl Fn(usize, &Turn) -> Option<T> + Sync,
+        done: impl FnMut(T) + Send,
+    ) -> Result<(), Cancelled> {
+        let next = AtomicUsize::new(0);
+        let order = Mutex::new(Order { next: 0, waiting: BTreeMap::new(), done });
+        let take = || {
+            while next.load(Ordering::Relaxed) < blocks {
+                let Some(turn) = self.turn() else { return };
+                let block = next.fetch_add(1, Ordering::Relaxed);
+                if block >= blocks {
+                    return;
+                }
+                let Some(result) = work(block, &turn) else {
+                    next.store(blocks, Ordering::Relaxed);
+                    return;
+                };
+                // Still within the turn: writing results down is work too. A panic elsewhere ends it all in any case.
+                order.lock().unwrap_or_else(PoisonError::into_inner).add(block, result);
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..self.threads.min(blocks) {
+                scope.spawn(take);
+            }
+            take();
+        });
+        let order = order.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if order.next == blocks { Ok(()) } else { Err(Cancelled) }
+    }
+
+    /// Waits, on this thread, as long as somebody waits for the result.
+    fn turn(&self) -> Option<Turn> {
+        let flow = Flow::Long(self.peer);
+        let permit = self.runtime.block_on(async {
+            tokio::select! {
+                biased;
+                () = self.cancel.wait() => None,
+                permit = self.line.take(flow) => Some(permit),
+            }
+        })?;
+        Some(Turn::permitted(self.cancel.clone(), permit, self.line.clone(), flow, self.runtime.clone()))
+    }
+}
+
+/// Puts results back in order.
+struct Order<T, Done> {
+    next: usize,
+    waiting: BTreeMap<usize, T>,
+    done: Done,
+}
+
+impl<T, Done: FnMut(T)> Order<T, Done> {
+    fn add(&mut self, block: usize, result: T) {
+        self.waiting.insert(block, result);
+        while let Some(result) = self.waiting.remove(&self.next) {
+            self.next += 1;
+            (self.done)(result);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compute::{Pool, Price, Refused};
+    use crate::limits;
+    use crate::limits::Limits;
+    use std::sync::atomic::AtomicU64;
+    use std::sync::mpsc;
+
+    #[derive(Debug, PartialEq)]
+    struct Failed;
+
+    impl From<Refused> for Failed {
+        fn from(_: Refused) -> Self {
+            Failed
+        }
+    }
+
+    impl From<Cancelled> for Failed {
+        fn from(_: Cancelled) -> Self {
+            Failed
+        }
+    }
+
+    fn squares(turns: &Turns, blocks: usize) -> Result<Vec<usize>, Failed> {
+        let mut squares = Vec::new();
+        turns.spread(blocks, |block, _| Some(block * block), |square| squares.push(square))?;
+        Ok(squares)
+    }
+
+    #[tokio::test]
+    async fn results_are_in_order_whatever_the_threads() {
+        for threads in [1, 2, 3, 8] {
+            let pool = Pool::new(threads, &Limits::default());
+            for blocks in [0, 1, 100] {
+                let expected: Vec<_> = (0..blocks).map(|block| block * block).collect();
+                assert_eq!(pool.run_in_turns(move |turns| squares(turns, blocks)).await, Ok(expected));
+            }
+        }
+    }
+
+    #[tokio::test]
+    async fn a_block_that_gives_up_stops_the_others() {
+        let begun = Arc::new(AtomicU64::new(0));
+        let count = begun.clone();
+        let work = move |turns: &Turns| {
+            let work = |block, _: &Turn| {
+                count.fetch_add(1, Ordering::Relaxed);
+                (block != 3).then_some(())
+            };
+            Ok::<_, Failed>(turns.spread(10_000, work, |()| {})?)
+        };
+        assert_eq!(Pool::new(2, &Limits::default()).run_in_turns(work).await, Err(Failed));
+        assert!(begun.load(Ordering::Relaxed) < 10_000);
+    }
+
+    /// Two endless pieces of long work on one permit; a short one is done after a block or two of them.
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    async fn short_work_waits_for_a_block_and_not_for_the_whole() {
+        let pool = Pool::new(1, &Limits::default());
+        let blocks_done = Arc::new(AtomicU64::new(0));
+        let (begun, mut begin) = tokio::sync::mpsc::unbounded_channel();
+        let (step, steps) = mpsc::channel::<()>();
+        let steps = Arc::new(Mutex::new(steps));
+        let mut long = Vec::new();
+        for _ in 0..2 {
+            let (pool, count, begun, steps) = (pool.clone(), blocks_done.clone(), begun.clone(), steps.clone());
+            long.push(tokio::spawn(async move {
+                let work = move |turns: &Turns| {
+                    let block = |_, _: &Turn| {
+                        let _ = begun.send(());
+                        // A block lasts until the test lets it end.
+                        steps.lock().unwrap().recv().ok()?;
+                        count.fetch_add(1, Ordering::Relaxed);
+                        Some(())
+                    };
+                    Ok::<_, Failed>(turns.spread(usize::MAX, block, |()| {})?)
+                };
+                pool.run_in_turns(work).await
+            }));
+        }
+        // One computes; the other waits for its turn, or still to be admitted.
+        begin.recv().await.unwrap();
+        while pool.running().get() + pool.queued().get() < 2 {
+            tokio::task::yield_now().await;
+        }
+        let before = pool.queued().get();
+        let short = tokio::spawn({
+            let (pool, count) = (pool.clone(), blocks_done.clone());
+            let dear = Price::bounces(limits::INLINE_BOUNCES + 1);
+            async move { pool.run(dear, move |_| Ok::<_, Failed>(count.load(Ordering::Relaxed))).await }
+        });
+        while pool.queued().get() <= before {
+            tokio::task::yield_now().await;
+        }
+        // Each ends one block: the one under way, and at most one that was before the short work.
+        for _ in 0..2 {
+            step.send(()).unwrap();
+        }
+        let done_before = short.await.unwrap().unwrap();
+        assert!(done_before <= 2, "{done_before} blocks were done before the short work");
+        drop(step);
+        for task in long {
+            assert_eq!(task.await.unwrap(), Err(Failed));
+        }
+        assert_eq!((pool.running().get(), pool.queued().get()), (0, 0));
+    }
+}

@@ -1,0 +1,124 @@
+//! The angle along a run, as the map gives it and as the linear map would.
+
+use crate::charts::{Curve, Look, Side};
+use crate::failure_cases::Says;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::run;
+use equipoise_physics::scene::Scene;
+use equipoise_physics::stability::fixed_point::FixedPoint;
+use equipoise_physics::stability::jacobian;
+use equipoise_physics::stability::jacobian::modulus;
+use equipoise_physics::stability::linear_verdict::PARABOLIC;
+
+/// θ at the contacts of a run and how it ended.
+pub(crate) struct Course {
+    /// θ at contact 1 and on, rad.
+    pub(crate) angles: Vec<f64>,
+    pub(crate) ending: Ending,
+}
+
+impl Course {
+    /// That of a scene, up to a number of contacts.
+    pub(crate) fn of(scene: &Scene, impacts: u64) -> Self {
+        let mut angles = Vec::new();
+        let ending = scene.orbit().ok().and_then(|mut orbit| {
+            run(&mut orbit, impacts, |contact| {
+                angles.push(contact.state.theta);
+                true
+            })
+        });
+        Self { angles, ending: ending.unwrap_or(Ending::Completed) }
+    }
+
+    /// That of the linear map: θ' = (1 − 4R)θ + u, u' = u − 4Rθ with u = τθ̇.
+    pub(crate) fn linear(scene: &Scene, fixed_point: &FixedPoint, impacts: u64) -> Self {
+        let residue = scene.linear(fixed_point).residue.unwrap_or_default();
+        let start = scene.start();
+        let limit = scene.rules().topple_angle;
+        let (mut theta, mut turn) = (start.theta, fixed_point.flight_time * start.theta_dot);
+        let mut angles = Vec::new();
+        for _ in 0..impacts {
+            angles.push(theta);
+            if theta.abs() >= limit {
+                return Self { angles, ending: Ending::Toppled { theta, limit } };
+            }
+            turn -= 4.0 * residue * theta;
+            theta += turn;
+        }
+        Self { angles, ending: Ending::Completed }
+    }
+
+    pub(crate) fn survived(&self) -> bool {
+        self.ending == Ending::Completed
+    }
+
+    pub(crate) fn max(&self) -> f64 {
+        self.angles.iter().map(|theta| theta.abs()).fold(0.0, f64::max)
+    }
+
+    /// What it says of the angle: a run shows what it shows, and no more.
+    pub(crate) fn says(&self, method: &'static str) -> Says {
+        let (verdict, end) = if self.survived() {
+            ("bounded", format!("{} contacts survived", self.angles.len()))
+        } else {
+            ("falls", format!("ends as `{}` at contact {}", self.ending.name(), self.angles.len()))
+        };
+        let detail = format!("{end}; the largest angle at a contact is {:.4} rad", self.max());
+        Says { method, verdict, value: Some(self.max()), unit: Some("rad"), detail }
+    }
+
+    /// |θ| against the number of the contact: the largest of each of some hundred stretches, each a few percent longer than
+    /// the one before.
+    pub(crate) fn outline(&self, label: &'static str, look: Look) -> Curve {
+        let mut points = Vec::new();
+        let mut first = 0;
+        while first < self.angles.len() {
+            let next = (first + 1 + first / 32).min(self.angles.len());
+            let largest = (first..next).max_by(|a, b| self.angles[*a].abs().total_cmp(&self.angles[*b].abs()));
+            points.extend(largest.map(|index| (index as f64 + 1.0, self.angles[index].abs())));
+            first = next;
+        }
+        Curve { label, look, points }
+    }
+}
+
+/// The axes of outlines.
+pub(crate) const CONTACT: Side = Side::new("contact", "n", "").logarithmic();
+pub(crate) const ANGLE: Side = Side::new("angle at the contact", "|θ|", "rad").logarithmic();
+
+/// What the largest modulus of the computed Jacobian's eigenvalues at the fixed point says, and the eigenvalue of the angle
+/// farthest from 1: (re, im).
+fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f64, (f64, f64)) {
+    let upright =
+        equipoise_physics::bounce::strike::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
+    let matrix = jacobian::jacobian(&scene.model(), &upright, 1).map(|linearization| linearization.matrix);
+    let values = matrix.ok().and_then(|matrix| jacobian::eigenvalues(&matrix)).unwrap_or_default();
+    let radius = values.iter().copied().map(modulus).fold(0.0, f64::max);
+    let verdict = match radius {
+        radius if radius > 1.0 + PARABOLIC => "unstable",
+        radius if radius < 1.0 - PARABOLIC => "stable",
+        _ => "neutral",
+    };
+    let least = values.iter().min_by(|a, b| a.re.total_cmp(&b.re)).map_or((0.0, 0.0), |value| (value.re, value.im));
+    (verdict, radius, least)
+}
+
+/// The upright bounce, which every scene of this gallery has.
+pub(crate) fn upright(scene: &Scene) -> FixedPoint {
+    scene.fixed_point().expect("a test builds every case")
+}
+
+/// What the eigenvalues of a computed Jacobian say.
+pub(crate) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> Says {
+    let (verdict, radius, (re, im)) = spectral_radius(scene, fixed_point);
+    let exact = scene.linear(fixed_point).spectral_radius();
+    let imaginary = if im == 0.0 { String::new() } else { format!(" ± {:.2e}i", im.abs()) };
+    let excess = match radius - 1.0 {
+        0.0 => String::new(),
+        excess => format!(" {} {:.2e}", if excess < 0.0 { '−' } else { '+' }, excess.abs()),
+    };
+    let detail = format!(
+        "the largest modulus comes out as 1{excess} (exactly: {exact:.6}), the angle's eigenvalue as {re:.9}{imaginary}"
+    );
+    Says { method, verdict, value: Some(radius), unit: None, detail }
+}

@@ -1,0 +1,339 @@
+//! Everything that surrounds the routes, in one place and in order.
+
+use std::any::Any;
+use std::io::{Write, stderr};
+use std::net::{IpAddr, SocketAddr};
+use std::sync::Arc;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+use axum::Router;
+use axum::body::{Body, to_bytes};
+use axum::extract::{ConnectInfo, MatchedPath, Request, State};
+use axum::http::uri::PathAndQuery;
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, Version, header};
+use axum::middleware::{Next, from_fn, from_fn_with_state};
+use axum::response::{IntoResponse, Redirect, Response};
+use serde::Serialize;
+use tower::ServiceBuilder;
+use tower::util::option_layer;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::cors::CorsLayer;
+
+use crate::api::App;
+use crate::compute::Peer;
+use crate::config::Config;
+use crate::http::problem::{MEDIA_TYPE, shortened};
+use crate::http::security::{host, site};
+use crate::http::{Asked, HostName, Origin, Problem, REQUEST_ID, Token, peer, transfer};
+use crate::{BUILD, limits};
+
+/// Surrounds a router. The order, from the outside in:
+///
+/// 1. `received` puts the headers on that every answer has, knows who asks and under which id, and writes the log: all that
+///    happens to a request happens within it.
+/// 2. `addressed` refuses what is not meant for this server, or is in a form that it does not know: before CORS, which would
+///    tell a page of a name that is not ours that it may ask.
+/// 3. CORS, if there are origins to allow: before the token, which a browser does not send when it asks whether it may.
+/// 4. `told` makes a problem of every error that libraries answer with on their own: 405, refused upgrades … Up to here they
+///    stand around the router as a whole, because it adds `Allow` outside of the layers of its routes.
+/// 5. `guarded` lets nobody past without the token, if there is one, and no work for a page of another site.
+/// 6. `measured` knows the route's template, so it stands within; outside of panics, which are counted as well.
+/// 7. Panics become a 500.
+/// 8. `bounded` refuses a URL before anybody reads it.
+///
+/// HEAD needs no layer: the router answers it like GET and leaves out the body. Bodies are bounded where they are read.
+pub fn surround(router: Router<App>, app: App) -> Router {
+    let hosts = app.config.hosts().map(Into::into);
+    let door = Arc::new(Door { base: app.base_path.clone(), config: app.config.clone(), hosts });
+    let origins = &app.config.allow_origin;
+    let cors = (!origins.is_empty()).then(|| cors(origins));
+    let within = ServiceBuilder::new()
+        .layer(from_fn_with_state(app.clone(), measured))
+        .layer(CatchPanicLayer::custom(panicked))
+        .layer(from_fn(bounded));
+    let around = ServiceBuilder::new()
+        .layer(from_fn_with_state(door.clone(), received))
+        .layer(from_fn_with_state(door.clone(), addressed))
+        .layer(option_layer(cors))
+        .layer(from_fn(told))
+        .layer(from_fn_with_state(door, guarded));
+    Router::new().fallback_service(router.layer(within).with_state(app)).layer(around)
+}
+
+/// What is asked of a request before anything else.
+#[derive(Debug)]
+struct Door {
+    base: Arc<str>,
+    config: Arc<Config>,
+    /// The names that are answered to; none where every name is.
+    hosts: Option<Vec<HostName>>,
+}
+
+impl Door {
+    /// Who asks: the peer of the connection or, if that is a proxy to be believed, whom it names.
+    fn peer(&self, request: &Request) -> Peer {
+        let peer = peer(request.extensions());
+        // The whole address: a peer of IPv6 is a network.
+        let from = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(from)| from.ip());
+        if !from.is_some_and(|from| self.config.trust_proxy.iter().any(|proxies| proxies.has(from))) {
+            return peer;
+        }
+        // The last one is what the proxy itself has seen; those before it anybody can send.
+        let named = request.headers().get_all("x-forwarded-for").into_iter().next_back();
+        let last = named.and_then(|named| named.to_str().ok()?.rsplit(',').next()?.trim().parse().ok());
+        last.map_or(peer, Peer::at)
+    }
+}
+
+/// Only what this server itself serves may be loaded, and only its own pages may frame it.
+const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; base-uri 'none'; frame-ancestors 'self'; object-src 'none'";
+
+fn cors(origins: &[Origin]) -> CorsLayer {
+    CorsLayer::new()
+        .allow_origin(origins.iter().map(Origin::header).collect::<Vec<_>>())
+        .allow_methods([Method::GET, Method::HEAD, Method::POST])
+        .allow_headers([
+            header::AUTHORIZATION,
+            header::CONTENT_TYPE,
+            header::IF_NONE_MATCH,
+            HeaderName::from_static("last-event-id"),
+            REQUEST_ID,
+        ])
+        .expose_headers([BUILD_HEADER, REQUEST_ID, header::ETAG, header::RETRY_AFTER])
+        .max_age(limits::PREFLIGHT_TIME)
+}
+
+async fn received(State(door): State<Arc<Door>>, mut request: Request, next: Next) -> Response {
+    let begin = Instant::now();
+    let peer = door.peer(&request);
+    request.extensions_mut().insert(peer);
+    let logged = door.config.access_log.then(|| (request.method().clone(), request.uri().clone()));
+    let asked = Asked::new(request.headers(), door.base.clone());
+    let mut response = match strip(request.uri_mut(), &door.base) {
+        Ok(()) => asked.clone().answer(next.run(request)).await,
+        Err(elsewhere) => elsewhere.into_response(),
+    };
+    seal(response.headers_mut());
+    response.headers_mut().insert(REQUEST_ID, asked.header());
+    if let Some((method, uri)) = logged {
+        let line = Line {
+            time: SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64(),
+            id: &asked.id,
+            peer: peer.address(),
+            method: method.as_str(),
+            target: &shown(&uri),
+            status: response.status().as_u16(),
+            ms: begin.elapsed().as_secs_f64() * 1e3,
+        };
+        // A log that nobody takes is no reason to answer nobody.
+        let _ = writeln!(stderr().lock(), "{}", serde_json::to_string(&line).unwrap_or_default());
+    }
+    response
+}
+
+/// A line of the access log. Written as JSON, so that nothing a client sends can look like another line.
+#[derive(Serialize)]
+struct Line<'a> {
+    /// Unix time, s.
+    time: f64,
+    id: &'a str,
+    peer: IpAddr,
+    method: &'a str,
+    target: &'a str,
+    status: u16,
+    /// From the request's head to the answer's.
+    ms: f64,
+}
+
+/// A target without the secret that may be in it, however its name is written: it ends where the name does.
+fn shown(uri: &Uri) -> String {
+    let target = uri.path_and_query().map_or("*", PathAndQuery::as_str);
+    let end = end_of_name(target.as_bytes()).unwrap_or(target.len());
+    target[..end].chars().take(limits::URL_BYTES).collect()
+}
+
+/// End of the first `token=` in a target, of which any character may be percent-encoded, in either case.
+fn end_of_name(target: &[u8]) -> Option<usize> {
+    let escaped = |place: usize| {
+        let digits = target.get(place..)?.strip_prefix(b"%")?.get(..2)?;
+        let digits = Some(digits).filter(|digits| digits.iter().all(u8::is_ascii_hexdigit))?;
+        u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok()
+    };
+    // Each character with where it ends.
+    let mut characters = Vec::with_capacity(target.len());
+    let mut place = 0;
+    while place < target.len() {
+        let (byte, length) = escaped(place).map_or((target[place], 1), |byte| (byte, 3));
+        place += length;
+        characters.push((byte, place));
+    }
+    let name = [TOKEN_PARAMETER.as_bytes(), b"="].concat();
+    let found = characters.windows(name.len()).find(|window| {
+        let letters = window.iter().map(|(byte, _)| byte);
+        letters.zip(&name).all(|(byte, letter)| byte.eq_ignore_ascii_case(letter))
+    });
+    found.and_then(|window| Some(window.last()?.1))
+}
+
+/// Takes the base path away, where a proxy has left it on. The page there has relative addresses, which need its slash.
+fn strip(uri: &mut Uri, base: &str) -> Result<(), Redirect> {
+    let path_and_query = uri.path_and_query().map_or("", PathAndQuery::as_str);
+    let Some(rest) = path_and_query.strip_prefix(base).filter(|_| !base.is_empty()) else { return Ok(()) };
+    if rest.is_empty() || rest.starts_with('?') {
+        return Err(Redirect::permanent(&format!("{base}/{rest}")));
+    }
+    let mut parts = uri.clone().into_parts();
+    if rest.starts_with('/') {
+        parts.path_and_query = rest.parse().ok();
+        *uri = Uri::from_parts(parts).unwrap_or_default();
+    }
+    Ok(())
+}
+
+const BUILD_HEADER: HeaderName = HeaderName::from_static("equipoise-build");
+
+/// Adds the headers that every answer has.
+pub fn seal(headers: &mut HeaderMap) {
+    for (name, value) in [
+        (BUILD_HEADER, BUILD),
+        (header::CONTENT_SECURITY_POLICY, CONTENT_SECURITY_POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+    ] {
+        // A page may have a policy of its own.
+        headers.entry(name).or_insert(HeaderValue::from_static(value));
+    }
+}
+
+/// Parameter by which a browser is given the token, once.
+const TOKEN_PARAMETER: &str = "token";
+
+async fn addressed(State(door): State<Arc<Door>>, request: Request, next: Next) -> Response {
+    let headers = request.headers();
+    // A test without a socket speaks no version of HTTP.
+    let version = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|_| request.version());
+    let is_named = host::check_form(version.unwrap_or(Version::HTTP_10), headers);
+    let is_ours = is_named
+        .and_then(|()| door.hosts.as_ref().map_or(Ok(()), |allowed| host::check_name(request.uri(), headers, allowed)));
+    match is_ours.and_then(|()| transfer::check(headers)) {
+        Ok(()) => next.run(request).await,
+        Err(problem) => problem.into_response(),
+    }
+}
+
+async fn guarded(State(door): State<Arc<Door>>, request: Request, next: Next) -> Response {
+    match refused(&door.config, &request) {
+        Some(answer) => answer,
+        None => next.run(request).await,
+    }
+}
+
+/// The answer to who may not ask: without the token, or for a page of another site. A browser that brings the token is sent on
+/// with its cookie.
+fn refused(config: &Config, request: &Request) -> Option<Response> {
+    let (origins, embedding) = (&config.allow_origin, config.allow_embedding);
+    let checked = || site::check(request.method(), request.uri().path(), request.headers(), origins, embedding);
+    let by_token = config.token.as_ref().and_then(|token| unauthorized(token, request));
+    by_token.or_else(|| checked().err().map(IntoResponse::into_response))
+}
+
+fn unauthorized(token: &Token, request: &Request) -> Option<Response> {
+    let (path, query) = (request.uri().path(), request.uri().query().unwrap_or_default());
+    if path.starts_with("/health/") || token.is_in(request.headers()) {
+        return None;
+    }
+    let given = |part: &str| {
+        let (name, value) = form_urlencoded::parse(part.as_bytes()).next()?;
+        (name == TOKEN_PARAMETER).then(|| value.into_owned())
+    };
+    let (tokens, others): (Vec<_>, Vec<_>) = query.split('&').partition(|part| given(part).is_some());
+    if path == "/" && tokens.first().and_then(|part| given(part)).is_some_and(|offered| token.is(&offered)) {
+        let page = if others.is_empty() { "./".to_owned() } else { format!("./?{}", others.join("&")) };
+        let mut response = Redirect::to(&page).into_response();
+        response.headers_mut().insert(header::SET_COOKIE, token.cookie());
+        response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+        return Some(response);
+    }
+    Some(Problem::unauthorized().into_response())
+}
+
+async fn measured(State(app): State<App>, route: Option<MatchedPath>, request: Request, next: Next) -> Response {
+    let (begin, method) = (Instant::now(), request.method().clone());
+    let response = next.run(request).await;
+    let route = route.as_ref().map_or("none", MatchedPath::as_str);
+    app.metrics.answered(method.as_str(), route, response.status().as_u16(), begin.elapsed());
+    response
+}
+
+async fn told(request: Request, next: Next) -> Response {
+    let (method, uri) = (request.method().clone(), request.uri().clone());
+    let response = next.run(request).await;
+    let status = response.status();
+    let is_error = status.is_client_error() || status.is_server_error();
+    if !is_error || response.headers().get(header::CONTENT_TYPE) == Some(&MEDIA_TYPE) {
+        return response;
+    }
+    let (parts, body) = response.into_parts();
+    let problem = match (status, parts.headers.get(header::ALLOW).and_then(|allow| allow.to_str().ok())) {
+        (StatusCode::METHOD_NOT_ALLOWED, Some(allow)) => {
+            Problem::method_not_allowed(method.as_str(), &shortened(uri.path()), allow)
+        }
+        _ => Problem::other(status, said(body).await.unwrap_or_else(|| status.to_string())),
+    };
+    let mut response = problem.into_response();
+    for (name, value) in &parts.headers {
+        // What describes the old body is gone with it.
+        if *name != header::CONTENT_TYPE && *name != header::CONTENT_LENGTH && *name != header::ALLOW {
+            response.headers_mut().entry(name).or_insert_with(|| value.clone());
+        }
+    }
+    response
+}
+
+/// The text of a library's error, if it is one that can be shown.
+async fn said(body: Body) -> Option<String> {
+    let bytes = to_bytes(body, 1024).await.ok()?;
+    String::from_utf8(bytes.to_vec()).ok().filter(|text| !text.is_empty())
+}
+
+fn panicked(_: Box<dyn Any + Send + 'static>) -> Response {
+    // The standard library has written the panic's own text to the log; which request it was stands beside it.
+    if let Some(asked) = Asked::under_way() {
+        let _ = writeln!(stderr().lock(), "equipoise: request {} failed with the panic above", asked.id);
+    }
+    Problem::internal().into_response()
+}
+
+async fn bounded(request: Request, next: Next) -> Response {
+    let bytes = request.uri().path_and_query().map_or(0, |path| path.as_str().len());
+    if bytes > limits::URL_BYTES {
+        return Problem::url_too_long(bytes).into_response();
+    }
+    next.run(request).await
+}
+
+/// The answer where there is no route.
+pub async fn not_found(uri: Uri) -> Problem {
+    Problem::not_found(format!("there is nothing at {}; /docs says what there is", shortened(uri.path())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_target_is_shown_up_to_the_secret_however_its_name_is_written() {
+        for (target, said) in [
+            ("/?preset=case-1&token=SECRET", "/?preset=case-1&token="),
+            ("/?%74oken=SECRET&a=b", "/?%74oken="),
+            ("/?t%6fk%65n%3DSECRET", "/?t%6fk%65n%3D"),
+            ("/?TO%4BEN=SECRET", "/?TO%4BEN="),
+            ("/token=SECRET", "/token="),
+            ("/v1/scenes?a=%22%0a%", "/v1/scenes?a=%22%0a%"),
+            ("/?a=%+7&%zz%7", "/?a=%+7&%zz%7"),
+            ("/?%2574oken=1", "/?%2574oken=1"),
+        ] {
+            assert_eq!(shown(&target.parse().unwrap()), said);
+        }
+    }
+}

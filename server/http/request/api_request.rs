@@ -1,0 +1,170 @@
+//! What a client asks: the fields of a request, from the query of a GET or the JSON body of a POST, and how it wants
+//! the answer. Both kinds give the same tree, so nothing behind this tells one from the other.
+
+use axum::extract::{FromRef, FromRequest, Request};
+use axum::http::{Extensions, HeaderMap, Method};
+use serde_json::{Map, Value};
+
+use crate::compute::Peer;
+use crate::http::problem::{FieldError, Problem, shortened};
+use crate::http::request::body;
+use crate::http::request::body::JSON;
+use crate::http::request::reader::{Errors, Reader, join};
+use crate::http::request::scalar::Source;
+use crate::http::request::{json, query};
+use crate::limits;
+use crate::limits::Limits;
+
+/// A request for something computed. As an extractor it takes the body, so it stands last.
+#[derive(Debug, Clone)]
+pub struct Ask {
+    /// The fields of the JSON body, or of the body that the query is equivalent to. `format` is not among them.
+    pub fields: Map<String, Value>,
+    /// Whether leaves are JSON or text.
+    pub source: Source,
+    /// The request's headers.
+    pub headers: HeaderMap,
+    /// Who asks.
+    pub peer: Peer,
+    /// What `?format=` says.
+    pub(crate) format: Option<String>,
+}
+
+impl Ask {
+    /// A reader of all fields, which gathers what is wrong in `errors`.
+    pub fn reader<'v, 'e>(&'v self, errors: &'e mut Errors) -> Reader<'v, 'e> {
+        Reader::new(&self.fields, String::new(), self.source, errors)
+    }
+
+    /// Reads all fields at once: what `read` makes of them, or a 422 with everything that is wrong.
+    ///
+    /// `read` has to ask for every field it knows before it gives up on one, or that one counts as unknown. Where it
+    /// gives nothing it has said why.
+    pub fn read<'v, T>(&'v self, read: impl FnOnce(&mut Reader<'v, '_>) -> Option<T>) -> Result<T, Problem> {
+        let mut errors = Errors::default();
+        let mut reader = self.reader(&mut errors);
+        let value = read(&mut reader);
+        reader.finish();
+        errors.into_result()?;
+        value.ok_or_else(Problem::internal)
+    }
+
+    fn from_query(query: &str, headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
+        let (format, parameters) = split_format(query)?;
+        Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, peer, format })
+    }
+
+    pub(crate) fn from_body(query: &str, body: &[u8], headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
+        let (format, parameters) = split_format(query)?;
+        if !parameters.is_empty() {
+            let error = |(name, _): (String, String)| FieldError {
+                pointer: name.split('.').fold(String::new(), |pointer, part| join(&pointer, part)),
+                detail: format!(
+                    "on POST only `format` is read from the query; `{}` belongs in the body",
+                    shortened(&name)
+                ),
+            };
+            return Err(Problem::invalid(parameters.into_iter().map(error).take(limits::ERRORS).collect()));
+        }
+        Ok(Self { fields: json::object(body)?, source: Source::Json, headers, peer, format })
+    }
+}
+
+impl<S: Send + Sync> FromRequest<S> for Ask
+where
+    Limits: FromRef<S>,
+{
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, state: &S) -> Result<Self, Problem> {
+        let (parts, body) = request.into_parts();
+        let query = parts.uri.query().unwrap_or_default();
+        let peer = peer(&parts.extensions);
+        if parts.method == Method::GET || parts.method == Method::HEAD {
+            return Self::from_query(query, parts.headers, peer);
+        }
+        JSON.check(&parts.headers)?;
+        let body = body::read(body, &parts.headers, &Limits::from_ref(state)).await?;
+        Self::from_body(query, &body, parts.headers, peer)
+    }
+}
+
+/// Who asks, as far as it was found out; nobody where a test has no socket.
+pub fn peer(extensions: &Extensions) -> Peer {
+    extensions.get().copied().unwrap_or(Peer::NOBODY)
+}
+
+/// The one parameter that is about the answer and not part of the request, and all others.
+#[expect(clippy::type_complexity, reason = "named parts, used twice, right above")]
+fn split_format(query: &str) -> Result<(Option<String>, Vec<(String, String)>), Problem> {
+    let (formats, others): (Vec<_>, Vec<_>) =
+        query::parameters(query)?.into_iter().partition(|(name, _)| name == "format");
+    if formats.len() > 1 {
+        return Err(Problem::invalid_at("/format", "the parameter `format` is there twice"));
+    }
+    Ok((formats.into_iter().next().map(|(_, format)| format), others))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use axum::body::Body;
+    use axum::http::header;
+    use serde_json::json;
+
+    async fn ask(request: axum::http::request::Builder, body: impl Into<Body>) -> Result<Ask, Problem> {
+        Ask::from_request(request.body(body.into()).unwrap(), &Limits::default()).await
+    }
+
+    fn post(media_type: &str) -> axum::http::request::Builder {
+        Request::post("/v1/x").header(header::CONTENT_TYPE, media_type)
+    }
+
+    #[tokio::test]
+    async fn a_query_and_a_body_are_the_same_tree() {
+        let get = ask(Request::get("/v1/x?a.b=1&format=csv"), "").await.unwrap();
+        assert_eq!((Value::Object(get.fields), get.source), (json!({"a": {"b": "1"}}), Source::Query));
+        assert_eq!(get.format.as_deref(), Some("csv"));
+        let post = Request::post("/v1/x?format=csv").header(header::CONTENT_TYPE, "application/json; charset=UTF-8");
+        let post = ask(post, r#"{"a": {"b": 1}}"#).await.unwrap();
+        assert_eq!((Value::Object(post.fields), post.source), (json!({"a": {"b": 1}}), Source::Json));
+        assert_eq!(post.format.as_deref(), Some("csv"));
+    }
+
+    #[tokio::test]
+    async fn format_is_asked_for_in_the_query_only() {
+        let query = Request::post("/v1/x?impacts=3&a.b=1").header(header::CONTENT_TYPE, "application/json");
+        let problem = ask(query, "{}").await.unwrap_err();
+        let pointers: Vec<&str> = problem.errors().iter().map(|error| error.pointer.as_str()).collect();
+        assert_eq!((problem.status().as_u16(), pointers), (422, vec!["/impacts", "/a/b"]));
+        assert_eq!(ask(Request::get("/v1/x?format=csv&format=json"), "").await.unwrap_err().status(), 422);
+    }
+
+    #[tokio::test]
+    async fn only_json_is_read() {
+        for media_type in
+            ["text/plain", "application/x-www-form-urlencoded", "application/json; charset=utf-16", "json"]
+        {
+            let problem = ask(post(media_type), "{}").await.unwrap_err();
+            assert_eq!(problem.status(), 415, "{media_type}");
+        }
+        assert_eq!(ask(Request::post("/v1/x"), "{}").await.unwrap_err().status(), 415);
+        let packed = post("application/json").header(header::CONTENT_ENCODING, "gzip");
+        assert_eq!(ask(packed, "{}").await.unwrap_err().status(), 415);
+        assert!(ask(post("application/merge-patch+json"), "{}").await.is_ok());
+    }
+
+    #[tokio::test]
+    async fn bodies_are_bounded_announced_or_not() {
+        let large = format!("{{\"a\": \"{}\"}}", "x".repeat(Limits::default().body_bytes));
+        assert_eq!(ask(post("application/json"), large.clone()).await.unwrap_err().status(), 413);
+        let announced = post("application/json").header(header::CONTENT_LENGTH, large.len());
+        assert_eq!(ask(announced, large).await.unwrap_err().status(), 413);
+    }
+
+    #[tokio::test]
+    async fn what_is_not_json_is_400() {
+        assert_eq!(ask(post("application/json"), "{,}").await.unwrap_err().status(), 400);
+        assert_eq!(ask(Request::get("/v1/x?a=%ff"), "").await.unwrap_err().status(), 400);
+    }
+}

@@ -1,0 +1,76 @@
+//! What the body of a request may be: its media type, its size, and the time it takes to arrive.
+
+use axum::body::{Body, Bytes, to_bytes};
+use axum::http::{HeaderMap, header};
+use http_body_util::LengthLimitError;
+use tokio::time::timeout;
+
+use crate::http::problem::{Problem, shortened};
+use crate::limits::Limits;
+
+/// A type of bodies that are read.
+pub(crate) struct MediaType {
+    name: &'static str,
+    is: fn(&str) -> bool,
+}
+
+/// One request.
+pub(crate) const JSON: MediaType = MediaType {
+    name: "application/json",
+    is: |essence| essence == "application/json" || (essence.starts_with("application/") && essence.ends_with("+json")),
+};
+
+/// Many, one a line.
+pub(crate) const NDJSON: MediaType = MediaType {
+    name: "application/x-ndjson",
+    is: |essence| matches!(essence, "application/x-ndjson" | "application/ndjson" | "application/jsonl"),
+};
+
+impl MediaType {
+    /// 415 if a body with these headers is of another type, not in UTF-8, or compressed.
+    pub(crate) fn check(&self, headers: &HeaderMap) -> Result<(), Problem> {
+        let refused = |detail: String| Err(Problem::unsupported_media_type(self.name, detail));
+        let text = |name| headers.get(name).map(|value| value.to_str().unwrap_or("not text"));
+        let Some(media_type) = text(header::CONTENT_TYPE) else {
+            return refused(format!("the request has no Content-Type; send it as Content-Type: {}", self.name));
+        };
+        let mut parameters = media_type.split(';').map(str::trim);
+        if !parameters.next().is_some_and(|essence| (self.is)(&essence.to_ascii_lowercase())) {
+            let shown = shortened(media_type);
+            return refused(format!("the request has Content-Type: {shown}; send it as Content-Type: {}", self.name));
+        }
+        let charset =
+            parameters.find_map(|parameter| parameter.to_ascii_lowercase().strip_prefix("charset=").map(str::to_owned));
+        let is_read = |charset: &String| matches!(charset.trim_matches('"'), "utf-8" | "utf8" | "us-ascii");
+        if let Some(charset) = charset.filter(|charset| !is_read(charset)) {
+            return refused(format!("the request is in {}; JSON is read as UTF-8", shortened(&charset)));
+        }
+        match text(header::CONTENT_ENCODING) {
+            Some(coding) if !coding.trim().eq_ignore_ascii_case("identity") => refused(format!(
+                "the request has Content-Encoding: {}; bodies are read uncompressed",
+                shortened(coding)
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Reads a body within the limits of size and time.
+pub(crate) async fn read(body: Body, headers: &HeaderMap, limits: &Limits) -> Result<Bytes, Problem> {
+    let announced = headers.get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
+    if announced.is_some_and(|length| length > limits.body_bytes as u64) {
+        return Err(Problem::too_large(limits.body_bytes));
+    }
+    let reading = timeout(limits.body_time, to_bytes(body, limits.body_bytes)).await;
+    let Ok(read) = reading else {
+        let limit_s = limits.body_time.as_secs();
+        return Err(Problem::too_slow(format!("the request body took longer than the limit of {limit_s} s to arrive")));
+    };
+    read.map_err(|error| {
+        use std::error::Error;
+        match error.source().is_some_and(|source| source.is::<LengthLimitError>()) {
+            true => Problem::too_large(limits.body_bytes),
+            false => Problem::not_readable("the connection ended, or broke the protocol, within the request body"),
+        }
+    })
+}

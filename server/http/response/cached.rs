@@ -1,0 +1,227 @@
+//! Answers to an `Ask`: negotiated, tagged, computed only if the client does not have them, compressed if it likes.
+//!
+//! What a resource computes, and what it costs, is the route's to say.
+
+use axum::body::{Body, Bytes};
+use axum::http::{HeaderValue, Response, StatusCode, header};
+
+use crate::compute::{Cancelled, Pool, Price, Turn, Turns};
+use crate::http::problem::Problem;
+use crate::http::request::api_request::Ask;
+use crate::http::request::scalar::Source;
+use crate::http::response::etag::{EntityTag, Held};
+use crate::http::response::gzip;
+use crate::http::response::negotiate;
+use crate::http::response::negotiate::{Encoding, Format};
+use crate::http::response::streaming::{Outlet, computed_apart, computed_in_turns};
+use crate::{BUILD, limits};
+
+/// A resource as far as negotiation and entity tags go.
+#[derive(Debug, Clone, Copy)]
+pub struct Resource {
+    /// Its name in the URL: `trajectories`.
+    pub name: &'static str,
+    /// What it can be written as; the first is the default.
+    pub formats: &'static [Format],
+}
+
+/// Clients and proxies may keep it, and ask each time whether it is still right, which costs no work.
+pub(crate) const REVALIDATED: HeaderValue = HeaderValue::from_static("public, max-age=0, must-revalidate");
+
+impl Ask {
+    /// The answer of a pure resource: 304 if the client has it, else what `compute` writes, done by `pool` at `price`.
+    ///
+    /// `canonical` is the request with all defaults filled in and in a fixed order: together with the build, the format
+    /// and the encoding it has to determine every byte of the answer.
+    pub async fn respond(
+        &self,
+        pool: &Pool,
+        resource: &Resource,
+        canonical: &[u8],
+        price: Price,
+        compute: impl FnOnce(Format, &Turn) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
+    ) -> Result<Response<Body>, Problem> {
+        let (format, encoding) = self.negotiate(resource)?;
+        self.tagged(
+            resource,
+            (format, encoding),
+            canonical,
+            computed(&pool.of(self.peer), format, encoding, price, compute),
+        )
+        .await
+    }
+
+    /// The same for long work, which `compute` does in turns. Formats that are in `streamed` are sent piece by piece.
+    pub async fn respond_in_turns(
+        &self,
+        pool: &Pool,
+        resource: &Resource,
+        canonical: &[u8],
+        streamed: &[Format],
+        compute: impl FnOnce(Format, &Turns, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+    ) -> Result<Response<Body>, Problem> {
+        let (format, encoding) = self.negotiate(resource)?;
+        let streams = streamed.contains(&format);
+        let pool = pool.of(self.peer);
+        let answer = computed_in_turns(&pool, format, encoding, streams, compute);
+        self.tagged(resource, (format, encoding), canonical, answer).await
+    }
+
+    /// An answer under its entity tag, or a 304 without computing it.
+    async fn tagged(
+        &self,
+        resource: &Resource,
+        (format, encoding): (Format, Encoding),
+        canonical: &[u8],
+        answer: impl Future<Output = Result<Response<Body>, Problem>>,
+    ) -> Result<Response<Body>, Problem> {
+        let parts = [resource.name, BUILD, format.name(), encoding.name()].map(str::as_bytes);
+        let tag = EntityTag::of(&[parts[0], parts[1], parts[2], parts[3], canonical]);
+        // A query is a GET or a HEAD; on POST the precondition has no such meaning.
+        let held = if self.source == Source::Query { tag.held_by(&self.headers) } else { Held::Nothing };
+        let mut response = if held == Held::This { status_only(StatusCode::NOT_MODIFIED) } else { answer.await? };
+        if held == Held::Anything {
+            // That there is one at all is known only now.
+            response = status_only(StatusCode::NOT_MODIFIED);
+        }
+        response.headers_mut().insert(header::ETAG, tag.header());
+        response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);
+        Ok(response)
+    }
+
+    /// The answer of a resource that measures something: never kept, no entity tag, because the next one is different.
+    /// Formats that are in `streamed` are sent piece by piece.
+    pub async fn respond_afresh(
+        &self,
+        pool: &Pool,
+        resource: &Resource,
+        streamed: &[Format],
+        compute: impl FnOnce(Format, &Turn, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+    ) -> Result<Response<Body>, Problem> {
+        let (format, encoding) = self.negotiate(resource)?;
+        let streams = streamed.contains(&format);
+        let pool = pool.of(self.peer);
+        let mut response = computed_apart(&pool, (format, encoding), streams, compute).await?;
+        response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+        Ok(response)
+    }
+
+    /// An answer that is made while it is sent, and not compressed.
+    pub fn respond_piecewise(&self, resource: &Resource, pieces: Body) -> Result<Response<Body>, Problem> {
+        let (format, _) = self.negotiate(resource)?;
+        Ok(ok(format.media_type(), Encoding::Identity, pieces))
+    }
+
+    /// 406 if the client takes the resource in none of its formats.
+    pub fn accepts(&self, resource: &Resource) -> Result<(), Problem> {
+        self.negotiate(resource).map(drop)
+    }
+
+    fn negotiate(&self, resource: &Resource) -> Result<(Format, Encoding), Problem> {
+        let format = negotiate::format(self.format.as_deref(), &self.headers, resource.formats)?;
+        let encoding = negotiate::encoding(&self.headers)?;
+        Ok((format, if format.is_compressible() { encoding } else { Encoding::Identity }))
+    }
+}
+
+async fn computed(
+    pool: &Pool,
+    format: Format,
+    encoding: Encoding,
+    price: Price,
+    compute: impl FnOnce(Format, &Turn) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
+) -> Result<Response<Body>, Problem> {
+    // Compression is part of the work: it takes as long as computing, and ends with it when the client goes away.
+    let work = move |turn: &Turn| {
+        let bytes = compute(format, turn)?;
+        Ok::<_, Problem>(if encoding == Encoding::Gzip { gzip::gzip(&bytes, turn)? } else { bytes })
+    };
+    let bytes = pool.run(with_drawing(price, format), work).await?;
+    Ok(ok(format.media_type(), encoding, Bytes::from_owner(pool.hold(bytes))))
+}
+
+/// The price of an answer in this format: drawing is work of its own, and so are pixels.
+fn with_drawing(price: Price, format: Format) -> Price {
+    match format {
+        Format::Svg => price.and(Price::bounces(limits::SVG_PRICE)),
+        Format::Png => price.and(Price::bounces(limits::SVG_PRICE + limits::PNG_PRICE)),
+        _ => price,
+    }
+}
+
+/// 200 with its body and the headers that describe it.
+pub(crate) fn ok(media_type: &'static str, encoding: Encoding, bytes: impl Into<Body>) -> Response<Body> {
+    let mut response = Response::new(bytes.into());
+    let headers = response.headers_mut();
+    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(media_type));
+    headers.insert(header::VARY, HeaderValue::from_static("Accept, Accept-Encoding"));
+    if encoding == Encoding::Gzip {
+        headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
+    }
+    response
+}
+
+/// No body. `Vary` as it would be with one.
+pub(crate) fn status_only(status: StatusCode) -> Response<Body> {
+    let mut response = Response::new(Body::empty());
+    *response.status_mut() = status;
+    response.headers_mut().insert(header::VARY, HeaderValue::from_static("Accept, Accept-Encoding"));
+    response
+}
+
+/// Work is given up only when nobody is left to read this, so it says no more than that.
+impl From<Cancelled> for Problem {
+    fn from(cancelled: Cancelled) -> Self {
+        Problem::overloaded(cancelled.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::Limits;
+    use axum::extract::{FromRequest, Request};
+    use http_body_util::BodyExt;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    static RESOURCE: Resource = Resource { name: "test", formats: &[Format::Json, Format::Csv] };
+
+    async fn get(query: &str, headers: &[(&str, &str)], work: &'static AtomicUsize) -> Response<Body> {
+        let request = headers.iter().fold(Request::get(query), |request, (name, value)| request.header(*name, *value));
+        let ask = Ask::from_request(request.body(Body::empty()).unwrap(), &Limits::default()).await.unwrap();
+        let compute = |format: Format, _: &Turn| {
+            work.fetch_add(1, Ordering::Relaxed);
+            Ok(format.name().repeat(1000).into_bytes())
+        };
+        ask.respond(&Pool::new(1, &Limits::default()), &RESOURCE, b"canonical", Price::bounces(1), compute)
+            .await
+            .unwrap()
+    }
+
+    #[tokio::test]
+    async fn what_the_client_has_is_not_computed() {
+        static WORK: AtomicUsize = AtomicUsize::new(0);
+        let first = get("/", &[], &WORK).await;
+        let tag = first.headers()[header::ETAG].to_str().unwrap().to_owned();
+        assert_eq!((first.status().as_u16(), WORK.load(Ordering::Relaxed)), (200, 1));
+        let second = get("/", &[("if-none-match", &tag)], &WORK).await;
+        assert_eq!((second.status().as_u16(), WORK.load(Ordering::Relaxed)), (304, 1));
+        for name in [header::ETAG, header::VARY, header::CACHE_CONTROL] {
+            assert_eq!(first.headers()[&name], second.headers()[&name]);
+        }
+        assert_eq!(get("/?format=csv", &[("if-none-match", &tag)], &WORK).await.status(), 200);
+        assert_eq!(get("/", &[("if-none-match", &tag), ("accept-encoding", "gzip")], &WORK).await.status(), 200);
+    }
+
+    #[tokio::test]
+    async fn the_body_is_as_negotiated() {
+        static WORK: AtomicUsize = AtomicUsize::new(0);
+        let plain = get("/", &[("accept", "text/csv")], &WORK).await;
+        assert_eq!(plain.headers()[header::CONTENT_TYPE], "text/csv; charset=utf-8; header=present");
+        assert!(plain.headers().get(header::CONTENT_ENCODING).is_none());
+        assert_eq!(plain.into_body().collect().await.unwrap().to_bytes().len(), 3000);
+        let packed = get("/", &[("accept-encoding", "gzip")], &WORK).await;
+        assert_eq!(packed.headers()[header::CONTENT_ENCODING], "gzip");
+        assert!(packed.into_body().collect().await.unwrap().to_bytes().len() < 300);
+    }
+}

@@ -1,0 +1,86 @@
+//! Strong entity tags, known before anything is computed, and `If-None-Match` (RFC 9110, section 13.1.2).
+
+use axum::http::{HeaderMap, HeaderValue, header};
+use xxhash_rust::xxh3::Xxh3;
+
+use crate::http::response::negotiate::list;
+
+/// An entity tag with its quotes. Two answers with different bytes never share one, short of a collision in 128 bits.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EntityTag(String);
+
+/// What of a resource a client says it has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Held {
+    /// What is asked for.
+    This,
+    /// Whatever there is of it, if there is anything.
+    Anything,
+    /// Nothing, or something else.
+    Nothing,
+}
+
+impl EntityTag {
+    /// The tag of everything that determines an answer's bytes. The parts are told apart by their lengths.
+    pub fn of(parts: &[&[u8]]) -> Self {
+        let mut hash = Xxh3::new();
+        for part in parts {
+            hash.update(&(part.len() as u64).to_le_bytes());
+            hash.update(part);
+        }
+        Self(format!("\"{:032x}\"", hash.digest128()))
+    }
+
+    /// As in the header of that name.
+    pub fn header(&self) -> HeaderValue {
+        HeaderValue::from_str(&self.0).expect("hexadecimal digits in quotes")
+    }
+
+    /// Whether the client has it already: `If-None-Match` lists it (compared weakly, as on GET) or is `*`.
+    pub fn held_by(&self, headers: &HeaderMap) -> Held {
+        let listed = list(headers, &header::IF_NONE_MATCH);
+        // Our own tags have no comma, so splitting a foreign one that has does no harm.
+        let mut tags = listed.split(',').map(str::trim);
+        match tags.find(|tag| *tag == "*" || tag.strip_prefix("W/").unwrap_or(tag) == self.0) {
+            Some("*") => Held::Anything,
+            Some(_) => Held::This,
+            None => Held::Nothing,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_counts() {
+        let tag = |parts: &[&str]| EntityTag::of(&parts.iter().map(|part| part.as_bytes()).collect::<Vec<_>>());
+        let one = tag(&["trajectories", "json", "{}"]);
+        assert_eq!(one, tag(&["trajectories", "json", "{}"]));
+        for other in [["stability", "json", "{}"], ["trajectories", "csv", "{}"], ["trajectories", "json", "{ }"]] {
+            assert_ne!(one, tag(&other));
+        }
+        assert_ne!(tag(&["ab", "c"]), tag(&["a", "bc"]));
+        assert_eq!(one.header().len(), 34);
+    }
+
+    #[test]
+    fn if_none_match_is_a_list() {
+        let tag = EntityTag::of(&[b"x"]);
+        let own = &tag.0;
+        for (held, expected) in [
+            (own.clone(), Held::This),
+            (format!("W/{own}"), Held::This),
+            (format!("\"other\", {own}"), Held::This),
+            ("*".to_owned(), Held::Anything),
+            ("\"other\"".to_owned(), Held::Nothing),
+            (own.trim_matches('"').to_owned(), Held::Nothing),
+            (String::new(), Held::Nothing),
+        ] {
+            let headers: HeaderMap = [(header::IF_NONE_MATCH, held.parse().unwrap())].into_iter().collect();
+            assert_eq!(tag.held_by(&headers), expected, "{held}");
+        }
+        assert_eq!(tag.held_by(&HeaderMap::new()), Held::Nothing);
+    }
+}

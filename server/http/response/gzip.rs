@@ -1,0 +1,68 @@
+//! Compresses answers. Always the same bytes for the same input: one algorithm in plain Rust, one level.
+
+use std::io::Write;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+use crate::compute::{Cancelled, Turn};
+use crate::limits;
+
+/// Fast rather than small: digits of doubles hardly shrink more.
+const FAST: Compression = Compression::new(1);
+
+/// Compresses an answer that was computed for one request.
+pub fn gzip(bytes: &[u8], turn: &Turn) -> Result<Vec<u8>, Cancelled> {
+    compress(bytes, FAST, turn)
+}
+
+/// Compresses what is sent many times, as well as it goes.
+pub fn gzip_best(bytes: &[u8]) -> Vec<u8> {
+    compress(bytes, Compression::best(), &Turn::alone()).expect("nobody cancels it")
+}
+
+fn compress(bytes: &[u8], level: Compression, turn: &Turn) -> Result<Vec<u8>, Cancelled> {
+    // No time, no name and no system in the header, so that equal answers are equal bytes.
+    let mut encoder = GzEncoder::new(Vec::with_capacity(bytes.len() / 2), level);
+    feed(&mut encoder, bytes, turn)?;
+    Ok(encoder.finish().expect("a vector takes all bytes"))
+}
+
+/// Compresses what comes piece by piece as `gzip` does.
+pub(crate) fn encoder() -> GzEncoder<Vec<u8>> {
+    GzEncoder::new(Vec::new(), FAST)
+}
+
+/// Compresses a large piece, as long as somebody waits for it.
+pub(crate) fn feed(encoder: &mut GzEncoder<Vec<u8>>, bytes: &[u8], turn: &Turn) -> Result<(), Cancelled> {
+    for step in bytes.chunks(limits::GZIP_STEP_BYTES) {
+        turn.check()?;
+        encoder.write_all(step).expect("a vector takes all bytes");
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Read;
+
+    #[test]
+    fn what_goes_in_comes_out() {
+        let bytes: Vec<u8> = (0..300_000_u32).flat_map(|n| n.to_string().into_bytes()).collect();
+        for packed in [gzip(&bytes, &Turn::alone()).unwrap(), gzip_best(&bytes)] {
+            assert!(packed.len() < bytes.len() / 2);
+            assert_eq!(packed[4..8], [0; 4], "a time in the header would make equal answers differ");
+            let mut unpacked = Vec::new();
+            flate2::read::GzDecoder::new(packed.as_slice()).read_to_end(&mut unpacked).unwrap();
+            assert_eq!(unpacked, bytes);
+        }
+    }
+
+    #[test]
+    fn nobody_waiting_is_nothing_to_do() {
+        let turn = Turn::alone();
+        turn.cancel().set();
+        assert_eq!(gzip(b"text", &turn), Err(Cancelled));
+    }
+}

@@ -1,0 +1,8 @@
+//! Answers: negotiated, tagged, compressed, whole or streamed.
+
+pub mod cached;
+pub mod etag;
+pub mod gzip;
+pub mod negotiate;
+pub mod static_asset;
+pub mod streaming;

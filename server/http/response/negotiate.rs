@@ -1,0 +1,270 @@
+//! Which format and which content encoding an answer has (RFC 9110, section 12).
+//!
+//! `?format=` outranks `Accept`. JSON is the default, so also for `*/*` and for lists that name nothing else there is.
+
+use axum::http::{HeaderMap, HeaderName, header};
+
+use crate::http::problem::{Problem, shortened};
+
+/// What an answer can be written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// One JSON object.
+    Json,
+    /// Comma-separated values with a header row (RFC 4180).
+    Csv,
+    /// One JSON object per line.
+    Ndjson,
+    /// The same, of how far the work is, and last of all the answer. Only `?format=` asks for it.
+    Progress,
+    /// A picture in vectors.
+    Svg,
+    /// A picture in pixels.
+    Png,
+    /// Server-Sent Events.
+    Events,
+}
+
+impl Format {
+    const ALL: [Format; 7] =
+        [Format::Json, Format::Csv, Format::Ndjson, Format::Progress, Format::Svg, Format::Png, Format::Events];
+
+    /// Its name in `?format=`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Json => "json",
+            Format::Csv => "csv",
+            Format::Ndjson => "ndjson",
+            Format::Progress => "progress",
+            Format::Svg => "svg",
+            Format::Png => "png",
+            Format::Events => "events",
+        }
+    }
+
+    /// Its `Content-Type`.
+    pub fn media_type(self) -> &'static str {
+        match self {
+            Format::Json => "application/json",
+            Format::Csv => "text/csv; charset=utf-8; header=present",
+            Format::Ndjson | Format::Progress => "application/x-ndjson",
+            Format::Svg => "image/svg+xml",
+            Format::Png => "image/png",
+            Format::Events => "text/event-stream",
+        }
+    }
+
+    /// The types and subtypes in `Accept` that ask for it.
+    fn accepted_as(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Format::Json => &[("application", "json")],
+            Format::Csv => &[("text", "csv")],
+            Format::Ndjson => &[("application", "x-ndjson"), ("application", "ndjson"), ("application", "jsonl")],
+            Format::Progress => &[],
+            Format::Svg => &[("image", "svg+xml")],
+            Format::Png => &[("image", "png")],
+            Format::Events => &[("text", "event-stream")],
+        }
+    }
+
+    /// Whether its bytes shrink when compressed.
+    pub fn is_compressible(self) -> bool {
+        !matches!(self, Format::Png | Format::Events)
+    }
+}
+
+/// The format of an answer that exists in `formats`, of which the first is the default. 406 if none is wanted.
+pub fn format(asked: Option<&str>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
+    let names = || formats.iter().map(|format| format.name()).collect::<Vec<_>>().join(", ");
+    if let Some(asked) = asked {
+        let found = formats.iter().find(|format| format.name() == asked).copied();
+        return found.ok_or_else(|| {
+            let elsewhere = if Format::ALL.iter().any(|format| format.name() == asked) { " here" } else { "" };
+            let asked = shortened(asked);
+            Problem::not_acceptable(format!("there is no format {asked:?}{elsewhere}; there is: {}", names()))
+        });
+    }
+    let accept = list(headers, &header::ACCEPT);
+    if accept.trim().is_empty() {
+        return Ok(formats[0]);
+    }
+    let ranges: Vec<(&str, f32)> = items(&accept).collect();
+    // By weight, then by how closely it was named, then by the order here; `max_by` keeps the last of equals.
+    let best = formats
+        .iter()
+        .rev()
+        .map(|format| (weight(&ranges, *format), *format))
+        .filter(|((weight, _), _)| *weight > 0.0)
+        .max_by(|(one, _), (other, _)| one.partial_cmp(other).expect("weights are between 0 and 1"));
+    best.map(|(_, format)| format).ok_or_else(|| {
+        let accepted = formats.iter().filter(|format| !format.accepted_as().is_empty());
+        let types: Vec<&str> = accepted.map(|format| format.media_type()).collect();
+        let accept = shortened(&accept);
+        Problem::not_acceptable(format!("Accept is {accept:?}; there is: {} (?format={})", types.join(", "), names()))
+    })
+}
+
+/// Weight of a format and how closely the range that decides names it: 3 by name, 2 by type, 1 as anything.
+fn weight(ranges: &[(&str, f32)], format: Format) -> (f32, u8) {
+    let mut best = (0.0, 0);
+    for (range, q) in ranges {
+        let Some((kind, subtype)) = range.split_once('/') else { continue };
+        for (own_kind, own_subtype) in format.accepted_as() {
+            let closeness = match (kind.eq_ignore_ascii_case(own_kind), subtype.eq_ignore_ascii_case(own_subtype)) {
+                (true, true) => 3,
+                (true, false) if subtype == "*" => 2,
+                _ if kind == "*" && subtype == "*" => 1,
+                _ => 0,
+            };
+            if closeness > best.1 {
+                best = (*q, closeness);
+            }
+        }
+    }
+    best
+}
+
+/// How an answer's bytes are encoded on the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Encoding {
+    /// As they are.
+    Identity,
+    /// Compressed (RFC 1952).
+    Gzip,
+}
+
+impl Encoding {
+    /// Its name in `Content-Encoding`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Encoding::Identity => "identity",
+            Encoding::Gzip => "gzip",
+        }
+    }
+}
+
+/// The encoding by `Accept-Encoding`: gzip where it is as welcome as none. 406 if the client refuses both.
+pub fn encoding(headers: &HeaderMap) -> Result<Encoding, Problem> {
+    let accept = list(headers, &header::ACCEPT_ENCODING);
+    let codings: Vec<(&str, f32)> = items(&accept).collect();
+    let named = |name: &str| codings.iter().find(|(coding, _)| coding.eq_ignore_ascii_case(name)).map(|(_, q)| *q);
+    let gzip = named("gzip").or(named("x-gzip")).or(named("*")).unwrap_or(0.0);
+    let identity = named("identity").or(named("*").filter(|q| *q == 0.0));
+    match (gzip > 0.0, identity) {
+        (true, Some(identity)) if identity > gzip => Ok(Encoding::Identity),
+        (true, _) => Ok(Encoding::Gzip),
+        (false, Some(0.0)) => {
+            let accept = shortened(&accept);
+            Err(Problem::not_acceptable(format!("Accept-Encoding is {accept:?}; there is: gzip, identity")))
+        }
+        (false, _) => Ok(Encoding::Identity),
+    }
+}
+
+/// All lines of a header as the one list they are equivalent to.
+pub fn list(headers: &HeaderMap, name: &HeaderName) -> String {
+    let lines: Vec<&str> = headers.get_all(name).iter().filter_map(|value| value.to_str().ok()).collect();
+    lines.join(", ")
+}
+
+/// The items of a list with their weights; an item whose weight cannot be read is left out.
+fn items(list: &str) -> impl Iterator<Item = (&str, f32)> {
+    list.split(',').filter_map(|item| {
+        let mut parts = item.split(';').map(str::trim);
+        let name = parts.next().filter(|name| !name.is_empty())?;
+        let q = parts.find_map(|part| part.strip_prefix("q=").or(part.strip_prefix("Q=")));
+        let q = q.map_or(Some(1.0), |q| q.trim().parse().ok())?;
+        (0.0..=1.0).contains(&q).then_some((name, q))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn headers(name: HeaderName, value: &str) -> HeaderMap {
+        [(name, value.parse().unwrap())].into_iter().collect()
+    }
+
+    #[test]
+    fn accept_chooses_a_format() {
+        const ALL: [Format; 4] = [Format::Json, Format::Csv, Format::Ndjson, Format::Svg];
+        for (accept, expected) in [
+            ("*/*", Some(Format::Json)),
+            ("", Some(Format::Json)),
+            ("application/json", Some(Format::Json)),
+            ("APPLICATION/JSON; charset=utf-8", Some(Format::Json)),
+            ("text/csv", Some(Format::Csv)),
+            ("text/*", Some(Format::Csv)),
+            ("application/*", Some(Format::Json)),
+            ("application/x-ndjson", Some(Format::Ndjson)),
+            ("application/jsonl", Some(Format::Ndjson)),
+            // Grafana's Infinity: text/plain outranks JSON, and there is no text/plain.
+            ("application/json;q=0.9,text/plain", Some(Format::Json)),
+            ("text/plain, application/json;q=0.9, */*;q=0.1", Some(Format::Json)),
+            ("text/csv;q=0.5, application/json;q=0.4", Some(Format::Csv)),
+            ("text/csv, */*", Some(Format::Csv)),
+            ("text/csv, application/json", Some(Format::Json)),
+            ("application/json;q=0, */*", Some(Format::Csv)),
+            // An <img> in Chromium, then a page.
+            ("image/avif,image/webp,image/apng,image/svg+xml,image/*,*/*;q=0.8", Some(Format::Svg)),
+            ("text/html,application/xhtml+xml,application/xml;q=0.9,image/avif,*/*;q=0.8", Some(Format::Json)),
+            ("text/plain", None),
+            ("application/json;q=0", None),
+            ("image/png", None),
+            ("nonsense", None),
+            ("application/json;q=2", None),
+        ] {
+            let found = format(None, &headers(header::ACCEPT, accept), &ALL);
+            assert_eq!(found.as_ref().ok().copied(), expected, "{accept}");
+            if let Err(problem) = found {
+                assert_eq!(problem.status(), 406);
+                assert!(problem.detail().contains("text/csv") && problem.detail().contains("?format=json, csv"));
+            }
+        }
+        assert_eq!(format(None, &HeaderMap::new(), &ALL).unwrap(), Format::Json);
+    }
+
+    #[test]
+    fn the_parameter_outranks_the_header() {
+        let accept = headers(header::ACCEPT, "application/json");
+        assert_eq!(format(Some("csv"), &accept, &[Format::Json, Format::Csv]).unwrap(), Format::Csv);
+        let problem = format(Some("svg"), &accept, &[Format::Json, Format::Csv]).unwrap_err();
+        assert_eq!(problem.detail(), "there is no format \"svg\" here; there is: json, csv");
+        assert!(format(Some("JSON"), &accept, &[Format::Json]).is_err());
+    }
+
+    #[test]
+    fn progress_is_told_to_who_asks_for_it_by_name() {
+        let formats = [Format::Progress, Format::Ndjson];
+        for accept in ["*/*", "application/x-ndjson", "application/*"] {
+            assert_eq!(format(None, &headers(header::ACCEPT, accept), &formats).unwrap(), Format::Ndjson, "{accept}");
+        }
+        assert_eq!(format(Some("progress"), &HeaderMap::new(), &formats).unwrap(), Format::Progress);
+        let problem = format(None, &headers(header::ACCEPT, "text/plain"), &formats).unwrap_err();
+        assert_eq!(problem.detail().matches("ndjson").count(), 2, "{}", problem.detail());
+    }
+
+    #[test]
+    fn encoding_is_negotiated() {
+        for (accept, expected) in [
+            ("gzip", Some(Encoding::Gzip)),
+            ("GZIP", Some(Encoding::Gzip)),
+            ("gzip, deflate, br, zstd", Some(Encoding::Gzip)),
+            ("*", Some(Encoding::Gzip)),
+            ("", Some(Encoding::Identity)),
+            ("br", Some(Encoding::Identity)),
+            ("gzip;q=0", Some(Encoding::Identity)),
+            ("gzip;q=0, *", Some(Encoding::Identity)),
+            ("gzip;q=0.5, identity", Some(Encoding::Identity)),
+            ("gzip;q=0.5, identity;q=0.1", Some(Encoding::Gzip)),
+            ("identity;q=0, gzip;q=0.1", Some(Encoding::Gzip)),
+            ("br, identity;q=0", None),
+            ("*;q=0", None),
+            ("identity, *;q=0", Some(Encoding::Identity)),
+        ] {
+            assert_eq!(encoding(&headers(header::ACCEPT_ENCODING, accept)).ok(), expected, "{accept}");
+        }
+        assert_eq!(encoding(&HeaderMap::new()).unwrap(), Encoding::Identity);
+    }
+}

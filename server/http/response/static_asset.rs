@@ -1,0 +1,84 @@
+//! Answers that are known when the server starts: pages, scripts, the contract. Compressed once, on first demand.
+
+use std::sync::OnceLock;
+
+use axum::body::{Body, Bytes};
+use axum::http::{HeaderMap, Response, StatusCode, header};
+
+use crate::http::problem::Problem;
+use crate::http::response::cached::{REVALIDATED, ok, status_only};
+use crate::http::response::etag::{EntityTag, Held};
+use crate::http::response::gzip;
+use crate::http::response::negotiate;
+use crate::http::response::negotiate::Encoding;
+
+/// Bytes of one media type, and their compressed form.
+#[derive(Debug)]
+pub struct Fixed {
+    media_type: &'static str,
+    identity: Bytes,
+    gzip: OnceLock<Option<Bytes>>,
+}
+
+impl Fixed {
+    /// These bytes, as this media type.
+    pub fn new(media_type: &'static str, bytes: impl Into<Bytes>) -> Self {
+        Self { media_type, identity: bytes.into(), gzip: OnceLock::new() }
+    }
+
+    /// The answer to a GET or HEAD: 304 if the client has these bytes.
+    pub fn answer(&self, headers: &HeaderMap) -> Result<Response<Body>, Problem> {
+        let (encoding, bytes) = match (negotiate::encoding(headers)?, self.gzip()) {
+            (Encoding::Gzip, Some(gzip)) => (Encoding::Gzip, gzip),
+            _ => (Encoding::Identity, &self.identity),
+        };
+        let tag = EntityTag::of(&[self.media_type.as_bytes(), bytes]);
+        let mut response = match tag.held_by(headers) {
+            Held::This | Held::Anything => status_only(StatusCode::NOT_MODIFIED),
+            Held::Nothing => ok(self.media_type, encoding, bytes.clone()),
+        };
+        response.headers_mut().insert(header::ETAG, tag.header());
+        response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);
+        Ok(response)
+    }
+
+    /// The compressed form, if there is anything to gain.
+    fn gzip(&self) -> Option<&Bytes> {
+        let compressed = self.gzip.get_or_init(|| {
+            let gzip = gzip::gzip_best(&self.identity);
+            (gzip.len() < self.identity.len()).then(|| gzip.into())
+        });
+        compressed.as_ref()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use axum::http::HeaderValue;
+
+    fn accepting_gzip() -> HeaderMap {
+        [(header::ACCEPT_ENCODING, HeaderValue::from_static("gzip"))].into_iter().collect()
+    }
+
+    #[test]
+    fn compressed_where_it_helps() {
+        let long = Fixed::new("text/css", "a { color: red }\n".repeat(100));
+        assert_eq!(long.answer(&accepting_gzip()).unwrap().headers()[header::CONTENT_ENCODING], "gzip");
+        assert!(long.answer(&HeaderMap::new()).unwrap().headers().get(header::CONTENT_ENCODING).is_none());
+        let short = Fixed::new("text/css", "a{}");
+        assert!(short.answer(&accepting_gzip()).unwrap().headers().get(header::CONTENT_ENCODING).is_none());
+    }
+
+    #[test]
+    fn each_form_has_its_tag() {
+        let page = Fixed::new("text/html", "text ".repeat(100));
+        let tag = |headers: &HeaderMap| page.answer(headers).unwrap().headers()[header::ETAG].clone();
+        let mut held = accepting_gzip();
+        assert_ne!(tag(&held), tag(&HeaderMap::new()));
+        held.insert(header::IF_NONE_MATCH, tag(&held));
+        assert_eq!(page.answer(&held).unwrap().status(), StatusCode::NOT_MODIFIED);
+        held.remove(header::ACCEPT_ENCODING);
+        assert_eq!(page.answer(&held).unwrap().status(), StatusCode::OK);
+    }
+}

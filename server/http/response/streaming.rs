@@ -1,0 +1,225 @@
+//! Answers that are sent while they are computed, where the format has lines for that.
+//!
+//! Computing never waits for the reader: what is not yet read is kept, never more than the whole answer, which the price
+//! has bounded (`Limits::answer`), and counts as the client's (`Limits::held_bytes`). A reader that takes nothing is cut off
+//! after `Limits::stall_time`. So a slow reader holds neither a permit nor a place in the queue. A reader that leaves ends
+//! the work.
+
+use std::io::{self, Write};
+use std::panic::AssertUnwindSafe;
+
+use axum::body::{Body, Bytes};
+use axum::http::Response;
+use flate2::write::GzEncoder;
+use futures_util::future::BoxFuture;
+use futures_util::{FutureExt, StreamExt, stream};
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+
+use crate::compute::{Cancelled, Pool, Turn, Turns};
+use crate::http::problem::Problem;
+use crate::http::response::cached::ok;
+use crate::http::response::gzip;
+use crate::http::response::negotiate::{Encoding, Format};
+
+/// Where work puts the bytes of its answer.
+#[derive(Debug)]
+pub struct Outlet {
+    to: UnboundedSender<Bytes>,
+    gzip: Option<GzEncoder<Vec<u8>>>,
+    pool: Pool,
+}
+
+impl Outlet {
+    /// Sends a piece of the answer. The same pieces give the same bytes, compressed ones as well: each can be read at once.
+    pub fn send(&mut self, piece: Vec<u8>) {
+        if piece.is_empty() {
+            return;
+        }
+        let piece = match &mut self.gzip {
+            None => piece,
+            Some(gzip) => {
+                gzip.write_all(&piece).and_then(|()| gzip.flush()).expect("a vector takes all bytes");
+                std::mem::take(gzip.get_mut())
+            }
+        };
+        // An error is a reader that has gone, of which the work hears otherwise.
+        let _ = self.to.send(Bytes::from_owner(self.pool.hold(piece)));
+    }
+
+    /// Sends an answer as a whole.
+    pub fn send_whole(&mut self, answer: Vec<u8>, turn: &Turn) -> Result<(), Cancelled> {
+        match &mut self.gzip {
+            None => self.send(answer),
+            Some(gzip) => gzip::feed(gzip, &answer, turn)?,
+        }
+        Ok(())
+    }
+
+    fn finish(self) {
+        if let Some(gzip) = self.gzip {
+            let last = gzip.finish().expect("a vector takes all bytes");
+            let _ = self.to.send(Bytes::from_owner(self.pool.hold(last)));
+        }
+    }
+}
+
+/// The pieces of an answer, and the work that makes them.
+struct Pieces {
+    made: UnboundedReceiver<Bytes>,
+    /// Dropping it cancels the work.
+    work: Option<BoxFuture<'static, Result<(), Problem>>>,
+}
+
+impl Pieces {
+    /// The next one; none at the end. An error instead where the work has failed.
+    async fn next(&mut self) -> Result<Option<Bytes>, Problem> {
+        loop {
+            let Some(work) = &mut self.work else { return Ok(self.made.recv().await) };
+            tokio::select! {
+                biased;
+                Some(piece) = self.made.recv() => return Ok(Some(piece)),
+                ended = work => {
+                    self.work = None;
+                    ended?;
+                }
+            }
+        }
+    }
+
+    /// All from here on. After a piece has been sent a failure can no longer be told, so the body breaks off: the client
+    /// sees neither its end nor the last line.
+    fn into_body(self, first: Bytes) -> Body {
+        let rest =
+            stream::unfold(self, async |mut pieces| match AssertUnwindSafe(pieces.next()).catch_unwind().await {
+                Ok(Ok(piece)) => piece.map(|piece| (Ok(piece), pieces)),
+                Ok(Err(_)) | Err(_) => Some((Err(io::Error::other("the work has failed")), pieces)),
+            });
+        Body::from_stream(stream::iter([Ok(first)]).chain(rest))
+    }
+}
+
+/// Does `compute` in turns. Where it `streams` the answer begins with the first piece, else it is whole.
+pub(crate) async fn computed_in_turns(
+    pool: &Pool,
+    format: Format,
+    encoding: Encoding,
+    streams: bool,
+    compute: impl FnOnce(Format, &Turns, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+) -> Result<Response<Body>, Problem> {
+    let working = pool.clone();
+    let work = |mut outlet: Outlet| async move {
+        let compute = move |turns: &Turns| {
+            compute(format, turns, &mut outlet)?;
+            outlet.finish();
+            Ok(())
+        };
+        working.run_in_turns(compute).await
+    };
+    in_pieces(pool, (format, encoding), streams, work).await
+}
+
+/// The same of work that is done on one thread.
+pub(crate) async fn computed_apart(
+    pool: &Pool,
+    (format, encoding): (Format, Encoding),
+    streams: bool,
+    compute: impl FnOnce(Format, &Turn, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+) -> Result<Response<Body>, Problem> {
+    let working = pool.clone();
+    let work = |mut outlet: Outlet| async move {
+        let compute = move |turn: &Turn| {
+            compute(format, turn, &mut outlet)?;
+            outlet.finish();
+            Ok(())
+        };
+        working.run_apart(compute).await
+    };
+    in_pieces(pool, (format, encoding), streams, work).await
+}
+
+async fn in_pieces<Work: Future<Output = Result<(), Problem>> + Send + 'static>(
+    pool: &Pool,
+    (format, encoding): (Format, Encoding),
+    streams: bool,
+    work: impl FnOnce(Outlet) -> Work,
+) -> Result<Response<Body>, Problem> {
+    let (to, made) = unbounded_channel();
+    let gzip = (encoding == Encoding::Gzip).then(gzip::encoder);
+    let outlet = Outlet { to, gzip, pool: pool.clone() };
+    let mut pieces = Pieces { made, work: Some(Box::pin(work(outlet))) };
+    let first = pieces.next().await?.unwrap_or_default();
+    if streams {
+        return Ok(ok(format.media_type(), encoding, pieces.into_body(first)));
+    }
+    let mut whole = Vec::from(first);
+    while let Some(piece) = pieces.next().await? {
+        whole.extend_from_slice(&piece);
+    }
+    Ok(ok(format.media_type(), encoding, Bytes::from_owner(pool.hold(whole))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use http_body_util::BodyExt;
+
+    async fn answer(
+        streams: bool,
+        compute: impl FnOnce(&mut Outlet) -> Result<(), Problem> + Send + 'static,
+    ) -> Result<Response<Body>, Problem> {
+        let compute = |_: Format, _: &Turns, out: &mut Outlet| compute(out);
+        computed_in_turns(
+            &Pool::new(1, &crate::limits::Limits::default()),
+            Format::Ndjson,
+            Encoding::Identity,
+            streams,
+            compute,
+        )
+        .await
+    }
+
+    #[tokio::test]
+    async fn what_fails_before_the_first_byte_is_a_problem() {
+        for streams in [true, false] {
+            let problem = answer(streams, |_| Err(Problem::internal())).await.unwrap_err();
+            assert_eq!(problem.status(), 500);
+        }
+    }
+
+    #[tokio::test]
+    async fn what_fails_after_it_breaks_off() {
+        for panics in [true, false] {
+            let (go, wait) = std::sync::mpsc::channel();
+            let compute = move |out: &mut Outlet| {
+                out.send(b"first\n".to_vec());
+                wait.recv().unwrap();
+                if panics { panic!("on purpose") } else { Err(Problem::internal()) }
+            };
+            let mut body = answer(true, compute).await.unwrap().into_body();
+            assert_eq!(body.frame().await.unwrap().unwrap().into_data().unwrap(), "first\n");
+            go.send(()).unwrap();
+            assert!(body.frame().await.unwrap().is_err());
+        }
+    }
+
+    #[tokio::test]
+    async fn a_stream_begins_before_the_work_ends_and_a_whole_answer_does_not() {
+        let (go, wait) = std::sync::mpsc::channel();
+        let compute = move |out: &mut Outlet| {
+            out.send(b"a\n".to_vec());
+            wait.recv().unwrap();
+            out.send(b"b\n".to_vec());
+            Ok(())
+        };
+        let response = answer(true, compute).await.unwrap();
+        go.send(()).unwrap();
+        assert_eq!(response.into_body().collect().await.unwrap().to_bytes(), "a\nb\n");
+        let pieces = |out: &mut Outlet| {
+            out.send(b"a".to_vec());
+            out.send(b"b".to_vec());
+            Ok(())
+        };
+        let response = answer(false, pieces).await.unwrap();
+        assert_eq!(axum::body::HttpBody::size_hint(response.body()).exact(), Some(2));
+    }
+}

@@ -1,0 +1,171 @@
+//! What a client says over a live connection, as it is read.
+//!
+//! Not here: what follows from it (`session`).
+
+use equipoise_physics::body::Kick;
+use equipoise_physics::scene::{Name, Value as FieldValue};
+use serde_json::{Map, Value};
+
+use crate::http::request::json;
+use crate::http::request::reader::join;
+use crate::http::{Errors, Problem, Reader, Source};
+use crate::runs::clock::SPEEDS;
+use crate::runs::run_url::{read_kick, read_set};
+
+/// What a client can say.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Order {
+    /// Stop the clock.
+    Pause,
+    /// Let it go on.
+    Resume,
+    /// While it is stopped: on to the next impact.
+    Step,
+    /// Begin anew, now.
+    Restart,
+    /// Go on at this speed.
+    Speed(f64),
+    /// Change these fields from the next impact on.
+    Set(Vec<(Name, FieldValue)>),
+    /// Kick the body just after the next impact.
+    Kick(Kick),
+}
+
+impl Order {
+    /// Its type, as in the message.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Pause => "pause",
+            Self::Resume => "resume",
+            Self::Step => "step",
+            Self::Restart => "restart",
+            Self::Speed(_) => "speed",
+            Self::Set(_) => "set",
+            Self::Kick(_) => "kick",
+        }
+    }
+
+    /// Reads a message.
+    ///
+    /// # Errors
+    /// A problem with everything that is wrong with it.
+    pub fn read(text: &str) -> Result<Self, Problem> {
+        #[derive(Clone, Copy)]
+        enum Type {
+            Plain(fn() -> Order),
+            Speed,
+            Set,
+            Kick,
+        }
+        const TYPES: [(&str, Type); 7] = [
+            ("pause", Type::Plain(|| Order::Pause)),
+            ("resume", Type::Plain(|| Order::Resume)),
+            ("step", Type::Plain(|| Order::Step)),
+            ("restart", Type::Plain(|| Order::Restart)),
+            ("speed", Type::Speed),
+            ("set", Type::Set),
+            ("kick", Type::Kick),
+        ];
+        let fields = json::object(text.as_bytes()).map_err(|problem| of_a_message(&problem))?;
+        let mut errors = Errors::default();
+        let mut reader = Reader::new(&fields, String::new(), Source::Json, &mut errors);
+        reader.require(&["type"]);
+        let Some(kind) = reader.choice("type", &TYPES) else {
+            return errors.into_result().and_then(|()| Err(Problem::internal()));
+        };
+        let order = match kind {
+            Type::Plain(order) => {
+                reader.finish();
+                Some(order())
+            }
+            Type::Speed => {
+                reader.require(&["value"]);
+                let speed = reader.number("value", SPEEDS, "");
+                reader.finish();
+                speed.map(Order::Speed)
+            }
+            Type::Kick => {
+                let kick = read_kick(&mut reader);
+                reader.finish();
+                kick.map(Order::Kick)
+            }
+            Type::Set => {
+                let paths: Map<String, Value> = fields.clone().into_iter().filter(|(key, _)| key != "type").collect();
+                for (key, _) in paths.iter().filter(|(_, value)| value.is_object()) {
+                    errors.push(join("", key), "an object has no place here; name fields by dotted path");
+                }
+                read_set(&paths, "", Source::Json, &mut errors).map(Order::Set)
+            }
+        };
+        errors.into_result()?;
+        order.ok_or_else(Problem::internal)
+    }
+}
+
+/// The reader of bodies calls what it reads a body; here it is a message.
+fn of_a_message(problem: &Problem) -> Problem {
+    let named = |detail: &str| detail.replacen("the body", "the message", 1);
+    match problem.errors() {
+        [] => Problem::not_readable(named(problem.detail())),
+        errors => {
+            let mut errors = errors.to_vec();
+            errors.iter_mut().for_each(|error| error.detail = named(&error.detail));
+            Problem::invalid(errors)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(text: &str) -> Vec<String> {
+        let problem = Order::read(text).unwrap_err();
+        assert!(problem.status().is_client_error(), "{text}: {problem:?}");
+        problem.into_errors().into_iter().map(|error| error.pointer).collect()
+    }
+
+    #[test]
+    fn orders_are_read() {
+        assert_eq!(Order::read(r#"{"type":"pause"}"#).unwrap(), Order::Pause);
+        assert_eq!(Order::read(r#"{"type":"speed","value":2}"#).unwrap(), Order::Speed(2.0));
+        assert_eq!(
+            Order::read(r#"{"type":"set","table.tilt_gain":1.3,"contact.restitution":0.5}"#).unwrap(),
+            Order::Set(vec![(Name::Restitution, FieldValue::Number(0.5)), (Name::TiltGain, FieldValue::Number(1.3))])
+        );
+        let kick = Kick { theta_dot: 0.5, ..Kick::default() };
+        assert_eq!(Order::read(r#"{"type":"kick","theta_dot":0.5}"#).unwrap(), Order::Kick(kick));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_place() {
+        for (text, pointers) in [
+            ("pause", vec![]),
+            ("[]", vec![""]),
+            ("{}", vec!["/type"]),
+            (r#"{"type":"stop"}"#, vec!["/type"]),
+            (r#"{"type":"pause","for":1}"#, vec!["/for"]),
+            (r#"{"type":"speed"}"#, vec!["/value"]),
+            (r#"{"type":"speed","value":0}"#, vec!["/value"]),
+            (r#"{"type":"set"}"#, vec![""]),
+            (r#"{"type":"set","table.tilt_gain":"1"}"#, vec!["/table.tilt_gain"]),
+            (r#"{"type":"set","table":{"tilt_gain":2}}"#, vec!["/table"]),
+            (
+                r#"{"type":"set","gravity":1,"colour":2,"table.tilt_gain":null}"#,
+                vec!["/colour", "/gravity", "/table.tilt_gain"],
+            ),
+            (r#"{"type":"kick"}"#, vec![""]),
+            (r#"{"type":"kick","theta_dot":1e3,"y":1}"#, vec!["/theta_dot", "/y"]),
+        ] {
+            let mut found = refused(text);
+            found.sort();
+            assert_eq!(found, pointers, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_message_is_called_a_message() {
+        assert!(Order::read("nonsense").unwrap_err().detail().starts_with("the message is not JSON"));
+        assert_eq!(Order::read("[]").unwrap_err().detail(), "the message must be a JSON object");
+    }
+}

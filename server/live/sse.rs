@@ -1,0 +1,151 @@
+//! A live run as Server-Sent Events: where a client that comes back goes on, and how what it is told is written.
+//!
+//! The client only listens; a session tells it the same as over a WebSocket. Not here: what is said and when.
+
+use std::convert::Infallible;
+
+use axum::extract::ws::Message;
+use axum::http::HeaderMap;
+use axum::response::sse::Event;
+use futures_util::{Stream, StreamExt, sink, stream};
+use serde_json::Value;
+use tokio::sync::{mpsc, oneshot};
+
+use crate::http::Reader;
+use crate::http::request::scalar;
+use crate::http::request::scalar::Source;
+use crate::limits;
+use crate::live::server_message::{Frame, Mark};
+use crate::live::session;
+use crate::live::session::Place;
+use crate::runs::playback::Course;
+use crate::runs::run_url;
+use crate::runs::run_url::Asked;
+
+/// The id of a run's last event.
+const END: &str = "end";
+
+/// What a client is to hear.
+#[derive(Debug)]
+pub enum Wanted {
+    /// A run.
+    Run(Box<Asked>),
+    /// Nothing: it has heard the end already.
+    Nothing,
+}
+
+/// Reads a run, and the id of the last event of it that the client has heard: the header that clients send by themselves
+/// when they come back, or the parameter. None if something is wrong; then it is in the errors.
+pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Option<Wanted> {
+    const NAME: &str = "last_event_id";
+    let has_epoch = reader.has("epoch");
+    let parameter = reader.text(NAME).map(str::to_owned);
+    let header = headers.get("last-event-id").map(|id| String::from_utf8_lossy(id.as_bytes()).into_owned());
+    let mut asked = run_url::read(reader, now)?;
+    let Some(last) = header.filter(|id| !id.is_empty()).or(parameter) else { return Some(Wanted::Run(asked.into())) };
+    if last == END {
+        return Some(Wanted::Nothing);
+    }
+    let heard = scalar::integer(&Value::from(last), Source::Query, &(1..=limits::LIVE_IMPACTS));
+    let problem = match heard {
+        Ok(heard) if has_epoch => {
+            asked.from = Some(heard + 1);
+            return Some(Wanted::Run(asked.into()));
+        }
+        // Released now, it would be another run.
+        Ok(_) => "is of a run whose epoch is not given; come back to the address in `url` of `hello`".to_owned(),
+        Err(error) => format!("{error}, or `{END}`"),
+    };
+    reader.refuse(NAME, format!("{NAME} {problem}"));
+    None
+}
+
+/// Tells a run. The session ends when the events are dropped, as they are when the client has gone, or when `closing` does; with it
+/// goes what is `held` for it.
+pub fn tell(
+    asked: Asked,
+    course: Course,
+    place: Place,
+    closing: impl Future<Output = ()> + Send + 'static,
+    held: impl Send + 'static,
+) -> impl Stream<Item = Result<Event, Infallible>> + Send + 'static {
+    let (to, events) = mpsc::channel(1);
+    let (here, gone) = oneshot::channel::<Infallible>();
+    let outgoing = sink::unfold(to, async |to: mpsc::Sender<Event>, frame| match event(frame) {
+        Some(event) => to.send(event).await.map(|()| to),
+        None => Ok(to),
+    });
+    let incoming = stream::once(async {
+        let _ = gone.await;
+        Ok(Message::Close(None))
+    });
+    tokio::spawn(async move {
+        let _held = held;
+        session::serve(asked, Ok(course), Box::pin(incoming), Box::pin(outgoing), place, closing).await;
+    });
+    let first = Event::default().retry(limits::LIVE_RETRY_TIME);
+    let rest = stream::unfold((events, here), async |(mut events, here)| {
+        events.recv().await.map(|event| (event, (events, here)))
+    });
+    stream::iter([first]).chain(rest).map(Ok)
+}
+
+/// A frame as an event; a goodbye is the end of all events.
+fn event(frame: Frame) -> Option<Event> {
+    match frame {
+        Frame::Message { kind, mark, text } => {
+            let event = Event::default().event(kind).data(text);
+            Some(match mark {
+                Some(Mark::Impact(n)) => event.id(n.to_string()),
+                Some(Mark::End) => event.id(END),
+                None => event,
+            })
+        }
+        Frame::Ping => Some(Event::default().comment("")),
+        Frame::Close(..) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use axum::response::{IntoResponse, Sse};
+    use http_body_util::BodyExt;
+    use prometheus_client::metrics::gauge::Gauge;
+
+    use super::*;
+    use crate::compute::Counted;
+    use crate::limits::Limits;
+    use crate::live::bounds::Bounds;
+    use crate::runs::clock::Clock;
+    use crate::runs::run::Run;
+    use crate::runs::run::tests::case;
+
+    /// All that a client hears which begins to read late.
+    async fn heard(preset: &str, bounds: Bounds) -> String {
+        let run = Run::new(*case(preset).scene(), Clock::new(session::wall_now(), 20.0));
+        let asked = Asked { run, from: None };
+        let place = Place::alone(bounds);
+        let course = session::caught_up(&asked, &place).await.unwrap();
+        let sessions = Gauge::default();
+        let events = tell(asked, course, place, std::future::pending(), Counted::one(&sessions));
+        tokio::time::sleep(Duration::from_millis(500)).await;
+        let body = Sse::new(events).into_response().into_body().collect().await.unwrap().to_bytes();
+        String::from_utf8(body.to_vec()).unwrap()
+    }
+
+    #[tokio::test]
+    async fn a_slow_client_is_told_what_it_misses_and_the_end() {
+        let text = heard("still-lossy", Bounds { queue: 4, ..Bounds::of_a_listener(&Limits::default()) }).await;
+        assert!(text.contains("event: gap\n"), "{text}");
+        assert!(text.ends_with("id: end\n\n"), "{text}");
+    }
+
+    #[tokio::test]
+    async fn a_client_is_pinged_and_let_go_in_time() {
+        let (ping, lifetime) = (Duration::from_millis(50), Duration::from_millis(700));
+        let text = heard("case-1", Bounds { ping, lifetime, ..Bounds::of_a_listener(&Limits::default()) }).await;
+        assert!(text.starts_with("retry: ") && text.contains("\n\n:") && !text.contains("id: end"), "{text}");
+    }
+}

@@ -1,0 +1,208 @@
+//! A run as a value: scene, clock and interventions. Whoever has it has the run, on any server.
+//!
+//! Not here: how it is written in a URL (`address`) and how its impacts are computed (`course`).
+
+use equipoise_physics::body::Kick;
+use equipoise_physics::scene::{Field, FieldError, Name, Scene, Value};
+
+use crate::limits;
+use crate::runs::clock::Clock;
+
+/// Largest kicks: of a velocity, m/s, and of the angular velocity, rad/s. Those of a release.
+pub const KICK_SPEED: f64 = 100.0;
+/// See [`KICK_SPEED`].
+pub const KICK_SPIN: f64 = 200.0;
+
+/// What somebody did to a run at one impact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Intervention {
+    /// Number of the impact.
+    pub impact: u64,
+    /// Fields that are in force from its strike on, each once, in the order of the table of fields.
+    pub set: Vec<(Name, Value)>,
+    /// Added to the velocities just after it.
+    pub kick: Option<Kick>,
+}
+
+/// A run. Two that are equal give the same impacts at the same times.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    scene: Scene,
+    /// When it goes how fast.
+    pub clock: Clock,
+    interventions: Vec<Intervention>,
+    /// The scene with everything that was set.
+    last: Scene,
+}
+
+impl Run {
+    /// A run that nobody has intervened in.
+    pub fn new(scene: Scene, clock: Clock) -> Self {
+        Self { scene, clock, interventions: Vec::new(), last: scene }
+    }
+
+    /// What it was released with.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// What was done to it, one entry for an impact, in the order of impacts.
+    pub fn interventions(&self) -> &[Intervention] {
+        &self.interventions
+    }
+
+    /// What was done at this impact.
+    pub fn at(&self, impact: u64) -> Option<&Intervention> {
+        let found = self.interventions.binary_search_by_key(&impact, |intervention| intervention.impact).ok()?;
+        Some(&self.interventions[found])
+    }
+
+    /// Sets fields from an impact on; what was set for the same impact before stays unless it is the same field.
+    ///
+    /// # Errors
+    /// What cannot be set, with the path of the field. The run is then as it was.
+    pub fn set(&mut self, impact: u64, changes: &[(Name, Value)]) -> Result<(), Vec<FieldError>> {
+        let is_last = self.interventions.last().is_none_or(|last| last.impact <= impact);
+        let mut changed = self.clone();
+        let set = &mut changed.entry(impact).map_err(|detail| vec![FieldError { path: "", detail }])?.set;
+        for (name, value) in changes {
+            set.retain(|(known, _)| known != name);
+            set.push((*name, *value));
+        }
+        set.sort_by_key(|(name, _)| *name as usize);
+        changed.last = if is_last { with(&self.last, changes)? } else { changed.scene_at(u64::MAX)? };
+        *self = changed;
+        Ok(())
+    }
+
+    /// The scene in force from an impact on, as long as nothing else is set.
+    fn scene_at(&self, impact: u64) -> Result<Scene, Vec<FieldError>> {
+        let before = self.interventions.iter().take_while(|intervention| intervention.impact <= impact);
+        before
+            .filter(|intervention| !intervention.set.is_empty())
+            .try_fold(self.scene, |scene, intervention| with(&scene, &intervention.set))
+    }
+
+    /// Kicks the body just after an impact; kicks at the same impact add up.
+    ///
+    /// # Errors
+    /// A sentence, where the sum is too large or there are too many interventions. The run is then as it was.
+    pub fn kick(&mut self, impact: u64, kick: Kick) -> Result<(), String> {
+        let before = self.at(impact).and_then(|intervention| intervention.kick).unwrap_or_default();
+        let sum = Kick {
+            x_dot: before.x_dot + kick.x_dot,
+            y_dot: before.y_dot + kick.y_dot,
+            theta_dot: before.theta_dot + kick.theta_dot,
+        };
+        for (name, value, most, unit) in [
+            ("x_dot", sum.x_dot, KICK_SPEED, "m/s"),
+            ("y_dot", sum.y_dot, KICK_SPEED, "m/s"),
+            ("theta_dot", sum.theta_dot, KICK_SPIN, "rad/s"),
+        ] {
+            if value.abs() > most {
+                return Err(format!(
+                    "the kicks at impact {impact} add up to a {name} of {value}; it must be from -{most} to {most} {unit}"
+                ));
+            }
+        }
+        self.entry(impact)?.kick = Some(sum);
+        Ok(())
+    }
+
+    /// The same run released anew, with what is set up to impact `reached` in force from the start and nothing else
+    /// done to it.
+    pub fn restarted(&self, epoch: u64, reached: u64) -> Self {
+        // Every scene on the way has been built before.
+        let scene = self.scene_at(reached).unwrap_or(self.last);
+        Self::new(scene, Clock::new(epoch, self.clock.speed()))
+    }
+
+    fn entry(&mut self, impact: u64) -> Result<&mut Intervention, String> {
+        let place = match self.interventions.binary_search_by_key(&impact, |intervention| intervention.impact) {
+            Ok(place) => place,
+            Err(place) => {
+                let most = limits::LIVE_INTERVENTIONS;
+                if self.interventions.len() >= most {
+                    let hint = "restart keeps what was set";
+                    return Err(format!("this run has {most} interventions, which is the limit; {hint}"));
+                }
+                self.interventions.insert(place, Intervention { impact, set: Vec::new(), kick: None });
+                place
+            }
+        };
+        Ok(&mut self.interventions[place])
+    }
+}
+
+/// A scene with some fields changed.
+fn with(scene: &Scene, changes: &[(Name, Value)]) -> Result<Scene, Vec<FieldError>> {
+    let mut draft = scene.draft();
+    let errors: Vec<_> = changes.iter().filter_map(|(name, value)| draft.set(*name, Some(*value)).err()).collect();
+    if errors.is_empty() { draft.build() } else { Err(errors) }
+}
+
+/// Why a field cannot be set in a live run, if it cannot.
+pub fn refusal(row: &Field) -> Option<String> {
+    (!row.live).then(|| format!("{} cannot be changed while a run is live; start another run with it", row.path))
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::api::scene::presets;
+
+    pub(crate) fn case(name: &str) -> Run {
+        Run::new(presets::find(name).unwrap().draft().build().unwrap(), Clock::new(1_000_000, 1.0))
+    }
+
+    #[test]
+    fn what_happens_at_one_impact_is_one_intervention() {
+        let mut run = case("case-1");
+        run.set(3, &[(Name::TiltGain, Value::Number(1.2)), (Name::Restitution, Value::Number(0.9))]).unwrap();
+        run.set(3, &[(Name::TiltGain, Value::Number(1.3))]).unwrap();
+        run.kick(3, Kick { theta_dot: 0.5, ..Kick::default() }).unwrap();
+        run.kick(3, Kick { theta_dot: 0.25, ..Kick::default() }).unwrap();
+        assert_eq!(run.interventions().len(), 1);
+        let at = run.at(3).unwrap();
+        assert_eq!(at.set, [(Name::Restitution, Value::Number(0.9)), (Name::TiltGain, Value::Number(1.3))]);
+        assert_eq!(at.kick.unwrap().theta_dot, 0.75);
+        run.kick(2, Kick::default()).unwrap();
+        assert_eq!(run.interventions()[0].impact, 2);
+    }
+
+    #[test]
+    fn an_earlier_change_must_go_with_the_later_ones() {
+        let mut run = case("case-1");
+        let target = (Name::TargetHeight, Value::Number(0.2));
+        run.set(5, &[(Name::EnergyGain, Value::Number(0.1)), target]).unwrap();
+        let errors = run.set(2, &[(Name::Strike, Value::Choice("still"))]).unwrap_err();
+        assert_eq!(errors[0].path, "table.energy_gain");
+        run.set(2, &[(Name::TiltGain, Value::Number(1.2))]).unwrap();
+        assert_eq!(run.restarted(5, 9).scene().value(Name::TiltGain), Some(Value::Number(1.2)));
+    }
+
+    #[test]
+    fn what_is_refused_leaves_the_run_as_it_was() {
+        let mut run = case("case-1");
+        let before = run.clone();
+        let errors = run.set(1, &[(Name::EnergyGain, Value::Number(0.1))]).unwrap_err();
+        assert_eq!(errors[0].path, "table.target_height");
+        assert!(run.kick(1, Kick { x_dot: 101.0, ..Kick::default() }).unwrap_err().contains("-100 to 100 m/s"));
+        assert_eq!(run, before);
+    }
+
+    #[test]
+    fn interventions_are_bounded_and_a_restart_keeps_what_was_set() {
+        let mut run = case("case-1");
+        for impact in 1..=limits::LIVE_INTERVENTIONS as u64 {
+            run.set(impact, &[(Name::TiltGain, Value::Number(1.0 + impact as f64 / 1000.0))]).unwrap();
+        }
+        let over = limits::LIVE_INTERVENTIONS as u64 + 1;
+        assert!(run.kick(over, Kick::default()).unwrap_err().contains("which is the limit"));
+        let early = run.restarted(5, 10);
+        assert_eq!(early.scene().value(Name::TiltGain), Some(Value::Number(1.01)));
+        let again = run.restarted(5, u64::MAX);
+        assert_eq!((again.interventions().len(), again.clock.epoch()), (0, 5));
+        assert_eq!(again.scene().value(Name::TiltGain), Some(Value::Number(1.1)));
+    }
+}
