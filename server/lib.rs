@@ -15,6 +15,7 @@ pub mod integrators;
 pub mod limits;
 pub mod live;
 pub mod memory;
+pub mod middleware;
 pub mod router;
 pub mod runs;
 pub mod transport;

@@ -4,7 +4,7 @@ use axum::Router;
 
 use crate::api;
 use crate::api::App;
-use crate::http::middleware::{not_found, surround};
+use crate::middleware::{not_found, surround};
 
 /// The whole server.
 pub fn router(app: App) -> Router {

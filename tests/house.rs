@@ -94,9 +94,9 @@ const FLOORS: &[(&str, &[&str])] = &[
             "crate::runs",
         ],
     ),
-    ("server/runs", &["axum", "tokio", "crate::live", "crate::router", "crate::http::middleware"]),
-    ("server/live", &["axum::Router", "axum::routing", "crate::router", "crate::http::middleware"]),
-    ("server/api", &["crate::router", "crate::http::middleware", "crate::transport"]),
+    ("server/runs", &["axum", "tokio", "crate::live", "crate::router", "crate::middleware"]),
+    ("server/live", &["axum::Router", "axum::routing", "crate::router", "crate::middleware"]),
+    ("server/api", &["crate::router", "crate::middleware", "crate::transport"]),
     ("server/transport", &["equipoise_physics", "crate::api", "crate::live", "crate::runs"]),
     ("server/limits.rs", &["equipoise_physics", "axum", "crate::http", "crate::api", "crate::live", "crate::runs"]),
 ];

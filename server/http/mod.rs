@@ -2,7 +2,6 @@
 //!
 //! No physics and no routes here: everything is told in JSON values, bytes and formats.
 
-pub mod middleware;
 pub mod request;
 pub mod response;
 pub mod security;

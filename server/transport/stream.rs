@@ -13,9 +13,9 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::tcp::OwnedReadHalf;
 use tokio::time::{Sleep, sleep};
 
-use crate::http::middleware::seal;
 use crate::http::{Problem, transfer};
 use crate::limits;
+use crate::middleware::seal;
 use crate::transport::connection_slots::Place;
 use crate::transport::wire::Wire;
 

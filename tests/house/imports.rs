@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Source;
 
 /// Imports between files, by path.
-pub struct Imports {
+pub(crate) struct Imports {
     arrows: BTreeMap<String, BTreeSet<String>>,
 }
 
@@ -20,7 +20,7 @@ const CRATES: [(&str, &str); 2] = [("server/physics/", "equipoise_physics"), ("s
 
 impl Imports {
     /// Reads `use` declarations and paths in the code of the crates' own sources.
-    pub fn read(sources: &[Source]) -> Self {
+    pub(crate) fn read(sources: &[Source]) -> Self {
         let own: Vec<(&Source, String)> =
             sources.iter().filter_map(|source| Some((source, module(&source.path)?))).collect();
         let mut modules = Modules { files: BTreeMap::new(), exports: BTreeMap::new() };
@@ -48,12 +48,12 @@ impl Imports {
     }
 
     /// Number of imports.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.arrows.values().map(BTreeSet::len).sum()
     }
 
     /// Groups of files that import one another in a circle, directly or through others.
-    pub fn circles(&self) -> Vec<Vec<&str>> {
+    pub(crate) fn circles(&self) -> Vec<Vec<&str>> {
         let reach: BTreeMap<&str, BTreeSet<&str>> =
             self.arrows.keys().map(|file| (file.as_str(), self.reach(file))).collect();
         let mut seen = BTreeSet::new();
