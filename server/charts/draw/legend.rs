@@ -1,8 +1,8 @@
 //! A legend: one row of samples with their meaning.
 
 use crate::charts::draw::colour::SOFT_INK;
+use crate::charts::draw::geometry::Frame;
 use crate::charts::draw::marks::{arrow, band, cased, disc, dots, hatched, hollow, line, ring, square};
-use crate::charts::draw::panel::Frame;
 use crate::charts::draw::svg::{Svg, Type, fixed};
 use crate::charts::draw::text::{sentence, width};
 

@@ -3,11 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::charts::draw::colour::{HATCH, INK, PALE_GREY, PAPER};
-use crate::charts::draw::panel::Frame;
+use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::svg::{Svg, fixed};
-
-/// A point in px.
-pub(crate) type Point = (f64, f64);
 
 /// Many equal dots, as one path: a third of the bytes of circles.
 pub(crate) fn dots(svg: &mut Svg, points: impl Iterator<Item = Point>, radius: f64, colour: &str) {

@@ -1,8 +1,7 @@
 //! Drawing: SVG, text, scales, colours and marks, and SVG in pixels.
 
-pub mod cells;
-pub mod cividis;
 pub mod colour;
+pub mod geometry;
 pub mod legend;
 pub mod marks;
 pub mod number;

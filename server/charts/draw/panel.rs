@@ -1,6 +1,7 @@
 //! A panel: a frame with two axes, their grid, ticks and titles. What is drawn inside are marks.
 
 use crate::charts::draw::colour::{AXIS, GRID, INK, PAPER, SOFT_INK, ZERO};
+use crate::charts::draw::geometry::Frame;
 use crate::charts::draw::marks::line;
 use crate::charts::draw::number::raised;
 use crate::charts::draw::scale::{Range, Scale, Ticks, decades, ticks};
@@ -12,15 +13,6 @@ pub(crate) const TICK_SIZE: f64 = 12.0;
 
 /// Text of axis titles, px.
 pub(crate) const TITLE_SIZE: f64 = 13.5;
-
-/// Where the frame of a panel is, px.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Frame {
-    pub(crate) left: f64,
-    pub(crate) top: f64,
-    pub(crate) width: f64,
-    pub(crate) height: f64,
-}
 
 /// What an axis shows.
 #[derive(Clone, Copy, Debug)]

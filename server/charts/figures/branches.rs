@@ -1,10 +1,11 @@
 //! The picture of a branch of periodic orbits: largest angle against a parameter, stable solid, unstable dashed.
 
 use crate::charts::draw::colour::{BLUE, INK, SOFT_INK, VERMILION};
+use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::legend::{Sample, legend};
-use crate::charts::draw::marks::{Point, hollow, line};
+use crate::charts::draw::marks::{hollow, line};
 use crate::charts::draw::number::significant;
-use crate::charts::draw::panel::{Axis, Frame, Panel};
+use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
 use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Anchor, Type};

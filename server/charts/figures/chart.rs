@@ -3,9 +3,10 @@
 //! Not here: which curves, and what they mean.
 
 use crate::charts::draw::colour::{BLUE, GREEN, ORANGE, SOFT_INK, VERMILION};
+use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::legend::{Sample, legend};
-use crate::charts::draw::marks::{Point, dots, line, ring};
-use crate::charts::draw::panel::{Axis, Frame, Panel};
+use crate::charts::draw::marks::{dots, line, ring};
+use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
 use crate::charts::draw::sheet::{Sheet, Words};
 

@@ -2,10 +2,11 @@
 //! |λ| against the factor, with the factors between which it is stable.
 
 use crate::charts::draw::colour::{AXIS, BLUE, INK, PALE_BLUE, SOFT_INK, VERMILION};
+use crate::charts::draw::geometry::Frame;
 use crate::charts::draw::legend::{Sample, legend};
 use crate::charts::draw::marks::{arrow, band, disc, dots, hollow, line};
 use crate::charts::draw::number::significant;
-use crate::charts::draw::panel::{Axis, Frame, Panel};
+use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
 use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Anchor, Svg, Type};

@@ -1,10 +1,11 @@
 //! The picture of a verdict: eigenvalues on the unit circle with the way of the angle pair over κ, and |λ| against κ.
 
 use crate::charts::draw::colour::{AXIS, BLUE, INK, ORANGE, PALE_BLUE, SOFT_INK, VERMILION};
+use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::legend::{Sample, legend};
-use crate::charts::draw::marks::{Point, arrow, band, disc, hollow, line};
+use crate::charts::draw::marks::{arrow, band, disc, hollow, line};
 use crate::charts::draw::number::significant;
-use crate::charts::draw::panel::{Axis, Frame, Panel};
+use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
 use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Anchor, Svg, Type};

@@ -1,6 +1,5 @@
 //! Figures: one file for each kind of picture.
 
-pub mod boundary;
 pub mod branches;
 pub mod chart;
 pub mod closed_loop;

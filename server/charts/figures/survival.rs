@@ -2,9 +2,10 @@
 //! and how far from upright those are beneath.
 
 use crate::charts::draw::colour::{BLUE, GREEN, INK, LIGHT_GREEN, PALE_BLUE, PALE_GREEN, SOFT_INK};
+use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::legend::{Sample, legend};
-use crate::charts::draw::marks::{Point, area, line};
-use crate::charts::draw::panel::{Axis, Frame, Panel, TICK_SIZE};
+use crate::charts::draw::marks::{area, line};
+use crate::charts::draw::panel::{Axis, Panel, TICK_SIZE};
 use crate::charts::draw::scale::{Range, ticks};
 use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Anchor, Svg, Type};

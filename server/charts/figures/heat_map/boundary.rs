@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use crate::charts::draw::marks::Point;
-use crate::charts::draw::panel::Frame;
+use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::svg::fixed;
 
 /// Ends that round to the same place are one, places per px.

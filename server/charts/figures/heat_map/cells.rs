@@ -5,11 +5,11 @@
 
 use std::fmt::Write as _;
 
-use crate::charts::draw::cividis::{COLOURS, colour};
 use crate::charts::draw::colour::PALE_GREY;
+use crate::charts::draw::geometry::Frame;
 use crate::charts::draw::marks::hatch;
-use crate::charts::draw::panel::Frame;
 use crate::charts::draw::svg::{Svg, fixed};
+use crate::charts::figures::heat_map::cividis::{COLOURS, colour};
 
 /// Cells drawn along a side at most: one for every pixel of the frame.
 pub(crate) const MOST: usize = 512;

@@ -1,18 +1,22 @@
 //! The picture of a quantity over two fields of a scene, with the linear boundary over it. The cells themselves are drawn
 //! by `cells`, the boundary by `boundary`.
 
-use crate::charts::draw::cells::{Cells, MOST, Side};
-use crate::charts::draw::cividis::{COLOURS, colour};
+pub mod boundary;
+pub mod cells;
+pub mod cividis;
+
 use crate::charts::draw::colour::{AXIS, INK, SOFT_INK};
+use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::legend::{Sample, legend};
-use crate::charts::draw::marks::{Point, cased, line};
+use crate::charts::draw::marks::{cased, line};
 use crate::charts::draw::number::significant;
-use crate::charts::draw::panel::{Axis, Frame, Panel, TICK_SIZE, TITLE_SIZE, title};
+use crate::charts::draw::panel::{Axis, Panel, TICK_SIZE, TITLE_SIZE, title};
 use crate::charts::draw::scale::{Range, Scale, Ticks, ticks};
 use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Anchor, Svg, Type, fixed};
 use crate::charts::draw::text::{Span, width};
-use crate::charts::figures::boundary;
+use crate::charts::figures::heat_map::cells::{Cells, MOST, Side};
+use crate::charts::figures::heat_map::cividis::{COLOURS, colour};
 
 /// Segments of the boundary drawn at most.
 const MOST_SEGMENTS: usize = 40_000;
