@@ -20,7 +20,7 @@ use serde::Serialize;
 use tokio::task::yield_now;
 use tokio::time::timeout;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::api::controllers::controllers;
 use crate::api::ensembles::ensembles;
 use crate::api::jacobians::jacobians;

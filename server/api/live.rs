@@ -11,7 +11,7 @@ use axum::response::{IntoResponse, Response, Sse};
 use axum::routing::get;
 use futures_util::{SinkExt, StreamExt};
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::compute::{Counted, NoShare, Share};
 use crate::http::security::origin;
 use crate::http::{Ask, Format, Problem, Resource};

@@ -9,10 +9,11 @@ use axum::http::Response;
 use axum::routing::get;
 use equipoise_physics::surveys::ensemble::{Runs, quantiles};
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::api::ensembles::answer::{Answer, Request};
 use crate::api::shared::progress;
 use crate::api::shared::progress::Progress;
+use crate::api::shared::write;
 use crate::compute::{Turn, Turns};
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
 use crate::limits;
@@ -36,7 +37,7 @@ pub(crate) async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Respon
     app.config.limits.of_answer().admit(request.angles())?;
     app.config.limits.of_ensemble_work().admit(request.price())?;
     let rest = (ensemble.runs, ensemble.impacts, request.tile, request.angles);
-    let canonical = crate::api::canonical(&ensemble.scene, &rest);
+    let canonical = write::canonical(&ensemble.scene, &rest);
     let metrics = app.metrics.clone();
     ask.respond_in_turns(&app.pool, &RESOURCE, &canonical, &STREAMED, move |format, turns: &Turns, out: &mut Outlet| {
         // A matter of the request alone, not that it would show.
@@ -75,11 +76,11 @@ pub(crate) async fn ensembles(State(app): State<App>, ask: Ask) -> Result<Respon
         turns.take(|turn| {
             let answer = Answer::new(&request, &runs, sorted, &found);
             let bytes = match format {
-                Format::Csv => crate::api::csv(&answer.rows(), turn)?,
-                Format::Ndjson => crate::api::ndjson(&answer.rows(), answer.summary(), turn)?,
-                Format::Progress => progress::end(&crate::api::json(&answer, turn)?),
-                Format::Svg | Format::Png => crate::api::picture(answer.to_picture(), format, turn)?,
-                _ => crate::api::json(&answer, turn)?,
+                Format::Csv => write::csv(&answer.rows(), turn)?,
+                Format::Ndjson => write::ndjson(&answer.rows(), answer.summary(), turn)?,
+                Format::Progress => progress::end(&write::json(&answer, turn)?),
+                Format::Svg | Format::Png => write::picture(answer.to_picture(), format, turn)?,
+                _ => write::json(&answer, turn)?,
             };
             Ok(out.send_whole(bytes, turn)?)
         })?

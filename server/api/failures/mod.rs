@@ -9,8 +9,9 @@ use axum::http::Response;
 use axum::routing::get;
 use serde::Serialize;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::api::failures::answer::Failure;
+use crate::api::shared::write;
 use crate::charts::chart;
 use crate::compute::{Cancelled, Price, Turn};
 use crate::failure_cases;
@@ -33,7 +34,7 @@ async fn failures(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Pr
     ask.respond(&app.pool, &RESOURCE, b"", price, move |_, turn: &Turn| {
         // Every case is a few milliseconds, and between two of them somebody may have gone away.
         let each = CASES.iter().map(|case| if turn.go_on() { Some(Failure::compute(case)) } else { None });
-        crate::api::json(&Failures { failures: each.collect::<Option<_>>().ok_or(Cancelled)? }, turn)
+        write::json(&Failures { failures: each.collect::<Option<_>>().ok_or(Cancelled)? }, turn)
     })
     .await
 }
@@ -47,8 +48,8 @@ async fn failure(State(app): State<App>, Path(name): Path<String>, ask: Ask) -> 
     ask.read(|_| Some(()))?;
     let price = Price::bounces(case.price);
     ask.respond(&app.pool, &RESOURCE, case.name.as_bytes(), price, move |format, turn: &Turn| match format {
-        Format::Svg | Format::Png => crate::api::picture(chart(&case.picture()), format, turn),
-        _ => crate::api::json(&Failure::compute(case), turn),
+        Format::Svg | Format::Png => write::picture(chart(&case.picture()), format, turn),
+        _ => write::json(&Failure::compute(case), turn),
     })
     .await
 }

@@ -9,9 +9,10 @@ use axum::http::Response;
 use axum::routing::get;
 use equipoise_physics::stability::fixed_point::JUDGED;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::api::jacobians::answer::{At, Jacobian, Method, price};
 use crate::api::scene::resolved;
+use crate::api::shared::write;
 use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 use crate::limits;
@@ -34,7 +35,7 @@ pub(crate) async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Respon
         Some((scene?, at?, period, method))
     })?;
     let price = Price::bounces(price(&scene, at, period, method)).within(&app.config.limits.of_work())?;
-    let canonical = crate::api::canonical(&scene, &(at, period, method));
+    let canonical = write::canonical(&scene, &(at, period, method));
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
         let jacobian = match Jacobian::compute(&scene, at, period, method, || turn.go_on()) {
@@ -44,9 +45,9 @@ pub(crate) async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Respon
         };
         metrics.bounces.inc_by(period);
         match format {
-            Format::Csv => crate::api::csv(&jacobian.to_table(), turn),
-            Format::Ndjson => crate::api::ndjson(&jacobian.to_table(), &jacobian, turn),
-            _ => crate::api::json(&jacobian, turn),
+            Format::Csv => write::csv(&jacobian.to_table(), turn),
+            Format::Ndjson => write::ndjson(&jacobian.to_table(), &jacobian, turn),
+            _ => write::json(&jacobian, turn),
         }
     })
     .await

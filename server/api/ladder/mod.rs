@@ -8,9 +8,10 @@ use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::api::ladder::answer::{Ladder, Request};
 use crate::api::scene::resolved;
+use crate::api::shared::write;
 use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 
@@ -28,15 +29,15 @@ pub(crate) async fn ladder(State(app): State<App>, ask: Ask) -> Result<Response<
         Some((scene?, request))
     })?;
     let price = Price::bounces(request.price(&scene)).within(&app.config.limits.of_work())?;
-    let canonical = crate::api::canonical(&scene, &request);
+    let canonical = write::canonical(&scene, &request);
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
         let ladder = Ladder::compute(&scene, &request, || turn.go_on()).ok_or(Cancelled)?;
         metrics.bounces.inc_by(ladder.bounces());
         match format {
-            Format::Csv => crate::api::csv(&ladder.to_table(), turn),
-            Format::Ndjson => crate::api::ndjson(&ladder.to_table(), &ladder.end(), turn),
-            _ => crate::api::json(&ladder, turn),
+            Format::Csv => write::csv(&ladder.to_table(), turn),
+            Format::Ndjson => write::ndjson(&ladder.to_table(), &ladder.end(), turn),
+            _ => write::json(&ladder, turn),
         }
     })
     .await

@@ -6,7 +6,7 @@ use axum::Router;
 use axum::http::HeaderMap;
 use axum::routing::get;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::http::response::static_asset::Fixed;
 
 static YAML: LazyLock<Fixed> =

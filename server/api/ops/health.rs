@@ -8,7 +8,7 @@ use axum::{Json, Router};
 use serde_json::json;
 
 use crate::BUILD;
-use crate::api::App;
+use crate::api::app::App;
 use crate::http::Problem;
 
 /// The two of them.

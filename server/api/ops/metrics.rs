@@ -1,14 +1,9 @@
-//! `/metrics`: what the server counts, as Prometheus text.
+//! Everything that the server counts, and its texts for Prometheus.
 
 use std::collections::BTreeMap;
-use std::io::Write;
+use std::fmt;
 use std::time::Duration;
 
-use axum::Router;
-use axum::extract::State;
-use axum::http::{HeaderMap, HeaderValue, header};
-use axum::response::{IntoResponse, Response};
-use axum::routing::get;
 use prometheus_client::encoding::EncodeLabelSet;
 use prometheus_client::encoding::text::encode;
 use prometheus_client::metrics::counter::Counter;
@@ -19,15 +14,7 @@ use prometheus_client::metrics::info::Info;
 use prometheus_client::registry::Registry;
 
 use crate::BUILD;
-use crate::api::App;
 use crate::compute::Pool;
-use crate::http::Problem;
-use crate::http::response::negotiate;
-
-/// The resource.
-pub fn routes() -> Router<App> {
-    Router::new().route("/metrics", get(scrape))
-}
 
 /// Everything that is counted.
 #[derive(Debug)]
@@ -88,34 +75,21 @@ impl Metrics {
         self.durations.get_or_create(&place).observe(duration.as_secs_f64());
         self.requests.get_or_create(&Request { method: place.method, route: place.route, status }).inc();
     }
-}
 
-/// What Prometheus asks for by name.
-const OPEN_METRICS: &str = "application/openmetrics-text";
-
-async fn scrape(State(app): State<App>, headers: HeaderMap) -> Result<Response, Problem> {
-    let mut text = String::new();
-    encode(&mut text, &app.metrics.registry).map_err(|error| {
-        let _ = writeln!(std::io::stderr(), "equipoise: cannot write metrics: {error}");
-        Problem::internal()
-    })?;
-    let media_type = if negotiate::list(&headers, &header::ACCEPT).to_ascii_lowercase().contains(OPEN_METRICS) {
-        "application/openmetrics-text; version=1.0.0; charset=utf-8"
-    } else {
-        text = plain(&text);
-        "text/plain; version=0.0.4; charset=utf-8"
-    };
-    let headers = [
-        (header::CONTENT_TYPE, HeaderValue::from_static(media_type)),
-        (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
-        (header::VARY, HeaderValue::from_static("Accept")),
-    ];
-    Ok((headers, text).into_response())
+    /// All of it as OpenMetrics.
+    ///
+    /// # Errors
+    /// Those of the encoder.
+    pub fn to_open_metrics(&self) -> Result<String, fmt::Error> {
+        let mut text = String::new();
+        encode(&mut text, &self.registry)?;
+        Ok(text)
+    }
 }
 
 /// OpenMetrics as the older text that every other collector reads: there a family has the name of its samples, an info is
 /// a gauge, and the end is not marked.
-fn plain(open_metrics: &str) -> String {
+pub(crate) fn plain(open_metrics: &str) -> String {
     let families = open_metrics.lines().filter_map(|line| line.strip_prefix("# TYPE ")?.split_once(' '));
     let families: BTreeMap<&str, &str> = families.collect();
     let mut text = String::new();
@@ -147,8 +121,7 @@ mod tests {
         metrics.answered("GET", "/v1/scenes", 200, Duration::from_millis(1));
         metrics.answered("BREW", "none", 405, Duration::from_millis(1));
         metrics.bounces.inc_by(7);
-        let mut text = String::new();
-        encode(&mut text, &metrics.registry).unwrap();
+        let text = metrics.to_open_metrics().unwrap();
         for line in [
             "equipoise_requests_total{method=\"GET\",route=\"/v1/scenes\",status=\"200\"} 1",
             "equipoise_requests_total{method=\"other\",route=\"none\",status=\"405\"} 1",

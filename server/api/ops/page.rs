@@ -10,7 +10,7 @@ use axum::response::Redirect;
 use axum::routing::get;
 use tower_http::set_header::SetResponseHeaderLayer;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::http::Problem;
 use crate::http::response::static_asset::Fixed;
 

@@ -8,9 +8,10 @@ use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::api::periodic_orbits::answer::{PeriodicOrbits, Request};
 use crate::api::scene::resolved;
+use crate::api::shared::write;
 use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 
@@ -31,7 +32,7 @@ pub(crate) async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<
         Some((scene?, request?))
     })?;
     let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
-    let canonical = crate::api::canonical(&scene, &request);
+    let canonical = write::canonical(&scene, &request);
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
         let orbits = match PeriodicOrbits::compute(&scene, &request, || turn.go_on()) {
@@ -41,15 +42,15 @@ pub(crate) async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<
         };
         metrics.bounces.inc_by(orbits.bounces());
         match format {
-            Format::Csv => crate::api::csv(orbits.to_table(), turn),
-            Format::Ndjson => crate::api::ndjson(orbits.to_table(), &orbits.end(), turn),
+            Format::Csv => write::csv(orbits.to_table(), turn),
+            Format::Ndjson => write::ndjson(orbits.to_table(), &orbits.end(), turn),
             Format::Svg | Format::Png => {
                 let picture = orbits.to_picture();
                 let picture =
                     picture.ok_or_else(|| Problem::invalid_at("/sweep", "the picture is of a branch; give a sweep"))?;
-                crate::api::picture(picture, format, turn)
+                write::picture(picture, format, turn)
             }
-            _ => crate::api::json(&orbits, turn),
+            _ => write::json(&orbits, turn),
         }
     })
     .await

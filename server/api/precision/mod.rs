@@ -8,11 +8,12 @@ use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::api::precision::answer::{Precision, Request};
 use crate::api::scene::resolved;
 use crate::api::shared::progress;
 use crate::api::shared::progress::Progress;
+use crate::api::shared::write;
 use crate::compute::Turn;
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
 
@@ -47,11 +48,11 @@ pub(crate) async fn precision(State(app): State<App>, ask: Ask) -> Result<Respon
         let precision = Precision::compute(&scene, &request, &mut tell, turn)?;
         metrics.bounces.inc_by(precision.bounces());
         let bytes = match format {
-            Format::Csv => crate::api::csv(&precision.to_table(), turn)?,
-            Format::Ndjson => crate::api::ndjson(&precision.to_table(), &precision.end(), turn)?,
-            Format::Progress => progress::end(&crate::api::json(&precision, turn)?),
-            Format::Svg | Format::Png => crate::api::picture(precision.to_picture(), format, turn)?,
-            _ => crate::api::json(&precision, turn)?,
+            Format::Csv => write::csv(&precision.to_table(), turn)?,
+            Format::Ndjson => write::ndjson(&precision.to_table(), &precision.end(), turn)?,
+            Format::Progress => progress::end(&write::json(&precision, turn)?),
+            Format::Svg | Format::Png => write::picture(precision.to_picture(), format, turn)?,
+            _ => write::json(&precision, turn)?,
         };
         Ok(out.send_whole(bytes, turn)?)
     };

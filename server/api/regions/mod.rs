@@ -9,10 +9,11 @@ use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::api::regions::answer::{Answer, Request};
 use crate::api::regions::rows::Rows;
 use crate::api::scene::resolved::Resolved;
+use crate::api::shared::write;
 use crate::compute::{Cancelled, Turn, Turns};
 use crate::http::{Ask, Format, Outlet, Problem, Resource};
 
@@ -34,7 +35,7 @@ pub(crate) async fn regions(State(app): State<App>, ask: Ask) -> Result<Response
     let region = request.region;
     let sides = [region.x, region.y].map(|axis| (axis.name.row().path, axis.from, axis.to, axis.count));
     let rest = (sides, region.impacts, region.quantity as u8, request.tile);
-    let canonical = crate::api::canonical_of(&(Resolved(&request.scene), rest));
+    let canonical = write::canonical_of(&(Resolved(&request.scene), rest));
     let metrics = app.metrics.clone();
     ask.respond_in_turns(&app.pool, &RESOURCE, &canonical, &STREAMED, move |format, turns: &Turns, out: &mut Outlet| {
         let (cells, block) = (request.numbers(), request.block_cells());
@@ -57,8 +58,8 @@ pub(crate) async fn regions(State(app): State<App>, ask: Ask) -> Result<Response
         turns.take(|turn| {
             let answer = Answer::new(request, all, || turn.go_on()).ok_or(Cancelled)?;
             let bytes = match format {
-                Format::Svg | Format::Png => crate::api::picture(answer.to_picture(), format, turn)?,
-                _ => crate::api::json(&answer, turn)?,
+                Format::Svg | Format::Png => write::picture(answer.to_picture(), format, turn)?,
+                _ => write::json(&answer, turn)?,
             };
             Ok(out.send_whole(bytes, turn)?)
         })?

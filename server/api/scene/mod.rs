@@ -12,8 +12,9 @@ use axum::http::Response;
 use axum::routing::get;
 use serde::Serialize;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::api::scene::fields::Fields;
+use crate::api::shared::write;
 use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 
@@ -62,6 +63,6 @@ async fn fixed<T: Serialize>(
     const RESOURCE: Resource = Resource { name: "fixed", formats: &[Format::Json] };
     ask.read(|_| Some(()))?;
     let price = Price::bounces(price);
-    let compute = move |_, turn: &Turn| crate::api::json(&answer(turn).ok_or(Cancelled)?, turn);
+    let compute = move |_, turn: &Turn| write::json(&answer(turn).ok_or(Cancelled)?, turn);
     ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), price, compute).await
 }

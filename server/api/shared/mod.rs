@@ -5,3 +5,4 @@ pub mod outcome;
 pub mod progress;
 pub mod table;
 pub mod tile;
+pub mod write;

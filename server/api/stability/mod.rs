@@ -10,8 +10,9 @@ use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
 
-use crate::api::App;
+use crate::api::app::App;
 use crate::api::scene::resolved;
+use crate::api::shared::write;
 use crate::api::stability::answer::{Request, Stability};
 use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
@@ -31,16 +32,16 @@ pub(crate) async fn stability(State(app): State<App>, ask: Ask) -> Result<Respon
         Some((scene?, request))
     })?;
     let price = Price::bounces(Stability::price(&scene, &request)).within(&app.config.limits.of_work())?;
-    let canonical = crate::api::canonical(&scene, &request.canonical());
+    let canonical = write::canonical(&scene, &request.canonical());
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
         let stability = Stability::compute(&scene, &request, || turn.go_on()).ok_or(Cancelled)?;
         metrics.bounces.inc_by(stability.bounces());
         match format {
-            Format::Csv => crate::api::csv(&stability.to_table(), turn),
-            Format::Ndjson => crate::api::ndjson(&stability.to_table(), &stability.end(), turn),
-            Format::Svg | Format::Png => crate::api::picture(stability.to_picture(), format, turn),
-            _ => crate::api::json(&stability, turn),
+            Format::Csv => write::csv(&stability.to_table(), turn),
+            Format::Ndjson => write::ndjson(&stability.to_table(), &stability.end(), turn),
+            Format::Svg | Format::Png => write::picture(stability.to_picture(), format, turn),
+            _ => write::json(&stability, turn),
         }
     })
     .await

@@ -10,7 +10,8 @@ use axum::http::Response;
 use axum::routing::get;
 use equipoise_physics::run::orbit::Contact;
 
-use crate::api::App;
+use crate::api::app::App;
+use crate::api::shared::write;
 use crate::api::trajectories::answer::{Request, Trajectory};
 use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
@@ -33,7 +34,7 @@ pub(crate) async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Res
     })?;
     app.config.limits.of_answer().admit(request.numbers())?;
     let price = Price::bounces(request.price(run.scene())).within(&app.config.limits.of_work())?;
-    let canonical = crate::api::canonical(run.scene(), &(request, run_url::url(&run)));
+    let canonical = write::canonical(run.scene(), &(request, run_url::url(&run)));
     let metrics = app.metrics.clone();
     ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
         let mut course = Course::up_to(&run, request.impacts);
@@ -48,10 +49,10 @@ pub(crate) async fn trajectories(State(app): State<App>, ask: Ask) -> Result<Res
         };
         metrics.bounces.inc_by(trajectory.outcome.impacts);
         match format {
-            Format::Csv => crate::api::csv(&trajectory.impacts, turn),
-            Format::Ndjson => crate::api::ndjson(&trajectory.impacts, &trajectory.end(), turn),
-            Format::Svg | Format::Png => crate::api::picture(trajectory.to_picture(), format, turn),
-            _ => crate::api::json(&trajectory, turn),
+            Format::Csv => write::csv(&trajectory.impacts, turn),
+            Format::Ndjson => write::ndjson(&trajectory.impacts, &trajectory.end(), turn),
+            Format::Svg | Format::Png => write::picture(trajectory.to_picture(), format, turn),
+            _ => write::json(&trajectory, turn),
         }
     })
     .await

@@ -1,0 +1,69 @@
+//! Writes answers: JSON, tables as CSV and NDJSON, pictures, and the canonical form of a request.
+
+use equipoise_physics::scene::Scene;
+use serde::Serialize;
+
+use crate::api::scene::resolved::Resolved;
+use crate::api::shared::table::Table;
+use crate::charts::{NoPixels, png};
+use crate::compute::{Cancelled, Turn};
+use crate::http::output::written;
+use crate::http::{Format, Problem};
+
+/// An answer as JSON.
+pub(crate) fn json(answer: &impl Serialize, turn: &Turn) -> Result<Vec<u8>, Problem> {
+    written(&|| turn.go_on(), |out| Ok(serde_json::to_writer(out, answer)?))
+}
+
+/// A table as CSV.
+pub(crate) fn csv(table: &Table, turn: &Turn) -> Result<Vec<u8>, Problem> {
+    written(&|| turn.go_on(), |out| table.write_csv(out))
+}
+
+/// A table as NDJSON, with `end` in its last line.
+pub(crate) fn ndjson(table: &Table, end: &impl Serialize, turn: &Turn) -> Result<Vec<u8>, Problem> {
+    written(&|| turn.go_on(), |out| table.write_ndjson(end, out))
+}
+
+/// A picture as SVG, or in pixels.
+pub(crate) fn picture(svg: String, format: Format, turn: &Turn) -> Result<Vec<u8>, Problem> {
+    if format == Format::Svg {
+        return Ok(svg.into_bytes());
+    }
+    png(&svg, || turn.go_on()).map_err(|none| match none {
+        NoPixels::Cancelled => Cancelled.into(),
+        NoPixels::Unfit => Problem::internal(),
+    })
+}
+
+/// A request with all defaults filled in: the scene, and the rest of what determines the answer.
+pub(crate) fn canonical(scene: &Scene, rest: &impl Serialize) -> Vec<u8> {
+    canonical_of(&(Resolved(scene), rest))
+}
+
+/// Canonical form of a request that is not a scene and the rest.
+pub(crate) fn canonical_of(request: &impl Serialize) -> Vec<u8> {
+    // Writing to memory does not fail.
+    serde_json::to_vec(request).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::api::shared::table::{Cells, Column};
+    use equipoise_physics::numbers::double_double::DoubleDouble;
+
+    #[test]
+    fn a_large_table_is_not_written_for_nobody() {
+        let cells = Cells::Decimals(vec![Some(DoubleDouble::from(0.1)); 100_000]);
+        let table = Table(vec![Column { name: "t", unit: "s", cells }]);
+        type Way = fn(&Table, &Turn) -> Result<Vec<u8>, Problem>;
+        let ways: [Way; 3] = [|table, turn| json(table, turn), csv, |table, turn| ndjson(table, &"end", turn)];
+        for write in ways {
+            let turn = Turn::alone();
+            assert!(write(&table, &turn).unwrap().len() > 3_000_000);
+            turn.cancel().set();
+            assert_eq!(write(&table, &turn).unwrap_err().status(), 503);
+        }
+    }
+}
