@@ -9,7 +9,7 @@ use equipoise_physics::scene::model::Model;
 use serde::{Serialize, Serializer};
 
 use crate::BUILD;
-use crate::api::scene::resolved::{Resolved, has_angle};
+use crate::api::scene::{Resolved, has_angle};
 use crate::api::shared::outcome::Outcome;
 use crate::api::trajectories::answer::{Choice, DemandAnswer};
 use crate::http::{FieldError, Problem};

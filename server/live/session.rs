@@ -14,7 +14,7 @@ use prometheus_client::metrics::histogram::Histogram;
 use tokio::sync::mpsc;
 use tokio::time::{sleep_until, timeout};
 
-use crate::api::scene::resolved::has_angle;
+use crate::api::scene::has_angle;
 use crate::compute::{Limit, Pool, Turn};
 use crate::http::{FieldError, Problem};
 use crate::limits;

@@ -11,7 +11,7 @@ use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::table::actuator_load::{Demand, Meter};
 
-use crate::api::scene::resolved::has_angle;
+use crate::api::scene::has_angle;
 use crate::api::shared::outcome::Outcome;
 use crate::compute::{Cancelled, Limit, OverBudget, Price, Turn};
 use crate::http::Problem;

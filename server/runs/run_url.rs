@@ -6,7 +6,7 @@ use equipoise_physics::scene::{FIELDS, Name, Value as FieldValue, field};
 use form_urlencoded::Serializer;
 use serde_json::{Map, Value};
 
-use crate::api::scene::resolved;
+use crate::api::scene::{has_angle, read_scene, read_value, scene_to_query, value_to_json};
 use crate::http::request::reader::join;
 use crate::http::request::scalar;
 use crate::http::request::scalar::{LARGEST_EXACT, Source};
@@ -39,7 +39,7 @@ pub struct Asked {
 
 /// Reads a run, released now, unix ms, unless it says when. None if something is wrong; then it is in the errors.
 pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<Asked> {
-    let scene = resolved::read(reader);
+    let scene = read_scene(reader);
     let speed = reader.number("speed", SPEEDS, "").unwrap_or(1.0);
     let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
     // Of a run that begins with this request, nothing is missed.
@@ -68,7 +68,7 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<Asked> {
 
 /// Reads a run that has no clock: a scene and what is done to it. None if something is wrong; then it is in the errors.
 pub fn read_unclocked(reader: &mut Reader<'_, '_>) -> Option<Run> {
-    let scene = resolved::read(reader);
+    let scene = read_scene(reader);
     let interventions = read_interventions(reader);
     let mut run = Run::new(scene?, Clock::new(0, 1.0));
     apply_all(&mut run, interventions, reader);
@@ -106,7 +106,7 @@ fn apply(
         }
     }
     if let Some(kick) = kick {
-        if kick.theta_dot != 0.0 && !resolved::has_angle(run.scene()) {
+        if kick.theta_dot != 0.0 && !has_angle(run.scene()) {
             errors.push(format!("{pointer}/kick/theta_dot"), NO_ANGLE);
         } else if let Err(detail) = run.kick(impact, kick) {
             errors.push(pointer, detail);
@@ -198,7 +198,7 @@ fn read_group(
         let path = if group.is_empty() { key.clone() } else { format!("{group}.{key}") };
         let pointer = join(pointer, key);
         if let Some(row) = field(&path) {
-            match refusal(row).map_or_else(|| resolved::read_value(row, value, source), Err) {
+            match refusal(row).map_or_else(|| read_value(row, value, source), Err) {
                 Ok(Some(value)) => set.push((row.name, value)),
                 Ok(None) => errors.push(pointer, format!("{path} is null; give a value")),
                 Err(error) if row.live => errors.push(pointer, format!("{} {error}", row.key())),
@@ -221,7 +221,7 @@ pub fn url(run: &Run) -> String {
     let start = format!("{PATH}?");
     let length = start.len();
     let mut query = Serializer::for_suffix(start, length);
-    query.extend_pairs(resolved::to_query(run.scene()));
+    query.extend_pairs(scene_to_query(run.scene()));
     query.append_pair("speed", &number(run.clock.first_speed()));
     query.append_pair("epoch", &run.clock.epoch().to_string());
     for (index, intervention) in run.interventions().iter().enumerate() {
@@ -261,7 +261,7 @@ fn number(value: f64) -> String {
 }
 
 fn value_text(value: FieldValue) -> String {
-    match resolved::value_to_json(value) {
+    match value_to_json(value) {
         Value::String(text) => text,
         other => other.to_string(),
     }
@@ -332,7 +332,7 @@ mod tests {
                 match did {
                     Did::Set(name, value) => drop(run.set(impact, &[(name, FieldValue::Number(value))])),
                     Did::Kick(x_dot, y_dot, theta_dot) => {
-                        let theta_dot = if resolved::has_angle(&scene) { theta_dot } else { 0.0 };
+                        let theta_dot = if has_angle(&scene) { theta_dot } else { 0.0 };
                         run.kick(impact, Kick { x_dot, y_dot, theta_dot }).unwrap();
                     }
                     Did::Pause => run.clock.pause(wall),

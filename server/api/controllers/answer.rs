@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use crate::api::jacobians::answer::Eigenvalue;
-use crate::api::scene::resolved::{build, read_draft, to_json, to_query};
+use crate::api::scene::{build_scene, read_draft, scene_to_json, scene_to_query};
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::stability::answer;
 use crate::api::trajectories::answer::Choice;
@@ -60,7 +60,7 @@ impl Request {
             set(&mut draft, Name::TiltGain, Some(1.0));
         }
         let pointer = reader.pointer_to("scene");
-        let scene = build(draft, &pointer, reader.errors())?;
+        let scene = build_scene(draft, &pointer, reader.errors())?;
         let grip = match sticks {
             None => scene.grip(),
             Some(false) => Grip::Smooth,
@@ -212,7 +212,7 @@ impl Controller {
         let first = usize::from(!with_x);
         let energy_eigenvalue = 1.0 - rod.strike_gain_per_energy * place.speed * place.speed;
         let mut answer = Self {
-            scene: to_json(&designed),
+            scene: scene_to_json(&designed),
             model: Choice::model(&designed),
             weights: Weights { state: state.into(), input },
             state_order: &STATE[first..],
@@ -427,7 +427,7 @@ fn region(scene: &Scene, place: &FixedPoint) -> String {
     let spin: f64 = format!("{:.1e}", 1.0 / place.flight_time).parse().unwrap_or(1.0);
     let spin = spin.clamp(0.01, 200.0);
     let mut query = form_urlencoded::Serializer::new(String::new());
-    query.extend_pairs(to_query(scene));
+    query.extend_pairs(scene_to_query(scene));
     for (name, parameter, end) in [("x", "release.theta", 0.8), ("y", "release.theta_dot", spin)] {
         query.append_pair(&format!("{name}.parameter"), parameter);
         query.append_pair(&format!("{name}.from"), &(-end).to_string());

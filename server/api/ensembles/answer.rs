@@ -8,7 +8,7 @@ use equipoise_physics::scene::{Kind, Name, Scene, Value};
 use equipoise_physics::surveys::ensemble::{Ensemble, Runs, SHARES, Survival, late_half_life, median_impacts};
 use serde::{Serialize, Serializer};
 
-use crate::api::scene::resolved::{Resolved, bounce_price, build, has_angle, read_draft};
+use crate::api::scene::{Resolved, bounce_price, build_scene, has_angle, read_draft};
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::shared::tile::Tile;
 use crate::api::trajectories::answer::Choice;
@@ -51,7 +51,7 @@ impl Request {
             return None;
         }
         let pointer = reader.pointer_to("scene");
-        let scene = build(draft, &pointer, reader.errors())?;
+        let scene = build_scene(draft, &pointer, reader.errors())?;
         let ensemble = Ensemble { scene, runs, impacts, angle_contacts: limits::ENSEMBLE_ANGLE_CONTACTS };
         Some(Self { ensemble, tile: tile?, angles })
     }

@@ -4,7 +4,7 @@ use crate::failure_cases::{Case, Says};
 use equipoise_physics::scene::{FIELDS, Scene};
 use serde::Serialize;
 
-use crate::api::scene::resolved::{Resolved, value_to_json};
+use crate::api::scene::{Resolved, value_to_json};
 
 /// A case.
 #[derive(Debug, Serialize)]

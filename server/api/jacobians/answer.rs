@@ -10,7 +10,7 @@ use equipoise_physics::stability::linear_verdict::Class;
 use nalgebra::{Complex, DMatrix};
 use serde::{Serialize, Serializer};
 
-use crate::api::scene::resolved::{Resolved, bounce_price, has_angle};
+use crate::api::scene::{Resolved, bounce_price, has_angle};
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::trajectories::answer::{Choice, Refused};

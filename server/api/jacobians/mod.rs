@@ -11,7 +11,7 @@ use equipoise_physics::stability::fixed_point::JUDGED;
 
 use crate::api::app::App;
 use crate::api::jacobians::answer::{At, Jacobian, Method, price};
-use crate::api::scene::resolved;
+use crate::api::scene::read_scene_within;
 use crate::api::shared::write;
 use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
@@ -26,7 +26,7 @@ pub fn routes() -> Router<App> {
 
 pub(crate) async fn jacobians(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, at, period, method) = ask.read(|reader| {
-        let scene = resolved::read_within(reader, &JUDGED);
+        let scene = read_scene_within(reader, &JUDGED);
         let at = At::read(reader);
         let period = reader.integer("period", 1..=limits::PERIOD).unwrap_or(1);
         let method = reader

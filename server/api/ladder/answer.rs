@@ -5,7 +5,7 @@ use equipoise_physics::scene::model::Rung;
 use equipoise_physics::scene::model_hierarchy::{Change, Largest, Run, Step};
 use serde::Serialize;
 
-use crate::api::scene::resolved::Resolved;
+use crate::api::scene::Resolved;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::trajectories::answer::{DemandAnswer, ForcedAnswer, linear_price};
@@ -146,7 +146,7 @@ impl<'a> Ladder<'a> {
             rungs.push(RungAnswer {
                 name: rung.name(),
                 forced: forced.map(ForcedAnswer::from),
-                scene: crate::api::scene::resolved::to_json(&scene),
+                scene: crate::api::scene::scene_to_json(&scene),
                 reason,
                 outcome,
                 demand,

@@ -10,7 +10,7 @@ use axum::routing::get;
 
 use crate::api::app::App;
 use crate::api::ladder::answer::{Ladder, Request};
-use crate::api::scene::resolved;
+use crate::api::scene::read_scene;
 use crate::api::shared::write;
 use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
@@ -24,7 +24,7 @@ pub fn routes() -> Router<App> {
 
 pub(crate) async fn ladder(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, request) = ask.read(|reader| {
-        let scene = resolved::read(reader);
+        let scene = read_scene(reader);
         let request = Request::read(reader);
         Some((scene?, request))
     })?;

@@ -7,7 +7,7 @@ use nalgebra::Complex;
 use serde::{Serialize, Serializer};
 
 use crate::api::jacobians::answer::{Eigenvalue, read_state};
-use crate::api::scene::resolved::Resolved;
+use crate::api::scene::Resolved;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::trajectories::answer::Choice;
 use crate::charts::{Branches, Change as Mark, branches};

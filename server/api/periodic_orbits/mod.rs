@@ -10,7 +10,7 @@ use axum::routing::get;
 
 use crate::api::app::App;
 use crate::api::periodic_orbits::answer::{PeriodicOrbits, Request};
-use crate::api::scene::resolved;
+use crate::api::scene::read_frictionless_scene;
 use crate::api::shared::write;
 use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
@@ -27,7 +27,7 @@ pub fn routes() -> Router<App> {
 
 pub(crate) async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, request) = ask.read(|reader| {
-        let scene = resolved::read_frictionless(reader);
+        let scene = read_frictionless_scene(reader);
         let request = Request::read(reader);
         Some((scene?, request?))
     })?;

@@ -3,7 +3,7 @@
 use equipoise_physics::scene::Scene;
 use serde::Serialize;
 
-use crate::api::scene::resolved::Resolved;
+use crate::api::scene::Resolved;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::trajectories::answer::Choice;
 use crate::charts::{Series, SpeedAccuracy, speed_accuracy};

@@ -9,7 +9,7 @@ use equipoise_physics::surveys::stability_map;
 use equipoise_physics::surveys::stability_map::{Axis, Cell, Quantity, Region};
 use serde::{Serialize, Serializer};
 
-use crate::api::scene::resolved::{Resolved, build, read_draft};
+use crate::api::scene::{Resolved, build_scene, read_draft};
 use crate::api::shared::tile::Tile;
 use crate::charts::{HeatAxis, HeatMap, heat_map};
 use crate::http::problem::shortened;
@@ -64,7 +64,7 @@ impl Request {
                 // Within its range, so it is admitted.
                 let _ = draft.set(axis.name, Some(equipoise_physics::scene::Value::Number(axis.from)));
             }
-            build(draft, &reader.pointer_to("scene"), &mut errors);
+            build_scene(draft, &reader.pointer_to("scene"), &mut errors);
             let problem = errors.into_result().err();
             for error in problem.iter().flat_map(|problem| problem.errors()) {
                 reader

@@ -12,7 +12,7 @@ use axum::routing::get;
 use crate::api::app::App;
 use crate::api::regions::answer::{Answer, Request};
 use crate::api::regions::rows::Rows;
-use crate::api::scene::resolved::Resolved;
+use crate::api::scene::Resolved;
 use crate::api::shared::write;
 use crate::compute::{Cancelled, Turn, Turns};
 use crate::http::{Ask, Format, Outlet, Problem, Resource};

@@ -4,7 +4,7 @@ use equipoise_physics::scene::{FIELDS, Field, Kind};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::api::scene::resolved::value_to_json;
+use crate::api::scene::write::value_to_json;
 
 /// `GET /v1/fields`.
 #[derive(Debug, Clone, Serialize)]

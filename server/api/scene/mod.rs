@@ -1,9 +1,12 @@
-//! `scenes` and `fields`: what there is to start from, and what a scene may say.
+//! `scenes` and `fields`: presets, the table of scene fields, and scenes read from requests and written to answers.
 
 pub mod fields;
+pub mod merge;
 pub mod paper;
 pub mod presets;
-pub mod resolved;
+pub mod price;
+pub mod read;
+pub mod write;
 
 use axum::Router;
 use axum::body::Body;
@@ -14,11 +17,16 @@ use serde::Serialize;
 
 use crate::api::app::App;
 use crate::api::scene::fields::Fields;
-use crate::api::shared::write;
+use crate::api::shared;
 use crate::compute::{Cancelled, Price, Turn};
 use crate::http::{Ask, Format, Problem, Resource};
 
-/// Its paths.
+pub use merge::{build_scene, read_value};
+pub use price::{bounce_price, has_angle};
+pub use read::{read_draft, read_frictionless_scene, read_scene, read_scene_within};
+pub use write::{Resolved, scene_to_json, scene_to_query, value_to_json};
+
+/// Paths of the presets and of the table of fields.
 pub fn routes() -> Router<App> {
     Router::new()
         .route("/v1/scenes", get(scenes))
@@ -52,7 +60,7 @@ async fn fields(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Prob
     fixed(&app, &ask, "fields", 0, |_| Some(Fields::all())).await
 }
 
-/// An answer that depends on nothing but the build; none where its client has gone.
+/// Answers with a value that depends on the build alone. `answer` returns None when the client has gone.
 async fn fixed<T: Serialize>(
     app: &App,
     ask: &Ask,
@@ -63,6 +71,6 @@ async fn fixed<T: Serialize>(
     const RESOURCE: Resource = Resource { name: "fixed", formats: &[Format::Json] };
     ask.read(|_| Some(()))?;
     let price = Price::bounces(price);
-    let compute = move |_, turn: &Turn| write::json(&answer(turn).ok_or(Cancelled)?, turn);
+    let compute = move |_, turn: &Turn| shared::write::json(&answer(turn).ok_or(Cancelled)?, turn);
     ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), price, compute).await
 }

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::sync::{LazyLock, OnceLock};
 
+use crate::api::scene::merge::apply;
 use crate::api::scene::paper::Quantity;
-use crate::api::scene::resolved;
-use crate::api::scene::resolved::Resolved;
+use crate::api::scene::write::Resolved;
 use crate::http::{Errors, Source};
 
 static PRESETS: LazyLock<Vec<Preset>> =
@@ -90,7 +90,7 @@ impl Preset {
     pub fn draft(&self) -> Draft {
         let mut draft = Draft::default();
         // A test builds every preset, so there is nothing to report.
-        let _ = resolved::apply(&mut draft, Some(&self.scene), "", Source::Json, &mut Errors::default());
+        let _ = apply(&mut draft, Some(&self.scene), "", Source::Json, &mut Errors::default());
         draft
     }
 
@@ -132,7 +132,7 @@ impl Printed {
     }
 
     fn computed(&self, mut draft: Draft, go_on: &dyn Fn() -> bool) -> Option<Quoted> {
-        let scene = resolved::apply(&mut draft, self.with.as_ref(), "", Source::Json, &mut Errors::default())?;
+        let scene = apply(&mut draft, self.with.as_ref(), "", Source::Json, &mut Errors::default())?;
         let (value, source) = self.quantity.compute(&scene, go_on)?;
         let (value, r#where) = (Some(value), source.to_owned());
         Some(Quoted { value, r#where, why: self.why.clone(), with: self.with.clone(), ..self.quoted() })
@@ -151,7 +151,7 @@ mod tests {
     fn every_preset_builds_and_computes_what_it_quotes() {
         for preset in all() {
             let mut errors = Errors::default();
-            let built = resolved::apply(&mut Draft::default(), Some(&preset.scene), "", Source::Json, &mut errors);
+            let built = apply(&mut Draft::default(), Some(&preset.scene), "", Source::Json, &mut errors);
             assert!(built.is_some(), "{}: {errors:?}", preset.name);
             let shown = shown(preset);
             assert_eq!(shown.printed.len(), shown.computed.len(), "{}", preset.name);

@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use crate::api::controllers::answer;
 use crate::api::jacobians::answer::Eigenvalue;
-use crate::api::scene::resolved::{Resolved, bounce_price, has_angle};
+use crate::api::scene::{Resolved, bounce_price, has_angle};
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};

@@ -11,7 +11,7 @@ use axum::http::Response;
 use axum::routing::get;
 
 use crate::api::app::App;
-use crate::api::scene::resolved;
+use crate::api::scene::read_scene;
 use crate::api::shared::write;
 use crate::api::stability::answer::{Request, Stability};
 use crate::compute::{Cancelled, Price, Turn};
@@ -27,7 +27,7 @@ pub fn routes() -> Router<App> {
 
 pub(crate) async fn stability(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
     let (scene, request) = ask.read(|reader| {
-        let scene = resolved::read(reader);
+        let scene = read_scene(reader);
         let request = Request::read(reader);
         Some((scene?, request))
     })?;

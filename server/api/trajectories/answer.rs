@@ -9,7 +9,7 @@ use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::table::actuator_load::{Demand, Meter};
 use serde::{Serialize, Serializer};
 
-use crate::api::scene::resolved::{Resolved, has_angle};
+use crate::api::scene::{Resolved, has_angle};
 use crate::api::shared::nearest_vertex::NearestVertex;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::table::Table;

@@ -10,7 +10,7 @@ use equipoise_physics::run::method::Impact;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
 
-use crate::api::scene::resolved::has_angle;
+use crate::api::scene::has_angle;
 use crate::api::shared::table::{Cells, Column, Table};
 
 /// Dates, unix ms, of times since the release; none where nobody said when that was.

@@ -1,6 +1,6 @@
 //! What a client of a live run says: the URL of the run, and the messages that change it.
 
-use equipoise::api::scene::resolved::{has_angle, value_to_json};
+use equipoise::api::scene::{has_angle, value_to_json};
 use equipoise::http::{Errors, Problem, Reader, Source};
 use equipoise::limits;
 use equipoise::live::client_message::Order;

@@ -1,6 +1,6 @@
 //! The query of a GET: from its text to the tree that it is equivalent to, and to the same scene as the JSON that says the same.
 
-use equipoise::api::scene::resolved as wire;
+use equipoise::api::scene::scene_to_json;
 use equipoise::http::request::query;
 use equipoise::http::{Problem, Source};
 use equipoise_physics::scene::{Kind, VERTICES, field};
@@ -52,7 +52,7 @@ fn compare(sent: &Value, bytes: usize) {
     let posted = scene::read(same.as_object().expect("a query is an object"), Source::Json);
     match (asked, posted) {
         (Ok(asked), Ok(posted)) => {
-            assert_eq!(wire::to_json(&asked).to_string(), wire::to_json(&posted).to_string(), "{sent} and {same}");
+            assert_eq!(scene_to_json(&asked).to_string(), scene_to_json(&posted).to_string(), "{sent} and {same}");
             scene::hold(&asked);
         }
         (Err(asked), Err(posted)) => {

@@ -1,6 +1,6 @@
 //! The scene of a POST: from the bytes of a body, through the same reader, to the scene that runs.
 
-use equipoise::api::scene::resolved;
+use equipoise::api::scene::{read_scene, scene_to_json, scene_to_query};
 use equipoise::http::request::json;
 use equipoise::http::{Errors, Problem, Reader, Source};
 use equipoise_physics::scene::Scene;
@@ -29,7 +29,7 @@ pub(crate) fn check(body: &[u8]) {
 pub(crate) fn read(fields: &Map<String, Value>, source: Source) -> Result<Scene, Problem> {
     let mut errors = Errors::default();
     let mut reader = Reader::new(fields, String::new(), source, &mut errors);
-    let scene = resolved::read(&mut reader);
+    let scene = read_scene(&mut reader);
     reader.finish();
     errors.into_result()?;
     Ok(scene.expect("where there is no scene, the errors say why"))
@@ -37,17 +37,17 @@ pub(crate) fn read(fields: &Map<String, Value>, source: Source) -> Result<Scene,
 
 /// Panics unless a scene can be written out and read back.
 pub(crate) fn hold(scene: &Scene) {
-    let written = resolved::to_json(scene).to_string();
+    let written = scene_to_json(scene).to_string();
     assert!(!written.contains("null"), "a number that is none: {written}");
     let body = format!("{{\"scene\":{written}}}");
     let again = json::object(body.as_bytes()).and_then(|fields| read(&fields, Source::Json));
     let again = again.unwrap_or_else(|refused| panic!("{written} was refused: {refused:?}"));
     assert_eq!(again, *scene);
-    assert_eq!(resolved::to_json(&again).to_string(), written);
-    let query = form_urlencoded::Serializer::new(String::new()).extend_pairs(resolved::to_query(scene)).finish();
+    assert_eq!(scene_to_json(&again).to_string(), written);
+    let query = form_urlencoded::Serializer::new(String::new()).extend_pairs(scene_to_query(scene)).finish();
     let asked = super::query::tree(&query).and_then(|fields| read(&fields, Source::Query));
     let asked = asked.unwrap_or_else(|refused| panic!("{query} was refused: {refused:?}"));
-    assert_eq!(resolved::to_json(&asked).to_string(), written);
+    assert_eq!(scene_to_json(&asked).to_string(), written);
     // Whatever was said, there is a model for it and a reason to name.
     let _ = scene.model();
     assert!(!scene.rung_reason().is_empty());

@@ -1,0 +1,198 @@
+//! Merges a JSON scene, or one made of dotted query parameters, onto a draft: field by field by the table of fields.
+
+use equipoise_physics::body::polygon::{FARTHEST, MAX_VERTICES, Vertices};
+use equipoise_physics::scene::{Draft, FIELDS, Field, Kind, Scene, VERTICES, Value as FieldValue, field};
+use serde_json::{Map, Value};
+
+use crate::http::Errors;
+use crate::http::problem::shortened;
+use crate::http::request::reader::join;
+use crate::http::request::scalar;
+use crate::http::request::scalar::Source;
+
+/// Merges `changes`, which stand at `pointer`, onto a draft and builds the scene. Null takes a value back.
+pub fn apply(
+    draft: &mut Draft,
+    changes: Option<&Value>,
+    pointer: &str,
+    source: Source,
+    errors: &mut Errors,
+) -> Option<Scene> {
+    let merged = changes.is_none_or(|changes| merge(draft, changes, pointer, source, errors));
+    if merged { build_scene(*draft, pointer, errors) } else { None }
+}
+
+/// Whether all of `changes` could be said.
+pub(super) fn merge(draft: &mut Draft, changes: &Value, pointer: &str, source: Source, errors: &mut Errors) -> bool {
+    let before = errors.len();
+    Walk { draft, source, errors }.object(changes, "", pointer);
+    errors.len() == before
+}
+
+/// The scene of a draft whose fields stand at `pointer`.
+pub fn build_scene(draft: Draft, pointer: &str, errors: &mut Errors) -> Option<Scene> {
+    match draft.build() {
+        Ok(scene) => Some(scene),
+        Err(found) => {
+            for error in found {
+                errors.push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
+            }
+            None
+        }
+    }
+}
+
+/// Goes down a JSON scene with the table of fields in hand.
+struct Walk<'a> {
+    draft: &'a mut Draft,
+    source: Source,
+    errors: &'a mut Errors,
+}
+
+impl Walk<'_> {
+    fn object(&mut self, value: &Value, path: &str, pointer: &str) {
+        let Some(fields) = value.as_object() else {
+            let name = path.rsplit('.').next().filter(|name| !name.is_empty()).unwrap_or("scene");
+            self.errors.push(pointer, format!("{name} is {}; it must be an object", scalar::shown(value)));
+            return;
+        };
+        if path == "body" {
+            self.replace_other_kind_of_body(fields);
+        }
+        for (key, value) in fields {
+            let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+            let pointer = join(pointer, key);
+            if let Some(row) = field(&path) {
+                self.leaf(row, value, &pointer);
+            } else if FIELDS.iter().any(|row| row.path.starts_with(&format!("{path}."))) {
+                if value.is_null() {
+                    self.forget(&path);
+                } else {
+                    self.object(value, &path, &pointer);
+                }
+            } else if path == VERTICES {
+                self.vertices(value, &pointer);
+            } else {
+                let known = known_beside(&path).join(", ");
+                self.errors.push(pointer, format!("unknown field `{}`; known here: {known}", shortened(&path)));
+            }
+        }
+    }
+
+    fn leaf(&mut self, row: &'static Field, value: &Value, pointer: &str) {
+        match read_value(row, value, self.source) {
+            Ok(value) => {
+                if let Err(error) = self.draft.set(row.name, value) {
+                    self.errors.push(pointer, error.detail);
+                }
+            }
+            Err(error) => self.errors.push(pointer, format!("{} {error}", row.key())),
+        }
+    }
+
+    /// A body of another kind replaces the preset's body whole; one of the same kind is merged onto it.
+    fn replace_other_kind_of_body(&mut self, fields: &Map<String, Value>) {
+        let says = |key: &str| fields.get(key).is_some_and(|value| !value.is_null());
+        let (point, polygon) = (says("point"), says("vertices"));
+        let rod = says("contact_distance") || says("radius_of_gyration");
+        let another = match (self.draft.is_point(), self.draft.vertices().is_some()) {
+            (true, _) => !point && (polygon || rod),
+            (false, true) => !polygon && (point || rod),
+            (false, false) => point || polygon,
+        };
+        if another {
+            self.forget("body");
+        }
+    }
+
+    /// An array of [x, y], replaced whole.
+    fn vertices(&mut self, value: &Value, pointer: &str) {
+        let wanted = format!("an array of 3 to {MAX_VERTICES} points [x, y] in m, counter-clockwise");
+        if value.is_null() {
+            return self.draft.set_vertices(None);
+        }
+        let Some(items) = value.as_array().filter(|items| items.len() <= MAX_VERTICES) else {
+            return self.errors.push(pointer, format!("vertices is {}; it must be {wanted}", scalar::shown(value)));
+        };
+        let before = self.errors.len();
+        let mut places = Vec::with_capacity(items.len());
+        for (index, item) in items.iter().enumerate() {
+            let pointer = format!("{pointer}/{index}");
+            let Some([x, y]) = item.as_array().map(Vec::as_slice) else {
+                self.errors.push(pointer, format!("vertex {index} is {}; it must be [x, y] in m", scalar::shown(item)));
+                continue;
+            };
+            let mut coordinate = |axis: usize, value| {
+                let read = scalar::number_within(value, self.source, &(-FARTHEST..=FARTHEST), "m");
+                let name = ["x", "y"][axis];
+                read.map_err(|error| {
+                    self.errors.push(format!("{pointer}/{axis}"), format!("{name} of vertex {index} {error}"))
+                })
+                .unwrap_or_default()
+            };
+            places.push([coordinate(0, x), coordinate(1, y)]);
+        }
+        if self.errors.len() > before {
+            return;
+        }
+        match Vertices::new(&places) {
+            Ok(vertices) => self.draft.set_vertices(Some(vertices)),
+            Err(error) => self.errors.push(pointer, error.to_string()),
+        }
+    }
+
+    fn forget(&mut self, group: &str) {
+        for row in FIELDS.iter().filter(|row| row.path.strip_prefix(group).is_some_and(|rest| rest.starts_with('.'))) {
+            // Taking a value back is always admitted.
+            let _ = self.draft.set(row.name, None);
+        }
+        if VERTICES.strip_prefix(group).is_some_and(|rest| rest.starts_with('.')) {
+            self.draft.set_vertices(None);
+        }
+    }
+}
+
+/// The value of a field as a request says it, none for null. The error continues a sentence that begins with the
+/// field's name.
+pub fn read_value(row: &'static Field, value: &Value, source: Source) -> Result<Option<FieldValue>, String> {
+    match (row.kind, value) {
+        (_, Value::Null) => Ok(None),
+        // The only way to take a value back in a query.
+        (_, Value::String(text)) if source == Source::Query && text == "null" => Ok(None),
+        (Kind::Number { minimum, maximum }, _) => {
+            scalar::number_within(value, source, &(minimum..=maximum), row.unit).map(FieldValue::Number).map(Some)
+        }
+        (Kind::Integer { maximum }, _) => {
+            scalar::integer(value, source, &(0..=maximum)).map(FieldValue::Integer).map(Some)
+        }
+        (Kind::Choice(words), _) => {
+            let known: Vec<_> = words.iter().map(|word| (*word, *word)).collect();
+            scalar::choice(value, &known).map(FieldValue::Choice).map(Some)
+        }
+        (Kind::Flag, _) => scalar::boolean(value, source).map(|flag| flag.then_some(FieldValue::Flag(true))),
+    }
+}
+
+/// The names that may stand where the last part of `path` stands.
+fn known_beside(path: &str) -> Vec<&'static str> {
+    let group = path.rsplit_once('.').map_or("", |(group, _)| group);
+    let mut names: Vec<_> = FIELDS
+        .iter()
+        .map(|row| row.path)
+        .chain([VERTICES])
+        .filter_map(|path| match group {
+            "" => Some(path),
+            group => path.strip_prefix(group)?.strip_prefix('.'),
+        })
+        .filter_map(|rest| rest.split('.').next())
+        .collect();
+    // In the order in which they come first.
+    let mut seen = Vec::new();
+    names.retain(|name| {
+        !seen.contains(name) && {
+            seen.push(*name);
+            true
+        }
+    });
+    names
+}

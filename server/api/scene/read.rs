@@ -1,0 +1,139 @@
+//! Reads the scene of a request: a preset, a scene, or a preset with a scene merged onto it.
+
+use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::{Draft, Scene};
+
+use crate::api::scene::merge::{build_scene, merge};
+use crate::api::scene::presets;
+use crate::http::Reader;
+use crate::http::problem::shortened;
+use crate::http::request::scalar;
+
+/// The scene of a request: `preset`, with `scene` merged onto it (RFC 7396), or either of them alone.
+///
+/// None if something is wrong; then it is in the reader's errors.
+pub fn read_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
+    let draft = read_draft(reader)?;
+    let pointer = reader.pointer_to("scene");
+    build_scene(draft, &pointer, reader.errors())
+}
+
+/// [`read_scene`] for what is derived for frictionless contacts only.
+pub fn read_frictionless_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
+    read_scene_within(reader, &[])
+}
+
+/// [`read_scene`] for what is derived for the plain rod and some rungs above it.
+pub fn read_scene_within(reader: &mut Reader<'_, '_>, known: &[Rung]) -> Option<Scene> {
+    let scene = read_scene(reader)?;
+    let pointer = reader.pointer_to("scene");
+    if let Some(error) = scene.beyond(known) {
+        reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
+        return None;
+    }
+    Some(scene)
+}
+
+/// What a request says of its scene, not yet built: something else may still set a field of it.
+pub fn read_draft(reader: &mut Reader<'_, '_>) -> Option<Draft> {
+    let (preset, changes) = (reader.text("preset"), reader.value("scene"));
+    let (source, pointer) = (reader.source(), reader.pointer_to("scene"));
+    if preset.is_none() && changes.is_none() {
+        if !reader.has("preset") {
+            reader.refuse_whole("give a scene, a preset, or a preset and what to change in its scene");
+        }
+        return None;
+    }
+    let mut draft = Draft::default();
+    if let Some(name) = preset {
+        let Some(preset) = presets::find(name) else {
+            reader.refuse(
+                "preset",
+                format!("preset is {:?}; it must be {}", shortened(name), scalar::one_of(&presets::names())),
+            );
+            return None;
+        };
+        draft = preset.draft();
+    }
+    changes.is_none_or(|changes| merge(&mut draft, changes, &pointer, source, reader.errors())).then_some(draft)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::api::scene::price::bounce_price;
+    use crate::api::scene::write::scene_to_json;
+    use crate::http::{Errors, Source};
+    use serde_json::{Value, json};
+
+    #[test]
+    fn every_rung_above_the_plain_rod_makes_bounces_dearer() {
+        for (preset, price) in [("case-1", 1), ("point-mass", 2), ("triangle-polygon", 2), ("case-1-noise", 3)] {
+            let scene = presets::find(preset).unwrap().draft().build().unwrap();
+            assert_eq!(bounce_price(&scene), price, "{preset}");
+        }
+    }
+
+    fn read_json(body: &Value) -> Result<Scene, Vec<(String, String)>> {
+        let mut errors = Errors::default();
+        let mut reader = Reader::new(body.as_object().unwrap(), String::new(), Source::Json, &mut errors);
+        let scene = read_scene(&mut reader);
+        reader.finish();
+        let found = errors.into_result().err().map(|problem| {
+            problem.errors().iter().map(|error| (error.pointer.clone(), error.detail.clone())).collect::<Vec<_>>()
+        });
+        found.map_or_else(|| Ok(scene.unwrap()), Err)
+    }
+
+    #[test]
+    fn changes_are_merged_onto_a_preset_and_null_takes_back() {
+        let body =
+            json!({"preset": "case-4", "scene": {"table": {"tilt_gain": 1.2, "energy_gain": null}, "gravity": null}});
+        let scene = scene_to_json(&read_json(&body).unwrap());
+        assert_eq!(scene["table"]["tilt_gain"], 1.2);
+        assert_eq!(scene["table"]["energy_gain"], 0.0);
+        assert_eq!(scene["gravity"], 9.81);
+        assert_eq!(scene["contact"]["restitution"], 0.5);
+    }
+
+    #[test]
+    fn another_kind_of_body_replaces_the_presets() {
+        let scene =
+            read_json(&json!({"preset": "case-1", "scene": {"body": {"point": true}, "release": {"theta": null}}}));
+        assert_eq!(scene_to_json(&scene.unwrap())["body"], json!({"point": true}));
+        let body =
+            json!({"preset": "point-mass", "scene": {"body": {"contact_distance": 0.1, "radius_of_gyration": 0.2}}});
+        assert_eq!(scene_to_json(&read_json(&body).unwrap())["body"], body["scene"]["body"]);
+        let both = json!({"preset": "case-1", "scene": {"body": {"point": true, "contact_distance": 0.1}}});
+        assert!(read_json(&both).unwrap_err().iter().any(|(pointer, _)| pointer == "/scene/body/contact_distance"));
+    }
+
+    #[test]
+    fn every_scene_reads_back_as_itself() {
+        for preset in presets::all() {
+            let scene = preset.draft().build().unwrap();
+            assert_eq!(read_json(&json!({"scene": scene_to_json(&scene)})).unwrap(), scene, "{}", preset.name);
+        }
+    }
+
+    #[test]
+    fn errors_point_to_the_field_and_name_limit_and_unit() {
+        let body = json!({"preset": "case-1", "scene": {
+            "table": {"tilt_gain": 5000, "tilt": 1}, "gravity": "9.81", "body": {"vertices": []}, "release": 3}});
+        let errors = read_json(&body).unwrap_err();
+        let expected = [
+            ("/scene/table/tilt_gain", "tilt_gain is 5000; it must be from -100 to 100 (no unit)"),
+            (
+                "/scene/table/tilt",
+                "unknown field `table.tilt`; known here: tilt_gain, energy_gain, target_height, strike, slide, feedback, \
+                 assumed_restitution, limits",
+            ),
+            ("/scene/gravity", "gravity is \"9.81\"; it must be a number from 0.1 to 100 m/s², not text"),
+            ("/scene/body/vertices", "vertices are 0; a polygon has from 3 to 32"),
+            ("/scene/release", "release is 3; it must be an object"),
+        ];
+        for (pointer, detail) in expected {
+            assert!(errors.contains(&(pointer.to_owned(), detail.to_owned())), "{pointer}: {errors:?}");
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Writes a scene with all its defaults, as JSON or as dotted query parameters that read back to the same scene.
+
+use equipoise_physics::scene::{FIELDS, Scene, VERTICES, Value as FieldValue};
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
+
+/// A scene as it is written in answers: nested, all defaults filled in, ready to be asked again.
+#[derive(Debug, Clone, Copy)]
+pub struct Resolved<'a>(pub &'a Scene);
+
+impl Serialize for Resolved<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        scene_to_json(self.0).serialize(serializer)
+    }
+}
+
+/// [`Resolved`] as a JSON value.
+pub fn scene_to_json(scene: &Scene) -> Value {
+    let vertices = scene
+        .vertices()
+        .map(|vertices| (VERTICES, Value::from_iter(vertices.places().iter().map(|place| Value::from_iter(*place)))));
+    let values = FIELDS.iter().filter_map(|row| Some((row.path, value_to_json(scene.value(row.name)?))));
+    let mut root = Map::new();
+    for (path, value) in values.chain(vertices) {
+        let mut parts = path.split('.').peekable();
+        let mut at = &mut root;
+        while let Some(part) = parts.next() {
+            if parts.peek().is_none() {
+                at.insert(part.to_owned(), value);
+                break;
+            }
+            let group = at.entry(part).or_insert_with(|| Value::Object(Map::new()));
+            let Value::Object(group) = group else { break };
+            at = group;
+        }
+    }
+    Value::Object(root)
+}
+
+/// The value of a field as JSON.
+pub fn value_to_json(value: FieldValue) -> Value {
+    match value {
+        FieldValue::Number(number) => Value::from(number),
+        FieldValue::Integer(number) => Value::from(number),
+        FieldValue::Choice(word) => Value::from(word),
+        FieldValue::Flag(flag) => Value::from(flag),
+    }
+}
+
+/// The scene as dotted query parameters (`scene.table.tilt_gain`, `1.1`), which read back to the same scene.
+pub fn scene_to_query(scene: &Scene) -> Vec<(String, String)> {
+    let written = |value| match value_to_json(value) {
+        Value::String(text) => text,
+        other => other.to_string(),
+    };
+    let places = scene.vertices().map_or(&[][..], |vertices| vertices.places());
+    let vertices = places.iter().enumerate().flat_map(|(vertex, place)| {
+        let name = move |axis: usize| format!("scene.{VERTICES}.{vertex}.{axis}");
+        [0, 1].map(|axis| (name(axis), written(FieldValue::Number(place[axis]))))
+    });
+    let values = FIELDS.iter().filter_map(|row| Some((format!("scene.{}", row.path), written(scene.value(row.name)?))));
+    values.chain(vertices).collect()
+}
