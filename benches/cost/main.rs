@@ -1,8 +1,8 @@
-//! What a large map costs: `cargo bench --bench cost` measures cells per second of one core over HTTP, by scene, quantity and number of
-//! impacts, and the bytes of a cell, and writes `docs/cost.md` with what a map of 10⁹ cells comes to; with `-- --print` it only prints it.
+//! The cost of a large map. `cargo bench --bench cost` measures cells per second of one core over HTTP, by scene, quantity and number
+//! of impacts, and the bytes of a cell. It writes `docs/cost.md` with the cost of a map of 10⁹ cells; with `-- --print` it only prints it.
 //!
-//! Seconds of a core are those that the system books for the server, so other work on the machine disturbs them little; only
-//! the last part, about servers beside each other, is by the clock and wants a quiet machine.
+//! Core-seconds are the CPU time of the server as the system counts it, so other work on the machine disturbs them little. Only the
+//! part about several servers measures wall time and needs a quiet machine.
 
 #[path = "../load/program.rs"]
 mod program;
@@ -16,18 +16,18 @@ use std::time::Instant;
 use program::{Program, load_average};
 use tiles::{Map, ask};
 
-/// Of the map whose cost is worked out.
+/// Cells of the map whose cost is worked out.
 const CELLS: f64 = 1e9;
 
-/// Cells of a tile of the script in `docs/clients`, with 1000 impacts.
+/// Cells of a tile of the script in `docs/clients`, for 1000 impacts.
 const TILE_CELLS: f64 = 100_000.0;
 
-/// Only an example, of what a core-hour of a rented machine may be.
+/// Price of a core-hour of a rented machine; an example.
 const PRICE: f64 = 0.05;
 
 const TILT_GAIN: &str = "&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&y.parameter=release.theta&y.from=0&y.to=0.5";
 
-/// What is measured: a name, the scene and its axes, impacts, quantity.
+/// The maps that are measured: name, scene, axes, impacts, quantity.
 const MAPS: [Map; 16] = [
     Map::new("rod", "preset=case-1", TILT_GAIN, 1000, "survival"),
     Map::new("rod, 100 impacts", "preset=case-1", TILT_GAIN, 100, "survival"),
@@ -56,7 +56,7 @@ const MAPS: [Map; 16] = [
         "survival",
     ),
     Map::new("polygon, a triangle", "preset=triangle-polygon", TILT_GAIN, 1000, "survival"),
-    Map::new("table that looks at its place too", FEEDBACK, FEEDBACK_AXES, 1000, "survival"),
+    Map::new("state feedback", FEEDBACK, FEEDBACK_AXES, 1000, "survival"),
     Map::new("noise", "preset=case-1-noise", TILT_GAIN, 1000, "survival"),
     Map::new("point mass", "preset=point-mass", POINT_AXES, 1000, "survival"),
     Map::new("rod, largest angle", "preset=case-1", TILT_GAIN, 1000, "max_theta"),
@@ -95,20 +95,20 @@ fn introduction() -> String {
     let cpu = cpu.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
     let cpu = cpu.map_or("a CPU", |(_, name)| name);
     format!(
-        "# What a large map costs\n\n\
+        "# The cost of a large map\n\n\
          Written by `cargo bench --bench cost` on {cpu}, {cores} cores, build {}, load of the machine before it began {}.\n\
-         A core is one that the system counts; its seconds are those it books for the server, sending the answer included.\n\n",
+         Core-seconds are the CPU time of the server as the system counts it, including the time to send the answer.\n\n",
         equipoise::BUILD,
         load_average(),
     )
 }
 
-/// Cells per second of one core, over whole tiles from all over a map; rates in the order of [`MAPS`].
+/// Measures cells per second of one core, over whole tiles from all over each map. Returns the rates in the order of [`MAPS`].
 fn write_rates(server: &Program, text: &mut String) -> io::Result<Vec<f64>> {
     text.push_str(
         "## Cells per second of one core\n\n\
-         Maps over tilt gain and release, such as they are asked for: many of their runs fall early, which makes cells cheap. Rows \"all of\n\
-         whose runs survive\" are as dear as a cell of that scene can be. Median of 3 rounds, with what they differ by.\n\n\
+         Typical maps over tilt gain and release. Many of their runs fall early, which makes cells cheap. In the rows \"all of whose runs \
+         survive\"\ncells cost as much as they can for that scene. Median of 3 rounds; ± is half of their spread.\n\n\
          | | impacts | quantity | cells per second | rounds | completed |\n|---|---|---|---|---|---|\n",
     );
     let mut rates = Vec::new();
@@ -129,7 +129,7 @@ fn write_rates(server: &Program, text: &mut String) -> io::Result<Vec<f64>> {
     Ok(rates)
 }
 
-/// Bytes of a cell as NDJSON and CSV, in that order.
+/// Measures the bytes of a cell. Returns those of NDJSON and CSV, in that order.
 fn write_bytes(server: &Program, text: &mut String) -> io::Result<[f64; 2]> {
     text.push_str("## Bytes of a cell\n\n| | NDJSON | the same, gzip | CSV | the same, gzip | JSON |\n|---|---|---|---|---|---|\n");
     let mut kept = [0.0; 2];
@@ -157,7 +157,7 @@ fn write_bytes(server: &Program, text: &mut String) -> io::Result<[f64; 2]> {
     Ok(kept)
 }
 
-/// Seconds of a core that a tile costs besides its cells.
+/// Measures the core-seconds of a tile besides those of its cells.
 fn write_overhead(server: &Program, text: &mut String) -> io::Result<f64> {
     const REQUESTS: usize = 2000;
     let one_cell = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=1&x.to=1.1&x.count=1\
@@ -170,9 +170,9 @@ fn write_overhead(server: &Program, text: &mut String) -> io::Result<f64> {
     let each_s = cpu_s / REQUESTS as f64;
     let _ = writeln!(
         text,
-        "## A tile besides its cells\n\n\
-         A request for one cell of one impact, over a connection of its own: {:.2} ms of a core and {:.2} ms by the clock. The script's \
-         tiles have\nup to {} cells of 1000 impacts. The server held {:.0} MiB after all of this.\n",
+        "## Fixed cost of a tile\n\n\
+         A request for one cell of one impact, on a new connection, takes {:.2} ms of a core and {:.2} ms of wall time. The script's tiles \
+         have up to\n{} cells of 1000 impacts. At the end of this benchmark the server held {:.0} MiB of memory.\n",
         1e3 * each_s,
         1e3 * wall_s / REQUESTS as f64,
         grouped(TILE_CELLS),
@@ -181,12 +181,13 @@ fn write_overhead(server: &Program, text: &mut String) -> io::Result<f64> {
     Ok(each_s)
 }
 
-/// The same map by the clock: by one server with one permit, by one with two, and by two with one each.
+/// Measures the wall-clock rate of one map: one server with one permit, one with two, and two with one each.
 fn write_servers(text: &mut String) -> io::Result<()> {
     text.push_str(
-        "## Servers beside each other\n\n\
-         The first map by the clock, asked for in tiles by two clients for each server, median of 3 rounds in turns. A permit is a\n\
-         request computed at a time.\n\n| servers | permits of each | cells per second | over one |\n|---|---|---|---|\n",
+        "## Several servers\n\n\
+         Wall-clock rate of the first map, with two clients per server that request tiles; median of 3 rounds in turns. With n permits a \
+         server\ncomputes n requests at a time.\n\n\
+         | servers | permits of each | cells per second | ratio to the first row |\n|---|---|---|---|\n",
     );
     let set_ups = [(1, "1"), (1, "2"), (2, "1")];
     let mut found = [const { Vec::new() }; 3];
@@ -218,9 +219,10 @@ fn write_whole(rates: &[f64], bytes: &[f64; 2], overhead_s: f64, text: &mut Stri
         "## A map of 10⁹ cells\n\n\
          31,623 values a side, in {} tiles by [in_tiles.py](clients/README.md#too-large-for-one-request):\n\n\
          - core-hours = (cells / cells per second of one core + tiles × {:.2} ms) / 3600\n\
-         - hours by the clock = core-hours / cores, while all are kept busy\n\
-         - cost = core-hours × your price of one; the last column is for {PRICE} of some currency, which is an assumption\n\
-         - bytes = cells × bytes of a cell, twice, as the tiles stay beside the result: of survival as NDJSON {:.0} GB, and {:.0} GB more\n  for CSV\n\n\
+         - wall time = core-hours / cores, if all cores are kept busy\n\
+         - cost = core-hours × your price of a core-hour; the last column assumes {PRICE} of some currency\n\
+         - bytes on disk = 2 × cells × bytes of a cell, since the tiles stay beside the result: {:.0} GB for survival as NDJSON, and {:.0} GB \
+         more for CSV\n\n\
          | | impacts | core-hours | on 2 cores | on 16 | on 128 | cost |\n|---|---|---|---|---|---|---|",
         grouped(tiles),
         1e3 * overhead_s,
@@ -243,7 +245,7 @@ fn write_whole(rates: &[f64], bytes: &[f64; 2], overhead_s: f64, text: &mut Stri
     }
 }
 
-/// A whole number with its thousands apart.
+/// A whole number with thousands separated by commas.
 fn grouped(number: f64) -> String {
     let digits = format!("{number:.0}");
     let first = digits.len() % 3;

@@ -1,4 +1,4 @@
-//! Tiles of a map, asked for one after the other as the script in `docs/clients` does, and what their cells cost.
+//! Requests tiles of a map one after the other, as the script in `docs/clients` does, and measures the cost of their cells.
 
 use std::io::{self, Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -6,23 +6,23 @@ use std::time::{Duration, Instant};
 
 use crate::program::Program;
 
-/// Values of x, which are the cells of a row.
+/// Values of x: the cells of a row.
 const COLUMNS: usize = 512;
 
 /// Rows of all tiles together.
 const ROWS: usize = 4096;
 
-/// Tiles of a map, of which so many are asked for, from all over it.
+/// Tiles of a map, and how many of them are requested, spread over the map.
 const TILES: usize = 512;
 const SOME: usize = 8;
 
 /// Cells of a tile.
 pub(crate) const CELLS: usize = COLUMNS * ROWS / TILES;
 
-/// Least time of one round, of a core: a hundred times the grain of the system's books. The same tiles again and again until then.
+/// Least core-time of a round: a hundred ticks of the system's CPU accounting. The same tiles are repeated until then.
 const ROUND_S: f64 = 1.0;
 
-/// Which tiles are asked for.
+/// Indices of the tiles that are requested.
 pub(crate) fn all_over() -> impl Iterator<Item = usize> + Clone {
     (0..SOME).map(|number| (2 * number + 1) * TILES / (2 * SOME))
 }
@@ -36,13 +36,13 @@ pub(crate) struct Map {
     pub(crate) quantity: &'static str,
 }
 
-/// What its cells cost.
+/// Measured cost of the cells of a map.
 pub(crate) struct Found {
-    /// Cells per second of one core, the median of the rounds.
+    /// Cells per second of one core; median of the rounds.
     pub(crate) rate: f64,
-    /// Half of what rounds differ by, over that.
+    /// Half of the spread of the rounds, relative to the median.
     pub(crate) spread: f64,
-    /// The share of cells whose run lasted; none without runs.
+    /// Share of cells whose run completed; none for quantities without runs.
     pub(crate) completed: Option<f64>,
 }
 
@@ -57,7 +57,7 @@ impl Map {
         Self { name, scene, axes, impacts, quantity }
     }
 
-    /// The target of a tile.
+    /// Request target of a tile.
     pub(crate) fn tile(&self, index: usize, form: &str) -> String {
         let Self { scene, axes, impacts, quantity, .. } = self;
         format!(
@@ -66,7 +66,7 @@ impl Map {
         )
     }
 
-    /// Asks for tiles from all over it until each round is long enough.
+    /// Requests tiles from all over the map until each round is long enough.
     pub(crate) fn measure(&self, server: &Program) -> io::Result<Found> {
         let (mut rates, mut completed, mut runs) = (Vec::new(), 0, 0);
         for _ in 0..3 {
@@ -90,7 +90,7 @@ impl Map {
         Ok(Found { rate: rates[1], spread, completed: (runs > 0).then(|| completed as f64 / runs as f64) })
     }
 
-    /// Cells per second by the clock, from servers of which each has two clients.
+    /// Wall-clock cells per second of some servers, with two clients each.
     pub(crate) fn measure_by_clock(&self, servers: &[Program]) -> io::Result<f64> {
         const TIME: Duration = Duration::from_millis(1500);
         let begin = Instant::now();
@@ -118,7 +118,7 @@ impl Map {
     }
 }
 
-/// How many cells ended so, as the last line of an answer says it.
+/// Number of cells with an ending, from the last line of an answer.
 fn count(body: &[u8], name: &str) -> io::Result<usize> {
     let text = String::from_utf8_lossy(body);
     let end = text.lines().last().filter(|line| line.starts_with("{\"end\":"));
@@ -127,7 +127,7 @@ fn count(body: &[u8], name: &str) -> io::Result<usize> {
     digits.and_then(|digits| digits.parse().ok()).ok_or_else(|| io::Error::other(format!("no {name} in {end:?}")))
 }
 
-/// One request over a connection of its own, which ends with the answer.
+/// Sends one request on a new connection and reads the answer to its end.
 pub(crate) fn ask(address: SocketAddr, target: &str, gzip: bool) -> io::Result<Vec<u8>> {
     let mut socket = TcpStream::connect(address)?;
     let accept = if gzip { "accept-encoding: gzip\r\n" } else { "" };

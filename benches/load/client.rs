@@ -1,4 +1,4 @@
-//! A client of HTTP/1.1 that costs little, and what its times come to.
+//! A cheap HTTP/1.1 client, and statistics of its response times.
 
 use std::io;
 use std::net::SocketAddr;
@@ -7,13 +7,13 @@ use std::time::{Duration, Instant};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
-/// A connection that stays open.
+/// A persistent connection.
 pub(crate) struct Connection {
     socket: TcpStream,
     received: Vec<u8>,
 }
 
-/// What came back.
+/// An answer.
 pub(crate) struct Answer {
     pub(crate) status: u16,
     pub(crate) head: String,
@@ -25,13 +25,13 @@ impl Connection {
         Self::over(TcpStream::connect(address).await?)
     }
 
-    /// One over a socket that is connected.
+    /// A connection over a connected socket.
     pub(crate) fn over(socket: TcpStream) -> io::Result<Self> {
         socket.set_nodelay(true)?;
         Ok(Self { socket, received: Vec::with_capacity(64 * 1024) })
     }
 
-    /// One request and its whole answer, of which the server says the length.
+    /// Sends a request and reads the whole answer, whose length is in its head.
     pub(crate) async fn get(&mut self, target: &str) -> io::Result<Answer> {
         self.socket.write_all(format!("GET {target} HTTP/1.1\r\nhost: localhost\r\n\r\n").as_bytes()).await?;
         self.received.clear();
@@ -59,7 +59,7 @@ impl Connection {
     }
 }
 
-/// Times of many requests.
+/// Response times of many requests.
 #[derive(Default)]
 pub(crate) struct Times(Vec<f64>);
 
@@ -80,7 +80,7 @@ impl Times {
         self.0.len()
     }
 
-    /// The time that this share of them keeps within, ms.
+    /// Quantile of the times, ms.
     pub(crate) fn quantile(&mut self, share: f64) -> f64 {
         if self.0.is_empty() {
             return f64::NAN;
@@ -90,7 +90,7 @@ impl Times {
     }
 }
 
-/// Asks over so many connections for so long, each next request as soon as the answer is there, or `pause` after it.
+/// Sends requests on `connections` connections for a while, each one `pause` after the answer to the last.
 pub(crate) async fn ask(
     address: SocketAddr,
     target: &str,
@@ -127,7 +127,7 @@ pub(crate) async fn ask(
     Ok(all)
 }
 
-/// The median.
+/// Median.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]

@@ -1,4 +1,4 @@
-//! How late impacts are that many live clients hear of.
+//! Delay of impacts on many live clients.
 
 use std::fmt::Write;
 use std::io;
@@ -21,8 +21,8 @@ const TIME: Duration = Duration::from_secs(20);
 
 pub(crate) async fn measure() -> io::Result<String> {
     let mut text = format!(
-        "## Live runs\n\nRuns of case 1 over WebSockets, released one after the other, watched for {} s (`--only live`). Late is an \
-         impact by the\ntime from when it happens to when its client has it, the clients' own share of the cores included.\n\n\
+        "## Live runs\n\nRuns of case 1 over WebSockets, released one after the other, watched for {} s (`--only live`). p50, p99 and \
+         p99.9 are delays from\nthe moment of an impact to its arrival at the client, which includes the clients' own use of the cores.\n\n\
          | clients | speed | impacts per second | p50 | p99 | p99.9 | server CPU | server memory |\n|---|---|---|---|---|---|---|---|\n",
         TIME.as_secs(),
     );
@@ -31,7 +31,7 @@ pub(crate) async fn measure() -> io::Result<String> {
         let counts = Arc::new(AtomicBool::new(false));
         let watching: Vec<_> =
             (0..clients).map(|index| tokio::spawn(watch(server.address, index, speed, counts.clone()))).collect();
-        // All are there, and heard their first impacts.
+        // All clients are connected and have received their first impacts.
         sleep(Duration::from_secs(6)).await;
         let (begin, before) = (Instant::now(), server.cpu_s());
         counts.store(true, Ordering::Relaxed);
@@ -54,9 +54,9 @@ pub(crate) async fn measure() -> io::Result<String> {
     Ok(text + "\n")
 }
 
-/// Watches a run until the server is gone. Impacts count while `counts` says so.
+/// Watches a run until the server is gone. Counts impacts while `counts` is set.
 async fn watch(address: SocketAddr, index: u64, speed: u32, counts: Arc<AtomicBool>) -> Result<Times, Error> {
-    // Spread over the first seconds, as people come.
+    // Clients arrive over the first seconds.
     sleep(Duration::from_millis(4 * index)).await;
     let url = format!("ws://{address}/v1/live?preset=case-1&speed={speed}");
     let config = WebSocketConfig::default().read_buffer_size(4096);
@@ -76,7 +76,7 @@ async fn watch(address: SocketAddr, index: u64, speed: u32, counts: Arc<AtomicBo
     Ok(late)
 }
 
-/// The number or the list of numbers that follows a name; reading all of the JSON would take longer than what is measured.
+/// The number or list of numbers after a name. Parsing the whole JSON would take longer than the delay that is measured.
 fn numbers_after(text: &str, name: &str) -> impl Iterator<Item = f64> {
     let rest = text.split_once(name).map_or("", |(_, rest)| rest);
     let end = if rest.starts_with('[') { rest.find(']') } else { rest.find([',', '}']) };

@@ -1,8 +1,8 @@
-//! The program under load: `cargo bench --bench load` measures everything and writes `docs/load.md`; with `-- --only rates`, `overload`,
-//! `live`, `slow`, `spinning` or `soak` it measures one thing and prints it.
+//! The server under load. `cargo bench --bench load` measures everything and writes `docs/load.md`. With `-- --only rates`, `overload`,
+//! `live`, `slow`, `spinning` or `soak` it measures one part and prints it.
 //!
-//! The program is a process of its own, but its clients share the machine with it: their time is in every figure. Ratios hold
-//! on a noisy machine; absolute figures want a quiet one.
+//! The server is a separate process on the same machine as its clients, so every figure contains the clients' time. Ratios hold on a noisy
+//! machine; absolute figures need a quiet one.
 
 mod client;
 mod live;
@@ -22,19 +22,19 @@ use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
 #[derive(Parser)]
 struct Arguments {
-    /// Measure this alone, and only print it
+    /// Measure only this part, and print it
     #[arg(long)]
     only: Option<Part>,
 
-    /// How long mixed load lasts
+    /// Minutes of mixed load
     #[arg(long, default_value_t = 30.0)]
     minutes: f64,
 
-    /// Serve what this server answers from memory, for comparison
+    /// Serve the answers of this server from memory, for comparison
     #[arg(long, hide = true)]
     bare: Option<std::net::SocketAddr>,
 
-    /// What cargo calls every benchmark with.
+    /// Argument that cargo passes to every benchmark.
     #[arg(long, hide = true)]
     bench: bool,
 }
@@ -55,7 +55,7 @@ async fn main() -> io::Result<()> {
     if let Some(address) = arguments.bare {
         return rates::serve_bare(address).await;
     }
-    // Ten thousand connections are as many files.
+    // Ten thousand connections need as many open files.
     let maximum = getrlimit(Resource::Nofile).maximum;
     let _ = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
     let mut report = introduction();
@@ -90,8 +90,8 @@ fn introduction() -> String {
     let mut text = String::from("# Under load\n\n");
     let _ = writeln!(
         text,
-        "Written by `cargo bench --bench load` on {cpu}, {cores} cores, build {}. Clients and server share the cores, so the\n\
-         clients' own time is in every figure; load of the machine before it began: {}.\n",
+        "Written by `cargo bench --bench load` on {cpu}, {cores} cores, build {}. Clients and server share the cores, so\n\
+         every figure contains the clients' own time. Load average before the start: {}.\n",
         equipoise::BUILD,
         program::load_average(),
     );

@@ -1,4 +1,4 @@
-//! How fast a server that has all the work it takes says so, and what still gets through.
+//! Response times of a server whose queue is full: refusals, and requests that still get through.
 
 use std::fmt::Write;
 use std::io;
@@ -13,14 +13,14 @@ use crate::program::Program;
 
 const LOOKS: usize = 1000;
 
-/// Some 20 s of all cores.
+/// A request that takes some 20 s of all cores.
 const DEAR: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000\
                     &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=1000&impacts=2000";
 
 pub(crate) async fn measure() -> io::Result<String> {
     let mut text = format!(
-        "## Overload\n\nOne client asks for more and more dear regions until it is told 503; then it is asked {LOOKS} times more, in turns \
-         with others\n(`--only overload`).\n\n| | status | p50 | p99 | most |\n|---|---|---|---|---|\n",
+        "## Overload\n\nOne client requests more and more expensive regions until it gets 503. Then each of these requests is sent {LOOKS} times, \
+         in turns\n(`--only overload`).\n\n| | status | p50 | p99 | most |\n|---|---|---|---|---|\n",
     );
     let server = Program::start()?;
     let mut held = Vec::new();

@@ -1,4 +1,4 @@
-//! The program as a child, and what it costs by the books of the system.
+//! The server as a child process, with its CPU time and memory as the system counts them.
 
 use std::io::{self, BufRead, BufReader};
 use std::net::SocketAddr;
@@ -16,7 +16,7 @@ impl Program {
         Self::spawn(command.args(["--listen", "127.0.0.1:0"]))
     }
 
-    /// Starts what prints `… http://ADDRESS/` first.
+    /// Starts a command whose first line is `… http://ADDRESS/`.
     pub(crate) fn spawn(command: &mut Command) -> io::Result<Self> {
         let mut child = command.stdout(Stdio::piped()).spawn()?;
         let mut line = String::new();
@@ -26,7 +26,7 @@ impl Program {
         Ok(Self { child, address })
     }
 
-    /// Seconds of CPU that it has taken.
+    /// CPU time so far, s.
     pub(crate) fn cpu_s(&self) -> f64 {
         const TICKS_PER_S: f64 = 100.0;
         let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap_or_default();
@@ -35,7 +35,7 @@ impl Program {
         ticks / TICKS_PER_S
     }
 
-    /// Memory that it holds, MiB.
+    /// Resident memory, MiB.
     pub(crate) fn memory_mib(&self) -> f64 {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap_or_default();
         let kib = status
@@ -52,7 +52,7 @@ impl Drop for Program {
     }
 }
 
-/// How many processes wanted to run over the last minute.
+/// Load average over the last minute.
 pub(crate) fn load_average() -> String {
     let averages = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
     averages.split(' ').next().map_or("unknown", |minute| minute).to_owned()

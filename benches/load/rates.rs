@@ -1,4 +1,4 @@
-//! Requests per second of each resource, beside a bare axum handler that has the same bytes in memory.
+//! Requests per second of each resource, beside a bare axum handler that sends the same bytes from memory.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -21,7 +21,7 @@ const CONNECTIONS: usize = 8;
 const ROUND: Duration = Duration::from_millis(1500);
 const ROUNDS: usize = 5;
 
-/// A cheap one, those that every visit of the page asks for, and some that compute.
+/// A cheap target, those of every visit to the page, and some that compute.
 const TARGETS: [&str; 9] = [
     "/health/live",
     "/",
@@ -39,8 +39,8 @@ pub(crate) async fn measure() -> io::Result<String> {
     let mut command = Command::new(std::env::current_exe()?);
     let bare = Program::spawn(command.args(["--bare", &ours.address.to_string()]))?;
     let mut text = format!(
-        "## Requests per second\n\n{CONNECTIONS} connections, {ROUNDS} rounds of {} s in turns with a bare axum handler that has the \
-         same bytes in memory\n(`--only rates`). The ratio is the median over the rounds.\n\n\
+        "## Requests per second\n\n{CONNECTIONS} connections, {ROUNDS} rounds of {} s, in turns with a bare axum handler that sends the \
+         same bytes from memory\n(`--only rates`). The ratio is the median over the rounds.\n\n\
          | | answer | per second | bare | ratio | p50 | p99 | bare p50 | bare p99 |\n|---|---|---|---|---|---|---|---|---|\n",
         ROUND.as_secs_f64(),
     );
@@ -69,7 +69,7 @@ pub(crate) async fn measure() -> io::Result<String> {
     Ok(text + "\n")
 }
 
-/// A server that has what another one answers in memory, and no more.
+/// A server that sends the answers of another one from memory.
 pub(crate) async fn serve_bare(of: SocketAddr) -> io::Result<()> {
     let mut answers = HashMap::new();
     for target in TARGETS {

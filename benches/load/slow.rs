@@ -1,4 +1,4 @@
-//! What ten thousand connections that send nothing, or a byte now and then, cost those who ask.
+//! Response times beside ten thousand connections that send nothing, or a byte now and then.
 
 use std::fmt::Write;
 use std::io;
@@ -20,10 +20,10 @@ const TARGET: &str = "/v1/trajectories?preset=case-1&impacts=100";
 
 pub(crate) async fn measure() -> io::Result<String> {
     let mut text = format!(
-        "## Slow and silent connections\n\n{SLOW} connections of which every second one is silent and the others send a byte of a \
-         head every five seconds; what the\nserver closes is opened again. Beside them 8 clients ask 100 times a second each for \
-         `{TARGET}`\nover connections that stay open (`--only slow`).\n\n\
-         | round | p50 before | p99 before | p50 beside them | p99 beside them | ratio of p99 | server CPU of theirs | server memory |\n\
+        "## Slow and silent connections\n\n{SLOW} connections. Every second one is silent; the others send a byte of a head every five \
+         seconds. Connections that the server closes\nare opened again. Beside them 8 clients send 100 requests a second each for \
+         `{TARGET}`\non persistent connections (`--only slow`).\n\n\
+         | round | p50 before | p99 before | p50 beside them | p99 beside them | ratio of p99 | server CPU for slow connections | server memory |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     let server = Program::start()?;
@@ -55,16 +55,16 @@ pub(crate) async fn measure() -> io::Result<String> {
     Ok(text)
 }
 
-/// Holds a connection for as long as it can.
+/// Holds a connection open for as long as the server allows.
 pub(crate) async fn be_slow(address: SocketAddr, index: u64) {
-    // Not all at once: that would measure how fast connections are made.
+    // Not all at once: that would measure the rate of new connections.
     sleep(Duration::from_micros(500 * index)).await;
     loop {
         if let Ok(mut socket) = TcpStream::connect(address).await {
             let head = b"GET / HTTP/1.1\r\nhost: localhost\r\nx-slow: ".iter().chain(std::iter::repeat(&b'x'));
             let mut sent = head.take_while(|_| index.is_multiple_of(2));
             let mut buffer = [0; 1024];
-            // Until it is closed.
+            // Until the server closes it.
             loop {
                 match timeout(Duration::from_secs(5), socket.read(&mut buffer)).await {
                     Ok(Ok(0) | Err(_)) => break,

@@ -1,4 +1,4 @@
-//! Hours of everything at once: whether memory grows, and whether anything but an intended 503 goes wrong.
+//! Mixed load for hours: growth of memory, and every answer but an intended 503 correct.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -23,7 +23,7 @@ const LIVE: u64 = 200;
 const LEAVING: u64 = 4;
 const SLOW: u64 = 500;
 
-/// What came of it.
+/// Response times and outcomes of all clients.
 #[derive(Default)]
 struct Book {
     statuses: BTreeMap<String, u64>,
@@ -45,7 +45,7 @@ pub(crate) async fn measure(time: Duration) -> io::Result<String> {
     sleep(warm).await;
     let (begin, cpu) = (server.memory_mib(), server.cpu_s());
     let start = Instant::now();
-    // What is held goes up and down with the answers under way, so that only means say whether it grows.
+    // Memory goes up and down with the answers under way, so only means show growth.
     let mut tenths = [0.0; 10];
     for mean in &mut tenths {
         const LOOKS: u32 = 60;
@@ -57,7 +57,7 @@ pub(crate) async fn measure(time: Duration) -> io::Result<String> {
     let growth = tenths[7..].iter().sum::<f64>() / tenths[..3].iter().sum::<f64>() - 1.0;
     let cpu = (server.cpu_s() - cpu) / start.elapsed().as_secs_f64();
     tasks.iter().for_each(JoinHandle::abort);
-    // When all are gone, nothing is being computed any more.
+    // After all clients have left, no work is under way.
     sleep(Duration::from_secs(2)).await;
     let metrics = Connection::open(address).await?.get("/metrics").await?;
     let metrics = String::from_utf8_lossy(&metrics.body).into_owned();
@@ -67,33 +67,33 @@ pub(crate) async fn measure(time: Duration) -> io::Result<String> {
         .collect();
     let mut book = std::mem::take(&mut *book.lock().expect("nobody panics with it"));
     let mut text = format!(
-        "## Mixed load\n\nFor {:.0} minutes {ASKING} clients ask for answers of all kinds and prices, {LIVE} watch live runs for a while \
-         each, {LEAVING} leave in the\nmidst of dear answers, and {SLOW} connections are slow or silent (`--only soak --minutes {:.0}`). \
-         The load of the machine was {}.\n\n",
+        "## Mixed load\n\nFor {:.0} minutes {ASKING} clients send requests of all kinds and prices, {LIVE} watch live runs for a while \
+         each, {LEAVING} hang up in the\nmiddle of expensive answers, and {SLOW} connections are slow or silent (`--only soak --minutes {:.0}`). \
+         The load average was {}.\n\n",
         time.as_secs_f64() / 60.0,
         time.as_secs_f64() / 60.0,
         load_average(),
     );
     let _ = writeln!(
         text,
-        "- Memory after {:.0} s {begin:.0} MiB, then as the mean over each tenth of the time {} MiB: from the first three to the last \
-         three {:+.1} %. CPU {:.0} % of a core.",
+        "- Memory: {begin:.0} MiB after {:.0} s; means over each tenth of the time {} MiB; from the first three to the last three \
+         {:+.1} %. CPU {:.0} % of a core.",
         warm.as_secs_f64(),
         tenths.map(|mean| format!("{mean:.0}")).join(", "),
         100.0 * growth,
         100.0 * cpu
     );
     let [p50, p99] = [0.5, 0.99].map(|share| book.times.quantile(share));
-    let _ = writeln!(text, "- Times of what was asked for: p50 {p50:.1} ms, p99 {p99:.0} ms.");
+    let _ = writeln!(text, "- Response times: p50 {p50:.1} ms, p99 {p99:.0} ms.");
     let ends: Vec<String> = book.statuses.iter().map(|(name, count)| format!("{count} × {name}")).collect();
-    let _ = writeln!(text, "- Ends: {}.", ends.join(", "));
-    let _ = writeln!(text, "- Two seconds after all had left: running, waiting and live {}.", left.join(", "));
+    let _ = writeln!(text, "- Outcomes: {}.", ends.join(", "));
+    let _ = writeln!(text, "- Two seconds after all clients had left: running, waiting and live {}.", left.join(", "));
     Ok(text + "\n")
 }
 
-/// The kinds of answers, by number.
+/// A request of a kind, by number.
 fn target(number: u64) -> String {
-    // Never the same scene for long.
+    // The scene changes all the time.
     let gain = 1.0 + 0.5 * ((number % 997) as f64 / 997.0);
     let scene = format!("preset=case-1&scene.table.tilt_gain={gain}");
     match number % 9 {
@@ -166,7 +166,7 @@ async fn watch(address: SocketAddr, index: u64, book: Shared) {
     }
 }
 
-/// Asks for much and leaves before it is there.
+/// Requests expensive work and hangs up before the answer.
 async fn leave(address: SocketAddr, index: u64) {
     loop {
         if let Ok(mut socket) = TcpStream::connect(address).await {

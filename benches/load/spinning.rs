@@ -1,5 +1,4 @@
-//! Load that one client puts on others with the dearest scenes there are: spinning bodies over a planned table that
-//! is nearly vertical.
+//! One client with the most expensive scenes, spinning bodies over a planned table that is nearly vertical, beside another client.
 
 use std::fmt::Write;
 use std::io;
@@ -27,8 +26,8 @@ pub(crate) async fn measure() -> io::Result<String> {
     let server = Program::start()?;
     let mut text = format!(
         "## Spinning bodies\n\nA body that spins fast in little gravity, over a table that is planned nearly vertical (`--only spinning`). \
-         {CONNECTIONS} connections of one\naddress ask for runs of it, each as soon as the last is answered; another client asks \
-         `/health/live` every 5 ms for {} s.\n\n| | p50 | p99 | most | answers of theirs per second |\n|---|---|---|---|---|\n",
+         {CONNECTIONS} connections of one\naddress request runs of it, each as soon as the last is answered. Another client requests \
+         `/health/live` every 5 ms for {} s.\n\n| | p50 | p99 | most | answers per second to the {CONNECTIONS} |\n|---|---|---|---|---|\n",
         TIME.as_secs()
     );
     let run = format!("/v1/trajectories?{SCENE}&scene.noise.seed=1&scene.noise.run=22&impacts=1");
@@ -58,10 +57,10 @@ pub(crate) async fn measure() -> io::Result<String> {
     Ok(text)
 }
 
-/// How long a core goes on for a client that has gone.
+/// Measures how long a core goes on computing for a client that has hung up.
 async fn leaving(address: SocketAddr) -> io::Result<String> {
     let mut text = format!(
-        "\nTime from when a client leaves to when nothing is computed any more, the longest of {TRIES} tries, each left at another time.\n\n\
+        "\nTime from when a client hangs up to when its work has stopped; the longest of {TRIES} tries, each hung up at another time.\n\n\
          | | free after |\n|---|---|\n"
     );
     let axes = "x.parameter=release.theta_dot&x.from=100&x.to=200&x.count=400&y.parameter=release.x_dot&y.from=1&y.to=100&y.count=400";
@@ -110,7 +109,7 @@ async fn requests(address: SocketAddr) -> io::Result<f64> {
     counted(metrics, "equipoise_requests_total").await
 }
 
-/// The sum over all lines of `/metrics` that begin so.
+/// Sum over all lines of `/metrics` with a prefix.
 async fn counted(metrics: &mut Connection, name: &str) -> io::Result<f64> {
     let body = metrics.get("/metrics").await?.body;
     let text = String::from_utf8_lossy(&body);
@@ -118,7 +117,7 @@ async fn counted(metrics: &mut Connection, name: &str) -> io::Result<f64> {
     Ok(lines.filter_map(|line| line.rsplit(' ').next()?.parse::<f64>().ok()).sum())
 }
 
-/// Asks from an address of its own, and does not mind being refused.
+/// Sends requests from one address for ever; refusals do not matter.
 async fn ask_for_ever(address: SocketAddr, target: String) -> io::Result<()> {
     loop {
         let socket = TcpSocket::new_v4()?;
