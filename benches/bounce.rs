@@ -1,4 +1,4 @@
-//! What one bounce costs on one core: `cargo bench --bench bounce`. Each sample is 1000 bounces; read ns per item.
+//! Time of one bounce on one core: `cargo bench --bench bounce`. Each sample is 1000 bounces; read ns per item.
 
 mod case_1;
 
@@ -27,7 +27,7 @@ fn main() {
     bench_all();
 }
 
-/// States only, outcomes checked, energy held: what `stability` runs.
+/// States only, endings checked, energy held, as `stability` runs.
 #[divan::bench]
 fn one_orbit(bencher: Bencher) {
     bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
@@ -36,7 +36,7 @@ fn one_orbit(bencher: Bencher) {
     });
 }
 
-/// The bare map, without outcome and without holding the energy.
+/// The bare map: endings not checked, energy not held.
 #[divan::bench]
 fn strike_and_flight(bencher: Bencher) {
     bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
@@ -67,7 +67,7 @@ fn case_1() -> Scene {
     draft.build().expect("a scene")
 }
 
-/// The scene on each rung of the ladder of models, outcomes checked.
+/// The scene on each level of the model hierarchy, endings checked.
 #[divan::bench(args = ["point", "linear", "rod", "rod_with_x", "friction", "noise", "polygon"])]
 fn rungs(bencher: Bencher, rung: &str) {
     let mut draft = case_1().draft();
@@ -132,7 +132,7 @@ fn rungs(bencher: Bencher, rung: &str) {
     });
 }
 
-/// With 31 digits, outcomes checked, energy held.
+/// With 31 digits, endings checked, energy held.
 #[divan::bench]
 fn extended(bencher: Bencher) {
     let scene = case_1();
@@ -142,7 +142,7 @@ fn extended(bencher: Bencher) {
     });
 }
 
-/// In doubles with an error estimate carried along.
+/// In doubles, with the error estimate.
 #[divan::bench]
 fn with_error_estimate(bencher: Bencher) {
     let scene = case_1();
@@ -160,7 +160,7 @@ fn jacobian_product(bencher: Bencher) {
         .bench(|| jacobian(&Model::Rod(black_box(case_1::ROD)), &state, BOUNCES).map(|it| it.flight_time));
 }
 
-/// Sine and cosine, ours and the platform's, one after the other.
+/// Sine and cosine: ours, then the platform's.
 #[divan::bench(args = ["ours", "platform"])]
 fn sine_and_cosine(bencher: Bencher, whose: &str) {
     let function: fn(f64) -> (f64, f64) =
@@ -173,7 +173,7 @@ fn sine_and_cosine(bencher: Bencher, whose: &str) {
     });
 }
 
-/// Eight rods side by side with survival bookkeeping, on one core: what a region runs. Items are bounces.
+/// Eight rods side by side with their survival counts, on one core, as regions run. Items are bounces.
 #[divan::bench(args = Path::ALL)]
 fn lanes(bencher: Bencher, path: Path) {
     const RUNS: u64 = 32;

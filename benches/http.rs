@@ -1,6 +1,6 @@
-//! Requests per second of `GET /v1/trajectories` side by side with a bare axum handler that serializes the same columns
-//! from memory: `cargo bench --bench http`. Both are asked in turn over the same number of connections on loopback, so
-//! that the ratio holds on a noisy machine.
+//! Requests per second of `GET /v1/trajectories` and of a bare axum handler that serializes the same columns from memory:
+//! `cargo bench --bench http`. Both are measured in turns over the same number of connections on loopback, so that the ratio holds
+//! on a noisy machine.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -42,7 +42,7 @@ async fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-/// The columns of the answer as a program would hold them.
+/// The columns of the answer in memory.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 struct Columns {
     n: Vec<u64>,
@@ -58,7 +58,7 @@ async fn serve(router: Router) -> std::io::Result<SocketAddr> {
     Ok(address)
 }
 
-/// Requests per second over one round.
+/// Measures requests per second over one round.
 async fn rate(address: SocketAddr) -> f64 {
     let count = Arc::new(AtomicU64::new(0));
     let start = Instant::now();
@@ -86,7 +86,7 @@ async fn ask(address: SocketAddr, path: &str) -> std::io::Result<Vec<u8>> {
     exchange(&mut TcpStream::connect(address).await?, path).await
 }
 
-/// One request and its whole answer on a connection that stays open.
+/// Sends a request on a persistent connection and reads the whole answer.
 async fn exchange(stream: &mut TcpStream, path: &str) -> std::io::Result<Vec<u8>> {
     stream.write_all(format!("GET {path} HTTP/1.1\r\nhost: localhost\r\n\r\n").as_bytes()).await?;
     let mut received = Vec::with_capacity(64 * 1024);

@@ -1,5 +1,5 @@
-//! What outcomes, energy and bookkeeping cost beside a bare loop of lanes, and how two threads share a region:
-//! `cargo bench --bench lanes`. All in one run and in turns, so that ratios hold on a machine that others use.
+//! Cost of endings, energy and bookkeeping over a bare loop of lanes, and of a region on two threads: `cargo bench --bench lanes`.
+//! All are measured in turns in one run, so that ratios hold on a noisy machine.
 
 mod case_1;
 
@@ -26,7 +26,7 @@ fn start(run: usize, wide: f64) -> Start {
     }
 }
 
-/// ns a bounce of the sweep that regions use.
+/// Time per bounce of the batch run that regions use, ns.
 fn ours(path: Path, wide: f64) -> f64 {
     let mut runs = (0..RUNS).map(|run| (run, start(black_box(run), wide)));
     let mut bounces = 0;
@@ -35,7 +35,7 @@ fn ours(path: Path, wide: f64) -> f64 {
     clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
 }
 
-/// ns a bounce of the same with friction.
+/// Time per bounce of the same with friction, ns.
 fn rough(path: Path, contact: (Law, Slide), wide: f64) -> f64 {
     let mut runs = (0..RUNS).map(|run| {
         let start = start(black_box(run), wide);
@@ -47,15 +47,15 @@ fn rough(path: Path, contact: (Law, Slide), wide: f64) -> f64 {
     clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
 }
 
-/// ns a bounce of the bare loop.
+/// Time per bounce of the bare loop, ns.
 fn bare(path: Path, wide: f64) -> f64 {
     let clock = Instant::now();
     let (bounces, _) = black_box(dispatch_on(path, Bare { wide }));
     clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
 }
 
-/// The least that could be done: lossless strikes, a series for the flight and one Newton step, one check of the angles; no
-/// outcome, no energy, no largest angle, no certificate that the contact is the first.
+/// Lower bound of the work: lossless strikes, a series for the flight with one Newton step, and one check of the angles. It has no
+/// endings, no energy, no largest angle, and no certificate that the contact is the first.
 struct Bare {
     wide: f64,
 }
@@ -117,7 +117,7 @@ impl Work for Bare {
     }
 }
 
-/// Taylor's series, to rounding where |x| < π/4.
+/// Taylor series, exact to rounding for |x| < π/4.
 #[inline(always)]
 fn sin_cos(x: f64) -> (f64, f64) {
     let z = x * x;
@@ -132,7 +132,7 @@ fn sin_cos(x: f64) -> (f64, f64) {
     (x * sin, cos)
 }
 
-/// Both in turns; their medians and that of their ratios.
+/// Measures both in turns. Returns their medians and the median of their ratios.
 fn compare(first: impl Fn() -> f64, second: impl Fn() -> f64) -> [f64; 3] {
     let pairs: Vec<(f64, f64)> = (0..ROUNDS).map(|_| (first(), second())).collect();
     let median = |value: fn(&(f64, f64)) -> f64| {
@@ -153,7 +153,7 @@ fn main() {
     }
     for path in Path::ALL.into_iter().filter(|path| path.is_there()) {
         for law in [Law::Poisson, Law::Newton, Law::Stronge] {
-            // A table that only tilts holds none but the upright rod.
+            // With friction, a table that only tilts balances only the upright rod.
             for (slide, wide) in [(Slide::Matched, 0.001), (Slide::None, 0.0)] {
                 let [with, without, ratio] = compare(|| rough(path, (law, slide), wide), || ours(path, wide));
                 println!("{path:?}, {law:?}, {slide:?}: {with:.2}, without friction {without:.2}, ratio {ratio:.2}");

@@ -1,6 +1,6 @@
-// How fast the page is, in headless Chromium against a server on loopback: `node benches/page.mjs [--write]`, after
-// `tests/run browser` has set up what it needs. Writes docs/page-speed.md with `--write`. Figures depend on the machine; nothing is
-// asserted here, and what the page does is tested elsewhere.
+// Speed of the page, in headless Chromium against a server on loopback: `node benches/page.mjs [--write]`, after
+// `tests/run browser` has installed its packages. With `--write` it writes docs/page-speed.md. Figures depend on the machine and are
+// not asserted; the page's behaviour is tested in tests/browser.
 
 import { cpus, loadavg } from 'node:os';
 import { writeFile } from 'node:fs/promises';
@@ -21,7 +21,7 @@ async function frames(page, seconds) {
   await session.send('Performance.enable', { timeDomain: 'threadTicks' });
   const metrics = async () => Object.fromEntries((await session.send('Performance.getMetrics')).metrics.map(({ name, value }) => [name, value]));
   await page.evaluate(() => {
-    // Counted once, however often it is asked.
+    // The counter starts once.
     if (globalThis.frameCount !== undefined) return;
     globalThis.frameCount = 0;
     const count = () => { globalThis.frameCount += 1; requestAnimationFrame(count); };
@@ -35,7 +35,7 @@ async function frames(page, seconds) {
   return { perSecond: (to - from) / (end - begin) * 1000, msPerFrame: (after.TaskDuration - before.TaskDuration) * 1000 / (to - from) };
 }
 
-// Cold: a profile of its own each time, nothing kept.
+// Cold: a new profile each time, with an empty cache.
 const plots = [];
 for (let round = 0; round < 9; round += 1) {
   const { page } = await stage.page('', { viewport });
@@ -102,7 +102,7 @@ tell('First plot, cold', '≤ 500 ms', `${median(plots).toFixed(0)} ms (${sorted
     for (let n = 1; n <= 1e5; n += 1) impacts.append(/** @type {any} */ (Object.fromEntries(COLUMNS.map((name) => [name, name === 'n' ? n : name === 'series' ? 0 : Math.sin(n * 0.7 + name.length) * 0.3]))));
     const plot = anglePlane(impacts);
     document.querySelector('#charts').append(plot.figure.element);
-    // Its way with many dots is loaded when there are many.
+    // The drawing of many dots is loaded when there are many.
     await new Promise((done) => setTimeout(done, 1000));
     const times = [];
     for (let round = 0; round < 21; round += 1) {
@@ -120,9 +120,9 @@ tell('First plot, cold', '≤ 500 ms', `${median(plots).toFixed(0)} ms (${sorted
 if (process.argv.includes('--write')) {
   const rows = figures.map((row) => `| ${row.join(' | ')} |`).join('\n');
   const [{ model }] = cpus();
-  await writeFile(new URL('../docs/page-speed.md', import.meta.url), `# How fast the page is
+  await writeFile(new URL('../docs/page-speed.md', import.meta.url), `# Speed of the page
 
-By \`node benches/page.mjs --write\` in headless Chromium without a graphics card, server and browser on ${cpus().length} cores of one ${model.trim()},
+Written by \`node benches/page.mjs --write\` in headless Chromium without a graphics card, server and browser on ${cpus().length} cores of one ${model.trim()},
 load ${loadavg()[0].toFixed(1)} at the end. Medians, with the range where there is one.
 
 | what | wanted | measured |

@@ -3,13 +3,13 @@
 use equipoise_physics::scene::{FIELDS, Field, Kind};
 use serde_json::{Map, Value, json};
 
-/// Numbers that repeat from run to run (splitmix64, Steele and others, 2014).
+/// Reproducible random numbers (splitmix64, Steele and others, 2014).
 pub(crate) struct Draw(pub(crate) u64);
 
 /// A request to a resource.
 pub(crate) struct Request {
     pub(crate) body: Value,
-    /// The media type that is asked for.
+    /// The requested media type.
     pub(crate) accept: &'static str,
     pub(crate) gzip: bool,
 }
@@ -70,7 +70,7 @@ impl Draw {
         values[self.below(values.len() as u64) as usize]
     }
 
-    /// A whole number up to a limit, small ones as often as large ones.
+    /// A whole number up to a limit, uniform in its logarithm.
     fn count(&mut self, limit: u64) -> u64 {
         ((limit as f64).powf(self.unit()).round() as u64).clamp(1, limit)
     }
@@ -95,7 +95,7 @@ impl Draw {
         }
     }
 
-    /// A preset and changes to it, from none to many: the fewer, the longer runs last.
+    /// A preset with no to many changes. With fewer changes, runs last longer.
     fn scene(&mut self, request: &mut Map<String, Value>) {
         let preset = self.one_of(&PRESETS);
         let mut scene = json!({});
@@ -115,7 +115,7 @@ impl Draw {
                 put(&mut scene, field.path, value);
             }
         }
-        // Near upright, so that runs go on; and the models that no preset has.
+        // Near upright, so that runs last; and the models that no preset has.
         if self.chance(0.6) {
             put(&mut scene, "release.theta", json!(0.3 * 10_f64.powf(-9.0 * self.unit())));
         }
@@ -171,7 +171,7 @@ impl Draw {
         json!({"parameter": parameter, "from": from, "to": to, "count": count})
     }
 
-    /// A request to a resource. Not every one can be.
+    /// A request to a resource, which may be refused.
     pub(crate) fn request(&mut self, resource: &str) -> Request {
         let mut body = Map::new();
         self.scene(&mut body);
@@ -271,7 +271,7 @@ impl Draw {
     }
 }
 
-/// Sets a value of a scene by its dotted path.
+/// Sets a field of a scene by its dotted path.
 pub(crate) fn put(scene: &mut Value, path: &str, value: Value) {
     let mut at = scene;
     for part in path.split('.') {

@@ -1,13 +1,13 @@
-//! Prices against time: `cargo bench --bench price` asks random requests of every resource, with scenes from the whole ranges of
-//! their fields, and compares the seconds of a core that each takes with those that its price stands for. Printed is the worst ratio
-//! of each resource and the request that has it; `-- --seed N` draws others, `-- --requests N` more, `-- --only NAME` of one
-//! resource, and `-- --all` prints every one.
+//! Prices against time. `cargo bench --bench price` sends random requests to every resource, with scenes from the whole ranges of
+//! their fields. It compares the core-seconds of each request with the time that its price stands for, and prints the worst ratio of
+//! each resource with its request. Options: `-- --seed N` draws other requests, `-- --requests N` more, `-- --only NAME` those of one
+//! resource; `-- --all` prints every request.
 //!
-//! A price is in bounces of the plain rod, for which runs of case 1 are timed in between; of a region it is in bounces of lanes, a
-//! sixth of that. Seconds are those that the system books for this process, so other work on the machine disturbs them little.
-//! Reading the request is not in them.
+//! A price counts bounces of the plain rod; runs of case 1 are timed in between to convert it. The price of a region counts bounces of
+//! lanes, a sixth of that. Core-seconds are the CPU time of this process as the system counts it, so other work on the machine disturbs
+//! them little. The time to read the request is left out.
 //!
-//! Flights of a scene that spins have thousands of pieces, which are no matter of any price: their requests stand apart.
+//! Flights of a fast spinning scene have thousands of pieces, which no price counts. Such requests are listed apart.
 
 mod draw;
 
@@ -28,19 +28,19 @@ use serde_json::{Value, json};
 use tokio::time::timeout;
 use tower::ServiceExt;
 
-/// Most that the time of a request may be of the time that its price stands for.
+/// Largest allowed ratio of a request's time to the time that its price stands for.
 const LIMIT: f64 = 3.0;
 
-/// Bounces of a region's lanes in the time of one plain bounce.
+/// Bounces in lanes that take the time of one plain bounce.
 const LANES: f64 = 6.0;
 
-/// Dearest request that is asked, in seconds by its price.
+/// Price of the most expensive request that is sent, s.
 const MOST_S: f64 = 0.25;
 
 /// Time to wait for an answer.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Turns of the body in one flight from which on it counts as spinning.
+/// Turns of the body in one flight beyond which it counts as spinning.
 const SPINS: f64 = 8.0;
 
 #[derive(Parser)]
@@ -53,12 +53,12 @@ struct Arguments {
     only: Option<String>,
     #[arg(long)]
     all: bool,
-    /// Given by cargo.
+    /// Argument that cargo passes to every benchmark.
     #[arg(long)]
     bench: bool,
 }
 
-/// A request that was answered.
+/// A request with its price and time.
 struct Found {
     ratio: f64,
     time_s: f64,
@@ -67,9 +67,9 @@ struct Found {
 }
 
 struct Servers {
-    /// Answers.
+    /// The server that answers.
     open: Router,
-    /// Has no budget, and so says what each request would cost.
+    /// A server without a budget, whose refusals name the price of each request.
     closed: Router,
 }
 
@@ -91,7 +91,7 @@ async fn main() {
         }
         let mut draw = Draw(arguments.seed);
         let (mut plain, mut spinning) = (Vec::new(), Vec::new());
-        // What is measured by the clock takes its time.
+        // Clock times take their time to measure.
         let wanted = if resource == "precision" { arguments.requests.div_ceil(20) } else { arguments.requests };
         while plain.len() + spinning.len() < wanted {
             let request = draw.request(resource);
@@ -121,14 +121,14 @@ async fn main() {
 }
 
 impl Servers {
-    /// A request's time over that of its price; none where it cannot be, or costs too much to ask.
+    /// Ratio of a request's time to that of its price. None if it is refused or too expensive to send.
     async fn measure(&self, resource: &str, request: &Request) -> Option<Found> {
         let (status, refusal) = ask(&self.closed, resource, request).await?;
         let detail: Value = serde_json::from_slice(&refusal).ok()?;
         let (_, rest) = detail["detail"].as_str().filter(|_| status == 422)?.split_once(" would be ")?;
         let (price, unit) = rest.split_once(" bounces")?;
         let price: f64 = price.parse().ok().filter(|_| !unit.is_empty())?;
-        // What computes in turns has its picture in the price.
+        // Requests that compute in time slices have their picture in the price.
         let drawing = match request.accept {
             "image/svg+xml" if !in_turns(resource) => limits::SVG_PRICE,
             "image/png" if !in_turns(resource) => limits::SVG_PRICE + limits::PNG_PRICE,
@@ -140,7 +140,7 @@ impl Servers {
             return None;
         }
         let (mut time_s, mut rounds, mut spent) = (f64::INFINITY, 0, 0.0);
-        // What is short is done again: the first time finds caches cold.
+        // Short requests are sent again, because the first time finds caches cold.
         while rounds < 2 || (rounds < 20 && spent < 0.002) {
             let reading = clock_s();
             ask(&self.closed, resource, request).await?;
@@ -150,7 +150,7 @@ impl Servers {
                 (StatusCode::OK, Vec::new())
             });
             let end = clock_s();
-            // Some find only while they compute that there is no answer.
+            // Some requests are refused only while they are computed.
             if status != 200 && status != 422 {
                 return None;
             }
@@ -165,8 +165,8 @@ impl Servers {
         Some(Found { ratio, time_s, price, text: format!("{}{gzip} {}", request.accept, request.body) })
     }
 
-    /// True if a flight of the scene, or of one at a corner of its region, turns the body many times. A run that carries out plans
-    /// made for other times may do so anywhere.
+    /// True if the body turns many times in a flight of the scene, or of a scene at a corner of its region. With `noise.model=plan` it may
+    /// do so in any scene.
     async fn spins(&self, body: &Value) -> bool {
         let model = &body["scene"]["noise"]["model"];
         if model == "plan" {
@@ -204,7 +204,7 @@ impl Servers {
             {
                 return true;
             }
-            // The last flight may have had no end.
+            // The last flight may not have ended.
             if run["outcome"]["kind"] == "diverged" {
                 return true;
             }
@@ -213,7 +213,7 @@ impl Servers {
     }
 }
 
-/// Tells whether a resource computes in turns, and its price is that of its runs alone.
+/// True if a resource computes in time slices, so that its price is that of its runs.
 fn in_turns(resource: &str) -> bool {
     ["regions", "ensembles"].contains(&resource)
 }
@@ -235,13 +235,13 @@ async fn ask(server: &Router, resource: &str, request: &Request) -> Option<(Stat
     timeout(PATIENCE, answer).await.ok()?
 }
 
-/// Seconds of a core that the system has booked for this process.
+/// CPU time of this process as the system counts it, s.
 fn clock_s() -> f64 {
     let time = clock_gettime(ClockId::ProcessCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Seconds of a plain bounce now: the median of a few short runs.
+/// Time of a plain bounce now, s: the median of a few short runs.
 fn bounce_s() -> f64 {
     use equipoise_physics::run::orbit::run;
     use equipoise_physics::scene::{Draft, Name, Value};

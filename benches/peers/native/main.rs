@@ -1,7 +1,7 @@
-//! The Rust side of the peers: equipoise's map and rapier2d on the paper's case 1, under one clock. One line of JSON each, as the
-//! Python peers print.
+//! The peers in Rust: equipoise's return map and rapier2d on the paper's case 1, timed with one clock. Each prints one line of JSON,
+//! as the Python peers do.
 //!
-//! Not here: what they are compared with in Python, and the table (`../run`).
+//! The Python peers and the table are made by `../run`.
 
 use std::time::Instant;
 
@@ -36,7 +36,7 @@ fn version(package: &str) -> String {
     version.unwrap_or("unknown").to_owned()
 }
 
-/// Runs a peer so many times and prints its line: the best time, and how far it is from the reference.
+/// Runs a peer several times and prints its line: the best time, and its distance from the reference.
 fn report(reference: &Value, name: &str, version: &str, setting: &str, rounds: u32, peer: fn() -> Vec<Impact>) {
     let mut best = f64::INFINITY;
     let mut impacts = peer();
@@ -78,8 +78,8 @@ fn map() -> Vec<Impact> {
 
 const STEP: f64 = 1e-4;
 
-/// A ball at the rod's end on a half-space that is turned before every step. An impact is a step in which more than gravity acts on a
-/// contact point that falls.
+/// A ball at the rod's end on a half-space that is tilted before every step. An impact is a step in which more than gravity acts on a
+/// falling contact point.
 fn engine() -> Vec<Impact> {
     const RADIUS: f64 = 1e-3;
     let Rod { contact_distance: l, radius_of_gyration: rho, gravity, tilt_gain, .. } = CASE_1;
@@ -115,7 +115,7 @@ fn engine() -> Vec<Impact> {
         let jump = (now[3] - x_dot).hypot(now[4] - y_dot + gravity * STEP).hypot(rho * (now[5] - theta_dot));
         let t = f64::from(step) * STEP;
         let falls = y_dot + l * theta_dot * theta.sin() < 0.0;
-        // The rest of a strike that has already been seen is no strike.
+        // Later steps of the same strike do not count.
         let is_new = impacts.last().is_none_or(|last| t - last[0] > 0.02);
         if falls && is_new && jump > 20.0 * gravity * STEP && height < 1.5 * l {
             impacts.push([t, x, theta, x_dot, y_dot, theta_dot]);
