@@ -1,4 +1,4 @@
-//! Who may ask, and under which address: the token, origins, request ids, and a proxy in front.
+//! Access: the token, origins, host names, request ids, and a proxy in front.
 
 mod support;
 
@@ -41,7 +41,7 @@ async fn without_the_token_there_is_health_and_nothing_else() {
         server.get_with("/v1/scenes", &[("authorization", &header)]).await.expect(401);
         server.get(&format!("/?token={wrong}")).await.expect(401);
     }
-    // Only the page takes it from an address.
+    // Only the page accepts the token in its URL.
     server.get(&format!("/v1/scenes?token={TOKEN}")).await.expect(401);
     let header = format!("Bearer {TOKEN}");
     for target in ["/", "/v1/stability?preset=case-1", "/metrics"] {
@@ -57,7 +57,7 @@ async fn a_browser_is_given_a_cookie_once_and_loses_nothing_of_the_address() {
     assert_eq!(answer.header("cache-control"), Some("no-store"));
     let (cookie, rest) = answer.header("set-cookie").unwrap().split_once(';').unwrap();
     assert_eq!(rest, " HttpOnly; SameSite=Lax");
-    // It is derived from the token, the same way by every server that has it, and says nothing of it.
+    // The cookie is derived from the token, equally on every server, and does not reveal it.
     assert!(!cookie.contains(TOKEN) && cookie.len() == "equipoise_token=".len() + 64, "{cookie}");
     let again = Server::with(&guarded()).get(&format!("/?%74oken=%30{}", &TOKEN[1..])).await.expect(303);
     assert_eq!(again.header("location"), Some("./"));
@@ -84,13 +84,13 @@ async fn a_live_run_asks_for_the_token_too() {
     for (name, value) in [("authorization", &bearer), ("cookie", &cookie), ("sec-websocket-protocol", &offered)] {
         let (mut client, protocol) = try_open(address, "/v1/live?preset=case-1", &[(name, value)]).await.unwrap();
         assert_eq!(client.next().await["type"], "hello", "{name}");
-        // The secret is not echoed.
+        // The error does not repeat the token.
         assert_eq!(protocol.is_some(), name == "sec-websocket-protocol");
         assert!(!protocol.unwrap_or_default().contains(TOKEN));
     }
 }
 
-/// An answer, whatever the contract says about it.
+/// An answer that is not held to the contract.
 async fn ask(config: &Config, method: Method, target: &str, headers: &[(&str, &str)]) -> Answer {
     Server::with(config).send_unheld(method, target, headers, "").await
 }
@@ -104,7 +104,7 @@ async fn pages_of_allowed_origins_may_ask_and_no_others() {
         ("access-control-request-method", "POST"),
         ("access-control-request-headers", "authorization,content-type"),
     ];
-    // A browser asks whether it may without the token.
+    // A browser sends the preflight request without the token.
     let answer = ask(&config, Method::OPTIONS, "/v1/trajectories", &preflight).await.expect(200);
     assert_eq!(answer.header("access-control-allow-origin"), Some("https://lab.example"));
     assert!(answer.header("access-control-allow-methods").unwrap().contains("POST"));
@@ -153,7 +153,8 @@ async fn told(address: SocketAddr, request: &str, headers: &[&str]) -> (u16, Str
     (head.split(' ').nth(1).unwrap().parse().unwrap(), body.to_owned())
 }
 
-/// A page of another site that lets its own name lead to this machine is of the same origin to the browser, and reads nothing.
+/// DNS rebinding: a page of another site points its own name at this machine. To the browser it has the same origin, yet it reads
+/// nothing.
 #[tokio::test]
 async fn a_name_that_is_not_the_servers_is_not_answered_to() {
     let (app, address) = start().await;
@@ -165,7 +166,7 @@ async fn a_name_that_is_not_the_servers_is_not_answered_to() {
     let post = ["content-type: application/json", "content-length: 0"];
     for host in ["evil.example", "localhost.evil.example", "rig.lab", "127.0.0.1.nip.io", "rig"] {
         let named = format!("host: {host}:{port}");
-        // As a browser says it there: the same origin, the same site.
+        // Headers of a browser in that case: same origin, same site.
         let origin = format!("origin: http://{host}:{port}");
         for (request, more) in [
             ("GET /", &[][..]),
@@ -197,7 +198,7 @@ async fn names_that_are_allowed_are_answered_to() {
     for (host, expected) in [("rig.lab.example", 200), ("RIG.", 200), ("localhost", 200), ("lab.example", 421)] {
         assert_eq!(status(&allowed, host).await, expected, "{host}");
         assert_eq!(status(&[&allowed[..], &["--listen", "0.0.0.0:80"]].concat(), host).await, expected, "{host}");
-        // A page that gives its own name to the server has neither the token nor the cookie; a network has many names.
+        // With a token, such a page has neither token nor cookie. On a network, a server has many names.
         assert_eq!(status(&["--token", TOKEN], host).await, 200, "{host}");
         assert_eq!(status(&["--listen", "0.0.0.0:80"], host).await, 200, "{host}");
     }
@@ -212,7 +213,7 @@ async fn a_page_of_another_site_sets_no_server_to_work() {
     let status = async |address, request: &str, more: &[&str]| {
         let json = ["content-type: application/json", "content-length: 19"];
         let json = if request.starts_with("POST") { &json[..] } else { &[] };
-        // After a refusal nobody reads the body.
+        // The body of a refused request is not read.
         let body = if request.starts_with("POST") { "{\"preset\":\"case-1\"}" } else { "" };
         let mut socket = TcpStream::connect(address).await.unwrap();
         let headers: String = [&cross, json, more].concat().iter().map(|header| format!("{header}\r\n")).collect();
@@ -239,19 +240,19 @@ async fn a_page_of_another_site_sets_no_server_to_work() {
     }
     let headers = [("sec-fetch-site", "cross-site"), ("host", "localhost")];
     assert_eq!(refused(closed, "/v1/live?preset=case-1", &headers).await["status"], 403);
-    // A link that somebody follows, and not one that a page fetches for them before.
+    // Links that a person follows pass; prefetched ones do not.
     let visit = ["sec-fetch-mode: navigate", "sec-fetch-dest: document", "sec-fetch-user: ?1"];
     assert_eq!(status(closed, picture, &visit).await, 200);
     assert_eq!(status(closed, picture, &[&visit[..], &["sec-purpose: prefetch"]].concat()).await, 403);
     assert_eq!(status(closed, "POST /v1/stability", &visit).await, 403);
-    // Pictures and panels in its page.
+    // Pictures and panels embedded in another site's page.
     for (request, destination) in [(picture, "image"), ("GET /embed/map?preset=case-1", "iframe")] {
         let shown = [format!("sec-fetch-dest: {destination}")];
         let shown = [shown[0].as_str(), "sec-fetch-mode: no-cors"];
         assert_eq!(status(closed, request, &shown).await, 403, "{request}");
         assert_eq!(status(open, request, &shown).await, 200, "{request}");
     }
-    // What costs nothing, and whoever is no page of another site.
+    // Resources that cost nothing, and clients that are not pages of another site.
     for request in ["GET /", "GET /docs", "GET /v1/scenes", "GET /v1/fields", "GET /embed/map", "GET /openapi.json"] {
         assert_eq!(status(closed, request, &[]).await, 200, "{request}");
     }
@@ -259,7 +260,7 @@ async fn a_page_of_another_site_sets_no_server_to_work() {
         let said = format!("sec-fetch-site: {site}");
         assert_eq!(told(closed, picture, &["host: localhost", &said]).await.0, 200, "{site}");
     }
-    // A browser asks first whether a page may, and says then too that it is of another site.
+    // A browser sends a preflight request, which is marked as cross-site too.
     let preflight = ["origin: https://lab.example", "access-control-request-method: POST"];
     assert_eq!(status(closed, "OPTIONS /v1/stability", &preflight).await, 200);
 }
@@ -293,7 +294,7 @@ async fn a_base_path_is_taken_with_and_without_and_stands_in_every_link() {
     assert_eq!((slash.status.as_u16(), slash.header("location")), (308, Some("../docs")));
 }
 
-/// A proxy that shows a server under a prefix, which it takes away. One request for each connection.
+/// A proxy that serves a server under a prefix, which it strips. One request per connection.
 async fn proxy(prefix: &'static str, server: SocketAddr) -> SocketAddr {
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let address = listener.local_addr().unwrap();
@@ -330,7 +331,7 @@ async fn behind_a_proxy_that_strips_a_prefix_every_address_leads_back() {
     let (_, server) = start_with(&config(&["--base-path", "/rig", "--token", TOKEN])).await;
     let address = proxy("/rig", server).await;
     let welcome = get(address, &format!("/rig/?token={TOKEN}")).await;
-    // Relative to where the browser is: under the prefix, as is the cookie without a path.
+    // The redirect is relative to the browser's address, so it stays under the prefix, as does the cookie without a path.
     assert!(welcome.contains("\r\nlocation: ./\r\n") && !welcome.to_lowercase().contains("; path="), "{welcome}");
     let offered = format!("equipoise.v1, equipoise.token.{TOKEN}");
     let offered = [("sec-websocket-protocol", offered.as_str())];

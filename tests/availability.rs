@@ -1,4 +1,4 @@
-//! What the contract says of which scene a resource takes, and of what is null when: asked of the server, resource by resource.
+//! Refusals and nulls that the contract promises for each resource, checked against the server.
 
 mod support;
 
@@ -25,7 +25,7 @@ fn parts() -> Vec<(&'static str, Value)> {
     ]
 }
 
-/// The resources that take a scene, with the operation that posts it and the least that has to be asked for beside it.
+/// The resources that take a scene: the POST operation, and the least parameters beside the scene.
 fn resources() -> Vec<(&'static str, &'static Value, Value)> {
     let posted = contract::operations().into_iter().filter(|(_, method, _)| method == Method::POST);
     let resources = posted.filter(|(template, ..)| !template.contains('{')).map(|(template, _, operation)| {
@@ -102,7 +102,7 @@ async fn friction_is_taken_and_refused_where_its_field_says() {
             refused.insert(method);
         }
     }
-    // It falls at its third contact, and then the events are over.
+    // The run falls at its third contact, so that its events end.
     let live = server.get("/v1/live/events?preset=case-1&scene.contact.friction=0.3&speed=20").await.expect(200);
     assert!(live.text().contains("event: end"), "{}", live.text());
     taken.extend(["live", "live/events"]);
@@ -154,7 +154,7 @@ fn at<'a>(answer: &'a Value, path: &str) -> &'a Value {
     path.split('.').fold(answer, |value, name| &value[name])
 }
 
-/// Scenes, and what of `stability` is null for them and for them alone, as the contract says at each of these.
+/// Scenes, and the members of `stability` that are null for exactly these scenes, as the contract says at each member.
 #[tokio::test]
 async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
     const FIELDS: [&str; 12] = [
@@ -293,7 +293,7 @@ async fn orbits_have_the_energy_of_the_release_less_that_of_its_drift() {
         assert!((energy - (release_energy - 0.5 * drift * drift)).abs() < 1e-12, "{energy}, drift {drift}");
         assert!(drift == 0.0 || energy < release_energy, "{energy}");
     }
-    // With an energy gain the table sets it: the release has no say.
+    // With an energy gain the height follows from the table, not from the release.
     for height in [0.2, 0.3] {
         let target = format!("/v1/periodic-orbits?preset=case-4&period=1&scene.release.height={height}");
         let energy = server.get(&target).await.expect(200).json()["energy"].as_f64().unwrap();

@@ -1,5 +1,4 @@
-//! Many requests in one body: each line is answered as if it had been posted alone, and what is wrong with one is told in its
-//! own line.
+//! Many requests in one body: each line is answered as if it had been posted alone, and its errors stand in its own line.
 
 mod support;
 
@@ -18,7 +17,7 @@ use tower::ServiceExt;
 
 const NDJSON: &[(&str, &str)] = &[("content-type", "application/x-ndjson")];
 
-/// Posts lines, and gives those of the answer without the last, which has to count them.
+/// Posts lines. Returns the lines of the answer without the last one, which must count them.
 async fn batch(server: &Server, resource: &str, lines: &[String]) -> Vec<Value> {
     let target = format!("/v1/batches/{resource}");
     let answer = server.send(Method::POST, &target, NDJSON, &lines.join("\n")).await.expect(200);
@@ -37,7 +36,7 @@ async fn a_line_is_answered_as_if_it_were_alone() {
     let server = Server::start();
     let mut names = Vec::new();
     for (template, method, operation) in contract::operations() {
-        // Those of batches themselves are one level down.
+        // The resources for batches themselves are one level deeper.
         let Some(name) = template.strip_prefix("/v1/").filter(|name| method == Method::POST && !name.contains('/'))
         else {
             continue;
@@ -52,13 +51,13 @@ async fn a_line_is_answered_as_if_it_were_alone() {
             assert_eq!(line["line"], index + 1);
             let alone = server.post(template, body).await.expect(200).json();
             match name {
-                // What measures a clock never says the same twice.
+                // Clock times differ from answer to answer.
                 "precision" => assert_eq!(line["answer"]["impacts"], alone["impacts"], "{line:.300}"),
                 _ => assert_eq!(line["answer"], alone, "{name}: {body}"),
             }
         }
     }
-    // All that is in the contract as such, and no other.
+    // Exactly the resources that the contract lists for batches.
     let all = &contract::DOCUMENT["paths"]["/v1/batches/{resource}"]["post"]["parameters"][0]["schema"]["enum"];
     names.sort_unstable();
     assert_eq!(all, &json!(names));

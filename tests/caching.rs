@@ -1,4 +1,4 @@
-//! Same request, same bytes; and a client that has them is told so without any work.
+//! The same request has the same bytes, and a client that has them gets 304 without any work.
 
 mod support;
 

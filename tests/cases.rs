@@ -1,4 +1,4 @@
-//! The paper's cases and all reference runs, through the whole server: numbers and verdicts that physics fixes.
+//! The paper's cases and all reference runs through the whole server: numbers and verdicts that follow from the physics.
 
 mod support;
 
@@ -10,7 +10,7 @@ fn close(value: &Value, expected: f64, tolerance: f64) {
     assert!((number - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
 }
 
-/// Runs computed with 60 digits. A component may be off by ten times what the plain algorithm in doubles is off.
+/// Runs computed with 60 digits. A component may have ten times the error of the plain algorithm in doubles.
 #[tokio::test]
 async fn every_reference_agrees() {
     let server = Server::start();
@@ -100,7 +100,7 @@ async fn the_lowest_exact_rung_is_chosen_and_named() {
     let server = Server::start();
     for (target, rung) in [
         ("preset=case-1", "rod"),
-        // The table makes up the loss exactly: e drops out.
+        // The table makes up the loss exactly, so e drops out.
         ("preset=case-1&scene.contact.restitution=0.3", "rod"),
         ("preset=case-4", "rod"),
         ("preset=still-lossy", "rod"),
@@ -169,7 +169,7 @@ async fn samples_of_flights_are_the_closed_form() {
     assert_eq!(flights["impact"], json!([0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2]));
     close(&flights["y"][0], 0.2, 0.0);
     close(&flights["t"][4], run["impacts"]["t"][0].as_f64().unwrap(), 0.0);
-    // Half-way through the fall from rest a quarter of it is done.
+    // Half-way through its time, a fall from rest has covered a quarter of its height.
     let fall = 0.5 * 9.81 * run["impacts"]["t"][0].as_f64().unwrap().powi(2);
     close(&flights["y"][2], 0.2 - 0.25 * fall, 1e-15);
 }
@@ -194,7 +194,7 @@ async fn friction_is_named_where_it_acts_and_refused_where_nothing_is_derived() 
     }
 }
 
-/// What `/v1/scenes` prints and computes of a quantity, and the scene it is computed from.
+/// Printed and computed values of a quantity in `/v1/scenes`, with the scene of the computed one.
 async fn quoted(server: &Server, name: &str, quantity: &str) -> (Option<f64>, f64, Value) {
     let preset = server.get(&format!("/v1/scenes/{name}")).await.json();
     let all = preset["computed"].as_array().unwrap();
@@ -211,7 +211,7 @@ fn near(value: f64, expected: f64, tolerance: f64) {
     assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
 }
 
-/// Formulas as the paper prints them, evaluated, against what holds by other resources.
+/// Values of the paper's formulas as printed, against values from other resources.
 #[tokio::test]
 async fn formulas_of_the_paper_stand_beside_what_holds() {
     let server = Server::start();
@@ -259,7 +259,7 @@ async fn formulas_of_the_paper_stand_beside_what_holds() {
     assert_eq!((printed, computed), (Some(0.1), 0.2));
 }
 
-/// What the paper saw in its simulations, against runs of the same scenes.
+/// Observations from the paper's simulations, against runs of the same scenes.
 #[tokio::test]
 async fn ranges_and_ends_of_the_paper_stand_beside_what_runs_do() {
     let server = Server::start();
@@ -280,7 +280,7 @@ async fn ranges_and_ends_of_the_paper_stand_beside_what_runs_do() {
     let from = "scene.release.theta=0.15&scene.table.tilt_gain";
     assert!(lasts("case-1", &format!("{from}=1.47")).await && !lasts("case-1", &format!("{from}=1.48")).await);
 
-    // Case 4: η goes to its target, the energy does not.
+    // Case 4: η converges to its target, the energy does not.
     let run = server.get("/v1/trajectories?preset=case-4&impacts=4000").await.json();
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (printed, energy, _) = quoted(&server, "case-4", "energy.settled").await;
@@ -291,7 +291,7 @@ async fn ranges_and_ends_of_the_paper_stand_beside_what_runs_do() {
     near(vertical, 1.7275, 5e-5);
     near(vertical, printed.unwrap(), 5e-3);
 
-    // Case 5: not like the lossless case.
+    // Case 5 does not behave like the lossless case.
     let (printed, growth, _) = quoted(&server, "case-5", "theta.growth").await;
     let run = server.get("/v1/trajectories?preset=case-5&impacts=30000").await.json();
     let largest = |angles: &[f64]| angles.iter().fold(0.0, |most: f64, theta| most.max(theta.abs()));
@@ -300,7 +300,7 @@ async fn ranges_and_ends_of_the_paper_stand_beside_what_runs_do() {
     near(largest(&angles[29_000..]), 0.3539, 5e-5);
     assert_eq!(printed, Some(1.0));
 
-    // Friction: at the computed one a larger energy gain gives more contacts, a little above it none does.
+    // Friction: at the computed value a larger energy gain gives more contacts; a little above it, no gain does.
     let (_, friction, _) = quoted(&server, "case-4", "friction.helped").await;
     near(friction, 0.029, 0.0);
     let contacts = async |friction: f64, gain: f64| {

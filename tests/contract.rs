@@ -1,6 +1,6 @@
-//! The contract and the server say the same: routes, examples, ranges of fields, and the document itself.
+//! Contract and server agree: routes, examples, ranges of fields, and the document itself.
 //!
-//! That every single answer keeps to the contract is seen to by the frame, in every test of every file.
+//! The test frame holds every single answer to the contract, in every test of every file.
 
 mod support;
 
@@ -39,7 +39,7 @@ async fn every_other_method_is_refused_with_those_there_are() {
                 allowed.insert(method);
             }
         }
-        // Whatever can be got can be asked for its headers; the upgrade to a WebSocket may refuse that its own way.
+        // Every GET has a HEAD. The upgrade to a WebSocket may refuse HEAD in its own way.
         if allowed.contains("GET") {
             allowed.insert("HEAD");
         }
@@ -47,7 +47,7 @@ async fn every_other_method_is_refused_with_those_there_are() {
             if !allowed.contains(method) {
                 let method = Method::from_bytes(method.as_bytes()).unwrap();
                 let answer = match method {
-                    // Where the router has no GET, it is the socket that leaves out the body.
+                    // If the router has no GET, the connection leaves out the body.
                     Method::HEAD => server.send_unheld(method, &path(template), &[], "").await.expect(405),
                     _ => server.send(method, &path(template), &[], "").await.expect(405),
                 };
@@ -65,7 +65,7 @@ async fn every_route_is_in_the_contract() {
     let templates: BTreeSet<&str> = contract::templates().collect();
     let web = Path::new(env!("CARGO_MANIFEST_DIR")).join("web");
     for route in &routes {
-        // Files of the page, and folders of it, have a route each and are not part of the API.
+        // Files and folders of the page have routes but are not part of the API.
         if !web.join(&route[1..]).exists() {
             assert!(templates.contains(route.as_str()), "{route} is routed and not in the contract");
         }
@@ -75,7 +75,7 @@ async fn every_route_is_in_the_contract() {
     }
 }
 
-/// The routes, read from what the router prints of itself for debugging; axum has no other list of them.
+/// The routes, read from the router's debug output; axum has no other list of them.
 fn routes() -> Vec<String> {
     let app = equipoise::api::App::new(&equipoise::config::Config::default());
     let printed = format!("{:?}", equipoise::api::all().with_state::<()>(app));
@@ -148,7 +148,7 @@ async fn the_document_is_served_as_written() {
     assert_eq!(differences("", &DOCUMENT, &json), Vec::<String>::new());
 }
 
-/// Where two documents differ; numbers are compared by value.
+/// Differences between two documents. Numbers are compared by value.
 fn differences(place: &str, one: &Value, other: &Value) -> Vec<String> {
     match (one, other) {
         (Value::Object(left), Value::Object(right)) => {
@@ -283,7 +283,7 @@ async fn every_preset_is_named_and_can_be_sent_back() {
             preset[side].as_array().unwrap().iter().map(|quantity| quantity["quantity"].to_string()).collect()
         };
         assert_eq!(quantities("printed"), quantities("computed"), "{name}");
-        // The scene as answered is a scene that can be asked for, and stays what it is.
+        // The scene in an answer is a valid request, and gives the same scene.
         let named = server.post("/v1/trajectories", &json!({"preset": name, "impacts": 3})).await.expect(200).json();
         let sent = json!({"scene": preset["scene"], "impacts": 3});
         let faults = contract::faults(&DOCUMENT["components"]["schemas"]["TrajectoryRequest"], &sent);

@@ -1,4 +1,4 @@
-//! Laws for the table: what is designed holds when it is run, what was typed by hand is judged, and what cannot be says why.
+//! Control laws: designed laws hold in runs, typed laws are judged, and impossible ones are refused with a reason.
 
 mod support;
 
@@ -20,7 +20,7 @@ async fn run(server: &Server, scene: &Value, release: Value, impacts: u64) -> (S
     (answer["outcome"]["kind"].as_str().unwrap().to_owned(), states)
 }
 
-/// The contact from which on |x| and |θ| stay below 1e-9.
+/// The contact after which |x| and |θ| stay below 1e-9.
 fn at_rest(states: &[(f64, f64)]) -> usize {
     states.iter().rposition(|(x, theta)| x.abs().max(theta.abs()) >= 1e-9).map_or(1, |last| last + 2)
 }
@@ -41,7 +41,7 @@ async fn a_law_brings_the_body_to_rest_in_place() {
     let (outcome, states) = run(&server, &law["scene"], json!({"theta": 0.3, "x": 0.2}), 400).await;
     assert_eq!(outcome, "completed");
     assert!(at_rest(&states) <= 100, "{}", at_rest(&states));
-    // In the long run the deviation shrinks as the largest eigenvalue says.
+    // In the long run the deviation shrinks at the rate of the largest eigenvalue.
     let fall = states[20].1.hypot(states[20].0) / states[50].1.hypot(states[50].0);
     let decades = 30.0 / number(&law, "/bounces_per_decade");
     assert!((fall.log10() - decades).abs() < 0.7, "{fall} {decades}");
@@ -58,7 +58,7 @@ async fn a_law_for_the_sticking_contact_holds_where_proportional_tilt_falls() {
     assert!(at_rest(&states) <= 250, "{}", at_rest(&states));
     let proportional = server.get(&format!("/v1/trajectories?{rough}&impacts=5000")).await.expect(200).json();
     assert!(number(&proportional, "/outcome/impacts") < 10.0);
-    // A law for another contact is said to fail on this one, and does.
+    // A law for another kind of contact is predicted to fail on this one, and fails.
     let other = server.get(&format!("/v1/controllers?{rough}&contact=frictionless")).await.expect(200).json();
     assert_eq!((&other["contact"], &other["applied"]["contact"]), (&json!("frictionless"), &json!("stick")));
     assert_eq!(other["applied"]["stable"], false);
@@ -88,7 +88,7 @@ async fn gains_typed_by_hand_are_judged() {
     let same = ask(designed["gain"].clone()).await;
     assert_eq!(same["given"]["eigenvalues"], designed["eigenvalues"]);
     assert_eq!((&same["gain"], &same["given"]["stable"]), (&designed["gain"], &json!(true)));
-    // α = κθ in other words: it circles, which is not dying out. And the wrong sign falls.
+    // α = κθ as a state feedback circles and does not die out. With the wrong sign it falls.
     for (theta, radius) in [(-1.1, 1.0), (1.0, 2.0)] {
         let given = ask(json!({"theta": theta})).await["given"].clone();
         assert_eq!((&given["stable"], &given["gain_margin"]), (&json!(false), &Value::Null));
@@ -106,13 +106,13 @@ async fn a_scene_needs_no_law_to_be_given_one() {
     assert_eq!((outcome.as_str(), at_rest(&states) <= 200), ("completed", true), "{}", at_rest(&states));
 }
 
-/// κ = 1 + R·G(ρ² + s)/(V²l) with R = 0.2, s = l² on a contact that sticks to a table that moves along and 0 without friction.
+/// κ = 1 + R·G(ρ² + s)/(V²l) with R = 0.2; s = l² for a matched sticking contact, 0 without friction.
 #[tokio::test]
 async fn the_proportional_law_beside_it_has_the_residue_of_case_1() {
     let server = Server::start();
     let base =
         json!({"body": {"contact_distance": 0.2, "radius_of_gyration": 0.1}, "release": {"height": 0.3, "theta": 0.1}});
-    // V² = 2·9.81·(0.3 − 0.2), and to a target height of 0.4 twice that.
+    // V² = 2·9.81·(0.3 − 0.2), and twice that for a target height of 0.4.
     for (scene, kappa) in [
         (json!({}), 1.05),
         (json!({"table": {"feedback": {"theta": -1.3}}}), 1.05),
@@ -136,7 +136,7 @@ async fn the_proportional_law_beside_it_has_the_residue_of_case_1() {
             assert!((residue - 0.2).abs() < 1e-12, "{scene}: {residue}");
         }
     }
-    // A scene without a law and one with κ = 1 are two questions.
+    // A scene without a law and one with κ = 1 are different requests.
     let mut tags = Vec::new();
     for table in [json!({}), json!({"tilt_gain": 1.0})] {
         let mut whole = base.clone();
@@ -158,9 +158,9 @@ async fn basins_are_a_request_away() {
         survivors.push(number(&map, "/counts/completed"));
         assert_eq!(number(&map, "/values/7/7"), 300.0, "{name}: upright and at rest it stays");
     }
-    // Nearly half of them against those close to upright.
+    // The designed law survives on nearly half of the grid, the tilt gain only close to upright.
     assert!(survivors[0] > 80.0 && survivors[1] > 5.0 && survivors[1] < 30.0, "{survivors:?}");
-    // Of both gains of a law, as a map: without enough of the angle's it falls.
+    // A map over two gains of a law: with too little gain on the angle, runs fall.
     let gains = format!(
         "/v1/regions?{}&x.parameter=table.feedback.theta&x.from=-1.3&x.to=-1&x.count=7&y.parameter=table.feedback.theta_dot\
          &y.from=-0.06&y.to=0&y.count=3&impacts=200",
@@ -206,7 +206,7 @@ async fn no_weights_break_it() {
     let server = Server::start();
     let (mut laws, mut refused) = (0, 0);
     for number in 0..600_u32 {
-        // A digit of the number in base 7 for each, spread over the range.
+        // Every power of ten is a digit of the scrambled number.
         let power = |place: u32| f64::from(number.wrapping_mul(2_654_435_761) / 7_u32.pow(place) % 13) - 6.0;
         let weight = |place| 10_f64.powf(power(place));
         let scene = json!({
@@ -266,7 +266,7 @@ async fn a_law_is_differentiated_and_judged_like_any_table() {
                 }
             }
             if at == "fixed_point" {
-                // The closed loop, and the height that nothing steers.
+                // The closed loop, and the height, which no feedback controls.
                 for value in law["eigenvalues"].as_array().unwrap() {
                     let near = |other: &Value| {
                         (number(other, "/re") - number(value, "/re")).hypot(number(other, "/im") - number(value, "/im"))
@@ -282,7 +282,7 @@ async fn a_law_is_differentiated_and_judged_like_any_table() {
             server.send(axum::http::Method::POST, &target, &headers, &body).await.expect(200);
         }
     }
-    // The wrong sign, and a start outside of the basin.
+    // The wrong sign, and a start outside the basin.
     let law = server.get("/v1/controllers?preset=case-1").await.json()["scene"].clone();
     for (feedback, release, decided_by) in
         [(json!({"theta": 1.0}), json!({}), "linear"), (json!({}), json!({"theta": 1.2}), "nonlinear")]

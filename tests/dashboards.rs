@@ -1,6 +1,6 @@
-//! What dashboards ask for is answered as they read it: the files of `docs/dashboards` against the server.
+//! The files of `docs/dashboards` against the server: every request of a dashboard gets an answer that it can read.
 //!
-//! Not here: the real programs; `tests/dashboards/run` starts those that can be had.
+//! `tests/dashboards/run` runs the real programs, if they are installed.
 
 mod support;
 
@@ -23,7 +23,7 @@ fn shipped(name: &str) -> String {
     fs::read_to_string(folder().join("dashboards").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// What Grafana puts in before it asks.
+/// Replaces the variables that Grafana replaces before it sends a request.
 fn filled_in(text: &str) -> String {
     text.replace("${tilt_gain}", "1.1").replace("${__from}", &EPOCH.to_string())
 }
@@ -42,7 +42,7 @@ async fn an_epoch_gives_every_row_its_time() {
             let t = with[table]["t"].as_array().unwrap().clone();
             let time = with[table].as_object_mut().unwrap().remove("time").unwrap();
             for (time, t) in time.as_array().unwrap().iter().zip(&t) {
-                // Decimals of 32 digits are text.
+                // Decimals with 32 digits are text.
                 let t = t.as_f64().unwrap_or_else(|| t.as_str().unwrap().parse().unwrap());
                 let error = time.as_u64().unwrap() as f64 - (EPOCH as f64 + 1e3 * t);
                 assert!(error.abs() <= 0.5, "{query}: {table}: {time} is {error} ms off");
@@ -86,7 +86,7 @@ async fn asked_by_infinity(server: &Server, query: &Value) -> Answer {
     let mut headers = vec![("accept", accept), ("accept-encoding", "gzip"), ("user-agent", "Grafana/12.0")];
     let url = filled_in(query["url"].as_str().unwrap());
     let (path, parameters) = url.split_once('?').unwrap_or((&url, ""));
-    // Go writes a query sorted by name.
+    // Go sorts the parameters of a query by name.
     let mut pairs: Vec<_> = form_urlencoded::parse(parameters.as_bytes()).collect();
     pairs.sort();
     let encoded = form_urlencoded::Serializer::new(String::new()).extend_pairs(pairs).finish();
@@ -103,7 +103,7 @@ async fn asked_by_infinity(server: &Server, query: &Value) -> Answer {
     answer
 }
 
-/// The rows that a root selector (GJSON) makes of an answer; `@group` turns an object of arrays into an array of objects.
+/// The rows that a root selector (GJSON) selects in an answer. `@group` turns an object of arrays into an array of objects.
 fn rows(whole: &Value, selector: &str) -> Vec<Value> {
     let Some(path) = selector.strip_suffix(".@group") else {
         assert_eq!(selector, "", "a selector that this test does not know");
@@ -128,7 +128,7 @@ fn cells(answer: &Answer, query: &Value, selector: &str) -> Vec<Value> {
     rows.iter().map(|row| row.pointer(&pointer).unwrap_or_else(|| panic!("no {selector} in {row}")).clone()).collect()
 }
 
-/// Whether the backend parser makes a cell of this type of it.
+/// True if the backend parser accepts a value as a cell of this type.
 fn is_read_as(kind: &str, cell: &Value) -> bool {
     match (kind, cell) {
         ("timestamp_epoch", Value::String(text)) => text.parse::<i64>().is_ok(),
@@ -169,7 +169,7 @@ async fn infinity_reads_what_the_panels_of_grafana_show() {
     assert_eq!(types.len(), 3, "{types:?}");
 }
 
-/// The files that are shipped, with their texts.
+/// The shipped files with their texts.
 fn files(folder: &Path, found: &mut Vec<(String, String)>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -194,11 +194,11 @@ async fn every_address_in_the_files_is_answered() {
             let end = rest.find(|c: char| c.is_whitespace() || "\"'`)<>\\".contains(c)).unwrap_or(rest.len());
             let target = filled_in(&rest[..end]).replace("&amp;", "&");
             let target = if target.is_empty() { "/" } else { &target };
-            // Events go on without an end; their head says whether they would come.
+            // An event stream does not end, so only its head is requested.
             let method = if target.starts_with("/v1/live/events") { Method::HEAD } else { Method::GET };
             let answer = server.send(method, target, &[], "").await;
             assert_eq!(answer.status.as_u16(), 200, "{file}: {target}: {}", String::from_utf8_lossy(&answer.body));
-            // As a browser asks for a picture or a frame of a page of another site, if the server may be shown there.
+            // The request of a browser for a picture or frame on a page of another site, with embedding allowed.
             let before = text.split(HOST).take(place + 1).last().unwrap_or_default();
             let shown = [("<img", "image"), ("<iframe", "iframe")]
                 .into_iter()
@@ -229,7 +229,7 @@ async fn plotjuggler_finds_its_curves_in_the_csv() {
     for node in layout.descendants().filter(roxmltree::Node::is_element) {
         match node.tag_name().name() {
             "curve" => {
-                // In a plane the curve has a name of its own, and those of its two columns.
+                // A curve in a plane has its own name and those of its two columns.
                 let names = match (node.attribute("curve_x"), node.attribute("curve_y")) {
                     (Some(x), Some(y)) => vec![x, y],
                     _ => vec![node.attribute("name").unwrap()],
@@ -241,7 +241,7 @@ async fn plotjuggler_finds_its_curves_in_the_csv() {
             }
             "fileInfo" => assert_eq!(node.attribute("filename"), Some("run.csv")),
             "parameters" | "default" => {
-                // Whole numbers between these are taken for milliseconds since 1970.
+                // PlotJuggler reads whole numbers in this range as milliseconds since 1970.
                 let axis = table.column(node.attribute("time_axis").unwrap());
                 let dates = axis.iter().map(|cell| cell.parse::<u64>().unwrap());
                 assert!(dates.clone().all(|date| (1_400_000_000_000..2_000_000_000_000).contains(&date)));

@@ -1,6 +1,6 @@
 //! The files of `docs/deploy` agree with the server, with each other and with the tools that read them.
 //!
-//! Not here: nginx itself before running replicas; `tests/replicas` starts it.
+//! `tests/replicas` runs nginx itself before replicas.
 
 mod support;
 
@@ -24,7 +24,7 @@ fn shipped(name: &str) -> String {
     fs::read_to_string(root().join("docs/deploy").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// The arguments of the one directive that begins so.
+/// The arguments of the only directive of a name.
 fn nginx(begin: &str) -> Vec<String> {
     let text = shipped("nginx.conf");
     let mut found = text.lines().filter_map(|line| line.trim().strip_prefix(begin)?.strip_suffix(';'));
@@ -52,7 +52,7 @@ fn nginx_takes_what_the_server_takes() {
     let (count, line) = (lines[0].parse::<usize>().unwrap(), bytes(&lines[1]));
     assert!(line > limits::URL_BYTES + "OPTIONS  HTTP/1.1\r\n".len());
     assert_eq!(count * line, limits::HEAD_BYTES);
-    // A redirect repeats the URL, and some forty lines are as many bytes as all else that a head of ours has.
+    // The head of a redirect holds the URL; 4096 bytes are enough for its other headers.
     assert!(size("proxy_buffer_size ") >= limits::URL_BYTES + 4096);
     let ids = format!("\"~^[A-Za-z0-9._-]{{1,{}}}$\" $http_x_request_id;", limits::REQUEST_ID_BYTES);
     let text = shipped("nginx.conf");
@@ -92,7 +92,7 @@ fn nginx_waits_as_long_as_the_server_and_for_it() {
     assert!(number("worker_rlimit_nofile ") > connections && connections >= 2 * limits.connections);
 }
 
-/// The values of a setting of the unit.
+/// The values of a setting in the systemd unit.
 fn unit(name: &str) -> Vec<String> {
     let text = shipped("equipoise@.service");
     let values = text.lines().filter_map(|line| line.strip_prefix(name)?.strip_prefix('='));
@@ -110,7 +110,7 @@ fn the_unit_gives_the_server_the_files_and_the_time_it_needs() {
     assert!(Duration::from_secs(number("TimeoutStopSec")) > limits.shutdown_time + limits::GOODBYE_TIME);
 }
 
-/// Starts the program with these variables, and gives its first line.
+/// Starts the program with these variables. Returns its first line.
 fn started_with(variables: &[(String, String)]) -> String {
     let mut child = Command::new(env!("CARGO_BIN_EXE_equipoise"))
         .env_clear()
@@ -125,7 +125,7 @@ fn started_with(variables: &[(String, String)]) -> String {
     line
 }
 
-/// The variable of an assignment, but for the port, which becomes any that is free.
+/// Name and value of an assignment; the port becomes 0, any free one.
 fn assigned(text: &str, port: &str) -> (String, String) {
     let (name, value) = text.split_once('=').unwrap();
     (name.to_owned(), value.replace(port, ":0"))
@@ -142,7 +142,7 @@ fn the_server_starts_in_each_of_the_environments() {
         (variable["name"].as_str().unwrap().to_owned(), value)
     });
     let help = Command::new(env!("CARGO_BIN_EXE_equipoise")).arg("--help").output().unwrap().stdout;
-    // Long lines of it are broken.
+    // `--help` breaks long lines.
     let help = String::from_utf8(help).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
     for variables in [of_unit, of_image.collect(), of_pod.collect()] {
         assert!(!variables.is_empty());
@@ -167,7 +167,7 @@ fn systemd_accepts_the_unit_and_finds_it_hardened() {
     let program = unit("ExecStart").remove(0);
     let text = shipped("equipoise@.service").replace(&program, env!("CARGO_BIN_EXE_equipoise"));
     fs::write(folder.join("equipoise@.service"), text).unwrap();
-    // Out of 100, which a unit without any protection comes close to.
+    // The exposure is out of 100; a unit without protection comes close to that.
     let most_exposed = "--threshold=15";
     for arguments in [
         vec!["verify", "./equipoise@.service"],
@@ -223,7 +223,7 @@ async fn the_manifest_agrees_with_the_server() {
     assert!(kept >= 1 && kept < deployment["spec"]["replicas"].as_u64().unwrap());
 }
 
-/// The arguments of an instruction, wherever it stands.
+/// The arguments of an instruction, anywhere in the file.
 fn instructions(name: &str) -> Vec<String> {
     let text = shipped("Containerfile");
     text.lines().filter_map(|line| Some(line.strip_prefix(name)?.strip_prefix(' ')?.to_owned())).collect()
@@ -241,13 +241,13 @@ fn the_image_is_of_this_version_and_user() {
     assert!(shipped("Containerfile").contains(&format!("-t {image} ")) && shipped("README.md").contains(&image));
     let user = instructions("USER").remove(0);
     assert_eq!(user, format!("{}:{}", pod["securityContext"]["runAsUser"], pod["securityContext"]["runAsGroup"]));
-    // As a list, without a shell that would keep the signal to itself.
+    // The command is a list: a shell would not pass the signal on.
     let entry: Vec<String> = serde_json::from_str(&instructions("ENTRYPOINT")[0]).unwrap();
     assert_eq!(entry, [unit("ExecStart")[0].as_str()]);
     assert!(instructions("COPY").last().unwrap().ends_with(&entry[0]));
 }
 
-/// Cargo finds every target that the manifest names among what is copied, and the build all that it is made of.
+/// The copied files contain every target that the manifest names, and every input of the build script.
 #[test]
 fn the_image_is_built_from_all_that_it_is_made_of() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("image");
@@ -270,7 +270,7 @@ fn the_image_is_built_from_all_that_it_is_made_of() {
     for source in sources {
         assert!(copied.contains(&source), "{source} is not copied");
     }
-    // It looks at every target before it says that there is none of this name.
+    // Cargo looks at every target before it reports that none has this name.
     let cargo = Command::new(env!("CARGO"))
         .args(["run", "--offline", "--locked", "--bin", "none"])
         .current_dir(&folder)

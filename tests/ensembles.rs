@@ -1,4 +1,4 @@
-//! Ensembles: what noise does to the paper's cases, run by run the same whatever the threads, and every number beside its doubt.
+//! Ensembles: the paper's cases with noise. Each run is the same on any number of threads, and each share has its interval.
 
 mod support;
 
@@ -17,13 +17,13 @@ fn numbers(values: &Value) -> Vec<f64> {
     values.as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
 }
 
-/// The share that outlasts all contacts and its interval.
+/// The share of runs that survive all contacts, with its interval.
 fn survived(ensemble: &Value) -> [f64; 3] {
     ["lower", "share", "upper"].map(|name| ensemble["survived"][name].as_f64().unwrap())
 }
 
-/// σ_t = 10 ms over 400 bounces, under both readings. The figures are the shares of 4000 runs of a simulation by other means
-/// (time scanned on a grid, another generator), good to 0.8 %; those of the paper's case 1 had been known as some 45 and 7 %.
+/// σ_t = 10 ms over 400 bounces, with both noise models. The figures are shares of 4000 runs of an independent simulation (time scanned
+/// on a grid, another generator), good to 0.8 %. Earlier values for the paper's case 1 were about 45 and 7 %.
 #[tokio::test]
 async fn readings_of_the_noise_survive_as_they_should() {
     let server = Server::start();
@@ -59,7 +59,7 @@ async fn from_a_small_angle_all_survive_where_the_object_is_met() {
     assert!(survived(&plan)[2] < 0.5, "{}", plan["survived"]);
 }
 
-/// What the columns of a survival curve have to do with each other and with what stands beside them.
+/// Relations among the columns of a survival curve, and to the numbers beside it.
 #[tokio::test]
 async fn the_curve_adds_up() {
     let server = Server::start();
@@ -84,7 +84,7 @@ async fn the_curve_adds_up() {
         let counts = ensemble["counts"].as_object().unwrap();
         assert_eq!(counts.values().map(|count| count.as_f64().unwrap()).sum::<f64>(), runs);
         assert_eq!(counts["completed"], ensemble["survived"]["runs"]);
-        // The area under the curve, from before the first contact, is the mean.
+        // The mean is the area under the curve from before the first contact on.
         let mean = ensemble["mean_impacts"].as_f64().unwrap();
         let area = 1.0 + survival[..last].iter().sum::<f64>();
         assert!((mean - area).abs() < 1e-9 * mean, "{rest}: {mean} {area}");
@@ -106,7 +106,7 @@ async fn the_curve_adds_up() {
     }
 }
 
-/// More runs add to those before, and run 0 is the run of the scene.
+/// A larger ensemble contains the smaller one, and run 0 is the run of the scene.
 #[tokio::test]
 async fn a_run_depends_on_its_seed_and_its_number_alone() {
     let server = Server::start();
@@ -140,7 +140,7 @@ async fn a_run_depends_on_its_seed_and_its_number_alone() {
     assert_ne!(ask(50, "&seed=1").await["survival"], ask(50, "&seed=2").await["survival"]);
 }
 
-/// The seed beside the scene is that of the scene: the same answer, and the same tag.
+/// A seed beside the scene is the seed of the scene: same answer, same tag.
 #[tokio::test]
 async fn a_seed_is_said_in_either_place() {
     let server = Server::start();
@@ -200,11 +200,11 @@ async fn every_format_says_the_same() {
     }
 }
 
-/// A line at once, a line for each hundredth of the runs as far as blocks allow, and the answer.
+/// One line at once, one for each hundredth of the runs as far as blocks allow, then the answer.
 #[tokio::test]
 async fn progress_is_told_in_runs() {
     let server = Server::start();
-    // Blocks of five runs, of one, and a block of all.
+    // Blocks of five runs, blocks of one, and one block of all.
     for (size, step) in [("runs=500&impacts=10000", 5), ("runs=3&impacts=50000", 1), ("runs=40&impacts=50", 40)] {
         let target = format!("{CASE_1}&scene.noise.model=plan&{size}");
         let answer = server.get(&format!("{target}&format=progress")).await.expect(200);
@@ -257,7 +257,7 @@ async fn threads_do_not_show() {
     }
 }
 
-/// Counts of tiles add up to those of the whole, and the quantiles of the whole are those of their angles.
+/// Counts of tiles add up to those of the whole. Quantiles of the whole follow from the angles of the tiles.
 #[tokio::test]
 async fn tiles_put_together_are_the_whole() {
     let server = Server::start();
@@ -307,7 +307,7 @@ async fn tiles_put_together_are_the_whole() {
     }
 }
 
-/// However many runs there are, a tile of them costs what its own do, and each is the run of its number.
+/// A tile costs what its own runs cost, in an ensemble of any size. Each run depends on its number alone.
 #[tokio::test]
 async fn a_tile_of_a_billion_runs_is_asked_for_like_any_other() {
     let server = Server::start();
@@ -348,7 +348,7 @@ async fn what_cannot_be_asked_is_named() {
     assert!(dear.text().contains("would be 608480000 bounces; the limit is 400000000 bounces"), "{}", dear.text());
 }
 
-/// Whoever leaves frees the cores, be it in the midst of one long run.
+/// A client that hangs up frees the cores, also in the middle of one long run.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn an_ensemble_ends_with_its_reader() {
     let (app, address) = start().await;
@@ -363,7 +363,7 @@ async fn an_ensemble_ends_with_its_reader() {
         assert_eq!(app.pool.running().get(), 1, "{size}: it is long work");
         drop(socket);
         let left = Instant::now();
-        // Some ms, where nothing else wants the cores; the runs would have taken seconds.
+        // A few ms on an idle machine; the runs would have taken seconds.
         while app.pool.running().get() > 0 {
             assert!(left.elapsed() < Duration::from_secs(1), "{size}: the work goes on for nobody");
             tokio::time::sleep(Duration::from_millis(1)).await;
@@ -372,7 +372,7 @@ async fn an_ensemble_ends_with_its_reader() {
     }
 }
 
-/// Noise far beyond what any table has: an answer, and no number that is none.
+/// Noise far beyond that of any table: an answer without NaN or infinity.
 #[tokio::test]
 async fn wild_noise_has_an_answer_too() {
     let server = Server::start();
@@ -382,7 +382,7 @@ async fn wild_noise_has_an_answer_too() {
                 let noise = json!({"timing_sd": timing, "angle_sd": angle, "model": model});
                 let body = json!({"preset": preset, "scene": {"noise": noise}, "runs": 40, "impacts": 200});
                 let answer = server.post("/v1/ensembles", &body).await;
-                // A point mass may have no noise.
+                // Noise on a point mass is refused.
                 if answer.status == 422 && preset == "point-mass" {
                     continue;
                 }

@@ -1,4 +1,4 @@
-//! Errors: the right status, one shape, every fault at once, and each at a pointer into the JSON body, on GET as on POST.
+//! Errors: the right status, one shape, all faults at once, each with a pointer into the JSON body, on GET and POST alike.
 
 mod support;
 
@@ -91,7 +91,7 @@ async fn a_body_too_large_is_413_and_one_of_another_kind_415() {
     }
 }
 
-/// Faults as a query and as a body, with the pointers they have to be found at.
+/// Faults as a query and as a body, with their expected pointers.
 fn faults() -> Vec<(&'static str, Value, Vec<&'static str>)> {
     vec![
         ("", json!({}), vec!["/preset", "/scene"]),
@@ -146,7 +146,7 @@ async fn faults_are_found_at_once_and_at_the_same_place_on_get_and_post() {
                 server.post(resource, &body).await.expect(422).pointers(),
             ] {
                 pointers.sort();
-                // With nothing said at all, any of these is the place.
+                // If all of these fields are missing, the error may point to any of them.
                 let anywhere = body == json!({}) && !pointers.is_empty();
                 assert!(pointers == expected || anywhere, "{resource}?{query}: {pointers:?}, not {expected:?}");
             }
@@ -187,7 +187,7 @@ async fn every_range_of_the_contract_is_kept() {
             };
             let outside = ask(limit + outwards * step).await.expect(422);
             assert!(outside.pointers().contains(&pointer), "{path}: {}", outside.text());
-            // Within its own range a value may still be at odds with another, but then that is what is said.
+            // A value within its range may contradict another field; the error must then say so.
             let within = ask(limit).await;
             if within.status != 200 {
                 let detail = within.expect(422).json()["detail"].to_string();
@@ -208,7 +208,7 @@ async fn two_ways_of_saying_one_thing_are_a_fault() {
         let answer = server.post("/v1/trajectories", &json!({"preset": "case-1", "scene": scene})).await.expect(422);
         assert!(!answer.pointers().is_empty(), "{}", answer.text());
     }
-    // A preset's body is replaced whole by one of another kind, so that is none.
+    // A body of another kind replaces the preset's body whole, so this is no contradiction.
     let point = json!({"preset": "case-1", "scene": {"body": {"point": true}, "release": {"theta": null}}});
     server.post("/v1/trajectories", &point).await.expect(200);
 }
@@ -259,7 +259,7 @@ async fn a_jacobian_has_one_place() {
         assert_eq!(get, post, "{query}");
         assert!(get.iter().all(|found| found.starts_with(pointer)), "{query}: {get:?}");
     }
-    // An impact that the run does not reach.
+    // The run does not reach this impact.
     let answer = server.get("/v1/jacobians?preset=case-3&at.impact=5000").await.expect(422);
     assert_eq!(answer.pointers(), ["/at/impact"]);
 }

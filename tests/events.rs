@@ -1,6 +1,6 @@
-//! Live runs as Server-Sent Events over real sockets: the same as over a WebSocket, and whole after a break.
+//! Live runs as Server-Sent Events over real sockets: the same run as over a WebSocket, complete after a reconnect.
 //!
-//! Wall-clock times are never asserted. Not here: what a run says; that stands in `live.rs`.
+//! Wall-clock times are never asserted. The messages of a run are tested in `live.rs`.
 
 mod support;
 
@@ -17,7 +17,7 @@ use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader};
 use tokio::net::TcpStream;
 use tokio::time::{sleep, timeout};
 
-/// An answer of HTTP/1.0: its end is the connection's.
+/// An HTTP/1.0 answer, which ends with the connection.
 struct Answer {
     head: String,
     body: BufReader<TcpStream>,
@@ -42,7 +42,7 @@ async fn send(address: SocketAddr, request: &[u8]) -> Answer {
     Answer { head: head.to_ascii_lowercase(), body }
 }
 
-/// One event: its id and its message.
+/// One event: id and message.
 #[derive(Debug)]
 struct Event {
     id: Option<String>,
@@ -50,7 +50,7 @@ struct Event {
 }
 
 impl Answer {
-    /// The next event; none at the end.
+    /// The next event; none at the end of the stream.
     async fn event(&mut self) -> Option<Event> {
         let (mut id, mut kind, mut message) = (None, None, None);
         loop {
@@ -74,7 +74,7 @@ impl Answer {
         }
     }
 
-    /// So many impacts or more, and the last id with them; fewer if the run ends.
+    /// At least `count` impacts and the last id; fewer if the run ends.
     async fn impacts(&mut self, count: usize) -> (Vec<Row>, String) {
         let (mut rows, mut last) = (vec![], String::new());
         while rows.len() < count
@@ -102,7 +102,7 @@ impl Answer {
     }
 }
 
-/// A query for a preset that was released so many seconds ago.
+/// A query for a preset that was released some seconds ago.
 fn old(preset: &str, seconds: u64) -> String {
     format!("preset={preset}&epoch={}", now_ms() - 1000 * seconds)
 }
@@ -193,7 +193,7 @@ async fn an_id_that_is_none_is_refused() {
         [format!("GET /v1/live/events?{query} HTTP/1.0\r\nlast-event-id: ").as_bytes(), b"\xff\xfe\r\n\r\n"].concat();
     let problem = send(address, &raw).await.problem().await;
     assert_eq!(problem["errors"][0]["pointer"], "/last_event_id");
-    // Released now, it would be another run than the one that was heard of.
+    // Without an epoch this would be another run, released now.
     let problem = get(address, "/v1/live/events?preset=case-1", "last-event-id: 5\r\n").await.problem().await;
     assert!(problem["errors"][0]["detail"].as_str().unwrap().contains("epoch"), "{problem}");
     assert_eq!(app.metrics.live_sessions.get(), 0);
@@ -236,7 +236,7 @@ async fn a_server_that_closes_ends_the_events() {
     app.close();
     while events.event().await.is_some() {}
     no_sessions(&app).await;
-    // Who still gets in is not refused, which a browser would take for the end, but let go.
+    // During a shutdown a late client is accepted and closed: a browser would take a refusal for the end of the run.
     let mut late = get(address, "/v1/live/events?preset=case-1", "").await;
     assert!(late.head.starts_with("http/1.0 200"), "{}", late.head);
     assert_eq!(late.event().await.expect("it says which run it is").message["type"], "hello");

@@ -1,5 +1,4 @@
-//! The failure gallery: on every case the usual method is wrong, and what is true is found here by another way than the
-//! server's.
+//! The failure gallery: on every case a common method is wrong. The truth is found here in another way than in the server.
 
 mod support;
 
@@ -20,7 +19,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// What a method of a case says; the method is found by a part of its name.
+/// The result of a method of a case. A part of the method's name finds it.
 #[track_caller]
 fn says<'a>(case: &'a Value, method: &str) -> &'a Value {
     let found = case["says"].as_array().unwrap().iter().find(|said| said["method"].as_str().unwrap().contains(method));
@@ -78,8 +77,8 @@ async fn the_same_bytes_twice_and_none_for_who_has_them() {
     }
 }
 
-/// The tilt gain at which the mirror-symmetric orbit of period 2 has this angle, less κ_c: from the condition of such an
-/// orbit, Gρ²θ cos κθ = V²l sin((κ − 1)θ), and from what is held, without the coefficient C.
+/// Tilt gain, minus κ_c, at which the mirror-symmetric orbit of period 2 has a given angle. It solves the condition of such an orbit,
+/// Gρ²θ cos κθ = V²l sin((κ − 1)θ), at fixed energy or η, without the coefficient C.
 fn branch_offset(case: &Value, theta: f64) -> f64 {
     let scene = &case["scene"];
     let (l, rho) = (number(&scene["body"]["contact_distance"]), number(&scene["body"]["radius_of_gyration"]));
@@ -117,7 +116,7 @@ async fn at_the_boundary_the_branch_itself_says_which_way_it_bends() {
         let width = number(&scene["table"]["tilt_gain"]) - 1.0;
         let coefficient = case["says"].as_array().unwrap().iter().rev().nth(1).unwrap();
         assert!((bend / width - number(&coefficient["value"])).abs() < 0.01, "{name}: {bend} {coefficient}");
-        // Silent, and by the last bit of κ even wrong, by far more than rounding.
+        // The eigenvalue test is silent, and one bit of κ makes it wrong by far more than rounding.
         let radius = number(&case["says"][0]["value"]);
         assert!((radius - 1.0).abs() < 1e-7 && case["says"][0]["verdict"] != "stable", "{radius}");
         let ask = case["ask"].as_str().unwrap().split("impacts=").next().unwrap().to_owned() + "impacts=100000";
@@ -137,7 +136,7 @@ async fn beyond_the_boundary_a_run_stays_about_the_orbit_that_caught_it() {
     let ask = case["ask"].as_str().unwrap().replace("impacts=20000", "impacts=100000");
     let run = &server.get(&ask).await.expect(200).json()["nonlinear"];
     assert_eq!((&run["outcome"], &run["impacts"]), (&"completed".into(), &100_000.into()));
-    // It swings from near upright to nearly as far beyond the orbit of period 2, by √2 in the amplitude equation.
+    // The run swings from near upright to √2 times the orbit of period 2, by the amplitude equation.
     let (mut low, mut high) = (0.01, 0.3);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -147,7 +146,7 @@ async fn beyond_the_boundary_a_run_stays_about_the_orbit_that_caught_it() {
     assert!((swing / 2.0_f64.sqrt() - 1.0).abs() < 0.05, "{low} {run}");
 }
 
-/// The request of a case with some of its parameters said otherwise.
+/// The request of a case with some parameters replaced.
 fn otherwise(case: &Value, resource: &str, changes: &[(&str, f64)]) -> String {
     let (path, query) = case["ask"].as_str().unwrap().split_once('?').unwrap();
     assert!(path.starts_with("/v1/"));
@@ -160,7 +159,7 @@ fn otherwise(case: &Value, resource: &str, changes: &[(&str, f64)]) -> String {
     format!("/v1/{resource}?{}", query.join("&"))
 }
 
-/// How the run of a case ends with some of its parameters said otherwise: its name and contact.
+/// Ending of a case's run with some parameters replaced: its name and its contact.
 async fn end(server: &Server, case: &Value, changes: &[(&str, f64)]) -> (String, u64) {
     let run = server.get(&otherwise(case, "stability", changes)).await.expect(200).json()["nonlinear"].clone();
     (run["outcome"].as_str().unwrap().to_owned(), run["impacts"].as_u64().unwrap())
@@ -189,11 +188,11 @@ async fn at_order_three_the_time_to_fall_is_inverse_to_the_start() {
         assert_ne!(outcome, "completed", "{theta}");
         scaled.push(theta * impacts as f64);
     }
-    // A quadratic map at a third of a turn: dr/dn = c r², so n θ₀ is a constant.
+    // At a rotation of ⅓ turn the map is quadratic: dr/dn = c r², so n θ₀ is constant.
     assert!(scaled.iter().all(|value| (value / scaled[3] - 1.0).abs() < 0.05), "{scaled:?}");
     let calm = [("scene.release.theta", 0.2), ("scene.release.x_dot", 0.0), ("impacts", 100_000.0)];
     assert_eq!(end(&server, &case, &calm).await.0, "completed");
-    // The drift leaves the eigenvalues as they are: a third of a turn.
+    // The drift does not change the eigenvalues: ⅓ turn.
     let speed = (2.0 * 9.81 * (0.2_f64 - 0.4 / 3.0)).sqrt();
     let at =
         [("at.state.theta", 0.0), ("at.state.x_dot", 0.4), ("at.state.y_dot", -speed), ("at.state.theta_dot", 0.0)];
@@ -226,7 +225,7 @@ async fn beyond_the_horizon_runs_part_and_their_distribution_stays() {
     let one = angles(0.032).await;
     let mut ends = Vec::new();
     for k in 1..=40 {
-        // Others than those of the case: on the other side of its start.
+        // Other starts than those of the case, on the other side.
         let other = angles(0.032 - f64::from(k) * 1e-15).await;
         let apart = one.iter().zip(&other).map(|(a, b)| (a - b).abs());
         let (before, after) = (horizon / 2, horizon * 5 / 4);
@@ -241,7 +240,7 @@ async fn beyond_the_horizon_runs_part_and_their_distribution_stays() {
     ends.sort_unstable();
     assert!(ends[0] >= horizon && ends[4] < 350 && ends[35] > 1000, "{ends:?}");
     let median = number(&says(&case, "ensemble")["value"]);
-    // Of 40 runs, fewer than 11 or more than 29 below the true median: 4 in a thousand.
+    // The chance that fewer than 11 or more than 29 of 40 runs fall below the true median is 0.4 %.
     let below = ends.iter().filter(|end| (**end as f64) < median).count();
     assert!((11..=29).contains(&below), "{median} {ends:?}");
 }
@@ -287,7 +286,7 @@ async fn towards_the_graze_the_derivative_times_the_contact_speed_is_a_constant(
         products.push(-number(&jacobian["contact_speed"]) * largest);
     }
     assert!(products.iter().all(|product| (product / products[2] - 1.0).abs() < 0.05), "{products:?}");
-    // The last digits of the height decide which contact is next.
+    // The last digits of the height decide the next contact.
     let mut found = Vec::new();
     for beside in [-1e-12, 1e-12] {
         let changes = [("scene.release.height", edge + beside), ("impacts", 2.0)];
@@ -317,7 +316,7 @@ async fn every_flight_of_the_chatter_is_that_of_sixty_digits() {
 async fn smaller_steps_come_to_what_the_map_says_of_invented_and_destroyed_stability() {
     let server = Server::start();
     let invented = case("invented-stability").await;
-    // The true run is out long before its rounding could matter, whatever its last digits.
+    // The true run ends long before rounding could matter.
     for beside in [-1e-9, 0.0, 1e-9] {
         let changes = [("scene.release.theta", 0.35 + beside), ("impacts", 400.0)];
         assert_eq!(end(&server, &invented, &changes).await, ("sinking".to_owned(), 23), "{beside}");
@@ -338,7 +337,7 @@ async fn smaller_steps_come_to_what_the_map_says_of_invented_and_destroyed_stabi
 async fn the_contact_that_is_missed_is_there() {
     let case = case("missed-contact").await;
     let found = number(&says(&case, "the map")["value"]);
-    // Rigid flight after the first contact, from the answer's own state: the gap changes its sign there and back.
+    // Rigid flight after the first contact, from the state in the answer: the gap changes sign twice.
     let run = Server::start().get(case["ask"].as_str().unwrap()).await.expect(200).json();
     let first = |name: &str| number(&run["impacts"][name][0]);
     let (l, rho) = (0.4 / 3.0, 0.094_280_904_158_206_35_f64);

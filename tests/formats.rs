@@ -1,4 +1,4 @@
-//! Every format says the same numbers, is well-formed, and is chosen as the client asks.
+//! All formats carry the same numbers, are well-formed, and are chosen by the client.
 
 mod support;
 
@@ -27,12 +27,12 @@ const COLUMNS: [(&str, &str); 18] = [
     ("error_estimate", "error_estimate_m_per_s"),
 ];
 
-/// What a cell of CSV stands for.
+/// The value of a CSV cell.
 fn value(cell: &str) -> Value {
     if cell.is_empty() { Value::Null } else { serde_json::from_str(cell).unwrap_or_else(|_| json!(cell)) }
 }
 
-/// Bit for bit the same, whatever the notation.
+/// True if two numbers are equal bit for bit, in any notation.
 fn same(one: &Value, other: &Value) -> bool {
     match (one.as_f64(), other.as_f64()) {
         (Some(one), Some(other)) => one.to_bits() == other.to_bits(),
@@ -101,7 +101,7 @@ async fn a_matrix_has_the_same_numbers_in_every_format() {
     }
 }
 
-/// A column of a verdict's row, its unit, and where it is in the whole answer.
+/// A column of a verdict's CSV row: name, unit, and pointer into the JSON answer.
 const VERDICT: [(&str, &str, &str); 35] = [
     ("verdict", "", "/verdict"),
     ("decided_by", "", "/decided_by"),

@@ -1,4 +1,4 @@
-//! Friction over HTTP: derivatives with their sides, verdicts with their reasons, regions.
+//! Friction over HTTP: one-sided derivatives, verdicts with their reasons, regions.
 
 mod support;
 
@@ -27,7 +27,7 @@ async fn a_derivative_names_what_the_contact_does() {
 #[tokio::test]
 async fn on_a_kink_both_sides_are_told() {
     let server = Server::start();
-    // At rest along the table, where friction is too small to hold: v_t = cos α ẋ + sin α ẏ + l cos β θ̇ = 0.
+    // v_t = cos α ẋ + sin α ẏ + l cos β θ̇ = 0, with friction too small to hold the contact.
     let (theta, y_dot, kappa, l) = (-0.4_f64, -1.5, 2.0, 0.4 / 3.0);
     let alpha = kappa * theta;
     let theta_dot = -alpha.sin() * y_dot / (l * (theta - alpha).cos());
@@ -58,7 +58,7 @@ async fn a_matched_table_is_judged_by_its_own_boundary() {
     let wide = scene(0.3, 2.4, 0.05);
     let answer = server.get(&format!("/v1/stability?{wide}")).await.json();
     assert_eq!(answer["verdict"], "elliptic, 2000 bounces survived", "{answer}");
-    // 1 + G(ρ² + l²)/(V²l) of the paper's body at its height; without friction it is 1.5.
+    // 1 + G(ρ² + l²)/(V²l) for the paper's body and height; 1.5 without friction.
     let critical = answer["linear"]["tilt_gain"]["critical"].as_f64().unwrap();
     assert!((critical - 2.5).abs() < 1e-12, "{critical}");
     let notes = answer["notes"].to_string();
@@ -67,7 +67,7 @@ async fn a_matched_table_is_judged_by_its_own_boundary() {
     let jacobian = server.get(&format!("/v1/jacobians?{wide}")).await.json();
     assert_eq!((&jacobian["smooth"], &jacobian["contact_mode"]), (&json!(true), &json!("stick")));
     assert_eq!(jacobian["residue"], answer["linear"]["residue"]);
-    // Near the edge of the stick cone, 0.075 rad, it begins to slide and falls; outside the reason names the cone.
+    // Near the edge of the stick cone, 0.075 rad, the contact slides and the run falls; outside, the reason names the cone.
     let answer = server.get(&format!("/v1/stability?{}", scene(0.05, 2.0, 0.05))).await.json();
     assert_eq!((&answer["verdict"], &answer["nonlinear"]["impacts"]), (&json!("unstable"), &json!(16)));
     let answer = server.get(&format!("/v1/stability?{}", scene(0.05, 2.0, 0.1))).await.json();
@@ -128,19 +128,19 @@ async fn a_tolerance_is_held_with_friction_too() {
     }
 }
 
-/// Contacts that lose their speed come to rest: at the same contact whoever asks, and at the same time.
+/// Contacts that lose their speed come to rest, at the same contact and time for every resource and method.
 #[tokio::test]
 async fn a_contact_that_loses_its_speed_has_settled_everywhere() {
     let server = Server::start();
     let rod = "scene.body.contact_distance=0.5388&scene.body.radius_of_gyration=0.1672&scene.release.height=0.56\
                &scene.release.theta=0.28&scene.release.theta_dot=0.88&scene.release.x_dot=0.17&scene.contact.friction=0.91";
-    // With 31 digits they are words.
+    // Numbers with 31 digits are strings.
     let positive = |flight: &Value| match flight {
         Value::String(digits) => digits.parse::<f64>().unwrap() > 0.0,
         flight => flight.as_f64().unwrap() > 0.0,
     };
-    // The table makes up all that the strike loses along its normal; a heavy body, which keeps cos 2α of its rise at e = 1; and a dead
-    // stop on a table that stands still.
+    // A table that makes up all that the strike loses along its normal; a heavy body, which keeps cos 2α of its rise at e = 1; and a dead
+    // stop on a still table.
     let heavy = "scene.body.contact_distance=0.01&scene.body.radius_of_gyration=5&scene.release.height=0.3\
                  &scene.release.theta=0.5&scene.contact.friction=10";
     for (rod, table, contacts) in [

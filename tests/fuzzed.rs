@@ -1,5 +1,5 @@
-//! What holds for any bytes at all, held for the corpus of each check, and for inputs made from it. `tests/fuzz/run` drives the
-//! same checks with libFuzzer for as long as one likes.
+//! The checks of `tests/fuzz/checks` on their corpora and on mutations of them. `tests/fuzz/run` drives the same checks with libFuzzer
+//! for any time.
 
 #[path = "fuzz/checks/mod.rs"]
 mod checks;
@@ -16,7 +16,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz")
 }
 
-/// Name and bytes of every input of a corpus, in order.
+/// Names and bytes of all inputs of a corpus, in order.
 fn corpus(check: &Check) -> Vec<(String, Vec<u8>)> {
     let files = fs::read_dir(folder().join("corpus").join(check.name)).expect("every check has a corpus");
     let mut inputs: Vec<_> = files
@@ -27,7 +27,7 @@ fn corpus(check: &Check) -> Vec<(String, Vec<u8>)> {
     inputs
 }
 
-/// The words of a dictionary of libFuzzer's.
+/// The words of a libFuzzer dictionary.
 fn words(check: &Check) -> Vec<Vec<u8>> {
     let text = fs::read_to_string(folder().join(format!("{}.dict", check.name))).expect("a dictionary");
     let quoted = text.lines().filter_map(|line| line.strip_prefix('"')?.strip_suffix('"'));
@@ -102,7 +102,7 @@ fn edited(mut input: Vec<u8>, edits: &[Edit], inputs: &[(String, Vec<u8>)], word
     input
 }
 
-/// Changed inputs of the corpus, so many.
+/// Mutated inputs of the corpus.
 fn hold_for_changed_inputs(name: &str, cases: u32) {
     let check = ALL.iter().find(|check| check.name == name).expect("a check");
     let (inputs, words) = (corpus(check), words(check));
@@ -129,7 +129,7 @@ fn any_live_message_leaves_a_run_that_its_url_gives_back() {
     hold_for_changed_inputs("live", 1000);
 }
 
-/// A number of no size in particular.
+/// A number of any size.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         4 => -2.0..2.0,
@@ -138,7 +138,7 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// The lines of inputs of the corpus, with most numbers made anew.
+/// Lines of inputs of the corpus with most numbers replaced.
 fn hold_for_numbers(name: &str, cases: u32) {
     let check = ALL.iter().find(|check| check.name == name).expect("a check");
     let inputs = corpus(check);

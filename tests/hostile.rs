@@ -1,4 +1,4 @@
-//! Scenes that nobody should send: for each there is an answer or a 422, never a panic, a hang or a number that is none.
+//! Extreme and invalid scenes: each gets an answer or a 422, never a panic, a hang, NaN or infinity.
 
 mod support;
 
@@ -9,7 +9,7 @@ use support::Server;
 
 const SCENES: u64 = 10_000;
 
-/// Numbers that repeat from run to run (splitmix64, Steele and others, 2014).
+/// Reproducible random numbers (splitmix64, Steele and others, 2014).
 struct Draw(u64);
 
 impl Draw {
@@ -33,8 +33,7 @@ impl Draw {
         self.unit() < share
     }
 
-    /// A value of a field, as `GET /v1/fields` describes it: mostly within its range, often at an end of it, and now and
-    /// then anything at all.
+    /// A value of a field of `GET /v1/fields`: mostly within its range, often at an end of it, sometimes anything.
     fn value(&mut self, field: &Value) -> Value {
         if self.chance(0.02) {
             let exponent = self.unit() * 600.0 - 300.0;
@@ -62,17 +61,17 @@ impl Draw {
         }
     }
 
-    /// A scene that says some of its fields.
+    /// A scene with some of its fields.
     fn scene(&mut self, fields: &[Value]) -> Value {
         let mut scene = json!({});
         for field in fields {
             let path = field["path"].as_str().unwrap();
             let wanted = match (field["required"] == json!(true), path) {
                 (_, "body.point") => 0.05,
-                // Without vertices it is an error.
+                // Without vertices this is an error.
                 (_, "body.contact_vertex") => 0.01,
                 (true, _) => 0.99,
-                // In place of the tilt gain: one or the other is mostly an error.
+                // State feedback takes the place of the tilt gain; mostly one of the two is an error.
                 _ if path.starts_with("table.feedback") => 0.01,
                 _ if path.starts_with("table.limits") => 0.05,
                 _ => 0.4,
@@ -81,7 +80,7 @@ impl Draw {
                 put(&mut scene, path, self.value(field));
             }
         }
-        // Most random releases would lie below the table.
+        // Otherwise most random releases would lie below the table.
         if self.chance(0.8) && scene.pointer("/body/contact_distance").is_some() {
             put(&mut scene, "release.height", json!(10.0 + 20.0 * self.unit()));
         }
@@ -91,7 +90,7 @@ impl Draw {
         scene
     }
 
-    /// Mostly one that is a body, seen whole from a point within; and now and then any points at all.
+    /// Mostly a star-shaped polygon, sometimes arbitrary points.
     fn polygon(&mut self) -> Value {
         let count = 3 + self.below(30);
         let size = 10_f64.powf(-3.0 * self.unit());
@@ -154,8 +153,8 @@ async fn ten_thousand_random_scenes_are_answered() {
     }
 }
 
-/// A body that spins fast in little gravity, over a table that is planned nearly vertical. Half of its flights once took 30 ms, and
-/// 20,000 of them are one block.
+/// A body that spins fast in little gravity, over a nearly vertical planned table. Half of its flights once took 30 ms; 20,000 of them
+/// are one block.
 #[tokio::test]
 async fn scenes_as_dear_as_scenes_can_be_cost_what_others_do() {
     let scene = json!({

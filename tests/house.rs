@@ -1,4 +1,4 @@
-//! The rules of the house, as tests: what may import what, how long a file may be, what keeps answers the same on every CPU.
+//! Rules of the code as tests: imports, length of files, names, and everything that keeps answers the same on every CPU.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,7 +16,7 @@ struct Source {
 }
 
 impl Source {
-    /// Lines of code with their numbers: no comments, and nothing from the unit tests at the end of a file on.
+    /// Lines of code with their numbers, without comments and without the unit tests at the end of a file.
     fn code(&self) -> impl Iterator<Item = (usize, &str)> {
         self.text
             .lines()
@@ -63,7 +63,7 @@ fn none(faults: Vec<String>) {
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
 }
 
-/// A floor of the house, and the names that must not be heard there.
+/// A floor of the server, and the names that must not occur there.
 const FLOORS: &[(&str, &[&str])] = &[
     ("server/physics", &["tokio", "axum", "serde_json", "std::time", "std::thread", "hyper", "equipoise::"]),
     (
@@ -101,7 +101,7 @@ const FLOORS: &[(&str, &[&str])] = &[
     ("server/limits.rs", &["equipoise_physics", "axum", "crate::http", "crate::api", "crate::live", "crate::runs"]),
 ];
 
-/// Names that must not be heard in the answers: they compute and are written, and know of no route.
+/// Names that must not occur in answers, which know no route.
 const ANSWERS: [&str; 5] = ["axum::Router", "axum::routing", "tokio", "crate::live", "crate::router"];
 
 #[test]
@@ -132,7 +132,7 @@ fn no_files_import_one_another_in_a_circle() {
     );
 }
 
-/// A folder with more files than this at one level is hard to look through.
+/// Most files in a folder, at one level.
 const FILES: usize = 14;
 
 #[test]
@@ -165,7 +165,7 @@ fn imports_go_downwards_only() {
     none(faults);
 }
 
-/// Whether a line has this path and not only a longer name with it inside.
+/// True if a line contains this path, and not only a longer name around it.
 fn mentions(line: &str, name: &str) -> bool {
     line.match_indices(name).any(|(start, _)| {
         let before = line[..start].chars().next_back();
@@ -175,7 +175,7 @@ fn mentions(line: &str, name: &str) -> bool {
     })
 }
 
-/// A file longer than this is two things.
+/// Most lines of a file. A longer file does two things.
 const LINES: usize = 450;
 
 #[test]
@@ -198,8 +198,8 @@ fn every_module_opens_with_what_it_is_for() {
     none(faults);
 }
 
-/// The functions that the standard library takes from the platform, whose last bits differ from one to the next. Square
-/// roots, rounding and fused multiplication are exact everywhere. The physics has its own, under names of their own.
+/// Functions that the standard library takes from the platform; their last bits differ between platforms. Square roots, rounding and
+/// fused multiplication are exact everywhere. The physics has its own versions under other names.
 const PLATFORM: [&str; 27] = [
     "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh",
     "exp", "exp2", "exp_m1", "ln", "ln_1p", "log", "log2", "log10", "powf", "powi", "cbrt", "hypot", "gamma",

@@ -1,4 +1,4 @@
-//! HTTP/1.1 itself, over real sockets: what a request has to say, and clients that have said all they have to say.
+//! HTTP/1.1 over real sockets: required headers, and clients that close their sending half.
 
 mod support;
 
@@ -12,11 +12,11 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::{sleep, timeout};
 
-/// A request for seconds of work.
+/// A request that takes seconds of work.
 const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000\
                    &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=1000&impacts=2000";
 
-/// A smaller one, which still does not run inline.
+/// A smaller request, which still does not run inline.
 const SHORT: &str = "/v1/stability?preset=case-1&impacts=2000";
 
 async fn send(address: SocketAddr, request: &str) -> TcpStream {
@@ -25,7 +25,7 @@ async fn send(address: SocketAddr, request: &str) -> TcpStream {
     socket
 }
 
-/// Everything up to the end of a connection.
+/// All bytes up to the end of a connection.
 async fn whole(mut socket: TcpStream) -> String {
     let mut answer = Vec::new();
     let _ = timeout(SOON, socket.read_to_end(&mut answer)).await.expect("the server is silent");
@@ -36,7 +36,7 @@ fn body(answer: &str) -> &str {
     answer.split_once("\r\n\r\n").unwrap_or_else(|| panic!("no head in {answer:?}")).1
 }
 
-/// The body of a chunked answer. A size may begin with zeros.
+/// The body of a chunked answer. A chunk size may begin with zeros.
 fn unchunked(answer: &str) -> String {
     let (mut rest, mut whole) = (body(answer), String::new());
     loop {
@@ -108,7 +108,7 @@ async fn a_transfer_coding_that_is_not_understood_is_501() {
     }
 }
 
-/// `nc -N`: a client closes its sending half with the request, and reads.
+/// A client closes its sending half after the request and reads, like `nc -N`.
 async fn half_closed(address: SocketAddr, request: &str) -> String {
     let mut socket = send(address, request).await;
     socket.shutdown().await.unwrap();
@@ -132,7 +132,7 @@ async fn a_client_that_closes_its_sending_half_gets_the_same_answer() {
             }
         }
     }
-    // Piece by piece, with pauses between the pieces.
+    // The request comes in pieces with pauses.
     for target in [
         format!("{small}&format=ndjson"),
         format!("{small}&format=csv"),
@@ -147,7 +147,7 @@ async fn a_client_that_closes_its_sending_half_gets_the_same_answer() {
             assert!(told == unchunked(&whole(send(address, &request).await).await), "{target}");
         }
     }
-    // Several at once, and a body.
+    // Several requests at once, and one with a body.
     let post = "POST /v1/stability HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: 19\r\n\r\n{\"preset\":\"case-1\"}";
     let get = format!("GET {SHORT} HTTP/1.1\r\nhost: localhost\r\n\r\n");
     let answers = half_closed(address, &format!("{post}{get}{post}")).await;
@@ -162,13 +162,13 @@ async fn a_client_that_closes_its_sending_half_hears_a_run_to_its_end() {
     let request = format!("GET {target} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n");
     let answer = half_closed(address, &request).await;
     assert!(unchunked(&answer).ends_with("id: end\n\n"), "{answer:.500}");
-    // Before the first impact it was asked whether it is there: by zeros, which change no size.
+    // Before the first impact the server probed the client with leading zeros of a chunk size, which change nothing.
     let asked = answer.split("\r\n").filter(|line| line.len() > 1 && line.starts_with('0')).count();
     assert!(asked > 0, "{answer:.2000}");
     assert_eq!(app.metrics.live_sessions.get(), 0);
 }
 
-/// Waits until nothing is done for anybody, and says after how long: some ms on a machine that is not busy.
+/// Waits until no work is under way. Returns the time: a few ms on an idle machine.
 async fn freed(app: &App, left: &str) {
     let since = Instant::now();
     while app.pool.running().get() > 0 || app.metrics.live_sessions.get() > 0 {
@@ -203,7 +203,7 @@ async fn a_client_that_has_gone_is_known_from_one_that_waits() {
     for (what, request) in [
         ("HTTP/1.1", get(MAP, "1.1")),
         ("HTTP/1.0", get(MAP, "1.0")),
-        // What it has sent beyond its request nobody has read yet.
+        // The server has not yet read the bytes after the request.
         ("the next request behind it", get(MAP, "1.1").repeat(2)),
         ("half of the next request", get(MAP, "1.1") + "GET / HT"),
         ("an answer in lines", get(&format!("{MAP}&format=ndjson"), "1.1")),
@@ -212,7 +212,7 @@ async fn a_client_that_has_gone_is_known_from_one_that_waits() {
     ] {
         let mut socket = send(address, &request).await;
         begun(&app).await;
-        // At once, and after a while in which it only listened.
+        // At once, and after a while of only listening.
         drop(socket);
         freed(&app, what).await;
         socket = send(address, &request).await;
@@ -233,7 +233,7 @@ async fn a_client_that_has_gone_is_known_from_one_that_waits() {
     }
 }
 
-/// Bytes that show whether a client is there are none that it would not have read.
+/// The server probes a client with the first bytes of the answer; the client reads each byte once.
 #[tokio::test]
 async fn a_client_that_waits_reads_no_byte_twice() {
     let (_, address) = start_with(&Config { permits: std::num::NonZeroUsize::new(1), ..Config::default() }).await;

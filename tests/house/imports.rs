@@ -107,7 +107,7 @@ impl Modules {
     }
 }
 
-/// The module of a source of one of the crates, with the crate's name in front; none for tests, benches and build scripts.
+/// The module path of a source of one of the crates, from the crate's name on; none for tests, benches and build scripts.
 fn module(file: &str) -> Option<String> {
     let (folder, name) = CRATES.into_iter().find(|(folder, _)| file.starts_with(folder))?;
     let inside = file[folder.len()..].strip_suffix(".rs")?;
@@ -122,7 +122,7 @@ fn code(source: &Source) -> String {
     source.code().map(|(_, line)| line).collect::<Vec<_>>().join("\n")
 }
 
-/// Every name that `use` declarations bring in: whether it is re-exported, its whole path, and the name it has here.
+/// Every name that `use` declarations import: true if it is re-exported, its full path, and its name here.
 fn uses(code: &str, module: &str) -> Vec<(bool, String, String)> {
     let mut found = Vec::new();
     for (start, _) in code.match_indices("use ") {

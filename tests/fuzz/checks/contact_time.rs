@@ -1,5 +1,5 @@
-//! The contact time: that the root is one, that no other comes before it, and that finding it is bounded work. Judged with 31
-//! digits, by a march that cannot step over a root, and by symmetries that hold to the last bit.
+//! The contact time is a root, no root comes before it, and finding it is bounded work. The checks use 31 digits, a march that
+//! cannot step over a root, and symmetries that hold to the last bit.
 
 use equipoise_physics::bounce::contact_time::{
     MAX_PIECES, TooManyPieces, evaluations, first_contact, first_descent, first_descent_before,
@@ -16,13 +16,13 @@ use super::numbers::Numbers;
 const MARCH: usize = 4000;
 const SCAN: usize = 400;
 
-/// Most looks at the gap on one piece of a flight: those for a double root, which halve its error a step, and the ends.
+/// Most evaluations of the gap on one piece of a flight: those for a double root, whose error halves at each step, and the ends.
 const LOOKS_A_PIECE: f64 = 130.0;
 
-/// Roundings that one gap may be off.
+/// Allowed error of a gap, in roundings.
 const ROUNDINGS: f64 = 16.0;
 
-/// A flight, and a table at y = 0 somewhere below, at or above its contact point.
+/// A flight whose contact point starts above, at or below y = 0.
 pub(crate) fn check(data: &[u8]) {
     let numbers = Numbers::read(data);
     let theta = numbers.within("theta", -100.0..=100.0, 0.3);
@@ -70,7 +70,7 @@ pub(crate) fn check(data: &[u8]) {
                 hold(&flight, t, above);
             }
             None => {
-                // Where it all but grazes, one look may see it down by then and the other not.
+                // Near a graze, one evaluation may see the contact point below y = 0 and the other not.
                 let is_down = limit > 0.0 && flight.gap(limit).value < -rounding(&flight, limit);
                 assert!(descent.is_none() || share < 1.0 || !is_down, "{limit} is after {descent:?} in {flight:?}")
             }
@@ -78,17 +78,17 @@ pub(crate) fn check(data: &[u8]) {
     }
 }
 
-/// The result. None of these flights turns so often that its angle has no digits, and nothing short of it may pass the work limit.
+/// The contact time. These flights turn so little that their angles have digits, so none may pass the work limit.
 fn bounded<T>(flight: &Flight, found: Result<T, TooManyPieces>) -> T {
     found.unwrap_or_else(|error| panic!("{error:?} for {flight:?}"))
 }
 
-/// How many convex and concave pieces there may be until the contact point has to be down.
+/// Largest number of convex and concave pieces before the contact point must be down.
 fn pieces(flight: &Flight) -> f64 {
     2.0 * (flight.start.theta_dot.abs() * latest(flight) / TAU + 2.0)
 }
 
-/// By when the centre of gravity has fallen so deep that the contact point is down.
+/// Time at which the centre of gravity is so low that the contact point must be down, s.
 fn latest(flight: &Flight) -> f64 {
     let Flight { clearance, contact_distance, gravity, sin_cos_theta: (sin, cos), .. } = *flight;
     let rise = if cos < 0.0 { sin * sin / (1.0 - cos) } else { 1.0 + cos };
@@ -98,7 +98,7 @@ fn latest(flight: &Flight) -> f64 {
     if y_dot < 0.0 { 2.0 * room / (root - y_dot) } else { (y_dot + root) / gravity }
 }
 
-/// How far rounding may take a gap at a time, m: that of its terms, and of the angle.
+/// Bound of the rounding error of a gap, m: that of its terms and of the angle.
 fn rounding(flight: &Flight, t: f64) -> f64 {
     let State { y_dot, theta_dot, .. } = flight.start;
     let fall = y_dot.abs() * t + 0.5 * flight.gravity * t * t;
@@ -120,19 +120,19 @@ fn exact_gap(flight: &Flight, t: f64) -> f64 {
     exact.gap(number(t)).value.to_f64()
 }
 
-/// Times over a flight, the same and at random places between.
+/// Times over a flight: evenly spaced, and at random between.
 fn times(end: f64) -> impl Iterator<Item = f64> {
     (1..SCAN).map(move |index| end * (index as f64 / SCAN as f64))
 }
 
-/// Panics unless `t` is when a flight that starts `above` the table, or below it, first comes down.
+/// Panics unless `t` is the first time at which a flight comes down that starts `above` y = 0, or below it.
 fn hold(flight: &Flight, t: f64, above: bool) {
     assert!(t.is_finite() && t >= 0.0, "{t} of {flight:?}");
     let end = latest(flight);
     assert!(t <= end * (1.0 + 1e-9) + 1e-150, "{t} is after {end}, when {flight:?} is down");
     let gap = exact_gap(flight, t);
     assert!(gap.abs() <= 2.0 * rounding(flight, t), "the gap of {flight:?} is {gap} m at {t} s");
-    // It comes down, but for what a double root leaves open.
+    // The contact point comes down, except at a double root, which is undecided.
     let curvature = flight.gravity + flight.contact_distance * flight.start.theta_dot.powi(2);
     let slope = flight.gap(t).slope;
     let open = 4.0 * (curvature * rounding(flight, t)).sqrt();
@@ -148,7 +148,7 @@ fn hold(flight: &Flight, t: f64, above: bool) {
     }
 }
 
-/// From zero on in steps that no root is in: the gap bends by `curvature` at most.
+/// Marches from zero in steps that contain no root, as |g''| ≤ `curvature`.
 fn march(flight: &Flight, t: f64, curvature: f64) {
     let mut time = 0.0_f64;
     for _ in 0..MARCH {
@@ -156,7 +156,7 @@ fn march(flight: &Flight, t: f64, curvature: f64) {
         let (value, rounding) = (gap.value, rounding(flight, time));
         assert!(value >= -rounding, "{flight:?} is at {value} m at {time} s already, before {t}");
         let step: f64 = (gap.slope + (gap.slope * gap.slope + 2.0 * curvature * value.max(0.0)).sqrt()) / curvature;
-        // Half of it, so as to look into what is all but a root as well.
+        // Half of the safe step, so that near roots are inspected too.
         time += (0.5 * step).max(t / MARCH as f64);
         if time >= t {
             return;
@@ -164,8 +164,8 @@ fn march(flight: &Flight, t: f64, curvature: f64) {
     }
 }
 
-/// Flights that are the same to the last bit, and what their times are to be multiplied by: mirrored, in other lengths, and in
-/// other times.
+/// Flights that are equal to the last bit, with the factor of their times: mirrored, in other units of length, in other units of
+/// time.
 fn images(flight: &Flight) -> [(&'static str, Flight, f64); 3] {
     let State { theta, y_dot, theta_dot, .. } = flight.start;
     let (sin, cos) = flight.sin_cos_theta;

@@ -1,5 +1,5 @@
-//! The strike: that it never pulls, keeps to the friction cone, balances momentum and energy, and restores what its law of
-//! restitution says, along the path that the contact takes. Judged with 31 digits from the same velocities.
+//! A strike never pulls, keeps to the friction cone, balances momentum and energy, and obeys its law of restitution along the path of
+//! the contact. The checks use 31 digits and the same velocities.
 
 use equipoise_physics::body::{Body, Coming};
 use equipoise_physics::bounce::friction::{Friction, Impulse, Law, Mobility, Mode, Slide, as_it_is};
@@ -13,7 +13,7 @@ use super::numbers::Numbers;
 
 const LAWS: [(Law, &str); 3] = [(Law::Poisson, "poisson"), (Law::Newton, "newton"), (Law::Stronge, "stronge")];
 
-/// Roundings that an identity may be off, of the size of its terms.
+/// Allowed error of an identity, in roundings of its terms.
 const ROUNDINGS: f64 = 64.0;
 
 /// A contact, and velocities just before it.
@@ -24,13 +24,13 @@ pub(crate) fn check(data: &[u8]) {
     strike(&numbers, law.1);
 }
 
-/// Panics unless a size is zero but for the rounding of terms so large.
+/// Panics unless a value is zero up to the rounding of terms of the given size.
 #[track_caller]
 fn zero(what: &str, size: f64, terms: f64, of: &dyn std::fmt::Debug) {
     assert!(size.abs() <= ROUNDINGS * f64::EPSILON * terms, "{what}: off by {size}, of terms of {terms}: {of:?}");
 }
 
-/// Routh's impulse by itself.
+/// Routh's impulse alone.
 fn impulse(numbers: &Numbers, law: Law) {
     let rod = Rod::lossless(
         numbers.within("contact_distance", 1e-3..=10.0, 0.2),
@@ -51,7 +51,7 @@ fn impulse(numbers: &Numbers, law: Law) {
     assert!(found.normal.is_finite() && found.normal > 0.0, "{of:?}");
     let (pressed, rubbed) = (found.normal, found.tangential);
     assert!(rubbed.abs() <= coefficient * pressed * (1.0 + ROUNDINGS * f64::EPSILON), "out of the cone: {of:?}");
-    // Left and right are the same to the last bit; at rest the contact goes the way it is driven, which changes sides too.
+    // The mirror image is equal to the last bit. A contact at rest moves the way it is driven, which is mirrored too.
     if tangential != 0.0 || mobility.cross != 0.0 {
         let image = strike(-tangential, &Mobility { cross: -mobility.cross, ..mobility });
         assert_eq!((image.normal, -image.tangential, image.mode), (pressed, rubbed, found.mode), "mirrored: {of:?}");
@@ -59,12 +59,12 @@ fn impulse(numbers: &Numbers, law: Law) {
     Path::of(&friction, &mobility, tangential, normal).hold(&found, law, restitution, &of);
 }
 
-/// What the contact goes through as the normal impulse grows: it slides with one slope ∂P_t/∂P_n, and from where it has come to
-/// rest it goes on with another.
+/// Path of the contact as the normal impulse grows: it slides with one slope ∂P_t/∂P_n, and after it has come to rest it goes on with
+/// another.
 struct Path {
-    /// Velocities before, along the table and along its normal.
+    /// Velocities before the strike, along the table and along its normal.
     velocities: [DoubleDouble; 2],
-    /// Where the sliding ends, if it does.
+    /// Normal impulse at which the sliding ends, if it does.
     turn: Option<DoubleDouble>,
     slopes: [DoubleDouble; 2],
     mobility: Mobility<DoubleDouble>,
@@ -101,7 +101,7 @@ impl Path {
         self.mobility.normal + self.mobility.cross * slope
     }
 
-    /// P_t, the velocity along the normal and the work of the normal impulse at a normal impulse.
+    /// P_t, the normal velocity, and the work of the normal impulse, at a normal impulse.
     fn at(&self, pressed: DoubleDouble) -> [DoubleDouble; 3] {
         let half = DoubleDouble::from(0.5);
         let [_, normal] = self.velocities;
@@ -124,7 +124,7 @@ impl Path {
         }
     }
 
-    /// Panics unless an impulse is the one at which this path ends by its law.
+    /// Panics unless the path ends at this impulse by its law.
     fn hold(&self, found: &Impulse, law: Law, restitution: f64, of: &dyn std::fmt::Debug) {
         let (number, e) = (DoubleDouble::from, DoubleDouble::from(restitution));
         let [_, normal] = self.velocities;
@@ -132,7 +132,7 @@ impl Path {
         let [rubbed, end, work] = self.at(pressed);
         let Mobility { tangential: a, normal: b, cross: c } = self.mobility;
         let rates = (b + self.friction * c.magnitude()).to_f64();
-        // What rounding may do to the impulse: the least rate that there is, a difference, is off by that of its terms.
+        // Rounding of the impulse: the smallest rate is a difference and has the rounding of its terms.
         let least = self.slopes.map(|slope| self.rate(slope).to_f64().abs()).into_iter().fold(rates, f64::min);
         let off = rates / least;
         let moved = rates * found.normal * off;
@@ -173,7 +173,7 @@ impl Path {
     }
 }
 
-/// The whole strike of a scene, on a table that tilts and moves.
+/// The whole strike of a scene, with a table that tilts and moves.
 fn strike(numbers: &Numbers, law: &'static str) {
     let Some(scene) = scene(numbers, law) else { return };
     let before = State {
@@ -185,7 +185,7 @@ fn strike(numbers: &Numbers, law: &'static str) {
     let model = scene.model();
     let found = model.strike(&Coming::at(1, numbers.within("x", -1e3..=1e3, 0.0), before));
     let rod = model.rod();
-    // As the map has it: where the table would have to pull, there is no strike, and too fast a run has ended.
+    // As in the return map: no strike if the table would have to pull, and no run at excessive speed.
     if found.push >= 0.0 || found.approach >= 0.0 || found.speed_squared > 1e12 {
         return;
     }
@@ -212,7 +212,7 @@ fn balance(scene: &Scene, rod: &Rod, before: &State, found: &Strike) {
     for (what, off, terms) in momentum {
         zero(what, off, terms, &of);
     }
-    // The angles are known to their rounding, and the lever with them.
+    // The angles have rounding errors, and so does the lever.
     let lever = l * (1.0 + before.theta.abs() + found.alpha.abs());
     let spin = (rubbed * along + pressed * across) / (rho * rho);
     let spins = before.theta_dot.abs() + thrust * lever / (rho * rho);
@@ -228,7 +228,7 @@ fn balance(scene: &Scene, rod: &Rod, before: &State, found: &Strike) {
     if scene.value(Name::Law) != Some(Value::Choice("newton")) && coefficient != 0.0 {
         return;
     }
-    // Newton's law, which is everybody's without friction: v_n⁺ − v_table = −e (v_n − v_table).
+    // Newton's law, which equals the others without friction: v_n⁺ − v_table = −e (v_n − v_table).
     let normal = |state: &State| cos * state.y_dot - sin * state.x_dot + across * state.theta_dot;
     let table = cos * found.table_velocity.1 - sin * found.table_velocity.0;
     let speeds = before.x_dot.abs()
@@ -240,7 +240,7 @@ fn balance(scene: &Scene, rod: &Rod, before: &State, found: &Strike) {
     zero("restitution", restored, speeds, &of);
 }
 
-/// A scene of a rod; none, where what is said contradicts itself.
+/// A scene of a rod; none if the input contradicts itself.
 fn scene(numbers: &Numbers, law: &'static str) -> Option<Scene> {
     let mut draft = Draft::default();
     let still = numbers.choice("still", 2) == 1;

@@ -1,4 +1,4 @@
-//! What a client of a live run says: the URL of the run, and the messages that change it.
+//! Input from clients of live runs: the URL of the run, and the messages that change it.
 
 use equipoise::api::scene::{has_angle, value_to_json};
 use equipoise::http::{Errors, Problem, Reader, Source};
@@ -11,18 +11,18 @@ use serde_json::{Map, Value, json};
 
 use super::{problem, query};
 
-/// The clock of the server, unix ms, when the run is asked for.
+/// The server's clock at the request for the run, unix ms.
 const NOW: u64 = 1_800_000_000_000;
 
-/// How long after one message the next one comes, ms, and how many impacts later.
+/// Time between two messages, ms, and number of impacts between them.
 const PACE: (u64, u64) = (731, 3);
 
-/// The clock of the server when the message of this number comes.
+/// The server's clock at the message of a number.
 fn now(n: u64) -> u64 {
     NOW + PACE.0 * n
 }
 
-/// The first line is the query of a run's URL, the others are messages. After each of them the run's URL reads back as the run.
+/// The first line is the query of a run's URL, the others are messages. After each message the run's URL reads back as the same run.
 pub(crate) fn check(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     let (first, messages) = text.split_once('\n').unwrap_or((text, ""));
@@ -48,7 +48,7 @@ pub(crate) fn check(data: &[u8]) {
     }
 }
 
-/// The run of a query, or of a preset where it is none.
+/// The run of a query; the run of a preset if the query is not valid.
 fn begin(text: &str) -> Option<Run> {
     let fields = match query::tree(text) {
         Ok(fields) => fields,
@@ -78,7 +78,7 @@ fn read(fields: &Map<String, Value>, now: u64) -> Result<Asked, Problem> {
     Ok(asked.expect("where there is no run, the errors say why"))
 }
 
-/// Panics unless the run's URL is that of the run.
+/// Panics unless the run's URL reads back as the run.
 fn reads_back(run: &Run, from: Option<u64>, now: u64) {
     let url = run_url::url(run);
     let query = url.split_once('?').expect("a query").1;
@@ -89,7 +89,7 @@ fn reads_back(run: &Run, from: Option<u64>, now: u64) {
     assert_eq!(run_url::url(&asked.run), url);
 }
 
-/// The message that says this.
+/// The JSON text of a message.
 fn written(order: &Order) -> String {
     let mut message = json!({"type": order.name()});
     match order {
@@ -109,7 +109,7 @@ fn written(order: &Order) -> String {
     message.to_string()
 }
 
-/// The run after a message, as a session takes it; as it was, where the run refuses.
+/// The run after a message, as in a session; unchanged if the run refuses the message.
 fn carried_out(run: &Run, order: &Order, n: u64) -> Run {
     let (now, impact) = (now(n), PACE.1 * n);
     let mut changed = run.clone();
@@ -131,7 +131,7 @@ fn carried_out(run: &Run, order: &Order, n: u64) -> Run {
         }
         Order::Kick(kick) => {
             if kick.theta_dot == 0.0 || has_angle(run.scene()) {
-                // More kicks than there may be, or too large in sum.
+                // Too many kicks, or a sum of kicks that is too large.
                 let _ = changed.kick(impact, *kick);
             }
         }

@@ -1,7 +1,7 @@
-//! What has to hold for any bytes at all: one function for each thing that reads what others wrote, and for the two formulas
-//! that a run stands on. libFuzzer drives them (`targets`), and so does `tests/fuzzed.rs` in every run of the tests.
+//! Checks that must hold for any bytes: one function for each reader of foreign input, and for the two formulas that a run depends on.
+//! libFuzzer drives them (`targets`), and so does `tests/fuzzed.rs` in every run of the tests.
 //!
-//! A check returns where all is well and panics where it is not.
+//! A check returns if all is well and panics otherwise.
 
 pub(crate) mod contact_time;
 pub(crate) mod impulse;
@@ -11,7 +11,7 @@ mod problem;
 pub(crate) mod query;
 pub(crate) mod scene;
 
-/// What can be checked.
+/// A check and its name.
 #[derive(Clone, Copy, Debug)]
 #[allow(dead_code, reason = "each target of libFuzzer runs its own")]
 pub(crate) struct Check {

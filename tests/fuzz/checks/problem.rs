@@ -1,18 +1,17 @@
-//! What has to hold for every problem: a status of the client's, errors whose pointers lead somewhere, and a size that does not
-//! grow beyond what was sent.
+//! Every problem has a 4xx status, errors whose pointers lead somewhere, and a size bounded by that of the request.
 
 use equipoise::http::{FieldError, Problem};
 use equipoise::limits;
 use equipoise_physics::scene::{FIELDS, VERTICES};
 use serde_json::Value;
 
-/// The names that a problem may point to although they were not sent: what is missing is named too.
+/// Names that a problem may point to although they were not sent: missing fields.
 const NAMES: &[&str] = &["preset", "scene", "body", "type", "value", "impact", "wall", "run", "speed"];
 
-/// Longest sentence about one field, characters. What a client sent is quoted in part, and the known names in whole.
+/// Longest sentence about one field, characters. It quotes a part of the input, and known names in full.
 const LONGEST: usize = 1500;
 
-/// Panics unless this is a proper answer to what was `sent` in so many bytes; none, where that is not one value.
+/// Panics unless this is a proper answer to `sent`, a request of some bytes; none if the request is not one JSON value.
 pub(crate) fn hold(problem: &Problem, sent: Option<&Value>, bytes: usize) {
     let (status, errors) = (problem.status().as_u16(), problem.errors());
     assert!(status == 400 || status == 422, "{problem:?}");
@@ -32,7 +31,7 @@ pub(crate) fn hold(problem: &Problem, sent: Option<&Value>, bytes: usize) {
     }
 }
 
-/// Whether the end of a pointer is the path of a field.
+/// True if a pointer ends with the path of a field.
 fn names_a_field(pointer: &str) -> bool {
     let ends = |path: &str| {
         let rest = pointer.strip_suffix(&path.replace('.', "/")).or_else(|| pointer.strip_suffix(path));

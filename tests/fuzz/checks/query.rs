@@ -1,4 +1,4 @@
-//! The query of a GET: from its text to the tree that it is equivalent to, and to the same scene as the JSON that says the same.
+//! The query of a GET: from its text to the equivalent tree, and to the same scene as the equivalent JSON.
 
 use equipoise::api::scene::scene_to_json;
 use equipoise::http::request::query;
@@ -8,8 +8,8 @@ use serde_json::{Map, Number, Value};
 
 use super::{problem, scene};
 
-/// A tree is written out as a query that reads back as itself; what is refused points to a parameter; and the JSON of the same
-/// request gives the same scene or the same errors.
+/// A tree is written as a query that reads back as the same tree. Errors point to a parameter. The JSON of the same request gives the
+/// same scene or the same errors.
 pub(crate) fn check(data: &[u8]) {
     let Ok(query) = std::str::from_utf8(data) else { return };
     let parameters = match query::parameters(query) {
@@ -45,7 +45,7 @@ pub(crate) fn tree(query: &str) -> Result<Map<String, Value>, Problem> {
     query::unfold(query::parameters(query)?)
 }
 
-/// Panics unless JSON that says the same as this tree of text is read the same.
+/// Panics unless the JSON equivalent of this tree is read the same.
 fn compare(sent: &Value, bytes: usize) {
     let same = in_json("", sent);
     let asked = scene::read(sent.as_object().expect("a query is an object"), Source::Query);
@@ -66,7 +66,7 @@ fn compare(sent: &Value, bytes: usize) {
     }
 }
 
-/// The JSON that says the same as text in a query: numbers where numbers belong, if the text is one.
+/// The JSON equivalent of a query's text: a number for a numeric field, if the text is one.
 fn in_json(path: &str, value: &Value) -> Value {
     match value {
         Value::Object(fields) => {
@@ -106,7 +106,7 @@ fn flatten(path: String, value: &Value, leaves: &mut Vec<(String, String)>) {
     }
 }
 
-/// Where the value of a parameter stands in the tree.
+/// The place of a parameter's value in the tree.
 fn pointer(name: &str) -> String {
     name.split('.').map(|part| format!("/{}", part.replace('~', "~0").replace('/', "~1"))).collect()
 }

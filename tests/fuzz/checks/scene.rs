@@ -8,8 +8,7 @@ use serde_json::{Map, Value};
 
 use super::problem;
 
-/// A body is read as JSON is; what is refused says where; and a scene, written out, reads back as itself, from JSON and from a
-/// query.
+/// A body is read as JSON. Errors have pointers. A scene that is written out reads back as the same scene, from JSON and from a query.
 pub(crate) fn check(body: &[u8]) {
     let fields = match json::object(body) {
         Ok(fields) => fields,
@@ -17,7 +16,7 @@ pub(crate) fn check(body: &[u8]) {
     };
     let sent = Value::Object(fields);
     let plain: Value = serde_json::from_slice(body).expect("what is read strictly is JSON");
-    // As text, so that a sign of zero shows.
+    // Compared as text, so that the sign of zero counts.
     assert_eq!(sent.to_string(), plain.to_string());
     match read(sent.as_object().expect("it was one"), Source::Json) {
         Ok(scene) => hold(&scene),
@@ -25,7 +24,7 @@ pub(crate) fn check(body: &[u8]) {
     }
 }
 
-/// Reads a scene as a resource does that has nothing beside it.
+/// Reads a scene as a resource without further parameters does.
 pub(crate) fn read(fields: &Map<String, Value>, source: Source) -> Result<Scene, Problem> {
     let mut errors = Errors::default();
     let mut reader = Reader::new(fields, String::new(), source, &mut errors);
@@ -48,7 +47,7 @@ pub(crate) fn hold(scene: &Scene) {
     let asked = super::query::tree(&query).and_then(|fields| read(&fields, Source::Query));
     let asked = asked.unwrap_or_else(|refused| panic!("{query} was refused: {refused:?}"));
     assert_eq!(scene_to_json(&asked).to_string(), written);
-    // Whatever was said, there is a model for it and a reason to name.
+    // Every valid scene has a model and a reason for it.
     let _ = scene.model();
     assert!(!scene.rung_reason().is_empty());
 }

@@ -1,11 +1,11 @@
-//! Changes inputs of lines `name number` as numbers: to the next double, to another size, to one that is special, to that of
-//! another line. Text changed byte by byte would hardly ever come near a grazing contact.
+//! Mutates inputs of lines `name number` as numbers: to the next double, another size, a special value, or the number of another line.
+//! Mutations of single bytes would hardly ever come near a grazing contact.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const SPECIAL: [f64; 10] = [0.0, 1.0, 2.0, 0.5, PI, FRAC_PI_2, TAU, 1e-9, 1e-3, 1e3];
 
-/// A mutator as libFuzzer wants one: changes `data[..size]` and says its new size, `most` at most.
+/// A libFuzzer mutator: changes `data[..size]` and returns its new size, at most `most`.
 pub fn numbers(data: &mut [u8], size: usize, most: usize, seed: u32) -> usize {
     let mut random = Random(u64::from(seed));
     let text = std::str::from_utf8(&data[..size]).unwrap_or_default();
@@ -41,7 +41,7 @@ pub fn numbers(data: &mut [u8], size: usize, most: usize, seed: u32) -> usize {
     text.len()
 }
 
-/// Numbers that follow from a seed (splitmix64, Steele and others, 2014).
+/// Random numbers from a seed (splitmix64, Steele and others, 2014).
 struct Random(u64);
 
 impl Random {

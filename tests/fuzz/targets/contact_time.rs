@@ -1,4 +1,4 @@
-//! `checks::contact_time` for libFuzzer, which changes its numbers as numbers.
+//! `checks::contact_time` for libFuzzer, with mutations of numbers.
 
 #![no_main]
 

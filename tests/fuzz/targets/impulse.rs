@@ -1,4 +1,4 @@
-//! `checks::impulse` for libFuzzer, which changes its numbers as numbers.
+//! `checks::impulse` for libFuzzer, with mutations of numbers.
 
 #![no_main]
 
