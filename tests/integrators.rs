@@ -1,4 +1,4 @@
-//! General simulation methods against the exact map: where they agree, how fast they get there, and scenes on which they are wrong.
+//! General simulation methods against the exact map: agreement, order of convergence, and scenes on which they are wrong.
 
 use equipoise::integrators::{Impact, Location, Method, Simulation, Work, simulate};
 use equipoise_physics::body::Release;
@@ -16,7 +16,7 @@ struct Scene {
     release: Release,
 }
 
-/// The radius of gyration with which the paper computed, and that of its triangle, m.
+/// The paper's radius of gyration, and that of its real triangle, m.
 const PRINTED: f64 = 0.094_280_904_158_206_35;
 const TRIANGLE: f64 = 0.051_37;
 
@@ -54,7 +54,7 @@ impl Scene {
         (contacts, ending.unwrap().name())
     }
 
-    /// Distance from the map at this contact; infinite where the method saw fewer.
+    /// Distance from the map at a contact; infinite if the method found fewer contacts.
     fn error(&self, method: Method, n: usize) -> f64 {
         let (exact, _) = self.exact(n as u64);
         self.by(method, n as u64).impacts.get(n - 1).map_or(f64::INFINITY, |impact| distance(&exact[n - 1], impact))
@@ -96,8 +96,8 @@ fn adaptive(tolerance: f64) -> Method {
     Method::Adaptive { tolerance }
 }
 
-/// How fast the error at a contact shrinks from a step to a tenth of it, as a power of the step. Where in its step a contact falls is
-/// as good as random, so it is the mean square over some steps that has an order.
+/// Order of the error at a contact: the power of the step, from a step to a tenth of it. The place of a contact within its step is as
+/// good as random, so the mean square over several steps is used.
 fn order(method: impl Fn(f64) -> Method, step: f64, n: usize) -> f64 {
     let mean_square = |step: f64| {
         let steps = (0..16).map(|index| step * (1.0 + 0.04 * f64::from(index)));
@@ -106,7 +106,7 @@ fn order(method: impl Fn(f64) -> Method, step: f64, n: usize) -> f64 {
     0.5 * (mean_square(step) / mean_square(0.1 * step)).log10()
 }
 
-/// A parabola is no task for Runge-Kutta: whatever is located to the last digit has the digits of the map, at any step.
+/// Runge-Kutta follows a parabola without error. So methods that locate contacts to the last digit agree with the map at any step.
 #[test]
 fn a_contact_that_is_located_costs_no_accuracy() {
     for (method, allowed) in [
@@ -123,7 +123,7 @@ fn a_contact_that_is_located_costs_no_accuracy() {
     }
 }
 
-/// The order that a method keeps at contacts is that of how it finds them, and not the one in its name.
+/// The order of a method at contacts is that of its contact search, not that of its time stepping.
 #[test]
 fn impacts_take_the_order_away() {
     for (name, order, expected) in [
@@ -160,7 +160,7 @@ fn numbers() -> impl FnMut(f64, f64) -> f64 {
     }
 }
 
-/// Endings too, on rods, tables and releases of all kinds that do not spin fast.
+/// The endings agree too, for rods, tables and releases of all kinds without fast spin.
 #[test]
 fn any_scene_ends_as_the_map_says() {
     let mut number = numbers();
@@ -175,7 +175,7 @@ fn any_scene_ends_as_the_map_says() {
         }
         scene.release.state.x_dot = number(-1.0, 1.0);
         let (exact, ending) = scene.exact(4);
-        // Up to l θ̇² = G the gap is concave, and nothing comes and goes between two looks.
+        // Up to l θ̇² = G the gap is concave, so no contact hides between two samples.
         if exact.iter().any(|contact| contact.state.theta_dot.abs() > 8.5) {
             continue;
         }
@@ -188,7 +188,7 @@ fn any_scene_ends_as_the_map_says() {
                 assert!(distance(exact, impact) < 1e-6, "{scene:?} {method:?} {exact:?} {impact:?}");
             }
         }
-        // What is known to the step alone may end otherwise, but begins alike.
+        // A method that knows contacts only to its step may end otherwise, but begins alike.
         for method in [time_stepping(1e-3), penalty(1e-3), runge_kutta(Location::StepEnd)(1e-3)] {
             assert!(distance(&exact[0], &scene.by(method, 1).impacts[0]) < 2e-2, "{scene:?} {method:?}");
         }
@@ -207,14 +207,14 @@ fn flights_that_shrink_settle() {
     assert_eq!(ending, "settled");
     let settled = scene.by(sampling(1e-2), 100);
     assert_eq!((settled.ending.name(), settled.impacts.len()), (ending, exact.len()));
-    // Methods that carry the height have no digits for flights of less than a nanometre.
+    // Methods that integrate the height have no digits for flights below a nanometre.
     for method in [runge_kutta(Location::Bisection)(1e-2), adaptive(1e-6)] {
         let agreed = scene.by(method, 20).impacts;
         assert!(distance(&exact[19], &agreed[19]) < 1e-6, "{method:?}");
     }
 }
 
-/// A spring and a damper give back what was asked for, as far as gravity lets them.
+/// A spring and damper reproduce the restitution, as far as gravity allows.
 #[test]
 fn a_compliant_contact_gives_back_its_restitution() {
     for restitution in [0.1, 0.3, 0.5, 0.8, 0.95, 1.0] {
@@ -227,7 +227,7 @@ fn a_compliant_contact_gives_back_its_restitution() {
     }
 }
 
-/// The rod touches the table with one end of a fast turn and is clear of it again before anyone looks.
+/// A fast spinning rod touches the table and is clear of it again between two samples.
 #[test]
 fn what_comes_and_goes_between_two_looks_is_missed() {
     let scene = spinning(1.1, 0.34, -0.41, -29.9);
@@ -244,7 +244,7 @@ fn what_comes_and_goes_between_two_looks_is_missed() {
         assert_eq!((t - first).abs() < 1e-6, sees, "{method:?}: {t}");
         assert!(sees || (t - 0.309_420).abs() < 1e-6, "{method:?}: {t}");
     }
-    // No tolerance helps: it speaks of the parabola and not of the gap.
+    // No tolerance helps: it bounds the error of the parabola, not of the gap.
     let scene = spinning(1.05, 0.33, 0.07, -29.9);
     let first = scene.exact(1).0[0].t;
     for tolerance in [1e-3, 1e-6, 1e-12] {
@@ -253,8 +253,8 @@ fn what_comes_and_goes_between_two_looks_is_missed() {
     }
 }
 
-/// Just beyond a hard boundary everything falls, nearby too. A chord strikes a little early, thus slower, which is as good as a wider
-/// margin, and keeps all of them in balance for thousands of contacts, at any such step.
+/// Just beyond a hard boundary every run falls. A contact on a chord is a little early and so slower, which acts like a wider margin:
+/// it keeps all runs balanced for thousands of contacts at these steps.
 #[test]
 fn a_step_invents_stability() {
     for theta in [0.0097, 0.01, 0.0103] {
@@ -272,7 +272,7 @@ fn a_step_invents_stability() {
     }
 }
 
-/// The paper's own case balances, and falls in the hands of methods that people use at steps that people use.
+/// The paper's own case balances, but falls with common methods at common steps.
 #[test]
 fn a_step_destroys_stability() {
     assert_eq!(case_1().exact(5000).1, "completed");
@@ -289,7 +289,7 @@ fn a_step_destroys_stability() {
         println!("{method:?}: {} at {}", simulation.ending.name(), simulation.impacts.len());
         assert_ne!(simulation.ending.name(), "completed", "{method:?}");
     }
-    // Nearer to the boundary a tenth of the step does not do either.
+    // Nearer to the boundary a tenth of the step is not enough either.
     let scene = scene(PRINTED, 1.49, 0.1);
     assert_eq!(scene.exact(400).1, "completed");
     for method in [time_stepping(1e-3), runge_kutta(Location::StepEnd)(1e-3)] {
@@ -311,7 +311,7 @@ fn work_is_counted_alike_everywhere() {
     }
 }
 
-/// No setting and no scene makes a method run on for ever, or panic.
+/// No setting and no scene makes a method run for ever or panic.
 #[test]
 fn every_run_ends() {
     let everything = [0.0, -1.0, 1e-300, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e-9, 0.5];

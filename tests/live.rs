@@ -1,6 +1,6 @@
-//! Live runs over real sockets: what is said, in which order, and that a run is its URL.
+//! Live runs over real sockets: messages, their order, and that a run is its URL.
 //!
-//! Wall-clock times are never asserted, only order and content; runs go fast so that nobody waits.
+//! Order and content are asserted, never wall-clock times. Runs are fast to keep the tests short.
 
 mod support;
 
@@ -17,7 +17,7 @@ use tokio::net::TcpStream;
 use tokio::time::timeout;
 use tokio_tungstenite::tungstenite::Message;
 
-/// A run of case 1 that began so many seconds ago.
+/// A run of case 1 that was released some seconds ago.
 fn old(seconds: u64) -> String {
     format!("/v1/live?preset=case-1&epoch={}", now_ms() - 1000 * seconds)
 }
@@ -76,7 +76,7 @@ async fn the_same_url_is_the_same_run_and_from_leaves_no_gap() {
     assert_eq!(numbers(&all), (1..=100).collect::<Vec<_>>());
     let mut second = open(address, &format!("{}&from=41", hello["url"].as_str().unwrap())).await;
     assert_eq!(second.impacts(60).await, all[40..]);
-    // Without `from` it begins with the flight under way.
+    // Without `from` the stream begins with the flight under way.
     let mut third = open(address, &url).await;
     let now = third.next().await["run_time"].as_f64().unwrap();
     let begin = third.impacts(1).await.remove(0);
@@ -161,7 +161,7 @@ async fn a_paused_run_goes_on_step_by_step() {
         let row = client.impacts(1).await.remove(0);
         assert_eq!((row["n"].as_u64(), &row["t"]), (Some(n), &step["run_time"]));
     }
-    // Whoever opens its URL finds it paused in the same place.
+    // Another client with its URL finds it paused at the same place.
     let last = client.ask(json!({"type": "pause"})).await;
     let mut other = open(address, last["url"].as_str().unwrap()).await;
     let hello = other.next().await;
@@ -257,7 +257,7 @@ async fn messages_are_limited_in_size_and_number() {
     }
 }
 
-/// A client's frame with the key 0, which leaves its payload as it is.
+/// A client's frame with the masking key 0, which leaves the payload unchanged.
 fn frame(first: u8, payload: &[u8]) -> Vec<u8> {
     [&[first, 0x80 | u8::try_from(payload.len()).unwrap(), 0, 0, 0, 0], payload].concat()
 }
@@ -341,10 +341,10 @@ async fn a_run_of_a_million_bounces_a_second_takes_no_core() {
     let mut client = open(address, &format!("/v1/live?preset=case-1&{low}")).await;
     let seen = numbers(&client.impacts(2000).await);
     assert!(seen.into_iter().eq(1..=2000), "nothing is left out for a client that keeps up");
-    // The run goes on: its bounces first, then the time they had.
+    // The run goes on: its bounces first, then their time.
     let bounces = app.metrics.bounces.get() as f64;
     let batches = begin.elapsed().as_secs_f64() / limits::LIVE_BATCH_TIME.as_secs_f64();
-    // Those at its beginning were due at once.
+    // The impacts at its beginning were due at once.
     let most = (batches + 3.0) * limits::LIVE_BATCH as f64 + limits::INLINE_BOUNCES as f64;
     assert!(bounces < most, "{bounces} {most}");
 }
@@ -391,7 +391,7 @@ async fn a_server_that_closes_says_so() {
     assert_eq!(app.metrics.live_sessions.get(), 1);
     app.close();
     assert_eq!(client.closed().await, Some(1001));
-    // Who still gets in is told the same.
+    // A late client gets the same close code.
     assert_eq!(open(address, "/v1/live?preset=case-1").await.closed().await, Some(1001));
     timeout(SOON, async {
         while app.metrics.live_sessions.get() > 0 {

@@ -1,4 +1,4 @@
-//! How a run is computed: by what is asked for, or the cheapest method that holds the tolerance, with an error estimate that is true.
+//! Methods of a run: the one requested, or the cheapest that holds the tolerance, with a true error estimate.
 
 mod support;
 
@@ -22,7 +22,7 @@ fn column(answer: &Value, name: &str) -> Vec<DoubleDouble> {
     answer["impacts"][name].as_array().unwrap().iter().map(number).collect()
 }
 
-/// The largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇| at each impact.
+/// Largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇| at each impact.
 fn errors(answer: &Value, exact: &Value) -> Vec<f64> {
     let rho = answer["scene"]["body"]["radius_of_gyration"].as_f64().unwrap_or(0.0);
     let mut largest = Vec::new();
@@ -35,7 +35,7 @@ fn errors(answer: &Value, exact: &Value) -> Vec<f64> {
     largest
 }
 
-/// Every run that was computed with 60 digits and has no friction.
+/// All reference runs with 60 digits and without friction.
 fn references() -> Vec<(String, Value)> {
     let files = std::fs::read_dir("tests/reference").unwrap().map(|entry| entry.unwrap().path());
     let named = files.map(|file| (file.file_stem().unwrap().to_string_lossy().into_owned(), file));
@@ -59,7 +59,7 @@ async fn extended_gives_the_references_digit_by_digit() {
             assert_eq!(values.len(), exact.len(), "{name}: {quantity}");
             for (value, exact) in values.into_iter().zip(exact) {
                 let (error, size) = ((value - exact).to_f64().abs(), exact.to_f64().abs());
-                // 25 digits are printed.
+                // The reference has 25 digits.
                 let allowed = f64::max(1e-23 * size, plain * 1e-15).max(1e-25);
                 assert!(error <= allowed, "{name}: {quantity} is {value}, off by {error:e}, allowed {allowed:e}");
             }
@@ -123,7 +123,7 @@ async fn an_impossible_tolerance_is_refused_with_the_horizon() {
     let horizon: u64 = detail.split("at most ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!((100..1000).contains(&horizon), "{detail}");
     server.get(&format!("{chaotic}&impacts={horizon}&tolerance=1e-3")).await.expect(200);
-    // Without a tolerance it is run, and says how far it means something.
+    // Without a tolerance the run is computed, with its predictable impacts.
     let run = server.get(&format!("{chaotic}&impacts={horizon}")).await.expect(200).json();
     let predictable = run["predictable_impacts"].as_u64().unwrap();
     assert!(predictable > 10 && predictable < horizon, "{predictable} of {horizon}");
@@ -152,7 +152,7 @@ async fn decimals_are_the_same_in_every_format() {
     assert!(ask("svg").await.text().starts_with("<svg"));
 }
 
-/// Exactly upright there is nothing to grow, however far κ is beyond its critical value.
+/// Exactly upright no deviation can grow, for any κ beyond the critical value.
 #[tokio::test]
 async fn the_linear_solution_keeps_an_upright_body_upright() {
     let server = Server::start();
@@ -169,7 +169,7 @@ async fn the_linear_solution_keeps_an_upright_body_upright() {
     }
 }
 
-/// The price is that of a run to its last contact, and even so the longest one is within the work of a request.
+/// The price assumes a run to its last contact. Even so, the longest run is within the work of a request.
 #[tokio::test]
 async fn the_longest_run_may_be_asked_for_by_every_method() {
     let server = Server::start();
@@ -180,13 +180,13 @@ async fn the_longest_run_may_be_asked_for_by_every_method() {
         let run = server.get(&target).await.expect(200).json();
         assert_eq!(run["outcome"]["kind"], "toppled", "{method}");
     }
-    // Where the angle does not circle an impact of the linear solution takes 31 digits and some 30 µs.
+    // If the angle does not circle, an impact of the linear solution takes 31 digits and some 30 µs.
     let dear = server.get("/v1/trajectories?preset=critical-hard&impacts=100000&method=linear").await.expect(422);
     assert!(dear.text().contains("work of this request would be 52"), "{}", dear.text());
     server.get("/v1/trajectories?preset=critical-hard&impacts=10&method=linear").await.expect(200);
 }
 
-/// Whoever leaves frees the core: while the run is computed, and while its millions of digits are written in whatever format.
+/// A client that hangs up frees the core, both while the run is computed and while its answer is written, in any format.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn an_answer_ends_with_its_reader() {
     let (app, address) = start().await;
@@ -207,7 +207,7 @@ async fn an_answer_ends_with_its_reader() {
         }
         drop(socket);
         let left = Instant::now();
-        // Some ms, where nothing else wants the cores.
+        // A few ms on an idle machine.
         while app.pool.running().get() > 0 {
             assert!(left.elapsed() < Duration::from_secs(1), "{request}: the work goes on for nobody");
             tokio::time::sleep(Duration::from_millis(1)).await;

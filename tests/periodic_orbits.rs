@@ -70,7 +70,7 @@ async fn with_energy_feedback_the_symmetric_orbit_is_the_one_asked_for_or_none()
         assert_eq!(refused.pointers(), ["/theta"]);
         assert!(refused.json()["detail"].as_str().unwrap().contains("target height"), "{}", refused.json());
     }
-    // The error names the angle that there is, either way.
+    // Either error names the angle of the orbit that exists.
     let refused = server.get(&ask(0.05)).await.expect(422).json();
     let detail = refused["detail"].as_str().unwrap();
     let named = detail.split("through theta ").nth(1).and_then(|rest| rest.split(' ').next()).expect(detail);

@@ -1,4 +1,4 @@
-//! Pictures in pixels: the drawing of the SVG, the same everywhere, and an answer like any other.
+//! PNG pictures: the drawing of the SVG, with the same bytes everywhere, and an answer like any other.
 
 mod support;
 
@@ -46,7 +46,7 @@ async fn pixels_are_the_drawing_at_its_own_size() {
         let at = |x: usize, y: usize| &pixels[4 * (y * width + x)..][..4];
         assert_eq!(at(width / 2, 4), [255; 4], "{target}: paper");
         assert_eq!(at(0, 0)[3], 0, "{target}: nothing outside of its rounded corner");
-        // Text is there: dark pixels in the band of the title.
+        // The title has dark pixels, so text is drawn.
         let dark = (20..44).flat_map(|y| (28..300).map(move |x| (x, y))).filter(|(x, y)| at(*x, *y)[0] < 90).count();
         assert!(dark > 200, "{target}: {dark} dark pixels in the title");
     }
@@ -58,7 +58,7 @@ async fn every_cell_has_its_colour() {
     let map = server.get(MAP).await.expect(200).json();
     let drawing = server.get(&format!("{MAP}&format=svg")).await.expect(200);
     let (width, _, pixels) = decoded(&server.get(&format!("{MAP}&format=png")).await.expect(200).raw);
-    // Where the drawing says that the cells are: matrix(wide 0 0 -tall left bottom).
+    // Place of the cells in the drawing: matrix(width 0 0 -height left bottom).
     let place = drawing.text().split("matrix(").nth(1).unwrap().split(')').next().unwrap();
     let place: Vec<f64> = place.split(' ').map(|number| number.parse().unwrap()).collect();
     let (mut completed, mut fell) = (0, 0);
@@ -101,7 +101,7 @@ async fn an_image_may_ask_by_accept_and_a_matrix_has_no_picture() {
     let server = Server::start();
     let asked = server.get_with(MAP, &[("accept", "image/png")]).await.expect(200);
     assert_eq!(asked.media_type(), "image/png");
-    // What a browser sends for an <img> names SVG closest.
+    // In the Accept header of an <img>, SVG is the closest match.
     let image = server.get_with(MAP, &[("accept", "image/avif,image/svg+xml,image/*,*/*;q=0.8")]).await.expect(200);
     assert_eq!(image.media_type(), "image/svg+xml");
     server.get("/v1/jacobians?preset=case-1&format=png").await.expect(406);
@@ -111,7 +111,7 @@ async fn an_image_may_ask_by_accept_and_a_matrix_has_no_picture() {
 #[tokio::test]
 async fn what_a_mean_hides_is_counted() {
     let server = Server::start();
-    // Two cells in each that is drawn.
+    // Each drawn cell stands for two cells.
     let target = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=1.3&x.to=1.6&x.count=1024\
                   &y.parameter=release.theta&y.from=0.15&y.to=0.15&y.count=1&impacts=40";
     let map = server.get(target).await.expect(200).json();

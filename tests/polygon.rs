@@ -1,4 +1,4 @@
-//! Bodies drawn as polygons: what is read of them, what is refused, and which vertex ends a run.
+//! Polygons: derived quantities, refusals, and the vertex that ends a run.
 
 mod support;
 
@@ -9,7 +9,7 @@ fn triangle() -> Value {
     json!([[0, 0], [0.05, 0.2], [-0.05, 0.2]])
 }
 
-/// A flat roof upside down.
+/// A flat roof, upside down.
 fn wide() -> Value {
     json!([[0, 0], [0.15, 0.05], [-0.15, 0.05]])
 }
@@ -40,12 +40,12 @@ async fn the_true_triangle_says_that_no_other_vertex_touches_and_how_near_one_co
     let n = nearest["impact"].as_u64().unwrap() as usize;
     let impact = |column: &str| answer["impacts"][column][n - 1].as_f64().unwrap();
     assert_eq!(nearest["t"].as_f64().unwrap(), impact("t"));
-    // By hand: the two upper corners over the table's line through the lower one.
+    // By hand: heights of the two upper corners over the table's line through the lower one.
     let beta: f64 = impact("theta") - impact("alpha");
     let corner = if beta > 0.0 { -0.05 } else { 0.05 };
     close(&nearest["clearance"], corner * beta.sin() + 0.2 * beta.cos(), 1e-12);
     assert_eq!(nearest["vertex"], if beta > 0.0 { 2 } else { 1 });
-    // NDJSON ends with it too, and a rod has none.
+    // The last line of NDJSON has it too; a rod has none.
     let lines =
         server.post("/v1/trajectories?format=ndjson", &json!({"scene": scene, "impacts": 2000})).await.expect(200);
     let last: Value = serde_json::from_str(lines.text().trim_end().rsplit('\n').next().unwrap()).unwrap();
@@ -68,7 +68,7 @@ async fn a_wide_polygon_ends_where_its_rod_goes_on() {
     assert_eq!(outcome["kind"], "other_vertex");
     assert_eq!(outcome["impacts"], 3);
     assert!(outcome["detail"].as_str().unwrap().contains("vertex 1 of the body"), "{outcome}");
-    // The touch is after the last contact, at the vertex's own zero.
+    // The touch comes after the last contact, when that vertex reaches y = 0.
     let since = outcome["t"].as_f64().unwrap() - polygon["impacts"]["t"][2].as_f64().unwrap();
     assert!(since > 0.2 && polygon["impacts"]["flight_time"][2].is_null(), "{outcome}");
     for column in ["theta", "y_dot", "x_dot"] {
@@ -158,7 +158,7 @@ async fn what_is_no_polygon_says_why_and_where() {
         let said = |error: &Value| error["pointer"] == pointer && error["detail"].as_str().unwrap().contains(words);
         assert!(errors.iter().any(said), "{body}: {answer}");
     }
-    // Released with another vertex in the table.
+    // At the release another vertex is below the table's line.
     let scene = dropped(&json!({"vertices": triangle()}), 1.1, 0.03, 1.5);
     let answer = server.post("/v1/trajectories", &json!({"scene": scene})).await.expect(422);
     assert_eq!(answer.pointers(), ["/scene/release/height"]);
@@ -181,7 +181,7 @@ async fn what_is_derived_for_a_bounce_holds_for_a_polygon() {
     }
     let stability = server.post("/v1/stability", &json!({"scene": scene})).await.expect(200).json();
     close(&stability["linear"]["tilt_gain"]["critical"], 1.1484, 1e-4);
-    // A region runs the polygon itself: far from upright its cells end as other_vertex.
+    // A region runs the polygon itself, so cells far from upright end as other_vertex.
     let region = json!({
         "scene": dropped(&json!({"vertices": wide()}), 1.3, 0.1, 0.0), "impacts": 100,
         "x": {"parameter": "release.theta", "from": 0.0, "to": 0.3, "count": 4},

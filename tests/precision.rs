@@ -1,4 +1,4 @@
-//! Speed against accuracy over HTTP: every method is there, counts and errors are what they are everywhere, times are not kept.
+//! Speed against accuracy over HTTP: all methods are present, counts and errors are reproducible, and times are not cached.
 
 mod support;
 
@@ -39,7 +39,7 @@ fn number(point: &Value, name: &str) -> f64 {
     point[name].as_f64().unwrap_or_else(|| panic!("no {name}: {point}"))
 }
 
-/// What does not depend on the clock.
+/// The part of an answer that does not depend on the clock.
 fn counted(points: &[Value]) -> Vec<Value> {
     let names = ["method", "setting", "impacts", "steps", "evaluations", "error", "outcome", "pareto_evaluations"];
     points.iter().map(|point| names.iter().map(|name| point[name].clone()).collect()).collect()
@@ -67,7 +67,7 @@ async fn every_method_is_charted_and_no_answer_is_kept() {
     }
 }
 
-/// What is done is bounded by counts, on machines of any speed.
+/// Counts bound the work, on machines of any speed.
 #[tokio::test]
 async fn work_is_bounded() {
     let server = Server::start();
@@ -104,7 +104,7 @@ async fn errors_are_those_of_the_methods() {
     }
 }
 
-/// Recomputed here from cost and error.
+/// The Pareto front, computed from cost and error.
 #[tokio::test]
 async fn the_front_is_what_nothing_beats() {
     let points = points(&Server::start().get(TEN).await.expect(200));
@@ -145,7 +145,7 @@ async fn what_cannot_run_says_why() {
             assert!(point["reason"].as_str().unwrap().contains("point mass"), "{point}");
         }
     }
-    // What is not there is done at once.
+    // A missing resource is answered at once.
     let target = "/v1/precision?preset=point-mass&impacts=10&methods.0=map&methods.1=adaptive&format=progress";
     let answer = server.get(target).await.expect(200);
     let done: Vec<u64> = answer
@@ -187,7 +187,7 @@ async fn every_format_has_every_point() {
     let progress = server.get(&format!("{asked}&format=progress")).await.expect(200);
     assert_eq!((progress.header("cache-control"), progress.header("etag")), (Some("no-store"), None));
     let lines: Vec<Value> = progress.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    // A line for the beginning, for each run and for each timing.
+    // One line at the start, one for each run and one for each timing.
     let of = 2 * count;
     let expected: Vec<Value> = (0..=of).map(|done| json!({"progress": {"done": done, "of": of}})).collect();
     assert_eq!(lines[..lines.len() - 1], expected);

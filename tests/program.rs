@@ -1,4 +1,4 @@
-//! The program itself: what it says when it starts, what it does when too many come, and how it ends.
+//! The program: its first lines, its behaviour under overload, and its shutdown.
 //!
 //! Order, counts and content are asserted, never speed.
 
@@ -19,7 +19,7 @@ use tokio::time::{sleep, timeout};
 struct Program {
     child: Child,
     address: SocketAddr,
-    /// The line that says what is open to whom.
+    /// The line about access in its output.
     openness: String,
 }
 
@@ -43,13 +43,13 @@ impl Program {
         Self { child, address, openness: lines.next().unwrap() }
     }
 
-    /// Asks it to stop, as a service manager does.
+    /// Sends SIGTERM, as a service manager does.
     fn stop(&self) {
         let killed = Command::new("kill").args(["-TERM", &self.child.id().to_string()]).status().unwrap();
         assert!(killed.success());
     }
 
-    /// Its exit code and what it wrote to stderr.
+    /// Waits for the end; returns exit code and stderr.
     async fn end(mut self) -> (Option<i32>, String) {
         let ended = async {
             loop {
@@ -99,14 +99,14 @@ impl Drop for Program {
     }
 }
 
-/// Everything up to the end of a connection.
+/// All bytes up to the end of a connection.
 async fn whole(mut socket: TcpStream) -> String {
     let mut answer = Vec::new();
     timeout(2 * SOON, socket.read_to_end(&mut answer)).await.expect("the server is silent").unwrap();
     String::from_utf8_lossy(&answer).into_owned()
 }
 
-/// Seconds of work, and none that an entity tag would save.
+/// A request that takes seconds of work and has no entity tag.
 const DEAR: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000\
                     &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=1000&impacts=2000";
 
@@ -176,7 +176,7 @@ async fn each_request_is_a_line_of_the_log_and_no_line_has_the_token() {
     assert!(lines[0]["ms"].as_f64().unwrap() > 0.0);
 }
 
-/// Of IPv6 as of IPv4: another address of the same 64 bits is not the proxy that is trusted.
+/// Another IPv6 address of the same /64 network is not the trusted proxy, as with IPv4.
 #[tokio::test]
 async fn a_proxy_is_believed_by_its_whole_address() {
     let named = "x-forwarded-for: 192.0.2.7\r\n";
@@ -192,7 +192,7 @@ async fn a_proxy_is_believed_by_its_whole_address() {
     assert_eq!(peers, ["::", "192.0.2.7", "192.0.2.7"]);
 }
 
-/// The memory for answers follows the memory that the process may have; a limit of its own is one that a test can set.
+/// The memory for answers follows the memory limit of the process, here an rlimit.
 #[test]
 fn answers_are_held_in_a_share_of_what_the_process_may_have() {
     let help = |limit: &str| {
@@ -209,12 +209,12 @@ fn answers_are_held_in_a_share_of_what_the_process_may_have() {
     assert!((1 << 20..=1 << 30).contains(&without), "{without}");
 }
 
-/// One client fills all that it may; others are still computed for, and what cannot wait is told so.
+/// One client fills its whole share. Others are still served, and requests without a place get 503.
 #[tokio::test]
 async fn one_client_cannot_have_it_all() {
     let program = Program::start(&["--permits", "1", "--queue", "4", "--trust-proxy", "127.0.0.1"]);
     let of = |client: u8| format!("x-forwarded-for: 192.0.2.{client}\r\n");
-    // Of 5 places one client gets 3.
+    // One client gets 3 of 5 places.
     let mut held = Vec::new();
     for held_before in 0..3 {
         held.push(program.send(DEAR, &of(1)).await);
@@ -227,14 +227,14 @@ async fn one_client_cannot_have_it_all() {
     );
     let answered = program.get("/v1/stability?preset=case-1&impacts=2000", &of(2)).await;
     assert!(answered.starts_with("HTTP/1.1 200"), "{answered}");
-    // Neither health nor what is cheap asks for a place.
+    // Health and cheap requests need no place.
     assert!(program.get("/health/ready", &of(1)).await.starts_with("HTTP/1.1 200"));
     drop(held);
     program.until("equipoise_jobs_running", 0.0).await;
     assert!(program.get("/v1/stability?preset=case-1&impacts=2000", &of(1)).await.starts_with("HTTP/1.1 200"));
 }
 
-/// Who does not read what it asked for gets no more of it, and others do.
+/// A client that does not read its answers gets no more of them; others do.
 #[tokio::test]
 async fn answers_that_nobody_reads_count() {
     let program = Program::start(&["--held-bytes", "10000000", "--trust-proxy", "127.0.0.1"]);
@@ -255,7 +255,7 @@ async fn answers_that_nobody_reads_count() {
     timeout(SOON, wait).await.expect("what nobody reads is held for ever");
 }
 
-/// Half a head, half a body, nothing after an answer, and an answer taken byte by byte: none of them lasts.
+/// Connections with half a head, half a body, silence after an answer, or a slow reader are closed.
 #[tokio::test]
 async fn who_keeps_the_server_waiting_is_let_go() {
     let times = ["--head-time", "1", "--body-time", "1", "--stall-time", "1"];
@@ -284,7 +284,7 @@ async fn who_keeps_the_server_waiting_is_let_go() {
         while program.get(short, "").await.starts_with("HTTP/1.1 200") {
             sleep(Duration::from_millis(5)).await;
         }
-        // Its answer counts now, until it is cut off.
+        // From now on its answer counts, until it is cut off.
         while !program.get(short, "").await.starts_with("HTTP/1.1 200") {
             sleep(Duration::from_millis(50)).await;
         }
@@ -293,7 +293,7 @@ async fn who_keeps_the_server_waiting_is_let_go() {
     drips.abort();
 }
 
-/// More clients than there are places send nothing, half a head, or half a body; whoever asks is answered.
+/// More clients than connection slots send nothing, half a head, or half a body. A proper request is still answered.
 #[tokio::test]
 async fn silent_clients_keep_nobody_out() {
     let program = Program::start(&["--connections", "32"]);
@@ -311,7 +311,7 @@ async fn silent_clients_keep_nobody_out() {
             assert!(program.get("/v1/scenes", "").await.starts_with("HTTP/1.1 200"));
         }
     }
-    // One that is being computed for keeps its place whoever comes.
+    // A connection whose answer is being computed keeps its slot.
     let computing = program.send(&DEAR.replace("=1000", "=300"), "").await;
     program.until("equipoise_jobs_running", 1.0).await;
     for _ in 0..100 {
@@ -320,8 +320,8 @@ async fn silent_clients_keep_nobody_out() {
     assert!(whole(computing).await.starts_with("HTTP/1.1 200"));
 }
 
-/// Half an answer is read when the program is told to stop: the rest comes whole, sockets are closed with 1001, nobody is let in, and
-/// all is well.
+/// Shutdown while a client has read half an answer: the rest still comes, sockets are closed with 1001, no new client gets in, and the
+/// exit code is 0.
 #[tokio::test]
 async fn it_ends_when_it_is_told_to_and_breaks_nothing_off() {
     let program = Program::start(&[]);

@@ -1,11 +1,11 @@
-//! Maps of stability: each cell is the run of its own scene, tiles are bands of the whole, threads do not show.
+//! Stability maps: each cell is the run of its own scene, tiles are bands of the whole map, and the number of threads does not matter.
 
 mod support;
 
 use serde_json::{Value, json};
 use support::Server;
 
-/// Tilt gain over the angle of the release, as the paper's body is explored.
+/// Tilt gain and release angle as sides, for the paper's body.
 const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=14\
                    &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=11&impacts=300";
 
@@ -62,7 +62,7 @@ async fn tiles_put_together_are_the_whole() {
     }
 }
 
-/// Limits of work and of the answer are the tile's: 10^9 cells are asked for row by row, and each is the cell of the whole.
+/// Limits of work and answer hold per tile: 10^9 cells are requested row by row, and each is the cell of the whole.
 #[tokio::test]
 async fn a_map_larger_than_any_answer_is_asked_for_in_tiles() {
     let server = Server::start();
@@ -86,7 +86,7 @@ async fn a_map_larger_than_any_answer_is_asked_for_in_tiles() {
     server.get(&format!("{tile}&format=svg")).await.expect(200);
 }
 
-/// The linear boundary over tilt gain and angle is two upright lines: κ = 1 and κ_c, which the angle does not move.
+/// The linear boundary over tilt gain and angle is two vertical lines, κ = 1 and κ_c.
 #[tokio::test]
 async fn the_boundary_is_where_the_residue_is_0_or_1() {
     let server = Server::start();
@@ -103,7 +103,7 @@ async fn the_boundary_is_where_the_residue_is_0_or_1() {
 
 #[tokio::test]
 async fn a_run_that_never_meets_the_table_ends_at_once() {
-    // Thrown up so fast that a flight's plan for the table is missed; and turned so far that another corner is first.
+    // One scene misses the planned table after a high flight; the other one turns until another corner touches first.
     let thrown = json!({"body": {"contact_distance": 0.275, "radius_of_gyration": 0.265}, "table": {"tilt_gain": 1.75},
         "noise": {"model": "plan", "timing_sd": 0.0005}, "release": {"height": 0.275, "y_dot": 91.3}});
     let turned = json!({"body": {"vertices": [[0, 0], [0.1, 0.2], [-0.1, 0.2]]}, "table": {"tilt_gain": 1.75},
@@ -183,7 +183,7 @@ async fn what_cannot_be_mapped_is_named() {
     assert!(answer.text().contains("the limit is"), "{}", answer.text());
 }
 
-/// The bytes of a map, computed on 1, 2, 3 and 8 threads; rows in order, and the same ones.
+/// A map has the same bytes on 1, 2, 3 and 8 threads, with its rows in order.
 #[tokio::test]
 async fn threads_do_not_show() {
     let map = MAP.replace("count=14", "count=137").replace("count=11", "count=53");

@@ -1,4 +1,4 @@
-//! No more model than a scene needs: rungs, demands, limits and noise, as a client sees them.
+//! The model hierarchy over HTTP: the smallest model for a scene, demands on the table, limits and noise.
 
 mod support;
 
@@ -20,10 +20,10 @@ async fn a_ladder_says_what_was_needed() {
         (&step["forced"]["field"], &step["change"]["same_outcome"]),
         (&json!("contact.friction"), &json!(false))
     );
-    // Friction that the table matches changes the law only in scale, yet it changes it.
+    // On a matched table, friction changes the law only in scale; it still needs its model.
     let noisy = ask("preset=case-1&scene.noise.timing_sd=1e-9&tolerance=0.01").await;
     assert_eq!((&noisy["rung"], &noisy["enough"]), (&json!("noise"), &json!("rod")));
-    // Every scene of a rung can be asked for as it stands.
+    // The scene of every rung is a valid request.
     for step in rough["rungs"].as_array().unwrap() {
         let run =
             server.post("/v1/trajectories", &json!({"scene": step["scene"], "impacts": 100})).await.expect(200).json();
@@ -88,7 +88,7 @@ async fn noise_depends_on_its_seed_and_is_off_at_zero() {
     let off = run("scene.noise.timing_sd=0&scene.noise.seed=7").await;
     let plain = run("").await;
     assert_eq!((&off["impacts"], &off["model"]["name"]), (&plain["impacts"], &json!("rod")));
-    // The strike is where the contact point then is.
+    // The strike happens at the contact point's place at that time.
     let cells = |name: &str| first["impacts"][name].as_array().unwrap().clone();
     assert!(cells("clearance").iter().all(|cell| cell.as_f64().unwrap() != 0.0));
     let sensed = run("scene.noise.angle_sd=0.01&scene.noise.model=plan").await;
@@ -122,7 +122,7 @@ async fn margins_hold_for_every_body_within_the_tolerances() {
         ask(&format!("preset=case-1&scene.body.contact_distance={l}&scene.body.radius_of_gyration={rho}")).await;
     assert_eq!(there["linear"]["tilt_gain"]["critical"], json!(least));
     assert!(there.get("margins").is_none());
-    // A lossy contact whose restitution is not known needs energy feedback.
+    // With a wrong belief about restitution a lossy contact needs energy feedback.
     let open = ask("preset=case-1&scene.contact.restitution=0.5&tolerances.restitution=0.01").await["margins"].clone();
     assert!(open["holds"].is_null() && open["reason"].as_str().unwrap().contains("no bounce repeats"), "{open}");
     let held = ask("preset=case-4&tolerances.restitution=0.01").await["margins"].clone();
@@ -141,7 +141,7 @@ async fn a_query_can_take_a_value_back() {
     let run = server.get(&format!("/v1/trajectories?{query}")).await.expect(200).json();
     assert!(run["scene"]["table"].get("tilt_gain").is_none());
     assert_eq!(run["outcome"]["kind"], "completed");
-    // In a body the word is a word.
+    // In a JSON body the string "null" is a string.
     let body = json!({"preset": "case-1", "scene": {"table": {"tilt_gain": "null"}}});
     assert_eq!(server.post("/v1/trajectories", &body).await.expect(422).pointers(), ["/scene/table/tilt_gain"]);
 }

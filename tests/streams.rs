@@ -1,4 +1,4 @@
-//! Answers that are sent row by row as they are computed, and what becomes of the work when the reader leaves or is slow.
+//! Answers that are streamed row by row, and their work when the reader hangs up or is slow.
 
 mod support;
 
@@ -26,7 +26,7 @@ async fn ask(address: std::net::SocketAddr, target: &str) -> TcpStream {
     socket
 }
 
-/// What comes until `text` is in it.
+/// Reads until `text` has arrived.
 async fn read_until(socket: &mut TcpStream, text: &str) -> String {
     let mut read = Vec::new();
     while !String::from_utf8_lossy(&read).contains(text) {
@@ -60,8 +60,8 @@ async fn jobs_running(app: &App) -> String {
     text.lines().find(|line| line.starts_with("equipoise_jobs_running")).unwrap().to_owned()
 }
 
-/// Waits until the cores that a client has left are free, and says after how long: some ms on a machine that is. What they
-/// were at would have taken them seconds or minutes.
+/// Waits until the cores are free after a client hung up. Returns the time: a few ms on an idle machine. The work would have taken
+/// seconds or minutes.
 async fn freed(app: &App, left: &str) {
     let since = Instant::now();
     while app.pool.running().get() > 0 {
@@ -71,7 +71,7 @@ async fn freed(app: &App, left: &str) {
     println!("{left:.40}: free {} ms after its client had left", since.elapsed().as_millis());
 }
 
-/// A million cells whose reader leaves after the first rows: the cores are free again.
+/// The reader of a million cells hangs up after the first rows, and the cores are free again.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_million_cells_end_with_their_reader() {
     let (app, address) = start().await;
@@ -97,7 +97,7 @@ async fn a_slow_reader_holds_no_core_and_misses_nothing() {
     let target = format!("{MAP}&x.count=700&y.count=700&impacts=2&quantity=max_theta&format=ndjson");
     let mut socket = ask(address, &target).await;
     let begun = read_until(&mut socket, "{\"row\":0,").await;
-    // Reads nothing more until all is computed.
+    // The client reads nothing more until all is computed.
     let wait = async {
         while app.pool.running().get() > 0 {
             tokio::time::sleep(Duration::from_millis(1)).await;
@@ -113,7 +113,7 @@ async fn a_slow_reader_holds_no_core_and_misses_nothing() {
 
 const ENSEMBLE: &str = "/v1/ensembles?preset=case-1-noise&scene.release.theta=0.1&runs=20000&impacts=5000";
 
-/// Progress is heard long before the end, and who hangs up then frees the cores.
+/// Progress arrives long before the end, and a client that hangs up then frees the cores.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn who_hears_of_progress_may_leave() {
     let (app, address) = start().await;
@@ -128,7 +128,7 @@ async fn who_hears_of_progress_may_leave() {
     }
 }
 
-/// Whatever it was that somebody asked for, and whatever was done of it when he left: the run, the rows, the pixels.
+/// A client that hangs up frees the cores at any stage of any request: run, rows or pixels.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn whoever_leaves_frees_the_core() {
     let (app, address) = start().await;
@@ -147,7 +147,7 @@ async fn whoever_leaves_frees_the_core() {
         &format!("{MAP}&x.count=300&y.count=300&impacts=1000&scene.noise.timing_sd=0.001"),
         ENSEMBLE,
     ] {
-        // Sooner and later, so as to meet all parts of the work; some is over by then.
+        // Different delays meet all stages of the work; some requests are done by then.
         let mut met = 0;
         for wait in [1, 30, 100, 300, 1000] {
             let socket = ask(address, target).await;
@@ -160,7 +160,7 @@ async fn whoever_leaves_frees_the_core() {
     }
 }
 
-/// Compressed lines can be read as they come, too.
+/// Compressed lines can be read as they arrive, too.
 #[tokio::test]
 async fn progress_is_not_kept_back_by_its_compression() {
     let app = App::new(&equipoise::config::Config::default());
@@ -192,11 +192,11 @@ async fn progress_has_a_tag_of_its_own() {
     assert_eq!(server.post("/v1/ensembles?format=progress", &body).await.expect(200).raw, told.raw);
 }
 
-/// The lines are those of the whole answer in JSON.
+/// The lines equal the rows of the JSON answer.
 #[tokio::test]
 async fn rows_say_what_the_whole_says() {
     let server = Server::start();
-    // Rows of three blocks and blocks of many rows.
+    // Rows that span three blocks, and blocks of many rows.
     for (columns, rows, impacts) in [(150, 3, 40_000), (9, 400, 5)] {
         let target = format!("{MAP}&x.count={columns}&y.count={rows}&impacts={impacts}");
         let whole = server.get(&target).await.expect(200).json();

@@ -1,4 +1,4 @@
-//! The verdict draws on more than eigenvalues: rotation, resonances, chaos, the horizon and the basin, where they exist.
+//! The verdict beyond eigenvalues: rotation number, resonances, chaos, predictable impacts and the basin.
 
 mod support;
 
@@ -40,7 +40,7 @@ async fn an_elliptic_run_that_is_chaotic_is_said_to_be() {
     assert!(answer["reason"].as_str().unwrap().contains("chaotic"), "{}", answer["reason"]);
     let horizon = number(&answer, "/predictable_impacts");
     assert!(horizon > 250.0 && horizon < 400.0, "{horizon}");
-    // One contact more, and it falls.
+    // Within 3000 contacts the run falls.
     let later = verdict("scene.table.tilt_gain=1.265755&scene.release.theta=0.15376&impacts=3000").await;
     assert_eq!(later["verdict"], "unstable");
 }
@@ -91,7 +91,7 @@ async fn all_bounces_of_a_verdict_are_counted() {
     server.get("/v1/stability?preset=case-1&impacts=600").await.expect(200);
     let watch = 5 * 500;
     assert_eq!(bounces().await, 600 + watch);
-    // With it the basin: most angles of its fine scan survive, and no run is longer.
+    // The basin: most angles of its fine scan survive.
     server.get("/v1/stability?preset=case-1&impacts=600&basin=true").await.expect(200);
     let basin = bounces().await - 2 * (600 + watch);
     assert!((128 * 600..=448 * 600).contains(&basin), "{basin}");
@@ -99,7 +99,7 @@ async fn all_bounces_of_a_verdict_are_counted() {
 
 #[tokio::test]
 async fn what_cannot_be_said_is_null_with_its_reason() {
-    // Upright, too short, and of a body that has no angle.
+    // An upright run, one that is too short, and a body without an angle.
     for query in ["preset=case-1&scene.release.theta=0", "preset=case-1&impacts=100", "preset=point-mass"] {
         let answer = Server::start().get(&format!("/v1/stability?{query}")).await.expect(200).json();
         assert!(answer["chaos"].is_null(), "{query}");
@@ -156,7 +156,7 @@ async fn lyapunov_is_null_with_a_note_where_it_does_not_apply() {
 
 #[tokio::test]
 async fn a_soft_loss_of_stability_is_told_from_a_hard_one() {
-    // Past the upper end of κ_E the height flips softly.
+    // Beyond the upper end of κ_E the height flips softly.
     let query = "scene.table.target_height=0.2&scene.release.height=0.21&scene.release.theta=0.01";
     let within = verdict(&format!("{query}&scene.table.energy_gain=0.1")).await;
     let upper = number(&within, "/linear/energy_gain/upper");
@@ -170,7 +170,7 @@ async fn a_soft_loss_of_stability_is_told_from_a_hard_one() {
     let heights = &end(&beyond, "table.energy_gain")["heights"];
     assert!(heights[0].as_f64().unwrap() < 0.2 && heights[1].as_f64().unwrap() > 0.2, "{heights}");
     assert!(end(&within, "table.energy_gain")["heights"].is_null());
-    // At its gain margin the law of the controller is lost softly, to a swing.
+    // At the gain margin of the controller stability is lost softly, to a swing.
     let law = Server::start().get("/v1/controllers?preset=case-1").await.expect(200).json();
     let upper = number(&law, "/gain_margin/upper");
     let gains = ["x", "theta", "x_dot", "theta_dot"]

@@ -1,7 +1,7 @@
 """Writes a program for each generated client that calls every operation of the contract once: calls.py and calls.ts.
 
-The calls are written out, so that the type checkers hold every argument to the generated types. What is asked comes from the
-contract too: the queries that run as printed, the examples of parameters and bodies. A new route is called without a change here.
+The calls are written out, so that type checkers hold every argument to the generated types. The arguments come from the contract too:
+queries, examples of parameters and bodies. A new route is called without a change here.
 """
 
 import json
@@ -31,7 +31,7 @@ def value(contract, parameter, text):
 
 
 def calls(contract):
-    """Every operation as (its own entry, path, method, arguments of the path, of the query, body)."""
+    """Every operation as (operation, path, method, arguments of the path, of the query, body)."""
     for path, item in contract["paths"].items():
         for method in ("get", "head", "post"):
             if method not in item:
@@ -50,7 +50,7 @@ def calls(contract):
                     break
             body = None
             if "requestBody" in operation:
-                # An object, or text: lines of JSON.
+                # A JSON object, or the text of NDJSON.
                 [content] = operation["requestBody"]["content"].values()
                 body = next(iter(content["examples"].values()))["value"]
             yield operation, path, method, placed, asked, body
@@ -92,7 +92,7 @@ for name, is_json, call in calls:
         answer = call()
         assert 200 <= answer.status_code < 300 or answer.status_code == 101 and "live" == name, answer.status_code
         if is_json:
-            # Nothing of the answer is lost on the way through the model.
+            # The model keeps the whole answer.
             assert answer.parsed is not None and answer.parsed.to_dict() == json.loads(answer.content), "the model is not the answer"
     except Exception as wrong:
         wrongs.append(f"{name}: {type(wrong).__name__}: {wrong}"[:600])
@@ -111,7 +111,7 @@ def typescript(contract):
         options = json.dumps(options)
         if isinstance(given, str):
             options = options[:-1] + ", \"bodySerializer\": String, \"headers\": { \"Content-Type\": \"application/x-ndjson\" }}"
-        # An upgrade cannot be asked for with fetch, so here the contract's other answer is the right one.
+        # fetch cannot request an upgrade, so here the other answer of the contract is right.
         expected = 426 if "101" in operation["responses"] else 200
         lines.append(f"calls.push([{json.dumps(operation['operationId'])}, {expected}, () => client.{method.upper()}({json.dumps(path)}, {options})]);")
     return "\n".join([*lines, TYPESCRIPT_END])

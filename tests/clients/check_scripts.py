@@ -1,4 +1,4 @@
-"""Runs the scripts of docs/clients as shipped against a server, and holds what they print to another way to the same number."""
+"""Runs the shipped scripts of docs/clients against a server, and checks their output by another way to the same numbers."""
 
 import contextlib
 import json
@@ -57,7 +57,7 @@ def margins():
     scene = {"body": {"contact_distance": 0.133, "radius_of_gyration": 0.094}, "release": {"height": 0.2}}
     assert outcome({**scene, "release": {"theta": aside - 0.01}}, 1000) == "completed", aside
     polygon = printed("margins_of_my_rig.py", "--polygon", "0,0 0.05,0.2 -0.05,0.2", "--tilt-gain", "1.1")
-    # Of a triangle as an even sheet, base 0.1 and height 0.2: l = 0.4/3, ρ² = 0.2²/18 + 0.1²/24.
+    # A uniform triangle with base 0.1 and height 0.2: l = 0.4/3, ρ² = 0.2²/18 + 0.1²/24.
     assert math.isclose(numbers(r"from 1 to ([\d.]+)", polygon)[0], 1 + (0.04 / 18 + 0.01 / 24) / (2 * (0.2 - 0.4 / 3) * 0.4 / 3), abs_tol=1e-5), polygon
     wrong = printed("margins_of_my_rig.py", "--lengths", "0.133", "0.094", "--tilt-gain", "1000", status=1)
     assert "scene.table.tilt_gain: tilt_gain is 1000; it must be from -100 to 100" in wrong, wrong
@@ -71,7 +71,7 @@ def tilt_gain():
     assert outcome({"table": table, "release": {"theta": aside}}, 100) == "completed"
     assert outcome({"table": table, "release": {"theta": aside + 0.01}}, 100) != "completed"
     assert "no tilt gain to choose: the table stands still" in printed("which_tilt_gain.py", "--preset", "still-lossy", status=1)
-    # Every run of the ensemble alone.
+    # Every run of the ensemble, one by one.
     noise = {"timing_sd": 0.01, "model": "plan", "seed": 1}
     alone = [outcome({"table": table, "noise": {**noise, "run": run}}, 100) for run in range(40)]
     assert math.isclose(100 * alone.count("completed") / 40, share, abs_tol=0.06), (alone, text)
@@ -90,7 +90,7 @@ def friction():
 
 
 def batch():
-    # More than one body takes, with a blank line and a wrong one in between.
+    # More lines than one body may have, with a blank line and an invalid one among them.
     gains = [1 + 0.4 * number / 4000 for number in range(4000)]
     lines = [json.dumps({"preset": "case-1", "scene": {"table": {"tilt_gain": gain}}, "impacts": 1}) for gain in gains]
     lines[1] = ""
@@ -106,7 +106,7 @@ def batch():
 
 
 def cut_off():
-    # A way to the server on which the first answers break off.
+    # A proxy that breaks off the first answers.
     host, port = SERVER.split("//")[1].split(":")
     served = []
 

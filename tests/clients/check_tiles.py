@@ -1,8 +1,8 @@
-"""Has a map and an ensemble computed in tiles by three servers and a Dask cluster of four workers, kills what can be killed in
-mid-work, and holds the result to the bytes of one request to one server; then counts what is asked for again after the script
-itself was killed.
+"""Computes a map and an ensemble in tiles with three servers and a Dask cluster of four workers, kills workers and servers on the
+way, and compares the result with the bytes of one request to one server. Then it kills the script itself and counts the requests that
+the next start repeats.
 
-Takes the program to serve with and the folder of the scripts; runs with the Python that has Dask.
+Arguments: the server's program and the folder of the scripts. Needs the Python that has Dask.
 """
 
 import json
@@ -33,7 +33,7 @@ RUNS = {"preset": "case-1-noise", "runs": 1500, "impacts": 450, "seed": 5}
 
 
 class Server:
-    """The program, at an address of its own."""
+    """The server on a free port."""
 
     def __init__(self):
         self.process = subprocess.Popen([PROGRAM, "--listen", "127.0.0.1:0"], stdout=subprocess.PIPE, text=True)
@@ -54,7 +54,7 @@ class Server:
 
 
 class Stranger(BaseHTTPRequestHandler):
-    """What is not a server of this build, or has no time: `health`, `build`, `status` and `retry_after_s` of its class."""
+    """A server that is not of this build, or is busy: `health`, `build`, `status` and `retry_after_s` of its class."""
 
     health = build = status = retry_after_s = None
     asked = 0
@@ -89,7 +89,7 @@ def stranger(**said):
 
 
 class Script:
-    """The script as shipped, and its folder."""
+    """The shipped script and its output folder."""
 
     def __init__(self, folder, resource, request, servers, *rest, workers=4):
         folder.mkdir(exist_ok=True)
@@ -112,7 +112,7 @@ class Script:
         return said
 
     def until(self, what):
-        """The first true thing that `what` gives while the script runs."""
+        """Polls `what` while the script runs; returns its first true value."""
         begin = time.monotonic()
         while time.monotonic() - begin < MOST_S:
             if found := what():
@@ -123,7 +123,7 @@ class Script:
 
 
 def killed(script, servers, tiles):
-    """Kills a worker that holds half a tile, and the server that computes one, when some tiles are done."""
+    """After some tiles, kills a worker that holds half a tile and a server that computes one."""
     assert len(script.until(lambda: len(script.workers()) == 4 and script.workers())) == 4
     script.until(lambda: len(script.done()) >= 5)
 
@@ -144,7 +144,7 @@ def killed(script, servers, tiles):
 
 
 def kill_all(script):
-    """Kills the script as a machine that loses power would; its workers end by themselves."""
+    """Kills the script without warning, like a power failure; its workers end by themselves."""
     script.until(lambda: len(script.done()) >= 12)
     workers = script.workers()
     script.process.kill()
@@ -154,7 +154,7 @@ def kill_all(script):
 
 
 def answers(servers, resource):
-    """How many requests were answered, once none is under way."""
+    """Number of answered requests, once none is under way."""
     begin = time.monotonic()
     while any(server.gauge("equipoise_jobs_running") for server in servers):
         assert time.monotonic() - begin < MOST_S
@@ -187,7 +187,7 @@ def main(folder):
         missing = 52 - len(done) + 1
         assert 10 < missing <= 41, missing
         before = answers(servers, "regions")
-        # Other sizes of tiles do not matter any more.
+        # From here on the size of tiles does not matter.
         said = Script(folder / "again", "regions", MAP, addresses, workers=2).ends()
         assert f"{52 - missing} of 52 tiles are there already" in said, said
         again = answers(servers, "regions") - before

@@ -1,5 +1,5 @@
-"""For schemathesis: what keeps to the schema is not refused for its form, else the contract is wider than the server. And bodies of
-lines, which no schema describes.
+"""Hooks for schemathesis. A request that is valid by its schema must not be refused for its form; otherwise the contract is wider than
+the server. They also make NDJSON bodies, which no schema describes.
 """
 
 import json
@@ -9,7 +9,7 @@ import schemathesis
 from hypothesis import strategies
 
 FORM = re.compile(r"^unknown field|; it must be |must be a JSON")
-# Values of a field that another field names, and the band of a tile: no schema knows their limits.
+# No schema can express these limits: values of a field that another field names, and the band of a tile.
 NAMED = re.compile(r"/(x|y|sweep)/(parameter|from|to)$|^/tile/index$")
 
 
@@ -24,7 +24,7 @@ def refused_for_its_form(ctx, response, case):
 VALUES = strategies.none() | strategies.booleans() | strategies.floats(allow_nan=False, allow_infinity=False) | strategies.text()
 REQUESTS = strategies.dictionaries(strategies.sampled_from(["preset", "scene", "impacts", "x"]) | strategies.text(), VALUES).map(json.dumps)
 LINES = strategies.lists(strategies.just('{"preset": "case-1"}') | REQUESTS | strategies.text(), max_size=5)
-# The one binary body of the contract. A strategy for its media type instead would refuse the contract's own example, which is text.
+# The only binary body of the contract. A strategy for its media type would refuse the contract's own example, which is text.
 schemathesis.openapi.format("binary", LINES.map(lambda lines: "\n".join(["{}", *lines])))
 
 

@@ -1,4 +1,4 @@
-"""A proxy that cuts every connection after a while, in the middle of whatever it says: port of the server, bytes to pass."""
+"""A proxy that cuts every connection after some bytes. Arguments: port of the server, number of bytes."""
 
 import socket
 import sys
@@ -20,5 +20,5 @@ with socket.create_server(("127.0.0.1", 0)) as listener:
     turn = 0
     while True:
         turn += 1
-        # A little longer each time, so that an event longer than that passes in the end.
+        # Each connection is a little longer, so that a long event passes in the end.
         threading.Thread(target=serve, args=(listener.accept()[0], most + 97 * turn), daemon=True).start()

@@ -25,7 +25,7 @@ L, RHO, G = (mp.mpf(ROD[name]) for name in ("contact_distance", "radius_of_gyrat
 
 
 def derivative(contacts):
-    """The derivative over a number of contacts of the paper's first case, from its first contact, by central differences."""
+    """Derivative over some contacts of the paper's first case, from its first contact, by central differences."""
     theta = mp.mpf(0.3)
     start = [RHO * theta, mp.mpf(0), -mp.sqrt(2 * G * (mp.mpf(0.2) - L * mp.cos(theta))), mp.mpf(0)]
     step = mp.mpf(10) ** -25
@@ -73,7 +73,7 @@ def chatter(contacts):
         def deflated(t):
             return y_dot - G * t / 2 + (L * mp.cos(theta) - L * mp.cos(theta + turn * t)) / t
 
-        # From the right, where the gap is negative, down to its first root.
+        # Newton from the right, at a negative gap, down to the first root.
         rise, pull = y_dot + L * turn * mp.sin(theta), G - L * turn**2 * mp.cos(theta)
         t = mp.findroot(deflated, 2 * rise / pull)
         flights.append(mp.nstr(t, 25))

@@ -1,4 +1,4 @@
-//! Live runs of random scenes: the impacts and the end of the trajectory, or the same refusal.
+//! Live runs of random scenes: the same impacts and ending as the trajectory, or the same refusal.
 
 use std::net::SocketAddr;
 
@@ -11,7 +11,7 @@ use super::support::Server;
 use super::support::socket::{impacts_in, now_ms, start, try_open};
 use super::{hold_each, resource};
 
-/// How many times faster than the clock.
+/// Speed of the runs.
 const SPEED: f64 = 20.0;
 
 #[test]
@@ -28,14 +28,14 @@ fn live_runs_of_random_scenes() {
     );
 }
 
-/// Whether there was a run to watch.
+/// Watches a run. Returns true if there was one.
 async fn watched(server: &Server, address: SocketAddr, request: &Value) -> bool {
     let impacts = request["impacts"].as_u64().expect("a number");
     let mut scene = request.clone();
     scene.as_object_mut().expect("an object").retain(|name, _| ["preset", "scene"].contains(&name.as_str()));
     let told = server.post("/v1/trajectories", request).await;
     let trajectory = told.json();
-    // So long ago that the last impact is due.
+    // Released so long ago that the last impact is due.
     let t = trajectory["outcome"]["t"].as_f64().unwrap_or_default();
     let epoch = now_ms() as f64 - 1000.0 * (t / SPEED).ceil();
     if epoch < 0.0 {
@@ -64,7 +64,7 @@ async fn watched(server: &Server, address: SocketAddr, request: &Value) -> bool 
         if message["type"] == "end" {
             break Some(message);
         }
-        // What comes after those impacts may be more than a run may cost.
+        // The rest of the run may be too expensive.
         if message["type"] == "problem" {
             assert!(message["detail"].as_str().is_some_and(|it| it.contains("catching up")), "{message} to {url}");
             return false;

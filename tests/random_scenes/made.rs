@@ -1,10 +1,10 @@
-//! Scenes made up at random, and the requests that ask for them.
+//! Random scenes and the requests for them.
 
 use equipoise_physics::scene::{FIELDS, Kind, Name, VERTICES};
 use proptest::prelude::*;
 use serde_json::{Map, Value, json};
 
-/// Values that a lab would have; the others come from the whole range of their field.
+/// Typical values of a lab. Other fields are drawn from their whole range.
 pub(super) const USUAL: [(Name, f64, f64); 14] = [
     (Name::ContactDistance, 0.05, 0.5),
     (Name::RadiusOfGyration, 0.03, 0.5),
@@ -22,7 +22,7 @@ pub(super) const USUAL: [(Name, f64, f64); 14] = [
     (Name::AngleSd, 0.0, 0.01),
 ];
 
-/// What a random scene is made of: where in its range each field is, if it is said; and what bounces.
+/// Ingredients of a random scene: for each field, its place in its range, if it is set; and the body.
 #[derive(Clone, Debug)]
 pub(super) struct Made {
     fields: Vec<Option<(f64, bool)>>,
@@ -37,11 +37,11 @@ enum Body {
     Preset(usize),
     Rod,
     Point,
-    /// Radii of the corners, in turn.
+    /// Radii of the corners, in order.
     Polygon(Vec<f64>),
 }
 
-/// What moves the table.
+/// Control law of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Tilts {
     Gain,
@@ -59,7 +59,7 @@ prop_compose! {
             2 => prop::collection::vec(0.05..0.2, 3..9).prop_map(Body::Polygon),
         ],
         tilts in prop_oneof![6 => Just(Tilts::Gain), 1 => Just(Tilts::Feedback)],
-        // Not too often: half of the resources have no answer with it.
+        // Rarely, because half of the resources refuse it.
         noisy in prop::bool::weighted(0.3),
     ) -> Made {
         Made { fields, above, body, tilts, noisy }
@@ -67,7 +67,7 @@ prop_compose! {
 }
 
 impl Made {
-    /// The scene of a request, with its preset if it has one. Mostly it does not contradict itself.
+    /// The scene of a request, and its preset if it has one. Most scenes are free of contradictions.
     pub(super) fn put_into(&self, request: &mut Value, presets: &[String], plain: bool) {
         let mut scene = json!({});
         let tilts = if plain { Tilts::Gain } else { self.tilts };
@@ -98,7 +98,7 @@ impl Made {
                 Name::EnergyGain | Name::AssumedRestitution if still => false,
                 Name::TiltGain => tilts == Tilts::Gain,
                 _ if row.path.starts_with("table.feedback.") => tilts == Tilts::Feedback,
-                // A table with limits soon ends its run; let some do.
+                // Limits of the table end a run soon, so few scenes have them.
                 _ if row.path.starts_with("table.limits.") => self.above < 0.2,
                 _ => group != "noise" || (self.noisy && !is_point),
             };
@@ -145,7 +145,7 @@ fn put(scene: &mut Value, path: &str, value: Value) {
     *at = value;
 }
 
-/// The query that says the same as a body. A value that is taken back is the word for it.
+/// The query equivalent of a body. A null becomes the word `null`.
 pub(super) fn query(body: &Value) -> String {
     fn below(path: &str, value: &Value, into: &mut Vec<(String, String)>) {
         let inner = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };

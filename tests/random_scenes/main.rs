@@ -1,8 +1,7 @@
-//! Random scenes through every resource: by POST and by the GET that says the same, in every format it gives. Whatever is
-//! answered is in the contract (the frame sees to that), says the same in each format, and is refused only with reasons that
-//! point to what was sent.
+//! Random scenes through every resource, by POST and by the equivalent GET, in every format. Answers keep to the contract (the test
+//! frame checks that) and agree in all formats. Refusals point to a part of the request.
 //!
-//! Not here: what nobody should send (`hostile`, `fuzzed`), and what is right (the other files).
+//! Extreme and broken requests are in `hostile` and `fuzzed`; correct numbers are in the other files.
 
 mod live;
 mod made;
@@ -19,27 +18,27 @@ use support::csv::Table;
 use support::{Answer, Server};
 use tokio::runtime::Runtime;
 
-/// A resource as it is tried.
+/// A resource under test.
 struct Resource {
     path: &'static str,
-    /// Whether it is for contacts without friction, noise and feedback alone.
+    /// True for a resource that takes only scenes without friction, noise and feedback.
     plain: bool,
-    /// How many rows of CSV its JSON makes.
+    /// Number of CSV rows that its JSON gives.
     rows: fn(&Value) -> usize,
-    /// How many lines of NDJSON, beside the last one.
+    /// Number of NDJSON lines, without the last one.
     lines: fn(&Value) -> usize,
-    /// Whether it draws.
+    /// True if it has pictures.
     draws: bool,
-    /// Whether it measures, so that no two answers are the same.
+    /// True if it measures clock times, so that no two answers are equal.
     measures: bool,
 }
 
-/// One that draws, and whose lines of NDJSON are the rows of CSV.
+/// A resource with pictures, whose NDJSON lines are its CSV rows.
 fn resource(path: &'static str, rows: fn(&Value) -> usize) -> Resource {
     Resource { path, plain: false, rows, lines: rows, draws: true, measures: false }
 }
 
-/// Tries a resource with random scenes beside random parameters, so many times.
+/// Tries a resource with random scenes and random parameters.
 fn hold(resource: &Resource, parameters: impl Strategy<Value = Value>, cases: u32) {
     let (runtime, server) = (Runtime::new().expect("a runtime"), Server::start());
     hold_each(resource, parameters, cases, &runtime, |request, pixels| {
@@ -47,7 +46,7 @@ fn hold(resource: &Resource, parameters: impl Strategy<Value = Value>, cases: u3
     });
 }
 
-/// Makes up as many requests and tries each, which says whether it was answered.
+/// Makes random requests and tries each; `tried` returns true if the request was answered.
 fn hold_each(
     resource: &Resource,
     parameters: impl Strategy<Value = Value>,
@@ -66,12 +65,11 @@ fn hold_each(
         answered.set(answered.get() + u32::from(tried(&request, pixels)));
     });
     println!("{}: {} of {cases} answered", resource.path, answered.get());
-    // Two fifths to nearly all are: what is made up must not be refused before it is tried. That fewer than this are by chance
-    // happens once in a million times.
+    // Two fifths to nearly all requests are answered. The chance of less than a tenth is one in a million.
     assert!(answered.get() * 10 >= cases, "{}: only {} of {cases} answered", resource.path, answered.get());
 }
 
-/// Whether the request was answered and not refused. Panics where anything is wrong.
+/// Returns true if the request was answered, false if it was refused. Panics if anything is wrong.
 async fn ask(server: &Server, resource: &Resource, request: &Value, pixels: bool) -> bool {
     let path = resource.path;
     let posted = server.post(path, request).await;
@@ -110,18 +108,18 @@ async fn ask(server: &Server, resource: &Resource, request: &Value, pixels: bool
     true
 }
 
-/// How many items the array has that is there, or each column of the table.
+/// Length of an array, or of each column of a table.
 fn length(part: &Value) -> usize {
     let columns = part.as_object().map(|columns| columns.values().next().expect("a column"));
     columns.unwrap_or(part).as_array().expect("an array").len()
 }
 
-/// A picture, or a format that this request does not have, which is said as such.
+/// A picture, or the error for a format that this request does not have.
 fn picture(answer: Answer, request: &Value) {
     assert!(matches!(answer.status.as_u16(), 200 | 406 | 422), "{} for the picture of {request}", answer.status);
 }
 
-/// Whether a pointer leads to what may be said, and was left to its default or is missing: a field of a scene, or one of the request.
+/// True if a pointer leads to a known field of a scene or of the request, which was left to its default or is missing.
 fn names_a_field(path: &str, pointer: &str) -> bool {
     let ends = |path: &str| pointer.ends_with(&format!("/{}", path.replace('.', "/")));
     let body = &DOCUMENT["paths"][path]["post"]["requestBody"]["content"]["application/json"]["schema"];

@@ -1,4 +1,4 @@
-//! A client of HTTP/1.1 that knows a whole answer from one that was cut off.
+//! An HTTP/1.1 client that can tell a whole answer from a cut one.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,7 +18,7 @@ pub(crate) struct Ask {
     pub(crate) target: String,
     pub(crate) headers: String,
     pub(crate) body: String,
-    /// The address of this machine that it comes from.
+    /// Local source address.
     pub(crate) from: Ipv4Addr,
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct Answer {
 }
 
 impl Answer {
-    /// What has to be the same whoever answers.
+    /// The part of an answer that all replicas share.
     pub(crate) fn lasting(&self) -> (u16, [Option<&String>; 3], Shown<'_>) {
         let headers = ["etag", "content-type", "content-encoding"].map(|name| self.headers.get(name));
         (self.status, headers, Shown(&self.body))
@@ -64,7 +64,7 @@ impl Answer {
     }
 }
 
-/// Bytes of which a failed test shows the first alone.
+/// Bytes of which a failed test shows only the beginning.
 #[derive(PartialEq)]
 pub(crate) struct Shown<'a>(&'a [u8]);
 
@@ -75,16 +75,16 @@ impl fmt::Debug for Shown<'_> {
     }
 }
 
-/// Why there is no whole answer.
+/// Reason for a missing answer.
 #[derive(Debug)]
 pub(crate) enum Failed {
-    /// There is none at all.
+    /// No answer at all.
     Unanswered(String),
-    /// Its head came, and not all of its body.
+    /// A head, but not the whole body.
     Cut,
 }
 
-/// An answer whose head has come.
+/// An answer whose head has arrived.
 pub(crate) struct Begun {
     pub(crate) status: u16,
     pub(crate) headers: BTreeMap<String, String>,
@@ -93,7 +93,7 @@ pub(crate) struct Begun {
     left: Option<usize>,
 }
 
-/// Sends a request, and takes the head of its answer.
+/// Sends a request and reads the head of the answer.
 pub(crate) async fn begin(to: SocketAddr, ask: &Ask) -> io::Result<Begun> {
     let socket = TcpSocket::new_v4()?;
     socket.bind((IpAddr::from(ask.from), 0).into())?;
@@ -101,7 +101,7 @@ pub(crate) async fn begin(to: SocketAddr, ask: &Ask) -> io::Result<Begun> {
     let Ask { method, target, headers, body, .. } = ask;
     let length = if body.is_empty() { String::new() } else { format!("content-length: {}\r\n", body.len()) };
     let head = format!("{method} {target} HTTP/1.1\r\nhost: {to}\r\nconnection: close\r\n{headers}{length}\r\n");
-    // Who refuses a request answers before it is all there.
+    // A refusal may come before the whole request is sent.
     let _ = socket.write_all(format!("{head}{body}").as_bytes()).await;
     let mut rest = BufReader::new(socket);
     let first = line(&mut rest).await?;
@@ -142,7 +142,7 @@ impl Begun {
         Ok(Some(piece).filter(|piece| !piece.is_empty()))
     }
 
-    /// All that is to come.
+    /// The rest of the body.
     pub(crate) async fn whole(mut self) -> Result<Answer, Failed> {
         let mut body = Vec::new();
         while let Some(piece) = self.piece().await.map_err(|_| Failed::Cut)? {
@@ -152,7 +152,7 @@ impl Begun {
     }
 }
 
-/// A line without its end; an error where the connection ends before it.
+/// A line without its end; an error if the connection ends before it.
 async fn line(from: &mut BufReader<TcpStream>) -> io::Result<String> {
     let mut line = String::new();
     timeout(3 * SOON, from.read_line(&mut line)).await.expect("the server is silent")?;

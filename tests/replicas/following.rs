@@ -1,4 +1,4 @@
-//! Clients that follow a live run over as many connections as it takes, and keep all that they are told.
+//! Clients that follow a live run over several connections and keep all messages.
 
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -12,34 +12,34 @@ use tokio_tungstenite::tungstenite::Error;
 use crate::asking::{Ask, begin};
 use crate::support::socket::{Row, held, impacts_in, try_open};
 
-/// How a client listens.
+/// Transport of a client.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Over {
     WebSocket,
     Events,
 }
 
-/// All that a client was told.
+/// Everything that a client received.
 #[derive(Debug)]
 pub(crate) struct Heard {
     pub(crate) rows: Vec<Row>,
     /// Connections that broke or were closed.
     pub(crate) breaks: usize,
-    /// Tries to come back that were answered with 503.
+    /// Reconnects that were answered with 503.
     pub(crate) refused: usize,
-    /// The longest time without an impact.
+    /// Longest time without an impact.
     pub(crate) silence: Duration,
     last: Instant,
 }
 
-/// A client that never gives up. It is gone when dropped.
+/// A client that reconnects until it is dropped.
 pub(crate) struct Follower {
     heard: Arc<Mutex<Heard>>,
     task: JoinHandle<()>,
 }
 
 impl Follower {
-    /// Follows a run from its first impact on.
+    /// Follows a run from its first impact.
     pub(crate) fn start(address: SocketAddr, query: &str, over: Over) -> Self {
         let (rows, silence, last) = (Vec::new(), Duration::ZERO, Instant::now());
         let heard = Arc::new(Mutex::new(Heard { rows, breaks: 0, refused: 0, silence, last }));
@@ -64,7 +64,7 @@ impl Follower {
         self.heard().rows.len()
     }
 
-    /// Whether it still listens; it does not where something was wrong.
+    /// True while it listens. It stops after an error.
     pub(crate) fn is_well(&self) -> bool {
         !self.task.is_finished()
     }
@@ -85,12 +85,12 @@ fn keep(heard: &Mutex<Heard>, message: &Value) {
     }
 }
 
-/// The number of the last impact that was heard of.
+/// Number of the last impact received.
 fn last(heard: &Mutex<Heard>) -> u64 {
     heard.lock().unwrap().rows.last().map_or(0, |row| row["n"].as_u64().unwrap())
 }
 
-/// One WebSocket, which begins after what was heard.
+/// One WebSocket, from the next impact on.
 async fn listen(address: SocketAddr, query: &str, heard: &Mutex<Heard>) {
     let url = format!("/v1/live?{query}&from={}", last(heard) + 1);
     match try_open(address, &url, &[]).await {
@@ -106,7 +106,7 @@ async fn listen(address: SocketAddr, query: &str, heard: &Mutex<Heard>) {
     }
 }
 
-/// One stream of events, to which a client comes back as browsers do.
+/// One event stream, with reconnection as in browsers.
 async fn follow(address: SocketAddr, query: &str, heard: &Mutex<Heard>) {
     let ask = Ask::get(format!("/v1/live/events?{query}&from=1")).with("accept", "text/event-stream");
     let ask = match last(heard) {

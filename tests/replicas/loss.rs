@@ -1,4 +1,4 @@
-//! Replicas that are killed, come back and are stopped while much is asked for and many follow live runs.
+//! Replicas that are killed, restarted and stopped under load and with many live runs.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -14,10 +14,10 @@ use crate::programs::{Nginx, Replica, folder, until};
 use crate::support::socket::{now_ms, numbers};
 use crate::{kinds, nginx, posted_region, region, say};
 
-/// Clients that ask without a pause, and hold every answer to the one that a replica gave before.
+/// Clients that send requests without a pause and compare every answer with an earlier one.
 struct Load {
     asked: Arc<AtomicUsize>,
-    /// Answers that broke off; nobody can ask again for half an answer but who has asked.
+    /// Answers that broke off; nginx cannot repeat these, only the client can.
     cut: Arc<AtomicUsize>,
     ends: Arc<AtomicBool>,
     clients: Vec<JoinHandle<()>>,
@@ -54,7 +54,7 @@ impl Load {
         self.cut.load(Ordering::Relaxed)
     }
 
-    /// Goes on until so many more have been answered.
+    /// Goes on until `count` more requests have been answered.
     async fn more(&self, count: usize) {
         let enough = self.asked() + count;
         until("the load goes on", async || {
@@ -72,7 +72,7 @@ impl Load {
     }
 }
 
-/// Waits until every client has heard so many more impacts.
+/// Waits until every client has received `count` more impacts.
 async fn all_hear(followers: &[Follower], more: usize) {
     let before: Vec<_> = followers.iter().map(Follower::count).collect();
     until("all hear their runs go on", async || {
@@ -86,15 +86,14 @@ fn breaks(followers: &[Follower]) -> Vec<usize> {
     followers.iter().map(|follower| follower.heard().breaks).collect()
 }
 
-/// Long work on both replicas, as much on one as on the other: answers that are sent when they are ready, by POST, and answers that are
-/// sent as they are made.
+/// Long work, equal on both replicas: answers that are sent when ready (POST), and answers that are streamed.
 async fn work_on(replicas: [&Replica; 2], nginx: &Nginx) -> Vec<JoinHandle<Result<Answer, Failed>>> {
     let (address, mut asked) = (nginx.address, Vec::new());
     for kind in [Ask::get(streamed()), Ask::get(streamed()), posted_region(SIDE), posted_region(SIDE)] {
         asked.push(match kind.method {
             "POST" => tokio::spawn(async move { ask(address, &kind).await }),
             _ => {
-                // It has begun to be sent when its head and a piece are here.
+                // The answer has begun once its head and a first piece are here.
                 let mut begun = begin(address, &kind).await.unwrap();
                 let first = begun.piece().await.unwrap().unwrap();
                 tokio::spawn(async move {
@@ -117,7 +116,7 @@ async fn work_on(replicas: [&Replica; 2], nginx: &Nginx) -> Vec<JoinHandle<Resul
     asked
 }
 
-/// Of a map that takes a second or more, on however many cores.
+/// Size of a map that takes a second or more on any number of cores.
 const SIDE: u32 = 200;
 
 fn streamed() -> String {
@@ -128,7 +127,7 @@ fn streamed() -> String {
 async fn what_is_computed_when_a_replica_is_lost_is_computed_by_another() {
     let Some(program) = nginx() else { return };
     let folder = folder("under-way");
-    // To stop takes less on the slowest machine, and to compute as long on the fastest.
+    // A stop takes less even on the slowest machine; the computation takes this long even on the fastest.
     let [mut one, two] =
         ["one", "two"].map(|name| Replica::start(&folder, name, &["--shutdown-time", "60", "--permits", "1"]));
     let nginx = Nginx::start(program, &folder, &[&one, &two], |conf| conf).await;
@@ -137,7 +136,7 @@ async fn what_is_computed_when_a_replica_is_lost_is_computed_by_another() {
         right.push(ask(two.address, &kind).await.unwrap());
     }
 
-    // What has begun to be sent breaks off, and can be seen to; all else is asked for again.
+    // Answers that have begun break off visibly; nginx repeats all others.
     let asked = work_on([&one, &two], &nginx).await;
     one.kill();
     let mut cut = 0;
@@ -149,7 +148,7 @@ async fn what_is_computed_when_a_replica_is_lost_is_computed_by_another() {
         }
     }
     assert_eq!(cut, 1);
-    // It is written down once the answer is sent.
+    // The log has a line once the answer is sent.
     let mut again = Vec::new();
     until("nginx has asked another", async || {
         again = asked_again(&nginx);
@@ -158,7 +157,7 @@ async fn what_is_computed_when_a_replica_is_lost_is_computed_by_another() {
     .await;
     assert!(again.len() == 1 && again[0]["method"] == "POST", "{again:?}");
 
-    // A replica that is stopped computes it to its end.
+    // A replica that is stopped finishes it.
     one.again();
     let asked = work_on([&one, &two], &nginx).await;
     one.stop();
@@ -176,7 +175,7 @@ async fn what_is_computed_when_a_replica_is_lost_is_computed_by_another() {
 async fn a_replica_that_is_killed_or_stopped_is_missed_by_nobody() {
     let Some(program) = nginx() else { return };
     let folder = folder("loss");
-    // More than are asked, on the slowest machine.
+    // More than the slowest machine can send.
     let patient = ["--shutdown-time", "60", "--queue", "1000", "--queue-time", "60"];
     let mut one = Replica::start(&folder, "one", &patient);
     let mut two = Replica::start(&folder, "two", &patient);
@@ -198,7 +197,7 @@ async fn a_replica_that_is_killed_or_stopped_is_missed_by_nobody() {
     all_hear(&followers, 3).await;
     load.more(100).await;
 
-    // Killed at any moment, a few times over.
+    // Kill it at random moments, several times.
     let (mut moved, mut worst) = (0, 0);
     for _ in 0..KILLS {
         let before = breaks(&followers);
@@ -208,7 +207,7 @@ async fn a_replica_that_is_killed_or_stopped_is_missed_by_nobody() {
         let lost: Vec<_> = breaks(&followers).iter().zip(&before).map(|(after, before)| after - before).collect();
         worst = worst.max(*lost.iter().max().unwrap());
         moved += lost.iter().sum::<usize>();
-        // It comes back and has its share again.
+        // It comes back and gets its share again.
         let logged = one.log().len();
         one.again();
         until("it is asked again", async || one.log().len() > logged + 20).await;
@@ -238,7 +237,7 @@ async fn a_replica_that_is_killed_or_stopped_is_missed_by_nobody() {
     let stopped = load.asked() - asked;
     load.end().await;
 
-    // Nobody has missed or heard twice anything, and all have heard the same.
+    // No client misses an impact or gets one twice, and all get the same ones.
     let (mut impacts, mut runs) = (0, vec![Vec::new(); queries.len()]);
     for (index, follower) in followers.iter().enumerate() {
         let heard = follower.heard();
@@ -261,7 +260,7 @@ async fn a_replica_that_is_killed_or_stopped_is_missed_by_nobody() {
     ));
 }
 
-/// How often a replica is killed.
+/// Number of kills.
 const KILLS: usize = 5;
 
 fn refused(followers: &[Follower]) -> usize {
@@ -272,7 +271,7 @@ fn silence(followers: &[Follower]) -> Duration {
     followers.iter().map(|follower| follower.heard().silence).max().unwrap()
 }
 
-/// The requests that more than one replica was asked.
+/// Requests that nginx sent to more than one replica.
 fn asked_again(nginx: &Nginx) -> Vec<Value> {
     nginx.log().into_iter().filter(|line| line["replicas"].as_str().unwrap().contains(", ")).collect()
 }

@@ -1,6 +1,6 @@
-//! Replicas behind the real nginx, as `docs/deploy` has them: they answer as one, and one that is gone is missed by nobody.
+//! Replicas behind the real nginx, as in `docs/deploy`: they answer as one, and clients do not notice the loss of one.
 //!
-//! The figures are printed. Where nginx is not installed the tests say so and are over; `tests/run` installs it on CI.
+//! The tests print their figures. Without nginx they say so and end; `tests/run` installs it on CI.
 
 mod asking;
 mod following;
@@ -22,12 +22,12 @@ use programs::{Nginx, Replica, folder, until};
 use support::contract;
 use support::socket::{now_ms, numbers, try_open};
 
-/// Says it even where the test passes.
+/// Prints a line, also when the test passes.
 fn say(what: impl Display) {
     let _ = writeln!(stdout(), "{what}");
 }
 
-/// The program, or nothing where there is none to test.
+/// nginx; none if it is not installed.
 fn nginx() -> Option<&'static str> {
     let program = Nginx::program();
     if program.is_none() {
@@ -64,7 +64,7 @@ fn kinds() -> Vec<Ask> {
     ]
 }
 
-/// A map of so many cells squared: some seconds from two hundred on.
+/// A map with `side` × `side` cells; some seconds from side 200 on.
 fn region(side: u32, format: &str) -> String {
     format!(
         "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count={side}\
@@ -97,7 +97,7 @@ async fn two_replicas_answer_as_one() {
     }
     assert!(one.log().len() > kinds().len() && two.log().len() > kinds().len(), "nginx asks one of them alone");
 
-    // One run, which began a while ago and goes on.
+    // A run that was released a while ago and goes on.
     let query = format!("preset=case-1&speed=4&epoch={}", now_ms() - 20_000);
     let addresses = [one.address, two.address, nginx.address, nginx.address];
     let followers: Vec<_> = addresses
@@ -131,13 +131,13 @@ async fn ids_addresses_and_a_base_path_go_through() {
     assert_eq!((opened.status, opened.headers["location"].as_str()), (303, "./?preset=case-1"));
     let chosen = answer(bearer(Ask::get("/rig/v1/scenes")).with("x-request-id", "lab-1").from(7)).await;
     assert_eq!((chosen.status, chosen.headers["x-request-id"].as_str()), (200, "lab-1"));
-    // What cannot stand in a log is not taken, nor is an address that a client says it has.
+    // A request id that is unsafe in a log is replaced, and an address that the client claims is ignored.
     let lie = Ask::post("/rig/v1/stability", "{}").with("x-request-id", "a b").with("x-forwarded-for", "192.0.2.1");
     let made = answer(bearer(lie).from(8)).await;
     let id = &made.headers["x-request-id"];
     assert_eq!((made.status, made.json()["request_id"].as_str()), (422, Some(id.as_str())));
     assert_eq!(id.len(), 32);
-    // Outside of it there is nothing of ours.
+    // Outside the prefix there is nothing.
     assert_eq!(answer(Ask::get("/v1/scenes")).await.status, 404);
 
     let (mut logged, told) = (Vec::new(), replica.log());
@@ -159,7 +159,7 @@ async fn ids_addresses_and_a_base_path_go_through() {
     assert_eq!(column("id")[1..], ["lab-1".to_owned(), id.clone()]);
     assert_eq!(column("target")[0], "/rig/?preset=case-1&token=");
 
-    // The address of a run that a client comes back to is the one under which it is shown; a page of this host may open it.
+    // The URL of a run contains the prefix, so a client can reconnect to it; a page of this host may open it.
     let bearer = ("authorization", "Bearer 0123456789abcdef");
     let own = format!("http://{}", nginx.address);
     let run = "/rig/v1/live?preset=case-1&speed=10";
@@ -180,7 +180,7 @@ async fn what_is_too_much_is_a_problem_whoever_finds_it() {
     let answer = async |kind: Ask| ask(nginx.address, &kind).await.unwrap();
     let long = |prefix: &str, bytes: usize| format!("{prefix}{}", "a".repeat(bytes - prefix.len()));
 
-    // As much as the server takes passes, one byte more is refused by it, and so is what nginx does not read to its end.
+    // A body of the largest size passes. The server refuses one byte more, also if nginx does not read the body to its end.
     let url = limits::URL_BYTES;
     let head = Ask::get("/v1/scenes").with("x-a", &"a".repeat(15_000)).with("x-b", &"b".repeat(15_000));
     for (kind, status, by_replica) in [
@@ -191,7 +191,7 @@ async fn what_is_too_much_is_a_problem_whoever_finds_it() {
         (Ask::get("/v1/scenes").with("x-a", &"a".repeat(20_000)), 400, false),
         (Ask::post("/v1/stability", &padded(Limits::default().body_bytes)), 200, true),
         (Ask::post("/v1/stability", &padded(Limits::default().body_bytes + 1)), 413, false),
-        // An answer with a long head is no failure of its replica.
+        // An answer with a long head does not count as a failure of the replica.
         (Ask::get(long("/rig?unknown=", url)), 308, true),
         (Ask::get("/v1/scenes"), 200, true),
     ] {
@@ -203,7 +203,7 @@ async fn what_is_too_much_is_a_problem_whoever_finds_it() {
         }
     }
 
-    // Without a replica clients are told to come back, and that is found out again at once when there is one.
+    // Without a replica clients get 503 with Retry-After; once a replica is back, they are served at once.
     replica.kill();
     for _ in 0..5 {
         let gone = answer(Ask::post("/v1/stability", "{}")).await;
@@ -214,7 +214,7 @@ async fn what_is_too_much_is_a_problem_whoever_finds_it() {
     until("it is found", async || answer(Ask::get("/v1/scenes")).await.status == 200).await;
 }
 
-/// A request of so many bytes.
+/// A request with a body of `length` bytes.
 fn padded(bytes: usize) -> String {
     let request = r#"{"preset": "case-1", "impacts": 10}"#;
     format!("{request}{}", " ".repeat(bytes - request.len()))
@@ -230,7 +230,7 @@ fn is_problem(answer: &Answer) {
     assert_eq!(problem["request_id"].as_str(), Some(answer.headers["x-request-id"].as_str()));
 }
 
-/// Who is refused is refused by the server, and keeps nobody else from its replicas.
+/// Refusals come from the server, and do not take its replicas away from other clients.
 #[tokio::test]
 async fn one_client_that_asks_too_much_takes_nothing_from_others() {
     let Some(program) = nginx() else { return };
@@ -238,7 +238,7 @@ async fn one_client_that_asks_too_much_takes_nothing_from_others() {
     let narrow = ["--permits", "1", "--queue", "4", "--held-bytes", "2000000"];
     let replicas = ["one", "two"].map(|name| Replica::start(&folder, name, &narrow));
     let nginx = Nginx::start(program, &folder, &[&replicas[0], &replicas[1]], |conf| conf).await;
-    // Of 5 places of each replica one client gets 3.
+    // One client gets 3 of the 5 places of each replica.
     let held: Vec<_> = (0..12)
         .map(|_| tokio::spawn(async move { ask(nginx.address, &Ask::get(region(1000, "json")).from(1)).await }))
         .collect();
@@ -254,7 +254,7 @@ async fn one_client_that_asks_too_much_takes_nothing_from_others() {
         assert!(refused.headers.contains_key("equipoise-build"), "no replica is left");
         assert_eq!(ask(nginx.address, &kind.from(2)).await.unwrap().status, 200);
     }
-    // Who hangs up is computed for no longer.
+    // Work ends when its client hangs up.
     for client in held {
         client.abort();
     }
@@ -263,7 +263,7 @@ async fn one_client_that_asks_too_much_takes_nothing_from_others() {
     })
     .await;
 
-    // What nobody reads is the replica's to hold, and nginx keeps none of it.
+    // The replica holds an unread answer; nginx buffers none of it.
     let long = Ask::get("/v1/trajectories?preset=case-1&impacts=40000").from(1);
     let mut unread = [begin(nginx.address, &long).await.unwrap(), begin(nginx.address, &long).await.unwrap()];
     let short = Ask::get("/v1/stability?preset=case-1&impacts=2000");

@@ -1,6 +1,4 @@
-//! The programs: replicas of the server, and the real nginx before them as `docs/deploy/nginx.conf` has it.
-//!
-//! Not here: who asks them.
+//! Replicas of the server, and the real nginx before them with `docs/deploy/nginx.conf`. The clients are in `asking` and `following`.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufRead, BufReader};
@@ -16,7 +14,7 @@ use tokio::time::{sleep, timeout};
 use crate::asking::{Ask, ask};
 use crate::support::socket::SOON;
 
-/// An empty folder of this test's own.
+/// An empty folder for one test.
 pub(crate) fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("replicas").join(name);
     let _ = fs::remove_dir_all(&folder);
@@ -24,10 +22,10 @@ pub(crate) fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// The lines of a log of JSON.
+/// The lines of a JSON log.
 fn lines(log: &Path) -> Vec<Value> {
     let text = fs::read_to_string(log).unwrap();
-    // The last one may be on its way.
+    // The last line may be incomplete.
     let whole = text.rfind('\n').map_or("", |end| &text[..end]);
     whole.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|_| panic!("{line}"))).collect()
 }
@@ -36,7 +34,7 @@ fn signal(name: &str, process: u32) {
     assert!(Command::new("kill").args([name, &process.to_string()]).status().unwrap().success());
 }
 
-/// Polls until it is so.
+/// Polls until a condition holds.
 pub(crate) async fn until(what: &str, mut is_so: impl AsyncFnMut() -> bool) {
     let wait = async {
         while !is_so().await {
@@ -55,7 +53,7 @@ pub(crate) struct Replica {
 }
 
 impl Replica {
-    /// One on a free port, whose access log is in this folder.
+    /// Starts a replica on a free port, with its access log in a folder.
     pub(crate) fn start(folder: &Path, name: &str, arguments: &[&str]) -> Self {
         let log = folder.join(name);
         let arguments: Vec<_> = arguments.iter().map(|&argument| argument.to_owned()).collect();
@@ -63,18 +61,18 @@ impl Replica {
         Self { child, address, arguments, log }
     }
 
-    /// As a crash, or the system that is out of memory.
+    /// Sends SIGKILL, like a crash or the out-of-memory killer.
     pub(crate) fn kill(&mut self) {
         self.child.kill().unwrap();
         self.child.wait().unwrap();
     }
 
-    /// As a service manager does.
+    /// Sends SIGTERM, as a service manager does.
     pub(crate) fn stop(&self) {
         signal("-TERM", self.child.id());
     }
 
-    /// Waits for its end: the exit code.
+    /// Waits for its end; returns the exit code.
     pub(crate) async fn end(&mut self) -> Option<i32> {
         let mut status = None;
         until("the replica ends", async || {
@@ -85,19 +83,19 @@ impl Replica {
         status.and_then(|status| status.code())
     }
 
-    /// Starts it anew where it was.
+    /// Starts it again at the same address.
     pub(crate) fn again(&mut self) {
         (self.child, self.address) = spawn(&self.address.to_string(), &self.arguments, &self.log);
     }
 
-    /// A figure of its metrics.
+    /// A value of its metrics.
     pub(crate) async fn metric(&self, name: &str) -> f64 {
         let text = String::from_utf8(ask(self.address, &Ask::get("/metrics")).await.unwrap().body).unwrap();
         let line = text.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
         line.unwrap_or_else(|| panic!("no {name} in {text}")).parse().unwrap()
     }
 
-    /// Its access log.
+    /// The access log.
     pub(crate) fn log(&self) -> Vec<Value> {
         lines(&self.log)
     }
@@ -132,21 +130,21 @@ pub(crate) struct Nginx {
 }
 
 impl Nginx {
-    /// The program; none where it is not installed. Debian has it where only root looks.
+    /// Path of nginx; none if it is not installed. Debian keeps it outside the PATH of users.
     pub(crate) fn program() -> Option<&'static str> {
         ["nginx", "/usr/sbin/nginx"].into_iter().find(|program| {
             Command::new(program).arg("-v").stderr(Stdio::null()).status().is_ok_and(|status| status.success())
         })
     }
 
-    /// Before these, as shipped but for what `edit` changes.
+    /// Starts nginx before replicas, with the shipped file as changed by `edit`.
     pub(crate) async fn start(
         program: &str,
         folder: &Path,
         replicas: &[&Replica],
         edit: impl FnOnce(String) -> String,
     ) -> Self {
-        // Free a moment ago, and hardly taken since.
+        // A port that was free a moment ago.
         let address = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
         let addresses: Vec<_> = replicas.iter().map(|replica| replica.address).collect();
         let file = folder.join("nginx.conf");
@@ -162,7 +160,7 @@ impl Nginx {
         nginx
     }
 
-    /// Its access log.
+    /// The access log.
     pub(crate) fn log(&self) -> Vec<Value> {
         lines(&self.log)
     }
@@ -170,18 +168,18 @@ impl Nginx {
 
 impl Drop for Nginx {
     fn drop(&mut self) {
-        // Killed it would leave its workers behind.
+        // SIGKILL would leave its workers behind.
         signal("-TERM", self.child.id());
         let _ = self.child.wait();
     }
 }
 
-/// The file that is shipped.
+/// The shipped file.
 pub(crate) fn shipped() -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/deploy/nginx.conf")).unwrap()
 }
 
-/// The file with these addresses, and with all that is written in this folder.
+/// The file with these addresses, and with its logs and temporary files in a folder.
 fn filled_in(folder: &Path, listen: SocketAddr, replicas: &[SocketAddr]) -> String {
     let here = folder.display();
     let mut text = shipped();

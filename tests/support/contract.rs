@@ -1,6 +1,6 @@
 //! `openapi.yaml` as a judge of answers: path template, method, status, headers, media type and body.
 //!
-//! Not here: requests. The server itself refuses what the contract does not allow; the tests see to that.
+//! Requests are not checked here: tests check that the server itself refuses invalid ones.
 
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -18,7 +18,7 @@ pub(crate) const TEXT: &str = include_str!("../../openapi.yaml");
 pub(crate) static DOCUMENT: LazyLock<Value> =
     LazyLock::new(|| serde_saphyr::from_str(TEXT).expect("openapi.yaml is YAML"));
 
-/// Follows `$ref` until there is none.
+/// Follows `$ref`s to the end.
 pub(crate) fn resolved(mut node: &Value) -> &Value {
     while let Some(reference) = node.get("$ref").and_then(Value::as_str) {
         let pointer = reference.strip_prefix('#').expect("references stay in the document");
@@ -27,7 +27,7 @@ pub(crate) fn resolved(mut node: &Value) -> &Value {
     node
 }
 
-/// A validator for a schema of the contract. Compiled once for each schema.
+/// A validator for a schema of the contract, compiled once per schema.
 pub(crate) fn validator(schema: &Value) -> Arc<Validator> {
     static COMPILED: LazyLock<Mutex<HashMap<String, Arc<Validator>>>> = LazyLock::new(Mutex::default);
     let mut compiled = COMPILED.lock().expect("no test panics while it compiles");
@@ -45,7 +45,7 @@ pub(crate) fn validator(schema: &Value) -> Arc<Validator> {
     compiled.entry(key).or_insert(Arc::new(built)).clone()
 }
 
-/// What is wrong with a value under a schema of the contract, with where; empty when nothing is.
+/// Violations of a schema of the contract by a value, with their places; empty if the value is valid.
 pub(crate) fn faults(schema: &Value, value: &Value) -> Vec<String> {
     validator(schema)
         .iter_errors(value)
@@ -62,7 +62,7 @@ pub(crate) fn templates() -> impl Iterator<Item = &'static str> {
     DOCUMENT["paths"].as_object().expect("paths").keys().map(String::as_str)
 }
 
-/// The template that a path falls under: literal segments outrank parameters.
+/// The template of a path. Literal segments outrank parameters.
 pub(crate) fn template(path: &str) -> Option<&'static str> {
     let matches = |template: &&str| {
         let (mut left, mut right) = (template.split('/'), path.split('/'));
@@ -111,7 +111,7 @@ pub(crate) fn hold(method: &Method, target: &str, answer: &Answer) {
             assert_eq!(answer.status, StatusCode::METHOD_NOT_ALLOWED, "{}: not in the contract", answer.request);
             hold_to_response(method, &DOCUMENT["components"]["responses"]["MethodNotAllowed"], answer);
         }
-        // Files of the page are not in the contract; whatever goes wrong there is still a problem.
+        // Files of the page are not in the contract, but their errors are problems too.
         (None, _) => {
             if answer.status.is_client_error() || answer.status.is_server_error() {
                 let response = &DOCUMENT["components"]["responses"]["NotFound"];
@@ -121,8 +121,8 @@ pub(crate) fn hold(method: &Method, target: &str, answer: &Answer) {
     }
 }
 
-/// Panics unless the contract has an answer to a GET of this template with this status and these headers, by lowercase names. For
-/// answers without an end, whose body is held message by message.
+/// Panics unless the contract allows a GET of this template to answer with this status and these headers (lowercase names). For
+/// endless answers, whose messages are checked one by one.
 #[track_caller]
 pub(crate) fn hold_head(template: &str, status: &str, headers: &HashMap<String, String>) {
     let responses = &DOCUMENT["paths"][template]["get"]["responses"];
@@ -146,7 +146,7 @@ pub(crate) fn hold_head(template: &str, status: &str, headers: &HashMap<String, 
     }
 }
 
-/// What holds for every answer whatever the resource.
+/// Rules for the answers of all resources.
 #[track_caller]
 fn hold_everywhere(answer: &Answer) {
     let request = &answer.request;

@@ -1,4 +1,4 @@
-//! CSV read strictly by RFC 4180: CRLF line ends, one width, quotes only where they belong.
+//! A strict RFC 4180 reader: CRLF line ends, rows of one width, quotes only around whole cells.
 
 /// A header row and the rows under it.
 pub(crate) struct Table {
@@ -7,7 +7,7 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Reads the text, or says what breaks the rules.
+    /// Reads a text. Errors name the broken rule.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         if !text.ends_with("\r\n") {
             return Err("the last line does not end with CRLF".into());
@@ -27,7 +27,7 @@ impl Table {
         Ok(Self { names, rows })
     }
 
-    /// The cells under a name.
+    /// The cells of a column.
     #[track_caller]
     pub(crate) fn column(&self, name: &str) -> Vec<&str> {
         let index = self.names.iter().position(|known| known == name);

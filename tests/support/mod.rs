@@ -1,7 +1,7 @@
-//! The frame of the black-box tests: the router in this process, requests to it, and answers held to `openapi.yaml`.
+//! Frame of the black-box tests: the router in this process, requests to it, and a check of every answer against `openapi.yaml`.
 //!
-//! Every answer passes `contract::hold` before a test sees it, so each test is a contract test as well. Not here: what any
-//! resource answers; that stands in the test files, one for each promise.
+//! Every answer passes `contract::hold` before a test sees it, so each test is also a contract test. There is one test file for each
+//! promise of the server.
 
 #![allow(dead_code, reason = "each test file uses its own part of the frame")]
 
@@ -52,14 +52,14 @@ impl Server {
         self.send(Method::POST, target, &[("content-type", "application/json")], &body.to_string()).await
     }
 
-    /// Sends a request as it stands and holds the answer to the contract.
+    /// Sends a request unchanged and checks the answer against the contract.
     pub(crate) async fn send(&self, method: Method, target: &str, headers: &[(&str, &str)], body: &str) -> Answer {
         let answer = self.send_unheld(method.clone(), target, headers, body).await;
         contract::hold(&method, target, &answer);
         answer
     }
 
-    /// The same for what is not in the contract: what a server does beside it when it is told to.
+    /// The same without the contract, for behaviour that is set by flags.
     pub(crate) async fn send_unheld(
         &self,
         method: Method,
@@ -98,20 +98,20 @@ fn decoded(headers: &HeaderMap, raw: &[u8]) -> Vec<u8> {
     }
 }
 
-/// What came back.
+/// An answer.
 pub(crate) struct Answer {
-    /// Method and target, for messages.
+    /// Method and target, for messages of failed tests.
     pub(crate) request: String,
     pub(crate) status: StatusCode,
     pub(crate) headers: HeaderMap,
-    /// As sent.
+    /// The body as sent.
     pub(crate) raw: Vec<u8>,
-    /// Without its content encoding.
+    /// The body without its content encoding.
     pub(crate) body: Vec<u8>,
 }
 
 impl Answer {
-    /// The same answer, for chaining; panics with the body when the status is another.
+    /// Returns the answer for chaining; panics with the body if it has another status.
     #[track_caller]
     pub(crate) fn expect(self, status: u16) -> Self {
         assert_eq!(self.status.as_u16(), status, "{}: {}", self.request, self.excerpt());
@@ -134,7 +134,7 @@ impl Answer {
         self.headers.get(name).map(|value| value.to_str().expect("ASCII"))
     }
 
-    /// The media type without its parameters; empty without a content type.
+    /// The media type without parameters; empty without a content type.
     pub(crate) fn media_type(&self) -> &str {
         self.header("content-type").map_or("", |value| value.split(';').next().unwrap_or_default().trim())
     }
@@ -144,7 +144,7 @@ impl Answer {
         self.header("etag").unwrap_or_else(|| panic!("{}: no ETag", self.request))
     }
 
-    /// The pointers of a problem's errors, in its order.
+    /// Pointers of a problem's errors, in order.
     #[track_caller]
     pub(crate) fn pointers(&self) -> Vec<String> {
         let problem = self.json();

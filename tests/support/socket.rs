@@ -1,6 +1,4 @@
-//! A live client over a real socket. Every message that it hears is held to `openapi.yaml`.
-//!
-//! Not here: what a session says; that stands in `live.rs`.
+//! A live client over a real socket, which checks every message against `openapi.yaml`. The tests of live runs are in `live.rs`.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -40,11 +38,11 @@ pub(crate) async fn start_with(config: &Config) -> (App, SocketAddr) {
 
 pub(crate) struct Client {
     pub(crate) socket: WebSocketStream<TcpStream>,
-    /// Rows that came in one message and have not been asked for.
+    /// Rows of a message that are not consumed yet.
     pub(crate) rows: Vec<Row>,
 }
 
-/// The numbers of an impact by the names that columns have.
+/// Numbers of an impact by column name.
 pub(crate) type Row = BTreeMap<String, Value>;
 
 pub(crate) async fn try_open(
@@ -66,7 +64,7 @@ pub(crate) async fn open(address: SocketAddr, url: &str) -> Client {
     try_open(address, url, &[]).await.unwrap().0
 }
 
-/// The problem with which a handshake is refused.
+/// The problem document of a refused handshake.
 pub(crate) async fn refused(address: SocketAddr, url: &str, headers: &[(&'static str, &str)]) -> Value {
     match try_open(address, url, headers).await {
         Err(Error::Http(response)) => {
@@ -85,7 +83,7 @@ impl Client {
         self.socket.send(Message::text(message.to_string())).await.unwrap();
     }
 
-    /// The next text; none when the server has closed, with its code.
+    /// The next text; none after the server's close, with its code.
     pub(crate) async fn hear(&mut self) -> Result<Value, Option<u16>> {
         loop {
             match timeout(SOON, self.socket.next()).await.expect("the server is silent") {
@@ -101,7 +99,7 @@ impl Client {
         self.hear().await.expect("the server has closed")
     }
 
-    /// The next message of this type; others are passed over.
+    /// The next message of a type; skips others.
     pub(crate) async fn next_of(&mut self, kind: &str) -> Value {
         loop {
             let message = self.next().await;
@@ -124,7 +122,7 @@ impl Client {
         self.rows.extend(impacts_in(message));
     }
 
-    /// So many impacts, however they come; fewer if the run ends.
+    /// `count` impacts, from single or gathered messages; fewer if the run ends.
     pub(crate) async fn impacts(&mut self, count: usize) -> Vec<Row> {
         while self.rows.len() < count {
             let message = self.next().await;
@@ -147,7 +145,7 @@ impl Client {
     }
 }
 
-/// A message that is as the contract says.
+/// A message, checked against the contract.
 pub(crate) fn held(text: &str) -> Value {
     let message: Value = serde_json::from_str(text).unwrap();
     let name = format!("#/components/schemas/live.{}", message["type"].as_str().unwrap());
@@ -156,7 +154,7 @@ pub(crate) fn held(text: &str) -> Value {
     message
 }
 
-/// The impacts of a message, of which most have none.
+/// The impacts of a message; mostly none.
 pub(crate) fn impacts_in(message: &Value) -> Vec<Row> {
     match message["type"].as_str() {
         Some("impact") => vec![row(message)],
