@@ -7,10 +7,9 @@ use equipoise_physics::bounce::strike::{Rod, State};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Number;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::extended;
 use equipoise_physics::run::linear_solution::LinearSolution;
-use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::{LOOK, Orbit, Rules};
+use equipoise_physics::run::{extended, orbit};
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
 
@@ -54,7 +53,7 @@ impl<'a> Subject<'a> {
         turn.check()?;
         reference.outcome = ending.map_or("diverged", Ending::name);
         let mut subject =
-            Self { scene, impacts, model: scene.model(), linear: scene.linear_solution(), reference, state };
+            Self { scene, impacts, model: scene.model(), linear: LinearSolution::of_scene(scene), reference, state };
         let size = subject.size(&[state.theta, state.x_dot, state.y_dot, state.theta_dot].map(DoubleDouble::to_f64));
         subject.reference.rounding = f64::EPSILON * size;
         Ok(subject)

@@ -5,6 +5,7 @@ use crate::failure_cases::course::{Course, eigenvalue, upright};
 use crate::failure_cases::{Case, Says, Seen, built, rod, with};
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::stability::linear_verdict::linear_verdict;
 
 /// κ = 1: the table follows the rod, and nothing turns it back.
 pub(crate) const DRIFT: Case = Case {
@@ -180,7 +181,7 @@ fn plane(label: &'static str, look: Look, scene: &Scene, impacts: u64) -> Curve 
 }
 
 fn residue(scene: &Scene) -> Says {
-    let linear = scene.linear(&upright(scene));
+    let linear = linear_verdict(scene, &upright(scene));
     let verdict = if linear.says_bounded() { "bounded" } else { "falls" };
     let detail = format!(
         "κ = {} is between {} and {:.6}, so small deviations circle",

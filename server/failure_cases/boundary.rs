@@ -4,6 +4,7 @@ use crate::charts::{Chart, Curve, Look, Plot, significant};
 use crate::failure_cases::course::{ANGLE, CONTACT, Course, eigenvalue, upright};
 use crate::failure_cases::{Case, Says, Seen, built, rod, with};
 use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::stability::boundary::{boundary_coefficient, period_two_angle};
 use equipoise_physics::stability::fixed_point::FixedPoint;
 
 /// The paper's rod exactly at κ_c: soft.
@@ -112,7 +113,7 @@ pub(crate) const BEYOND: Case = Case {
             Course::linear(scene, &fixed_point, impacts).says("linear map, iterated"),
         ];
         let mut detail = decided(scene, &fixed_point, impacts, &mut says);
-        if let Some(theta) = scene.period_two(&fixed_point) {
+        if let Some(theta) = period_two_angle(&scene.model(), scene.rules().topple_angle, &fixed_point) {
             detail += &format!("; the orbit of period 2 that holds it has an angle of {theta:.4} rad");
         }
         Seen { truth: "bounded", detail, says }
@@ -121,7 +122,7 @@ pub(crate) const BEYOND: Case = Case {
 };
 
 fn coefficient(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> Says {
-    let value = scene.boundary(fixed_point).map(|boundary| boundary.coefficient);
+    let value = boundary_coefficient(&scene.model(), fixed_point).map(|boundary| boundary.coefficient);
     let verdict = if value.is_some_and(|value| value > 0.0) { "bounded" } else { "falls" };
     let detail = "the sign of C in κ − κ_c ≈ a C θ², on which the orbits of period 2 branch off at κ_c".to_owned();
     Says { method, verdict, value, unit: None, detail }

@@ -5,10 +5,10 @@ use crate::failure_cases::Says;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::fixed_point::FixedPoint;
+use equipoise_physics::stability::fixed_point::{FixedPoint, find_fixed_point};
 use equipoise_physics::stability::jacobian;
 use equipoise_physics::stability::jacobian::modulus;
-use equipoise_physics::stability::linear_verdict::PARABOLIC;
+use equipoise_physics::stability::linear_verdict::{PARABOLIC, linear_verdict};
 
 /// θ at the contacts of a run and how it ended.
 pub(crate) struct Course {
@@ -32,7 +32,7 @@ impl Course {
 
     /// That of the linear map: θ' = (1 − 4R)θ + u, u' = u − 4Rθ with u = τθ̇.
     pub(crate) fn linear(scene: &Scene, fixed_point: &FixedPoint, impacts: u64) -> Self {
-        let residue = scene.linear(fixed_point).residue.unwrap_or_default();
+        let residue = linear_verdict(scene, fixed_point).residue.unwrap_or_default();
         let start = scene.start();
         let limit = scene.rules().topple_angle;
         let (mut theta, mut turn) = (start.theta, fixed_point.flight_time * start.theta_dot);
@@ -105,13 +105,13 @@ fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f6
 
 /// The upright bounce, which every scene of this gallery has.
 pub(crate) fn upright(scene: &Scene) -> FixedPoint {
-    scene.fixed_point().expect("a test builds every case")
+    find_fixed_point(scene).expect("a test builds every case")
 }
 
 /// What the eigenvalues of a computed Jacobian say.
 pub(crate) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> Says {
     let (verdict, radius, (re, im)) = spectral_radius(scene, fixed_point);
-    let exact = scene.linear(fixed_point).spectral_radius();
+    let exact = linear_verdict(scene, fixed_point).spectral_radius();
     let imaginary = if im == 0.0 { String::new() } else { format!(" ± {:.2e}i", im.abs()) };
     let excess = match radius - 1.0 {
         0.0 => String::new(),

@@ -8,7 +8,8 @@ use equipoise_physics::body::Release;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Orbit, Rules, run};
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::regularity::TOLERANCE;
+use equipoise_physics::stability::linear_verdict::linear_verdict;
+use equipoise_physics::stability::regularity::{TOLERANCE, measure_regularity};
 
 /// Runs of one ensemble, and how far apart their starts are, rad.
 const RUNS: usize = 256;
@@ -143,7 +144,8 @@ fn ending(course: &Course) -> String {
 
 fn horizon(scene: &Scene) -> Option<u64> {
     let fixed_point = upright(scene);
-    let regularity = scene.regularity(&fixed_point, &scene.linear(&fixed_point), u64::MAX)?;
+    let regularity =
+        measure_regularity(scene.orbit().ok()?, &fixed_point, &linear_verdict(scene, &fixed_point), u64::MAX)?;
     regularity.predictable_impacts(TOLERANCE)
 }
 

@@ -3,8 +3,8 @@
 use equipoise_physics::bounce::strike::Rod;
 use equipoise_physics::control::{BounceModel, ClosedLoop, Design, NoDesign, STATE};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::Grip;
-use equipoise_physics::stability::fixed_point::FixedPoint;
+use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
+use equipoise_physics::stability::fixed_point::{FixedPoint, bounce_in_place};
 use serde::Serialize;
 use serde_json::Value as Json;
 
@@ -35,7 +35,7 @@ pub struct Request {
     pub scene: Scene,
     /// κ, if the scene has one.
     tilt_gain: Option<f64>,
-    grip: Grip,
+    regime: ContactRegime,
     state: [f64; 4],
     input: f64,
 }
@@ -61,18 +61,18 @@ impl Request {
         }
         let pointer = reader.pointer_to("scene");
         let scene = build_scene(draft, &pointer, reader.errors())?;
-        let grip = match sticks {
-            None => scene.grip(),
-            Some(false) => Grip::Smooth,
-            Some(true) if scene.value(Name::Slide) == Some(Value::Choice("matched")) => Grip::Matched,
-            Some(true) => Grip::Held,
+        let regime = match sticks {
+            None => contact_regime(&scene.model()),
+            Some(false) => ContactRegime::Frictionless,
+            Some(true) if scene.value(Name::Slide) == Some(Value::Choice("matched")) => ContactRegime::VelocityMatched,
+            Some(true) => ContactRegime::Sticking,
         };
-        Some(Self { scene, tilt_gain, grip, state, input })
+        Some(Self { scene, tilt_gain, regime, state, input })
     }
 
     /// All that determines the answer beside the scene.
     pub fn rest(&self) -> impl Serialize {
-        (contact_name(self.grip), self.state, self.input, self.tilt_gain)
+        (contact_name(self.regime), self.state, self.input, self.tilt_gain)
     }
 }
 
@@ -81,8 +81,8 @@ fn set(draft: &mut Draft, name: Name, number: Option<f64>) -> bool {
     draft.set(name, number.map(Value::Number)).is_ok()
 }
 
-fn contact_name(grip: Grip) -> &'static str {
-    if grip == Grip::Smooth { "frictionless" } else { "stick" }
+fn contact_name(regime: ContactRegime) -> &'static str {
+    if regime == ContactRegime::Frictionless { "frictionless" } else { "stick" }
 }
 
 /// Numbers by the names of the state.
@@ -138,9 +138,9 @@ struct Judged {
 }
 
 impl Judged {
-    fn new(grip: Grip, gain: [f64; 4], closed: &ClosedLoop) -> Self {
+    fn new(regime: ContactRegime, gain: [f64; 4], closed: &ClosedLoop) -> Self {
         Self {
-            contact: contact_name(grip),
+            contact: contact_name(regime),
             gain: gain.into(),
             stable: closed.is_stable(),
             eigenvalues: closed.eigenvalues.iter().map(|&value| value.into()).collect(),
@@ -192,23 +192,23 @@ impl Controller {
     /// # Errors
     /// Why there is none.
     pub fn compute(request: &Request) -> Result<Self, Refusal> {
-        let Request { scene, tilt_gain, grip, state, input } = *request;
+        let Request { scene, tilt_gain, regime, state, input } = *request;
         let slow = || ("/weights", "the eigenvalues of this law did not converge".to_owned());
-        let place = scene.bounce_in_place().map_err(|why| ("/scene", format!("there is no law to design: {why}")))?;
+        let place = bounce_in_place(&scene).map_err(|why| ("/scene", format!("there is no law to design: {why}")))?;
         let rod: Rod = scene.parameters();
-        let model = BounceModel::new(&rod, place.speed, grip);
+        let model = BounceModel::new(&rod, place.speed, regime);
         let with_x = state[0] != 0.0;
         let design = model.design(state, input).map_err(|why| ("/weights", refusal(why)))?;
         let closed = model.closed_loop(design.gain, with_x).ok_or_else(slow)?;
         let open = model.closed_loop([0.0; 4], with_x).ok_or_else(slow)?;
         let designed = designed(&scene, design.gain)?;
-        let own = scene.grip();
+        let own = contact_regime(&scene.model());
         let judge = |gain: [f64; 4]| {
             let closed = BounceModel::new(&rod, place.speed, own).closed_loop(gain, gain[0] != 0.0);
             closed.map(|closed| Judged::new(own, gain, &closed)).ok_or_else(slow)
         };
-        let applied = (own != grip).then(|| judge(design.gain)).transpose()?;
-        let given = scene.feedback().map(judge).transpose()?;
+        let applied = (own != regime).then(|| judge(design.gain)).transpose()?;
+        let given = scene.model().feedback().map(judge).transpose()?;
         let first = usize::from(!with_x);
         let energy_eigenvalue = 1.0 - rod.strike_gain_per_energy * place.speed * place.speed;
         let mut answer = Self {
@@ -220,7 +220,7 @@ impl Controller {
                 a: (first..4).map(|row| (first..4).map(|column| model.a[(row, column)]).collect()).collect(),
                 b: (first..4).map(|row| model.b[row]).collect(),
             },
-            law: Judged::new(grip, design.gain, &closed),
+            law: Judged::new(regime, design.gain, &closed),
             residual: design.residual,
             iterations: design.iterations,
             fixed_point: Place { x: 0.0, bounce: place.into() },
@@ -240,7 +240,7 @@ impl Controller {
         Ok(answer)
     }
 
-    fn notes_on(&self, with_x: bool, own: Grip) -> Vec<String> {
+    fn notes_on(&self, with_x: bool, own: ContactRegime) -> Vec<String> {
         let mut notes = Vec::new();
         let what = if with_x { "x, theta, x_dot and theta_dot" } else { "theta, x_dot and theta_dot" };
         if let Some(bounces) = self.law.bounces_per_decade {
@@ -409,7 +409,11 @@ fn proportional(scene: &Scene, tilt_gain: Option<f64>, rod: &Rod, place: &FixedP
         set(&mut draft, name, None);
     }
     let (length, rho) = (rod.contact_distance, rod.radius_of_gyration);
-    let turning = if scene.grip() == Grip::Matched { rho * rho + length * length } else { rho * rho };
+    let turning = if contact_regime(&scene.model()) == ContactRegime::VelocityMatched {
+        rho * rho + length * length
+    } else {
+        rho * rho
+    };
     let width = rod.gravity * turning / (place.speed * place.speed * length);
     let kappa = tilt_gain.unwrap_or_else(|| (1.0 + PROPORTIONAL * width).min(100.0));
     set(&mut draft, Name::TiltGain, Some(kappa));

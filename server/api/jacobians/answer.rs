@@ -4,9 +4,10 @@ use equipoise_physics::body::point::Point;
 use equipoise_physics::bounce::strike::State;
 use equipoise_physics::run::orbit::{LOOK, run};
 use equipoise_physics::scene::Scene;
+use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian;
 use equipoise_physics::stability::jacobian::{Linearization, MOST_SIDES, TIED};
-use equipoise_physics::stability::linear_verdict::Class;
+use equipoise_physics::stability::linear_verdict::{Class, linear_verdict};
 use nalgebra::{Complex, DMatrix};
 use serde::{Serialize, Serializer};
 
@@ -188,9 +189,11 @@ impl<'a> Jacobian<'a> {
         let mut notes = vec![format!(
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
         )];
-        let fed_back = scene.feedback().is_some();
+        let fed_back = scene.model().feedback().is_some();
         let linear = match at {
-            At::FixedPoint if !fed_back => scene.fixed_point().ok().map(|fixed_point| scene.linear(&fixed_point)),
+            At::FixedPoint if !fed_back => {
+                find_fixed_point(scene).ok().map(|fixed_point| linear_verdict(scene, &fixed_point))
+            }
             _ => None,
         };
         let (eigenvalues, residue, defective) = if let Some(linear) = &linear {
@@ -286,7 +289,7 @@ fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64,
     match at {
         At::FixedPoint => {
             let fixed_point =
-                scene.fixed_point().map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
+                find_fixed_point(scene).map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
             Ok((0.0, State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 }))
         }
         At::State(x, state) if has_angle(scene) => Ok((x, state)),

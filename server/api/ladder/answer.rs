@@ -2,7 +2,7 @@
 
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Rung;
-use equipoise_physics::scene::model_hierarchy::{Change, Largest, Run, Step};
+use equipoise_physics::scene::model_hierarchy::{Change, Largest, Run, Step, at_level, run_hierarchy};
 use serde::Serialize;
 
 use crate::api::scene::Resolved;
@@ -41,7 +41,7 @@ impl Request {
 
     /// Its work, in bounces.
     pub fn price(&self, scene: &Scene) -> u64 {
-        ONCE_PRICE + self.impacts * (RUNGS * RUNG_PRICE + linear_price(&scene.on(Rung::Linear)))
+        ONCE_PRICE + self.impacts * (RUNGS * RUNG_PRICE + linear_price(&at_level(scene, Rung::Linear)))
     }
 }
 
@@ -123,7 +123,7 @@ impl<'a> Ladder<'a> {
     /// Runs a scene on its rungs; none once `go_on` said no.
     pub fn compute(scene: &'a Scene, request: &Request, go_on: impl FnMut() -> bool) -> Option<Self> {
         let Request { impacts, tolerance } = *request;
-        let steps = scene.ladder(impacts, go_on)?;
+        let steps = run_hierarchy(scene, impacts, go_on)?;
         let (mut rungs, mut bounces) = (Vec::new(), 0);
         let (mut below, mut enough) = (None::<Rung>, None::<Rung>);
         for Step { rung, scene, forced, run } in steps {

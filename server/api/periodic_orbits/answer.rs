@@ -3,6 +3,9 @@
 use equipoise_physics::periodic_orbits::branch::{Branch, Point, Start, Sweep, follow};
 use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
 use equipoise_physics::scene::{Field, Kind, Name, Scene, Value, field};
+use equipoise_physics::stability::boundary::period_two_angle;
+use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::Complex;
 use serde::{Serialize, Serializer};
 
@@ -233,7 +236,7 @@ impl<'a> PeriodicOrbits<'a> {
             .zip(branch.as_ref())
             .map(|(range, branch)| Swept { range, start: branch.points[branch.start].parameter });
         let tilts = request.sweep.is_some_and(|sweep| sweep.parameter == Name::TiltGain);
-        let fixed_point = scene.fixed_point().ok().filter(|_| tilts);
+        let fixed_point = find_fixed_point(scene).ok().filter(|_| tilts);
         Ok(Self {
             scene: Resolved(scene),
             model: Choice::model(scene),
@@ -254,7 +257,7 @@ impl<'a> PeriodicOrbits<'a> {
             changes: branch.as_ref().map(changes),
             notes,
             points: branch.map_or_else(Vec::new, |branch| branch.points),
-            critical: fixed_point.map(|fixed_point| scene.linear(&fixed_point).critical_tilt_gain),
+            critical: fixed_point.map(|fixed_point| linear_verdict(scene, &fixed_point).critical_tilt_gain),
         })
     }
 
@@ -336,7 +339,9 @@ const SAME_THETA: f64 = 1e-6;
 
 /// Checks that with energy feedback the symmetric orbit through an angle is the one of the scene's target height.
 fn has_target_height(scene: &Scene, theta: f64) -> Result<(), Failure> {
-    let found = scene.fixed_point().ok().and_then(|fixed_point| scene.period_two(&fixed_point));
+    let found = find_fixed_point(scene)
+        .ok()
+        .and_then(|fixed_point| period_two_angle(&scene.model(), scene.rules().topple_angle, &fixed_point));
     if found.is_some_and(|found| (found - theta.abs()).abs() <= SAME_THETA) {
         return Ok(());
     }

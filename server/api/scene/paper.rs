@@ -7,7 +7,9 @@ use equipoise_physics::numbers::trig;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, LOOK, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::jacobian_at;
+use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
@@ -109,8 +111,8 @@ impl Quantity {
     /// The value, and what it is computed from. None where the scene has none, and where `go_on`, which is asked now and then,
     /// says no.
     pub(crate) fn compute(self, scene: &Scene, go_on: &dyn Fn() -> bool) -> Option<(f64, &'static str)> {
-        let fixed_point = scene.fixed_point();
-        let linear = fixed_point.as_ref().map(|fixed_point| scene.linear(fixed_point));
+        let fixed_point = find_fixed_point(scene);
+        let linear = fixed_point.as_ref().map(|fixed_point| linear_verdict(scene, fixed_point));
         Some(match self {
             Self::CriticalTiltGain => {
                 (linear.ok()?.critical_tilt_gain, "eq. (18), with V on the energy surface of the fixed point")
@@ -268,7 +270,7 @@ fn derivative(scene: &Scene, at_fixed_point: bool) -> Option<DMatrix<f64>> {
     let orbit = scene.orbit().ok()?;
     let mut state = *orbit.state();
     if at_fixed_point {
-        let speed = scene.fixed_point().ok()?.speed;
+        let speed = find_fixed_point(scene).ok()?.speed;
         (state.theta, state.x_dot, state.y_dot, state.theta_dot) = (0.0, 0.0, -speed, 0.0);
     }
     Some(jacobian_at(&scene.model(), orbit.x(), &state, 1).ok()?.matrix)

@@ -3,15 +3,15 @@
 use equipoise_physics::control::BounceModel;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::basin;
-use equipoise_physics::stability::basin::NoBasin;
-use equipoise_physics::stability::contact_regime::Grip;
-use equipoise_physics::stability::fixed_point;
-use equipoise_physics::stability::fixed_point::JUDGED;
-use equipoise_physics::stability::linear_verdict::{Linear, Nonlinear};
+use equipoise_physics::stability::basin::{NoBasin, find_basin};
+use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime, stick_cone};
+use equipoise_physics::stability::fixed_point::{JUDGED, drift_speed, find_fixed_point, height_error};
+use equipoise_physics::stability::linear_verdict::{Linear, linear_verdict};
 use equipoise_physics::stability::margins::Tolerances;
+use equipoise_physics::stability::nonlinear_run::{NonlinearRun, run_nonlinear};
 use equipoise_physics::stability::regularity::WATCHED;
-use equipoise_physics::stability::verdict::{HigherOrder, Judgement, Verdict};
+use equipoise_physics::stability::verdict::{HigherOrder, Judgement, Verdict, judge};
+use equipoise_physics::stability::{basin, fixed_point};
 use serde::Serialize;
 
 use crate::api::controllers::answer;
@@ -148,8 +148,8 @@ impl Request {
 }
 
 /// The verdict in words; what a run showed stands in it with its length.
-fn words(verdict: Verdict, run: &Nonlinear) -> String {
-    let Nonlinear { impacts, ending, .. } = run;
+fn words(verdict: Verdict, run: &NonlinearRun) -> String {
+    let NonlinearRun { impacts, ending, .. } = run;
     let survived = format!("{impacts} bounces survived");
     match (verdict, *ending == Ending::Completed) {
         (Verdict::StableInPlace, _) => "stable in place".to_owned(),
@@ -195,7 +195,7 @@ impl<'a> Stability<'a> {
     /// `go_on` is asked now and then, and a `false` gives none.
     pub fn compute(scene: &'a Scene, request: &Request, mut go_on: impl FnMut() -> bool) -> Option<Self> {
         let Request { impacts, basin, tolerances } = *request;
-        let run = scene.nonlinear(impacts, &mut go_on)?;
+        let run = run_nonlinear(scene, impacts, &mut go_on)?;
         let mut notes = Vec::new();
         let mut answer = Self {
             scene: Resolved(scene),
@@ -216,7 +216,7 @@ impl<'a> Stability<'a> {
                 demand: run.demand.into(),
                 detail: Outcome::new(run.ending, run.impacts, run.t).detail,
             },
-            drift_speed: scene.drift_speed(),
+            drift_speed: drift_speed(scene),
             agree: None,
             rotation_number: None,
             chaos: None,
@@ -234,13 +234,13 @@ impl<'a> Stability<'a> {
                         mass has no angle of its own, and its drift dies out"
                     .to_owned(),
             );
-        } else if scene.feedback().is_some() {
+        } else if scene.model().feedback().is_some() {
             notes.push(
                 "drift_speed, linear.residue, linear.rotation, linear.tilt_gain, boundary, rotation_number, chaos and \
                  predictable_impacts are null: with state feedback nothing drifts or circles for ever, and the last two are not derived"
                     .to_owned(),
             );
-        } else if scene.grip() == Grip::Held {
+        } else if contact_regime(&scene.model()) == ContactRegime::Sticking {
             notes.push(
                 "drift_speed, linear.residue, linear.rotation and linear.tilt_gain are null: the contact sticks to a table that only \
                  tilts, so nothing drifts, the angle has no block of its own, and no tilt_gain balances"
@@ -251,25 +251,25 @@ impl<'a> Stability<'a> {
         } else if answer.drift_speed.is_none() {
             notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
         }
-        match scene.fixed_point() {
+        match find_fixed_point(scene) {
             Err(why) => {
                 notes.push(format!("verdict, fixed_point, linear, boundary, loss_of_stability, lyapunov, agree, rotation_number, chaos and predictable_impacts are null: {why}"));
                 answer.reason = why;
             }
             Ok(fixed_point) => {
-                let linear = scene.linear(&fixed_point);
+                let linear = linear_verdict(scene, &fixed_point);
                 let higher = HigherOrder::of(scene, &fixed_point, &linear);
                 let evidence = Evidence::new(scene, &fixed_point, &linear, impacts);
                 let Judgement { verdict, decided_by, agree, reason } =
-                    scene.judge(&fixed_point, &linear, &higher, &run, evidence.chaos());
+                    judge(scene, &fixed_point, &linear, &higher, &run, evidence.chaos());
                 answer.verdict = Some(words(verdict, &run));
                 answer.decided_by = Some(decided_by.name());
                 answer.agree = Some(agree);
                 answer.reason = reason;
-                if scene.grip() != Grip::Smooth && linear.closed_loop.is_none() {
+                if contact_regime(&scene.model()) != ContactRegime::Frictionless && linear.closed_loop.is_none() {
                     notes.push("boundary is null: its coefficient is not derived with friction".to_owned());
                 }
-                if let Some(cone) = scene.stick_cone() {
+                if let Some(cone) = stick_cone(&scene.model()) {
                     notes.push(format!(
                         "stick cone: the linear analysis holds where the matched contact sticks, for |θ| up to about {cone} rad \
                          (μ(ρ² + l²)/(l²|κ − 1|)); this run came to {} rad",
@@ -295,7 +295,7 @@ impl<'a> Stability<'a> {
                 answer.predictable_impacts = evidence.predictable_impacts();
                 answer.chaos = evidence.chaos().map(Chaos::from);
                 answer.rotation_number = evidence.rotation().map(RotationNumber::from);
-                let off = scene.height_error();
+                let off = height_error(scene);
                 if off != 0.0 {
                     notes.push(format!(
                         "the table believes restitution {} and meets {}: the height settles at {} m, {off} m above target_height",
@@ -309,7 +309,7 @@ impl<'a> Stability<'a> {
             }
         }
         if basin {
-            match scene.basin(impacts, &mut go_on) {
+            match find_basin(scene, impacts, &mut go_on) {
                 Ok(basin) => {
                     notes.push(format!(
                         "basin: released at rest; no hole wider than {} rad was missed, and its edges are known to {} rad",
@@ -328,8 +328,9 @@ impl<'a> Stability<'a> {
 
     /// The eigenvalues on the unit circle against κ, as SVG.
     pub fn to_picture(&self) -> String {
-        if let (Some(gain), Some(place)) = (self.scene.0.feedback(), &self.fixed_point) {
-            let model = BounceModel::new(&self.scene.0.parameters(), -place.y_dot, self.scene.0.grip());
+        if let (Some(gain), Some(place)) = (self.scene.0.model().feedback(), &self.fixed_point) {
+            let model =
+                BounceModel::new(&self.scene.0.parameters(), -place.y_dot, contact_regime(&self.scene.0.model()));
             let title = format!("Closed loop: {}", self.verdict.as_deref().unwrap_or("no verdict"));
             return answer::picture(&title, &self.reason, &model, gain);
         }

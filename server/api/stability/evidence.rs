@@ -2,14 +2,11 @@
 //! on each of them. Not for the verdict itself.
 
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::basin;
 use equipoise_physics::stability::fixed_point::FixedPoint;
 use equipoise_physics::stability::linear_verdict::Linear;
-use equipoise_physics::stability::loss_of_stability;
 use equipoise_physics::stability::loss_of_stability::Settles;
-use equipoise_physics::stability::lyapunov;
-use equipoise_physics::stability::regularity;
-use equipoise_physics::stability::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
+use equipoise_physics::stability::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED, measure_regularity};
+use equipoise_physics::stability::{basin, loss_of_stability, lyapunov, regularity};
 use serde::Serialize;
 
 /// Distance from 1/3 and 1/4, in turns a bounce, within which they are named.
@@ -130,7 +127,7 @@ pub(crate) struct Evidence(Option<Regularity>);
 
 impl Evidence {
     pub(crate) fn new(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear, impacts: u64) -> Self {
-        Self(scene.regularity(fixed_point, linear, impacts))
+        Self(scene.orbit().ok().and_then(|orbit| measure_regularity(orbit, fixed_point, linear, impacts)))
     }
 
     pub(crate) fn bounces(&self) -> u64 {

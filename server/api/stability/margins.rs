@@ -2,7 +2,7 @@
 
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::margins;
-use equipoise_physics::stability::margins::{Sample, Tolerances};
+use equipoise_physics::stability::margins::{Sample, Tolerances, margins_over_tolerances};
 use serde::Serialize;
 
 use crate::http::Reader;
@@ -59,7 +59,7 @@ impl Margins {
     pub fn compute(scene: &Scene, tolerances: &Tolerances, tilt_gain: f64) -> Self {
         let Tolerances { contact_distance, radius_of_gyration, restitution } = *tolerances;
         let said = Body { contact_distance, radius_of_gyration, restitution };
-        match scene.margins(tolerances) {
+        match margins_over_tolerances(scene, tolerances) {
             Err(reason) => Self {
                 tolerances: said,
                 holds: None,

@@ -2,7 +2,7 @@
 
 use equipoise_physics::body::Body;
 use equipoise_physics::run::method;
-use equipoise_physics::run::method::{Impact, Method};
+use equipoise_physics::run::method::{Impact, Method, choose_method, deviations_circle, run_by};
 use equipoise_physics::run::orbit::{Contact, LOOK};
 use equipoise_physics::scene::model::{Forced, Rung};
 use equipoise_physics::scene::{Name, Scene};
@@ -140,7 +140,7 @@ const SAMPLE_PRICE: u64 = 10;
 /// of each looks at some of the bounces before it, with 31 digits: at 13, or at 39 where the table looks at the energy.
 pub(crate) fn linear_price(scene: &Scene) -> u64 {
     match scene.number(Name::EnergyGain) {
-        _ if scene.circles() => 20,
+        _ if deviations_circle(scene) => 20,
         None | Some(0.0) => 500,
         Some(_) => 1400,
     }
@@ -181,7 +181,7 @@ impl Request {
             (Some(Method::Extended), _) => (0, EXTENDED_PRICE + LONG_ROW_PRICE),
             // Each may be tried, the linear one where the angle circles, and the dearest run again.
             (None, Some(_)) => {
-                let linear = if scene.circles() { linear_price(scene) } else { 0 };
+                let linear = if deviations_circle(scene) { linear_price(scene) } else { 0 };
                 (LINEAR_ONCE, linear + MAP_PRICE + 2 * EXTENDED_PRICE + LONG_ROW_PRICE)
             }
         };
@@ -222,8 +222,7 @@ impl MethodChoice {
             if let Some(error) = scene.beyond(&[Rung::Friction]) {
                 return Err(Some(("/tolerance", format!("no method bounds its error: {}", error.detail))));
             }
-            let choice = scene
-                .choose_method(impacts, tolerance, go_on)
+            let choice = choose_method(scene, impacts, tolerance, go_on)
                 .ok_or(None)?
                 .map_err(|refusal| Some(("/tolerance", refusal.detail)))?;
             let method::Choice { method, cost_us, next, reason, .. } = choice;
@@ -316,7 +315,7 @@ impl<'a> Trajectory<'a> {
             !contact.n.is_multiple_of(LOOK) || go_on()
         };
         let run = match changed {
-            None => scene.run_by(method, impacts, visit),
+            None => run_by(scene, method, impacts, visit),
             Some(contacts) => {
                 let mut ending = None;
                 for contact in contacts {

@@ -8,7 +8,7 @@ pub mod margin;
 pub mod riccati;
 
 use crate::bounce::strike::Rod;
-use crate::stability::contact_regime::Grip;
+use crate::stability::contact_regime::ContactRegime;
 use crate::stability::jacobian::{eigenvalues, modulus};
 use margin::{Margin, margin};
 use nalgebra::{Complex, DMatrix, Matrix3, Matrix4, RowVector4, Vector3, Vector4};
@@ -81,24 +81,24 @@ impl BounceModel {
     ///
     /// To first order the normal impulse is 2V, whatever e and the law of restitution; so with friction the contact sticks in the
     /// end, and its impulse P_t along the table brings the contact point's relative velocity ẋ + lθ̇ − Vα to rest. On a table
-    /// that slides along ([`Grip::Matched`]) it is at rest already.
-    pub fn new(rod: &Rod, speed: f64, grip: Grip) -> Self {
+    /// that slides along ([`ContactRegime::VelocityMatched`]) it is at rest already.
+    pub fn new(rod: &Rod, speed: f64, regime: ContactRegime) -> Self {
         let (l, rho_squared) = (rod.contact_distance, rod.radius_of_gyration * rod.radius_of_gyration);
         // Inertia about the contact point, which is what a sticking contact turns the rod about.
         let about_contact = rho_squared + l * l;
         let (light, heavy) = (rho_squared / about_contact, l * l / about_contact);
         let kick = 2.0 * speed;
         // ẋ⁺ and θ̇⁺ by (θ, ẋ, θ̇) and by α.
-        let (x_dot, theta_dot) = match grip {
-            Grip::Smooth => {
+        let (x_dot, theta_dot) = match regime {
+            ContactRegime::Frictionless => {
                 let turn = kick * l / rho_squared;
                 (([0.0, 1.0, 0.0], -kick), ([turn, 0.0, 1.0], -turn))
             }
-            Grip::Matched => {
+            ContactRegime::VelocityMatched => {
                 let turn = kick * l / about_contact;
                 (([-kick * heavy, 1.0, 0.0], -kick * light), ([turn, 0.0, 1.0], -turn))
             }
-            Grip::Held => {
+            ContactRegime::Sticking => {
                 let lever = l / about_contact;
                 (([-kick * heavy, heavy, -light * l], -speed * light), ([kick * lever, -lever, light], -speed * lever))
             }

@@ -17,6 +17,7 @@ use crate::run::ending::Ending;
 use crate::run::orbit::{Orbit, Rules};
 use crate::scene::Scene;
 use crate::scene::model::Model;
+use crate::stability::fixed_point::find_fixed_point;
 use closed::{Course, Plane, Solution, correct};
 use multipliers::{Known, Multipliers};
 use nalgebra::SVector;
@@ -46,7 +47,7 @@ impl Setting {
         let Model::Rod(rod) = scene.model() else {
             return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
         };
-        let speed = scene.fixed_point()?.speed;
+        let speed = find_fixed_point(scene)?.speed;
         let energy = 0.5 * speed * speed + rod.gravity * rod.contact_distance;
         Ok(Self {
             rod,

@@ -60,48 +60,73 @@ pub struct ErrorEstimate {
     lost: bool,
 }
 
-impl Scene {
-    /// The error estimate of a run of this scene in doubles, just before its first contact at `first` (s after release).
-    pub fn error_estimate(&self, first: f64) -> ErrorEstimate {
-        self.estimate(first, ROUNDING)
+/// The last contact, of the first `impacts`, up to which the map in doubles is within `tolerance` of the exact run (m/s,
+/// as [`ErrorEstimate::bound`]). None where it is over all of them, or to the end of the run.
+///
+/// `go_on` is asked now and then; a `false` gives none too.
+pub fn predictable_impacts(
+    scene: &Scene,
+    impacts: u64,
+    tolerance: f64,
+    mut go_on: impl FnMut() -> bool,
+) -> Option<u64> {
+    let mut orbit = scene.orbit().ok()?;
+    let mut estimate = ErrorEstimate::of_scene(scene, orbit.t());
+    for n in 0..impacts {
+        if estimate.bound() > tolerance {
+            return Some(n);
+        }
+        let contact = orbit.advance();
+        if contact.flight_time.is_none() || (n.is_multiple_of(LOOK) && !go_on()) {
+            break;
+        }
+        estimate.pass(&contact);
+    }
+    None
+}
+
+impl ErrorEstimate {
+    /// The error estimate of the run of a scene in doubles, just before its first contact at `first` (s after release).
+    pub fn of_scene(scene: &Scene, first: f64) -> Self {
+        Self::new(scene, first, ROUNDING)
     }
 
     /// The same of [`crate::run::extended`].
-    pub fn extended_error_estimate(&self, first: f64) -> ErrorEstimate {
-        self.estimate(first, double_double::ROUNDING)
+    pub fn of_extended_run(scene: &Scene, first: f64) -> Self {
+        Self::new(scene, first, double_double::ROUNDING)
     }
 
-    fn estimate(&self, first: f64, unit: f64) -> ErrorEstimate {
-        let model = self.model();
+    fn new(scene: &Scene, first: f64, unit: f64) -> Self {
+        let model = scene.model();
         let rod = *model.rod();
         let mut lifted: Rod<Number8> = rod.lift();
         // Parameters that are rounded. Other factors of the strike, such as 1 − κ, act as the radius of gyration does.
-        let sloped = self.incline != std::f64::consts::FRAC_PI_2;
+        let sloped = scene.incline != std::f64::consts::FRAC_PI_2;
         lifted.gravity.partials[OF_GRAVITY] = if sloped { 2.0 * unit * rod.gravity } else { 0.0 };
         lifted.radius_of_gyration.partials[OF_GYRATION] = 1.5 * unit * rod.radius_of_gyration;
         if rod.strike_gain_per_energy != 0.0 {
             let weight = rod.gravity * rod.contact_distance;
             lifted.target_energy.partials[OF_GAIN] = unit * (2.0 * rod.target_energy.abs() + weight);
             lifted.target_energy.partials[OF_GRAVITY] =
-                lifted.gravity.partials[OF_GRAVITY] * self.target_height.unwrap_or(0.0);
+                lifted.gravity.partials[OF_GRAVITY] * scene.target_height.unwrap_or(0.0);
         }
         if rod.strike_gain != 2.0 {
             lifted.strike_gain.partials[OF_GAIN] = 2.0 * unit * rod.strike_gain;
         }
-        let release = self.release();
+        let release = scene.release();
         let exact = Number8::from_f64;
         let start = release.state.map(exact);
-        let mut estimate = ErrorEstimate {
+        let mut estimate = Self {
             rod: lifted,
-            friction: self.contact_friction(),
+            friction: scene.contact_friction(),
             is_point: matches!(model, Model::Point(_)),
-            holds_energy: self.rules().holds_energy,
+            holds_energy: scene.rules().holds_energy,
             state: start,
             energy: None,
             unit,
             rounding: unit,
             // Not derived for more than friction.
-            lost: self.beyond(&[Rung::Friction]).is_some(),
+            lost: scene.beyond(&[Rung::Friction]).is_some(),
         };
         if first > 0.0 {
             let (sin, cos) = start.theta.sincos();
@@ -117,31 +142,7 @@ impl Scene {
         }
         estimate
     }
-}
 
-impl Scene {
-    /// The last contact, of the first `impacts`, up to which the map in doubles is within `tolerance` of the exact run (m/s,
-    /// as [`ErrorEstimate::bound`]). None where it is over all of them, or to the end of the run.
-    ///
-    /// `go_on` is asked now and then; a `false` gives none too.
-    pub fn predictable_impacts(&self, impacts: u64, tolerance: f64, mut go_on: impl FnMut() -> bool) -> Option<u64> {
-        let mut orbit = self.orbit().ok()?;
-        let mut estimate = self.error_estimate(orbit.t());
-        for n in 0..impacts {
-            if estimate.bound() > tolerance {
-                return Some(n);
-            }
-            let contact = orbit.advance();
-            if contact.flight_time.is_none() || (n.is_multiple_of(LOOK) && !go_on()) {
-                break;
-            }
-            estimate.pass(&contact);
-        }
-        None
-    }
-}
-
-impl ErrorEstimate {
     /// Bound on the largest of |ρδθ| (m), |δẋ|, |δẏ| and |ρδθ̇| (m/s) just before the coming contact; infinite once nothing is
     /// known any more. Of a point mass, on that of |δẋ| and |δẏ|.
     #[inline(always)]

@@ -4,19 +4,18 @@
 //! parameters, from the fields of the scene on. Which root of a flight is the next contact is decided in doubles, with the
 //! certificate of [`crate::bounce::contact_time`]; the root is then lifted by Newton's iteration.
 
-use crate::bounce::contact_time;
+use crate::body::Release;
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::flight::Flight;
-use crate::bounce::friction;
 use crate::bounce::friction::Friction;
 use crate::bounce::strike::{Rod, State, Strike};
+use crate::bounce::{contact_time, friction};
 use crate::numbers::double_double::{DoubleDouble, ROUNDING};
 use crate::numbers::number::Number;
 use crate::numbers::trig;
 use crate::run::ending::Ending;
 use crate::run::orbit::{Rules, SPEED_LIMIT};
 use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
-use crate::scene::{BodyShape, Scene};
 
 /// Most Newton steps of a lift: one does, except where the rod grazes the table.
 const MAX_STEPS: u32 = 64;
@@ -59,25 +58,24 @@ pub struct Orbit {
     energy: Option<DoubleDouble>,
 }
 
-impl Scene {
-    /// A run of the scene from its release, with 31 digits.
+impl Orbit {
+    /// A run from its release, with 31 digits.
     ///
     /// # Errors
     /// [`TooManyPieces`], which the ranges of a scene exclude.
-    pub fn extended_orbit(&self) -> Result<Orbit, TooManyPieces> {
-        Orbit::new(self)
-    }
-}
-
-impl Orbit {
-    fn new(scene: &Scene) -> Result<Self, TooManyPieces> {
+    pub fn new(
+        rod: Rod<DoubleDouble>,
+        friction: Option<Friction>,
+        is_point: bool,
+        rules: Rules,
+        release: &Release,
+    ) -> Result<Self, TooManyPieces> {
         let zero = DoubleDouble::from_f64(0.0);
-        let release = scene.release();
         let mut orbit = Self {
-            rod: scene.parameters(),
-            friction: scene.contact_friction(),
-            is_point: scene.body() == BodyShape::Point,
-            rules: scene.rules(),
+            rod,
+            friction,
+            is_point,
+            rules,
             state: release.state.map(DoubleDouble::from),
             n: 0,
             t: zero,

@@ -8,13 +8,14 @@ use crate::body::{Body, Coming};
 use crate::bounce::strike::State;
 use crate::numbers::double_double::DoubleDouble;
 use crate::run::ending::Ending;
-use crate::run::extended;
+use crate::run::error_estimate::ErrorEstimate;
 use crate::run::linear_solution::LinearSolution;
-use crate::run::orbit;
 use crate::run::orbit::{Contact, LOOK};
+use crate::run::{extended, orbit};
 use crate::scene::Scene;
 use crate::scene::model::Rung;
-use crate::stability::linear_verdict::Class;
+use crate::stability::fixed_point::find_fixed_point;
+use crate::stability::linear_verdict::{Class, linear_verdict};
 
 /// How a run is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,188 +98,194 @@ enum Reach {
     None(String),
 }
 
-impl Scene {
-    /// The cheapest method whose error estimate is at most `tolerance` (m/s, as the estimates are) at each of the first
-    /// `impacts` impacts, or up to the end of the run; or why there is none.
-    ///
-    /// `go_on` is asked now and then; a `false` gives none.
-    pub fn choose_method(
-        &self,
-        impacts: u64,
-        tolerance: f64,
-        mut go_on: impl FnMut() -> bool,
-    ) -> Option<Result<Choice, Refusal>> {
-        let mut methods = Method::ALL;
-        methods.sort_by(|one, other| one.cost_us(impacts).total_cmp(&other.cost_us(impacts)));
-        let (mut failed, mut horizon) = (Vec::new(), 0);
-        for (index, method) in methods.into_iter().enumerate() {
-            match self.reach(method, impacts, tolerance, &mut go_on)? {
-                Reach::All(error_estimate) => {
-                    let next = methods[index + 1..].iter().find(|dearer| **dearer != Method::Linear || self.circles());
-                    failed.push(format!("the error estimate of {} is at most {error_estimate:.1e} m/s", method.name()));
-                    return Some(Ok(Choice {
-                        method,
-                        error_estimate,
-                        cost_us: method.cost_us(impacts),
-                        next: next.map(|dearer| (*dearer, dearer.cost_us(impacts))),
-                        reason: failed.join("; "),
-                    }));
-                }
-                Reach::Until(last) => {
-                    horizon = horizon.max(last);
-                    failed.push(format!("{} holds {tolerance:e} m/s for {last} impacts", method.name()));
-                }
-                Reach::None(why) => failed.push(format!("{} does not apply: {why}", method.name())),
+/// The cheapest method whose error estimate is at most `tolerance` (m/s, as the estimates are) at each of the first
+/// `impacts` impacts, or up to the end of the run; or why there is none.
+///
+/// `go_on` is asked now and then; a `false` gives none.
+pub fn choose_method(
+    scene: &Scene,
+    impacts: u64,
+    tolerance: f64,
+    mut go_on: impl FnMut() -> bool,
+) -> Option<Result<Choice, Refusal>> {
+    let mut methods = Method::ALL;
+    methods.sort_by(|one, other| one.cost_us(impacts).total_cmp(&other.cost_us(impacts)));
+    let (mut failed, mut horizon) = (Vec::new(), 0);
+    for (index, method) in methods.into_iter().enumerate() {
+        match reach(scene, method, impacts, tolerance, &mut go_on)? {
+            Reach::All(error_estimate) => {
+                let next =
+                    methods[index + 1..].iter().find(|dearer| **dearer != Method::Linear || deviations_circle(scene));
+                failed.push(format!("the error estimate of {} is at most {error_estimate:.1e} m/s", method.name()));
+                return Some(Ok(Choice {
+                    method,
+                    error_estimate,
+                    cost_us: method.cost_us(impacts),
+                    next: next.map(|dearer| (*dearer, dearer.cost_us(impacts))),
+                    reason: failed.join("; "),
+                }));
             }
-        }
-        let fewer = if horizon > 0 { format!("ask for at most {horizon} impacts, or ") } else { String::new() };
-        let detail = format!(
-            "no method holds a tolerance of {tolerance:e} m/s over {impacts} impacts: {}; {fewer}tolerate more",
-            failed.join("; ")
-        );
-        Some(Err(Refusal { horizon, detail }))
-    }
-
-    /// Whether small deviations circle: elsewhere the linear solution is soon off, and its bound costs as much as a run.
-    pub fn circles(&self) -> bool {
-        self.beyond(&[]).is_none()
-            && self.fixed_point().is_ok_and(|point| {
-                self.linear(&point).class == Class::Elliptic && self.linear(&point).residue.is_some()
-            })
-    }
-
-    fn reach(&self, method: Method, impacts: u64, tolerance: f64, go_on: &mut impl FnMut() -> bool) -> Option<Reach> {
-        if method == Method::Linear && !self.circles() {
-            return Some(Reach::None("small deviations do not circle about a fixed point".to_owned()));
-        }
-        let (mut largest, mut lost) = (0.0, None);
-        let run = self.run_by(method, impacts, |impact| {
-            let bound = impact.error_estimate;
-            if bound.is_nan() || bound > tolerance {
-                lost = Some(impact.contact.n - 1);
-                return false;
+            Reach::Until(last) => {
+                horizon = horizon.max(last);
+                failed.push(format!("{} holds {tolerance:e} m/s for {last} impacts", method.name()));
             }
-            largest = f64::max(largest, bound);
-            !impact.contact.n.is_multiple_of(LOOK) || go_on()
-        });
-        match (run, lost) {
-            (Err(why), _) => Some(Reach::None(why)),
-            (Ok(_), Some(last)) => Some(Reach::Until(last)),
-            (Ok(ending), None) => ending.map(|_| Reach::All(largest)),
+            Reach::None(why) => failed.push(format!("{} does not apply: {why}", method.name())),
         }
     }
+    let fewer = if horizon > 0 { format!("ask for at most {horizon} impacts, or ") } else { String::new() };
+    let detail = format!(
+        "no method holds a tolerance of {tolerance:e} m/s over {impacts} impacts: {}; {fewer}tolerate more",
+        failed.join("; ")
+    );
+    Some(Err(Refusal { horizon, detail }))
+}
 
-    /// Runs the scene by a method: visits impact after impact up to number `impacts`, or to the end of the run. The visitor may
-    /// stop it by returning `false`, and then there is no ending.
-    ///
-    /// # Errors
-    /// Why the method does not apply, in a sentence.
-    pub fn run_by(
-        &self,
-        method: Method,
-        impacts: u64,
-        mut visit: impl FnMut(&Impact<'_>) -> bool,
-    ) -> Result<Option<Ending>, String> {
-        if method != Method::Map {
-            let known: &[Rung] = if method == Method::Extended { &[Rung::Friction] } else { &[] };
-            if let Some(error) = self.beyond(known) {
-                return Err(error.detail);
-            }
-            if self.limits.is_some() {
-                return Err("the limits of the table are looked at by the map alone".to_owned());
-            }
-            if self.outline.is_some() {
-                return Err("the vertices of a polygon are looked at by the map alone".to_owned());
-            }
+/// Whether small deviations circle: elsewhere the linear solution is soon off, and its bound costs as much as a run.
+pub fn deviations_circle(scene: &Scene) -> bool {
+    scene.beyond(&[]).is_none()
+        && find_fixed_point(scene).is_ok_and(|fixed_point| {
+            let linear = linear_verdict(scene, &fixed_point);
+            linear.class == Class::Elliptic && linear.residue.is_some()
+        })
+}
+
+fn reach(
+    scene: &Scene,
+    method: Method,
+    impacts: u64,
+    tolerance: f64,
+    go_on: &mut impl FnMut() -> bool,
+) -> Option<Reach> {
+    if method == Method::Linear && !deviations_circle(scene) {
+        return Some(Reach::None("small deviations do not circle about a fixed point".to_owned()));
+    }
+    let (mut largest, mut lost) = (0.0, None);
+    let run = run_by(scene, method, impacts, |impact| {
+        let bound = impact.error_estimate;
+        if bound.is_nan() || bound > tolerance {
+            lost = Some(impact.contact.n - 1);
+            return false;
         }
-        match method {
-            Method::Linear => {
-                let solution = self.linear_solution()?;
-                Ok(self.run_linear(&solution, impacts, visit))
-            }
-            Method::Map => {
-                let mut orbit = match self.orbit() {
-                    Ok(orbit) => orbit,
-                    Err(none) => return Ok(Some(none.ending(0.0, 0.0))),
+        largest = f64::max(largest, bound);
+        !impact.contact.n.is_multiple_of(LOOK) || go_on()
+    });
+    match (run, lost) {
+        (Err(why), _) => Some(Reach::None(why)),
+        (Ok(_), Some(last)) => Some(Reach::Until(last)),
+        (Ok(ending), None) => ending.map(|_| Reach::All(largest)),
+    }
+}
+
+/// Runs the scene by a method: visits impact after impact up to number `impacts`, or to the end of the run. The visitor may
+/// stop it by returning `false`, and then there is no ending.
+///
+/// # Errors
+/// Why the method does not apply, in a sentence.
+pub fn run_by(
+    scene: &Scene,
+    method: Method,
+    impacts: u64,
+    mut visit: impl FnMut(&Impact<'_>) -> bool,
+) -> Result<Option<Ending>, String> {
+    if method != Method::Map {
+        let known: &[Rung] = if method == Method::Extended { &[Rung::Friction] } else { &[] };
+        if let Some(error) = scene.beyond(known) {
+            return Err(error.detail);
+        }
+        if scene.limits.is_some() {
+            return Err("the limits of the table are looked at by the map alone".to_owned());
+        }
+        if scene.outline.is_some() {
+            return Err("the vertices of a polygon are looked at by the map alone".to_owned());
+        }
+    }
+    match method {
+        Method::Linear => {
+            let solution = LinearSolution::of_scene(scene)?;
+            Ok(run_linear(scene, &solution, impacts, visit))
+        }
+        Method::Map => {
+            let mut orbit = match scene.orbit() {
+                Ok(orbit) => orbit,
+                Err(none) => return Ok(Some(none.ending(0.0, 0.0))),
+            };
+            let mut estimate = ErrorEstimate::of_scene(scene, orbit.t());
+            Ok(orbit::run(&mut orbit, impacts, |contact| {
+                let error_estimate = estimate.bound();
+                estimate.pass(contact);
+                visit(&Impact { contact: *contact, error_estimate, extended: None })
+            }))
+        }
+        Method::Extended => {
+            let mut orbit = scene.extended_orbit().map_err(|_| "the first contact is not found".to_owned())?;
+            let (rod, body) = (orbit, scene.model());
+            let mut estimate = ErrorEstimate::of_extended_run(scene, orbit.t().to_f64());
+            Ok(extended::run(&mut orbit, impacts, |contact| {
+                let error_estimate = estimate.bound();
+                estimate.pass_extended(contact);
+                let coming = Coming::at(contact.n, contact.x.to_f64(), extended::in_doubles(&contact.state));
+                let strike = body.strike(&coming);
+                let rounded = Contact {
+                    n: contact.n,
+                    t: contact.t.to_f64(),
+                    x: coming.x,
+                    state: coming.state,
+                    clearance: 0.0,
+                    alpha: strike.alpha,
+                    strike: contact.strike.map(|_| strike),
+                    flight_time: contact.flight_time.map(DoubleDouble::to_f64),
+                    ending: contact.ending,
                 };
-                let mut estimate = self.error_estimate(orbit.t());
-                Ok(orbit::run(&mut orbit, impacts, |contact| {
-                    let error_estimate = estimate.bound();
-                    estimate.pass(contact);
-                    visit(&Impact { contact: *contact, error_estimate, extended: None })
-                }))
-            }
-            Method::Extended => {
-                let mut orbit = self.extended_orbit().map_err(|_| "the first contact is not found".to_owned())?;
-                let (rod, body) = (orbit, self.model());
-                let mut estimate = self.extended_error_estimate(orbit.t().to_f64());
-                Ok(extended::run(&mut orbit, impacts, |contact| {
-                    let error_estimate = estimate.bound();
-                    estimate.pass_extended(contact);
-                    let coming = Coming::at(contact.n, contact.x.to_f64(), extended::in_doubles(&contact.state));
-                    let strike = body.strike(&coming);
-                    let rounded = Contact {
-                        n: contact.n,
-                        t: contact.t.to_f64(),
-                        x: coming.x,
-                        state: coming.state,
-                        clearance: 0.0,
-                        alpha: strike.alpha,
-                        strike: contact.strike.map(|_| strike),
-                        flight_time: contact.flight_time.map(DoubleDouble::to_f64),
-                        ending: contact.ending,
-                    };
-                    visit(&Impact { contact: rounded, error_estimate, extended: Some((&rod, contact)) })
-                }))
-            }
+                visit(&Impact { contact: rounded, error_estimate, extended: Some((&rod, contact)) })
+            }))
         }
     }
+}
 
-    /// The linear solution knows no end of a run; those of the map are looked for at its states.
-    fn run_linear(
-        &self,
-        solution: &LinearSolution,
-        impacts: u64,
-        mut visit: impl FnMut(&Impact<'_>) -> bool,
-    ) -> Option<Ending> {
-        let body = self.model();
-        let mut next = solution.impact(1);
-        for n in 1.. {
-            let here = next;
-            next = solution.impact(n + 1);
-            let State { theta, .. } = here.state;
-            let strike = body.strike(&Coming::at(n, here.x, here.state));
-            let ending = if theta.abs() >= self.topple_angle {
-                Some(Ending::Toppled { theta, limit: self.topple_angle })
-            } else if strike.push >= 0.0 {
-                Some(Ending::Separating { approach: strike.approach })
-            } else if !strike.rises(here.state.y_dot, f64::EPSILON) {
-                Some(Ending::Sinking { contact_rise: strike.contact_rise.min(0.0) })
-            } else {
-                (n >= impacts).then_some(Ending::Completed)
-            };
-            // Too near to an end to say on which side of it the run is.
-            let margin = strike.contact_rise.min(-strike.approach);
-            let safe = theta.abs() < 0.5 * self.topple_angle && 10.0 * here.error_estimate < margin;
-            let contact = Contact {
-                n,
-                t: here.t,
-                x: here.x,
-                state: here.state,
-                clearance: 0.0,
-                alpha: strike.alpha,
-                strike: (strike.push < 0.0 && theta.abs() < self.topple_angle).then_some(strike),
-                flight_time: ending.is_none().then_some(next.t - here.t),
-                ending,
-            };
-            let error_estimate = if safe { here.error_estimate } else { f64::INFINITY };
-            if !visit(&Impact { contact, error_estimate, extended: None }) {
-                return None;
-            }
-            if ending.is_some() {
-                return ending;
-            }
+/// The linear solution knows no end of a run; those of the map are looked for at its states.
+fn run_linear(
+    scene: &Scene,
+    solution: &LinearSolution,
+    impacts: u64,
+    mut visit: impl FnMut(&Impact<'_>) -> bool,
+) -> Option<Ending> {
+    let body = scene.model();
+    let mut next = solution.impact(1);
+    for n in 1.. {
+        let here = next;
+        next = solution.impact(n + 1);
+        let State { theta, .. } = here.state;
+        let strike = body.strike(&Coming::at(n, here.x, here.state));
+        let ending = if theta.abs() >= scene.topple_angle {
+            Some(Ending::Toppled { theta, limit: scene.topple_angle })
+        } else if strike.push >= 0.0 {
+            Some(Ending::Separating { approach: strike.approach })
+        } else if !strike.rises(here.state.y_dot, f64::EPSILON) {
+            Some(Ending::Sinking { contact_rise: strike.contact_rise.min(0.0) })
+        } else {
+            (n >= impacts).then_some(Ending::Completed)
+        };
+        // Too near to an end to say on which side of it the run is.
+        let margin = strike.contact_rise.min(-strike.approach);
+        let safe = theta.abs() < 0.5 * scene.topple_angle && 10.0 * here.error_estimate < margin;
+        let contact = Contact {
+            n,
+            t: here.t,
+            x: here.x,
+            state: here.state,
+            clearance: 0.0,
+            alpha: strike.alpha,
+            strike: (strike.push < 0.0 && theta.abs() < scene.topple_angle).then_some(strike),
+            flight_time: ending.is_none().then_some(next.t - here.t),
+            ending,
+        };
+        let error_estimate = if safe { here.error_estimate } else { f64::INFINITY };
+        if !visit(&Impact { contact, error_estimate, extended: None }) {
+            return None;
         }
-        None
+        if ending.is_some() {
+            return ending;
+        }
     }
+    None
 }

@@ -1,12 +1,14 @@
 //! Chooses the smallest model that is exact for a scene, and says why.
 
-use crate::body::general::{Rig, Steering};
+use crate::body::general::{Gains, Rig, Steering};
 use crate::body::point::Point;
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, Coming, NoContact, Release, Touch};
+use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::strike::{Rod, State, Strike};
 use crate::numbers::number::Number;
+use crate::run::extended;
 use crate::run::orbit::{Orbit, Rules};
 use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
 use crate::table::noise::Noise;
@@ -91,9 +93,26 @@ impl Model {
             Self::Rig(rig) => &rig.rod,
         }
     }
-}
 
-impl Model {
+    /// The friction of its contact; `None` without friction on a table that does not move along itself.
+    pub fn friction(&self) -> Option<Friction> {
+        match self {
+            Self::Rod(_) | Self::Point(_) => None,
+            Self::Rig(rig) => rig.friction,
+        }
+    }
+
+    /// K of its state feedback, in the order of [`crate::control::STATE`]; `None` for a table with a tilt gain.
+    pub fn feedback(&self) -> Option<[f64; 4]> {
+        match self {
+            Self::Rod(_) | Self::Point(_) => None,
+            Self::Rig(rig) => match rig.steering {
+                Steering::TiltGain => None,
+                Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) => Some([x, theta, x_dot, theta_dot]),
+            },
+        }
+    }
+
     /// The rod in it and its friction, if that is all there is.
     pub(crate) fn in_lanes(&self) -> Option<(Rod, Option<Friction>)> {
         match *self {
@@ -234,6 +253,15 @@ impl Scene {
     /// Why there is not even a first contact.
     pub fn orbit(&self) -> Result<Orbit<Model>, NoContact> {
         Orbit::new(self.running_model(), self.rules(), &self.release)
+    }
+
+    /// The same with 31 digits.
+    ///
+    /// # Errors
+    /// [`TooManyPieces`], which the ranges of a scene exclude.
+    pub fn extended_orbit(&self) -> Result<extended::Orbit, TooManyPieces> {
+        let is_point = self.body == BodyShape::Point;
+        extended::Orbit::new(self.parameters(), self.contact_friction(), is_point, self.rules(), &self.release)
     }
 
     /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.

@@ -4,7 +4,7 @@
 
 use crate::bounce::strike::State;
 use crate::run::ending::Ending;
-use crate::run::method::Method;
+use crate::run::method::{Method, run_by};
 use crate::run::orbit::LOOK;
 use crate::scene::model::{Forced, Rung};
 use crate::scene::{Name, Scene, Value};
@@ -86,74 +86,72 @@ struct Here {
     state: State,
 }
 
-impl Scene {
-    /// The scene on each rung up to its own, for up to `impacts` contacts, the least first. `go_on` is asked now and then; a
-    /// `false` gives none.
-    pub fn ladder(&self, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<Vec<Step>> {
-        let mut steps: Vec<Step> = Vec::new();
-        let mut below: Option<(Vec<Here>, Ending)> = None;
-        for (rung, forced) in self.rungs() {
-            let scene = self.on(rung);
-            let method = if rung == Rung::Linear { Method::Linear } else { Method::Map };
-            let (mut course, mut meter) = (Vec::new(), Meter::default());
-            let run = scene.run_by(method, impacts, |impact| {
-                let contact = &impact.contact;
-                meter.look(contact);
-                course.push(Here { t: contact.t, x: contact.x, state: contact.state });
-                !contact.n.is_multiple_of(LOOK) || go_on()
-            });
-            let run = match run {
-                Err(why) => Err(why),
-                Ok(ending) => {
-                    let ending = ending?;
-                    let rho = self.model().rod().radius_of_gyration;
-                    let change =
-                        below.as_ref().map(|below| change(&below.0, &course, rho, below.1.name() == ending.name()));
-                    let run = Run {
-                        ending,
-                        impacts: course.len() as u64,
-                        t: course.last().map_or(0.0, |here| here.t),
-                        demand: meter.most,
-                        change,
-                    };
-                    below = Some((course, ending));
-                    Ok(run)
-                }
-            };
-            steps.push(Step { rung, scene, forced, run });
-        }
-        Some(steps)
-    }
-
-    /// The rungs up to the scene's own, with what asked for each.
-    fn rungs(&self) -> Vec<(Rung, Option<Forced>)> {
-        if self.rung() == Rung::Point {
-            return vec![(Rung::Point, None)];
-        }
-        let above = self.forced().into_iter().filter(|forced| forced.rung > Rung::Rod);
-        let least = [Rung::Linear, Rung::Rod].map(|rung| (rung, None));
-        least.into_iter().chain(above.map(|forced| (forced.rung, Some(forced)))).collect()
-    }
-
-    /// The scene without what a rung leaves out.
-    pub fn on(&self, rung: Rung) -> Self {
-        let mut draft = if rung < Rung::Polygon { self.as_rod() } else { *self }.draft();
-        let mut without = |least: Rung, names: &[Name]| {
-            if rung < least {
-                for &name in names {
-                    // Taking a value back is always admitted.
-                    let _ = draft.set(name, None);
-                }
+/// The scene on each rung up to its own, for up to `impacts` contacts, the least first. `go_on` is asked now and then; a
+/// `false` gives none.
+pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<Vec<Step>> {
+    let mut steps: Vec<Step> = Vec::new();
+    let mut below: Option<(Vec<Here>, Ending)> = None;
+    for (rung, forced) in rungs(scene) {
+        let reduced = at_level(scene, rung);
+        let method = if rung == Rung::Linear { Method::Linear } else { Method::Map };
+        let (mut course, mut meter) = (Vec::new(), Meter::default());
+        let run = run_by(&reduced, method, impacts, |impact| {
+            let contact = &impact.contact;
+            meter.look(contact);
+            course.push(Here { t: contact.t, x: contact.x, state: contact.state });
+            !contact.n.is_multiple_of(LOOK) || go_on()
+        });
+        let run = match run {
+            Err(why) => Err(why),
+            Ok(ending) => {
+                let ending = ending?;
+                let rho = scene.model().rod().radius_of_gyration;
+                let change =
+                    below.as_ref().map(|below| change(&below.0, &course, rho, below.1.name() == ending.name()));
+                let run = Run {
+                    ending,
+                    impacts: course.len() as u64,
+                    t: course.last().map_or(0.0, |here| here.t),
+                    demand: meter.most,
+                    change,
+                };
+                below = Some((course, ending));
+                Ok(run)
             }
         };
-        without(Rung::Noise, &[Name::TimingSd, Name::AngleSd, Name::NoiseModel, Name::Seed, Name::NoiseRun]);
-        without(Rung::Friction, &[Name::Friction, Name::Slide]);
-        if rung < Rung::RodWithX && self.number(Name::FeedbackX).is_some() {
-            let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));
-        }
-        // A scene without some of what it had is a scene.
-        draft.build().unwrap_or(*self)
+        steps.push(Step { rung, scene: reduced, forced, run });
     }
+    Some(steps)
+}
+
+/// The rungs up to the scene's own, with what asked for each.
+fn rungs(scene: &Scene) -> Vec<(Rung, Option<Forced>)> {
+    if scene.rung() == Rung::Point {
+        return vec![(Rung::Point, None)];
+    }
+    let above = scene.forced().into_iter().filter(|forced| forced.rung > Rung::Rod);
+    let least = [Rung::Linear, Rung::Rod].map(|rung| (rung, None));
+    least.into_iter().chain(above.map(|forced| (forced.rung, Some(forced)))).collect()
+}
+
+/// The scene without what a rung leaves out.
+pub fn at_level(scene: &Scene, rung: Rung) -> Scene {
+    let mut draft = if rung < Rung::Polygon { scene.as_rod() } else { *scene }.draft();
+    let mut without = |least: Rung, names: &[Name]| {
+        if rung < least {
+            for &name in names {
+                // Taking a value back is always admitted.
+                let _ = draft.set(name, None);
+            }
+        }
+    };
+    without(Rung::Noise, &[Name::TimingSd, Name::AngleSd, Name::NoiseModel, Name::Seed, Name::NoiseRun]);
+    without(Rung::Friction, &[Name::Friction, Name::Slide]);
+    if rung < Rung::RodWithX && scene.number(Name::FeedbackX).is_some() {
+        let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));
+    }
+    // A scene without some of what it had is a scene.
+    draft.build().unwrap_or(*scene)
 }
 
 fn change(below: &[Here], above: &[Here], rho: f64, same_ending: bool) -> Change {

@@ -50,114 +50,109 @@ pub enum NoBasin {
     Because(String),
 }
 
-impl Scene {
-    /// The basin of release angles, all else at rest, that survive `impacts` contacts. `go_on` is asked every few thousand
-    /// bounces.
-    ///
-    /// # Errors
-    /// [`NoBasin`].
-    pub fn basin(&self, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<Basin, NoBasin> {
-        let because = |why: String| NoBasin::Because(why);
-        if let Some(error) = self.beyond(&[Rung::Friction]) {
-            return Err(because(error.detail));
-        }
-        if self.rules().limits.is_some() {
-            return Err(because(
-                "it is looked for in lanes of rods, which do not see the limits of a table".to_owned(),
-            ));
-        }
-        if self.outline().is_some() {
-            return Err(because(
-                "it is looked for in lanes of rods, which do not see the vertices of a polygon".to_owned(),
-            ));
-        }
-        let Some((rod, friction)) = self.model().in_lanes() else {
-            return Err(because("a point mass has no angle to be released at".to_owned()));
-        };
-        if self.is_lossy() {
-            return Err(because("every bounce loses energy, so all runs end".to_owned()));
-        }
-        let height = self.release.height;
-        if height <= rod.contact_distance {
-            return Err(because(format!(
-                "released at rest at {height} m, not above contact_distance {} m, it does not fall",
-                rod.contact_distance
-            )));
-        }
-        let rules = self.rules();
-        let start = |theta: f64| {
-            let state = State { theta, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
-            let (_, state) = rod.fall(&Release { x: 0.0, height, state }).ok()?;
-            Some(Start { rod, rules, state })
-        };
-        let bounces = Cell::new(0);
-        let mut survive = |angles: &[f64]| {
-            let mut survivors = vec![false; angles.len()];
-            let mut stopped = false;
-            let mut starts = angles.iter().enumerate().filter_map(|(index, theta)| Some((index, start(*theta)?)));
-            let done = |index: usize, end: End| {
-                survivors[index] = end.outcome == Outcome::Completed;
-                bounces.set(bounces.get() + end.impacts);
-            };
-            let go_on = || {
-                stopped = !go_on();
-                !stopped
-            };
-            match friction {
-                None => sweep(impacts, || starts.next(), done, go_on),
-                Some(Friction { coefficient, law, slide }) => {
-                    let next = || starts.next().map(|(index, start)| (index, start, coefficient));
-                    sweep_rough((law, slide), impacts, next, done, go_on);
-                }
-            }
-            if stopped { Err(NoBasin::Stopped) } else { Ok(survivors) }
-        };
-        let grid = |count: usize, span: f64| -> Vec<f64> {
-            (1..=count).map(|index| span * index as f64 / count as f64).collect()
-        };
-        let span = self.topple_angle.min(std::f64::consts::FRAC_PI_2);
-        let rough = grid(ROUGH, span);
-        let last = survive(&rough)?.iter().rposition(|survives| *survives);
-        let fine = grid(FINE, rough[last.map_or(0, |last| last + 1).min(ROUGH - 1)]);
-        let survivors = survive(&fine)?;
-        let spacing = fine[0];
-        // Upright always survives: it is the fixed point.
-        let angle = |count: usize| if count == 0 { 0.0 } else { fine[count - 1] };
-        let first = survivors.iter().position(|survives| !survives).unwrap_or(FINE);
-        let end = survivors.iter().rposition(|survives| *survives).map_or(0, |last| last + 1);
-        let mut search = |count: usize, nearest_first: bool| {
-            let mut low = angle(count);
-            if count == FINE {
-                return Ok(low);
-            }
-            let mut high = fine[count];
-            for _ in 0..ROUNDS {
-                let width = (high - low) / (TRIED as f64 + 1.0);
-                let tried: Vec<f64> = (1..=TRIED).map(|index| low + width * index as f64).collect();
-                let survivors = survive(&tried)?;
-                let kept = if nearest_first {
-                    survivors.iter().position(|survives| !survives).unwrap_or(TRIED)
-                } else {
-                    survivors.iter().rposition(|survives| *survives).map_or(0, |last| last + 1)
-                };
-                high = if kept == TRIED { high } else { tried[kept] };
-                low = if kept == 0 { low } else { tried[kept - 1] };
-            }
-            Ok(low)
-        };
-        let unbroken = search(first, true)?;
-        let theta = if end == first { unbroken } else { search(end, false)? };
-        let mut holes: Vec<(f64, f64)> = Vec::new();
-        let mut inside = false;
-        for (theta, survives) in fine.iter().zip(&survivors).take(end) {
-            match holes.last_mut() {
-                Some(hole) if inside && !survives => hole.1 = *theta,
-                _ if !survives => holes.push((*theta, *theta)),
-                _ => {}
-            }
-            inside = !survives;
-        }
-        let tolerance = (0..ROUNDS).fold(spacing, |width, _| width / (TRIED as f64 + 1.0));
-        Ok(Basin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: bounces.get() })
+/// The basin of release angles, all else at rest, that survive `impacts` contacts. `go_on` is asked every few thousand
+/// bounces.
+///
+/// # Errors
+/// [`NoBasin`].
+pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<Basin, NoBasin> {
+    let because = |why: String| NoBasin::Because(why);
+    if let Some(error) = scene.beyond(&[Rung::Friction]) {
+        return Err(because(error.detail));
     }
+    if scene.rules().limits.is_some() {
+        return Err(because("it is looked for in lanes of rods, which do not see the limits of a table".to_owned()));
+    }
+    if scene.outline().is_some() {
+        return Err(because(
+            "it is looked for in lanes of rods, which do not see the vertices of a polygon".to_owned(),
+        ));
+    }
+    let Some((rod, friction)) = scene.model().in_lanes() else {
+        return Err(because("a point mass has no angle to be released at".to_owned()));
+    };
+    if scene.is_lossy() {
+        return Err(because("every bounce loses energy, so all runs end".to_owned()));
+    }
+    let height = scene.release.height;
+    if height <= rod.contact_distance {
+        return Err(because(format!(
+            "released at rest at {height} m, not above contact_distance {} m, it does not fall",
+            rod.contact_distance
+        )));
+    }
+    let rules = scene.rules();
+    let start = |theta: f64| {
+        let state = State { theta, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
+        let (_, state) = rod.fall(&Release { x: 0.0, height, state }).ok()?;
+        Some(Start { rod, rules, state })
+    };
+    let bounces = Cell::new(0);
+    let mut survive = |angles: &[f64]| {
+        let mut survivors = vec![false; angles.len()];
+        let mut stopped = false;
+        let mut starts = angles.iter().enumerate().filter_map(|(index, theta)| Some((index, start(*theta)?)));
+        let done = |index: usize, end: End| {
+            survivors[index] = end.outcome == Outcome::Completed;
+            bounces.set(bounces.get() + end.impacts);
+        };
+        let go_on = || {
+            stopped = !go_on();
+            !stopped
+        };
+        match friction {
+            None => sweep(impacts, || starts.next(), done, go_on),
+            Some(Friction { coefficient, law, slide }) => {
+                let next = || starts.next().map(|(index, start)| (index, start, coefficient));
+                sweep_rough((law, slide), impacts, next, done, go_on);
+            }
+        }
+        if stopped { Err(NoBasin::Stopped) } else { Ok(survivors) }
+    };
+    let grid =
+        |count: usize, span: f64| -> Vec<f64> { (1..=count).map(|index| span * index as f64 / count as f64).collect() };
+    let span = scene.topple_angle.min(std::f64::consts::FRAC_PI_2);
+    let rough = grid(ROUGH, span);
+    let last = survive(&rough)?.iter().rposition(|survives| *survives);
+    let fine = grid(FINE, rough[last.map_or(0, |last| last + 1).min(ROUGH - 1)]);
+    let survivors = survive(&fine)?;
+    let spacing = fine[0];
+    // Upright always survives: it is the fixed point.
+    let angle = |count: usize| if count == 0 { 0.0 } else { fine[count - 1] };
+    let first = survivors.iter().position(|survives| !survives).unwrap_or(FINE);
+    let end = survivors.iter().rposition(|survives| *survives).map_or(0, |last| last + 1);
+    let mut search = |count: usize, nearest_first: bool| {
+        let mut low = angle(count);
+        if count == FINE {
+            return Ok(low);
+        }
+        let mut high = fine[count];
+        for _ in 0..ROUNDS {
+            let width = (high - low) / (TRIED as f64 + 1.0);
+            let tried: Vec<f64> = (1..=TRIED).map(|index| low + width * index as f64).collect();
+            let survivors = survive(&tried)?;
+            let kept = if nearest_first {
+                survivors.iter().position(|survives| !survives).unwrap_or(TRIED)
+            } else {
+                survivors.iter().rposition(|survives| *survives).map_or(0, |last| last + 1)
+            };
+            high = if kept == TRIED { high } else { tried[kept] };
+            low = if kept == 0 { low } else { tried[kept - 1] };
+        }
+        Ok(low)
+    };
+    let unbroken = search(first, true)?;
+    let theta = if end == first { unbroken } else { search(end, false)? };
+    let mut holes: Vec<(f64, f64)> = Vec::new();
+    let mut inside = false;
+    for (theta, survives) in fine.iter().zip(&survivors).take(end) {
+        match holes.last_mut() {
+            Some(hole) if inside && !survives => hole.1 = *theta,
+            _ if !survives => holes.push((*theta, *theta)),
+            _ => {}
+        }
+        inside = !survives;
+    }
+    let tolerance = (0..ROUNDS).fold(spacing, |width, _| width / (TRIED as f64 + 1.0));
+    Ok(Basin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: bounces.get() })
 }

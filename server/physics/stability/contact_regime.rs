@@ -1,82 +1,90 @@
-//! What friction makes of the bounce near upright: where the contact sticks, how the rod then turns, and the eigenvalues of a
-//! table that only tilts.
+//! The contact at the upright bounce: without friction, sticking to a table that moves along with it, or sticking to a table that
+//! only tilts. Gives the inertia that a strike turns, the stick cone, and the eigenvalues of a table that only tilts.
 //!
-//! Not here: the impulse itself ([`crate::bounce::friction`]), and what is concluded ([`crate::stability::linear_verdict`], [`crate::stability::verdict`]).
+//! Not here: the impulse itself ([`crate::bounce::friction`]), and the conclusions ([`crate::stability::linear_verdict`],
+//! [`crate::stability::verdict`]).
 
-use crate::bounce::friction::Slide;
-use crate::scene::{BodyShape, Scene};
+use crate::bounce::friction::{Friction, Slide};
+use crate::bounce::strike::{Rod, State};
+use crate::scene::model::Model;
 use nalgebra::Complex;
 
-/// What the contact does at the fixed point.
+/// Behaviour of the contact at the fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Grip {
-    /// It has no friction.
-    Smooth,
-    /// It sticks to a table that moves along with it.
-    Matched,
-    /// It sticks to a table that only tilts: v_t = 0 is inside the stick cone for any μ > 0.
-    Held,
+pub enum ContactRegime {
+    /// No friction.
+    Frictionless,
+    /// The contact sticks to a table that moves along itself with the contact point.
+    VelocityMatched,
+    /// The contact sticks to a table that only tilts: v_t = 0 is inside the stick cone for any μ > 0.
+    Sticking,
 }
 
-impl Scene {
-    /// What the contact does at the fixed point.
-    pub fn grip(&self) -> Grip {
-        match (self.friction == 0.0, self.slide) {
-            (true, _) => Grip::Smooth,
-            (false, Slide::Matched) => Grip::Matched,
-            (false, Slide::None) => Grip::Held,
-        }
+/// The contact regime of a model at its fixed point.
+pub fn contact_regime(model: &Model) -> ContactRegime {
+    match model.friction() {
+        None => ContactRegime::Frictionless,
+        Some(Friction { coefficient: 0.0, .. }) => ContactRegime::Frictionless,
+        Some(Friction { slide: Slide::Matched, .. }) => ContactRegime::VelocityMatched,
+        Some(Friction { slide: Slide::None, .. }) => ContactRegime::Sticking,
     }
+}
 
-    /// The square of the radius, m², that says how hard the rod is to turn by a strike: ρ² about its centre of gravity, or
-    /// ρ² + l² about a contact that sticks.
-    pub(crate) fn turning_radius_squared(&self, contact_distance: f64, radius_of_gyration: f64) -> f64 {
-        let own = radius_of_gyration * radius_of_gyration;
-        if self.grip() == Grip::Smooth { own } else { own + contact_distance * contact_distance }
+/// The square of the radius of gyration, m², about the point that a strike turns the rod about: ρ² about the centre of gravity, or
+/// ρ² + l² about a contact that sticks.
+pub(crate) fn turning_radius_squared(rod: &Rod, regime: ContactRegime) -> f64 {
+    let (l, rho_squared) = (rod.contact_distance, rod.radius_of_gyration * rod.radius_of_gyration);
+    match regime {
+        ContactRegime::Frictionless => rho_squared,
+        ContactRegime::VelocityMatched | ContactRegime::Sticking => rho_squared + l * l,
     }
+}
 
-    /// |θ|, rad, up to which a matched contact sticks, for small angles: μ(ρ² + l²)/(l²|κ − 1|), from |C| ≤ μA. None where it
-    /// sticks at every small angle, and for contacts that are not matched.
-    pub fn stick_cone(&self) -> Option<f64> {
-        let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return None };
-        let turning = self.turning_radius_squared(contact_distance, radius_of_gyration);
-        let excess = (self.tilt_gain - 1.0).abs();
-        (self.grip() == Grip::Matched && excess > 0.0)
-            .then(|| self.friction * turning / (contact_distance * contact_distance * excess))
-    }
+/// The rod of a model with an angle, and the coefficient of friction, if its contact is velocity-matched.
+fn velocity_matched(model: &Model) -> Option<(&Rod, f64)> {
+    let matched = contact_regime(model) == ContactRegime::VelocityMatched;
+    matched.then(|| (model.rod(), model.friction().map_or(0.0, |friction| friction.coefficient)))
+}
 
-    /// What |v|² + 2Gy lacks, m²/s², of a quantity that a matched table keeps to second order about a bounce with the drift
-    /// speed `drift`: 2lcθ̇ + κ(ρ² + l²)θ̇²/(κ − 1).
-    ///
-    /// Such a table works on the rod by P_t v_t = lsθ(ẋ − Vκθ + lθ̇) a strike, where s = 2Vl(κ − 1)/(ρ² + l²) and θ̇⁺ = θ̇ − sθ.
-    /// With ẋ = c + (κρ² + l²)θ̇/((κ − 1)l) that is lc(θ̇ − θ̇⁺) + (lVκ/s)(θ̇² − θ̇⁺²): what it gives it takes back.
-    pub(crate) fn lent(&self, drift: f64) -> f64 {
-        let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return 0.0 };
-        let excess = self.tilt_gain - 1.0;
-        if self.grip() != Grip::Matched || excess == 0.0 {
-            return 0.0;
-        }
-        let spin = self.start().theta_dot;
-        let turning = self.turning_radius_squared(contact_distance, radius_of_gyration);
-        2.0 * contact_distance * drift * spin + self.tilt_gain * turning * spin * spin / excess
-    }
+/// The cone |θ| (rad, small angles) within which a velocity-matched contact sticks: μ(ρ² + l²)/(l²|κ − 1|), from |C| ≤ μA. `None`
+/// if the contact sticks at every small angle, and in the other regimes.
+pub fn stick_cone(model: &Model) -> Option<f64> {
+    let (rod, coefficient) = velocity_matched(model)?;
+    let turning = turning_radius_squared(rod, ContactRegime::VelocityMatched);
+    let excess = (rod.tilt_gain - 1.0).abs();
+    (excess > 0.0).then(|| coefficient * turning / (rod.contact_distance * rod.contact_distance * excess))
+}
 
-    /// −4lV²/(G(l² + ρ²)): the characteristic polynomial, at 1, of the derivative at the fixed point of speed V (m/s) where the
-    /// contact is [`Grip::Held`]. It is negative, so an eigenvalue is beyond 1.
-    pub fn held_polynomial_at_one(&self, speed: f64) -> f64 {
-        let BodyShape::Rod { contact_distance, radius_of_gyration } = self.body else { return 0.0 };
-        let turning = self.turning_radius_squared(contact_distance, radius_of_gyration);
-        -4.0 * contact_distance * speed * speed / (self.gravity * turning)
+/// The term that completes |v|² + 2Gy, m²/s², to a quantity that a velocity-matched table conserves to second order about a
+/// bounce with drift speed c (m/s): 2lcθ̇ + κ(ρ² + l²)θ̇²/(κ − 1). 0 in the other regimes.
+///
+/// Such a table works on the rod by P_t v_t = lsθ(ẋ − Vκθ + lθ̇) at a strike, where s = 2Vl(κ − 1)/(ρ² + l²) and θ̇⁺ = θ̇ − sθ.
+/// With ẋ = c + (κρ² + l²)θ̇/((κ − 1)l) that is lc(θ̇ − θ̇⁺) + (lVκ/s)(θ̇² − θ̇⁺²): a difference of two values of one quantity.
+pub(crate) fn lent_by_table(model: &Model, start: &State, drift_speed: f64) -> f64 {
+    let Some((rod, _)) = velocity_matched(model) else { return 0.0 };
+    let excess = rod.tilt_gain - 1.0;
+    if excess == 0.0 {
+        return 0.0;
     }
+    let spin = start.theta_dot;
+    let turning = turning_radius_squared(rod, ContactRegime::VelocityMatched);
+    2.0 * rod.contact_distance * drift_speed * spin + rod.tilt_gain * turning * spin * spin / excess
+}
 
-    /// The eigenvalues of θ, ẋ and θ̇ there: 0, since the contact's velocity along the table is always taken away, and
-    /// λ = 1 + m ± √(m² + 2ν) with ν = 2lV²/(G(l² + ρ²)), m = ν(2 − κ)/2.
-    pub(crate) fn held_eigenvalues(&self, speed: f64) -> [Complex<f64>; 3] {
-        let nu = -0.5 * self.held_polynomial_at_one(speed);
-        let mean = 0.5 * nu * (2.0 - self.tilt_gain);
-        let root = (mean * mean + 2.0 * nu).sqrt();
-        // Their product is −2ν; the smaller one by it, without cancellation.
-        let large = if mean < 0.0 { mean - root } else { mean + root };
-        [1.0 + large, 1.0 - 2.0 * nu / large, 0.0].map(|value| Complex::new(value, 0.0))
-    }
+/// −4lV²/(G(l² + ρ²)): the characteristic polynomial, at 1, of the derivative at the fixed point of speed V (m/s) for a contact
+/// that is [`ContactRegime::Sticking`]. It is negative, so one eigenvalue is greater than 1.
+pub fn sticking_polynomial_at_one(rod: &Rod, speed: f64) -> f64 {
+    let turning = turning_radius_squared(rod, ContactRegime::Sticking);
+    -4.0 * rod.contact_distance * speed * speed / (rod.gravity * turning)
+}
+
+/// The eigenvalues of θ, ẋ and θ̇ in the same regime: 0, since every strike takes away the contact's velocity along the table, and
+/// λ = 1 + m ± √(m² + 2ν) with ν = 2lV²/(G(l² + ρ²)), m = ν(2 − κ)/2.
+pub(crate) fn sticking_eigenvalues(rod: &Rod, speed: f64) -> [Complex<f64>; 3] {
+    let nu = -0.5 * sticking_polynomial_at_one(rod, speed);
+    let mean = 0.5 * nu * (2.0 - rod.tilt_gain);
+    let root = (mean * mean + 2.0 * nu).sqrt();
+    // The product of the two is −2ν; the smaller one follows from it without cancellation.
+    let large = if mean < 0.0 { mean - root } else { mean + root };
+    [1.0 + large, 1.0 - 2.0 * nu / large, 0.0].map(|value| Complex::new(value, 0.0))
 }

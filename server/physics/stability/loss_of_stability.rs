@@ -10,9 +10,11 @@ use crate::control::margin::crossings;
 use crate::control::{BounceModel, STABLE};
 use crate::periodic_orbits::branch::Kind as Bifurcation;
 use crate::scene::{Name, Scene};
+use crate::stability::boundary::Boundary;
+use crate::stability::contact_regime::contact_regime;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::jacobian::{eigenvalues, jacobian, modulus};
-use crate::stability::linear_verdict::{Boundary, Linear, PARABOLIC};
+use crate::stability::linear_verdict::{Linear, PARABOLIC};
 use crate::stability::lyapunov::first_contact;
 use crate::stability::normal_form::Bounce;
 use nalgebra::{Complex, DMatrix, RowVector4};
@@ -141,8 +143,9 @@ fn two_heights(scene: &Scene, fixed_point: &FixedPoint, loop_gain: f64) -> Optio
     let rod = scene.parameters::<f64>();
     let height = |speed_squared: f64| rod.contact_distance + speed_squared / (2.0 * rod.gravity);
     let state = State { theta: 0.0, x_dot: 0.0, y_dot: -high.sqrt(), theta_dot: 0.0 };
-    let angle_bounded = jacobian(&scene.model(), &state, 2).ok().and_then(|twice| {
-        let odd = odd_part(&twice.matrix, scene.feedback().is_some_and(|gain| gain[0] != 0.0));
+    let model = scene.model();
+    let angle_bounded = jacobian(&model, &state, 2).ok().and_then(|twice| {
+        let odd = odd_part(&twice.matrix, model.feedback().is_some_and(|gain| gain[0] != 0.0));
         Some(eigenvalues(&odd)?.into_iter().all(|value| modulus(value) <= CIRCLING))
     });
     Some(Settles::Heights { heights: [height(low), height(high)], angle_bounded: angle_bounded.unwrap_or(false) })
@@ -161,21 +164,22 @@ fn odd_part(matrix: &DMatrix<f64>, with_x: bool) -> DMatrix<f64> {
 /// The ends of the factors on a state feedback: both margins of a stable loop; of an unstable one the end of the stable range
 /// next to it, if there is one.
 fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<Loss>, String> {
-    let Some(gain) = scene.feedback() else { return Ok(Vec::new()) };
-    let bounce = Bounce::of(scene, fixed_point)?;
+    let model = scene.model();
+    let Some(gain) = model.feedback() else { return Ok(Vec::new()) };
+    let bounce = Bounce::of(&model, fixed_point)?;
     let start = first_contact(scene)?;
-    let model = BounceModel::new(&scene.parameters(), fixed_point.speed, scene.grip());
+    let linear = BounceModel::new(model.rod(), fixed_point.speed, contact_regime(&model));
     let with_x = gain[0] != 0.0;
     let first = usize::from(!with_x);
     let part = |matrix: nalgebra::Matrix4<f64>| -> DMatrix<f64> {
         matrix.view((first, first), (4 - first, 4 - first)).clone_owned()
     };
-    let mut factors = crossings(&part(model.a), &part(model.a - model.b * RowVector4::from(gain)));
+    let mut factors = crossings(&part(linear.a), &part(linear.a - linear.b * RowVector4::from(gain)));
     factors.retain(|factor| factor.is_finite() && *factor > 0.0);
     factors.extend([0.0, f64::INFINITY]);
     factors.sort_by(f64::total_cmp);
     let radius = |factor: f64| {
-        model.closed_loop(gain.map(|gain| factor * gain), with_x).map_or(f64::INFINITY, |it| it.spectral_radius)
+        linear.closed_loop(gain.map(|gain| factor * gain), with_x).map_or(f64::INFINITY, |it| it.spectral_radius)
     };
     let is_stable =
         |low: f64, high: f64| radius(if high.is_finite() { 0.5 * (low + high) } else { 2.0 * low + 1.0 }) <= STABLE;

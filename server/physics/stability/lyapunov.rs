@@ -63,7 +63,7 @@ pub fn lyapunov(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Res
     if linear.closed_loop.is_some() {
         return Err("with state feedback small deviations die out or grow in first order already".to_owned());
     }
-    let bounce = Bounce::of(scene, fixed_point)?;
+    let bounce = Bounce::of(&scene.model(), fixed_point)?;
     let height = linear.energy_eigenvalue;
     if height == 1.0 {
         return Err(

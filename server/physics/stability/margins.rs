@@ -4,6 +4,8 @@
 //! The table keeps to what it was told: its gains, and the restitution that it believes in.
 
 use crate::scene::{Name, Scene, Value};
+use crate::stability::fixed_point::find_fixed_point;
+use crate::stability::linear_verdict::linear_verdict;
 
 /// How far off each may be, either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,77 +57,71 @@ pub struct Margins {
 const POINTS: usize = 9;
 const ROUNDS: usize = 24;
 
-impl Scene {
-    /// The linear verdict over a box of bodies.
-    ///
-    /// # Errors
-    /// Why there is none for one of them, in a sentence.
-    pub fn margins(&self, tolerances: &Tolerances) -> Result<Margins, String> {
-        if self.outline().is_some() {
-            return self.as_rod().margins(tolerances);
-        }
-        let number = |name| self.number(name).unwrap_or(f64::NAN);
-        let middle = [Name::ContactDistance, Name::RadiusOfGyration, Name::Restitution].map(number);
-        if middle.iter().any(|value| value.is_nan()) {
-            return Err("only a rod has lengths to be off".to_owned());
-        }
-        let off = [tolerances.contact_distance, tolerances.radius_of_gyration, tolerances.restitution];
-        let (mut low, mut high) = (middle, middle);
-        for side in 0..3 {
-            low[side] -= off[side];
-            high[side] += off[side];
-        }
-        (low[2], high[2]) = (low[2].max(0.0), high[2].min(1.0));
-        if self.feedback().is_some() {
-            return Err("margins over tolerances are of a tilt gain; the table has state feedback".to_owned());
-        }
-        let lower = self.linear(&self.fixed_point()?).lower_tilt_gain;
-        let extreme = |of: fn(&Looked) -> f64| search(low, high, |at| Ok(of(&self.look(at)?)));
-        let (critical, worst) = extreme(|looked| looked.critical)?;
-        let (most, _) = extreme(|looked| -looked.critical)?;
-        let span = |of: fn(&Looked) -> f64, negative: fn(&Looked) -> f64| {
-            Ok::<_, String>(Span { least: extreme(of)?.0, most: -extreme(negative)?.0 })
-        };
-        let energy_eigenvalue = span(|looked| looked.energy, |looked| -looked.energy)?;
-        let kappa = self.tilt_gain;
-        Ok(Margins {
-            critical_tilt_gain: Span { least: critical, most: -most },
-            worst: Sample { contact_distance: worst[0], radius_of_gyration: worst[1], restitution: worst[2] },
-            apex_height: span(|looked| looked.apex, |looked| -looked.apex)?,
-            energy_eigenvalue,
-            holds: kappa > lower && kappa < critical && energy_eigenvalue.least > -1.0 && energy_eigenvalue.most <= 1.0,
-        })
+/// The linear verdict over a box of bodies.
+///
+/// # Errors
+/// Why there is none for one of them, in a sentence.
+pub fn margins_over_tolerances(scene: &Scene, tolerances: &Tolerances) -> Result<Margins, String> {
+    if scene.outline().is_some() {
+        return margins_over_tolerances(&scene.as_rod(), tolerances);
     }
+    let number = |name| scene.number(name).unwrap_or(f64::NAN);
+    let middle = [Name::ContactDistance, Name::RadiusOfGyration, Name::Restitution].map(number);
+    if middle.iter().any(|value| value.is_nan()) {
+        return Err("only a rod has lengths to be off".to_owned());
+    }
+    let off = [tolerances.contact_distance, tolerances.radius_of_gyration, tolerances.restitution];
+    let (mut low, mut high) = (middle, middle);
+    for side in 0..3 {
+        low[side] -= off[side];
+        high[side] += off[side];
+    }
+    (low[2], high[2]) = (low[2].max(0.0), high[2].min(1.0));
+    if scene.model().feedback().is_some() {
+        return Err("margins over tolerances are of a tilt gain; the table has state feedback".to_owned());
+    }
+    let lower = linear_verdict(scene, &find_fixed_point(scene)?).lower_tilt_gain;
+    let extreme = |of: fn(&Looked) -> f64| search(low, high, |at| Ok(of(&look(scene, at)?)));
+    let (critical, worst) = extreme(|looked| looked.critical)?;
+    let (most, _) = extreme(|looked| -looked.critical)?;
+    let span = |of: fn(&Looked) -> f64, negative: fn(&Looked) -> f64| {
+        Ok::<_, String>(Span { least: extreme(of)?.0, most: -extreme(negative)?.0 })
+    };
+    let energy_eigenvalue = span(|looked| looked.energy, |looked| -looked.energy)?;
+    let kappa = scene.tilt_gain;
+    Ok(Margins {
+        critical_tilt_gain: Span { least: critical, most: -most },
+        worst: Sample { contact_distance: worst[0], radius_of_gyration: worst[1], restitution: worst[2] },
+        apex_height: span(|looked| looked.apex, |looked| -looked.apex)?,
+        energy_eigenvalue,
+        holds: kappa > lower && kappa < critical && energy_eigenvalue.least > -1.0 && energy_eigenvalue.most <= 1.0,
+    })
+}
 
-    fn look(&self, [contact_distance, radius_of_gyration, restitution]: [f64; 3]) -> Result<Looked, String> {
-        let mut draft = self.draft();
-        let told = self.assumed_restitution();
-        let mut values = vec![
-            (Name::ContactDistance, contact_distance),
-            (Name::RadiusOfGyration, radius_of_gyration),
-            (Name::Restitution, restitution),
-        ];
-        if restitution != told && !self.is_lossy() {
-            values.push((Name::AssumedRestitution, told));
-        }
-        for (name, value) in values {
-            draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail)?;
-        }
-        let scene =
-            draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))?;
-        let of = |why: String| {
-            format!(
-                "at contact_distance {contact_distance} m, radius_of_gyration {radius_of_gyration} m and restitution {restitution}: {why}"
-            )
-        };
-        let fixed_point = scene.fixed_point().map_err(of)?;
-        let linear = scene.linear(&fixed_point);
-        Ok(Looked {
-            critical: linear.critical_tilt_gain,
-            apex: fixed_point.apex_height,
-            energy: linear.energy_eigenvalue,
-        })
+fn look(scene: &Scene, [contact_distance, radius_of_gyration, restitution]: [f64; 3]) -> Result<Looked, String> {
+    let mut draft = scene.draft();
+    let told = scene.assumed_restitution();
+    let mut values = vec![
+        (Name::ContactDistance, contact_distance),
+        (Name::RadiusOfGyration, radius_of_gyration),
+        (Name::Restitution, restitution),
+    ];
+    if restitution != told && !scene.is_lossy() {
+        values.push((Name::AssumedRestitution, told));
     }
+    for (name, value) in values {
+        draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail)?;
+    }
+    let scene =
+        draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))?;
+    let of = |why: String| {
+        format!(
+            "at contact_distance {contact_distance} m, radius_of_gyration {radius_of_gyration} m and restitution {restitution}: {why}"
+        )
+    };
+    let fixed_point = find_fixed_point(&scene).map_err(of)?;
+    let linear = linear_verdict(&scene, &fixed_point);
+    Ok(Looked { critical: linear.critical_tilt_gain, apex: fixed_point.apex_height, energy: linear.energy_eigenvalue })
 }
 
 struct Looked {

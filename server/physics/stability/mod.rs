@@ -2,6 +2,7 @@
 //! far aside it may start, and the verdict from all of them.
 
 pub mod basin;
+pub mod boundary;
 pub mod contact_regime;
 pub mod fixed_point;
 pub mod jacobian;
@@ -9,6 +10,7 @@ pub mod linear_verdict;
 pub mod loss_of_stability;
 pub mod lyapunov;
 pub mod margins;
+pub mod nonlinear_run;
 pub mod normal_form;
 pub mod regularity;
 pub mod verdict;

@@ -13,7 +13,6 @@ use crate::bounce::friction::{Friction, Slide, as_it_is};
 use crate::bounce::strike::{Rod, State};
 use crate::numbers::number::Number;
 use crate::numbers::taylor::Taylor;
-use crate::scene::Scene;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::jacobian::{eigenvalues, modulus};
@@ -65,12 +64,12 @@ impl Cubic {
 }
 
 impl Bounce {
-    /// The bounce of a scene about its fixed point.
+    /// The bounce of a model about its fixed point.
     ///
     /// # Errors
     /// Why it has no third derivatives, in a sentence.
-    pub fn of(scene: &Scene, fixed_point: &FixedPoint) -> Result<Self, String> {
-        let (rod, steering, friction) = match scene.model() {
+    pub fn of(model: &Model, fixed_point: &FixedPoint) -> Result<Self, String> {
+        let (rod, steering, friction) = match *model {
             Model::Rod(rod) => (rod, Steering::TiltGain, None),
             Model::Rig(Rig { rod, steering, friction, noise: None, outline: _ }) => (rod, steering, friction),
             Model::Rig(_) => return Err("it is not derived with noise".to_owned()),

@@ -8,7 +8,7 @@ use crate::bounce::friction::Friction;
 use crate::bounce::strike::{Rod, State};
 use crate::numbers::dual::Dual;
 use crate::numbers::trig;
-use crate::scene::Scene;
+use crate::run::orbit::Orbit;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::linear_verdict::Linear;
@@ -91,49 +91,51 @@ impl Regularity {
     }
 }
 
-impl Scene {
-    /// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. None for a body without an angle.
-    pub fn regularity(&self, fixed_point: &FixedPoint, linear: &Linear, impacts: u64) -> Option<Regularity> {
-        let (rod, friction) = match self.model() {
-            Model::Rod(rod) => (rod, None),
-            Model::Rig(Rig { rod, steering: Steering::TiltGain, friction, noise: None, outline: _ }) => (rod, friction),
-            _ => return None,
-        };
-        let mut orbit = self.orbit().ok()?;
-        let undisturbed = orbit.state().theta == 0.0 && orbit.state().theta_dot == 0.0;
-        let mut tangents = Tangents::new(&rod, friction, fixed_point.flight_time);
-        let mut turns = Turns::new(fixed_point, linear);
-        let (mut advances, mut growth) = (Vec::new(), Vec::new());
-        // MEGNO: Y(n) = (2/n) Σ k ln(δ_k/δ_{k−1}), and its mean over n.
-        let (mut weighted, mut means, mut last, mut largest) = (0.0, 0.0, 0.0, 0.0);
-        for n in 1..=impacts.min(WATCHED) {
-            let contact = orbit.advance();
-            let Some(flight_time) = contact.flight_time else { break };
-            advances.extend(turns.as_mut().and_then(|turns| turns.next(&contact.state)));
-            tangents.pass(&contact.state, flight_time);
-            let now = tangents.growth();
-            if !now.is_finite() {
-                break;
-            }
-            let n = n as f64;
-            weighted += n * (now - last);
-            means += 2.0 * weighted / n;
-            last = now;
-            largest = f64::max(largest, now);
-            growth.push(largest);
+/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback or noise.
+pub fn measure_regularity(
+    mut orbit: Orbit<Model>,
+    fixed_point: &FixedPoint,
+    linear: &Linear,
+    impacts: u64,
+) -> Option<Regularity> {
+    let (rod, friction) = match orbit.body {
+        Model::Rod(rod) => (rod, None),
+        Model::Rig(Rig { rod, steering: Steering::TiltGain, friction, noise: None, outline: _ }) => (rod, friction),
+        Model::Rig(_) | Model::Point(_) => return None,
+    };
+    let undisturbed = orbit.state().theta == 0.0 && orbit.state().theta_dot == 0.0;
+    let mut tangents = Tangents::new(&rod, friction, fixed_point.flight_time);
+    let mut turns = Turns::new(fixed_point, linear);
+    let (mut advances, mut growth) = (Vec::new(), Vec::new());
+    // MEGNO: Y(n) = (2/n) Σ k ln(δ_k/δ_{k−1}), and its mean over n.
+    let (mut weighted, mut means, mut last, mut largest) = (0.0, 0.0, 0.0, 0.0);
+    for n in 1..=impacts.min(WATCHED) {
+        let contact = orbit.advance();
+        let Some(flight_time) = contact.flight_time else { break };
+        advances.extend(turns.as_mut().and_then(|turns| turns.next(&contact.state)));
+        tangents.pass(&contact.state, flight_time);
+        let now = tangents.growth();
+        if !now.is_finite() {
+            break;
         }
-        let watched = growth.len() as u64;
-        let rotation = turns.and(linear.rotation).map(|rotation| {
-            let linear = rotation / TAU;
-            let measured = weighted_average(&advances).filter(|_| advances.len() >= FEWEST).map(|mean| mean / TAU);
-            Rotation { measured, linear, resonance: nearest_resonance(measured.unwrap_or(linear)) }
-        });
-        let chaos = (watched == WATCHED && !undisturbed).then(|| {
-            let indicator = means / watched as f64;
-            Chaos { indicator, chaotic: indicator > CHAOTIC, impacts: watched }
-        });
-        Some(Regularity { rotation, chaos, growth })
+        let n = n as f64;
+        weighted += n * (now - last);
+        means += 2.0 * weighted / n;
+        last = now;
+        largest = f64::max(largest, now);
+        growth.push(largest);
     }
+    let watched = growth.len() as u64;
+    let rotation = turns.and(linear.rotation).map(|rotation| {
+        let linear = rotation / TAU;
+        let measured = weighted_average(&advances).filter(|_| advances.len() >= FEWEST).map(|mean| mean / TAU);
+        Rotation { measured, linear, resonance: nearest_resonance(measured.unwrap_or(linear)) }
+    });
+    let chaos = (watched == WATCHED && !undisturbed).then(|| {
+        let indicator = means / watched as f64;
+        Chaos { indicator, chaotic: indicator > CHAOTIC, impacts: watched }
+    });
+    Some(Regularity { rotation, chaos, growth })
 }
 
 /// The nearest rational with a denominator of at most [`HIGHEST_ORDER`], the least one if there are two.

@@ -5,11 +5,13 @@
 use crate::control::{ClosedLoop, STATE};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
-use crate::stability::contact_regime::Grip;
+use crate::stability::boundary::{Boundary, boundary_coefficient, period_two_angle};
+use crate::stability::contact_regime::{ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one};
 use crate::stability::fixed_point::FixedPoint;
-use crate::stability::linear_verdict::{Boundary, Class, Linear, Nonlinear, PARABOLIC};
+use crate::stability::linear_verdict::{Class, Linear, PARABOLIC};
 use crate::stability::loss_of_stability::{End, Loss, Settles, losses};
 use crate::stability::lyapunov::{Kind, Lyapunov, lyapunov};
+use crate::stability::nonlinear_run::NonlinearRun;
 use crate::stability::regularity::{CHAOTIC, Chaos};
 
 /// The verdict on a scene.
@@ -83,7 +85,7 @@ pub struct HigherOrder {
 impl HigherOrder {
     /// Collects them for a scene.
     pub fn of(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Self {
-        let boundary = scene.boundary(fixed_point);
+        let boundary = boundary_coefficient(&scene.model(), fixed_point);
         let (losses, notes) = losses(scene, fixed_point, linear, boundary);
         Self { boundary, lyapunov: lyapunov(scene, fixed_point, linear), losses, notes }
     }
@@ -95,228 +97,222 @@ impl HigherOrder {
     }
 }
 
-impl Scene {
-    /// Weighs the linear verdict, the higher orders, the run and how regular it is against each other.
-    pub fn judge(
-        &self,
-        fixed_point: &FixedPoint,
-        linear: &Linear,
-        higher: &HigherOrder,
-        run: &Nonlinear,
-        chaos: Option<Chaos>,
-    ) -> Judgement {
-        let survived = run.ending == Ending::Completed;
-        let agree = linear.says_bounded() == survived;
-        let judgement = |verdict, decided_by, reason| Judgement { verdict, decided_by, agree, reason };
-        let start = self.start();
-        let undisturbed = start.theta == 0.0 && start.theta_dot == 0.0;
-        let kappa = self.tilt_gain;
-        let critical = linear.critical_tilt_gain;
-        let boundary = higher.boundary;
-        let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
-        if linear.energy_eigenvalue.abs() > 1.0 + PARABOLIC {
-            let grows = format!(
-                "energy_gain is {} s²/m² and must be between 0 and {}: deviations of the height grow by {} a bounce",
-                self.energy_gain, linear.upper_energy_gain, linear.energy_eigenvalue
-            );
-            let Some((_, Settles::Heights { heights: [low, high], angle_bounded })) =
-                higher.settled_beyond(End::EnergyGain)
-            else {
-                return judgement(Verdict::Unstable, DecidedBy::Linear, grows);
-            };
-            let softly = format!("{grows}, softly: bounces settle on heights of {low} m and {high} m in turn");
-            return match (angle_bounded, survived) {
-                (true, true) => {
-                    let reason = format!("{softly}, on which the angle stays bounded, and the run survived");
-                    judgement(Verdict::BoundedBeyondBoundary, DecidedBy::Boundary, reason)
-                }
-                (true, false) => judgement(Verdict::Unstable, DecidedBy::Nonlinear, format!("{softly}, but {fell}")),
-                (false, _) => {
-                    let reason = format!("{softly}, on which the angle does not stay bounded");
-                    judgement(Verdict::Unstable, DecidedBy::Linear, reason)
-                }
-            };
-        }
-        if let Some(closed) = &linear.closed_loop {
-            return self.judge_law(closed, higher, run);
-        }
-        if let Ok(found) = &higher.lyapunov
-            && found.kind != Kind::Neutral
-        {
-            return self.judge_swing(found, run, agree);
-        }
-        if !survived && linear.class != Class::Hyperbolic && linear.class != Class::Parabolic {
-            let cone = self.stick_cone().filter(|cone| start.theta.abs() > *cone).map_or_else(String::new, |cone| {
-                format!(", and theta {} rad outside the stick cone, |θ| up to about {cone} rad", start.theta)
-            });
-            let reason =
-                format!("{fell}, although the linear analysis is stable: the start is outside the basin{cone}");
-            return judgement(Verdict::Unstable, DecidedBy::Nonlinear, reason);
-        }
-        if self.grip() == Grip::Held {
-            let largest = linear.eigenvalues.iter().map(|value| value.re).fold(1.0, f64::max);
-            let reason = format!(
-                "friction is {} and slide is `none`: at the fixed point the contact sticks for any friction above 0, and the \
-                 derivative there has the characteristic polynomial −4lV²/(G(l² + ρ²)) = {} < 0 at 1, so for every tilt_gain one \
-                 eigenvalue is beyond 1 ({largest} here); {}",
-                self.friction,
-                self.held_polynomial_at_one(fixed_point.speed),
-                if survived { "this run has not left yet" } else { fell.as_str() }
-            );
-            return judgement(Verdict::Unstable, DecidedBy::Linear, reason);
-        }
-        match linear.class {
-            Class::Attracting => {
-                let reason = format!("the angle of the velocity shrinks by {} a bounce (eq. 4)", 1.0 - 2.0 * kappa);
-                judgement(Verdict::StableInPlace, DecidedBy::Linear, reason)
+/// Weighs the linear verdict, the higher orders, the run and how regular it is against each other.
+pub fn judge(
+    scene: &Scene,
+    fixed_point: &FixedPoint,
+    linear: &Linear,
+    higher: &HigherOrder,
+    run: &NonlinearRun,
+    chaos: Option<Chaos>,
+) -> Judgement {
+    let survived = run.ending == Ending::Completed;
+    let agree = linear.says_bounded() == survived;
+    let judgement = |verdict, decided_by, reason| Judgement { verdict, decided_by, agree, reason };
+    let start = scene.start();
+    let undisturbed = start.theta == 0.0 && start.theta_dot == 0.0;
+    let kappa = scene.tilt_gain;
+    let model = scene.model();
+    let critical = linear.critical_tilt_gain;
+    let boundary = higher.boundary;
+    let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
+    if linear.energy_eigenvalue.abs() > 1.0 + PARABOLIC {
+        let grows = format!(
+            "energy_gain is {} s²/m² and must be between 0 and {}: deviations of the height grow by {} a bounce",
+            scene.energy_gain, linear.upper_energy_gain, linear.energy_eigenvalue
+        );
+        let Some((_, Settles::Heights { heights: [low, high], angle_bounded })) =
+            higher.settled_beyond(End::EnergyGain)
+        else {
+            return judgement(Verdict::Unstable, DecidedBy::Linear, grows);
+        };
+        let softly = format!("{grows}, softly: bounces settle on heights of {low} m and {high} m in turn");
+        return match (angle_bounded, survived) {
+            (true, true) => {
+                let reason = format!("{softly}, on which the angle stays bounded, and the run survived");
+                judgement(Verdict::BoundedBeyondBoundary, DecidedBy::Boundary, reason)
             }
-            Class::Elliptic => {
-                let mut reason = format!(
-                    "tilt_gain {kappa} is between {} and {critical}, so small deviations circle, and the run survived",
-                    linear.lower_tilt_gain
+            (true, false) => judgement(Verdict::Unstable, DecidedBy::Nonlinear, format!("{softly}, but {fell}")),
+            (false, _) => {
+                let reason = format!("{softly}, on which the angle does not stay bounded");
+                judgement(Verdict::Unstable, DecidedBy::Linear, reason)
+            }
+        };
+    }
+    if let Some(closed) = &linear.closed_loop {
+        return judge_law(closed, higher, run);
+    }
+    if let Ok(found) = &higher.lyapunov
+        && found.kind != Kind::Neutral
+    {
+        return judge_swing(scene, found, run, agree);
+    }
+    if !survived && linear.class != Class::Hyperbolic && linear.class != Class::Parabolic {
+        let cone = stick_cone(&model).filter(|cone| start.theta.abs() > *cone).map_or_else(String::new, |cone| {
+            format!(", and theta {} rad outside the stick cone, |θ| up to about {cone} rad", start.theta)
+        });
+        let reason = format!("{fell}, although the linear analysis is stable: the start is outside the basin{cone}");
+        return judgement(Verdict::Unstable, DecidedBy::Nonlinear, reason);
+    }
+    if contact_regime(&model) == ContactRegime::Sticking {
+        let largest = linear.eigenvalues.iter().map(|value| value.re).fold(1.0, f64::max);
+        let reason = format!(
+            "friction is {} and slide is `none`: at the fixed point the contact sticks for any friction above 0, and the \
+             derivative there has the characteristic polynomial −4lV²/(G(l² + ρ²)) = {} < 0 at 1, so for every tilt_gain one \
+             eigenvalue is beyond 1 ({largest} here); {}",
+            scene.friction,
+            sticking_polynomial_at_one(model.rod(), fixed_point.speed),
+            if survived { "this run has not left yet" } else { fell.as_str() }
+        );
+        return judgement(Verdict::Unstable, DecidedBy::Linear, reason);
+    }
+    match linear.class {
+        Class::Attracting => {
+            let reason = format!("the angle of the velocity shrinks by {} a bounce (eq. 4)", 1.0 - 2.0 * kappa);
+            judgement(Verdict::StableInPlace, DecidedBy::Linear, reason)
+        }
+        Class::Elliptic => {
+            let mut reason = format!(
+                "tilt_gain {kappa} is between {} and {critical}, so small deviations circle, and the run survived",
+                linear.lower_tilt_gain
+            );
+            if let Some(Chaos { indicator, chaotic: true, impacts }) = chaos {
+                reason += &format!(
+                    ", but it is chaotic (MEGNO {indicator} over {impacts} impacts, above {CHAOTIC}), so that it may still \
+                     fall later"
                 );
-                if let Some(Chaos { indicator, chaotic: true, impacts }) = chaos {
-                    reason += &format!(
-                        ", but it is chaotic (MEGNO {indicator} over {impacts} impacts, above {CHAOTIC}), so that it may still \
-                         fall later"
-                    );
-                }
-                judgement(Verdict::Elliptic, DecidedBy::Linear, reason)
             }
-            Class::Parabolic if kappa > 0.5 * (1.0 + critical) => match boundary {
-                Some(Boundary { coefficient }) if coefficient > 0.0 && survived => judgement(
+            judgement(Verdict::Elliptic, DecidedBy::Linear, reason)
+        }
+        Class::Parabolic if kappa > 0.5 * (1.0 + critical) => match boundary {
+            Some(Boundary { coefficient }) if coefficient > 0.0 && survived => judgement(
+                Verdict::BoundedBeyondBoundary,
+                DecidedBy::Boundary,
+                format!(
+                    "tilt_gain is κ_c, where eigenvalues are silent; C = {coefficient} > 0 is soft, and the run survived"
+                ),
+            ),
+            Some(Boundary { coefficient }) if coefficient > 0.0 => judgement(
+                Verdict::Unstable,
+                DecidedBy::Nonlinear,
+                format!("tilt_gain is κ_c and C = {coefficient} > 0 is soft for small starts, but {fell}"),
+            ),
+            None => judgement(
+                if survived { Verdict::BoundedBeyondBoundary } else { Verdict::Unstable },
+                DecidedBy::Nonlinear,
+                format!(
+                    "tilt_gain is κ_c, where eigenvalues are silent, and C is not derived with friction; {}",
+                    if survived { "the run survived" } else { fell.as_str() }
+                ),
+            ),
+            Some(_) => judgement(
+                Verdict::Unstable,
+                DecidedBy::Boundary,
+                format!(
+                    "tilt_gain is κ_c, where eigenvalues are silent; C = {} is not positive: hard, every small start \
+                     falls in the end",
+                    boundary.map_or(0.0, |boundary| boundary.coefficient)
+                ),
+            ),
+        },
+        Class::Parabolic => judgement(
+            Verdict::Unstable,
+            DecidedBy::Linear,
+            "tilt_gain is 1, where the angle drifts off at a constant rate".to_owned(),
+        ),
+        Class::Hyperbolic if survived && !undisturbed && kappa > critical => judgement(
+            Verdict::BoundedBeyondBoundary,
+            DecidedBy::Nonlinear,
+            format!(
+                "tilt_gain {kappa} is beyond κ_c = {critical}, yet the run of {} bounces stayed within |θ| ≤ {} rad{}{}",
+                run.impacts,
+                run.max_theta,
+                period_two_angle(&model, scene.topple_angle, fixed_point)
+                    .map_or_else(String::new, |theta| format!(", around the period-2 orbit at θ = ±{theta} rad")),
+                match boundary {
+                    Some(Boundary { coefficient }) if coefficient <= 0.0 => format!(
+                        "; C = {coefficient} is not positive, so stability is lost hard and a longer run may still fall"
+                    ),
+                    _ => String::new(),
+                }
+            ),
+        ),
+        Class::Hyperbolic => {
+            let side = if kappa < linear.lower_tilt_gain { "below" } else { "beyond" };
+            let limit = if kappa < linear.lower_tilt_gain { linear.lower_tilt_gain } else { critical };
+            let shown = if survived { "this run has not left yet" } else { fell.as_str() };
+            let reason = format!("tilt_gain {kappa} is {side} {limit}, so small deviations grow; {shown}");
+            judgement(Verdict::Unstable, DecidedBy::Linear, reason)
+        }
+    }
+}
+
+/// The verdict where the swing grows or dies out in third order.
+fn judge_swing(scene: &Scene, found: &Lyapunov, run: &NonlinearRun, agree: bool) -> Judgement {
+    let Lyapunov { coefficient, amplitude, .. } = found;
+    let (verdict, course) = match found.escape_impacts() {
+        Some(impacts) => (Verdict::WeaklyUnstable, format!("grows, and leaves upright after about {impacts} bounces")),
+        None if found.kind == Kind::Repelling => (Verdict::WeaklyUnstable, "would grow".to_owned()),
+        None => (Verdict::WeaklyAttracting, "dies out".to_owned()),
+    };
+    let outcome = match (run.ending == Ending::Completed, verdict) {
+        (true, _) => format!("this run of {} bounces came to |θ| = {} rad", run.impacts, run.max_theta),
+        (false, Verdict::WeaklyAttracting) => format!(
+            "this run ended as `{}` at contact {}: its start is outside the basin",
+            run.ending.name(),
+            run.impacts
+        ),
+        (false, _) => format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts),
+    };
+    let reason = format!(
+        "with energy_gain {} s²/m² the angle circles in first order only: to third order the amplitude obeys dA/dn = ℓA³ with \
+         ℓ = {coefficient} per bounce and rad², so a swing of {amplitude} rad, as here, {course}; {outcome}",
+        scene.energy_gain
+    );
+    Judgement { verdict, decided_by: DecidedBy::Lyapunov, agree, reason }
+}
+
+/// Tells whether a law with feedback is stable in place, by its closed loop, its normal form and a run.
+fn judge_law(closed: &ClosedLoop, higher: &HigherOrder, run: &NonlinearRun) -> Judgement {
+    let survived = run.ending == Ending::Completed;
+    let (stable, radius) = (closed.is_stable(), closed.spectral_radius);
+    let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
+    let what = if closed.eigenvalues.len() == STATE.len() {
+        "x, theta, x_dot and theta_dot"
+    } else {
+        "theta, x_dot and theta_dot"
+    };
+    let (verdict, decided_by, reason) = match (stable, survived) {
+        (true, true) => (
+            Verdict::StableInPlace,
+            DecidedBy::Linear,
+            format!("every small deviation of {what} dies out: the closed loop has spectral radius {radius}"),
+        ),
+        (true, false) => (
+            Verdict::Unstable,
+            DecidedBy::Nonlinear,
+            format!("{fell}, although the closed loop has spectral radius {radius}: the start is outside the basin"),
+        ),
+        (false, _) => {
+            let grows = format!(
+                "a small deviation does not die out: the closed loop has spectral radius {radius}, which must be below 1"
+            );
+            match (higher.settled_beyond(End::FeedbackFactor), survived) {
+                (Some((loss, Settles::Swing(swing))), true) => (
                     Verdict::BoundedBeyondBoundary,
                     DecidedBy::Boundary,
                     format!(
-                        "tilt_gain is κ_c, where eigenvalues are silent; C = {coefficient} > 0 is soft, and the run survived"
+                        "{grows}; but stability is lost softly, at {} times these gains ({}), so that a swing grows to about \
+                         {swing} rad and no further; this run came to {} rad",
+                        loss.value,
+                        loss.bifurcation.name(),
+                        run.max_theta
                     ),
                 ),
-                Some(Boundary { coefficient }) if coefficient > 0.0 => judgement(
-                    Verdict::Unstable,
-                    DecidedBy::Nonlinear,
-                    format!("tilt_gain is κ_c and C = {coefficient} > 0 is soft for small starts, but {fell}"),
-                ),
-                None => judgement(
-                    if survived { Verdict::BoundedBeyondBoundary } else { Verdict::Unstable },
-                    DecidedBy::Nonlinear,
-                    format!(
-                        "tilt_gain is κ_c, where eigenvalues are silent, and C is not derived with friction; {}",
-                        if survived { "the run survived" } else { fell.as_str() }
-                    ),
-                ),
-                Some(_) => judgement(
-                    Verdict::Unstable,
-                    DecidedBy::Boundary,
-                    format!(
-                        "tilt_gain is κ_c, where eigenvalues are silent; C = {} is not positive: hard, every small start \
-                         falls in the end",
-                        boundary.map_or(0.0, |boundary| boundary.coefficient)
-                    ),
-                ),
-            },
-            Class::Parabolic => judgement(
-                Verdict::Unstable,
-                DecidedBy::Linear,
-                "tilt_gain is 1, where the angle drifts off at a constant rate".to_owned(),
-            ),
-            Class::Hyperbolic if survived && !undisturbed && kappa > critical => judgement(
-                Verdict::BoundedBeyondBoundary,
-                DecidedBy::Nonlinear,
-                format!(
-                    "tilt_gain {kappa} is beyond κ_c = {critical}, yet the run of {} bounces stayed within |θ| ≤ {} rad{}{}",
-                    run.impacts,
-                    run.max_theta,
-                    self.period_two(fixed_point)
-                        .map_or_else(String::new, |theta| format!(", around the period-2 orbit at θ = ±{theta} rad")),
-                    match boundary {
-                        Some(Boundary { coefficient }) if coefficient <= 0.0 => format!(
-                            "; C = {coefficient} is not positive, so stability is lost hard and a longer run may still fall"
-                        ),
-                        _ => String::new(),
-                    }
-                ),
-            ),
-            Class::Hyperbolic => {
-                let side = if kappa < linear.lower_tilt_gain { "below" } else { "beyond" };
-                let limit = if kappa < linear.lower_tilt_gain { linear.lower_tilt_gain } else { critical };
-                let shown = if survived { "this run has not left yet" } else { fell.as_str() };
-                let reason = format!("tilt_gain {kappa} is {side} {limit}, so small deviations grow; {shown}");
-                judgement(Verdict::Unstable, DecidedBy::Linear, reason)
+                (_, true) => (Verdict::Unstable, DecidedBy::Linear, format!("{grows}; this run has not left yet")),
+                (_, false) => (Verdict::Unstable, DecidedBy::Linear, format!("{grows}; {fell}")),
             }
         }
-    }
-
-    /// The verdict where the swing grows or dies out in third order.
-    fn judge_swing(&self, found: &Lyapunov, run: &Nonlinear, agree: bool) -> Judgement {
-        let Lyapunov { coefficient, amplitude, .. } = found;
-        let (verdict, course) = match found.escape_impacts() {
-            Some(impacts) => {
-                (Verdict::WeaklyUnstable, format!("grows, and leaves upright after about {impacts} bounces"))
-            }
-            None if found.kind == Kind::Repelling => (Verdict::WeaklyUnstable, "would grow".to_owned()),
-            None => (Verdict::WeaklyAttracting, "dies out".to_owned()),
-        };
-        let outcome = match (run.ending == Ending::Completed, verdict) {
-            (true, _) => format!("this run of {} bounces came to |θ| = {} rad", run.impacts, run.max_theta),
-            (false, Verdict::WeaklyAttracting) => format!(
-                "this run ended as `{}` at contact {}: its start is outside the basin",
-                run.ending.name(),
-                run.impacts
-            ),
-            (false, _) => format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts),
-        };
-        let reason = format!(
-            "with energy_gain {} s²/m² the angle circles in first order only: to third order the amplitude obeys dA/dn = ℓA³ with \
-             ℓ = {coefficient} per bounce and rad², so a swing of {amplitude} rad, as here, {course}; {outcome}",
-            self.energy_gain
-        );
-        Judgement { verdict, decided_by: DecidedBy::Lyapunov, agree, reason }
-    }
-
-    /// Tells whether a law with feedback is stable in place, by its closed loop, its normal form and a run.
-    fn judge_law(&self, closed: &ClosedLoop, higher: &HigherOrder, run: &Nonlinear) -> Judgement {
-        let survived = run.ending == Ending::Completed;
-        let (stable, radius) = (closed.is_stable(), closed.spectral_radius);
-        let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
-        let what = if closed.eigenvalues.len() == STATE.len() {
-            "x, theta, x_dot and theta_dot"
-        } else {
-            "theta, x_dot and theta_dot"
-        };
-        let (verdict, decided_by, reason) = match (stable, survived) {
-            (true, true) => (
-                Verdict::StableInPlace,
-                DecidedBy::Linear,
-                format!("every small deviation of {what} dies out: the closed loop has spectral radius {radius}"),
-            ),
-            (true, false) => (
-                Verdict::Unstable,
-                DecidedBy::Nonlinear,
-                format!(
-                    "{fell}, although the closed loop has spectral radius {radius}: the start is outside the basin"
-                ),
-            ),
-            (false, _) => {
-                let grows = format!(
-                    "a small deviation does not die out: the closed loop has spectral radius {radius}, which must be below 1"
-                );
-                match (higher.settled_beyond(End::FeedbackFactor), survived) {
-                    (Some((loss, Settles::Swing(swing))), true) => (
-                        Verdict::BoundedBeyondBoundary,
-                        DecidedBy::Boundary,
-                        format!(
-                            "{grows}; but stability is lost softly, at {} times these gains ({}), so that a swing grows to about \
-                             {swing} rad and no further; this run came to {} rad",
-                            loss.value,
-                            loss.bifurcation.name(),
-                            run.max_theta
-                        ),
-                    ),
-                    (_, true) => (Verdict::Unstable, DecidedBy::Linear, format!("{grows}; this run has not left yet")),
-                    (_, false) => (Verdict::Unstable, DecidedBy::Linear, format!("{grows}; {fell}")),
-                }
-            }
-        };
-        Judgement { verdict, decided_by, agree: stable == survived, reason }
-    }
+    };
+    Judgement { verdict, decided_by, agree: stable == survived, reason }
 }

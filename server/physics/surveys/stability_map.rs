@@ -7,7 +7,8 @@ use crate::bounce::friction::Friction;
 use crate::bounce::strike::Rod;
 use crate::run::orbit::{Looks, run};
 use crate::scene::{Draft, Name, Scene, Value};
-use crate::stability::linear_verdict::Linear;
+use crate::stability::fixed_point::find_fixed_point;
+use crate::stability::linear_verdict::{Linear, linear_verdict};
 use std::ops::Range;
 
 /// One side of a region: a field and the values it takes.
@@ -226,7 +227,7 @@ impl Region {
 }
 
 fn linear(scene: &Scene) -> Option<Linear> {
-    Some(scene.linear(&scene.fixed_point().ok()?))
+    Some(linear_verdict(scene, &find_fixed_point(scene).ok()?))
 }
 
 /// Where a function changes its sign between two points, by bisection.

@@ -5,7 +5,7 @@ use equipoise_physics::body::Body;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::extended;
-use equipoise_physics::run::method::Method;
+use equipoise_physics::run::method::{Method, choose_method, run_by};
 use equipoise_physics::scene::Scene;
 
 #[path = "support/random.rs"]
@@ -36,21 +36,20 @@ fn exact(scene: &Scene, impacts: u64) -> Exact {
 /// The largest error of a method's states; none where it ends otherwise or does not apply.
 fn error(scene: &Scene, method: Method, impacts: u64, exact: &Exact) -> Option<f64> {
     let (mut worst, mut made) = (0.0_f64, 0);
-    let ending: Ending = scene
-        .run_by(method, impacts, |impact| {
-            let state = impact.contact.state;
-            let ours = [state.theta, state.x_dot, state.y_dot, state.theta_dot];
-            let turned = if exact.is_point { 0.0 } else { exact.rho };
-            let scales = [turned, 1.0, 1.0, if exact.is_point { 0.0 } else { exact.rho }];
-            if let Some(reference) = exact.states.get(made) {
-                for ((ours, reference), scale) in ours.into_iter().zip(reference).zip(scales) {
-                    worst = worst.max(scale * (*reference - ours.into()).to_f64().abs());
-                }
+    let ending: Ending = run_by(scene, method, impacts, |impact| {
+        let state = impact.contact.state;
+        let ours = [state.theta, state.x_dot, state.y_dot, state.theta_dot];
+        let turned = if exact.is_point { 0.0 } else { exact.rho };
+        let scales = [turned, 1.0, 1.0, if exact.is_point { 0.0 } else { exact.rho }];
+        if let Some(reference) = exact.states.get(made) {
+            for ((ours, reference), scale) in ours.into_iter().zip(reference).zip(scales) {
+                worst = worst.max(scale * (*reference - ours.into()).to_f64().abs());
             }
-            made += 1;
-            true
-        })
-        .ok()??;
+        }
+        made += 1;
+        true
+    })
+    .ok()??;
     (ending.name() == exact.ending && made == exact.states.len()).then_some(worst)
 }
 
@@ -66,7 +65,7 @@ fn the_choice_holds_and_is_nearly_always_the_cheapest() {
             let scene = scenes::scene(&mut source, kind);
             let impacts = [20, 100, 400, 2000][run % 4];
             let tolerance = TOLERANCES[run % TOLERANCES.len()];
-            let Ok(choice) = scene.choose_method(impacts, tolerance, || true).unwrap() else {
+            let Ok(choice) = choose_method(&scene, impacts, tolerance, || true).unwrap() else {
                 refused += 1;
                 continue;
             };

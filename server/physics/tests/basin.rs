@@ -3,17 +3,18 @@
 mod paper;
 
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::stability::basin::NoBasin;
+use equipoise_physics::stability::basin::{NoBasin, find_basin};
+use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use paper::scene;
 
 fn survives(tilt_gain: f64, theta: f64, impacts: u64) -> bool {
-    scene(tilt_gain, theta).nonlinear(impacts, || true).unwrap().ending == Ending::Completed
+    run_nonlinear(&scene(tilt_gain, theta), impacts, || true).unwrap().ending == Ending::Completed
 }
 
 #[test]
 fn edges_and_holes_are_where_runs_fall() {
     for tilt_gain in [1.1, 1.2, 1.3, 1.375, 1.45] {
-        let basin = scene(tilt_gain, 0.01).basin(1000, || true).unwrap();
+        let basin = find_basin(&scene(tilt_gain, 0.01), 1000, || true).unwrap();
         println!("κ = {tilt_gain}: {basin:?}");
         assert!(basin.unbroken <= basin.theta && basin.tolerance < 1e-6);
         for edge in [basin.theta, basin.unbroken] {
@@ -29,13 +30,13 @@ fn edges_and_holes_are_where_runs_fall() {
         }
     }
     // The dent beyond the order-4 resonance, R = 1/2.
-    let width = |tilt_gain| scene(tilt_gain, 0.01).basin(1000, || true).unwrap().unbroken;
+    let width = |tilt_gain| find_basin(&scene(tilt_gain, 0.01), 1000, || true).unwrap().unbroken;
     println!("{}", width(1.266));
     assert!(width(1.266) < 0.2 && width(1.1) > 0.3);
 }
 
 #[test]
 fn below_one_nothing_survives_and_a_search_can_be_stopped() {
-    assert!(scene(0.9, 0.01).basin(1000, || true).unwrap().theta < 1e-4);
-    assert_eq!(scene(1.1, 0.01).basin(100_000, || false), Err(NoBasin::Stopped));
+    assert!(find_basin(&scene(0.9, 0.01), 1000, || true).unwrap().theta < 1e-4);
+    assert_eq!(find_basin(&scene(1.1, 0.01), 100_000, || false), Err(NoBasin::Stopped));
 }

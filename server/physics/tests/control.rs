@@ -7,7 +7,8 @@ use equipoise_physics::control::{BounceModel, NoDesign, RESIDUAL, STABLE};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::Grip;
+use equipoise_physics::stability::contact_regime::ContactRegime;
+use equipoise_physics::stability::fixed_point::bounce_in_place;
 use equipoise_physics::stability::jacobian::{finite_difference_at, jacobian_at};
 use nalgebra::{Matrix4, RowVector4, Vector4};
 
@@ -22,7 +23,7 @@ const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
 const FEEDBACK: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
 /// The paper's rod with this law, contact and further fields.
-fn scene(gain: [f64; 4], grip: Grip, law: &'static str, values: &[(Name, f64)]) -> Scene {
+fn scene(gain: [f64; 4], regime: ContactRegime, law: &'static str, values: &[(Name, f64)]) -> Scene {
     let mut draft = Draft::default();
     let rod =
         [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 0.094_280_904_158_206_35), (Name::Height, 0.2)];
@@ -30,14 +31,14 @@ fn scene(gain: [f64; 4], grip: Grip, law: &'static str, values: &[(Name, f64)]) 
         draft.set(name, Some(Value::Number(number))).unwrap();
     }
     draft.set(Name::Law, Some(Value::Choice(law))).unwrap();
-    let slide = if grip == Grip::Matched { "matched" } else { "none" };
+    let slide = if regime == ContactRegime::VelocityMatched { "matched" } else { "none" };
     draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
     draft.build().unwrap()
 }
 
 /// The paper's rod with this restitution.
 fn rod(restitution: f64) -> Rod {
-    scene([0.0; 4], Grip::Smooth, "poisson", &[(Name::Restitution, restitution)]).parameters()
+    scene([0.0; 4], ContactRegime::Frictionless, "poisson", &[(Name::Restitution, restitution)]).parameters()
 }
 
 /// V of the paper's cases.
@@ -54,24 +55,25 @@ fn bounce(scene: &Scene, [x, theta, x_dot, theta_dot]: [f64; 4], y_dot: f64) -> 
     [x + arrival.t * end.x_dot, end.theta, end.x_dot, end.theta_dot]
 }
 
-const GRIPS: [Grip; 3] = [Grip::Smooth, Grip::Held, Grip::Matched];
+const REGIMES: [ContactRegime; 3] =
+    [ContactRegime::Frictionless, ContactRegime::Sticking, ContactRegime::VelocityMatched];
 
 /// With the gain of one state after the other, A − BK gives both A and B.
 #[test]
 fn the_model_is_the_derivative_of_the_bounce() {
     let gains = [[0.0; 4], [1.0, 0.0, 0.0, 0.0], [0.0, -2.0, 0.0, 0.0], [0.0, 0.0, 0.5, 0.0], [0.3, -1.0, 0.1, -0.1]];
-    for grip in GRIPS {
-        let friction = if grip == Grip::Smooth { 0.0 } else { 0.3 };
+    for regime in REGIMES {
+        let friction = if regime == ContactRegime::Frictionless { 0.0 } else { 0.3 };
         for restitution in [1.0, 0.5, 0.0] {
             for (law, gain) in
                 ["poisson", "newton", "stronge"].into_iter().flat_map(|law| gains.map(|gain| (law, gain)))
             {
                 let values = [(Name::Restitution, restitution), (Name::Friction, friction)];
-                let scene = scene(gain, grip, law, &values);
+                let scene = scene(gain, regime, law, &values);
                 let rod: Rod = scene.parameters();
                 let v = speed(&rod);
-                assert!((scene.bounce_in_place().unwrap().speed - v).abs() < 1e-15);
-                let model = BounceModel::new(&rod, v, grip);
+                assert!((bounce_in_place(&scene).unwrap().speed - v).abs() < 1e-15);
+                let model = BounceModel::new(&rod, v, regime);
                 let closed = model.a - model.b * RowVector4::from(gain);
                 let step = 1e-6;
                 for column in 0..4 {
@@ -85,7 +87,7 @@ fn the_model_is_the_derivative_of_the_bounce() {
                         let expected = closed[(row, column)];
                         assert!(
                             (measured - expected).abs() < 1e-8 * (1.0 + closed.norm()),
-                            "{grip:?} {law} e = {restitution}: [{row}, {column}] is {expected}, not {measured}"
+                            "{regime:?} {law} e = {restitution}: [{row}, {column}] is {expected}, not {measured}"
                         );
                     }
                 }
@@ -99,16 +101,17 @@ const PLACES: [usize; 4] = [4, 0, 1, 3];
 
 #[test]
 fn the_derivative_by_duals_is_the_closed_loop() {
-    for grip in GRIPS {
-        let values = [(Name::Friction, if grip == Grip::Smooth { 0.0 } else { 0.3 }), (Name::Restitution, 0.5)];
-        let gain = BounceModel::new(&rod(0.5), speed(&rod(0.5)), grip).design(WEIGHTS.0, WEIGHTS.1).unwrap().gain;
-        let scene = scene(gain, grip, "poisson", &values);
+    for regime in REGIMES {
+        let values =
+            [(Name::Friction, if regime == ContactRegime::Frictionless { 0.0 } else { 0.3 }), (Name::Restitution, 0.5)];
+        let gain = BounceModel::new(&rod(0.5), speed(&rod(0.5)), regime).design(WEIGHTS.0, WEIGHTS.1).unwrap().gain;
+        let scene = scene(gain, regime, "poisson", &values);
         let rod: Rod = scene.parameters();
         let v = speed(&rod);
         let upright = State { theta: 0.0, x_dot: 0.0, y_dot: -v, theta_dot: 0.0 };
         let exact = jacobian_at(&scene.model(), 0.0, &upright, 1).unwrap().matrix;
         assert_eq!(exact.shape(), (5, 5));
-        let model = BounceModel::new(&rod, v, grip);
+        let model = BounceModel::new(&rod, v, regime);
         let closed = model.a - model.b * RowVector4::from(gain);
         let unit = [1.0, rod.radius_of_gyration, 1.0, rod.radius_of_gyration];
         for row in 0..4 {
@@ -117,7 +120,7 @@ fn the_derivative_by_duals_is_the_closed_loop() {
                 let found = exact[(PLACES[row], PLACES[column])];
                 assert!(
                     (found - expected).abs() < 1e-12 * closed.norm(),
-                    "{grip:?} [{row}, {column}]: {found} {expected}"
+                    "{regime:?} [{row}, {column}]: {found} {expected}"
                 );
             }
         }
@@ -128,13 +131,13 @@ fn the_derivative_by_duals_is_the_closed_loop() {
 #[test]
 fn the_derivative_by_duals_is_that_of_the_bounce_anywhere() {
     let mut random = Random(5);
-    for grip in GRIPS {
+    for regime in REGIMES {
         let mut compared = 0;
         for _ in 0..300 {
-            let friction = if grip == Grip::Smooth { 0.0 } else { random.between(0.05, 1.0) };
+            let friction = if regime == ContactRegime::Frictionless { 0.0 } else { random.between(0.05, 1.0) };
             let gain =
                 [random.size(0.01, 0.5), -random.between(1.0, 3.0), random.size(0.01, 0.5), random.size(0.01, 0.1)];
-            let scene = scene(gain, grip, "stronge", &[(Name::Friction, friction), (Name::Restitution, 0.7)]);
+            let scene = scene(gain, regime, "stronge", &[(Name::Friction, friction), (Name::Restitution, 0.7)]);
             let state = State {
                 theta: random.between(-0.3, 0.3),
                 x_dot: random.between(-0.3, 0.3),
@@ -151,9 +154,9 @@ fn the_derivative_by_duals_is_that_of_the_bounce_anywhere() {
                 continue;
             }
             compared += 1;
-            assert!((&exact.matrix - &fine).norm() < 1e-6 * fine.norm(), "{grip:?}: {} {fine}", exact.matrix);
+            assert!((&exact.matrix - &fine).norm() < 1e-6 * fine.norm(), "{regime:?}: {} {fine}", exact.matrix);
         }
-        assert!(compared > 200, "{grip:?}: {compared}");
+        assert!(compared > 200, "{regime:?}: {compared}");
     }
 }
 
@@ -162,14 +165,14 @@ fn proportional_tilt_on_a_matched_table_turns_at_its_own_critical_gain() {
     let rod = rod(1.0);
     let v = speed(&rod);
     let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
-    let model = BounceModel::new(&rod, v, Grip::Matched);
+    let model = BounceModel::new(&rod, v, ContactRegime::VelocityMatched);
     let critical = 1.0 + rod.gravity * (rho * rho + l * l) / (v * v * l);
     for (factor, grows) in [(0.999, false), (1.001, true)] {
         let radius = model.closed_loop([0.0, -critical * factor, 0.0, 0.0], false).unwrap().spectral_radius;
         assert_eq!(radius > 1.001, grows, "{radius}");
     }
     // Without it, and with any friction, no proportional gain holds.
-    let stuck = BounceModel::new(&rod, v, Grip::Held);
+    let stuck = BounceModel::new(&rod, v, ContactRegime::Sticking);
     for kappa in (-40..=80).map(|tenth| 0.1 * f64::from(tenth)) {
         let radius = stuck.closed_loop([0.0, -kappa, 0.0, 0.0], false).unwrap().spectral_radius;
         assert!(radius > 1.0, "κ = {kappa}: {radius}");
@@ -192,13 +195,13 @@ fn iterate(model: &BounceModel, state: [f64; 4], input: f64, bounces: u32) -> Ro
 
 #[test]
 fn doubling_finds_what_plain_iteration_finds() {
-    for grip in GRIPS {
+    for regime in REGIMES {
         let rod = rod(0.5);
-        let model = BounceModel::new(&rod, speed(&rod), grip);
+        let model = BounceModel::new(&rod, speed(&rod), regime);
         let design = model.design(WEIGHTS.0, WEIGHTS.1).unwrap();
         let plain = iterate(&model, WEIGHTS.0, WEIGHTS.1, 3000);
         for (value, expected) in design.gain.into_iter().zip(plain.iter()) {
-            assert!((value - expected).abs() < 1e-10 * plain.norm(), "{grip:?}: {value}, not {expected}");
+            assert!((value - expected).abs() < 1e-10 * plain.norm(), "{regime:?}: {value}, not {expected}");
         }
         assert!(design.residual < 1e-13 && design.iterations <= 10, "{design:?}");
     }
@@ -207,7 +210,7 @@ fn doubling_finds_what_plain_iteration_finds() {
 #[test]
 fn without_a_weight_on_x_there_is_no_gain_on_x() {
     let rod = rod(1.0);
-    let model = BounceModel::new(&rod, speed(&rod), Grip::Smooth);
+    let model = BounceModel::new(&rod, speed(&rod), ContactRegime::Frictionless);
     let design = model.design([0.0, 10.0, 0.1, 0.1], 10.0).unwrap();
     assert_eq!(design.gain[0], 0.0);
     // It is what the law with x comes to as x matters less and less.
@@ -220,7 +223,7 @@ fn without_a_weight_on_x_there_is_no_gain_on_x() {
 #[test]
 fn a_mode_that_no_weight_sees_is_not_called_stable() {
     let rod = rod(1.0);
-    let model = BounceModel::new(&rod, speed(&rod), Grip::Smooth);
+    let model = BounceModel::new(&rod, speed(&rod), ContactRegime::Frictionless);
     for state in [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0; 4]] {
         assert!(matches!(model.design(state, 1.0), Err(NoDesign::Diverging | NoDesign::Unseen(_))), "{state:?}");
     }
@@ -229,10 +232,10 @@ fn a_mode_that_no_weight_sees_is_not_called_stable() {
 #[test]
 fn margins_are_where_eigenvalues_cross_the_circle() {
     let mut random = Random(11);
-    for grip in GRIPS {
+    for regime in REGIMES {
         for _ in 0..50 {
             let rod = rod(random.between(0.0, 1.0));
-            let model = BounceModel::new(&rod, speed(&rod) * random.between(0.5, 2.0), grip);
+            let model = BounceModel::new(&rod, speed(&rod) * random.between(0.5, 2.0), regime);
             let state = [1.0, 1.0, 1.0, 1.0].map(|_| random.size(0.01, 100.0).abs());
             let gain = model.design(state, random.size(0.1, 100.0).abs()).unwrap().gain;
             let margin = model.closed_loop(gain, true).unwrap().margin.unwrap();
@@ -240,12 +243,12 @@ fn margins_are_where_eigenvalues_cross_the_circle() {
             let (lower, upper) = (margin.lower.unwrap(), margin.upper.unwrap());
             assert!((0.0..1.0).contains(&lower) && upper > 1.0, "{margin:?}");
             for end in [lower, upper] {
-                assert!((radius(end) - 1.0).abs() < 1e-4, "{grip:?} {margin:?}: {}", radius(end));
+                assert!((radius(end) - 1.0).abs() < 1e-4, "{regime:?} {margin:?}: {}", radius(end));
             }
             assert!(radius(lower * 0.99) > 1.0 && radius(upper * 1.01) > 1.0, "{margin:?}");
             for step in 1..100 {
                 let factor = lower + (upper - lower) * 0.01 * f64::from(step);
-                assert!(radius(factor) < 1.0, "{grip:?} {margin:?}: {factor}");
+                assert!(radius(factor) < 1.0, "{regime:?} {margin:?}: {factor}");
             }
         }
     }
@@ -260,8 +263,8 @@ fn whatever_the_rod_and_the_weights_a_law_is_good_or_there_is_none() {
         rod.contact_distance = random.size(1e-3, 10.0).abs();
         rod.radius_of_gyration = random.size(1e-3, 10.0).abs();
         rod.gravity = random.size(1e-3, 100.0).abs();
-        let grip = GRIPS[(random.between(0.0, 3.0) as usize).min(2)];
-        let model = BounceModel::new(&rod, random.size(1e-3, 100.0).abs(), grip);
+        let regime = REGIMES[(random.between(0.0, 3.0) as usize).min(2)];
+        let model = BounceModel::new(&rod, random.size(1e-3, 100.0).abs(), regime);
         let weight = |random: &mut Random| {
             if random.between(0.0, 1.0) < 0.1 { 0.0 } else { random.size(1e-9, 1e9).abs() }
         };
@@ -293,9 +296,9 @@ fn settle(scene: &Scene, small: f64, contacts: u64) -> Option<u64> {
 #[test]
 fn it_comes_to_rest_in_place() {
     let rod = rod(1.0);
-    let model = BounceModel::new(&rod, speed(&rod), Grip::Smooth);
+    let model = BounceModel::new(&rod, speed(&rod), ContactRegime::Frictionless);
     let gain = model.design(WEIGHTS.0, WEIGHTS.1).unwrap().gain;
-    let scene = scene(gain, Grip::Smooth, "poisson", &[(Name::Theta, 0.3), (Name::X, 0.2)]);
+    let scene = scene(gain, ContactRegime::Frictionless, "poisson", &[(Name::Theta, 0.3), (Name::X, 0.2)]);
     let contacts = settle(&scene, 1e-9, 20_000).unwrap();
     assert!(contacts <= 100, "{contacts}");
 }
@@ -305,13 +308,18 @@ fn a_law_for_the_sticking_contact_holds_with_friction() {
     let values = [(Name::Theta, 0.05), (Name::Friction, 0.2), (Name::Restitution, 0.5)];
     for law in ["poisson", "newton", "stronge"] {
         let rod = rod(0.5);
-        let gain_for = |grip| {
-            let model = BounceModel::new(&rod, speed(&rod), grip);
+        let gain_for = |regime| {
+            let model = BounceModel::new(&rod, speed(&rod), regime);
             model.design(WEIGHTS.0, WEIGHTS.1).unwrap().gain
         };
-        let contacts = settle(&scene(gain_for(Grip::Held), Grip::Held, law, &values), 1e-9, 20_000).unwrap();
+        let contacts =
+            settle(&scene(gain_for(ContactRegime::Sticking), ContactRegime::Sticking, law, &values), 1e-9, 20_000)
+                .unwrap();
         assert!(contacts <= 250, "{law}: {contacts}");
         // The law for a contact without friction does not hold here.
-        assert_eq!(settle(&scene(gain_for(Grip::Smooth), Grip::Held, law, &values), 1e-9, 2000), None);
+        assert_eq!(
+            settle(&scene(gain_for(ContactRegime::Frictionless), ContactRegime::Sticking, law, &values), 1e-9, 2000),
+            None
+        );
     }
 }

@@ -3,6 +3,7 @@
 
 use equipoise_physics::body::Body;
 use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::run::error_estimate::ErrorEstimate;
 use equipoise_physics::scene::{FIELDS, Name, Scene, Value};
 
 #[path = "support/random.rs"]
@@ -19,7 +20,7 @@ const USEFUL: f64 = 1e-3;
 fn compare(scene: &Scene, impacts: u64) -> (f64, Vec<f64>) {
     let mut orbit = scene.orbit().unwrap();
     let mut exact = scene.extended_orbit().unwrap();
-    let mut estimate = scene.error_estimate(orbit.t());
+    let mut estimate = ErrorEstimate::of_scene(scene, orbit.t());
     let rho = exact.rod().radius_of_gyration.to_f64();
     let is_point = orbit.body.contact_distance() == 0.0;
     let (mut worst, mut ratios) = (0.0_f64, Vec::new());
@@ -167,7 +168,7 @@ fn bounds_with_31_digits_hold_between_twins() {
         for scene in scenes {
             let twins = twins(&scene);
             let [mut one, mut other] = twins.map(|scene| scene.extended_orbit().unwrap());
-            let mut estimate = twins[0].extended_error_estimate(one.t().to_f64());
+            let mut estimate = ErrorEstimate::of_extended_run(&twins[0], one.t().to_f64());
             let rho = one.rod().radius_of_gyration;
             let three = DoubleDouble::from(3.0);
             for _ in 0..1000 {

@@ -2,6 +2,7 @@
 
 use equipoise_physics::body::Body;
 use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::run::error_estimate::ErrorEstimate;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::extended::Contact;
 use equipoise_physics::scene::model::Rung;
@@ -48,7 +49,7 @@ fn every_reference_agrees_to_its_last_digits() {
         let states = &reference["states"];
         assert_eq!(contacts.len(), states["t"].as_array().unwrap().len(), "{name}");
         let worst = worst(&contacts, states);
-        let mut estimate = scene.extended_error_estimate(contacts[0].t.to_f64());
+        let mut estimate = ErrorEstimate::of_extended_run(&scene, contacts[0].t.to_f64());
         let mut bound = estimate.bound();
         for contact in &contacts[..contacts.len() - 1] {
             estimate.pass_extended(contact);

@@ -1,8 +1,11 @@
 //! The linear solution is nowhere farther from the run with 31 digits than it says, and seldom much nearer.
 
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::run::method::Method;
+use equipoise_physics::run::linear_solution::LinearSolution;
+use equipoise_physics::run::method::{Method, run_by};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::linear_verdict::linear_verdict;
 
 #[path = "support/random.rs"]
 mod random;
@@ -67,7 +70,7 @@ fn scene(random: &mut Random, kind: Kind) -> Scene {
 
 /// error/bound at most, and bound/error, of the states and of the times, at contacts 1, 2, 4, …
 fn compare(scene: &Scene, impacts: u64) -> Option<(f64, Vec<f64>, Vec<f64>)> {
-    let solution = scene.linear_solution().ok()?;
+    let solution = LinearSolution::of_scene(scene).ok()?;
     let mut exact = scene.extended_orbit().unwrap();
     let rho = exact.rod().radius_of_gyration.to_f64();
     let (mut worst, mut ratios, mut times) = (0.0_f64, Vec::new(), Vec::new());
@@ -131,9 +134,9 @@ fn the_closed_form_is_the_power_of_the_matrix() {
         let mut source = Random(1);
         for _ in 0..40 {
             let scene = scene(&mut source, kind);
-            let Ok(solution) = scene.linear_solution() else { continue };
-            let fixed_point = scene.fixed_point().unwrap();
-            let residue = scene.linear(&fixed_point).residue.unwrap();
+            let Ok(solution) = LinearSolution::of_scene(&scene) else { continue };
+            let fixed_point = find_fixed_point(&scene).unwrap();
+            let residue = linear_verdict(&scene, &fixed_point).residue.unwrap();
             let (speed, tau) = (fixed_point.speed, fixed_point.flight_time);
             let tilt_gain = scene.number(Name::TiltGain).unwrap();
             let first = solution.impact(1);
@@ -205,7 +208,7 @@ fn bounds_hold_over_scenes_of_all_sizes() {
     for number in 0..6000 {
         let Some(scene) = wide(&mut random, number) else { continue };
         let mut ours = Vec::new();
-        let told = scene.run_by(Method::Linear, 100, |impact| {
+        let told = run_by(&scene, Method::Linear, 100, |impact| {
             ours.push((impact.contact, impact.error_estimate));
             true
         });
@@ -253,7 +256,7 @@ fn an_upright_body_stays_upright_at_any_gain() {
         }
         let scene = draft.build().unwrap();
         let mut last = 0;
-        let ending = scene.run_by(Method::Linear, 20_000, |impact| {
+        let ending = run_by(&scene, Method::Linear, 20_000, |impact| {
             let state = impact.contact.state;
             assert_eq!((state.theta, state.theta_dot), (0.0, 0.0), "κ = {kappa}, contact {}", impact.contact.n);
             // The sum of the bounces, exact but for rounding.
@@ -280,9 +283,9 @@ fn the_least_angle_grows_beyond_the_range_of_its_growth() {
             draft.set(name, Some(Value::Number(number))).unwrap();
         }
         let scene = draft.build().unwrap();
-        let growth = scene.linear(&scene.fixed_point().unwrap()).spectral_radius();
+        let growth = linear_verdict(&scene, &find_fixed_point(&scene).unwrap()).spectral_radius();
         let mut last = (0, 0.0);
-        let ending = scene.run_by(Method::Linear, 20_000, |impact| {
+        let ending = run_by(&scene, Method::Linear, 20_000, |impact| {
             last = (impact.contact.n, impact.contact.state.theta);
             assert!(last.1.is_finite(), "κ = {kappa}: {impact:?}");
             true

@@ -6,7 +6,11 @@ use equipoise_physics::periodic_orbits::branch::Kind as Bifurcation;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::boundary::boundary_coefficient;
+use equipoise_physics::stability::contact_regime::contact_regime;
+use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::jacobian_at;
+use equipoise_physics::stability::linear_verdict::linear_verdict;
 use equipoise_physics::stability::loss_of_stability::{End, Loss, Settles, losses};
 use equipoise_physics::stability::lyapunov::{Kind, Lyapunov, lyapunov};
 use equipoise_physics::stability::normal_form::Bounce;
@@ -54,21 +58,21 @@ fn case_4(tilt_gain: f64, theta: f64) -> Scene {
 }
 
 fn coefficient(scene: &Scene) -> Result<Lyapunov, String> {
-    let fixed_point = scene.fixed_point().unwrap();
-    lyapunov(scene, &fixed_point, &scene.linear(&fixed_point))
+    let fixed_point = find_fixed_point(scene).unwrap();
+    lyapunov(scene, &fixed_point, &linear_verdict(scene, &fixed_point))
 }
 
 fn ends(scene: &Scene) -> Vec<Loss> {
-    let fixed_point = scene.fixed_point().unwrap();
-    let linear = scene.linear(&fixed_point);
-    losses(scene, &fixed_point, &linear, scene.boundary(&fixed_point)).0
+    let fixed_point = find_fixed_point(scene).unwrap();
+    let linear = linear_verdict(scene, &fixed_point);
+    losses(scene, &fixed_point, &linear, boundary_coefficient(&scene.model(), &fixed_point)).0
 }
 
 /// λ S G² R³ (1 − 2R) / (V⁴ [λ² + 16(1 − λ)R(1 − R)]) with S = ρ²[1 + κ²ρ²/((κ − 1)²l²)].
 fn closed_form(scene: &Scene) -> f64 {
     let rod = scene.parameters::<f64>();
-    let fixed_point = scene.fixed_point().unwrap();
-    let linear = scene.linear(&fixed_point);
+    let fixed_point = find_fixed_point(scene).unwrap();
+    let linear = linear_verdict(scene, &fixed_point);
     let (residue, loop_gain) = (linear.residue.unwrap(), 1.0 - linear.energy_eigenvalue);
     let (rho_squared, kappa) = (rod.radius_of_gyration.powi(2), rod.tilt_gain);
     let s = rho_squared * (1.0 + kappa * kappa * rho_squared / ((kappa - 1.0) * rod.contact_distance).powi(2));
@@ -103,7 +107,7 @@ fn the_coefficient_is_its_closed_form() {
     for _ in 0..500 {
         let scene = scene(&random_values(&mut random, false));
         let (found, expected) = (coefficient(&scene).unwrap(), closed_form(&scene));
-        let residue = scene.linear(&scene.fixed_point().unwrap()).residue.unwrap();
+        let residue = linear_verdict(&scene, &find_fixed_point(&scene).unwrap()).residue.unwrap();
         let error = (found.coefficient - expected).abs();
         assert!(error <= 1e-9 * expected.abs() + 1e-12, "R = {residue}: {} and {expected}", found.coefficient);
         match found.kind {
@@ -137,7 +141,7 @@ fn the_coefficients_of_the_papers_cases_are_those_measured() {
 /// ℓ as a run shows it: 1/A² falls by 2ℓ a bounce. A² is the quadratic form of (ρθ, ρθ̇) that the linear map keeps, averaged
 /// over many bounces at both ends.
 fn measured(scene: &Scene, impacts: u64) -> f64 {
-    let fixed_point = scene.fixed_point().unwrap();
+    let fixed_point = find_fixed_point(scene).unwrap();
     let linear = jacobian_at(
         &scene.model(),
         0.0,
@@ -208,11 +212,11 @@ fn it_is_null_with_a_reason_where_it_does_not_apply() {
     assert!(why(&paper(&[(Name::TiltGain, 1.1)])).contains("energy_gain is 0"));
     // κ = 1 + R·Gρ²/(V²l) with R = ½: a quarter turn a bounce.
     let rod = case_4(1.1, 0.0);
-    let fixed_point = rod.fixed_point().unwrap();
-    let critical = rod.linear(&fixed_point).critical_tilt_gain;
+    let fixed_point = find_fixed_point(&rod).unwrap();
+    let critical = linear_verdict(&rod, &fixed_point).critical_tilt_gain;
     assert!(why(&case_4(0.5 * (1.0 + critical), 0.1)).contains("strong resonance"));
     assert!(why(&case_4(1.5, 0.1)).contains("does not circle"));
-    let upper = rod.linear(&fixed_point).upper_energy_gain;
+    let upper = linear_verdict(&rod, &fixed_point).upper_energy_gain;
     assert!(
         why(&paper(&[(Name::TiltGain, 1.1), (Name::EnergyGain, 1.1), (Name::TargetHeight, 0.2)]))
             .contains("does not settle")
@@ -226,8 +230,8 @@ const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
 /// A rod with `factor` times the law that is best under the weights, and the factor above 1 at which it is lost.
 fn steered(body: &[(Name, f64)], factor: impl Fn(f64) -> f64) -> Option<(Scene, f64)> {
     let rod = scene(&[body, &[(Name::TiltGain, 1.1)]].concat());
-    let fixed_point = rod.fixed_point().unwrap();
-    let model = BounceModel::new(&rod.parameters(), fixed_point.speed, rod.grip());
+    let fixed_point = find_fixed_point(&rod).unwrap();
+    let model = BounceModel::new(&rod.parameters(), fixed_point.speed, contact_regime(&rod.model()));
     let design = model.design(WEIGHTS.0, WEIGHTS.1).ok()?;
     let upper = model.closed_loop(design.gain, true)?.margin?.upper?;
     let gain = design.gain.map(|gain| factor(upper) * gain);
@@ -328,13 +332,13 @@ fn beyond_its_upper_end_the_energy_gain_flips_to_two_heights() {
         let mut values = random_values(&mut random, false);
         let upper = {
             let scene = scene(&values);
-            scene.linear(&scene.fixed_point().unwrap()).upper_energy_gain
+            linear_verdict(&scene, &find_fixed_point(&scene).unwrap()).upper_energy_gain
         };
         // At the end itself the coefficient is that of the map.
         values[4].1 = upper;
         let at = scene(&values);
-        let fixed_point = at.fixed_point().unwrap();
-        let from_map = Bounce::of(&at, &fixed_point).unwrap();
+        let fixed_point = find_fixed_point(&at).unwrap();
+        let from_map = Bounce::of(&at.model(), &fixed_point).unwrap();
         let loss = ends(&at).into_iter().find(|loss| loss.end == End::EnergyGain).unwrap();
         assert_eq!((loss.bifurcation, loss.kind()), (Bifurcation::PeriodDoubling, "soft"));
         assert!((from_map.height_eigenvalue() + 1.0).abs() < 1e-12);
@@ -394,7 +398,7 @@ fn the_odd_derivative_is_that_of_the_jacobian() {
                 values.push((Name::Friction, 0.4));
             }
             let scene = scene_on(slide, &values);
-            let fixed_point = scene.fixed_point().unwrap();
+            let fixed_point = find_fixed_point(&scene).unwrap();
             let state = equipoise_physics::bounce::strike::State {
                 theta: 0.0,
                 x_dot: 0.0,
@@ -402,7 +406,7 @@ fn the_odd_derivative_is_that_of_the_jacobian() {
                 theta_dot: 0.0,
             };
             let whole = jacobian_at(&scene.model(), 0.0, &state, 1).unwrap().matrix;
-            let odd = Bounce::of(&scene, &fixed_point).unwrap().odd_derivative();
+            let odd = Bounce::of(&scene.model(), &fixed_point).unwrap().odd_derivative();
             for (row, &r) in [0, 1, 3].iter().enumerate() {
                 for (column, &c) in [0, 1, 3].iter().enumerate() {
                     assert!((odd[(row, column)] - whole[(r, c)]).abs() < 1e-12 * (1.0 + whole[(r, c)].abs()));

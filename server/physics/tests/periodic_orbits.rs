@@ -8,7 +8,11 @@ use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, 
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::basin::find_basin;
+use equipoise_physics::stability::boundary::boundary_coefficient;
+use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::{eigenvalues, jacobian};
+use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::Complex;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
@@ -26,7 +30,7 @@ fn scene(values: &[(Name, f64)]) -> Scene {
 }
 
 fn critical(scene: &Scene) -> f64 {
-    scene.linear(&scene.fixed_point().unwrap()).critical_tilt_gain
+    linear_verdict(scene, &find_fixed_point(scene).unwrap()).critical_tilt_gain
 }
 
 fn tilt(scene: &Scene, period: usize, start: Start, from: f64, to: f64, points: usize) -> Result<Branch, Failure> {
@@ -65,7 +69,7 @@ fn the_upright_bounce_has_the_residue_of_the_closed_form() {
             let scene = scene(&[values.clone(), vec![(Name::TiltGain, kappa)]].concat());
             let setting = Setting::of(&scene).unwrap();
             let orbit = find(&setting, 1, &setting.upright()).unwrap();
-            let linear = scene.linear(&scene.fixed_point().unwrap());
+            let linear = linear_verdict(&scene, &find_fixed_point(&scene).unwrap());
             assert!((orbit.multipliers.residue - linear.residue.unwrap()).abs() < 1e-10, "{kappa}");
             assert_eq!(orbit.multipliers.stable, Some(linear.says_bounded()), "{kappa}");
         }
@@ -91,9 +95,9 @@ fn the_upright_bounce_changes_at_the_closed_forms() {
 fn the_branch_springs_from_the_critical_gain_to_its_side() {
     for (rho, soft) in [(2f64.sqrt() / 15.0, true), (TRIANGLE, false)] {
         let scene = scene(&[(Name::RadiusOfGyration, rho)]);
-        let fixed_point = scene.fixed_point().unwrap();
+        let fixed_point = find_fixed_point(&scene).unwrap();
         let critical = critical(&scene);
-        let coefficient = scene.boundary(&fixed_point).unwrap().coefficient;
+        let coefficient = boundary_coefficient(&scene.model(), &fixed_point).unwrap().coefficient;
         assert_eq!(coefficient > 0.0, soft);
         let branch = tilt(&scene, 2, Start::Symmetric(0.03), critical - 0.02, critical + 0.05, 60).unwrap();
         let spring = &branch.points[0];
@@ -116,7 +120,7 @@ fn with_energy_feedback_the_branch_is_hard() {
         [(Name::Restitution, 0.5), (Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25), (Name::Incline, 0.785)];
     let scene = scene(&values);
     let critical = critical(&scene);
-    let coefficient = scene.boundary(&scene.fixed_point().unwrap()).unwrap().coefficient;
+    let coefficient = boundary_coefficient(&scene.model(), &find_fixed_point(&scene).unwrap()).unwrap().coefficient;
     let branch = tilt(&scene, 2, Start::Symmetric(0.03), critical - 0.05, critical + 0.05, 60).unwrap();
     assert!((branch.points[0].parameter - critical).abs() < 1e-10, "{:?}", branch.ends);
     let point = &branch.points[branch.start];
@@ -194,7 +198,7 @@ fn orbits_of_period_three_and_four_spring_from_the_resonances() {
         if kappa > 1.26 {
             // It is what cuts the dent into the survival map: released at rest inside it a body stays, beyond it falls. Nearer
             // to the resonance the stable one still catches it.
-            let basin = paper::scene(kappa, 0.01).basin(1000, || true).unwrap().unbroken;
+            let basin = find_basin(&paper::scene(kappa, 0.01), 1000, || true).unwrap().unbroken;
             assert!((basin / unstable.max_theta() - 1.0).abs() < 0.05, "{kappa}: {basin}");
         }
     }

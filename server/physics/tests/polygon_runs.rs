@@ -5,6 +5,7 @@ use equipoise_physics::body::{Kick, Touch};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 const TRIANGLE: [[f64; 2]; 3] = [[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]];
@@ -132,7 +133,7 @@ fn the_ladder_leaves_the_other_vertices_out_below_the_last_rung() {
     let numbers = [(Name::Height, 0.1), (Name::TiltGain, 1.3), (Name::Theta, 0.3)];
     let (polygon, rod) = pair(&WIDE, &numbers);
     assert_eq!(polygon.as_rod(), rod);
-    let steps = polygon.ladder(100, || true).unwrap();
+    let steps = run_hierarchy(&polygon, 100, || true).unwrap();
     let rungs: Vec<_> = steps.iter().map(|step| step.rung).collect();
     assert_eq!(rungs, [Rung::Linear, Rung::Rod, Rung::Polygon]);
     assert_eq!(steps[1].scene, rod);

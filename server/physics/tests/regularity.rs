@@ -7,14 +7,18 @@ use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::boundary::period_two_angle;
+use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::linear_verdict::linear_verdict;
+use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::regularity::{
-    Regularity, TOLERANCE, Turns, WATCHED, nearest_resonance, weighted_average,
+    Regularity, TOLERANCE, Turns, WATCHED, measure_regularity, nearest_resonance, weighted_average,
 };
 use paper::scene;
 
 fn regularity(scene: &Scene) -> Regularity {
-    let fixed_point = scene.fixed_point().unwrap();
-    scene.regularity(&fixed_point, &scene.linear(&fixed_point), WATCHED).unwrap()
+    let fixed_point = find_fixed_point(scene).unwrap();
+    measure_regularity(scene.orbit().unwrap(), &fixed_point, &linear_verdict(scene, &fixed_point), WATCHED).unwrap()
 }
 
 #[test]
@@ -87,8 +91,8 @@ fn the_horizon_is_where_a_twin_is_lost() {
 fn the_period_two_orbit_is_one() {
     for tilt_gain in [1.501, 1.51, 1.53] {
         let scene = scene(tilt_gain, 0.01);
-        let fixed_point = scene.fixed_point().unwrap();
-        let theta = scene.period_two(&fixed_point).unwrap();
+        let fixed_point = find_fixed_point(&scene).unwrap();
+        let theta = period_two_angle(&scene.model(), scene.rules().topple_angle, &fixed_point).unwrap();
         // κ − κ_c ≈ a C θ², a = 1/2, C = 2/3.
         assert!((theta / (3.0 * (tilt_gain - 1.5)).sqrt() - 1.0).abs() < 0.15, "{theta}");
         let Model::Rod(rod) = scene.model() else { unreachable!() };
@@ -111,14 +115,16 @@ fn the_period_two_orbit_is_one() {
         orbit.advance();
         assert!((orbit.state().theta - theta).abs() < 1e-12);
     }
-    assert_eq!(scene(1.45, 0.01).period_two(&scene(1.45, 0.01).fixed_point().unwrap()), None);
+    let none = scene(1.45, 0.01);
+    let fixed_point = find_fixed_point(&none).unwrap();
+    assert_eq!(period_two_angle(&none.model(), none.rules().topple_angle, &fixed_point), None);
 }
 
 /// What 30,000 contacts show: chaotic where it falls or a twin 1e-10 rad aside leaves it, regular where both halves turn at
 /// the same rate; none where neither is clear.
 fn label(one: &Scene, other: &Scene) -> Option<bool> {
-    let fixed_point = one.fixed_point().unwrap();
-    let mut turns = Turns::new(&fixed_point, &one.linear(&fixed_point))?;
+    let fixed_point = find_fixed_point(one).unwrap();
+    let mut turns = Turns::new(&fixed_point, &linear_verdict(one, &fixed_point))?;
     let (mut orbit, mut twin) = (one.orbit().unwrap(), other.orbit().unwrap());
     let (mut advances, mut separation) = (Vec::new(), 0.0_f64);
     for _ in 0..30_000 {
@@ -157,7 +163,7 @@ impl Tally {
         let mut tally = Self::default();
         for (one, twin) in pairs {
             let Some(chaos) = regularity(&one).chaos else {
-                let run = one.nonlinear(WATCHED, || true).unwrap();
+                let run = run_nonlinear(&one, WATCHED, || true).unwrap();
                 assert_ne!(run.ending, Ending::Completed);
                 tally.fell += 1;
                 continue;

@@ -8,10 +8,16 @@ use equipoise_physics::bounce::strike::State;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::Grip;
+use equipoise_physics::stability::basin::find_basin;
+use equipoise_physics::stability::boundary::boundary_coefficient;
+use equipoise_physics::stability::contact_regime::{
+    ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
+};
+use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::stability::jacobian::{eigenvalues, jacobian};
-use equipoise_physics::stability::linear_verdict::Class;
-use equipoise_physics::stability::verdict::{HigherOrder, Verdict};
+use equipoise_physics::stability::linear_verdict::{Class, linear_verdict};
+use equipoise_physics::stability::nonlinear_run::run_nonlinear;
+use equipoise_physics::stability::verdict::{HigherOrder, Verdict, judge};
 use equipoise_physics::surveys::stability_map::{Axis, Quantity, Region};
 
 const L: f64 = 0.4 / 3.0;
@@ -44,9 +50,9 @@ fn the_closed_form_has_the_eigenvalues_of_the_derivative() {
                     let mut draft = scene(slide, &values).draft();
                     draft.set(Name::Law, Some(Value::Choice(law))).unwrap();
                     let scene = draft.build().unwrap();
-                    let point = scene.fixed_point().unwrap();
+                    let point = find_fixed_point(&scene).unwrap();
                     let state = State { theta: 0.0, x_dot: 0.0, y_dot: -point.speed, theta_dot: 0.0 };
-                    let linear = scene.linear(&point);
+                    let linear = linear_verdict(&scene, &point);
                     let exact = eigenvalues(&jacobian(&scene.model(), &state, 1).unwrap().matrix).unwrap();
                     // Each has one near it: their order is not certain where moduli are equal.
                     for value in &linear.eigenvalues {
@@ -65,7 +71,10 @@ fn the_closed_form_has_the_eigenvalues_of_the_derivative() {
                             .filter(|value| value.re != linear.energy_eigenvalue)
                             .map(|value| 1.0 - value.re)
                             .product();
-                        assert!((at_one - scene.held_polynomial_at_one(point.speed)).abs() < 1e-12 && at_one < 0.0);
+                        assert!(
+                            (at_one - sticking_polynomial_at_one(&scene.parameters(), point.speed)).abs() < 1e-12
+                                && at_one < 0.0
+                        );
                     }
                 }
             }
@@ -86,7 +95,7 @@ fn the_boundary_is_where_runs_begin_to_leave() {
         largest
     };
     let still = scene("matched", &[(Name::TiltGain, 2.0)]);
-    let critical = still.linear(&still.fixed_point().unwrap()).critical_tilt_gain;
+    let critical = linear_verdict(&still, &find_fixed_point(&still).unwrap()).critical_tilt_gain;
     assert!((critical - 2.5).abs() < 1e-12, "{critical}");
     assert!(reach(critical - 0.01) < 1e-5 && reach(critical + 0.01) > 1e-3);
     assert!(reach(1.01) < 1e-5 && reach(0.99) > 1e-3);
@@ -97,8 +106,8 @@ fn a_matched_run_drifts_as_said_and_takes_back_what_it_lends() {
     for kappa in [1.2, 1.7, 2.2] {
         let values = [(Name::TiltGain, kappa), (Name::Theta, 0.01), (Name::ThetaDot, 0.05), (Name::XDot, 0.02)];
         let scene = scene("matched", &values);
-        let drift = scene.drift_speed().unwrap();
-        let speed = scene.fixed_point().unwrap().speed;
+        let drift = drift_speed(&scene).unwrap();
+        let speed = find_fixed_point(&scene).unwrap().speed;
         let mut orbit = scene.orbit().unwrap();
         let body = orbit.body;
         let kept = |state: &State| {
@@ -123,7 +132,8 @@ fn a_matched_run_drifts_as_said_and_takes_back_what_it_lends() {
 #[test]
 fn the_stick_cone_is_where_a_matched_contact_begins_to_slide() {
     for (friction, kappa) in [(0.01, 2.0), (0.02, 0.4), (0.05, 2.4)] {
-        let cone = scene("matched", &[(Name::Friction, friction), (Name::TiltGain, kappa)]).stick_cone().unwrap();
+        let cone =
+            stick_cone(&scene("matched", &[(Name::Friction, friction), (Name::TiltGain, kappa)]).model()).unwrap();
         assert!((cone - friction * TURNING / (L * L * (kappa - 1.0_f64).abs())).abs() < 1e-15);
         for (share, mode) in [(0.99, Mode::Stick), (1.01, Mode::SlideThrough)] {
             let values = [(Name::Friction, friction), (Name::TiltGain, kappa), (Name::Theta, share * cone)];
@@ -136,16 +146,16 @@ fn the_stick_cone_is_where_a_matched_contact_begins_to_slide() {
 #[test]
 fn a_table_that_only_tilts_falls_and_the_verdict_says_why() {
     let scene = scene("none", &[(Name::Friction, 0.05), (Name::TiltGain, 1.1), (Name::Theta, 0.05)]);
-    assert_eq!(scene.grip(), Grip::Held);
-    let nonlinear = scene.nonlinear(1000, || true).unwrap();
+    assert_eq!(contact_regime(&scene.model()), ContactRegime::Sticking);
+    let nonlinear = run_nonlinear(&scene, 1000, || true).unwrap();
     assert!(nonlinear.impacts <= 10, "{nonlinear:?}");
-    let point = scene.fixed_point().unwrap();
-    let linear = scene.linear(&point);
+    let point = find_fixed_point(&scene).unwrap();
+    let linear = linear_verdict(&scene, &point);
     let higher = HigherOrder::of(&scene, &point, &linear);
-    let judgement = scene.judge(&point, &linear, &higher, &nonlinear, None);
+    let judgement = judge(&scene, &point, &linear, &higher, &nonlinear, None);
     assert_eq!(judgement.verdict, Verdict::Unstable);
     assert!(judgement.agree && judgement.reason.contains("sticks for any friction above 0"), "{}", judgement.reason);
-    assert!(scene.drift_speed().is_none() && scene.boundary(&point).is_none());
+    assert!(drift_speed(&scene).is_none() && boundary_coefficient(&scene.model(), &point).is_none());
 }
 
 /// Beyond the κ_c without friction, 1.5, a run falls where its release is outside of the stick cone, and survives where its swing,
@@ -164,8 +174,8 @@ fn the_stick_cone_shows_in_a_region_over_friction_and_tilt_gain() {
     let (mut inside, mut outside) = (0, 0);
     for (index, cell) in cells.iter().enumerate() {
         let scene = region.scene(index % 40, index / 40).unwrap();
-        let cone = scene.stick_cone().unwrap();
-        let residue = scene.linear(&scene.fixed_point().unwrap()).residue.unwrap();
+        let cone = stick_cone(&scene.model()).unwrap();
+        let residue = linear_verdict(&scene, &find_fixed_point(&scene).unwrap()).residue.unwrap();
         let survived = cell.outcome == Some(Outcome::Completed);
         if theta / (1.0 - residue).sqrt() < cone {
             inside += 1;
@@ -189,7 +199,7 @@ fn the_stick_cone_shows_in_a_region_over_friction_and_tilt_gain() {
 
 #[test]
 fn a_matched_table_has_a_basin_and_one_that_only_tilts_has_none() {
-    let basin = |slide| scene(slide, &[(Name::TiltGain, 1.3)]).basin(300, || true).unwrap();
+    let basin = |slide| find_basin(&scene(slide, &[(Name::TiltGain, 1.3)]), 300, || true).unwrap();
     let (matched, held) = (basin("matched"), basin("none"));
     assert!(matched.unbroken > 0.1 && held.theta < 1e-3, "{matched:?} {held:?}");
 }

@@ -16,7 +16,8 @@ use crate::numbers::trig;
 use crate::run::extended;
 use crate::scene::Scene;
 use crate::scene::model::Model;
-use crate::stability::linear_verdict::Class;
+use crate::stability::fixed_point::find_fixed_point;
+use crate::stability::linear_verdict::{Class, linear_verdict};
 
 /// Largest exponent of a growth that is multiplied as it is: e^709 is the largest double.
 const MOST_GROWTH: f64 = 600.0;
@@ -59,27 +60,27 @@ pub struct LinearImpact {
     pub t_error: f64,
 }
 
-impl Scene {
-    /// The linear solution of a run of this scene.
+impl LinearSolution {
+    /// The linear solution of the run of a scene.
     ///
     /// # Errors
     /// Why there is none, in a sentence.
-    pub fn linear_solution(&self) -> Result<LinearSolution, String> {
-        if let Some(error) = self.beyond(&[]) {
+    pub fn of_scene(scene: &Scene) -> Result<Self, String> {
+        if let Some(error) = scene.beyond(&[]) {
             return Err(error.detail);
         }
-        let fixed_point = self.fixed_point()?;
-        let linear = self.linear(&fixed_point);
-        let (Model::Rod(rod), Some(residue)) = (self.model(), linear.residue) else {
+        let fixed_point = find_fixed_point(scene)?;
+        let linear = linear_verdict(scene, &fixed_point);
+        let (Model::Rod(rod), Some(residue)) = (scene.model(), linear.residue) else {
             return Err("a point mass has no angle; its eq. (5) is exact".to_owned());
         };
         // What is left out is counted against the powers that are taken, so those of R = 0 or 1 are not of a residue beside it.
         let residue = if linear.class == Class::Parabolic { residue.round() } else { residue };
         let unknown = |_| "the first contact is not found".to_owned();
-        self.orbit().map_err(|_| unknown(()))?;
+        scene.orbit().map_err(|_| unknown(()))?;
         // In 31 digits: of a release just above the table doubles lose digits of the clearance.
-        let orbit = self.extended_orbit().map_err(|_| unknown(()))?;
-        let feeds_back = self.energy_gain != 0.0;
+        let orbit = scene.extended_orbit().map_err(|_| unknown(()))?;
+        let feeds_back = scene.energy_gain != 0.0;
         if feeds_back && linear.energy_eigenvalue.abs() >= 1.0 {
             let eigenvalue = linear.energy_eigenvalue;
             return Err(format!("energy_gain drives the energy away: the eigenvalue of y_dot is {eigenvalue}"));
@@ -91,8 +92,8 @@ impl Scene {
             _ if residue < 0.0 => 2.0 * libm::asinh((-residue).sqrt()),
             _ => 2.0 * libm::asinh(f64::max(residue - 1.0, 0.0).sqrt()),
         };
-        let mut solution = LinearSolution {
-            extended: self.parameters(),
+        let mut solution = Self {
+            extended: scene.parameters(),
             speed: fixed_point.speed,
             flight_time: fixed_point.flight_time,
             residue,
@@ -115,9 +116,7 @@ impl Scene {
         }
         Ok(solution)
     }
-}
 
-impl LinearSolution {
     /// The state just before impact `n` (from 1), and how far it may be off.
     pub fn impact(&self, n: u64) -> LinearImpact {
         let m = n.saturating_sub(1);

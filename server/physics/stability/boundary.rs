@@ -1,0 +1,92 @@
+//! The upper end κ_c of the tilt gain: the coefficient that says whether stability is lost softly there, and the orbit of period 2
+//! that branches off.
+
+use crate::bounce::strike::Rod;
+use crate::numbers::trig;
+use crate::scene::model::Model;
+use crate::stability::contact_regime::{ContactRegime, contact_regime};
+use crate::stability::fixed_point::FixedPoint;
+
+/// The boundary coefficient C of the next order of the normal form: κ − κ_c ≈ a C θ² on the branch of period-2 orbits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Boundary {
+    /// C; positive is soft (runs stay bounded at and a little beyond κ_c), negative hard (they fall).
+    pub coefficient: f64,
+}
+
+impl Boundary {
+    /// `soft`, `hard` or, at C = 0, `degenerate`.
+    pub fn kind(&self) -> &'static str {
+        if self.coefficient > 0.0 {
+            "soft"
+        } else if self.coefficient < 0.0 {
+            "hard"
+        } else {
+            "degenerate"
+        }
+    }
+}
+
+/// The rod of a model for which the boundary is derived: frictionless, with an angle and with a tilt gain.
+fn frictionless_rod(model: &Model) -> Option<&Rod> {
+    let is_point = matches!(model, Model::Point(_));
+    let derived = !is_point && contact_regime(model) == ContactRegime::Frictionless && model.feedback().is_none();
+    derived.then(|| model.rod())
+}
+
+/// The boundary coefficient C at κ_c, with a = κ_c − 1 and γ = Gl/V²: (1+a)²/2 + a²/6 − (1−a)γ, and with a positive
+/// energy gain, which holds η and not the energy, −(1+a)²/2 + a²/6 − γ. `None` for a point mass, with friction and with state
+/// feedback, for which it is not derived.
+pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<Boundary> {
+    let rod = frictionless_rod(model)?;
+    let gamma = rod.gravity * rod.contact_distance / (fixed_point.speed * fixed_point.speed);
+    let lever = rod.radius_of_gyration / rod.contact_distance;
+    let a = gamma * lever * lever;
+    let half_square = 0.5 * (1.0 + a) * (1.0 + a);
+    let sixth = a * a / 6.0;
+    let holds_height = rod.strike_gain_per_energy > 0.0;
+    let coefficient = if holds_height { sixth - half_square - gamma } else { half_square + sixth - (1.0 - a) * gamma };
+    Some(Boundary { coefficient })
+}
+
+/// θ, rad, of the mirror-symmetric period-2 orbit at the energy of the fixed point, the one nearest to upright; `None` if there is
+/// none within the topple angle (rad).
+///
+/// Its states are (±θ, ±V tan κθ, −V, ±Gθ/V) with V² = Gρ²θ cos κθ / (l sin((κ − 1)θ)); with energy feedback η is held in
+/// place of the energy. `None` also with friction and with state feedback, for which it is not derived.
+pub fn period_two_angle(model: &Model, topple_angle: f64, fixed_point: &FixedPoint) -> Option<f64> {
+    let &Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, strike_gain_per_energy, .. } =
+        frictionless_rod(model)?;
+    let weight = gravity * contact_distance;
+    // The energy of the orbit with angle θ above that of the fixed point; NaN if there is no such orbit.
+    let excess = |theta: f64| {
+        let (sin_alpha, cos_alpha) = trig::sin_cos(kappa * theta);
+        let (sin_beta, _) = trig::sin_cos((kappa - 1.0) * theta);
+        let (_, versine) = trig::sin_versine(theta);
+        let rho_squared = radius_of_gyration * radius_of_gyration;
+        let speed_squared = gravity * rho_squared * theta * cos_alpha / (contact_distance * sin_beta);
+        let slant = sin_alpha / cos_alpha;
+        let aside = slant * slant * speed_squared + rho_squared * gravity * gravity * theta * theta / speed_squared;
+        let held = if strike_gain_per_energy > 0.0 { 0.0 } else { 0.5 * aside };
+        let speed = fixed_point.speed;
+        if cos_alpha > 0.0 && speed_squared > 0.0 {
+            0.5 * (speed_squared - speed * speed) + held - weight * versine
+        } else {
+            f64::NAN
+        }
+    };
+    let step = topple_angle / 1024.0;
+    let (mut low, mut high) = (step * 1e-6, step);
+    while excess(low) * excess(high) > 0.0 && high < topple_angle {
+        (low, high) = (high, high + step);
+    }
+    let (below, above) = (excess(low), excess(high));
+    if below.is_nan() || above.is_nan() || below * above > 0.0 {
+        return None;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if excess(middle) * below > 0.0 { low = middle } else { high = middle }
+    }
+    Some(0.5 * (low + high))
+}

@@ -1,0 +1,43 @@
+//! The run of the scene itself, summed up for the verdict.
+
+use crate::run::ending::Ending;
+use crate::run::orbit::{LOOK, run};
+use crate::scene::Scene;
+use crate::table::actuator_load::{Demand, Meter};
+
+/// The summary of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NonlinearRun {
+    /// How it ended.
+    pub ending: Ending,
+    /// Contacts until then.
+    pub impacts: u64,
+    /// When, s.
+    pub t: f64,
+    /// Largest |θ| at a contact, rad.
+    pub max_theta: f64,
+    /// The most that it asked of the table.
+    pub demand: Demand,
+}
+
+/// Runs the scene for up to `impacts` contacts; `go_on` is asked now and then, and `None` follows a `false`.
+pub fn run_nonlinear(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<NonlinearRun> {
+    let mut orbit = match scene.orbit() {
+        Ok(orbit) => orbit,
+        Err(none) => {
+            let (ending, t) = (none.ending(0.0, 0.0), 0.0);
+            let max_theta = scene.start().theta.abs();
+            return Some(NonlinearRun { ending, impacts: 0, t, max_theta, demand: Demand::default() });
+        }
+    };
+    let mut max_theta: f64 = 0.0;
+    let mut t = 0.0;
+    let mut meter = Meter::default();
+    let ending = run(&mut orbit, impacts, |contact| {
+        meter.look(contact);
+        max_theta = max_theta.max(contact.state.theta.abs());
+        t = contact.t;
+        !contact.n.is_multiple_of(LOOK) || go_on()
+    })?;
+    Some(NonlinearRun { ending, impacts: orbit.contacts(), t, max_theta, demand: meter.most })
+}
