@@ -1,7 +1,7 @@
-"""Questions to an equipoise server, with Python's standard library alone.
+"""Requests to an equipoise server, using only Python's standard library.
 
-`ask("trajectories", {"preset": "case-1", "impacts": 20})` is the answer as a dict; a format other than JSON comes as bytes.
-A request that cannot be answered ends the program with what is wrong, field by field. `ask_many` asks the same of many at once.
+`ask("trajectories", {"preset": "case-1", "impacts": 20})` returns the answer as a dict; other formats than JSON come as bytes.
+An invalid request ends the program with the errors of its fields. `ask_many` sends many requests at once.
 """
 
 import argparse
@@ -15,7 +15,7 @@ import urllib.error
 import urllib.request
 
 SERVER = "http://127.0.0.1:8080"
-BODY_BYTES = 256 * 1024  # What a server takes at a time, unless it was started with another --body-bytes.
+BODY_BYTES = 256 * 1024  # Default of a server's --body-bytes.
 TRIES = 5
 
 
@@ -34,7 +34,7 @@ def parse(parser):
 
 
 def ask(resource, request, form="json"):
-    """POST to /v1/<resource>. While the server has too much to do, it says how long to wait, and that is waited."""
+    """POST to /v1/<resource>. If the server is overloaded, waits for the time that it names and repeats the request."""
     try:
         with post(f"{resource}?format={form}", json.dumps(request).encode(), "application/json") as answer:
             return json.load(answer) if form == "json" else answer.read()
@@ -43,10 +43,10 @@ def ask(resource, request, form="json"):
 
 
 def ask_many(resource, requests):
-    """Many requests to /v1/<resource>: for each in its order (answer, None), or (None, problem), as soon as it is there.
+    """Many requests to /v1/<resource>. Yields (answer, None) or (None, problem) for each, in order, as soon as it is ready.
 
-    They go to /v1/batches/<resource>, as many at a time as a body may hold. What an answer that was cut off, or a server that was
-    being started anew, has left out is asked for again.
+    They go to /v1/batches/<resource>, as many at a time as fit into a body. Requests that a broken answer or a restart of the server
+    left out are sent again.
     """
     waiting = collections.deque(json.dumps(request).encode() + b"\n" for request in requests)
     fruitless = 0

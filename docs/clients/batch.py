@@ -1,7 +1,7 @@
-"""Many scenes, one answer: reads requests as NDJSON, a JSON object on each line, and writes what the server says to each as NDJSON.
+"""Many scenes at once: reads requests as NDJSON, a JSON object on each line, and writes the answers as NDJSON.
 
-Lines come out in the order in which they went in, as soon as they are there. What is wrong with one stands in its line, and the exit
-status says that there was one. Example: batch.py stability < rigs.ndjson > verdicts.ndjson
+Lines come out in the order of the input, each as soon as it is ready. Errors stand in the line of their request, and the exit status is
+then 1. Example: batch.py stability < rigs.ndjson > verdicts.ndjson
 """
 
 import json
@@ -10,7 +10,7 @@ import sys
 from ask import arguments, ask_many, parse
 
 parser = arguments(__doc__)
-parser.add_argument("resource", help="what is asked: stability, trajectories, controllers, ...")
+parser.add_argument("resource", help="resource: stability, trajectories, controllers, ...")
 options = parse(parser)
 
 

@@ -1,8 +1,8 @@
 """A map or an ensemble too large for one request, in tiles on any number of servers: `pip install dask distributed`.
 
-The file it ends with has the bytes that one request to one server would have, if one took it. What is done stays done: after
-whatever stopped it, the same command asks for the tiles that are missing alone.
-Example: in_tiles.py regions map.json --into map --server http://a:8080 http://b:8080, where map.json is what POST /v1/regions takes.
+The result has the bytes that one request to one server would have. After an interruption the same command requests only the missing
+tiles.
+Example: in_tiles.py regions map.json --into map --server http://a:8080 http://b:8080, where map.json is the body of POST /v1/regions.
 """
 
 import argparse
@@ -27,15 +27,15 @@ from urllib.parse import urlsplit
 import dask
 from distributed import Client, LocalCluster, as_completed, get_worker
 
-# A server is asked again so many seconds after it could not be reached, twice as many after each time more.
+# Pauses before a server that cannot be reached is tried again, s; they double each time.
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
-# How long a server may take to accept a connection, and to say anything more.
+# Time limits of a connection attempt and of silence, s.
 CONNECT_TIME, SILENT_TIME = 10, 300
-# What is wrong here and with no server.
+# Errors of this machine's disk, not of a server.
 OF_THE_DISK = {errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.ENOENT, errno.EIO}
-# Angles of an ensemble in memory at a time, eight bytes each.
+# Most angles of an ensemble in memory, eight bytes each.
 NUMBERS_AT_ONCE = 1 << 23
-# The standard normal deviate with 95 % between it and its negative, and the shares of runs below the quantiles.
+# The standard normal deviate of a 95 % interval, and the shares of runs below the quantiles.
 DEVIATE, SHARES = 1.959963984540054, (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
@@ -58,7 +58,7 @@ def post(server, resource, request, form, token):
 
 
 def refusal(answer):
-    """What is wrong with a request, field by field."""
+    """The errors of a request, field by field."""
     text = answer.read()
     try:
         problem = json.loads(text)
@@ -69,10 +69,10 @@ def refusal(answer):
 
 
 def asked(job, request, form, first, take, pauses):
-    """What `take` makes of an answer to this request, from the first server that gives one; or {"stop": why nobody will}.
+    """Returns what `take` makes of the first server's answer to this request, or {"stop": reason} if no server will answer.
 
-    A server that has too much to do says when to come back. Meanwhile, and while one cannot be reached, others are asked.
-    `pauses` keeps from when on each may be asked again, and how often in a row it failed.
+    An overloaded server names a time to wait. Meanwhile, and while a server cannot be reached, others are tried.
+    `pauses` holds for each server the time of the next try and the number of failures in a row.
     """
     servers = job["servers"][first % len(job["servers"]) :] + job["servers"][: first % len(job["servers"])]
     begin, last = time.monotonic(), "nobody was asked"
@@ -111,7 +111,7 @@ def asked(job, request, form, first, take, pauses):
 
 
 def last_line(file):
-    """Where the last line of an open file begins, and what it says."""
+    """Start and text of the last line of an open file."""
     size = file.seek(0, os.SEEK_END)
     place = max(0, size - 4096)
     file.seek(place)
@@ -121,7 +121,7 @@ def last_line(file):
 
 
 def counts(line):
-    """How many cells or runs ended how, as the last line of a tile says it; nothing if it is another line."""
+    """Counts of endings from the last line of a tile; nothing if it is another line."""
     try:
         return json.loads(line)["end"]["counts"]
     except (ValueError, KeyError, TypeError):
@@ -129,26 +129,26 @@ def counts(line):
 
 
 def is_whole(file, size):
-    """Whether an open file has all of a tile."""
+    """True if an open file has a whole tile."""
     found = counts(last_line(file)[1])
     return found is not None and sum(found.values()) == size
 
 
 class Regions:
-    """Maps: a tile is a band of rows, kept as the NDJSON that it came as."""
+    """Maps: a tile is a band of rows, stored as the NDJSON of its answer."""
 
     unit, form, formats, asks = "cells", "ndjson", ["ndjson", "csv"], {}
-    # Of one tile: some seconds of a core, and 1 MB that has to be computed again where a worker is killed.
+    # Cells of a tile: some seconds of a core, and 1 MB to compute again if a worker is killed.
     most = 250_000
 
     @staticmethod
     def shares(request):
-        """How many rows there are to deal out, and how many cells each has."""
+        """Number of rows, and of cells in each."""
         return request["y"]["count"], request["x"]["count"]
 
     @staticmethod
     def price(request):
-        """Bounces of a cell, about."""
+        """Approximate bounces of a cell."""
         is_linear = request.get("quantity") in ("residue", "spectral_radius")
         return 10 if is_linear else request.get("impacts") or 1000
 
@@ -158,7 +158,7 @@ class Regions:
 
     @staticmethod
     def write_ndjson(job, out):
-        """All rows, and a last line for all of them."""
+        """All rows, and a last line with the sums."""
         for place in job["places"]:
             with open(place, "rb") as file:
                 end = last_line(file)[0]
@@ -171,7 +171,7 @@ class Regions:
 
     @staticmethod
     def write_csv(job, out):
-        """The same rows cell by cell, with numbers as the servers wrote them."""
+        """The same rows cell by cell, with numbers as in the answers."""
         first = {**job["request"], "impacts": 1, "tile": {"index": 0, "of": job["request"]["y"]["count"]}}
         frame = asked(job, first, "json", 0, lambda answer: json.load(answer, parse_float=str, parse_int=str), {})
         if "stop" in frame:
@@ -193,10 +193,10 @@ class Regions:
 
 
 class Ensembles:
-    """Runs with noise: a tile is some of them, kept as their curve, then their angles, a line for each contact that has them."""
+    """Runs with noise: a tile is a part of them, stored as their curve, then a line of angles for each contact that has some."""
 
     unit, form, formats, asks = "runs", "json", ["csv"], {"angles": True}
-    # Of one tile, with 200 angles each: 8 MB.
+    # Runs of a tile, with 200 angles each: 8 MB.
     most = 2000
 
     @staticmethod
@@ -205,7 +205,7 @@ class Ensembles:
 
     @staticmethod
     def price(request):
-        """Those of noise take longer, and are not in lanes."""
+        """Approximate bounces of a run: with noise they take longer and are not in lanes."""
         return 10 * (request.get("impacts") or 400)
 
     @staticmethod
@@ -217,7 +217,7 @@ class Ensembles:
 
     @staticmethod
     def write_csv(job, out):
-        """The curve of all runs, from counts that add up and angles that are sorted together, contact by contact."""
+        """The curve of all runs, contact by contact, from sums of counts and merged angles."""
         first = {**job["request"], "impacts": 1, "tile": {"index": 0, "of": job["request"]["runs"]}}
         out.write(header_of(job, first))
         at_risk, ended, places = [], [], []
@@ -254,7 +254,7 @@ class Ensembles:
 
 
 def total(job):
-    """How many cells or runs of all tiles ended how."""
+    """Counts of endings over all tiles."""
     ends = {}
     for place in job["places"]:
         with open(place, "rb") as file:
@@ -264,7 +264,7 @@ def total(job):
 
 
 def wilson_interval(successes, trials):
-    """As the server takes it (E. B. Wilson 1927), operation by operation."""
+    """Wilson interval (E. B. Wilson 1927), with the server's order of operations."""
     share, square = successes / trials, DEVIATE * DEVIATE
     middle = share + square / (2 * trials)
     half = DEVIATE * math.sqrt(share * (1 - share) / trials + square / (4.0 * trials * trials))
@@ -273,7 +273,7 @@ def wilson_interval(successes, trials):
 
 
 def quantiles_of(values):
-    """As the server takes them, on straight lines between the sorted values."""
+    """Quantiles as in the server, on straight lines between the sorted values."""
     values, found = sorted(values), []
     for share in SHARES if values else []:
         place = share * (len(values) - 1)
@@ -284,7 +284,7 @@ def quantiles_of(values):
 
 
 def written(number):
-    """A number as the server writes it: the same digits as Python's, a power of ten from 1e-6 down and 1e16 up."""
+    """A number in the server's notation: Python's digits, with a power of ten from 1e-6 down and 1e16 up."""
     text = "" if number is None else repr(number)
     digits, _, power = text.partition("e")
     if not power:
@@ -296,9 +296,9 @@ KINDS = {"regions": Regions, "ensembles": Ensembles}
 
 
 def compute(job, index):
-    """Has a tile computed and puts it in its place, in one step: a file under its name is whole, whoever is killed when.
+    """Gets a tile and stores it in one step, so that a file under its name is always whole.
 
-    Runs in a worker. Two that do the same tile, as after one was taken for dead, put the same bytes there.
+    Runs in a worker. Two workers with the same tile, as after one seemed dead, write the same bytes.
     """
     kind, place = KINDS[job["resource"]], tile_place(job, index)
     begun = place.with_name(f"{index}.{socket.gethostname()}.{os.getpid()}.{threading.get_ident()}.part")
@@ -313,7 +313,7 @@ def compute(job, index):
         os.replace(begun, place)
         return {"index": index}
 
-    # Whoever did it may have been killed before it could say so.
+    # An earlier worker may have stored it and been killed before it could report.
     if is_there(job, index):
         return {"index": index}
     worker = get_worker()
@@ -339,7 +339,7 @@ def is_there(job, index):
 
 
 def header_of(job, request):
-    """The first line of the CSV that answers a request."""
+    """The header line of the CSV of a request."""
     header = asked(job, request, "csv", 0, lambda answer: {"line": answer.readline()}, {})
     if "stop" in header:
         sys.exit(header["stop"])
@@ -347,13 +347,13 @@ def header_of(job, request):
 
 
 def size_of(job, index):
-    """How many cells or runs a tile has: they are dealt out as the contract says."""
+    """Number of cells or runs of a tile, by the rule of the contract."""
     shares, each = KINDS[job["resource"]].shares(job["request"])
     return each * (shares * (index + 1) // job["of"] - shares * index // job["of"])
 
 
 def tiles_of(kind, request, options):
-    """Into how many tiles the work is cut."""
+    """Number of tiles."""
     if request.get("tile"):
         sys.exit("the request has a tile of its own; leave it out")
     try:
@@ -365,7 +365,7 @@ def tiles_of(kind, request, options):
 
 
 def build_of(servers):
-    """The build of all servers that can be reached, which has to be one."""
+    """The build of all servers that can be reached; it must be the same."""
     builds = {}
     for server in servers:
         try:
@@ -382,7 +382,7 @@ def build_of(servers):
 
 
 def manifest_of(folder, resource, request, build, of):
-    """What the tiles in a folder are tiles of, written when the first is asked for. Other ones are not mixed with them."""
+    """Writes or checks the manifest of a folder, so that tiles of different requests are not mixed."""
     text = json.dumps([resource, request], sort_keys=True, separators=(",", ":"))
     digest = hashlib.sha256(text.encode()).hexdigest()
     wanted = {"sha256": digest, "build": build, "of": of, "resource": resource, "request": request}
@@ -401,7 +401,7 @@ def manifest_of(folder, resource, request, build, of):
 
 
 class Progress:
-    """Says on standard error how far it is, once a second on a terminal and every ten seconds elsewhere."""
+    """Prints progress to standard error, once a second on a terminal and every ten seconds elsewhere."""
 
     def __init__(self, job, done):
         self.job, self.done, self.begun_with = job, len(done), sum(size_of(job, index) for index in done)
@@ -422,7 +422,7 @@ class Progress:
 
 
 def fan_out(job, missing, client, progress):
-    """Has the missing tiles computed, a few more at a time than there are threads, so that none waits for its next one."""
+    """Computes the missing tiles, a few more at a time than there are threads, so that no thread waits."""
     waiting = iter(missing)
     futures, under_way = as_completed(), 0
 
@@ -430,7 +430,7 @@ def fan_out(job, missing, client, progress):
         nonlocal under_way
         most = 2 * max(1, sum(client.nthreads().values()))
         while under_way < most and (index := next(waiting, None)) is not None:
-            # Not pure: what counts is the file, which an earlier result of the same name does not make.
+            # Not pure: the result is the file, so Dask must not reuse an earlier result of the same name.
             futures.add(client.submit(compute, job, index, pure=False))
             under_way += 1
 
@@ -448,14 +448,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("resource", choices=KINDS)
     parser.add_argument("request", type=Path, help="a file with the body of POST /v1/<resource>, without `tile`")
-    parser.add_argument("--into", type=Path, required=True, help="folder of the tiles and the result; all workers have to see it")
+    parser.add_argument("--into", type=Path, required=True, help="folder of the tiles and the result, visible to all workers")
     parser.add_argument("--server", nargs="+", default=["http://127.0.0.1:8080"], help="addresses of servers (http://127.0.0.1:8080)")
-    parser.add_argument("--scheduler", help="address of a Dask cluster; otherwise there is one on this machine, of --workers")
-    parser.add_argument("--workers", type=int, default=4, help="processes that ask, each for a tile at a time (4)")
+    parser.add_argument("--scheduler", help="address of a Dask cluster; default: a cluster on this machine with --workers")
+    parser.add_argument("--workers", type=int, default=4, help="worker processes, each with one tile at a time (4)")
     parser.add_argument("--format", nargs="+", choices=["ndjson", "csv"], help="of the result (ndjson for maps, csv for ensembles)")
-    parser.add_argument("--tile-size", type=int, help="cells or runs of a tile, at most, where a row is no more (250000 or 2000)")
+    parser.add_argument("--tile-size", type=int, help="most cells or runs of a tile, but at least a row (250000 or 2000)")
     parser.add_argument("--tile-bounces", type=int, default=100_000_000, help="the same for its work, in bounces of lanes (100000000; a server counts 20 for one that is in none)")
-    parser.add_argument("--patience", type=float, default=600, help="seconds without an answer after which a tile is given up (600)")
+    parser.add_argument("--patience", type=float, default=600, help="seconds without an answer before it gives up on a tile (600)")
     options = parser.parse_args()
 
     kind, request = KINDS[options.resource], json.loads(options.request.read_text())
@@ -477,7 +477,7 @@ def main():
     if done:
         print(f"{len(done)} of {job['of']} tiles are there already", file=sys.stderr)
     if missing:
-        # A worker that is killed takes no tile with it; one that kills its worker ten times is at fault itself.
+        # Tiles of a killed worker go to another one; a tile that kills its worker ten times is at fault itself.
         dask.config.set({"distributed.scheduler.allowed-failures": 10})
         local = {"n_workers": options.workers, "threads_per_worker": 1, "memory_limit": 0, "dashboard_address": "127.0.0.1:0"}
         with nullcontext(options.scheduler) if options.scheduler else LocalCluster(host="127.0.0.1", **local) as cluster:

@@ -1,8 +1,8 @@
-"""Is my rig stable, by what margins whatever its parts turn out to be, and what does it ask of the table?
+"""Is my rig stable, by which margins over the tolerances of its parts, and what does the table have to do?
 
-Lengths in metres, angles in radians. Example: 0.133 +- 0.002 m from centre of gravity to contact, 0.094 +- 0.001 m of gyration:
+Lengths in metres, angles in radians. Example: 0.133 +- 0.002 m from the centre of gravity to the contact, radius of gyration 0.094 +- 0.001 m:
     margins_of_my_rig.py --lengths 0.133 0.094 --tilt-gain 1.1 --off-distance 0.002 --off-gyration 0.001
-A polygon of an even sheet instead:  --polygon "0,0 0.05,0.2 -0.05,0.2"
+For a polygon of uniform density instead:  --polygon "0,0 0.05,0.2 -0.05,0.2"
 """
 
 import math

@@ -1,6 +1,6 @@
-"""First steps: is the paper's first case stable, by how much, what does a run look like, and a picture of it.
+"""First steps: the verdict on the paper's first case with its margins, a run as columns, and a picture of it.
 
-Start a server, then `python3 quickstart.py`. It needs Python 3.9 and nothing else.
+Start a server, then `python3 quickstart.py`. It needs only Python 3.9 or newer.
 """
 
 from pathlib import Path
@@ -12,7 +12,7 @@ parser.add_argument("--preset", default="case-1", help="a case of the paper; /v1
 parser.add_argument("--picture", type=Path, default=Path("run.svg"), help="file for the picture, .svg or .png")
 options = parse(parser)
 
-# The verdict: is it balanced, how is that known, and how far is it from where it would not be?
+# The verdict: is it balanced, for which reason, and by which margins?
 stability = ask("stability", {"preset": options.preset})
 print(f"{options.preset}: {stability['verdict']}\n  {stability['reason']}")
 if stability["linear"] and stability["linear"]["tilt_gain"]:
@@ -20,13 +20,13 @@ if stability["linear"] and stability["linear"]["tilt_gain"]:
     print(f"  tilt gain {gain['value']} in ({gain['lower']}, {gain['critical']:.4f}):",
           f"{gain['margin_below']:.4f} above the one end, {gain['margin_above']:.4f} below the other")
 
-# A preset with a change of one's own, and its run as columns: pandas.DataFrame(run["impacts"]) is a data frame.
+# A preset with one change, and its run as columns: pandas.DataFrame(run["impacts"]) is a data frame.
 run = ask("trajectories", {"preset": options.preset, "scene": {"release": {"height": 0.25}}, "impacts": 10})
 columns = run["impacts"]
 print(f"\nReleased at 0.25 m instead: {run['outcome']['detail']}\n{'n':>3} {'t [s]':>9} {'θ [rad]':>9} {'ẏ [m/s]':>9} {'error':>8}")
 for n, t, theta, y_dot, error in zip(columns["n"], columns["t"], columns["theta"], columns["y_dot"], columns["error_estimate"]):
     print(f"{n:3} {t:9.5f} {theta:9.5f} {y_dot:9.5f} {'' if error is None else format(error, '.0e'):>8}")
 
-# Whatever has a picture is drawn by the server.
+# The server draws the picture.
 options.picture.write_bytes(ask("trajectories", {"preset": options.preset, "impacts": 300}, options.picture.suffix[1:]))
 print(f"\nThe phase planes of 300 impacts: {options.picture}")

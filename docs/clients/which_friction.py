@@ -1,4 +1,4 @@
-"""From which friction on does my controller hold, or stop to hold? For every law of impact.
+"""From which friction on does my controller hold, or fail? For every law of impact.
 
 Judges four tables, each by its verdict near upright and a run from the release: tilt alone, tilt with a table that moves along
 with the contact, and state feedback designed for a contact that slips and for one that sticks.
@@ -11,15 +11,15 @@ from ask import arguments, ask, parse
 
 parser = arguments(__doc__)
 parser.add_argument("--preset", default="case-1")
-parser.add_argument("--scene", type=json.loads, default={"release": {"theta": 0.05}}, help="what is different, as JSON")
+parser.add_argument("--scene", type=json.loads, default={"release": {"theta": 0.05}}, help="changes to the preset, as JSON")
 parser.add_argument("--most", type=float, default=1.0, help="largest friction coefficient")
-parser.add_argument("--points", type=int, default=13, help="coefficients tried from 0.0001 on, before changes are closed in on")
+parser.add_argument("--points", type=int, default=13, help="coefficients tried from 0.0001 on, before each change is located")
 parser.add_argument("--impacts", type=int, default=300, help="bounces to survive")
 options = parse(parser)
 
 
 def merged(one, other):
-    """RFC 7396, as the server does it with a preset."""
+    """Merges a patch by RFC 7396, as the server merges a scene onto a preset."""
     return {**one, **{key: merged(one.get(key) or {}, value) if isinstance(value, dict) else value for key, value in other.items()}}
 
 
@@ -29,7 +29,7 @@ def designed(contact):
 
 
 def judged(table, law, friction):
-    """Whether it holds, and why."""
+    """True if the controller holds, and the reason."""
     scene = merged(merged(options.scene, table), {"contact": {"friction": friction, "law": law}})
     answer = ask("stability", {"preset": options.preset, "scene": scene, "impacts": options.impacts})
     if answer["verdict"] is None:

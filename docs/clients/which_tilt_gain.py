@@ -1,7 +1,7 @@
 """Which tilt gain should I set? Scans it over release angles without noise and over repeated runs with it, and recommends one.
 
-A gain must come close to the best survival under noise (their 95 % intervals overlap); of those, the one that lets the body be
-released the furthest aside wins. Example: which_tilt_gain.py --preset case-1 --timing-sd 0.01
+Candidates are the gains close to the best survival under noise (their 95 % intervals overlap). Of these it recommends the one with the
+widest release angle. Example: which_tilt_gain.py --preset case-1 --timing-sd 0.01
 """
 
 import json
@@ -10,10 +10,10 @@ from ask import arguments, ask, ask_many, parse, said
 
 parser = arguments(__doc__)
 parser.add_argument("--preset", default="case-1")
-parser.add_argument("--scene", type=json.loads, default={}, help='what is different, as \'{"release": {"height": 0.3}}\'')
+parser.add_argument("--scene", type=json.loads, default={}, help='changes to the preset, as \'{"release": {"height": 0.3}}\'')
 parser.add_argument("--timing-sd", type=float, default=0.01, help="standard deviation of the time of the strike, in s")
-parser.add_argument("--model", choices=["strike", "plan"], default="plan", help="what a table does that is late: wait for the body, or carry out its plan")
-parser.add_argument("--gains", type=int, default=16, help="how many tilt gains")
+parser.add_argument("--model", choices=["strike", "plan"], default="plan", help="behaviour of a late table: strike the body where it then is, or carry out its plan")
+parser.add_argument("--gains", type=int, default=16, help="number of tilt gains")
 parser.add_argument("--impacts", type=int, default=400, help="bounces to survive")
 parser.add_argument("--runs", type=int, default=200, help="runs with noise for each gain")
 options = parse(parser)

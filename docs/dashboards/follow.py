@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Follows a live run and prints its impacts, each once and none missing, however often the connection breaks.
+"""Follows a live run and prints its impacts, each exactly once, over any number of broken connections.
 
     python3 follow.py 'http://127.0.0.1:8080/v1/live/events?preset=case-1'
 
-Python alone, nothing to install. Where the server has a token, it is taken from EQUIPOISE_TOKEN. Ctrl-C ends it, and so does the end of the run.
+Needs only Python. The token of a server is read from EQUIPOISE_TOKEN. It ends with the run or on Ctrl-C.
 """
 
 import http.client
@@ -19,7 +19,7 @@ TOKEN = os.environ.get("EQUIPOISE_TOKEN")
 
 
 def events(answer):
-    """The events of an open answer: id (or None) and message. One that was cut off is left out: it comes again."""
+    """The events of an open answer: id (or None) and message. An incomplete event is skipped, because it comes again."""
     mark, text = None, ""
     for line in answer:
         name, _, value = line.decode().rstrip("\n").partition(": ")
@@ -44,7 +44,7 @@ def impacts(message):
 
 
 def follow(url):
-    """The impacts of the run at this address as they happen, from the first on, or from the `from` that it says."""
+    """The impacts of the run at an address as they happen, from the first on or from its `from`."""
     given = parse_qs(urlsplit(url).query).get("from")
     first = given[0] if given else "1"
     url = url if given else f"{url}&from={first}"
@@ -61,7 +61,7 @@ def follow(url):
                     return
                 for mark, message in events(answer):
                     if message["type"] == "hello":
-                        # This address says when the run was released, so that it can be come back to.
+                        # This address has the run's epoch, so the client can reconnect to it.
                         events_url = message["url"].replace("/v1/live?", "/v1/live/events?", 1)
                         url = urljoin(url, f"{events_url}&from={first}")
                     elif message["type"] == "gap":
