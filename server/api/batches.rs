@@ -13,7 +13,6 @@ use axum::body::{Body, Bytes};
 use axum::extract::{Path, State};
 use axum::http::{Response, StatusCode};
 use axum::routing::post;
-use futures_util::future::BoxFuture;
 use futures_util::{FutureExt, StreamExt, stream};
 use http_body_util::BodyExt;
 use serde::Serialize;
@@ -21,51 +20,26 @@ use tokio::task::yield_now;
 use tokio::time::timeout;
 
 use crate::api::app::App;
-use crate::api::controllers::controllers;
-use crate::api::ensembles::ensembles;
-use crate::api::jacobians::jacobians;
-use crate::api::ladder::ladder;
-use crate::api::periodic_orbits::periodic_orbits;
-use crate::api::precision::precision;
-use crate::api::regions::regions;
-use crate::api::stability::stability;
-use crate::api::trajectories::trajectories;
-use crate::http::{Ask, Asked, Format, Line, Lines, Problem, Resource};
+use crate::api::resource::{Answer, Endpoint};
+use crate::http::{Asked, Format, Line, Lines, Problem, Resource};
 use crate::limits;
 
-/// How a resource answers one request.
-type Answer = fn(State<App>, Ask) -> BoxFuture<'static, Result<Response<Body>, Problem>>;
-
-/// What can be asked for line by line: whatever takes a POST.
-const RESOURCES: [(&str, Answer); 9] = [
-    ("controllers", |app, ask| controllers(app, ask).boxed()),
-    ("ensembles", |app, ask| ensembles(app, ask).boxed()),
-    ("jacobians", |app, ask| jacobians(app, ask).boxed()),
-    ("ladder", |app, ask| ladder(app, ask).boxed()),
-    ("periodic-orbits", |app, ask| periodic_orbits(app, ask).boxed()),
-    ("precision", |app, ask| precision(app, ask).boxed()),
-    ("regions", |app, ask| regions(app, ask).boxed()),
-    ("stability", |app, ask| stability(app, ask).boxed()),
-    ("trajectories", |app, ask| trajectories(app, ask).boxed()),
-];
-
-/// Its path.
-pub fn routes() -> Router<App> {
-    Router::new().route("/v1/batches/{resource}", post(batches))
+/// The route, for these resources.
+pub fn routes(resources: &'static [Endpoint]) -> Router<App> {
+    let handler = move |State(app): State<App>, Path(name): Path<String>, lines: Lines| async move {
+        batches(resources, app, &name, lines)
+    };
+    Router::new().route("/v1/batches/{resource}", post(handler))
 }
 
-async fn batches(
-    State(app): State<App>,
-    Path(resource): Path<String>,
-    lines: Lines,
-) -> Result<Response<Body>, Problem> {
+fn batches(resources: &[Endpoint], app: App, name: &str, lines: Lines) -> Result<Response<Body>, Problem> {
     const RESOURCE: Resource = Resource { name: "batches", formats: &[Format::Ndjson] };
-    let Some((_, answer)) = RESOURCES.iter().find(|(name, _)| *name == resource) else {
-        let names = RESOURCES.map(|(name, _)| name).join(", ");
-        return Err(Problem::not_found(format!("there are no batches of this name; there are {names}")));
+    let Some(Endpoint { answer, .. }) = resources.iter().find(|resource| resource.name == name).copied() else {
+        let names: Vec<&str> = resources.iter().map(|resource| resource.name).collect();
+        return Err(Problem::not_found(format!("there are no batches of this name; there are {}", names.join(", "))));
     };
     let (ask, asked, at_once) = (lines.ask.clone(), Asked::under_way(), app.config.permits());
-    let told = stream::iter(lines.into_each()).map(move |line| told(app.clone(), *answer, line, asked.clone()));
+    let told = stream::iter(lines.into_each()).map(move |line| told(app.clone(), answer, line, asked.clone()));
     let told = told.buffered(at_once).map(Some).chain(stream::iter([None]));
     let pieces = told.scan(End::default(), |end, told| ready(Some(end.pass(told)))).map(stream::iter).flatten();
     ask.respond_piecewise(&RESOURCE, Body::from_stream(pieces.map(Ok::<_, Infallible>)))
@@ -133,7 +107,7 @@ async fn answered(app: App, answer: Answer, line: Line) -> Result<Bytes, Problem
         if app.is_closing() {
             return Err(Problem::overloaded("the server is being stopped; ask for this line again"));
         }
-        match answer(State(app.clone()), ask.clone()).await {
+        match answer(app.clone(), ask.clone()).await {
             Err(problem) if problem.status() == StatusCode::SERVICE_UNAVAILABLE && waits.next().is_some() => {
                 let _ = timeout(limits::BATCH_WAIT_TIME, app.closing()).await;
             }

@@ -7,6 +7,7 @@ pub mod batches;
 pub mod controllers;
 pub mod ensembles;
 pub mod failures;
+pub mod formats;
 pub mod jacobians;
 pub mod ladder;
 pub mod live;
@@ -14,6 +15,7 @@ pub mod ops;
 pub mod periodic_orbits;
 pub mod precision;
 pub mod regions;
+pub mod resource;
 pub mod scene;
 pub mod shared;
 pub mod stability;
@@ -22,25 +24,31 @@ pub mod trajectories;
 use axum::Router;
 
 pub use crate::api::app::App;
+use crate::api::resource::Endpoint;
 
-/// All resources. Each states its full path, so that a path is found by searching for it.
+/// Resources that compute an answer: each at `/v1/<name>`, and for many requests at once at `/v1/batches/<name>`.
+const COMPUTED: [Endpoint; 9] = [
+    Endpoint::of::<controllers::Controllers>(),
+    Endpoint::of::<ensembles::Ensembles>(),
+    Endpoint::of::<jacobians::Jacobians>(),
+    Endpoint::of::<ladder::Ladder>(),
+    Endpoint::of::<periodic_orbits::PeriodicOrbits>(),
+    Endpoint::of::<precision::Precision>(),
+    Endpoint::of::<regions::Regions>(),
+    Endpoint::of::<stability::Stability>(),
+    Endpoint::of::<trajectories::Trajectories>(),
+];
+
+/// All routes.
 pub fn all() -> Router<App> {
-    Router::new()
+    let others = Router::new()
         .merge(ops::page::routes())
         .merge(ops::contract::routes())
         .merge(ops::health::routes())
         .merge(ops::scrape::routes())
         .merge(failures::routes())
         .merge(scene::routes())
-        .merge(trajectories::routes())
-        .merge(jacobians::routes())
-        .merge(controllers::routes())
-        .merge(ladder::routes())
         .merge(live::routes())
-        .merge(periodic_orbits::routes())
-        .merge(precision::routes())
-        .merge(stability::routes())
-        .merge(regions::routes())
-        .merge(ensembles::routes())
-        .merge(batches::routes())
+        .merge(batches::routes(&COMPUTED));
+    COMPUTED.into_iter().map(Endpoint::routes).fold(others, Router::merge)
 }

@@ -10,8 +10,9 @@ use serde::{Serialize, Serializer};
 
 use crate::BUILD;
 use crate::api::scene::{Resolved, has_angle};
+use crate::api::shared::demand::DemandAnswer;
+use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
-use crate::api::trajectories::answer::{Choice, DemandAnswer};
 use crate::http::{FieldError, Problem};
 use crate::runs::playback::Course;
 use crate::runs::run::Run;
@@ -111,7 +112,7 @@ pub fn problem(problem: &Problem) -> Frame {
 pub struct Hello<'a> {
     scene: Resolved<'a>,
     scene_in_force: Resolved<'a>,
-    model: Choice,
+    model: ModelChoice,
     epoch: u64,
     speed: f64,
     paused: bool,
@@ -143,7 +144,7 @@ impl<'a> Hello<'a> {
         Self {
             scene: Resolved(scene),
             scene_in_force: Resolved(course.scene()),
-            model: Choice::model(scene),
+            model: ModelChoice::of(scene),
             epoch: run.clock.epoch(),
             speed: run.clock.speed(),
             paused: run.clock.is_paused(),

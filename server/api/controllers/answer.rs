@@ -1,89 +1,27 @@
-//! The request and the answer of `controllers`: weights, and the state feedback that is best for them.
+//! The answer of `controllers`: the state feedback that is best for the weights.
+
+use std::borrow::Cow;
 
 use equipoise_physics::bounce::strike::Rod;
 use equipoise_physics::control::{BounceModel, ClosedLoop, Design, NoDesign, STATE};
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::stability::fixed_point::{FixedPoint, bounce_in_place};
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use crate::api::jacobians::answer::Eigenvalue;
-use crate::api::scene::{build_scene, read_draft, scene_to_json, scene_to_query};
+use crate::api::controllers::request::{ControllerRequest, FEEDBACK, contact_name, set};
+use crate::api::formats::Tabular;
+use crate::api::scene::{scene_to_json, scene_to_query};
+use crate::api::shared::eigenvalue::Eigenvalue;
+use crate::api::shared::fixed_point::FixedPointAnswer;
+use crate::api::shared::model_choice::ModelChoice;
+use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::{Cells, Column, Table};
-use crate::api::stability::answer;
-use crate::api::trajectories::answer::Choice;
-use crate::charts::{Loop, closed_loop, significant};
-use crate::http::Reader;
-
-/// The fields of the gain, in the order of the state.
-const FEEDBACK: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
-
-/// Weights that keep the table's tilts small enough that laws hold from afar.
-const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
+use crate::charts::significant;
 
 /// Residue of the α = κθ that is shown beside a law where the scene has no κ: that of the paper's first case.
 const PROPORTIONAL: f64 = 0.2;
-
-/// Points of the way of the eigenvalues over the factor on the gain.
-const FACTORS: usize = 160;
-
-/// What is asked for.
-#[derive(Debug, Clone, Copy)]
-pub struct Request {
-    /// The scene, with whatever law it has; with a tilt gain where it has none, since a scene needs one to be built.
-    pub scene: Scene,
-    /// κ, if the scene has one.
-    tilt_gain: Option<f64>,
-    regime: ContactRegime,
-    state: [f64; 4],
-    input: f64,
-}
-
-impl Request {
-    /// Reads a request.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let draft = read_draft(reader);
-        let sticks = reader.choice("contact", &[("frictionless", false), ("stick", true)]);
-        let (mut state, mut input) = WEIGHTS;
-        reader.within("weights", |weights| {
-            weights.numbers("state", &STATE, &(0.0..=1e6), &mut state);
-            input = weights.number("input", 1e-6..=1e6, "").unwrap_or(input);
-        });
-        let mut draft = draft?;
-        let tilt_gain = match draft.get(Name::TiltGain) {
-            Some(Value::Number(kappa)) => Some(kappa),
-            _ => None,
-        };
-        // A law is what is asked for, so there need not be one.
-        if draft.get(Name::TiltGain).is_none() && FEEDBACK.iter().all(|&name| draft.get(name).is_none()) {
-            set(&mut draft, Name::TiltGain, Some(1.0));
-        }
-        let pointer = reader.pointer_to("scene");
-        let scene = build_scene(draft, &pointer, reader.errors())?;
-        let regime = match sticks {
-            None => contact_regime(&scene.model()),
-            Some(false) => ContactRegime::Frictionless,
-            Some(true) if scene.value(Name::Slide) == Some(Value::Choice("matched")) => ContactRegime::VelocityMatched,
-            Some(true) => ContactRegime::Sticking,
-        };
-        Some(Self { scene, tilt_gain, regime, state, input })
-    }
-
-    /// All that determines the answer beside the scene.
-    pub fn rest(&self) -> impl Serialize {
-        (contact_name(self.regime), self.state, self.input, self.tilt_gain)
-    }
-}
-
-/// Sets a number of a draft; whether it is within its range.
-fn set(draft: &mut Draft, name: Name, number: Option<f64>) -> bool {
-    draft.set(name, number.map(Value::Number)).is_ok()
-}
-
-fn contact_name(regime: ContactRegime) -> &'static str {
-    if regime == ContactRegime::Frictionless { "frictionless" } else { "stick" }
-}
 
 /// Numbers by the names of the state.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -107,16 +45,16 @@ struct Weights {
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct Linear {
+struct LinearModel {
     a: Vec<Vec<f64>>,
     b: Vec<f64>,
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct Place {
+struct FixedPlace {
     x: f64,
     #[serde(flatten)]
-    bounce: answer::FixedPoint,
+    bounce: FixedPointAnswer,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -125,10 +63,10 @@ struct GainMargin {
     upper: Option<f64>,
 }
 
-/// A law and what it does.
+/// A law and its closed loop.
 #[derive(Debug, Clone, Serialize)]
-struct Judged {
-    contact: &'static str,
+pub(super) struct LawAnswer {
+    pub(super) contact: &'static str,
     gain: ByState,
     stable: bool,
     eigenvalues: Vec<Eigenvalue>,
@@ -137,7 +75,7 @@ struct Judged {
     gain_margin: Option<GainMargin>,
 }
 
-impl Judged {
+impl LawAnswer {
     fn new(regime: ContactRegime, gain: [f64; 4], closed: &ClosedLoop) -> Self {
         Self {
             contact: contact_name(regime),
@@ -151,48 +89,45 @@ impl Judged {
     }
 }
 
-/// Where basins are to be seen.
+/// Requests for maps of the basins.
 #[derive(Debug, Clone, Serialize)]
-struct Regions {
+struct RegionLinks {
     designed: String,
     proportional: String,
 }
 
 /// The answer.
 #[derive(Debug, Clone, Serialize)]
-pub struct Controller {
+pub struct ControllerAnswer {
     scene: Json,
-    model: Choice,
+    model: ModelChoice,
     weights: Weights,
     state_order: &'static [&'static str],
-    linear: Linear,
+    linear: LinearModel,
     #[serde(flatten)]
-    law: Judged,
+    pub(super) law: LawAnswer,
     residual: f64,
     iterations: u32,
-    fixed_point: Place,
+    fixed_point: FixedPlace,
     open_loop: Vec<Eigenvalue>,
     energy_eigenvalue: f64,
-    applied: Option<Judged>,
-    given: Option<Judged>,
-    regions: Regions,
-    notes: Vec<String>,
+    applied: Option<LawAnswer>,
+    given: Option<LawAnswer>,
+    regions: RegionLinks,
+    pub(super) notes: Vec<String>,
     #[serde(skip)]
-    linear_model: BounceModel,
+    pub(super) linear_model: BounceModel,
     #[serde(skip)]
-    design: Design,
+    pub(super) design: Design,
 }
 
-/// A JSON pointer and a sentence.
-type Refusal = (&'static str, String);
-
-impl Controller {
+impl ControllerAnswer {
     /// Designs the law.
     ///
     /// # Errors
-    /// Why there is none.
-    pub fn compute(request: &Request) -> Result<Self, Refusal> {
-        let Request { scene, tilt_gain, regime, state, input } = *request;
+    /// The reason why there is none.
+    pub fn compute(request: &ControllerRequest) -> Result<Self, Refusal> {
+        let ControllerRequest { scene, tilt_gain, regime, state, input } = *request;
         let slow = || ("/weights", "the eigenvalues of this law did not converge".to_owned());
         let place = bounce_in_place(&scene).map_err(|why| ("/scene", format!("there is no law to design: {why}")))?;
         let rod: Rod = scene.parameters();
@@ -205,7 +140,7 @@ impl Controller {
         let own = contact_regime(&scene.model());
         let judge = |gain: [f64; 4]| {
             let closed = BounceModel::new(&rod, place.speed, own).closed_loop(gain, gain[0] != 0.0);
-            closed.map(|closed| Judged::new(own, gain, &closed)).ok_or_else(slow)
+            closed.map(|closed| LawAnswer::new(own, gain, &closed)).ok_or_else(slow)
         };
         let applied = (own != regime).then(|| judge(design.gain)).transpose()?;
         let given = scene.model().feedback().map(judge).transpose()?;
@@ -213,22 +148,22 @@ impl Controller {
         let energy_eigenvalue = 1.0 - rod.strike_gain_per_energy * place.speed * place.speed;
         let mut answer = Self {
             scene: scene_to_json(&designed),
-            model: Choice::model(&designed),
+            model: ModelChoice::of(&designed),
             weights: Weights { state: state.into(), input },
             state_order: &STATE[first..],
-            linear: Linear {
+            linear: LinearModel {
                 a: (first..4).map(|row| (first..4).map(|column| model.a[(row, column)]).collect()).collect(),
                 b: (first..4).map(|row| model.b[row]).collect(),
             },
-            law: Judged::new(regime, design.gain, &closed),
+            law: LawAnswer::new(regime, design.gain, &closed),
             residual: design.residual,
             iterations: design.iterations,
-            fixed_point: Place { x: 0.0, bounce: place.into() },
+            fixed_point: FixedPlace { x: 0.0, bounce: place.into() },
             open_loop: open.eigenvalues.iter().map(|&value| value.into()).collect(),
             energy_eigenvalue,
             applied,
             given,
-            regions: Regions {
+            regions: RegionLinks {
                 designed: region(&designed, &place),
                 proportional: region(&proportional(&scene, tilt_gain, &rod, &place)?, &place),
             },
@@ -290,13 +225,15 @@ impl Controller {
         }
         notes
     }
+}
 
+impl Tabular for ControllerAnswer {
     /// The law in one row.
-    pub fn to_table(&self) -> Table {
+    fn to_table(&self) -> Cow<'_, Table> {
         let number = |name, unit, value| Column { name, unit, cells: Cells::Sparse(vec![value]) };
         let (law, given) = (&self.law, self.given.as_ref());
         let margin = law.gain_margin.as_ref();
-        Table(vec![
+        Cow::Owned(Table(vec![
             Column { name: "contact", unit: "", cells: Cells::Words(vec![Some(law.contact)]) },
             number("gain_x", "rad_per_m", Some(law.gain.x)),
             number("gain_theta", "", Some(law.gain.theta)),
@@ -313,11 +250,10 @@ impl Controller {
             number("fixed_point_flight_time", "s", Some(self.fixed_point.bounce.flight_time)),
             number("applied_spectral_radius", "", self.applied.as_ref().map(|it| it.spectral_radius)),
             number("given_spectral_radius", "", given.map(|it| it.spectral_radius)),
-        ])
+        ]))
     }
 
-    /// What ends it as NDJSON: the notes and the scene, which are no scalars.
-    pub fn end(&self) -> impl Serialize {
+    fn end(&self) -> impl Serialize {
         #[derive(Serialize)]
         struct End {
             scene: Json,
@@ -325,45 +261,6 @@ impl Controller {
         }
         End { scene: self.scene.clone(), notes: self.notes.clone() }
     }
-
-    /// The eigenvalues on the unit circle, and their way as the gain is scaled, as SVG.
-    pub fn to_picture(&self) -> String {
-        let title = format!("Closed loop on a {} contact", self.law.contact);
-        picture(&title, &self.notes.join("; "), &self.linear_model, self.design.gain)
-    }
-}
-
-/// A law's loop as SVG.
-pub(crate) fn picture(title: &str, caption: &str, model: &BounceModel, gain: [f64; 4]) -> String {
-    let with_x = gain[0] != 0.0;
-    let eigenvalues = |factor: f64| -> Vec<(f64, f64)> {
-        let closed = model.closed_loop(gain.map(|gain| gain * factor), with_x);
-        closed.iter().flat_map(|closed| &closed.eigenvalues).map(|value| (value.re, value.im)).collect()
-    };
-    let closed = model.closed_loop(gain, with_x);
-    let margin = closed.as_ref().and_then(|closed| closed.margin);
-    let (lower, upper) = (margin.and_then(|it| it.lower), margin.and_then(|it| it.upper));
-    let high = upper.map_or(2.0, |upper| 1.0 + 1.4 * (upper - 1.0)).min(10.0);
-    let low = lower.map_or(0.0, |lower| 1.0 - 1.4 * (1.0 - lower)).max(0.0);
-    let way = (0..=FACTORS).map(|step| {
-        let factor = low + (high - low) * step as f64 / FACTORS as f64;
-        (factor, eigenvalues(factor))
-    });
-    let number = |value: f64| significant(value, 4);
-    let [x, theta, x_dot, theta_dot] = gain.map(number);
-    let subtitle = format!(
-        "α = −K·(x, θ, ẋ, θ̇) with K = ({x}, {theta}, {x_dot}, {theta_dot}); largest |λ| = {}",
-        number(closed.map_or(f64::NAN, |closed| closed.spectral_radius))
-    );
-    closed_loop(&Loop {
-        title,
-        subtitle: &subtitle,
-        caption,
-        closed: &eigenvalues(1.0),
-        open: &eigenvalues(0.0),
-        way: &way.collect::<Vec<_>>(),
-        margin: (lower, upper),
-    })
 }
 
 /// Why there is no law, in a sentence.
@@ -392,7 +289,7 @@ fn designed(scene: &Scene, gain: [f64; 4]) -> Result<Scene, Refusal> {
         let said = gain != 0.0 || name == Name::FeedbackTheta;
         if !set(&mut draft, name, said.then_some(gain)) {
             let row = name.row();
-            return Err((
+            return Err(Refusal::At(
                 "/weights",
                 format!("the law would have {} = {gain}, which must be {}", row.path, row.limits()),
             ));
@@ -422,7 +319,7 @@ fn proportional(scene: &Scene, tilt_gain: Option<f64>, rod: &Rod, place: &FixedP
 
 fn unbuilt(errors: Vec<equipoise_physics::scene::FieldError>) -> Refusal {
     let details: Vec<String> = errors.into_iter().map(|error| error.detail).collect();
-    ("/scene", details.join("; "))
+    Refusal::At("/scene", details.join("; "))
 }
 
 /// The basin of a scene's law over angle and spin of the release, as a request for `regions`.

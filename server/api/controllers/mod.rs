@@ -1,41 +1,36 @@
-//! `controllers`: state feedback that balances in place.
+//! `/v1/controllers`: state feedback that balances in place.
 
 pub mod answer;
+pub mod picture;
+pub mod request;
 
-use axum::Router;
-use axum::body::Body;
-use axum::extract::State;
-use axum::http::Response;
-use axum::routing::get;
-
-use crate::api::app::App;
-use crate::api::controllers::answer::{Controller, Request};
-use crate::api::shared::write;
-use crate::compute::{Price, Turn};
-use crate::http::{Ask, Format, Problem, Resource};
+use crate::api::controllers::answer::ControllerAnswer;
+use crate::api::controllers::request::ControllerRequest;
+use crate::api::formats::ChartFormat;
+use crate::api::resource::{ComputedResource, Work};
+use crate::compute::{OverBudget, Price};
+use crate::http::Reader;
 use crate::limits;
+use crate::limits::Limits;
 
-const RESOURCE: Resource =
-    Resource { name: "controllers", formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png] };
+/// The resource.
+#[derive(Debug)]
+pub enum Controllers {}
 
-/// Its path.
-pub fn routes() -> Router<App> {
-    Router::new().route("/v1/controllers", get(controllers).post(controllers))
-}
+impl ComputedResource for Controllers {
+    const NAME: &'static str = "controllers";
+    type Format = ChartFormat;
+    type Request = ControllerRequest;
+    const WORK: Work<Self> = Work::Pure {
+        canonical: ControllerRequest::canonical,
+        compute: |request, format, turn, _| format.write(&ControllerAnswer::compute(request)?, turn),
+    };
 
-pub(crate) async fn controllers(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
-    let request = ask.read(Request::read)?;
-    let price = Price::bounces(limits::CONTROLLER_PRICE).within(&app.config.limits.of_work())?;
-    let canonical = write::canonical(&request.scene, &request.rest());
-    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
-        let controller =
-            Controller::compute(&request).map_err(|(pointer, detail)| Problem::invalid_at(pointer, detail))?;
-        match format {
-            Format::Csv => write::csv(&controller.to_table(), turn),
-            Format::Ndjson => write::ndjson(&controller.to_table(), &controller.end(), turn),
-            Format::Svg | Format::Png => write::picture(controller.to_picture(), format, turn),
-            _ => write::json(&controller, turn),
-        }
-    })
-    .await
+    fn read(reader: &mut Reader<'_, '_>) -> Option<ControllerRequest> {
+        ControllerRequest::read(reader)
+    }
+
+    fn price(_: &ControllerRequest, limits: &Limits) -> Result<Price, OverBudget> {
+        Price::bounces(limits::CONTROLLER_PRICE).within(&limits.of_work())
+    }
 }

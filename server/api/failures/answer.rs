@@ -1,4 +1,4 @@
-//! A case of the failure gallery as it is answered.
+//! The answer of `failures`: a case of the gallery.
 
 use crate::failure_cases::{Case, Says};
 use equipoise_physics::scene::{FIELDS, Scene};
@@ -8,21 +8,21 @@ use crate::api::scene::{Resolved, value_to_json};
 
 /// A case.
 #[derive(Debug, Serialize)]
-pub struct Failure {
+pub struct FailureAnswer {
     name: &'static str,
     title: &'static str,
     method: &'static str,
     why: &'static str,
     scene: serde_json::Value,
     impacts: u64,
-    says: Vec<Said>,
-    truth: Truth,
+    says: Vec<VerdictAnswer>,
+    truth: TruthAnswer,
     ask: String,
     picture: String,
 }
 
 #[derive(Debug, Serialize)]
-struct Said {
+struct VerdictAnswer {
     method: &'static str,
     verdict: &'static str,
     value: Option<f64>,
@@ -32,18 +32,18 @@ struct Said {
 }
 
 #[derive(Debug, Serialize)]
-struct Truth {
+struct TruthAnswer {
     verdict: &'static str,
     detail: String,
 }
 
-impl Failure {
-    /// Computes what a case says.
+impl FailureAnswer {
+    /// Computes the verdicts of a case.
     pub fn compute(case: &Case) -> Self {
         let (scene, seen) = (case.scene(), case.look());
         let said = |Says { method, verdict, value, unit, detail }| {
             let value = value.filter(|value| value.is_finite());
-            Said { method, verdict, value, unit, right: verdict == seen.truth, detail }
+            VerdictAnswer { method, verdict, value, unit, right: verdict == seen.truth, detail }
         };
         Self {
             name: case.name,
@@ -53,7 +53,7 @@ impl Failure {
             scene: serde_json::to_value(Resolved(&scene)).unwrap_or_default(),
             impacts: case.impacts,
             says: seen.says.into_iter().map(said).collect(),
-            truth: Truth { verdict: seen.truth, detail: seen.detail },
+            truth: TruthAnswer { verdict: seen.truth, detail: seen.detail },
             ask: ask(&scene, case.ask),
             picture: format!("/v1/failures/{}?format=svg", case.name),
         }

@@ -1,4 +1,6 @@
-//! The request and the answer of `jacobians`: where the map is differentiated, and its derivative there.
+//! The answer of `jacobians`: the derivative of the map at a place.
+
+use std::borrow::Cow;
 
 use equipoise_physics::body::point::Point;
 use equipoise_physics::bounce::strike::State;
@@ -9,102 +11,19 @@ use equipoise_physics::stability::jacobian;
 use equipoise_physics::stability::jacobian::{Linearization, MOST_SIDES, TIED};
 use equipoise_physics::stability::linear_verdict::{Class, linear_verdict};
 use nalgebra::{Complex, DMatrix};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
-use crate::api::scene::{Resolved, bounce_price, has_angle};
+use crate::api::formats::Tabular;
+use crate::api::jacobians::request::{At, Derivation, JacobianRequest};
+use crate::api::scene::{Resolved, has_angle};
+use crate::api::shared::eigenvalue::Eigenvalue;
+use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
+use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::{Cells, Column, Table};
-use crate::api::trajectories::answer::{Choice, Refused};
-use crate::http::Reader;
-use crate::limits;
 
-/// Where to differentiate.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub enum At {
-    /// At the scene's fixed point.
-    FixedPoint,
-    /// At a place x, m, and a state just before a contact.
-    State(f64, #[serde(serialize_with = "components")] State),
-    /// At a contact of the scene's run.
-    Impact(u64),
-}
-
-/// How to differentiate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum Method {
-    /// The formulas themselves.
-    Exact,
-    /// Central differences, to compare.
-    FiniteDifference,
-}
-
-/// Step of the central differences, m/s (m for ρθ): rounding and truncation err about alike.
-pub const STEP: f64 = 1e-6;
-
-impl At {
-    /// Reads `at`.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let Some(value) = reader.value("at") else { return Some(Self::FixedPoint) };
-        if value.is_string() {
-            return reader.choice("at", &[("fixed_point", Self::FixedPoint)]);
-        }
-        let (mut found, mut kinds) = (None, 0);
-        reader.within("at", |at| {
-            if at.has("state") {
-                kinds += 1;
-                let state = at.within("state", |state| {
-                    (state.number("x", -1000.0..=1000.0, "m").unwrap_or(0.0), read_state(state))
-                });
-                found = state.map(|(x, state)| Self::State(x, state));
-            }
-            if at.has("impact") {
-                kinds += 1;
-                found = at.integer("impact", 1..=limits::IMPACTS).map(Self::Impact);
-            }
-            if kinds != 1 {
-                at.refuse_whole("at must be \"fixed_point\", or have either `state` or `impact`");
-            }
-        });
-        found
-    }
-}
-
-fn components<S: Serializer>(state: &State, serializer: S) -> Result<S::Ok, S::Error> {
-    (state.theta, state.x_dot, state.y_dot, state.theta_dot).serialize(serializer)
-}
-
-/// Reads a state just before a contact.
-pub(crate) fn read_state(reader: &mut Reader<'_, '_>) -> State {
-    let values = STATE.map(|(name, limit, unit)| reader.number(name, -limit..=limit, unit));
-    reader.require(&["y_dot"]);
-    let [theta, x_dot, y_dot, theta_dot] = values.map(|value| value.unwrap_or(0.0));
-    State { theta, x_dot, y_dot, theta_dot }
-}
-
-/// Components of a state with their limits and units; as wide as a run can get from the ranges of a scene.
-const STATE: [(&str, f64, &str); 4] = [
-    ("theta", std::f64::consts::PI, "rad"),
-    ("x_dot", 1000.0, "m/s"),
-    ("y_dot", 1000.0, "m/s"),
-    ("theta_dot", 1000.0, "rad/s"),
-];
-
-/// An eigenvalue.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct Eigenvalue {
-    /// Real part.
-    pub re: f64,
-    /// Imaginary part.
-    pub im: f64,
-    /// Modulus.
-    pub modulus: f64,
-}
-
-impl From<Complex<f64>> for Eigenvalue {
-    fn from(value: Complex<f64>) -> Self {
-        Self { re: value.re, im: value.im, modulus: jacobian::modulus(value) }
-    }
-}
+/// Step of the central differences, m/s (m for ρθ): rounding and truncation errors are about equal.
+const STEP: f64 = 1e-6;
 
 #[derive(Debug, Clone, Serialize)]
 struct Place {
@@ -125,9 +44,9 @@ struct PlaceState {
 
 /// The answer.
 #[derive(Debug, Clone, Serialize)]
-pub struct Jacobian<'a> {
+pub struct JacobianAnswer<'a> {
     scene: Resolved<'a>,
-    model: Choice,
+    model: ModelChoice,
     at: Place,
     period: u64,
     method: &'static str,
@@ -153,23 +72,18 @@ struct OneSided {
     eigenvalues: Vec<Eigenvalue>,
 }
 
-impl<'a> Jacobian<'a> {
+impl<'a> JacobianAnswer<'a> {
     /// Differentiates the map of a scene.
     ///
     /// # Errors
-    /// Why there is no derivative, as a JSON pointer and a sentence.
-    pub fn compute(
-        scene: &'a Scene,
-        at: At,
-        period: u64,
-        method: Method,
-        go_on: impl FnMut() -> bool,
-    ) -> Result<Self, Refused> {
+    /// The reason why there is no derivative.
+    pub fn compute(request: &'a JacobianRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
+        let JacobianRequest { ref scene, at, period, method } = *request;
         let model = scene.model();
         let (x, state) = place(scene, at, go_on)?;
         let derivative = match method {
-            Method::Exact => jacobian::jacobian_at(&model, x, &state, period),
-            Method::FiniteDifference => jacobian::finite_difference_at(&model, x, &state, period, STEP),
+            Derivation::Exact => jacobian::jacobian_at(&model, x, &state, period),
+            Derivation::FiniteDifference => jacobian::finite_difference_at(&model, x, &state, period, STEP),
         };
         let pointer = match at {
             At::FixedPoint => "/at",
@@ -184,7 +98,10 @@ impl<'a> Jacobian<'a> {
         let Linearization { matrix, flight_time, contact_speed, contact_mode, one_sided, .. } = derivative;
         let matrices = || std::iter::once(&matrix).chain(one_sided.iter().map(|side| &side.matrix));
         if !matrices().flat_map(|matrix| matrix.iter()).all(|entry| entry.is_finite()) {
-            return Err(Some((pointer, format!("the derivative over {period} contacts is beyond double precision"))));
+            return Err(Refusal::At(
+                pointer,
+                format!("the derivative over {period} contacts is beyond double precision"),
+            ));
         }
         let mut notes = vec![format!(
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
@@ -230,7 +147,7 @@ impl<'a> Jacobian<'a> {
         }
         Ok(Self {
             scene: Resolved(scene),
-            model: Choice::model(scene),
+            model: ModelChoice::of(scene),
             at: Place {
                 kind: match at {
                     At::FixedPoint => "fixed_point",
@@ -239,7 +156,7 @@ impl<'a> Jacobian<'a> {
                 },
                 impact: match at {
                     At::Impact(impact) => Some(impact),
-                    _ => None,
+                    At::FixedPoint | At::State(..) => None,
                 },
                 state: PlaceState {
                     x: fed_back.then_some(x),
@@ -251,8 +168,8 @@ impl<'a> Jacobian<'a> {
             },
             period,
             method: match method {
-                Method::Exact => "exact",
-                Method::FiniteDifference => "finite_difference",
+                Derivation::Exact => "exact",
+                Derivation::FiniteDifference => "finite_difference",
             },
             state_order: jacobian::state_order(&model),
             determinant: matrix.determinant(),
@@ -268,9 +185,11 @@ impl<'a> Jacobian<'a> {
             notes,
         })
     }
+}
 
-    /// The matrix as a table, a row for each component of the state at the end.
-    pub fn to_table(&self) -> Table {
+impl Tabular for JacobianAnswer<'_> {
+    /// A row for each component of the state at the end.
+    fn to_table(&self) -> Cow<'_, Table> {
         let mut columns = vec![Column {
             name: "component",
             unit: "",
@@ -280,12 +199,16 @@ impl<'a> Jacobian<'a> {
             let cells = Cells::Numbers(self.matrix.iter().map(|row| row[index]).collect());
             columns.push(Column { name, unit: "", cells });
         }
-        Table(columns)
+        Cow::Owned(Table(columns))
+    }
+
+    fn end(&self) -> impl Serialize {
+        self
     }
 }
 
 /// The state at which to differentiate.
-fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64, State), Refused> {
+fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64, State), Refusal> {
     match at {
         At::FixedPoint => {
             let fixed_point =
@@ -295,10 +218,10 @@ fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64,
         At::State(x, state) if has_angle(scene) => Ok((x, state)),
         At::State(x, State { theta, x_dot, y_dot, theta_dot }) => {
             if theta != 0.0 || theta_dot != 0.0 {
-                return Err(Some((
+                return Err(Refusal::At(
                     "/at/state",
                     "a point mass has no theta and no theta_dot; leave them out".to_owned(),
-                )));
+                ));
             }
             Ok((x, Point::state(x_dot, y_dot)))
         }
@@ -309,13 +232,13 @@ fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64,
                 last = (contact.x, contact.state);
                 !contact.n.is_multiple_of(LOOK) || go_on()
             });
-            let ending = ending.ok_or(None)?;
+            let ending = ending.ok_or(Refusal::Cancelled)?;
             if orbit.contacts() < impact {
                 let why = ending.name();
-                return Err(Some((
+                return Err(Refusal::At(
                     "/at/impact",
                     format!("impact is {impact}, but the run ends as `{why}` at contact {}", orbit.contacts()),
-                )));
+                ));
             }
             Ok(last)
         }
@@ -337,20 +260,4 @@ fn power(value: Complex<f64>, exponent: u64) -> Complex<f64> {
 /// (2 − trace)/4 of the angle's block, which at a fixed point stands alone.
 fn block_residue(matrix: &DMatrix<f64>) -> Option<f64> {
     (matrix.nrows() == 4).then(|| 0.25 * (2.0 - matrix[(0, 0)] - matrix[(3, 3)]))
-}
-
-/// What differentiating costs, in bounces of the plain rod.
-pub fn price(scene: &Scene, at: At, period: u64, method: Method) -> u64 {
-    let columns = jacobian::state_order(&scene.model()).len() as u64;
-    let before = match at {
-        At::Impact(impact) => impact * bounce_price(scene),
-        _ => 0,
-    };
-    limits::ANSWER_PRICE
-        + before
-        + period
-            * match method {
-                Method::Exact => 12,
-                Method::FiniteDifference => 6 * columns + 12,
-            }
 }

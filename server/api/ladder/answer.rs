@@ -1,53 +1,22 @@
 //! The answer of `ladder`: the same scene on each rung up to its own, and what each of them changed.
 
-use equipoise_physics::scene::Scene;
+use std::borrow::Cow;
+
 use equipoise_physics::scene::model::Rung;
-use equipoise_physics::scene::model_hierarchy::{Change, Largest, Run, Step, at_level, run_hierarchy};
+use equipoise_physics::scene::model_hierarchy::{Change, Largest, Run, Step, run_hierarchy};
 use serde::Serialize;
 
+use crate::api::formats::Tabular;
+use crate::api::ladder::request::LadderRequest;
 use crate::api::scene::Resolved;
+use crate::api::shared::demand::DemandAnswer;
+use crate::api::shared::model_choice::RequirementAnswer;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::table::{Cells, Column, Table};
-use crate::api::trajectories::answer::{DemandAnswer, ForcedAnswer, linear_price};
-use crate::http::Reader;
-use crate::limits;
-
-/// What is asked for beside the scene.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct Request {
-    /// How many contacts at most, on each rung.
-    pub impacts: u64,
-    /// Difference of the states, m/s, up to which a rung was not needed.
-    pub tolerance: f64,
-}
-
-/// Tolerances, m/s.
-const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-15..=10.0;
-
-/// Rungs of the tallest ladder, and the work of one impact on one of them but the linear one, in bounces of the plain rod.
-const RUNGS: u64 = 7;
-const RUNG_PRICE: u64 = 20;
-
-/// Work beside the impacts, in bounces: the linear solution before its first one, and the answer.
-const ONCE_PRICE: u64 = 2500;
-
-impl Request {
-    /// Reads everything but the scene.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Self {
-        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
-        let tolerance = reader.number("tolerance", TOLERANCES, "m/s").unwrap_or(1e-3);
-        Self { impacts, tolerance }
-    }
-
-    /// Its work, in bounces.
-    pub fn price(&self, scene: &Scene) -> u64 {
-        ONCE_PRICE + self.impacts * (RUNGS * RUNG_PRICE + linear_price(&at_level(scene, Rung::Linear)))
-    }
-}
 
 /// The answer.
 #[derive(Debug, Serialize)]
-pub struct Ladder<'a> {
+pub struct LadderAnswer<'a> {
     scene: Resolved<'a>,
     impacts: u64,
     tolerance: f64,
@@ -64,7 +33,7 @@ pub struct Ladder<'a> {
 #[derive(Debug, Serialize)]
 struct RungAnswer {
     name: &'static str,
-    forced: Option<ForcedAnswer>,
+    forced: Option<RequirementAnswer>,
     scene: serde_json::Value,
     /// Why it does not apply, where it does not.
     reason: Option<String>,
@@ -119,10 +88,11 @@ impl ChangeAnswer {
     }
 }
 
-impl<'a> Ladder<'a> {
+impl<'a> LadderAnswer<'a> {
     /// Runs a scene on its rungs; none once `go_on` said no.
-    pub fn compute(scene: &'a Scene, request: &Request, go_on: impl FnMut() -> bool) -> Option<Self> {
-        let Request { impacts, tolerance } = *request;
+    pub fn compute(request: &'a LadderRequest, go_on: impl FnMut() -> bool) -> Option<Self> {
+        let LadderRequest { scene, impacts, tolerance } = request;
+        let (impacts, tolerance) = (*impacts, *tolerance);
         let steps = run_hierarchy(scene, impacts, go_on)?;
         let (mut rungs, mut bounces) = (Vec::new(), 0);
         let (mut below, mut enough) = (None::<Rung>, None::<Rung>);
@@ -145,7 +115,7 @@ impl<'a> Ladder<'a> {
             }
             rungs.push(RungAnswer {
                 name: rung.name(),
-                forced: forced.map(ForcedAnswer::from),
+                forced: forced.map(RequirementAnswer::from),
                 scene: crate::api::scene::scene_to_json(&scene),
                 reason,
                 outcome,
@@ -185,9 +155,11 @@ impl<'a> Ladder<'a> {
     pub fn bounces(&self) -> u64 {
         self.bounces
     }
+}
 
+impl Tabular for LadderAnswer<'_> {
     /// A row for each rung.
-    pub fn to_table(&self) -> Table {
+    fn to_table(&self) -> Cow<'_, Table> {
         let rungs = &self.rungs;
         let words = |of: &dyn Fn(&RungAnswer) -> Option<&'static str>| Cells::Words(rungs.iter().map(of).collect());
         let texts = |of: &dyn Fn(&RungAnswer) -> Option<String>| Cells::Texts(rungs.iter().map(of).collect());
@@ -199,7 +171,7 @@ impl<'a> Ladder<'a> {
         };
         let columns = [
             ("rung", "", words(&|rung| Some(rung.name))),
-            ("field", "", words(&|rung| rung.forced.as_ref().map(ForcedAnswer::field))),
+            ("field", "", words(&|rung| rung.forced.as_ref().map(RequirementAnswer::field))),
             ("outcome", "", words(&|rung| rung.outcome.as_ref().map(|outcome| outcome.kind))),
             ("impacts", "", counts(&|rung| rung.outcome.as_ref().map(|outcome| outcome.impacts))),
             ("t", "s", sparse(&|rung| rung.outcome.as_ref().map(|outcome| outcome.t))),
@@ -213,11 +185,10 @@ impl<'a> Ladder<'a> {
             ("change_theta_dot", "rad_per_s", change(|change| change.theta_dot)),
             ("reason", "", texts(&|rung| rung.reason.clone())),
         ];
-        Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into())
+        Cow::Owned(Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into()))
     }
 
-    /// What ends it as NDJSON.
-    pub fn end(&self) -> impl Serialize {
+    fn end(&self) -> impl Serialize {
         serde_json::json!({ "rung": self.rung, "enough": self.enough, "reason": self.reason })
     }
 }

@@ -1,149 +1,28 @@
-//! The request and the answer of `periodic-orbits`: an orbit, or a branch of them along a field of the scene.
+//! The answer of `periodic-orbits`: an orbit, or a branch of orbits along a field of the scene.
+
+use std::borrow::Cow;
 
 use equipoise_physics::periodic_orbits::branch::{Branch, Point, Start, Sweep, follow};
 use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
-use equipoise_physics::scene::{Field, Kind, Name, Scene, Value, field};
+use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::boundary::period_two_angle;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::Complex;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
-use crate::api::jacobians::answer::{Eigenvalue, read_state};
+use crate::api::formats::Tabular;
+use crate::api::periodic_orbits::request::{PeriodicOrbitRequest, SweptRange};
 use crate::api::scene::Resolved;
+use crate::api::shared::eigenvalue::Eigenvalue;
+use crate::api::shared::model_choice::ModelChoice;
+use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::{Cells, Column, Table};
-use crate::api::trajectories::answer::Choice;
-use crate::charts::{Branches, Change as Mark, branches};
-use crate::http::Reader;
-use crate::limits;
-
-/// A range of a field.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct Range {
-    #[serde(serialize_with = "path")]
-    parameter: Name,
-    from: f64,
-    to: f64,
-    points: u64,
-}
-
-fn path<S: Serializer>(name: &Name, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(name.row().path)
-}
-
-/// What is asked for beside the scene.
-#[derive(Debug, Clone, Copy)]
-pub struct Request {
-    period: u64,
-    start: Start,
-    sweep: Option<Range>,
-}
-
-impl Serialize for Request {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let start = match self.start {
-            Start::Upright => ("upright", [0.0; 4]),
-            Start::Near(state) => ("guess", [state.theta, state.x_dot, state.y_dot, state.theta_dot]),
-            Start::Symmetric(theta) => ("symmetric", [theta, 0.0, 0.0, 0.0]),
-        };
-        (self.period, start, self.sweep).serialize(serializer)
-    }
-}
-
-impl Request {
-    /// Reads everything but the scene.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let before = reader.errors().len();
-        let period = reader.integer("period", 1..=limits::ORBIT_PERIOD);
-        let guess = reader.within("guess", read_state);
-        let family = reader.choice("family", &[("symmetric", ())]);
-        let theta = reader.number("theta", -1.5..=1.5, "rad");
-        let sweep = if reader.has("sweep") { reader.within("sweep", Range::read).flatten() } else { None };
-        let start = match (guess, family, theta) {
-            (Some(_), Some(()), _) => {
-                reader.refuse("family", "family and guess both say where to start; leave one of them out");
-                None
-            }
-            (None, Some(()), Some(theta)) if theta != 0.0 && period.unwrap_or(2) == 2 => Some(Start::Symmetric(theta)),
-            (None, Some(()), Some(_)) if period.unwrap_or(2) != 2 => {
-                reader.refuse("period", "period must be 2 for the symmetric family");
-                None
-            }
-            (None, Some(()), Some(_)) => {
-                reader.refuse("theta", "theta is 0; the symmetric family needs another angle, rad");
-                None
-            }
-            (None, Some(()), None) => {
-                reader.require(&["theta"]);
-                None
-            }
-            (_, None, Some(_)) => {
-                reader.refuse("theta", "theta goes with family; leave it out or add family \"symmetric\"");
-                None
-            }
-            (Some(state), None, None) => Some(Start::Near(state)),
-            (None, None, None) if period.unwrap_or(1) == 1 => Some(Start::Upright),
-            (None, None, None) if reader.errors().len() > before => None,
-            (None, None, None) => {
-                reader.refuse_whole("give a guess, or family \"symmetric\" with theta; only period 1 needs neither");
-                None
-            }
-        };
-        if reader.errors().len() > before {
-            return None;
-        }
-        let start = start?;
-        let default = if start == Start::Upright { 1 } else { 2 };
-        Some(Self { period: period.unwrap_or(default), start, sweep })
-    }
-
-    /// What it costs, in bounces of the plain rod: a bounce with derivatives is some twelve of them.
-    pub fn price(&self) -> u64 {
-        limits::ANSWER_PRICE + 12 * self.period * self.sweep.map_or(60, |sweep| 10 * sweep.points + 2000)
-    }
-
-    /// Where an error of the start points.
-    fn pointer(&self) -> &'static str {
-        match (self.start, self.sweep) {
-            (Start::Symmetric(_), _) => "/theta",
-            (Start::Near(_), _) => "/guess",
-            (Start::Upright, Some(_)) => "/sweep/from",
-            (Start::Upright, None) => "/period",
-        }
-    }
-}
-
-impl Range {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let sweeps = |row: &&Field| matches!(row.kind, Kind::Number { .. }) && row.name != Name::Friction;
-        let row = reader.text("parameter").and_then(field).filter(sweeps);
-        if row.is_none() && reader.has("parameter") {
-            reader
-                .refuse("parameter", "parameter must be the dotted name of a number of the scene, as table.tilt_gain, and not contact.friction");
-        }
-        let (from, to) = (reader.number("from", -1e4..=1e4, ""), reader.number("to", -1e4..=1e4, ""));
-        let points = reader.integer("points", 2..=limits::BRANCH_POINTS).unwrap_or(200);
-        reader.require(&["parameter", "from", "to"]);
-        let (row, from, to) = (row?, from?, to?);
-        for (name, value) in [("from", from), ("to", to)] {
-            if !row.admits(Value::Number(value)) {
-                reader.refuse(name, format!("{name} is {value}; {} must be {}", row.path, row.limits()));
-            }
-        }
-        if from == to {
-            reader.refuse("to", format!("to is {to}, as from; a sweep needs a range"));
-        }
-        if row.name == Name::EnergyGain && from.min(to) <= 0.0 && from.max(to) >= 0.0 {
-            reader.refuse("from", "at energy_gain 0 nothing sets the energy; sweep on one side of it");
-        }
-        Some(Self { parameter: row.name, from, to, points })
-    }
-}
 
 #[derive(Debug, Clone, Serialize)]
-struct Swept {
+pub(super) struct Swept {
     #[serde(flatten)]
-    range: Range,
+    pub(super) range: SweptRange,
     start: f64,
 }
 
@@ -158,10 +37,10 @@ struct Change {
 
 /// The answer.
 #[derive(Debug, Clone, Serialize)]
-pub struct PeriodicOrbits<'a> {
+pub struct PeriodicOrbitAnswer<'a> {
     scene: Resolved<'a>,
-    model: Choice,
-    period: u64,
+    model: ModelChoice,
+    pub(super) period: u64,
     least_period: usize,
     states: Table,
     residual: f64,
@@ -173,35 +52,32 @@ pub struct PeriodicOrbits<'a> {
     stable: Option<bool>,
     flight_time: f64,
     contact_speed: f64,
-    sweep: Option<Swept>,
+    pub(super) sweep: Option<Swept>,
     branch: Option<Table>,
     changes: Option<Vec<Change>>,
     notes: Vec<String>,
     #[serde(skip)]
-    points: Vec<Point>,
+    pub(super) points: Vec<Point>,
     #[serde(skip)]
-    critical: Option<f64>,
+    pub(super) critical: Option<f64>,
 }
 
-impl<'a> PeriodicOrbits<'a> {
+impl<'a> PeriodicOrbitAnswer<'a> {
     /// Finds the orbit, and follows its branch.
     ///
     /// # Errors
-    /// [`None`] in place of a pointer where it was cancelled; else a JSON pointer and why there is no orbit.
-    pub fn compute(
-        scene: &'a Scene,
-        request: &Request,
-        go_on: impl FnMut() -> bool,
-    ) -> Result<Self, Option<(&'static str, String)>> {
+    /// The reason why there is no orbit.
+    pub fn compute(request: &'a PeriodicOrbitRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
+        let scene = &request.scene;
         let refuse = |failure: Failure| match failure {
-            Failure::Cancelled => None,
-            failure => Some((request.pointer(), failure.to_string())),
+            Failure::Cancelled => Refusal::Cancelled,
+            failure => Refusal::At(request.pointer(), failure.to_string()),
         };
         let period = request.period as usize;
         let mut notes = Vec::new();
-        let setting = Setting::of(scene).map_err(|why| Some(("/scene", why)))?;
+        let setting = Setting::of(scene).map_err(|why| ("/scene", why))?;
         let branch = match request.sweep {
-            Some(Range { parameter: name, from, to, points }) => {
+            Some(SweptRange { parameter: name, from, to, points }) => {
                 let sweep = Sweep { scene, name, from, to };
                 Some(follow(&sweep, period, request.start, points as usize, go_on).map_err(refuse)?)
             }
@@ -239,7 +115,7 @@ impl<'a> PeriodicOrbits<'a> {
         let fixed_point = find_fixed_point(scene).ok().filter(|_| tilts);
         Ok(Self {
             scene: Resolved(scene),
-            model: Choice::model(scene),
+            model: ModelChoice::of(scene),
             period: request.period,
             least_period: orbit.least_period,
             states: states(&orbit),
@@ -261,48 +137,20 @@ impl<'a> PeriodicOrbits<'a> {
         })
     }
 
-    /// The branch, or the states where there is none.
-    pub fn to_table(&self) -> &Table {
-        self.branch.as_ref().unwrap_or(&self.states)
-    }
-
-    /// What ends it as NDJSON.
-    pub fn end(&self) -> impl Serialize {
-        serde_json::json!({ "changes": self.changes, "notes": self.notes })
-    }
-
-    /// The branch diagram as SVG; none without a sweep.
-    pub fn to_picture(&self) -> Option<String> {
-        let sweep = self.sweep.as_ref()?;
-        let row = sweep.range.parameter.row();
-        let points: Vec<_> = self
-            .points
-            .iter()
-            .map(|point| (point.parameter, point.orbit.max_theta(), point.orbit.multipliers.stable))
-            .collect();
-        let marks: Vec<_> = self
-            .points
-            .iter()
-            .filter_map(|point| {
-                let kind = point.change?.name();
-                Some(Mark { at: (point.parameter, point.orbit.max_theta()), kind })
-            })
-            .collect();
-        Some(branches(&Branches {
-            title: &format!("Orbits of period {}", self.period),
-            name: row.title,
-            symbol: row.symbol,
-            unit: if row.unit == "1" { "" } else { row.unit },
-            ends: (sweep.range.from, sweep.range.to),
-            points: &points,
-            changes: &marks,
-            critical: self.critical,
-        }))
-    }
-
-    /// How many bounces were computed for it, about.
+    /// Approximate number of bounces computed.
     pub fn bounces(&self) -> u64 {
         self.period * (self.points.len().max(1) * 4) as u64
+    }
+}
+
+impl Tabular for PeriodicOrbitAnswer<'_> {
+    /// The branch, or the states where there is none.
+    fn to_table(&self) -> Cow<'_, Table> {
+        Cow::Borrowed(self.branch.as_ref().unwrap_or(&self.states))
+    }
+
+    fn end(&self) -> impl Serialize {
+        serde_json::json!({ "changes": self.changes, "notes": self.notes })
     }
 }
 

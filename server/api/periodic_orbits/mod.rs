@@ -1,57 +1,39 @@
-//! `periodic-orbits`: what comes back, and its branches.
+//! `/v1/periodic-orbits`: orbits that repeat after some contacts, and branches of them.
 
 pub mod answer;
+pub mod picture;
+pub mod request;
 
-use axum::Router;
-use axum::body::Body;
-use axum::extract::State;
-use axum::http::Response;
-use axum::routing::get;
+use crate::api::formats::ChartFormat;
+use crate::api::periodic_orbits::answer::PeriodicOrbitAnswer;
+use crate::api::periodic_orbits::request::PeriodicOrbitRequest;
+use crate::api::resource::{ComputedResource, Work};
+use crate::compute::{OverBudget, Price};
+use crate::http::Reader;
+use crate::limits::Limits;
 
-use crate::api::app::App;
-use crate::api::periodic_orbits::answer::{PeriodicOrbits, Request};
-use crate::api::scene::read_frictionless_scene;
-use crate::api::shared::write;
-use crate::compute::{Cancelled, Price, Turn};
-use crate::http::{Ask, Format, Problem, Resource};
+/// The resource.
+#[derive(Debug)]
+pub enum PeriodicOrbits {}
 
-const RESOURCE: Resource = Resource {
-    name: "periodic-orbits",
-    formats: &[Format::Json, Format::Csv, Format::Ndjson, Format::Svg, Format::Png],
-};
+impl ComputedResource for PeriodicOrbits {
+    const NAME: &'static str = "periodic-orbits";
+    type Format = ChartFormat;
+    type Request = PeriodicOrbitRequest;
+    const WORK: Work<Self> = Work::Pure {
+        canonical: PeriodicOrbitRequest::canonical,
+        compute: |request, format, turn, bounces| {
+            let answer = PeriodicOrbitAnswer::compute(request, || turn.go_on())?;
+            bounces.inc_by(answer.bounces());
+            format.write(&answer, turn)
+        },
+    };
 
-/// Its path.
-pub fn routes() -> Router<App> {
-    Router::new().route("/v1/periodic-orbits", get(periodic_orbits).post(periodic_orbits))
-}
+    fn read(reader: &mut Reader<'_, '_>) -> Option<PeriodicOrbitRequest> {
+        PeriodicOrbitRequest::read(reader)
+    }
 
-pub(crate) async fn periodic_orbits(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
-    let (scene, request) = ask.read(|reader| {
-        let scene = read_frictionless_scene(reader);
-        let request = Request::read(reader);
-        Some((scene?, request?))
-    })?;
-    let price = Price::bounces(request.price()).within(&app.config.limits.of_work())?;
-    let canonical = write::canonical(&scene, &request);
-    let metrics = app.metrics.clone();
-    ask.respond(&app.pool, &RESOURCE, &canonical, price, move |format: Format, turn: &Turn| {
-        let orbits = match PeriodicOrbits::compute(&scene, &request, || turn.go_on()) {
-            Ok(orbits) => orbits,
-            Err(Some((pointer, detail))) => return Err(Problem::invalid_at(pointer, detail)),
-            Err(None) => return Err(Cancelled.into()),
-        };
-        metrics.bounces.inc_by(orbits.bounces());
-        match format {
-            Format::Csv => write::csv(orbits.to_table(), turn),
-            Format::Ndjson => write::ndjson(orbits.to_table(), &orbits.end(), turn),
-            Format::Svg | Format::Png => {
-                let picture = orbits.to_picture();
-                let picture =
-                    picture.ok_or_else(|| Problem::invalid_at("/sweep", "the picture is of a branch; give a sweep"))?;
-                write::picture(picture, format, turn)
-            }
-            _ => write::json(&orbits, turn),
-        }
-    })
-    .await
+    fn price(request: &PeriodicOrbitRequest, limits: &Limits) -> Result<Price, OverBudget> {
+        Price::bounces(request.price()).within(&limits.of_work())
+    }
 }

@@ -1,95 +1,44 @@
-//! The request and the answer of `precision`: every method over its settings, what it costs and how far it is off.
+//! The answer of `precision`: every method over its settings, with its cost and its error.
 
-use equipoise_physics::scene::Scene;
+use std::borrow::Cow;
+
 use serde::Serialize;
 
+use crate::api::formats::Tabular;
+use crate::api::precision::request::{CostAxis, PrecisionRequest};
 use crate::api::scene::Resolved;
+use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::table::{Cells, Column, Table};
-use crate::api::trajectories::answer::Choice;
-use crate::charts::{Series, SpeedAccuracy, speed_accuracy};
-use crate::comparison::{Chart, METHODS, Method, chart, most_points};
-use crate::compute::{Cancelled, Price, Turn};
-use crate::http::Reader;
-use crate::http::request::scalar;
-use crate::limits;
-
-/// What is asked for beside the scene.
-#[derive(Debug, Clone)]
-pub struct Request {
-    impacts: u64,
-    methods: Vec<Method>,
-    axis: Axis,
-}
-
-/// What cost is along the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Axis {
-    Time,
-    Evaluations,
-}
-
-impl Request {
-    /// Reads everything but the scene.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let before = reader.errors().len();
-        let impacts = reader.integer("impacts", 1..=limits::PRECISION_IMPACTS).unwrap_or(100);
-        let axis = reader.choice("axis", &[("time", Axis::Time), ("evaluations", Axis::Evaluations)]);
-        let known = METHODS.map(|method| (method.name, method));
-        let mut asked = Vec::new();
-        let names = reader.array("methods", METHODS.len());
-        for (index, name) in names.unwrap_or_default().iter().enumerate() {
-            match scalar::choice(name, &known) {
-                Ok(method) => asked.push(method),
-                Err(error) => {
-                    let pointer = format!("{}/{index}", reader.pointer_to("methods"));
-                    reader.errors().push(pointer, format!("methods {index} {error}"));
-                }
-            }
-        }
-        if names.is_some_and(<[_]>::is_empty) {
-            reader.refuse("methods", "methods is empty; leave it out for all of them");
-        }
-        if reader.errors().len() > before {
-            return None;
-        }
-        let wanted = |method: &Method| names.is_none() || asked.contains(method);
-        let methods = METHODS.into_iter().filter(wanted).collect();
-        Some(Self { impacts, methods, axis: axis.unwrap_or(Axis::Time) })
-    }
-
-    /// What it costs: the clock runs as long for each of its points.
-    pub fn price(&self) -> Price {
-        Price::bounces(limits::PRECISION_PRICE).times(most_points(&self.methods))
-    }
-}
+use crate::comparison::{Chart, Method, Point, Reference, Setting, chart};
+use crate::compute::{Cancelled, Turn};
 
 #[derive(Debug, Serialize)]
-struct Named {
-    name: &'static str,
-    title: &'static str,
+pub(super) struct MethodAnswer {
+    pub(super) name: &'static str,
+    pub(super) title: &'static str,
     about: &'static str,
 }
 
 #[derive(Debug, Serialize)]
-struct Reference {
+pub(super) struct ReferenceAnswer {
     method: &'static str,
-    outcome: &'static str,
-    impacts: u64,
+    pub(super) outcome: &'static str,
+    pub(super) impacts: u64,
     t: f64,
-    rounding: f64,
+    pub(super) rounding: f64,
 }
 
 #[derive(Debug, Serialize)]
-struct Setting {
+struct SettingAnswer {
     name: &'static str,
     value: f64,
     unit: &'static str,
 }
 
 #[derive(Debug, Serialize)]
-struct Point {
+struct PointAnswer {
     method: &'static str,
-    setting: Option<Setting>,
+    setting: Option<SettingAnswer>,
     cost_ns_per_impact: Option<f64>,
     spread_ns_per_impact: Option<[f64; 2]>,
     repeats: usize,
@@ -107,58 +56,65 @@ struct Point {
 
 /// The answer.
 #[derive(Debug, Serialize)]
-pub struct Precision<'a> {
+pub struct PrecisionAnswer<'a> {
     scene: Resolved<'a>,
-    model: Choice,
+    pub(super) model: ModelChoice,
     impacts: u64,
-    reference: Reference,
-    methods: Vec<Named>,
-    points: Vec<Point>,
+    pub(super) reference: ReferenceAnswer,
+    pub(super) methods: Vec<MethodAnswer>,
+    points: Vec<PointAnswer>,
     notes: Vec<String>,
     #[serde(skip)]
-    chart: Chart,
+    pub(super) chart: Chart,
     #[serde(skip)]
-    axis: Axis,
+    pub(super) axis: CostAxis,
 }
 
-impl<'a> Precision<'a> {
-    /// Runs and times all of it, and tells `progress` how much of how much is done.
+impl<'a> PrecisionAnswer<'a> {
+    /// Runs and times all methods; `progress` is told how much is done, of how much.
     pub fn compute(
-        scene: &'a Scene,
-        request: &Request,
+        request: &'a PrecisionRequest,
         progress: &mut dyn FnMut(u64, u64),
         turn: &Turn,
     ) -> Result<Self, Cancelled> {
+        let scene = &request.scene;
         let chart = chart(scene, request.impacts, &request.methods, progress, turn)?;
-        let named = |method: &Method| Named { name: method.name, title: method.title, about: method.about };
+        let named = |method: &Method| MethodAnswer { name: method.name, title: method.title, about: method.about };
         let mut notes = vec![
             "cost is measured on this machine while it serves others; steps, evaluations and errors are the same everywhere"
                 .to_owned(),
             "the cost of linear is that of its impacts with their bounds; its solution is made once before".to_owned(),
         ];
         notes.extend(chart.notes.iter().cloned());
-        let crate::comparison::Reference { outcome, impacts, t, rounding } = chart.reference;
+        let Reference { outcome, impacts, t, rounding } = chart.reference;
         Ok(Self {
             scene: Resolved(scene),
-            model: Choice::model(scene),
+            model: ModelChoice::of(scene),
             impacts: request.impacts,
-            reference: Reference { method: "extended", outcome, impacts, t, rounding },
+            reference: ReferenceAnswer { method: "extended", outcome, impacts, t, rounding },
             methods: request.methods.iter().map(named).collect(),
-            points: chart.points.iter().map(|point| Point::of(point, impacts)).collect(),
+            points: chart.points.iter().map(|point| PointAnswer::of(point, impacts)).collect(),
             notes,
             chart,
             axis: request.axis,
         })
     }
 
-    /// Its points as a table.
-    pub fn to_table(&self) -> Table {
+    /// Approximate number of bounces computed.
+    pub fn bounces(&self) -> u64 {
+        self.points.iter().map(|point| point.impacts * (point.repeats as u64 + 1)).sum()
+    }
+}
+
+impl Tabular for PrecisionAnswer<'_> {
+    /// A row for each method and setting.
+    fn to_table(&self) -> Cow<'_, Table> {
         let points = || self.points.iter();
-        let setting = |point: &Point| point.setting.as_ref().map(|setting| setting.value);
-        let words = |of: fn(&Point) -> Option<&'static str>| Cells::Words(points().map(of).collect());
-        let numbers = |of: fn(&Point) -> Option<f64>| Cells::Sparse(points().map(of).collect());
-        let counts = |of: fn(&Point) -> u64| Cells::Counts(points().map(of).collect());
-        let flags = |of: fn(&Point) -> bool| Cells::Flags(points().map(|point| Some(of(point))).collect());
+        let setting = |point: &PointAnswer| point.setting.as_ref().map(|setting| setting.value);
+        let words = |of: fn(&PointAnswer) -> Option<&'static str>| Cells::Words(points().map(of).collect());
+        let numbers = |of: fn(&PointAnswer) -> Option<f64>| Cells::Sparse(points().map(of).collect());
+        let counts = |of: fn(&PointAnswer) -> u64| Cells::Counts(points().map(of).collect());
+        let flags = |of: fn(&PointAnswer) -> bool| Cells::Flags(points().map(|point| Some(of(point))).collect());
         let columns = [
             ("method", "", words(|point| Some(point.method))),
             ("setting", "", words(|point| Some(point.setting.as_ref()?.name))),
@@ -179,87 +135,18 @@ impl<'a> Precision<'a> {
             ("pareto", "", flags(|point| point.pareto)),
             ("pareto_evaluations", "", flags(|point| point.pareto_evaluations)),
         ];
-        Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into())
+        Cow::Owned(Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into()))
     }
 
-    /// What ends it as NDJSON.
-    pub fn end(&self) -> impl Serialize {
+    fn end(&self) -> impl Serialize {
         serde_json::json!({ "reference": self.reference, "notes": self.notes })
-    }
-
-    /// Error over cost, as SVG.
-    pub fn to_picture(&self) -> String {
-        let (cost_name, unit) = match self.axis {
-            Axis::Time => ("clock time", "ns per impact"),
-            Axis::Evaluations => ("evaluations of motion and gap", "per impact"),
-        };
-        let cost = |point: &crate::comparison::Point| match self.axis {
-            Axis::Time => point.cost_ns(),
-            Axis::Evaluations => point.evaluations_per_impact().map(|count| [count; 3]),
-        };
-        let is_first = |point: &crate::comparison::Point| match self.axis {
-            Axis::Time => point.pareto,
-            Axis::Evaluations => point.pareto_evaluations,
-        };
-        let points = &self.chart.points;
-        let place = |point: &crate::comparison::Point| cost(point).zip(point.error);
-        let series: Vec<Series<'_>> = METHODS
-            .iter()
-            .enumerate()
-            .map(|(number, method)| {
-                let own = points.iter().filter(|point| point.method == *method);
-                Series { number, label: method.title, points: own.filter_map(place).collect() }
-            })
-            .filter(|series| !series.points.is_empty())
-            .collect();
-        let front: Vec<_> = points
-            .iter()
-            .filter(|point| is_first(point))
-            .filter_map(|point| place(point).map(|(cost, error)| (cost[1], error)))
-            .collect();
-        let Reference { outcome, impacts, .. } = self.reference;
-        let missing: Vec<String> = self
-            .methods
-            .iter()
-            .filter(|method| method.name != "extended" && series.iter().all(|series| series.label != method.title))
-            .map(|method| method.title.to_owned())
-            .collect();
-        let bars = if self.axis == Axis::Time { "; bars are quartiles" } else { "" };
-        let mut caption = format!("Each point is a step or a tolerance{bars}. No point lies below the Pareto front.");
-        if let Some([_, cost_ns, _]) =
-            points.iter().find(|point| point.method.name == "extended").and_then(crate::comparison::Point::cost_ns)
-        {
-            caption += &format!(" The reference takes {cost_ns:.0} ns per impact.");
-        }
-        if !missing.is_empty() {
-            caption += &format!(" Not drawn, since their runs end otherwise or not at all: {}.", missing.join(", "));
-        }
-        speed_accuracy(&SpeedAccuracy {
-            title: "Speed against accuracy",
-            subtitle: &format!(
-                "{}, {impacts} impacts, {outcome}: how far methods end from the run with 31 digits",
-                self.model.name.replace('_', " ")
-            ),
-            caption: &caption,
-            cost: (cost_name, unit),
-            error: &format!("error at impact {impacts}"),
-            series: &series,
-            front: &front,
-            rounding: self.reference.rounding,
-        })
-    }
-
-    /// How many bounces were computed for it, about.
-    pub fn bounces(&self) -> u64 {
-        self.points.iter().map(|point| point.impacts * (point.repeats as u64 + 1)).sum()
     }
 }
 
-impl Point {
-    fn of(point: &crate::comparison::Point, error_at: u64) -> Self {
+impl PointAnswer {
+    fn of(point: &Point, error_at: u64) -> Self {
         let cost = point.cost_ns();
-        let setting =
-            point.setting.map(|crate::comparison::Setting { name, value, unit }| Setting { name, value, unit });
+        let setting = point.setting.map(|Setting { name, value, unit }| SettingAnswer { name, value, unit });
         Self {
             method: point.method.name,
             setting,

@@ -4,15 +4,24 @@ use equipoise_physics::scene::Name;
 use equipoise_physics::surveys::stability_map::{Cell, Quantity, Region};
 use serde::Serialize;
 
-use crate::api::regions::answer::{Counts, Outcomes, Request, Values, outcome_name, quantity_name, written};
+use crate::api::regions::answer::{Counts, Outcomes, Values, outcome_name, quantity_name, written};
+use crate::api::regions::request::RegionRequest;
 use crate::api::shared::table::with_unit;
-use crate::http::Format;
+
+/// A format whose rows are sent as they are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowFormat {
+    /// Rows of CSV.
+    Csv,
+    /// Lines of JSON.
+    Ndjson,
+}
 
 /// Writes the cells of a tile as they come, one row after the other.
 #[derive(Debug)]
 pub struct Rows {
-    request: Request,
-    is_csv: bool,
+    request: RegionRequest,
+    format: RowFormat,
     /// The values of x, as CSV has them.
     columns: Vec<String>,
     /// The row to come, and its cells so far.
@@ -22,18 +31,20 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Rows of CSV, or else of NDJSON.
-    pub fn new(request: Request, format: Format) -> Self {
+    /// No rows yet.
+    pub fn new(request: RegionRequest, format: RowFormat) -> Self {
         let x = request.region.x;
-        let is_csv = format == Format::Csv;
-        let columns = if is_csv { (0..x.count).map(|column| written(x.value(column))).collect() } else { Vec::new() };
-        Self { request, is_csv, columns, row: request.rows().start, begun: Vec::new(), counts: Counts::default() }
+        let columns = match format {
+            RowFormat::Csv => (0..x.count).map(|column| written(x.value(column))).collect(),
+            RowFormat::Ndjson => Vec::new(),
+        };
+        Self { request, format, columns, row: request.rows().start, begun: Vec::new(), counts: Counts::default() }
     }
 
-    /// What stands before all rows: in CSV the names of the two fields, the quantity and `outcome`.
+    /// Text before all rows: in CSV the names of the two fields, the quantity and `outcome`.
     pub fn begin(&self) -> Vec<u8> {
         let Region { x, y, quantity, .. } = self.request.region;
-        if !self.is_csv {
+        if self.format == RowFormat::Ndjson {
             return Vec::new();
         }
         let field = |name: Name| with_unit(name.row().path, name.row().unit);
@@ -55,24 +66,23 @@ impl Rows {
         let rows = std::mem::replace(&mut self.begun, rest);
         let rows = rows.chunks_exact(columns);
         for cells in rows {
-            if self.is_csv {
-                self.write_csv(cells, &mut out)
-            } else {
-                self.write_line(cells, &mut out)
+            match self.format {
+                RowFormat::Csv => self.write_csv(cells, &mut out),
+                RowFormat::Ndjson => self.write_line(cells, &mut out),
             }
             self.row += 1;
         }
         out
     }
 
-    /// What stands after all rows: in NDJSON the line that says that it is all.
+    /// Text after all rows: in NDJSON the line that marks the end.
     pub fn end(&self) -> Vec<u8> {
         #[derive(Serialize)]
         struct End<'a> {
             end: &'a Counts,
         }
         let mut out = Vec::new();
-        if !self.is_csv {
+        if self.format == RowFormat::Ndjson {
             line(&End { end: &self.counts }, &mut out);
         }
         out

@@ -1,8 +1,15 @@
 //! Parts that answers of several resources share.
 
+pub mod closed_loop;
+pub mod demand;
+pub mod eigenvalue;
+pub mod fixed_point;
+pub mod model_choice;
 pub mod nearest_vertex;
 pub mod outcome;
 pub mod progress;
+pub mod refusal;
+pub mod state;
 pub mod table;
 pub mod tile;
 pub mod write;

@@ -7,8 +7,8 @@ use crate::api::scene::Resolved;
 use crate::api::shared::table::Table;
 use crate::charts::{NoPixels, png};
 use crate::compute::{Cancelled, Turn};
+use crate::http::Problem;
 use crate::http::output::written;
-use crate::http::{Format, Problem};
 
 /// An answer as JSON.
 pub(crate) fn json(answer: &impl Serialize, turn: &Turn) -> Result<Vec<u8>, Problem> {
@@ -25,12 +25,9 @@ pub(crate) fn ndjson(table: &Table, end: &impl Serialize, turn: &Turn) -> Result
     written(&|| turn.go_on(), |out| table.write_ndjson(end, out))
 }
 
-/// A picture as SVG, or in pixels.
-pub(crate) fn picture(svg: String, format: Format, turn: &Turn) -> Result<Vec<u8>, Problem> {
-    if format == Format::Svg {
-        return Ok(svg.into_bytes());
-    }
-    png(&svg, || turn.go_on()).map_err(|none| match none {
+/// An SVG in pixels, as PNG.
+pub(crate) fn pixels(svg: &str, turn: &Turn) -> Result<Vec<u8>, Problem> {
+    png(svg, || turn.go_on()).map_err(|none| match none {
         NoPixels::Cancelled => Cancelled.into(),
         NoPixels::Unfit => Problem::internal(),
     })

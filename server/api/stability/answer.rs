@@ -1,60 +1,40 @@
-//! The answer of `stability`: the verdict, and everything it rests on.
+//! The answer of `stability`: the verdict and the evidence for it.
 
-use equipoise_physics::control::BounceModel;
+use std::borrow::Cow;
+
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::basin::{NoBasin, find_basin};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime, stick_cone};
 use equipoise_physics::stability::fixed_point::{JUDGED, drift_speed, find_fixed_point, height_error};
 use equipoise_physics::stability::linear_verdict::{Linear, linear_verdict};
-use equipoise_physics::stability::margins::Tolerances;
 use equipoise_physics::stability::nonlinear_run::{NonlinearRun, run_nonlinear};
-use equipoise_physics::stability::regularity::WATCHED;
 use equipoise_physics::stability::verdict::{HigherOrder, Judgement, Verdict, judge};
-use equipoise_physics::stability::{basin, fixed_point};
 use serde::Serialize;
 
-use crate::api::controllers::answer;
-use crate::api::jacobians::answer::Eigenvalue;
-use crate::api::scene::{Resolved, bounce_price, has_angle};
+use crate::api::formats::Tabular;
+use crate::api::scene::{Resolved, has_angle};
+use crate::api::shared::demand::DemandAnswer;
+use crate::api::shared::eigenvalue::Eigenvalue;
+use crate::api::shared::fixed_point::FixedPointAnswer;
+use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
-use crate::api::stability::margins;
-use crate::api::stability::margins::Margins;
-use crate::api::trajectories::answer::{Choice, DemandAnswer};
-use crate::charts::{Eigenvalues, Spectrum, eigenvalues};
-use crate::http::Reader;
-use crate::limits;
-
-/// The upright bounce in place, as a state just before an impact.
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct FixedPoint {
-    theta: f64,
-    x_dot: f64,
-    pub(crate) y_dot: f64,
-    theta_dot: f64,
-    pub(crate) flight_time: f64,
-    apex_height: f64,
-}
-
-impl From<fixed_point::FixedPoint> for FixedPoint {
-    fn from(fixed_point::FixedPoint { speed, flight_time, apex_height }: fixed_point::FixedPoint) -> Self {
-        Self { theta: 0.0, x_dot: 0.0, y_dot: -speed, theta_dot: 0.0, flight_time, apex_height }
-    }
-}
+use crate::api::stability::margins::MarginsAnswer;
+use crate::api::stability::request::StabilityRequest;
 
 #[derive(Debug, Clone, Serialize)]
-struct TiltGain {
-    value: f64,
-    lower: f64,
-    critical: f64,
+pub(super) struct TiltGainAnswer {
+    pub(super) value: f64,
+    pub(super) lower: f64,
+    pub(super) critical: f64,
     margin_below: f64,
     margin_above: f64,
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct EnergyGain {
+struct EnergyGainAnswer {
     value: f64,
     upper: f64,
     eigenvalue: f64,
@@ -62,14 +42,14 @@ struct EnergyGain {
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct LinearPart {
+pub(super) struct LinearPart {
     class: &'static str,
-    residue: Option<f64>,
-    rotation: Option<f64>,
+    pub(super) residue: Option<f64>,
+    pub(super) rotation: Option<f64>,
     spectral_radius: f64,
-    eigenvalues: Vec<Eigenvalue>,
-    tilt_gain: Option<TiltGain>,
-    energy_gain: EnergyGain,
+    pub(super) eigenvalues: Vec<Eigenvalue>,
+    pub(super) tilt_gain: Option<TiltGainAnswer>,
+    energy_gain: EnergyGainAnswer,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -90,14 +70,14 @@ struct NonlinearPart {
 
 /// The answer.
 #[derive(Debug, Clone, Serialize)]
-pub struct Stability<'a> {
-    scene: Resolved<'a>,
-    model: Choice,
-    verdict: Option<String>,
+pub struct StabilityAnswer<'a> {
+    pub(super) scene: Resolved<'a>,
+    pub(super) model: ModelChoice,
+    pub(super) verdict: Option<String>,
     decided_by: Option<&'static str>,
-    reason: String,
-    fixed_point: Option<FixedPoint>,
-    linear: Option<LinearPart>,
+    pub(super) reason: String,
+    pub(super) fixed_point: Option<FixedPointAnswer>,
+    pub(super) linear: Option<LinearPart>,
     boundary: Option<Boundary>,
     loss_of_stability: Option<Vec<LossOfStability>>,
     lyapunov: Option<Lyapunov>,
@@ -109,42 +89,10 @@ pub struct Stability<'a> {
     predictable_impacts: Option<u64>,
     basin: Option<Basin>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    margins: Option<Margins>,
+    margins: Option<MarginsAnswer>,
     notes: Vec<String>,
     #[serde(skip)]
     bounces: u64,
-}
-
-/// What is asked for beside the scene.
-#[derive(Debug, Clone, Copy)]
-pub struct Request {
-    /// How many contacts to watch the run for.
-    pub impacts: u64,
-    /// Whether to look for the basin.
-    pub basin: bool,
-    /// How far the body may be off, to know the margins.
-    pub tolerances: Option<Tolerances>,
-}
-
-/// Work of the margins, in bounces: some ten thousand linear verdicts.
-const MARGINS_PRICE: u64 = 200_000;
-
-/// Price of a run of the basin beside its bounces, in bounces.
-const BASIN_RUN_PRICE: u64 = 10;
-
-impl Request {
-    /// Reads everything but the scene.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Self {
-        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(2000);
-        let basin = reader.boolean("basin").unwrap_or(false);
-        Self { impacts, basin, tolerances: margins::read(reader) }
-    }
-
-    /// Everything that determines the answer beside the scene.
-    pub fn canonical(&self) -> impl Serialize {
-        let off = self.tolerances.map(|off| (off.contact_distance, off.radius_of_gyration, off.restitution));
-        (self.impacts, self.basin, off)
-    }
 }
 
 /// The verdict in words; what a run showed stands in it with its length.
@@ -173,14 +121,14 @@ impl LinearPart {
             rotation: linear.rotation,
             spectral_radius: linear.spectral_radius(),
             eigenvalues: linear.eigenvalues.iter().map(|&value| value.into()).collect(),
-            tilt_gain: linear.lower_tilt_gain.is_finite().then_some(TiltGain {
+            tilt_gain: linear.lower_tilt_gain.is_finite().then_some(TiltGainAnswer {
                 value: kappa,
                 lower: linear.lower_tilt_gain,
                 critical: linear.critical_tilt_gain,
                 margin_below: kappa - linear.lower_tilt_gain,
                 margin_above: linear.critical_tilt_gain - kappa,
             }),
-            energy_gain: EnergyGain {
+            energy_gain: EnergyGainAnswer {
                 value: energy_gain,
                 upper: linear.upper_energy_gain,
                 eigenvalue: linear.energy_eigenvalue,
@@ -190,16 +138,16 @@ impl LinearPart {
     }
 }
 
-impl<'a> Stability<'a> {
+impl<'a> StabilityAnswer<'a> {
     /// Judges a scene by its linear verdict and a run of up to `impacts` contacts, and looks for its basin if asked to;
     /// `go_on` is asked now and then, and a `false` gives none.
-    pub fn compute(scene: &'a Scene, request: &Request, mut go_on: impl FnMut() -> bool) -> Option<Self> {
-        let Request { impacts, basin, tolerances } = *request;
+    pub fn compute(request: &'a StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
+        let StabilityRequest { ref scene, impacts, basin, tolerances } = *request;
         let run = run_nonlinear(scene, impacts, &mut go_on)?;
         let mut notes = Vec::new();
         let mut answer = Self {
             scene: Resolved(scene),
-            model: Choice::model(scene),
+            model: ModelChoice::of(scene),
             verdict: None,
             decided_by: None,
             reason: String::new(),
@@ -223,7 +171,7 @@ impl<'a> Stability<'a> {
             predictable_impacts: None,
             basin: None,
             margins: tolerances.map(|tolerances| {
-                Margins::compute(scene, &tolerances, scene.number(Name::TiltGain).unwrap_or_default())
+                MarginsAnswer::compute(scene, &tolerances, scene.number(Name::TiltGain).unwrap_or_default())
             }),
             notes: Vec::new(),
             bounces: run.impacts,
@@ -326,50 +274,14 @@ impl<'a> Stability<'a> {
         Some(answer)
     }
 
-    /// The eigenvalues on the unit circle against κ, as SVG.
-    pub fn to_picture(&self) -> String {
-        if let (Some(gain), Some(place)) = (self.scene.0.model().feedback(), &self.fixed_point) {
-            let model =
-                BounceModel::new(&self.scene.0.parameters(), -place.y_dot, contact_regime(&self.scene.0.model()));
-            let title = format!("Closed loop: {}", self.verdict.as_deref().unwrap_or("no verdict"));
-            return answer::picture(&title, &self.reason, &model, gain);
-        }
-        let values: Vec<(f64, f64)> =
-            self.linear.iter().flat_map(|linear| &linear.eigenvalues).map(|value| (value.re, value.im)).collect();
-        eigenvalues(&Eigenvalues {
-            title: &format!("Eigenvalues of a {}", self.model.name.replace('_', " ")),
-            verdict: self.verdict.as_deref(),
-            reason: &self.reason,
-            linear: self.linear.as_ref().and_then(|linear| {
-                let tilt_gain = linear.tilt_gain.as_ref()?;
-                Some(Spectrum {
-                    eigenvalues: &values,
-                    tilt_gain: tilt_gain.value,
-                    lower: tilt_gain.lower,
-                    critical: tilt_gain.critical,
-                    residue: linear.residue,
-                    rotation: linear.rotation,
-                })
-            }),
-        })
-    }
-
-    /// How many bounces were computed for it: those of its run, of the watch over it and of the basin.
+    /// Number of bounces computed: those of the run, of the watch over it and of the basin.
     pub fn bounces(&self) -> u64 {
         self.bounces
     }
+}
 
-    /// What it costs at most, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs go
-    /// in lanes for a quarter of that each.
-    pub fn price(scene: &Scene, request: &Request) -> u64 {
-        let Request { impacts, basin, tolerances } = *request;
-        let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + impacts / 4) } else { 0 };
-        let run = impacts * bounce_price(scene) + 4 * impacts.min(WATCHED);
-        limits::ANSWER_PRICE + run + basin + if tolerances.is_some() { MARGINS_PRICE } else { 0 }
-    }
-
-    /// What ends it as NDJSON: the reason and the notes, which are no scalars.
-    pub fn end(&self) -> impl Serialize {
+impl Tabular for StabilityAnswer<'_> {
+    fn end(&self) -> impl Serialize {
         #[derive(Serialize)]
         struct End {
             reason: String,
@@ -379,14 +291,14 @@ impl<'a> Stability<'a> {
     }
 
     /// The scalars, in one row.
-    pub fn to_table(&self) -> Table {
+    fn to_table(&self) -> Cow<'_, Table> {
         let linear = self.linear.as_ref();
         let fixed_point = self.fixed_point.as_ref();
         let tilt_gain = linear.and_then(|it| it.tilt_gain.as_ref());
         let rotation = self.rotation_number.as_ref();
         let word = |name, word| Column { name, unit: "", cells: Cells::Words(vec![word]) };
         let number = |name, unit, value| Column { name, unit, cells: Cells::Sparse(vec![value]) };
-        Table(vec![
+        Cow::Owned(Table(vec![
             Column { name: "verdict", unit: "", cells: Cells::Texts(vec![self.verdict.clone()]) },
             word("decided_by", self.decided_by),
             Column { name: "agree", unit: "", cells: Cells::Flags(vec![self.agree]) },
@@ -441,6 +353,6 @@ impl<'a> Stability<'a> {
                 unit: "",
                 cells: Cells::SparseCounts(vec![self.lyapunov.as_ref().and_then(|it| it.escape_impacts)]),
             },
-        ])
+        ]))
     }
 }

@@ -1,64 +1,53 @@
-//! Margins under tolerances, as they are asked for and answered.
+//! The margins under tolerances, as they are answered.
 
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::margins;
 use equipoise_physics::stability::margins::{Sample, Tolerances, margins_over_tolerances};
 use serde::Serialize;
 
-use crate::http::Reader;
-
-/// Reads `tolerances`; none if they are not asked for.
-pub fn read(reader: &mut Reader<'_, '_>) -> Option<Tolerances> {
-    reader.within("tolerances", |reader| Tolerances {
-        contact_distance: reader.number("contact_distance", 0.0..=1.0, "m").unwrap_or(0.0),
-        radius_of_gyration: reader.number("radius_of_gyration", 0.0..=1.0, "m").unwrap_or(0.0),
-        restitution: reader.number("restitution", 0.0..=1.0, "(no unit)").unwrap_or(0.0),
-    })
-}
-
-/// The answer.
+/// The margins of a scene.
 #[derive(Debug, Clone, Serialize)]
-pub struct Margins {
-    tolerances: Body,
+pub struct MarginsAnswer {
+    tolerances: BodySample,
     holds: Option<bool>,
-    tilt_gain: Option<TiltGain>,
-    apex_height: Option<Span>,
-    energy_eigenvalue: Option<Span>,
+    tilt_gain: Option<TiltGainMargin>,
+    apex_height: Option<SpanAnswer>,
+    energy_eigenvalue: Option<SpanAnswer>,
     reason: String,
 }
 
 #[derive(Debug, Clone, Copy, Serialize)]
-struct Body {
+struct BodySample {
     contact_distance: f64,
     radius_of_gyration: f64,
     restitution: f64,
 }
 
 #[derive(Debug, Clone, Copy, Serialize)]
-struct Span {
+struct SpanAnswer {
     least: f64,
     most: f64,
 }
 
 #[derive(Debug, Clone, Copy, Serialize)]
-struct TiltGain {
+struct TiltGainMargin {
     value: f64,
-    critical: Span,
+    critical: SpanAnswer,
     margin_above: f64,
-    worst: Body,
+    worst: BodySample,
 }
 
-impl From<margins::Span> for Span {
+impl From<margins::Span> for SpanAnswer {
     fn from(margins::Span { least, most }: margins::Span) -> Self {
         Self { least, most }
     }
 }
 
-impl Margins {
+impl MarginsAnswer {
     /// The margins of a scene with a tilt gain.
     pub fn compute(scene: &Scene, tolerances: &Tolerances, tilt_gain: f64) -> Self {
         let Tolerances { contact_distance, radius_of_gyration, restitution } = *tolerances;
-        let said = Body { contact_distance, radius_of_gyration, restitution };
+        let said = BodySample { contact_distance, radius_of_gyration, restitution };
         match margins_over_tolerances(scene, tolerances) {
             Err(reason) => Self {
                 tolerances: said,
@@ -80,11 +69,11 @@ impl Margins {
                     tolerances: said,
                     holds: Some(margins.holds),
                     // None where no tilt gain balances.
-                    tilt_gain: critical.least.is_finite().then_some(TiltGain {
+                    tilt_gain: critical.least.is_finite().then_some(TiltGainMargin {
                         value: tilt_gain,
                         critical: critical.into(),
                         margin_above: critical.least - tilt_gain,
-                        worst: Body { contact_distance, radius_of_gyration, restitution },
+                        worst: BodySample { contact_distance, radius_of_gyration, restitution },
                     }),
                     apex_height: Some(margins.apex_height.into()),
                     energy_eigenvalue: Some(margins.energy_eigenvalue.into()),

@@ -1,0 +1,77 @@
+//! The request for `controllers`: a scene and the weights of its state feedback.
+
+use equipoise_physics::control::STATE;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
+
+use crate::api::scene::{build_scene, read_draft};
+use crate::api::shared::write;
+use crate::http::Reader;
+
+/// The fields of the gain, in the order of the state.
+pub(super) const FEEDBACK: [Name; 4] =
+    [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+
+/// Weights that keep the table's tilts small enough that laws hold from afar.
+const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
+
+/// A request for a control law.
+#[derive(Debug, Clone, Copy)]
+pub struct ControllerRequest {
+    /// The scene with its law; a tilt gain of 1 is added where it has none, since a scene needs one to be built.
+    pub scene: Scene,
+    /// κ, if the scene has one.
+    pub tilt_gain: Option<f64>,
+    /// Contact regime that the law is designed for.
+    pub regime: ContactRegime,
+    /// Weights of the state.
+    pub state: [f64; 4],
+    /// Weight of the tilt.
+    pub input: f64,
+}
+
+impl ControllerRequest {
+    /// Reads a request.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let draft = read_draft(reader);
+        let sticks = reader.choice("contact", &[("frictionless", false), ("stick", true)]);
+        let (mut state, mut input) = WEIGHTS;
+        reader.within("weights", |weights| {
+            weights.numbers("state", &STATE, &(0.0..=1e6), &mut state);
+            input = weights.number("input", 1e-6..=1e6, "").unwrap_or(input);
+        });
+        let mut draft = draft?;
+        let tilt_gain = match draft.get(Name::TiltGain) {
+            Some(Value::Number(kappa)) => Some(kappa),
+            _ => None,
+        };
+        // A law is what is asked for, so there need not be one.
+        if draft.get(Name::TiltGain).is_none() && FEEDBACK.iter().all(|&name| draft.get(name).is_none()) {
+            set(&mut draft, Name::TiltGain, Some(1.0));
+        }
+        let pointer = reader.pointer_to("scene");
+        let scene = build_scene(draft, &pointer, reader.errors())?;
+        let regime = match sticks {
+            None => contact_regime(&scene.model()),
+            Some(false) => ContactRegime::Frictionless,
+            Some(true) if scene.value(Name::Slide) == Some(Value::Choice("matched")) => ContactRegime::VelocityMatched,
+            Some(true) => ContactRegime::Sticking,
+        };
+        Some(Self { scene, tilt_gain, regime, state, input })
+    }
+
+    /// Everything that determines the answer.
+    pub fn canonical(&self) -> Vec<u8> {
+        write::canonical(&self.scene, &(contact_name(self.regime), self.state, self.input, self.tilt_gain))
+    }
+}
+
+/// Sets a number of a draft. False if it is out of range.
+pub(super) fn set(draft: &mut Draft, name: Name, number: Option<f64>) -> bool {
+    draft.set(name, number.map(Value::Number)).is_ok()
+}
+
+/// Name of a contact regime, as it is asked for and answered.
+pub(super) fn contact_name(regime: ContactRegime) -> &'static str {
+    if regime == ContactRegime::Frictionless { "frictionless" } else { "stick" }
+}

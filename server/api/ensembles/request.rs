@@ -1,0 +1,103 @@
+//! The request for `ensembles`: a scene, the number of its runs, and the tile of them that is computed.
+
+use std::ops::Range;
+
+use equipoise_physics::scene::{Kind, Name, Value};
+use equipoise_physics::surveys::ensemble::Ensemble;
+
+use crate::api::scene::{bounce_price, build_scene, read_draft};
+use crate::api::shared::tile::Tile;
+use crate::api::shared::write;
+use crate::http::Reader;
+use crate::limits;
+
+/// A request for an ensemble.
+#[derive(Debug, Clone, Copy)]
+pub struct EnsembleRequest {
+    /// All runs.
+    pub ensemble: Ensemble,
+    /// The tile of them.
+    pub tile: Tile,
+    /// True if the answer has the angles themselves.
+    pub angles: bool,
+}
+
+impl EnsembleRequest {
+    /// Reads a request.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let draft = read_draft(reader);
+        let said = reader.integer("runs", 1..=limits::ENSEMBLE_RUNS_IN_TILES);
+        let is_known = said.is_some() || !reader.has("runs");
+        let runs = said.unwrap_or(200);
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(400);
+        let Kind::Integer { maximum } = Name::Seed.row().kind else { return None };
+        let seed = reader.integer("seed", 0..=maximum);
+        let angles = reader.boolean("angles").unwrap_or(false);
+        let is_tiled = reader.has("tile");
+        let tile = Tile::read(reader, limits::ENSEMBLE_RUNS_IN_TILES);
+        if let Some(tile) = tile.filter(|_| is_known) {
+            check_tile(reader, tile, is_tiled, runs);
+        }
+        let mut draft = draft?;
+        if let Some(seed) = seed
+            && let Err(error) = draft.set(Name::Seed, Some(Value::Integer(seed)))
+        {
+            reader.refuse("seed", error.detail);
+            return None;
+        }
+        let pointer = reader.pointer_to("scene");
+        let scene = build_scene(draft, &pointer, reader.errors())?;
+        let ensemble = Ensemble { scene, runs, impacts, angle_contacts: limits::ENSEMBLE_ANGLE_CONTACTS };
+        Some(Self { ensemble, tile: tile?, angles })
+    }
+
+    /// Everything that determines the answer.
+    pub fn canonical(&self) -> Vec<u8> {
+        let Ensemble { scene, runs, impacts, .. } = &self.ensemble;
+        write::canonical(scene, &(runs, impacts, self.tile, self.angles))
+    }
+
+    /// Numbers of the runs of the tile.
+    pub fn numbers(&self) -> Range<u64> {
+        self.tile.share(self.ensemble.runs)
+    }
+
+    /// Number of runs of the tile.
+    pub fn runs(&self) -> u64 {
+        let numbers = self.numbers();
+        numbers.end - numbers.start
+    }
+
+    /// Price, in bounces of the plain rod.
+    pub fn price(&self) -> u64 {
+        let Ensemble { scene, impacts, angle_contacts, .. } = &self.ensemble;
+        let bounces = impacts.saturating_mul(bounce_price(scene));
+        let angles = limits::ENSEMBLE_ANGLE_PRICE * angle_contacts.min(impacts);
+        let runs = self.runs().saturating_mul(bounces + limits::ENSEMBLE_RUN_PRICE + angles);
+        runs.saturating_add(impacts * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
+    }
+
+    /// Highest number of angles in the answer.
+    pub fn angles(&self) -> u64 {
+        let watched = self.ensemble.angle_contacts.min(self.ensemble.impacts);
+        if self.angles { self.runs() * watched } else { 0 }
+    }
+}
+
+/// Checks that a tile has a run, and no more than one answer may have.
+fn check_tile(reader: &mut Reader<'_, '_>, tile: Tile, is_tiled: bool, runs: u64) {
+    const MOST: u64 = limits::ENSEMBLE_RUNS;
+    if tile.of > runs {
+        reader.refuse("tile", format!("tile is one of {}, but there are only {runs} runs", tile.of));
+    } else if runs.div_ceil(tile.of) > MOST {
+        let least = runs.div_ceil(MOST);
+        let (name, what) = match is_tiled {
+            true => ("tile", format!("one tile of {} has {} runs", tile.of, runs.div_ceil(tile.of))),
+            false => ("runs", format!("runs is {runs}")),
+        };
+        reader.refuse(
+            name,
+            format!("{what}; at most {MOST} are answered at once, so ask for one tile of {least} or more"),
+        );
+    }
+}

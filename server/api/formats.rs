@@ -1,0 +1,154 @@
+//! The sets of formats that answers come in.
+//!
+//! Each set is an enum, and writing an answer is a `match` over it: a format without a way to write it does not compile.
+
+use std::borrow::Cow;
+
+use serde::Serialize;
+
+use crate::api::shared::table::Table;
+use crate::api::shared::{progress, write};
+use crate::compute::Turn;
+use crate::http::{Format, Problem};
+
+/// The formats of an answer; the first is the default.
+pub trait FormatSet: Copy + Send + 'static {
+    /// All of them, for negotiation.
+    const FORMATS: &'static [Format];
+
+    /// The member of the set that is this format, if there is one.
+    fn of(format: Format) -> Option<Self>;
+}
+
+/// Defines a set of formats.
+macro_rules! format_set {
+    ($(#[$about:meta])* $name:ident { $($format:ident),+ }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[expect(missing_docs, reason = "the formats are described where `Format` lists them")]
+        pub enum $name { $($format),+ }
+
+        impl FormatSet for $name {
+            const FORMATS: &'static [Format] = &[$(Format::$format),+];
+
+            fn of(format: Format) -> Option<Self> {
+                [$((Format::$format, Self::$format)),+].into_iter().find(|(own, _)| *own == format).map(|(_, own)| own)
+            }
+        }
+    };
+}
+
+format_set! {
+    /// Formats of columns.
+    TableFormat { Json, Csv, Ndjson }
+}
+
+format_set! {
+    /// Formats of an answer that is drawn and has no columns.
+    FigureFormat { Json, Svg, Png }
+}
+
+format_set! {
+    /// Formats of columns that are drawn as well.
+    ChartFormat { Json, Csv, Ndjson, Svg, Png }
+}
+
+format_set! {
+    /// The same, with reports on how far the work is.
+    ProgressFormat { Json, Csv, Ndjson, Progress, Svg, Png }
+}
+
+/// An answer with columns.
+pub trait Tabular: Serialize {
+    /// The columns.
+    fn to_table(&self) -> Cow<'_, Table>;
+
+    /// Last line of NDJSON: everything that is no column.
+    fn end(&self) -> impl Serialize;
+}
+
+/// An answer that can be drawn.
+pub trait Pictured: Serialize {
+    /// The picture as SVG.
+    ///
+    /// # Errors
+    /// A problem where this answer has nothing to draw.
+    fn to_picture(&self) -> Result<String, Problem>;
+}
+
+impl TableFormat {
+    /// Writes an answer.
+    ///
+    /// # Errors
+    /// That the work was given up.
+    pub fn write(self, answer: &impl Tabular, turn: &Turn) -> Result<Vec<u8>, Problem> {
+        match self {
+            Self::Json => write::json(answer, turn),
+            Self::Csv => write::csv(&answer.to_table(), turn),
+            Self::Ndjson => write::ndjson(&answer.to_table(), &answer.end(), turn),
+        }
+    }
+}
+
+impl FigureFormat {
+    /// Writes an answer.
+    ///
+    /// # Errors
+    /// That the work was given up, or that there is nothing to draw.
+    pub fn write(self, answer: &impl Pictured, turn: &Turn) -> Result<Vec<u8>, Problem> {
+        match self {
+            Self::Json => write::json(answer, turn),
+            Self::Svg => Ok(answer.to_picture()?.into_bytes()),
+            Self::Png => write::pixels(&answer.to_picture()?, turn),
+        }
+    }
+}
+
+impl ChartFormat {
+    /// Writes an answer.
+    ///
+    /// # Errors
+    /// That the work was given up, or that there is nothing to draw.
+    pub fn write(self, answer: &(impl Tabular + Pictured), turn: &Turn) -> Result<Vec<u8>, Problem> {
+        match self {
+            Self::Json => TableFormat::Json.write(answer, turn),
+            Self::Csv => TableFormat::Csv.write(answer, turn),
+            Self::Ndjson => TableFormat::Ndjson.write(answer, turn),
+            Self::Svg => FigureFormat::Svg.write(answer, turn),
+            Self::Png => FigureFormat::Png.write(answer, turn),
+        }
+    }
+}
+
+impl ProgressFormat {
+    /// Writes an answer, after all reports of progress.
+    ///
+    /// # Errors
+    /// That the work was given up, or that there is nothing to draw.
+    pub fn write(self, answer: &(impl Tabular + Pictured), turn: &Turn) -> Result<Vec<u8>, Problem> {
+        match self {
+            Self::Json => ChartFormat::Json.write(answer, turn),
+            Self::Csv => ChartFormat::Csv.write(answer, turn),
+            Self::Ndjson => ChartFormat::Ndjson.write(answer, turn),
+            Self::Progress => Ok(progress::end(&write::json(answer, turn)?)),
+            Self::Svg => ChartFormat::Svg.write(answer, turn),
+            Self::Png => ChartFormat::Png.write(answer, turn),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_has_the_formats_it_lists_and_no_other() {
+        for format in
+            [Format::Json, Format::Csv, Format::Ndjson, Format::Progress, Format::Svg, Format::Png, Format::Events]
+        {
+            assert_eq!(TableFormat::of(format).is_some(), TableFormat::FORMATS.contains(&format), "{}", format.name());
+        }
+        assert_eq!(ProgressFormat::of(Format::Progress), Some(ProgressFormat::Progress));
+        assert_eq!(ChartFormat::of(Format::Events), None);
+    }
+}

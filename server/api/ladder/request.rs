@@ -1,0 +1,52 @@
+//! The request for `ladder`: a scene, the contacts on each level and the difference that counts.
+
+use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model_hierarchy::at_level;
+
+use crate::api::scene::read_scene;
+use crate::api::shared::write;
+use crate::api::trajectories::request::linear_price;
+use crate::http::Reader;
+use crate::limits;
+
+/// A request for the ladder.
+#[derive(Debug, Clone, Copy)]
+pub struct LadderRequest {
+    /// The scene.
+    pub scene: Scene,
+    /// How many contacts at most, on each rung.
+    pub impacts: u64,
+    /// Difference of the states, m/s, up to which a rung was not needed.
+    pub tolerance: f64,
+}
+
+/// Tolerances, m/s.
+const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-15..=10.0;
+
+/// Rungs of the tallest ladder, and the work of one impact on one of them but the linear one, in bounces of the plain rod.
+const RUNGS: u64 = 7;
+const RUNG_PRICE: u64 = 20;
+
+/// Work beside the impacts, in bounces: the linear solution before its first one, and the answer.
+const ONCE_PRICE: u64 = 2500;
+
+impl LadderRequest {
+    /// Reads a request.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let scene = read_scene(reader);
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
+        let tolerance = reader.number("tolerance", TOLERANCES, "m/s").unwrap_or(1e-3);
+        Some(Self { scene: scene?, impacts, tolerance })
+    }
+
+    /// Price of the work, in bounces.
+    pub fn price(&self) -> u64 {
+        ONCE_PRICE + self.impacts * (RUNGS * RUNG_PRICE + linear_price(&at_level(&self.scene, Rung::Linear)))
+    }
+
+    /// Everything that determines the answer.
+    pub fn canonical(&self) -> Vec<u8> {
+        write::canonical(&self.scene, &(self.impacts, self.tolerance))
+    }
+}

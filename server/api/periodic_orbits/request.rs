@@ -1,0 +1,143 @@
+//! The request for `periodic-orbits`: an orbit, or a branch of orbits along a field of the scene.
+
+use equipoise_physics::periodic_orbits::branch::Start;
+use equipoise_physics::scene::{Field, Kind, Name, Scene, Value, field};
+use serde::{Serialize, Serializer};
+
+use crate::api::scene::read_frictionless_scene;
+use crate::api::shared::state::read_state;
+use crate::api::shared::write;
+use crate::http::Reader;
+use crate::limits;
+
+/// A range of a field.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct SweptRange {
+    /// The field.
+    #[serde(serialize_with = "path")]
+    pub parameter: Name,
+    /// Value at the start.
+    pub from: f64,
+    /// Value at the end.
+    pub to: f64,
+    /// Number of orbits along it, at most.
+    pub points: u64,
+}
+
+fn path<S: Serializer>(name: &Name, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(name.row().path)
+}
+
+/// A request for an orbit, or for a branch of orbits.
+#[derive(Debug, Clone, Copy)]
+pub struct PeriodicOrbitRequest {
+    /// The scene.
+    pub scene: Scene,
+    /// Number of contacts after which the orbit repeats.
+    pub period: u64,
+    /// Start of the search.
+    pub start: Start,
+    /// The field that is swept, for a branch.
+    pub sweep: Option<SweptRange>,
+}
+
+impl PeriodicOrbitRequest {
+    /// Reads a request.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let scene = read_frictionless_scene(reader);
+        let before = reader.errors().len();
+        let period = reader.integer("period", 1..=limits::ORBIT_PERIOD);
+        let guess = reader.within("guess", read_state);
+        let family = reader.choice("family", &[("symmetric", ())]);
+        let theta = reader.number("theta", -1.5..=1.5, "rad");
+        let sweep = if reader.has("sweep") { reader.within("sweep", SweptRange::read).flatten() } else { None };
+        let start = match (guess, family, theta) {
+            (Some(_), Some(()), _) => {
+                reader.refuse("family", "family and guess both say where to start; leave one of them out");
+                None
+            }
+            (None, Some(()), Some(theta)) if theta != 0.0 && period.unwrap_or(2) == 2 => Some(Start::Symmetric(theta)),
+            (None, Some(()), Some(_)) if period.unwrap_or(2) != 2 => {
+                reader.refuse("period", "period must be 2 for the symmetric family");
+                None
+            }
+            (None, Some(()), Some(_)) => {
+                reader.refuse("theta", "theta is 0; the symmetric family needs another angle, rad");
+                None
+            }
+            (None, Some(()), None) => {
+                reader.require(&["theta"]);
+                None
+            }
+            (_, None, Some(_)) => {
+                reader.refuse("theta", "theta goes with family; leave it out or add family \"symmetric\"");
+                None
+            }
+            (Some(state), None, None) => Some(Start::Near(state)),
+            (None, None, None) if period.unwrap_or(1) == 1 => Some(Start::Upright),
+            (None, None, None) if reader.errors().len() > before => None,
+            (None, None, None) => {
+                reader.refuse_whole("give a guess, or family \"symmetric\" with theta; only period 1 needs neither");
+                None
+            }
+        };
+        if reader.errors().len() > before {
+            return None;
+        }
+        let start = start?;
+        let default = if start == Start::Upright { 1 } else { 2 };
+        Some(Self { scene: scene?, period: period.unwrap_or(default), start, sweep })
+    }
+
+    /// Everything that determines the answer.
+    pub fn canonical(&self) -> Vec<u8> {
+        let start = match self.start {
+            Start::Upright => ("upright", [0.0; 4]),
+            Start::Near(state) => ("guess", [state.theta, state.x_dot, state.y_dot, state.theta_dot]),
+            Start::Symmetric(theta) => ("symmetric", [theta, 0.0, 0.0, 0.0]),
+        };
+        write::canonical(&self.scene, &(self.period, start, self.sweep))
+    }
+
+    /// Price of the work, in bounces of the plain rod: a bounce with derivatives costs about twelve.
+    pub fn price(&self) -> u64 {
+        limits::ANSWER_PRICE + 12 * self.period * self.sweep.map_or(60, |sweep| 10 * sweep.points + 2000)
+    }
+
+    /// JSON pointer to the field that an error of the start is about.
+    pub(super) fn pointer(&self) -> &'static str {
+        match (self.start, self.sweep) {
+            (Start::Symmetric(_), _) => "/theta",
+            (Start::Near(_), _) => "/guess",
+            (Start::Upright, Some(_)) => "/sweep/from",
+            (Start::Upright, None) => "/period",
+        }
+    }
+}
+
+impl SweptRange {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let sweeps = |row: &&Field| matches!(row.kind, Kind::Number { .. }) && row.name != Name::Friction;
+        let row = reader.text("parameter").and_then(field).filter(sweeps);
+        if row.is_none() && reader.has("parameter") {
+            reader
+                .refuse("parameter", "parameter must be the dotted name of a number of the scene, as table.tilt_gain, and not contact.friction");
+        }
+        let (from, to) = (reader.number("from", -1e4..=1e4, ""), reader.number("to", -1e4..=1e4, ""));
+        let points = reader.integer("points", 2..=limits::BRANCH_POINTS).unwrap_or(200);
+        reader.require(&["parameter", "from", "to"]);
+        let (row, from, to) = (row?, from?, to?);
+        for (name, value) in [("from", from), ("to", to)] {
+            if !row.admits(Value::Number(value)) {
+                reader.refuse(name, format!("{name} is {value}; {} must be {}", row.path, row.limits()));
+            }
+        }
+        if from == to {
+            reader.refuse("to", format!("to is {to}, as from; a sweep needs a range"));
+        }
+        if row.name == Name::EnergyGain && from.min(to) <= 0.0 && from.max(to) >= 0.0 {
+            reader.refuse("from", "at energy_gain 0 nothing sets the energy; sweep on one side of it");
+        }
+        Some(Self { parameter: row.name, from, to, points })
+    }
+}

@@ -1,0 +1,71 @@
+//! The picture of `precision`: error over cost.
+
+use crate::api::formats::Pictured;
+use crate::api::precision::answer::{PrecisionAnswer, ReferenceAnswer};
+use crate::api::precision::request::CostAxis;
+use crate::charts::{Series, SpeedAccuracy, speed_accuracy};
+use crate::comparison::{METHODS, Point};
+use crate::http::Problem;
+
+impl Pictured for PrecisionAnswer<'_> {
+    fn to_picture(&self) -> Result<String, Problem> {
+        let (cost_name, unit) = match self.axis {
+            CostAxis::Time => ("clock time", "ns per impact"),
+            CostAxis::Evaluations => ("evaluations of motion and gap", "per impact"),
+        };
+        let cost = |point: &Point| match self.axis {
+            CostAxis::Time => point.cost_ns(),
+            CostAxis::Evaluations => point.evaluations_per_impact().map(|count| [count; 3]),
+        };
+        let is_first = |point: &Point| match self.axis {
+            CostAxis::Time => point.pareto,
+            CostAxis::Evaluations => point.pareto_evaluations,
+        };
+        let points = &self.chart.points;
+        let place = |point: &Point| cost(point).zip(point.error);
+        let series: Vec<Series<'_>> = METHODS
+            .iter()
+            .enumerate()
+            .map(|(number, method)| {
+                let own = points.iter().filter(|point| point.method == *method);
+                Series { number, label: method.title, points: own.filter_map(place).collect() }
+            })
+            .filter(|series| !series.points.is_empty())
+            .collect();
+        let front: Vec<_> = points
+            .iter()
+            .filter(|point| is_first(point))
+            .filter_map(|point| place(point).map(|(cost, error)| (cost[1], error)))
+            .collect();
+        let ReferenceAnswer { outcome, impacts, .. } = self.reference;
+        let missing: Vec<String> = self
+            .methods
+            .iter()
+            .filter(|method| method.name != "extended" && series.iter().all(|series| series.label != method.title))
+            .map(|method| method.title.to_owned())
+            .collect();
+        let bars = if self.axis == CostAxis::Time { "; bars are quartiles" } else { "" };
+        let mut caption = format!("Each point is a step or a tolerance{bars}. No point lies below the Pareto front.");
+        if let Some([_, cost_ns, _]) =
+            points.iter().find(|point| point.method.name == "extended").and_then(Point::cost_ns)
+        {
+            caption += &format!(" The reference takes {cost_ns:.0} ns per impact.");
+        }
+        if !missing.is_empty() {
+            caption += &format!(" Not drawn, since their runs end otherwise or not at all: {}.", missing.join(", "));
+        }
+        Ok(speed_accuracy(&SpeedAccuracy {
+            title: "Speed against accuracy",
+            subtitle: &format!(
+                "{}, {impacts} impacts, {outcome}: how far methods end from the run with 31 digits",
+                self.model.name.replace('_', " ")
+            ),
+            caption: &caption,
+            cost: (cost_name, unit),
+            error: &format!("error at impact {impacts}"),
+            series: &series,
+            front: &front,
+            rounding: self.reference.rounding,
+        }))
+    }
+}

@@ -1,0 +1,55 @@
+//! The picture of `regions`: a heat map of the tile with the linear boundary over it.
+
+use equipoise_physics::surveys::stability_map::{Axis, Quantity};
+
+use crate::api::formats::Pictured;
+use crate::api::regions::answer::{RegionAnswer, code};
+use crate::api::regions::request::RegionRequest;
+use crate::charts::{HeatAxis, HeatMap, heat_map};
+use crate::http::Problem;
+
+impl Pictured for RegionAnswer {
+    fn to_picture(&self) -> Result<String, Problem> {
+        let RegionRequest { region, tile, .. } = &self.request;
+        let rows = self.request.rows();
+        let side = |axis: &Axis, first: usize, count: usize| {
+            let row = axis.name.row();
+            HeatAxis {
+                name: row.title,
+                symbol: row.symbol,
+                unit: row.unit,
+                from: axis.value(first),
+                to: axis.value(first + count.max(1) - 1),
+                count,
+            }
+        };
+        let (quantity, unit) = match region.quantity {
+            Quantity::Survival => ("contacts survived", "1"),
+            Quantity::MaxTheta => ("largest |θ|", "rad"),
+            Quantity::Residue => ("residue R", "1"),
+            Quantity::SpectralRadius => ("spectral radius", "1"),
+        };
+        let values: Vec<Option<f64>> = self.cells.iter().map(|cell| cell.value).collect();
+        let outcomes: Vec<u8> = self.cells.iter().map(|cell| code(cell) as u8).collect();
+        let finite = || values.iter().flatten().copied().filter(|value| value.is_finite());
+        let scale = match region.quantity {
+            Quantity::Survival => (0.0, region.impacts as f64),
+            Quantity::MaxTheta | Quantity::Residue | Quantity::SpectralRadius => {
+                (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max))
+            }
+        };
+        let part = if tile.of > 1 { format!(", tile {} of {}", tile.index + 1, tile.of) } else { String::new() };
+        Ok(heat_map(&HeatMap {
+            title: &format!("{} over {} and {}", quantity, region.x.name.row().title, region.y.name.row().title),
+            subtitle: &format!("runs of up to {} contacts{part}", region.impacts),
+            x: side(&region.x, 0, region.x.count),
+            y: side(&region.y, rows.start, rows.len()),
+            values: &values,
+            outcomes: &outcomes,
+            scale,
+            quantity,
+            unit,
+            boundary: &self.boundary,
+        }))
+    }
+}

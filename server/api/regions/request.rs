@@ -1,0 +1,174 @@
+//! The request for `regions`: two fields of a scene, their values, and the quantity that is mapped.
+
+use std::ops::Range;
+
+use equipoise_physics::scene::{Kind, Scene, field};
+use equipoise_physics::stability::fixed_point::JUDGED;
+use equipoise_physics::surveys::stability_map::{Axis, Cell, Quantity, Region};
+
+use crate::api::scene::{build_scene, read_draft};
+use crate::api::shared::tile::Tile;
+use crate::api::shared::write;
+use crate::http::problem::shortened;
+use crate::http::{Errors, Reader};
+use crate::limits;
+
+/// A request for a stability map.
+#[derive(Debug, Clone, Copy)]
+pub struct RegionRequest {
+    /// The region.
+    pub region: Region,
+    /// A valid scene of the region, which is shown in the answer.
+    pub scene: Scene,
+    /// The tile: a band of whole rows.
+    pub tile: Tile,
+}
+
+impl RegionRequest {
+    /// Reads a request.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let draft = read_draft(reader);
+        let axes = [read_axis(reader, "x"), read_axis(reader, "y")];
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(1000);
+        let quantities = [
+            ("survival", Quantity::Survival),
+            ("max_theta", Quantity::MaxTheta),
+            ("residue", Quantity::Residue),
+            ("spectral_radius", Quantity::SpectralRadius),
+        ];
+        let quantity = reader.choice("quantity", &quantities).unwrap_or(Quantity::Survival);
+        let tile = Tile::read(reader, limits::REGION_SIDE);
+        let ([Some(x), Some(y)], Some(draft), Some(tile)) = (axes, draft, tile) else { return None };
+        if x.name == y.name {
+            reader.refuse("y", format!("y has the parameter of x, {}; a region needs two", x.name.row().path));
+            return None;
+        }
+        if tile.of > y.count as u64 {
+            reader.refuse("tile", format!("tile has {} bands, but y has only {} rows", tile.of, y.count));
+            return None;
+        }
+        let region = Region { scene: draft, x, y, impacts, quantity };
+        let corners = [(0, 0), (x.count - 1, 0), (0, y.count - 1), (x.count - 1, y.count - 1)];
+        let middle = (x.count / 2, y.count / 2);
+        let possible = corners.into_iter().chain([middle]).find_map(|(column, row)| region.scene(column, row));
+        let Some(scene) = possible else {
+            let mut draft = draft;
+            let mut errors = Errors::default();
+            for axis in [x, y] {
+                // Within its range, so it is admitted.
+                let _ = draft.set(axis.name, Some(equipoise_physics::scene::Value::Number(axis.from)));
+            }
+            build_scene(draft, &reader.pointer_to("scene"), &mut errors);
+            let problem = errors.into_result().err();
+            for error in problem.iter().flat_map(|problem| problem.errors()) {
+                reader
+                    .errors()
+                    .push(error.pointer.clone(), format!("{} (so at all corners of the region)", error.detail));
+            }
+            return None;
+        };
+        let linear = matches!(region.quantity, Quantity::Residue | Quantity::SpectralRadius);
+        if let Some(error) = scene.beyond(&JUDGED).filter(|_| linear) {
+            let pointer = reader.pointer_to("scene");
+            reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
+            return None;
+        }
+        Some(Self { region, scene, tile })
+    }
+
+    /// Everything that determines the answer.
+    pub fn canonical(&self) -> Vec<u8> {
+        let Region { x, y, impacts, quantity, .. } = self.region;
+        let sides = [x, y].map(|axis| (axis.name.row().path, axis.from, axis.to, axis.count));
+        write::canonical(&self.scene, &(sides, impacts, quantity as u8, self.tile))
+    }
+
+    /// The rows of the tile.
+    pub fn rows(&self) -> Range<usize> {
+        let rows = self.tile.share(self.region.y.count as u64);
+        rows.start as usize..rows.end as usize
+    }
+
+    /// Number of cells of the tile.
+    pub fn cells(&self) -> u64 {
+        (self.rows().len() * self.region.x.count) as u64
+    }
+
+    /// Numbers of the tile's cells, counted over the whole region, row after row.
+    pub fn numbers(&self) -> Range<usize> {
+        let (rows, columns) = (self.rows(), self.region.x.count);
+        rows.start * columns..rows.end * columns
+    }
+
+    /// Number of cells in a block, which depends on the request alone.
+    pub fn block_cells(&self) -> usize {
+        let cells = limits::REGION_BLOCK_WORK / self.cell_price().max(1);
+        let (least, most) = limits::REGION_BLOCK_CELLS.into_inner();
+        cells.clamp(least, most) as usize
+    }
+
+    /// Number of bounces that the runs of some cells took, as far as their values tell it.
+    pub fn bounces_of(&self, cells: &[Cell]) -> u64 {
+        cells.iter().filter_map(|cell| cell.value.filter(|_| self.is_whole())).map(|value| value as u64).sum()
+    }
+
+    /// Tells whether values are whole numbers.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.region.quantity == Quantity::Survival
+    }
+
+    /// Price, in bounces of lanes.
+    pub fn price(&self) -> u64 {
+        // Scenes of the boundary: the nodes of its grid, and some 80 for each of its crossings.
+        let [columns, rows] =
+            [self.region.x, self.region.y].map(|axis| axis.count.clamp(2, limits::REGION_BOUNDARY_NODES) as u64);
+        let scenes = columns * rows + 80 * (columns + rows);
+        let boundary = scenes * (limits::REGION_LINEAR_CELL_PRICE + self.polygon_price());
+        self.cells().saturating_mul(self.cell_price()).saturating_add(boundary + limits::REGION_ANSWER_PRICE)
+    }
+
+    /// Price of making a scene beyond that of a rod: each side of a polygon is compared with each other side.
+    fn polygon_price(&self) -> u64 {
+        let vertices = self.region.scene.vertices().map_or(0, |vertices| vertices.places().len() as u64);
+        vertices * vertices * 3 / 2
+    }
+
+    /// Highest price of one cell.
+    fn cell_price(&self) -> u64 {
+        let (once, bounce) = match self.region.quantity {
+            Quantity::Residue | Quantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),
+            Quantity::Survival | Quantity::MaxTheta if self.region.fits_lanes() => (limits::REGION_CELL_PRICE, 1),
+            Quantity::Survival | Quantity::MaxTheta => (limits::REGION_ALONE_CELL_PRICE, limits::REGION_ALONE_PRICE),
+        };
+        once + self.polygon_price() + bounce * self.region.impacts
+    }
+}
+
+fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Axis> {
+    if !reader.has(name) {
+        reader.refuse(
+            name,
+            format!("{name} is missing: {{parameter, from, to, count}}, a field of the scene and its values"),
+        );
+        return None;
+    }
+    reader.within(name, |axis| {
+        axis.require(&["parameter", "from", "to", "count"]);
+        let path = axis.text("parameter");
+        let row = path.and_then(field);
+        let range = match row.map(|row| row.kind) {
+            Some(Kind::Number { minimum, maximum }) => Some(minimum..=maximum),
+            _ => None,
+        };
+        if let (Some(path), None) = (path, &range) {
+            axis.refuse("parameter", format!("parameter is {:?}; it must be a field of a scene whose values are numbers, such as table.tilt_gain", shortened(path)));
+        }
+        // Without a range the ends are read all the same, so that they count as known.
+        let ends = range.clone().unwrap_or(f64::MIN..=f64::MAX);
+        let unit = row.map_or("", |row| row.unit);
+        let (from, to) = (axis.number("from", ends.clone(), unit), axis.number("to", ends, unit));
+        let count = axis.integer("count", 1..=limits::REGION_SIDE);
+        range?;
+        Some(Axis { name: row?.name, from: from?, to: to?, count: usize::try_from(count?).ok()? })
+    })?
+}

@@ -1,0 +1,140 @@
+//! One route for all resources that compute an answer: read the request, price it, compute the answer and write it.
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::State;
+use axum::http::Response;
+use axum::routing::get;
+use futures_util::FutureExt;
+use futures_util::future::BoxFuture;
+use prometheus_client::metrics::counter::Counter;
+
+use crate::api::app::App;
+use crate::api::formats::FormatSet;
+use crate::compute::{OverBudget, Price, Turn, Turns};
+use crate::http::{Ask, Format, Outlet, Problem, Reader, Resource};
+use crate::limits::Limits;
+
+/// A resource that computes an answer.
+pub trait ComputedResource: Sized + 'static {
+    /// Name in the paths `/v1/<name>` and `/v1/batches/<name>`.
+    const NAME: &'static str;
+
+    /// Formats of the answer.
+    type Format: FormatSet;
+
+    /// A valid request, with all defaults filled in.
+    type Request: Clone + Send + Sync + 'static;
+
+    /// The work, from a request to the bytes of its answer.
+    const WORK: Work<Self>;
+
+    /// Reads a request. Where it gives nothing it has told the reader why.
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self::Request>;
+
+    /// Prices the work of a request.
+    ///
+    /// # Errors
+    /// The limit that it passes.
+    fn price(request: &Self::Request, limits: &Limits) -> Result<Price, OverBudget>;
+}
+
+/// The canonical form of a request: together with build, format and encoding it determines every byte of the answer.
+type Canonical<R> = fn(&<R as ComputedResource>::Request) -> Vec<u8>;
+
+/// Computes an answer, counts the bounces that it took, and returns it in a format.
+type Whole<R> =
+    fn(&<R as ComputedResource>::Request, <R as ComputedResource>::Format, &Turn, &Counter) -> Result<Vec<u8>, Problem>;
+
+/// Computes an answer, counts the bounces that it took, and sends it in a format.
+type Streaming<R, Turns> = fn(
+    &<R as ComputedResource>::Request,
+    <R as ComputedResource>::Format,
+    &Turns,
+    &mut Outlet,
+    &Counter,
+) -> Result<(), Problem>;
+
+/// The work of a resource, from a request to the bytes of its answer. Formats in `streamed` are sent while they are computed.
+#[derive(Debug)]
+pub enum Work<R: ComputedResource> {
+    /// A pure function of the request, short enough for one turn.
+    Pure {
+        /// See [`Canonical`].
+        canonical: Canonical<R>,
+        /// See [`Whole`].
+        compute: Whole<R>,
+    },
+    /// A pure function of the request, done in many turns.
+    InTurns {
+        /// See [`Canonical`].
+        canonical: Canonical<R>,
+        /// See [`Work`].
+        streamed: &'static [Format],
+        /// See [`Streaming`].
+        compute: Streaming<R, Turns>,
+    },
+    /// A measurement, which is never the same twice and so is not cached.
+    Measured {
+        /// See [`Work`].
+        streamed: &'static [Format],
+        /// See [`Streaming`].
+        compute: Streaming<R, Turn>,
+    },
+}
+
+/// A resource as it is listed among the routes.
+#[derive(Debug, Clone, Copy)]
+pub struct Endpoint {
+    /// See [`ComputedResource::NAME`].
+    pub name: &'static str,
+    /// Answers one request.
+    pub answer: Answer,
+}
+
+/// Answers one request.
+pub type Answer = fn(App, Ask) -> BoxFuture<'static, Result<Response<Body>, Problem>>;
+
+impl Endpoint {
+    /// The endpoint of a resource.
+    pub const fn of<R: ComputedResource>() -> Self {
+        Self { name: R::NAME, answer: |app, ask| answer::<R>(app, ask).boxed() }
+    }
+
+    /// The route `/v1/<name>`.
+    pub fn routes(self) -> Router<App> {
+        let handler = move |State(app): State<App>, ask: Ask| (self.answer)(app, ask);
+        Router::new().route(&format!("/v1/{}", self.name), get(handler).post(handler))
+    }
+}
+
+async fn answer<R: ComputedResource>(app: App, ask: Ask) -> Result<Response<Body>, Problem> {
+    let request = ask.read(R::read)?;
+    let price = R::price(&request, &app.config.limits)?;
+    let resource = Resource { name: R::NAME, formats: R::Format::FORMATS };
+    let bounces = app.metrics.bounces.clone();
+    match R::WORK {
+        Work::Pure { canonical, compute } => {
+            let canonical = canonical(&request);
+            let compute = move |format, turn: &Turn| compute(&request, negotiated(format), turn, &bounces);
+            ask.respond(&app.pool, &resource, &canonical, price, compute).await
+        }
+        Work::InTurns { canonical, streamed, compute } => {
+            let canonical = canonical(&request);
+            let compute = move |format, turns: &Turns, out: &mut Outlet| {
+                compute(&request, negotiated(format), turns, out, &bounces)
+            };
+            ask.respond_in_turns(&app.pool, &resource, &canonical, streamed, compute).await
+        }
+        Work::Measured { streamed, compute } => {
+            let compute =
+                move |format, turn: &Turn, out: &mut Outlet| compute(&request, negotiated(format), turn, out, &bounces);
+            ask.respond_afresh(&app.pool, &resource, streamed, compute).await
+        }
+    }
+}
+
+/// The negotiated format, which is one of its set.
+pub(crate) fn negotiated<F: FormatSet>(format: Format) -> F {
+    F::of(format).expect("negotiation chooses among the formats of the set")
+}

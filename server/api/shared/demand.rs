@@ -1,0 +1,19 @@
+//! The most that a run asks of the table's actuators, as it is answered.
+
+use equipoise_physics::table::actuator_load::Demand;
+use serde::Serialize;
+
+/// The largest tilt, rad, tilt rate, rad/s, speed, m/s, and stroke, m, that a run asks of the table.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct DemandAnswer {
+    tilt: f64,
+    tilt_rate: f64,
+    speed: f64,
+    stroke: f64,
+}
+
+impl From<Demand> for DemandAnswer {
+    fn from(Demand { tilt, tilt_rate, speed, stroke }: Demand) -> Self {
+        Self { tilt, tilt_rate, speed, stroke }
+    }
+}

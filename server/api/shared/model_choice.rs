@@ -1,0 +1,55 @@
+//! The model that a scene is computed with, as it is answered.
+
+use equipoise_physics::run::method::Method;
+use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::model::{Forced, Rung};
+use serde::Serialize;
+
+/// The model of a run, and the reason for it.
+#[derive(Debug, Clone, Serialize)]
+pub struct ModelChoice {
+    /// Name of the model.
+    pub name: &'static str,
+    /// The reason, in a sentence.
+    pub reason: String,
+    /// Fields of the scene that ask for the levels above the rod.
+    pub forced: Vec<RequirementAnswer>,
+}
+
+/// A field that asks for a level of the model hierarchy.
+#[derive(Debug, Clone, Serialize)]
+pub struct RequirementAnswer {
+    rung: &'static str,
+    field: &'static str,
+    detail: String,
+}
+
+impl RequirementAnswer {
+    /// The field that asked for it.
+    pub fn field(&self) -> &'static str {
+        self.field
+    }
+}
+
+impl From<Forced> for RequirementAnswer {
+    fn from(Forced { rung, path, detail }: Forced) -> Self {
+        Self { rung: rung.name(), field: path, detail }
+    }
+}
+
+impl ModelChoice {
+    /// The model of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let forced = scene.forced().into_iter().map(RequirementAnswer::from).collect();
+        Self { name: scene.rung().name(), reason: scene.rung_reason(), forced }
+    }
+
+    /// The model that a method needs of it.
+    pub(crate) fn by_method(scene: &Scene, method: Method) -> Self {
+        if method != Method::Linear {
+            return Self::of(scene);
+        }
+        let reason = "the linear solution is accurate enough here, or was asked for: the angle block in closed form";
+        Self { name: Rung::Linear.name(), reason: reason.to_owned(), forced: Vec::new() }
+    }
+}

@@ -1,0 +1,65 @@
+//! The request for `stability`: a scene, and the evidence that is asked for.
+
+use equipoise_physics::scene::Scene;
+use equipoise_physics::stability::basin;
+use equipoise_physics::stability::margins::Tolerances;
+use equipoise_physics::stability::regularity::WATCHED;
+
+use crate::api::scene::{bounce_price, read_scene};
+use crate::api::shared::write;
+use crate::http::Reader;
+use crate::limits;
+
+/// A request for a verdict.
+#[derive(Debug, Clone, Copy)]
+pub struct StabilityRequest {
+    /// The scene.
+    pub scene: Scene,
+    /// Number of contacts that the run is watched for.
+    pub impacts: u64,
+    /// True if the basin is asked for.
+    pub basin: bool,
+    /// Tolerances of the body, if the margins are asked for.
+    pub tolerances: Option<Tolerances>,
+}
+
+/// Work of the margins, in bounces: some ten thousand linear verdicts.
+const MARGINS_PRICE: u64 = 200_000;
+
+/// Price of a run of the basin beside its bounces, in bounces.
+const BASIN_RUN_PRICE: u64 = 10;
+
+impl StabilityRequest {
+    /// Reads a request.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let scene = read_scene(reader);
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(2000);
+        let basin = reader.boolean("basin").unwrap_or(false);
+        let tolerances = read_tolerances(reader);
+        Some(Self { scene: scene?, impacts, basin, tolerances })
+    }
+
+    /// Everything that determines the answer.
+    pub fn canonical(&self) -> Vec<u8> {
+        let off = self.tolerances.map(|off| (off.contact_distance, off.radius_of_gyration, off.restitution));
+        write::canonical(&self.scene, &(self.impacts, self.basin, off))
+    }
+
+    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs
+    /// cost a quarter in lanes.
+    pub fn price(&self) -> u64 {
+        let Self { ref scene, impacts, basin, tolerances } = *self;
+        let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + impacts / 4) } else { 0 };
+        let run = impacts * bounce_price(scene) + 4 * impacts.min(WATCHED);
+        limits::ANSWER_PRICE + run + basin + if tolerances.is_some() { MARGINS_PRICE } else { 0 }
+    }
+}
+
+/// Reads `tolerances`, if they are asked for.
+fn read_tolerances(reader: &mut Reader<'_, '_>) -> Option<Tolerances> {
+    reader.within("tolerances", |reader| Tolerances {
+        contact_distance: reader.number("contact_distance", 0.0..=1.0, "m").unwrap_or(0.0),
+        radius_of_gyration: reader.number("radius_of_gyration", 0.0..=1.0, "m").unwrap_or(0.0),
+        restitution: reader.number("restitution", 0.0..=1.0, "(no unit)").unwrap_or(0.0),
+    })
+}

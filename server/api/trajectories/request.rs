@@ -1,0 +1,99 @@
+//! The request for `trajectories`: a run, the method that computes it, and the numbers that are asked for.
+
+use equipoise_physics::run::method::{Method, deviations_circle};
+use equipoise_physics::scene::{Name, Scene};
+
+use crate::api::shared::write;
+use crate::http::Reader;
+use crate::http::request::scalar::LARGEST_EXACT;
+use crate::limits;
+use crate::runs::run::Run;
+use crate::runs::run_url;
+
+/// A request for a run.
+#[derive(Debug, Clone)]
+pub struct TrajectoryRequest {
+    /// The run: a scene and its interventions.
+    pub run: Run,
+    /// Highest number of contacts.
+    pub impacts: u64,
+    /// Points along each flight.
+    pub samples_per_flight: u64,
+    /// The method, if one is named.
+    pub method: Option<Method>,
+    /// Wanted bound on the error, m/s, if any.
+    pub tolerance: Option<f64>,
+    /// Time of the release, unix ms. Without it there is no column `time`.
+    pub epoch: Option<u64>,
+}
+
+/// Tolerances, m/s. Below, no method has the digits; above, no bound says anything.
+const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-30..=1.0;
+
+/// Numbers in a row of contacts, and in one of flight samples.
+const CONTACT_NUMBERS: u64 = 18;
+const SAMPLE_NUMBERS: u64 = 8;
+
+/// Price of an impact with its error estimate by each method, in bounces, and of the linear solution once.
+const LINEAR_ONCE: u64 = 2500;
+const MAP_PRICE: u64 = 8;
+const EXTENDED_PRICE: u64 = 50;
+
+/// Price of a contact to be written down, compressed as well, in bounces; the same with 31 digits, and a sample of a flight.
+const ROW_PRICE: u64 = 24;
+const LONG_ROW_PRICE: u64 = 60;
+const SAMPLE_PRICE: u64 = 10;
+
+/// Price of an impact of the linear solution with its error estimate, in bounces. Where the angle does not circle, the estimate
+/// of each looks at some of the bounces before it, with 31 digits: at 13, or at 39 where the table looks at the energy.
+pub(crate) fn linear_price(scene: &Scene) -> u64 {
+    match scene.number(Name::EnergyGain) {
+        _ if deviations_circle(scene) => 20,
+        None | Some(0.0) => 500,
+        Some(_) => 1400,
+    }
+}
+
+impl TrajectoryRequest {
+    /// Reads a request.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let run = run_url::read_unclocked(reader);
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
+        let samples_per_flight = reader.integer("samples_per_flight", 0..=limits::SAMPLES_PER_FLIGHT).unwrap_or(0);
+        let [linear, map, extended] = Method::ALL.map(|method| (method.name(), Some(method)));
+        let method = reader.choice("method", &[("auto", None), map, linear, extended]).flatten();
+        let tolerance = reader.number("tolerance", TOLERANCES, "m/s");
+        let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
+        Some(Self { run: run?, impacts, samples_per_flight, method, tolerance, epoch })
+    }
+
+    /// Everything that determines the answer.
+    pub fn canonical(&self) -> Vec<u8> {
+        let Self { run, impacts, samples_per_flight, method, tolerance, epoch } = self;
+        let rest = (impacts, samples_per_flight, method.map(Method::name), tolerance, epoch);
+        write::canonical(run.scene(), &(rest, run_url::url(run)))
+    }
+
+    /// Number of numbers in the answer.
+    pub fn numbers(&self) -> u64 {
+        let time = u64::from(self.epoch.is_some());
+        self.impacts.saturating_mul(CONTACT_NUMBERS + time + self.samples_per_flight * (SAMPLE_NUMBERS + time))
+    }
+
+    /// Price of the work, in bounces.
+    pub fn price(&self) -> u64 {
+        let scene = self.run.scene();
+        let (once, impact) = match (self.method, self.tolerance) {
+            (Some(Method::Linear), _) => (LINEAR_ONCE, linear_price(scene) + ROW_PRICE),
+            (Some(Method::Map), _) | (None, None) => (0, MAP_PRICE + ROW_PRICE),
+            (Some(Method::Extended), _) => (0, EXTENDED_PRICE + LONG_ROW_PRICE),
+            // Each may be tried, the linear one where the angle circles, and the dearest run again.
+            (None, Some(_)) => {
+                let linear = if deviations_circle(scene) { linear_price(scene) } else { 0 };
+                (LINEAR_ONCE, linear + MAP_PRICE + 2 * EXTENDED_PRICE + LONG_ROW_PRICE)
+            }
+        };
+        let each = impact + SAMPLE_PRICE * self.samples_per_flight;
+        self.impacts.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once)
+    }
+}
