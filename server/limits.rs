@@ -272,7 +272,7 @@ pub const PRECISION_TIME: Duration = Duration::from_millis(30);
 pub const PRECISION_PRICE: u64 = 550_000;
 
 /// Least time of one look of the stopwatch: a thousand times the grain of the clock.
-pub const PRECISION_LOOK: Duration = Duration::from_micros(50);
+pub const PRECISION_SAMPLE: Duration = Duration::from_micros(50);
 
 /// Looks of which a median is taken.
 pub const PRECISION_REPEATS: usize = 301;

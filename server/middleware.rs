@@ -24,52 +24,52 @@ use crate::compute::Peer;
 use crate::config::Config;
 use crate::http::problem::{MEDIA_TYPE, shortened};
 use crate::http::security::{host, site};
-use crate::http::{Asked, HostName, Origin, Problem, REQUEST_ID, Token, peer, transfer};
+use crate::http::{HostName, Origin, Problem, REQUEST_ID, RequestContext, Token, peer, transfer};
 use crate::{BUILD, limits};
 
 /// Surrounds a router. The order, from the outside in:
 ///
-/// 1. `received` puts the headers on that every answer has, knows who asks and under which id, and writes the log: all that
+/// 1. `identify` puts the headers on that every answer has, knows who asks and under which id, and writes the log: all that
 ///    happens to a request happens within it.
-/// 2. `addressed` refuses what is not meant for this server, or is in a form that it does not know: before CORS, which would
+/// 2. `check_address` refuses what is not meant for this server, or is in a form that it does not know: before CORS, which would
 ///    tell a page of a name that is not ours that it may ask.
 /// 3. CORS, if there are origins to allow: before the token, which a browser does not send when it asks whether it may.
-/// 4. `told` makes a problem of every error that libraries answer with on their own: 405, refused upgrades … Up to here they
+/// 4. `to_problem` makes a problem of every error that libraries answer with on their own: 405, refused upgrades … Up to here they
 ///    stand around the router as a whole, because it adds `Allow` outside of the layers of its routes.
-/// 5. `guarded` lets nobody past without the token, if there is one, and no work for a page of another site.
-/// 6. `measured` knows the route's template, so it stands within; outside of panics, which are counted as well.
+/// 5. `authorize` lets nobody past without the token, if there is one, and no work for a page of another site.
+/// 6. `measure` knows the route's template, so it stands within; outside of panics, which are counted as well.
 /// 7. Panics become a 500.
-/// 8. `bounded` refuses a URL before anybody reads it.
+/// 8. `limit_url` refuses a URL before anybody reads it.
 ///
 /// HEAD needs no layer: the router answers it like GET and leaves out the body. Bodies are bounded where they are read.
-pub fn surround(router: Router<App>, app: App) -> Router {
+pub fn apply_layers(router: Router<App>, app: App) -> Router {
     let hosts = app.config.hosts().map(Into::into);
-    let door = Arc::new(Door { base: app.base_path.clone(), config: app.config.clone(), hosts });
+    let edge = Arc::new(EdgeConfig { base: app.base_path.clone(), config: app.config.clone(), hosts });
     let origins = &app.config.allow_origin;
     let cors = (!origins.is_empty()).then(|| cors(origins));
     let within = ServiceBuilder::new()
-        .layer(from_fn_with_state(app.clone(), measured))
-        .layer(CatchPanicLayer::custom(panicked))
-        .layer(from_fn(bounded));
+        .layer(from_fn_with_state(app.clone(), measure))
+        .layer(CatchPanicLayer::custom(panic_to_problem))
+        .layer(from_fn(limit_url));
     let around = ServiceBuilder::new()
-        .layer(from_fn_with_state(door.clone(), received))
-        .layer(from_fn_with_state(door.clone(), addressed))
+        .layer(from_fn_with_state(edge.clone(), identify))
+        .layer(from_fn_with_state(edge.clone(), check_address))
         .layer(option_layer(cors))
-        .layer(from_fn(told))
-        .layer(from_fn_with_state(door, guarded));
+        .layer(from_fn(to_problem))
+        .layer(from_fn_with_state(edge, authorize));
     Router::new().fallback_service(router.layer(within).with_state(app)).layer(around)
 }
 
 /// What is asked of a request before anything else.
 #[derive(Debug)]
-struct Door {
+struct EdgeConfig {
     base: Arc<str>,
     config: Arc<Config>,
     /// The names that are answered to; none where every name is.
     hosts: Option<Vec<HostName>>,
 }
 
-impl Door {
+impl EdgeConfig {
     /// Who asks: the peer of the connection or, if that is a proxy to be believed, whom it names.
     fn peer(&self, request: &Request) -> Peer {
         let peer = peer(request.extensions());
@@ -103,25 +103,25 @@ fn cors(origins: &[Origin]) -> CorsLayer {
         .max_age(limits::PREFLIGHT_TIME)
 }
 
-async fn received(State(door): State<Arc<Door>>, mut request: Request, next: Next) -> Response {
+async fn identify(State(edge): State<Arc<EdgeConfig>>, mut request: Request, next: Next) -> Response {
     let begin = Instant::now();
-    let peer = door.peer(&request);
+    let peer = edge.peer(&request);
     request.extensions_mut().insert(peer);
-    let logged = door.config.access_log.then(|| (request.method().clone(), request.uri().clone()));
-    let asked = Asked::new(request.headers(), door.base.clone());
-    let mut response = match strip(request.uri_mut(), &door.base) {
-        Ok(()) => asked.clone().answer(next.run(request)).await,
+    let logged = edge.config.access_log.then(|| (request.method().clone(), request.uri().clone()));
+    let context = RequestContext::new(request.headers(), edge.base.clone());
+    let mut response = match strip_base(request.uri_mut(), &edge.base) {
+        Ok(()) => context.clone().scope(next.run(request)).await,
         Err(elsewhere) => elsewhere.into_response(),
     };
-    seal(response.headers_mut());
-    response.headers_mut().insert(REQUEST_ID, asked.header());
+    add_common_headers(response.headers_mut());
+    response.headers_mut().insert(REQUEST_ID, context.header());
     if let Some((method, uri)) = logged {
-        let line = Line {
+        let line = AccessLogEntry {
             time: SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64(),
-            id: &asked.id,
+            id: &context.id,
             peer: peer.address(),
             method: method.as_str(),
-            target: &shown(&uri),
+            target: &redacted(&uri),
             status: response.status().as_u16(),
             ms: begin.elapsed().as_secs_f64() * 1e3,
         };
@@ -133,7 +133,7 @@ async fn received(State(door): State<Arc<Door>>, mut request: Request, next: Nex
 
 /// A line of the access log. Written as JSON, so that nothing a client sends can look like another line.
 #[derive(Serialize)]
-struct Line<'a> {
+struct AccessLogEntry<'a> {
     /// Unix time, s.
     time: f64,
     id: &'a str,
@@ -146,7 +146,7 @@ struct Line<'a> {
 }
 
 /// A target without the secret that may be in it, however its name is written: it ends where the name does.
-fn shown(uri: &Uri) -> String {
+fn redacted(uri: &Uri) -> String {
     let target = uri.path_and_query().map_or("*", PathAndQuery::as_str);
     let end = end_of_name(target.as_bytes()).unwrap_or(target.len());
     target[..end].chars().take(limits::URL_BYTES).collect()
@@ -154,18 +154,18 @@ fn shown(uri: &Uri) -> String {
 
 /// End of the first `token=` in a target, of which any character may be percent-encoded, in either case.
 fn end_of_name(target: &[u8]) -> Option<usize> {
-    let escaped = |place: usize| {
-        let digits = target.get(place..)?.strip_prefix(b"%")?.get(..2)?;
+    let escaped = |labels: usize| {
+        let digits = target.get(labels..)?.strip_prefix(b"%")?.get(..2)?;
         let digits = Some(digits).filter(|digits| digits.iter().all(u8::is_ascii_hexdigit))?;
         u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok()
     };
     // Each character with where it ends.
     let mut characters = Vec::with_capacity(target.len());
-    let mut place = 0;
-    while place < target.len() {
-        let (byte, length) = escaped(place).map_or((target[place], 1), |byte| (byte, 3));
-        place += length;
-        characters.push((byte, place));
+    let mut labels = 0;
+    while labels < target.len() {
+        let (byte, length) = escaped(labels).map_or((target[labels], 1), |byte| (byte, 3));
+        labels += length;
+        characters.push((byte, labels));
     }
     let name = [TOKEN_PARAMETER.as_bytes(), b"="].concat();
     let found = characters.windows(name.len()).find(|window| {
@@ -176,7 +176,7 @@ fn end_of_name(target: &[u8]) -> Option<usize> {
 }
 
 /// Takes the base path away, where a proxy has left it on. The page there has relative addresses, which need its slash.
-fn strip(uri: &mut Uri, base: &str) -> Result<(), Redirect> {
+fn strip_base(uri: &mut Uri, base: &str) -> Result<(), Redirect> {
     let path_and_query = uri.path_and_query().map_or("", PathAndQuery::as_str);
     let Some(rest) = path_and_query.strip_prefix(base).filter(|_| !base.is_empty()) else { return Ok(()) };
     if rest.is_empty() || rest.starts_with('?') {
@@ -193,7 +193,7 @@ fn strip(uri: &mut Uri, base: &str) -> Result<(), Redirect> {
 const BUILD_HEADER: HeaderName = HeaderName::from_static("equipoise-build");
 
 /// Adds the headers that every answer has.
-pub fn seal(headers: &mut HeaderMap) {
+pub fn add_common_headers(headers: &mut HeaderMap) {
     for (name, value) in [
         (BUILD_HEADER, BUILD),
         (header::CONTENT_SECURITY_POLICY, CONTENT_SECURITY_POLICY),
@@ -208,21 +208,21 @@ pub fn seal(headers: &mut HeaderMap) {
 /// Parameter by which a browser is given the token, once.
 const TOKEN_PARAMETER: &str = "token";
 
-async fn addressed(State(door): State<Arc<Door>>, request: Request, next: Next) -> Response {
+async fn check_address(State(edge): State<Arc<EdgeConfig>>, request: Request, next: Next) -> Response {
     let headers = request.headers();
     // A test without a socket speaks no version of HTTP.
     let version = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|_| request.version());
     let is_named = host::check_form(version.unwrap_or(Version::HTTP_10), headers);
     let is_ours = is_named
-        .and_then(|()| door.hosts.as_ref().map_or(Ok(()), |allowed| host::check_name(request.uri(), headers, allowed)));
+        .and_then(|()| edge.hosts.as_ref().map_or(Ok(()), |allowed| host::check_name(request.uri(), headers, allowed)));
     match is_ours.and_then(|()| transfer::check(headers)) {
         Ok(()) => next.run(request).await,
         Err(problem) => problem.into_response(),
     }
 }
 
-async fn guarded(State(door): State<Arc<Door>>, request: Request, next: Next) -> Response {
-    match refused(&door.config, &request) {
+async fn authorize(State(edge): State<Arc<EdgeConfig>>, request: Request, next: Next) -> Response {
+    match refusal(&edge.config, &request) {
         Some(answer) => answer,
         None => next.run(request).await,
     }
@@ -230,14 +230,14 @@ async fn guarded(State(door): State<Arc<Door>>, request: Request, next: Next) ->
 
 /// The answer to who may not ask: without the token, or for a page of another site. A browser that brings the token is sent on
 /// with its cookie.
-fn refused(config: &Config, request: &Request) -> Option<Response> {
+fn refusal(config: &Config, request: &Request) -> Option<Response> {
     let (origins, embedding) = (&config.allow_origin, config.allow_embedding);
     let checked = || site::check(request.method(), request.uri().path(), request.headers(), origins, embedding);
-    let by_token = config.token.as_ref().and_then(|token| unauthorized(token, request));
+    let by_token = config.token.as_ref().and_then(|token| require_token(token, request));
     by_token.or_else(|| checked().err().map(IntoResponse::into_response))
 }
 
-fn unauthorized(token: &Token, request: &Request) -> Option<Response> {
+fn require_token(token: &Token, request: &Request) -> Option<Response> {
     let (path, query) = (request.uri().path(), request.uri().query().unwrap_or_default());
     if path.starts_with("/health/") || token.is_in(request.headers()) {
         return None;
@@ -257,15 +257,15 @@ fn unauthorized(token: &Token, request: &Request) -> Option<Response> {
     Some(Problem::unauthorized().into_response())
 }
 
-async fn measured(State(app): State<App>, route: Option<MatchedPath>, request: Request, next: Next) -> Response {
+async fn measure(State(app): State<App>, route: Option<MatchedPath>, request: Request, next: Next) -> Response {
     let (begin, method) = (Instant::now(), request.method().clone());
     let response = next.run(request).await;
     let route = route.as_ref().map_or("none", MatchedPath::as_str);
-    app.metrics.answered(method.as_str(), route, response.status().as_u16(), begin.elapsed());
+    app.metrics.record(method.as_str(), route, response.status().as_u16(), begin.elapsed());
     response
 }
 
-async fn told(request: Request, next: Next) -> Response {
+async fn to_problem(request: Request, next: Next) -> Response {
     let (method, uri) = (request.method().clone(), request.uri().clone());
     let response = next.run(request).await;
     let status = response.status();
@@ -278,7 +278,7 @@ async fn told(request: Request, next: Next) -> Response {
         (StatusCode::METHOD_NOT_ALLOWED, Some(allow)) => {
             Problem::method_not_allowed(method.as_str(), &shortened(uri.path()), allow)
         }
-        _ => Problem::other(status, said(body).await.unwrap_or_else(|| status.to_string())),
+        _ => Problem::other(status, body_text(body).await.unwrap_or_else(|| status.to_string())),
     };
     let mut response = problem.into_response();
     for (name, value) in &parts.headers {
@@ -291,20 +291,20 @@ async fn told(request: Request, next: Next) -> Response {
 }
 
 /// The text of a library's error, if it is one that can be shown.
-async fn said(body: Body) -> Option<String> {
+async fn body_text(body: Body) -> Option<String> {
     let bytes = to_bytes(body, 1024).await.ok()?;
     String::from_utf8(bytes.to_vec()).ok().filter(|text| !text.is_empty())
 }
 
-fn panicked(_: Box<dyn Any + Send + 'static>) -> Response {
+fn panic_to_problem(_: Box<dyn Any + Send + 'static>) -> Response {
     // The standard library has written the panic's own text to the log; which request it was stands beside it.
-    if let Some(asked) = Asked::under_way() {
-        let _ = writeln!(stderr().lock(), "equipoise: request {} failed with the panic above", asked.id);
+    if let Some(context) = RequestContext::current() {
+        let _ = writeln!(stderr().lock(), "equipoise: request {} failed with the panic above", context.id);
     }
     Problem::internal().into_response()
 }
 
-async fn bounded(request: Request, next: Next) -> Response {
+async fn limit_url(request: Request, next: Next) -> Response {
     let bytes = request.uri().path_and_query().map_or(0, |path| path.as_str().len());
     if bytes > limits::URL_BYTES {
         return Problem::url_too_long(bytes).into_response();
@@ -323,7 +323,7 @@ mod tests {
 
     #[test]
     fn a_target_is_shown_up_to_the_secret_however_its_name_is_written() {
-        for (target, said) in [
+        for (target, body_text) in [
             ("/?preset=case-1&token=SECRET", "/?preset=case-1&token="),
             ("/?%74oken=SECRET&a=b", "/?%74oken="),
             ("/?t%6fk%65n%3DSECRET", "/?t%6fk%65n%3D"),
@@ -333,7 +333,7 @@ mod tests {
             ("/?a=%+7&%zz%7", "/?a=%+7&%zz%7"),
             ("/?%2574oken=1", "/?%2574oken=1"),
         ] {
-            assert_eq!(shown(&target.parse().unwrap()), said);
+            assert_eq!(redacted(&target.parse().unwrap()), body_text);
         }
     }
 }

@@ -4,11 +4,11 @@ use axum::Router;
 
 use crate::api;
 use crate::api::App;
-use crate::middleware::{not_found, surround};
+use crate::middleware::{apply_layers, not_found};
 
 /// The whole server.
 pub fn router(app: App) -> Router {
-    surround(api::all().fallback(not_found), app)
+    apply_layers(api::all().fallback(not_found), app)
 }
 
 #[cfg(test)]
@@ -23,9 +23,9 @@ mod tests {
     use tower::ServiceExt;
 
     use crate::BUILD;
-    use crate::compute::{Price, Turn};
+    use crate::compute::{Price, TimeSlice};
     use crate::config::Config;
-    use crate::http::{Ask, Errors, Format, Problem, REQUEST_ID, Resource};
+    use crate::http::{ApiRequest, Errors, Format, Problem, REQUEST_ID, Resource};
     use crate::limits;
     use crate::limits::Limits;
 
@@ -34,7 +34,7 @@ mod tests {
         let broken = Router::new()
             .route("/panics", get(async || -> &'static str { panic!("on purpose") }))
             .route("/speaks", get(async || (axum::http::StatusCode::IM_A_TEAPOT, "short and stout")));
-        let router = surround(api::all().merge(broken).fallback(not_found), app);
+        let router = apply_layers(api::all().merge(broken).fallback(not_found), app);
         router.oneshot(request).await.unwrap()
     }
 
@@ -85,7 +85,7 @@ mod tests {
             pool.run(dear, move |_| if panics { panic!("deep") } else { Ok::<_, Problem>("fine") }).await
         });
         let app = App::new(&Config::default());
-        let router = surround(Router::new().route("/works", work), app);
+        let router = apply_layers(Router::new().route("/works", work), app);
         for _ in 0..3 {
             let ask = async |target| router.clone().oneshot(Request::get(target).body(Body::empty()).unwrap()).await;
             assert_eq!(problem_of(ask("/works?panic").await.unwrap()).await["status"], 500);
@@ -130,10 +130,10 @@ mod tests {
     }
 
     /// A resource as they all are: read, price, answer.
-    async fn squares(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+    async fn squares(State(app): State<App>, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
         const RESOURCE: Resource = Resource { name: "squares", formats: &[Format::Json, Format::Csv] };
         let mut errors = Errors::default();
-        let mut reader = ask.reader(&mut errors);
+        let mut reader = api_request.reader(&mut errors);
         let count = reader.integer("count", 1..=1_000_000).unwrap_or(3);
         let factor =
             reader.within("scale", |scale| scale.number("factor", 0.0..=10.0, "m").unwrap_or(1.0)).unwrap_or(1.0);
@@ -142,9 +142,9 @@ mod tests {
         let price = Price::bounces(count).times(100).within(&app.config.limits.of_work())?;
         let canonical = serde_json::to_vec(&(count, factor)).expect("numbers");
         let metrics = app.metrics.clone();
-        let compute = move |format: Format, turn: &Turn| {
+        let compute = move |format: Format, slice: &TimeSlice| {
             let squares: Vec<f64> = (0..count).map(|n| (n * n) as f64 * factor).collect();
-            turn.check()?;
+            slice.check()?;
             metrics.bounces.inc_by(count);
             Ok(match format {
                 Format::Csv => {
@@ -153,7 +153,7 @@ mod tests {
                 _ => serde_json::to_vec(&squares).expect("numbers"),
             })
         };
-        ask.respond(&app.pool, &RESOURCE, &canonical, price, compute).await
+        api_request.respond(&app.pool, &RESOURCE, &canonical, price, compute).await
     }
 
     async fn text_of(response: Response<Body>) -> String {
@@ -163,7 +163,7 @@ mod tests {
     #[tokio::test]
     async fn a_resource_follows_the_rules_of_all() {
         let app = App::new(&Config::default());
-        let router = surround(Router::new().route("/v1/squares", get(squares).post(squares)), app);
+        let router = apply_layers(Router::new().route("/v1/squares", get(squares).post(squares)), app);
         let send = async |request: http::request::Builder, body: &'static str| {
             router.clone().oneshot(request.body(Body::from(body)).unwrap()).await.unwrap()
         };

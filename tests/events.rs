@@ -214,7 +214,7 @@ async fn what_is_no_run_or_not_to_be_had_is_a_problem() {
     assert_eq!(send(address, post.as_bytes()).await.problem().await["status"], 405);
     assert_eq!(app.metrics.live_sessions.get(), 0);
     let home = Peer::at([127, 0, 0, 1].into());
-    let _all: Vec<_> = std::iter::from_fn(|| app.live_places.take(home).ok()).collect();
+    let _all: Vec<_> = std::iter::from_fn(|| app.live_quota.try_reserve(home).ok()).collect();
     assert_eq!(status("preset=case-1", "").await, 503);
 }
 

@@ -359,7 +359,7 @@ async fn what_is_no_run_or_no_websocket_is_a_problem() {
     let own = format!("http://{address}");
     let _own = try_open(address, "/v1/live?preset=case-1", &[("origin", &own)]).await.unwrap();
     let home = Peer::at([127, 0, 0, 1].into());
-    let _all: Vec<_> = std::iter::from_fn(|| app.live_places.take(home).ok()).collect();
+    let _all: Vec<_> = std::iter::from_fn(|| app.live_quota.try_reserve(home).ok()).collect();
     assert_eq!(refused(address, "/v1/live?preset=case-1", &[]).await["status"], 503);
     let plain = async |head: &str| {
         let mut socket = TcpStream::connect(address).await.unwrap();

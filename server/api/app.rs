@@ -6,7 +6,7 @@ use axum::extract::FromRef;
 use tokio::sync::watch;
 
 use crate::api::ops::metrics::Metrics;
-use crate::compute::{Pool, Shares};
+use crate::compute::{FairQuota, Pool};
 use crate::config::Config;
 use crate::limits::Limits;
 
@@ -16,7 +16,7 @@ pub struct App {
     /// Runs CPU-bound work.
     pub pool: Pool,
     /// Places for live runs, shared among clients.
-    pub live_places: Shares,
+    pub live_quota: FairQuota,
     /// The configuration.
     pub config: Arc<Config>,
     /// Prefix of every path as clients see it.
@@ -33,7 +33,7 @@ impl App {
         Self {
             metrics: Arc::new(Metrics::new(&pool)),
             pool,
-            live_places: Shares::new(config.limits.live_sessions),
+            live_quota: FairQuota::new(config.limits.live_sessions),
             config: Arc::new(config.clone()),
             base_path: config.base_path.as_str().into(),
             closing: Arc::new(watch::Sender::new(false)),

@@ -21,28 +21,28 @@ use tokio::time::timeout;
 
 use crate::api::app::App;
 use crate::api::resource::{Answer, Endpoint};
-use crate::http::{Asked, Format, Line, Lines, Problem, Resource};
+use crate::http::{BatchItem, Format, NdjsonBatch, Problem, RequestContext, Resource};
 use crate::limits;
 
 /// The route, for these resources.
 pub fn routes(resources: &'static [Endpoint]) -> Router<App> {
-    let handler = move |State(app): State<App>, Path(name): Path<String>, lines: Lines| async move {
-        batches(resources, app, &name, lines)
+    let handler = move |State(app): State<App>, Path(name): Path<String>, batch: NdjsonBatch| async move {
+        batches(resources, app, &name, batch)
     };
     Router::new().route("/v1/batches/{resource}", post(handler))
 }
 
-fn batches(resources: &[Endpoint], app: App, name: &str, lines: Lines) -> Result<Response<Body>, Problem> {
+fn batches(resources: &[Endpoint], app: App, name: &str, batch: NdjsonBatch) -> Result<Response<Body>, Problem> {
     const RESOURCE: Resource = Resource { name: "batches", formats: &[Format::Ndjson] };
     let Some(Endpoint { answer, .. }) = resources.iter().find(|resource| resource.name == name).copied() else {
         let names: Vec<&str> = resources.iter().map(|resource| resource.name).collect();
         return Err(Problem::not_found(format!("there are no batches of this name; there are {}", names.join(", "))));
     };
-    let (ask, asked, at_once) = (lines.ask.clone(), Asked::under_way(), app.config.permits());
-    let told = stream::iter(lines.into_each()).map(move |line| told(app.clone(), answer, line, asked.clone()));
+    let (request, context, at_once) = (batch.request.clone(), RequestContext::current(), app.config.permits());
+    let told = stream::iter(batch.into_items()).map(move |item| told(app.clone(), answer, item, context.clone()));
     let told = told.buffered(at_once).map(Some).chain(stream::iter([None]));
     let pieces = told.scan(End::default(), |end, told| ready(Some(end.pass(told)))).map(stream::iter).flatten();
-    ask.respond_piecewise(&RESOURCE, Body::from_stream(pieces.map(Ok::<_, Infallible>)))
+    request.respond_stream(&RESOURCE, Body::from_stream(pieces.map(Ok::<_, Infallible>)))
 }
 
 /// How the lines of an answer came out, which its last line says.
@@ -82,32 +82,32 @@ struct Told {
     said: Result<Bytes, Bytes>,
 }
 
-async fn told(app: App, answer: Answer, line: Line, asked: Option<Asked>) -> Told {
+async fn told(app: App, answer: Answer, item: BatchItem, context: Option<RequestContext>) -> Told {
     // Cheap work is done in this task, and others' have to have their turn in between.
     yield_now().await;
-    let number = line.number;
-    let answered = AssertUnwindSafe(answered(app, answer, line)).catch_unwind();
+    let number = item.number;
+    let answered = AssertUnwindSafe(answered(app, answer, item)).catch_unwind();
     let telling = async {
         let answered = answered.await.unwrap_or_else(|_| Err(Problem::internal()));
         answered.map_err(|problem| problem.to_json().into())
     };
     // The body is sent by another task than the one that was asked.
-    let said = match asked {
-        Some(asked) => asked.answer(telling).await,
+    let said = match context {
+        Some(context) => context.scope(telling).await,
         None => telling.await,
     };
     Told { number, said }
 }
 
 /// The answer as JSON. Who sends a batch has come to wait, so a line waits again where a request would be told to.
-async fn answered(app: App, answer: Answer, line: Line) -> Result<Bytes, Problem> {
-    let ask = line.ask()?;
+async fn answered(app: App, answer: Answer, item: BatchItem) -> Result<Bytes, Problem> {
+    let request = item.request()?;
     let mut waits = 0..limits::BATCH_WAITS;
     let response = loop {
         if app.is_closing() {
             return Err(Problem::overloaded("the server is being stopped; ask for this line again"));
         }
-        match answer(app.clone(), ask.clone()).await {
+        match answer(app.clone(), request.clone()).await {
             Err(problem) if problem.status() == StatusCode::SERVICE_UNAVAILABLE && waits.next().is_some() => {
                 let _ = timeout(limits::BATCH_WAIT_TIME, app.closing()).await;
             }
@@ -126,16 +126,16 @@ mod tests {
     use axum::extract::FromRequest;
     use axum::http::{Request, header};
 
-    async fn line() -> Line {
+    async fn item() -> BatchItem {
         let request = Request::post("/").header(header::CONTENT_TYPE, "application/x-ndjson").body(Body::from("{}"));
-        let lines = Lines::from_request(request.unwrap(), &Limits::default()).await.unwrap();
-        lines.into_each().next().unwrap()
+        let batch = NdjsonBatch::from_request(request.unwrap(), &Limits::default()).await.unwrap();
+        batch.into_items().next().unwrap()
     }
 
     #[tokio::test]
     async fn a_panic_is_told_in_its_line() {
         let app = App::new(&Config::default());
-        let told = told(app, |_, _| async { panic!("on purpose") }.boxed(), line().await, None).await;
+        let told = told(app, |_, _| async { panic!("on purpose") }.boxed(), item().await, None).await;
         let problem: serde_json::Value = serde_json::from_slice(&told.said.unwrap_err()).unwrap();
         assert_eq!(problem["status"], 500);
     }
@@ -143,7 +143,7 @@ mod tests {
     #[tokio::test(start_paused = true)]
     async fn a_line_waits_where_there_is_too_much_to_do_but_not_for_ever() {
         let app = App::new(&Config::default());
-        let told = told(app, |_, _| async { Err(Problem::overloaded("full")) }.boxed(), line().await, None);
+        let told = told(app, |_, _| async { Err(Problem::overloaded("full")) }.boxed(), item().await, None);
         let begin = tokio::time::Instant::now();
         let problem: serde_json::Value = serde_json::from_slice(&told.await.said.unwrap_err()).unwrap();
         assert_eq!((problem["status"].as_u64(), problem["detail"].as_str()), (Some(503), Some("full")));

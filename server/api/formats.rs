@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::api::shared::table::Table;
 use crate::api::shared::{progress, write};
-use crate::compute::Turn;
+use crate::compute::TimeSlice;
 use crate::http::{Format, Problem};
 
 /// The formats of an answer; the first is the default.
@@ -81,11 +81,11 @@ impl TableFormat {
     ///
     /// # Errors
     /// That the work was given up.
-    pub fn write(self, answer: &impl Tabular, turn: &Turn) -> Result<Vec<u8>, Problem> {
+    pub fn write(self, answer: &impl Tabular, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
-            Self::Json => write::json(answer, turn),
-            Self::Csv => write::csv(&answer.to_table(), turn),
-            Self::Ndjson => write::ndjson(&answer.to_table(), &answer.end(), turn),
+            Self::Json => write::json(answer, slice),
+            Self::Csv => write::csv(&answer.to_table(), slice),
+            Self::Ndjson => write::ndjson(&answer.to_table(), &answer.end(), slice),
         }
     }
 }
@@ -95,11 +95,11 @@ impl FigureFormat {
     ///
     /// # Errors
     /// That the work was given up, or that there is nothing to draw.
-    pub fn write(self, answer: &impl Pictured, turn: &Turn) -> Result<Vec<u8>, Problem> {
+    pub fn write(self, answer: &impl Pictured, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
-            Self::Json => write::json(answer, turn),
+            Self::Json => write::json(answer, slice),
             Self::Svg => Ok(answer.to_picture()?.into_bytes()),
-            Self::Png => write::pixels(&answer.to_picture()?, turn),
+            Self::Png => write::pixels(&answer.to_picture()?, slice),
         }
     }
 }
@@ -109,13 +109,13 @@ impl ChartFormat {
     ///
     /// # Errors
     /// That the work was given up, or that there is nothing to draw.
-    pub fn write(self, answer: &(impl Tabular + Pictured), turn: &Turn) -> Result<Vec<u8>, Problem> {
+    pub fn write(self, answer: &(impl Tabular + Pictured), slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
-            Self::Json => TableFormat::Json.write(answer, turn),
-            Self::Csv => TableFormat::Csv.write(answer, turn),
-            Self::Ndjson => TableFormat::Ndjson.write(answer, turn),
-            Self::Svg => FigureFormat::Svg.write(answer, turn),
-            Self::Png => FigureFormat::Png.write(answer, turn),
+            Self::Json => TableFormat::Json.write(answer, slice),
+            Self::Csv => TableFormat::Csv.write(answer, slice),
+            Self::Ndjson => TableFormat::Ndjson.write(answer, slice),
+            Self::Svg => FigureFormat::Svg.write(answer, slice),
+            Self::Png => FigureFormat::Png.write(answer, slice),
         }
     }
 }
@@ -125,14 +125,14 @@ impl ProgressFormat {
     ///
     /// # Errors
     /// That the work was given up, or that there is nothing to draw.
-    pub fn write(self, answer: &(impl Tabular + Pictured), turn: &Turn) -> Result<Vec<u8>, Problem> {
+    pub fn write(self, answer: &(impl Tabular + Pictured), slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
-            Self::Json => ChartFormat::Json.write(answer, turn),
-            Self::Csv => ChartFormat::Csv.write(answer, turn),
-            Self::Ndjson => ChartFormat::Ndjson.write(answer, turn),
-            Self::Progress => Ok(progress::end(&write::json(answer, turn)?)),
-            Self::Svg => ChartFormat::Svg.write(answer, turn),
-            Self::Png => ChartFormat::Png.write(answer, turn),
+            Self::Json => ChartFormat::Json.write(answer, slice),
+            Self::Csv => ChartFormat::Csv.write(answer, slice),
+            Self::Ndjson => ChartFormat::Ndjson.write(answer, slice),
+            Self::Progress => Ok(progress::end(&write::json(answer, slice)?)),
+            Self::Svg => ChartFormat::Svg.write(answer, slice),
+            Self::Png => ChartFormat::Png.write(answer, slice),
         }
     }
 }

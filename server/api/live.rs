@@ -12,16 +12,16 @@ use axum::routing::get;
 use futures_util::{SinkExt, StreamExt};
 
 use crate::api::app::App;
-use crate::compute::{Counted, NoShare, Share};
+use crate::compute::{GaugeGuard, QuotaExceeded, Reservation};
 use crate::http::security::origin;
-use crate::http::{Ask, Format, Problem, Resource};
+use crate::http::{ApiRequest, Format, Problem, Resource};
 use crate::limits;
-use crate::live::bounds::Bounds;
+use crate::live::bounds::SessionBounds;
 use crate::live::close::Unreadable;
 use crate::live::session;
-use crate::live::session::Place;
+use crate::live::session::SessionContext;
 use crate::live::sse;
-use crate::live::sse::Wanted;
+use crate::live::sse::EventsRequest;
 use crate::runs::run_url;
 use crate::runs::run_url::PATH;
 
@@ -37,14 +37,14 @@ pub fn routes() -> Router<App> {
 type Upgrade = Result<WebSocketUpgrade, WebSocketUpgradeRejection>;
 
 /// What is wrong with the run is told first, so that a page whose WebSocket was refused can ask why.
-async fn live(State(app): State<App>, upgrade: Upgrade, ask: Ask) -> Result<Response, Problem> {
-    let asked = ask.read(|reader| run_url::read(reader, session::wall_now()))?;
+async fn live(State(app): State<App>, upgrade: Upgrade, api_request: ApiRequest) -> Result<Response, Problem> {
+    let request = api_request.read(|reader| run_url::read(reader, session::wall_now()))?;
     let upgrade = match upgrade {
         Ok(upgrade) => upgrade,
-        Err(rejection) => return Ok(not_a_websocket(&rejection, &ask.headers)),
+        Err(rejection) => return Ok(not_a_websocket(&rejection, &api_request.headers)),
     };
-    origin::check(&ask.headers, &app.config.allow_origin)?;
-    let (counted, place) = admit(&app, &ask, Bounds::of_a_talker(&app.config.limits))?;
+    origin::check(&api_request.headers, &app.config.allow_origin)?;
+    let (gauge, context) = admit(&app, &api_request, SessionBounds::for_websocket(&app.config.limits))?;
     let upgrade = upgrade
         .protocols([SUBPROTOCOL])
         .max_message_size(limits::LIVE_FRAME_BYTES)
@@ -53,12 +53,12 @@ async fn live(State(app): State<App>, upgrade: Upgrade, ask: Ask) -> Result<Resp
         .write_buffer_size(limits::LIVE_WRITE_BYTES)
         .max_write_buffer_size(limits::LIVE_WRITE_MOST_BYTES);
     Ok(upgrade.on_upgrade(async move |socket| {
-        let _counted = counted;
+        let _gauge = gauge;
         let (outgoing, incoming) = socket.split();
         let incoming = incoming.map(|message| message.map_err(unreadable));
         let outgoing = outgoing.with(|frame| ready(Ok::<_, axum::Error>(Message::from(frame))));
-        let course = session::caught_up(&asked, &place).await;
-        session::serve(asked, course, incoming, outgoing, place, app.closing()).await;
+        let playback = session::catch_up(&request, &context).await;
+        session::serve(request, playback, incoming, outgoing, context, app.closing()).await;
     }))
 }
 
@@ -77,30 +77,34 @@ fn unreadable(error: axum::Error) -> Unreadable {
 
 /// Here a run that cannot be caught up with is refused at once: a client of events sees the status, and comes back only
 /// where it is 200.
-async fn live_events(State(app): State<App>, ask: Ask) -> Result<Response, Problem> {
-    let wanted = ask.read(|reader| sse::read(reader, &ask.headers, session::wall_now()))?;
-    ask.accepts(&EVENTS)?;
-    origin::check(&ask.headers, &app.config.allow_origin)?;
-    let Wanted::Run(asked) = wanted else { return Ok(StatusCode::NO_CONTENT.into_response()) };
-    let (counted, place) = admit(&app, &ask, Bounds::of_a_listener(&app.config.limits))?;
-    let course = session::caught_up(&asked, &place).await?;
-    let told = sse::tell(*asked, course, place, async move { app.closing().await }, counted);
+async fn live_events(State(app): State<App>, api_request: ApiRequest) -> Result<Response, Problem> {
+    let events_request = api_request.read(|reader| sse::read(reader, &api_request.headers, session::wall_now()))?;
+    api_request.accepts(&EVENTS)?;
+    origin::check(&api_request.headers, &app.config.allow_origin)?;
+    let EventsRequest::Run(request) = events_request else { return Ok(StatusCode::NO_CONTENT.into_response()) };
+    let (gauge, context) = admit(&app, &api_request, SessionBounds::for_sse(&app.config.limits))?;
+    let playback = session::catch_up(&request, &context).await?;
+    let told = sse::events(*request, playback, context, async move { app.closing().await }, gauge);
     // A proxy that gathers bytes before it passes them on would make the run late.
     Ok(([("x-accel-buffering", "no")], Sse::new(told)).into_response())
 }
 
 /// A place for one more live run, if there is one. Also while the server closes: a run that is told so at once is come back to,
 /// and a browser takes an answer of events other than 200 for the end.
-fn admit(app: &App, ask: &Ask, bounds: Bounds) -> Result<((Counted, Share), Place), Problem> {
-    let share = app.live_places.take(ask.peer).map_err(|NoShare { held, free }| {
+fn admit(
+    app: &App,
+    api_request: &ApiRequest,
+    bounds: SessionBounds,
+) -> Result<((GaugeGuard, Reservation), SessionContext), Problem> {
+    let reservation = app.live_quota.try_reserve(api_request.peer).map_err(|QuotaExceeded { held, free }| {
         Problem::overloaded(format!(
             "{held} live runs are open from this address, and {free} places are left for others"
         ))
     })?;
-    let counted = Counted::one(&app.metrics.live_sessions);
-    let (pool, base_path) = (app.pool.of(ask.peer), app.base_path.clone());
+    let gauge = GaugeGuard::new(&app.metrics.live_sessions);
+    let (pool, base_path) = (app.pool.for_peer(api_request.peer), app.base_path.clone());
     let (bounces, lags) = (app.metrics.bounces.clone(), app.metrics.live_lags.clone());
-    Ok(((counted, share), Place { pool, bounces, lags, base_path, bounds }))
+    Ok(((gauge, reservation), SessionContext { pool, bounces, lags, base_path, bounds }))
 }
 
 fn not_a_websocket(rejection: &WebSocketUpgradeRejection, headers: &HeaderMap) -> Response {

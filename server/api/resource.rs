@@ -11,8 +11,8 @@ use prometheus_client::metrics::counter::Counter;
 
 use crate::api::app::App;
 use crate::api::formats::FormatSet;
-use crate::compute::{OverBudget, Price, Turn, Turns};
-use crate::http::{Ask, Format, Outlet, Problem, Reader, Resource};
+use crate::compute::{OverBudget, Price, TimeSlice, TimeSlices};
+use crate::http::{ApiRequest, BodyWriter, Format, Problem, Reader, Resource};
 use crate::limits::Limits;
 
 /// A resource that computes an answer.
@@ -43,43 +43,47 @@ pub trait ComputedResource: Sized + 'static {
 type Canonical<R> = fn(&<R as ComputedResource>::Request) -> Vec<u8>;
 
 /// Computes an answer, counts the bounces that it took, and returns it in a format.
-type Whole<R> =
-    fn(&<R as ComputedResource>::Request, <R as ComputedResource>::Format, &Turn, &Counter) -> Result<Vec<u8>, Problem>;
-
-/// Computes an answer, counts the bounces that it took, and sends it in a format.
-type Streaming<R, Turns> = fn(
+type Whole<R> = fn(
     &<R as ComputedResource>::Request,
     <R as ComputedResource>::Format,
-    &Turns,
-    &mut Outlet,
+    &TimeSlice,
+    &Counter,
+) -> Result<Vec<u8>, Problem>;
+
+/// Computes an answer, counts the bounces that it took, and sends it in a format.
+type Streaming<R, TimeSlices> = fn(
+    &<R as ComputedResource>::Request,
+    <R as ComputedResource>::Format,
+    &TimeSlices,
+    &mut BodyWriter,
     &Counter,
 ) -> Result<(), Problem>;
 
 /// The work of a resource, from a request to the bytes of its answer. Formats in `streamed` are sent while they are computed.
 #[derive(Debug)]
 pub enum Work<R: ComputedResource> {
-    /// A pure function of the request, short enough for one turn.
+    /// A pure function of the request, short enough for one time slice.
     Pure {
         /// See [`Canonical`].
         canonical: Canonical<R>,
         /// See [`Whole`].
         compute: Whole<R>,
     },
-    /// A pure function of the request, done in many turns.
-    InTurns {
+    /// A pure function of the request, done in many time slices.
+    InSlices {
         /// See [`Canonical`].
         canonical: Canonical<R>,
         /// See [`Work`].
         streamed: &'static [Format],
         /// See [`Streaming`].
-        compute: Streaming<R, Turns>,
+        compute: Streaming<R, TimeSlices>,
     },
     /// A measurement, which is never the same twice and so is not cached.
     Measured {
         /// See [`Work`].
         streamed: &'static [Format],
         /// See [`Streaming`].
-        compute: Streaming<R, Turn>,
+        compute: Streaming<R, TimeSlice>,
     },
 }
 
@@ -93,43 +97,44 @@ pub struct Endpoint {
 }
 
 /// Answers one request.
-pub type Answer = fn(App, Ask) -> BoxFuture<'static, Result<Response<Body>, Problem>>;
+pub type Answer = fn(App, ApiRequest) -> BoxFuture<'static, Result<Response<Body>, Problem>>;
 
 impl Endpoint {
     /// The endpoint of a resource.
     pub const fn of<R: ComputedResource>() -> Self {
-        Self { name: R::NAME, answer: |app, ask| answer::<R>(app, ask).boxed() }
+        Self { name: R::NAME, answer: |app, api_request| answer::<R>(app, api_request).boxed() }
     }
 
     /// The route `/v1/<name>`.
     pub fn routes(self) -> Router<App> {
-        let handler = move |State(app): State<App>, ask: Ask| (self.answer)(app, ask);
+        let handler = move |State(app): State<App>, api_request: ApiRequest| (self.answer)(app, api_request);
         Router::new().route(&format!("/v1/{}", self.name), get(handler).post(handler))
     }
 }
 
-async fn answer<R: ComputedResource>(app: App, ask: Ask) -> Result<Response<Body>, Problem> {
-    let request = ask.read(R::read)?;
+async fn answer<R: ComputedResource>(app: App, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
+    let request = api_request.read(R::read)?;
     let price = R::price(&request, &app.config.limits)?;
     let resource = Resource { name: R::NAME, formats: R::Format::FORMATS };
     let bounces = app.metrics.bounces.clone();
     match R::WORK {
         Work::Pure { canonical, compute } => {
             let canonical = canonical(&request);
-            let compute = move |format, turn: &Turn| compute(&request, negotiated(format), turn, &bounces);
-            ask.respond(&app.pool, &resource, &canonical, price, compute).await
+            let compute = move |format, slice: &TimeSlice| compute(&request, negotiated(format), slice, &bounces);
+            api_request.respond(&app.pool, &resource, &canonical, price, compute).await
         }
-        Work::InTurns { canonical, streamed, compute } => {
+        Work::InSlices { canonical, streamed, compute } => {
             let canonical = canonical(&request);
-            let compute = move |format, turns: &Turns, out: &mut Outlet| {
-                compute(&request, negotiated(format), turns, out, &bounces)
+            let compute = move |format, slices: &TimeSlices, out: &mut BodyWriter| {
+                compute(&request, negotiated(format), slices, out, &bounces)
             };
-            ask.respond_in_turns(&app.pool, &resource, &canonical, streamed, compute).await
+            api_request.respond_in_slices(&app.pool, &resource, &canonical, streamed, compute).await
         }
         Work::Measured { streamed, compute } => {
-            let compute =
-                move |format, turn: &Turn, out: &mut Outlet| compute(&request, negotiated(format), turn, out, &bounces);
-            ask.respond_afresh(&app.pool, &resource, streamed, compute).await
+            let compute = move |format, slice: &TimeSlice, out: &mut BodyWriter| {
+                compute(&request, negotiated(format), slice, out, &bounces)
+            };
+            api_request.respond_uncached(&app.pool, &resource, streamed, compute).await
         }
     }
 }

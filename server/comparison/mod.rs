@@ -9,8 +9,8 @@ mod runs;
 use equipoise_physics::scene::Scene;
 
 use crate::compute::stopwatch;
-use crate::compute::stopwatch::{Bounds, Timing, Work};
-use crate::compute::{Cancel, Cancelled, Turn};
+use crate::compute::stopwatch::{TimedWork, Timing, TimingBudget};
+use crate::compute::{CancelFlag, Cancelled, TimeSlice};
 use crate::limits;
 use runs::{Done, Subject};
 
@@ -229,9 +229,9 @@ pub fn chart(
     impacts: u64,
     methods: &[Method],
     progress: &mut dyn FnMut(u64, u64),
-    turn: &Turn,
+    slice: &TimeSlice,
 ) -> Result<Chart, Cancelled> {
-    let subject = Subject::new(scene, impacts, turn)?;
+    let subject = Subject::new(scene, impacts, slice)?;
     let reference = subject.reference();
     let scale = power_of_ten(reference.t / reference.impacts.max(1) as f64);
     let mut notes = Vec::new();
@@ -252,7 +252,7 @@ pub fn chart(
     progress(0, of);
     let mut points = Vec::with_capacity(wanted.len());
     for (method, setting) in wanted {
-        let done = subject.run(method.kind, setting, turn)?;
+        let done = subject.run(method.kind, setting, slice)?;
         points.push(point(&subject, method, setting, done));
         progress(points.len() as u64, of);
     }
@@ -268,7 +268,7 @@ pub fn chart(
             limits::PRECISION_STEPS
         ));
     }
-    measure(&subject, &mut points, progress, turn)?;
+    measure(&subject, &mut points, progress, slice)?;
     mark(&mut points, |point| point.cost_ns().map(|cost| cost[1]), |point| &mut point.pareto);
     mark(&mut points, Point::evaluations_per_impact, |point| &mut point.pareto_evaluations);
     Ok(Chart { reference, points, notes })
@@ -318,25 +318,28 @@ fn measure(
     subject: &Subject<'_>,
     points: &mut [Point],
     progress: &mut dyn FnMut(u64, u64),
-    turn: &Turn,
+    slice: &TimeSlice,
 ) -> Result<(), Cancelled> {
     let of = 2 * points.len() as u64;
     let mut ran: Vec<&mut Point> = points.iter_mut().filter(|point| point.outcome != "unavailable").collect();
-    let mut works: Vec<Work<'_>> = ran
+    let mut works: Vec<TimedWork<'_>> = ran
         .iter()
         .map(|point| {
             let (kind, setting) = (point.method.kind, point.setting);
-            Box::new(move |cancel: &Cancel| subject.race(kind, setting, cancel)) as Work<'_>
+            Box::new(move |cancel: &CancelFlag| subject.race(kind, setting, cancel)) as TimedWork<'_>
         })
         .collect();
-    let bounds =
-        Bounds { time: limits::PRECISION_TIME, look: limits::PRECISION_LOOK, repeats: limits::PRECISION_REPEATS };
+    let budget = TimingBudget {
+        time: limits::PRECISION_TIME,
+        sample: limits::PRECISION_SAMPLE,
+        repeats: limits::PRECISION_REPEATS,
+    };
     let mut done = of - works.len() as u64;
     let mut timed = || {
         done += 1;
         progress(done, of);
     };
-    let timings = stopwatch::time(&mut works, bounds, &mut timed, turn)?;
+    let timings = stopwatch::time(&mut works, budget, &mut timed, slice)?;
     for (point, timing) in ran.iter_mut().zip(timings) {
         point.timing = Some(timing);
     }

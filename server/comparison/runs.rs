@@ -14,7 +14,7 @@ use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
 
 use crate::comparison::{Kind, Reference, Setting};
-use crate::compute::{Cancel, Cancelled, Turn};
+use crate::compute::{CancelFlag, Cancelled, TimeSlice};
 use crate::integrators;
 use crate::integrators::{Location, simulate};
 use crate::limits;
@@ -41,16 +41,16 @@ pub(crate) struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    pub(crate) fn new(scene: &'a Scene, impacts: u64, turn: &Turn) -> Result<Self, Cancelled> {
+    pub(crate) fn new(scene: &'a Scene, impacts: u64, slice: &TimeSlice) -> Result<Self, Cancelled> {
         let zero = DoubleDouble::from_f64(0.0);
         let mut state = State { theta: zero, x_dot: zero, y_dot: zero, theta_dot: zero };
         let mut reference = Reference { outcome: Ending::Completed.name(), impacts: 0, t: 0.0, rounding: 0.0 };
         let ending = run_extended(scene, impacts, |contact| {
             state = contact.state;
             (reference.impacts, reference.t) = (contact.n, contact.t.to_f64());
-            !contact.n.is_multiple_of(LOOK) || turn.go_on()
+            !contact.n.is_multiple_of(LOOK) || slice.should_continue()
         });
-        turn.check()?;
+        slice.check()?;
         reference.outcome = ending.map_or("diverged", Ending::name);
         let mut subject =
             Self { scene, impacts, model: scene.model(), linear: LinearSolution::of_scene(scene), reference, state };
@@ -92,9 +92,9 @@ impl<'a> Subject<'a> {
         &self,
         kind: Kind,
         setting: Option<Setting>,
-        turn: &Turn,
+        slice: &TimeSlice,
     ) -> Result<Result<Done, String>, Cancelled> {
-        turn.check()?;
+        slice.check()?;
         Ok(match kind {
             Kind::Map => self.map(self.rules()),
             Kind::MapFree => self.map(self.free()),
@@ -113,14 +113,14 @@ impl<'a> Subject<'a> {
                 evaluations: Some(self.impacts),
             }),
             _ => match self.general(kind, setting) {
-                Ok((method, rod)) => Ok(self.simulated(method, &rod, turn)?),
+                Ok((method, rod)) => Ok(self.simulated(method, &rod, slice)?),
                 Err(reason) => Err(reason),
             },
         })
     }
 
     /// The same for the clock: nothing is made ready, counted or kept that is not the run itself.
-    pub(crate) fn race(&self, kind: Kind, setting: Option<Setting>, cancel: &Cancel) {
+    pub(crate) fn race(&self, kind: Kind, setting: Option<Setting>, cancel: &CancelFlag) {
         match kind {
             Kind::Map => _ = black_box(self.bounce(self.rules(), |_| ())),
             Kind::MapFree => _ = black_box(self.bounce(self.free(), |_| ())),
@@ -208,8 +208,8 @@ impl<'a> Subject<'a> {
         simulate(method, (rod, &rules, release), self.impacts, most, go_on)
     }
 
-    fn simulated(&self, method: integrators::Method, rod: &Rod, turn: &Turn) -> Result<Done, Cancelled> {
-        let simulation = self.simulate(method, rod, &mut || turn.go_on()).ok_or(Cancelled)?;
+    fn simulated(&self, method: integrators::Method, rod: &Rod, slice: &TimeSlice) -> Result<Done, Cancelled> {
+        let simulation = self.simulate(method, rod, &mut || slice.should_continue()).ok_or(Cancelled)?;
         let last = simulation.impacts.last();
         let work = simulation.work;
         Ok(Done {

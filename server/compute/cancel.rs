@@ -8,7 +8,7 @@ use tokio::sync::Notify;
 
 /// Shared between the one who waits and the one who works.
 #[derive(Debug, Clone, Default)]
-pub struct Cancel(Arc<Flag>);
+pub struct CancelFlag(Arc<Flag>);
 
 #[derive(Debug, Default)]
 struct Flag {
@@ -16,7 +16,7 @@ struct Flag {
     changed: Notify,
 }
 
-impl Cancel {
+impl CancelFlag {
     /// One that nobody will set, for work that someone waits for in any case.
     pub fn never() -> Self {
         Self::default()
@@ -55,9 +55,9 @@ impl Cancel {
 
 /// Sets a flag when it is dropped: held by whoever waits.
 #[derive(Debug)]
-pub(crate) struct OnDrop(pub(crate) Cancel);
+pub(crate) struct CancelOnDrop(pub(crate) CancelFlag);
 
-impl Drop for OnDrop {
+impl Drop for CancelOnDrop {
     fn drop(&mut self) {
         self.0.set();
     }

@@ -9,19 +9,19 @@ use crate::compute::peer::Peer;
 
 /// Permits, and those who wait for one.
 #[derive(Debug)]
-pub(crate) struct Line(Mutex<State>);
+pub(crate) struct FairQueue(Mutex<QueueState>);
 
 #[derive(Debug)]
-struct State {
+struct QueueState {
     /// More than none only where nobody waits.
     free: usize,
     /// Who waits, the next at the front.
-    flows: VecDeque<(Flow, VecDeque<oneshot::Sender<Permit>>)>,
+    keys: VecDeque<(QueueKey, VecDeque<oneshot::Sender<Permit>>)>,
 }
 
 /// What is served in the order in which it came, and in turns with others: a peer's requests, and the blocks of its long work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Flow {
+pub(crate) enum QueueKey {
     /// Requests.
     Short(Peer),
     /// Blocks of long work.
@@ -30,22 +30,22 @@ pub(crate) enum Flow {
 
 /// The right to compute; the next one's when dropped.
 #[derive(Debug)]
-pub(crate) struct Permit(Option<Arc<Line>>);
+pub(crate) struct Permit(Option<Arc<FairQueue>>);
 
-impl Line {
+impl FairQueue {
     pub(crate) fn new(permits: usize) -> Arc<Self> {
-        Arc::new(Self(Mutex::new(State { free: permits, flows: VecDeque::new() })))
+        Arc::new(Self(Mutex::new(QueueState { free: permits, keys: VecDeque::new() })))
     }
 
     /// A permit, if one is free.
-    pub(crate) fn try_take(self: &Arc<Self>) -> Option<Permit> {
+    pub(crate) fn try_acquire(self: &Arc<Self>) -> Option<Permit> {
         let mut state = self.state();
         state.free = state.free.checked_sub(1)?;
         Some(Permit(Some(self.clone())))
     }
 
     /// A permit when it is the turn of `flow`. Whoever drops the future has left the line.
-    pub(crate) async fn take(self: &Arc<Self>, flow: Flow) -> Permit {
+    pub(crate) async fn acquire(self: &Arc<Self>, key: QueueKey) -> Permit {
         let receiver = {
             let mut state = self.state();
             if state.free > 0 {
@@ -53,7 +53,7 @@ impl Line {
                 return Permit(Some(self.clone()));
             }
             let (sender, receiver) = oneshot::channel();
-            state.waiting(flow).push_back(sender);
+            state.waiting(key).push_back(sender);
             receiver
         };
         receiver.await.expect("senders are dropped by their receivers alone")
@@ -61,19 +61,19 @@ impl Line {
 
     /// The same for who is about to give a permit back in the midst of its work: it waits from now on, before all else of its
     /// flow, so that a peer's work is ended in the order in which it was begun.
-    pub(crate) fn take_again(self: &Arc<Self>, flow: Flow) -> impl Future<Output = Permit> + use<> {
+    pub(crate) fn requeue(self: &Arc<Self>, key: QueueKey) -> impl Future<Output = Permit> + use<> {
         let (sender, receiver) = oneshot::channel();
-        self.state().waiting(flow).push_front(sender);
+        self.state().waiting(key).push_front(sender);
         async { receiver.await.expect("senders are dropped by their receivers alone") }
     }
 
     /// Tells whether another than `flow` waits.
-    pub(crate) fn is_wanted_by_others(&self, flow: Flow) -> bool {
-        self.state().flows.iter().any(|(other, _)| *other != flow)
+    pub(crate) fn has_others_waiting(&self, key: QueueKey) -> bool {
+        self.state().keys.iter().any(|(other, _)| *other != key)
     }
 
     /// Gives a permit that somebody had to the next, if anybody waits.
-    fn pass_on(self: &Arc<Self>) {
+    fn hand_over(self: &Arc<Self>) {
         loop {
             let Some(next) = self.state().next() else { return };
             match next.send(Permit(Some(self.clone()))) {
@@ -84,27 +84,27 @@ impl Line {
         }
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, QueueState> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl State {
+impl QueueState {
     /// Those of a flow who wait.
-    fn waiting(&mut self, flow: Flow) -> &mut VecDeque<oneshot::Sender<Permit>> {
-        let place = self.flows.iter().position(|(known, _)| *known == flow).unwrap_or_else(|| {
-            self.flows.push_back((flow, VecDeque::new()));
-            self.flows.len() - 1
+    fn waiting(&mut self, key: QueueKey) -> &mut VecDeque<oneshot::Sender<Permit>> {
+        let place = self.keys.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
+            self.keys.push_back((key, VecDeque::new()));
+            self.keys.len() - 1
         });
-        &mut self.flows[place].1
+        &mut self.keys[place].1
     }
 
     /// Who is next. If nobody is, one more permit is free.
     fn next(&mut self) -> Option<oneshot::Sender<Permit>> {
-        while let Some((flow, mut waiting)) = self.flows.pop_front() {
+        while let Some((key, mut waiting)) = self.keys.pop_front() {
             let next = std::iter::from_fn(|| waiting.pop_front()).find(|next| !next.is_closed());
             if !waiting.is_empty() {
-                self.flows.push_back((flow, waiting));
+                self.keys.push_back((key, waiting));
             }
             if next.is_some() {
                 return next;
@@ -117,8 +117,8 @@ impl State {
 
 impl Drop for Permit {
     fn drop(&mut self) {
-        if let Some(line) = self.0.take() {
-            line.pass_on();
+        if let Some(queue) = self.0.take() {
+            queue.hand_over();
         }
     }
 }
@@ -134,40 +134,40 @@ mod tests {
 
     #[test]
     fn peers_take_turns_whatever_the_length_of_their_lines() {
-        let line = Line::new(1);
-        let only = line.try_take().unwrap();
-        let flows = [Flow::Short(peer(1)), Flow::Short(peer(2)), Flow::Long(peer(1))];
-        let mut waiting: Vec<_> = [0, 0, 0, 0, 1, 2, 2].map(|flow| (flow, Box::pin(line.take(flows[flow])))).into();
-        for (_, turn) in &mut waiting {
-            assert!(turn.now_or_never().is_none());
+        let queue = FairQueue::new(1);
+        let only = queue.try_acquire().unwrap();
+        let keys = [QueueKey::Short(peer(1)), QueueKey::Short(peer(2)), QueueKey::Long(peer(1))];
+        let mut waiting: Vec<_> = [0, 0, 0, 0, 1, 2, 2].map(|key| (key, Box::pin(queue.acquire(keys[key])))).into();
+        for (_, permit) in &mut waiting {
+            assert!(permit.now_or_never().is_none());
         }
         drop(only);
         let mut order = Vec::new();
         while !waiting.is_empty() {
-            let next = waiting.iter_mut().position(|(_, turn)| turn.now_or_never().is_some());
+            let next = waiting.iter_mut().position(|(_, permit)| permit.now_or_never().is_some());
             // The permit is dropped at once, and so passed on.
             order.push(waiting.remove(next.expect("somebody's turn")).0);
         }
         assert_eq!(order, [0, 1, 2, 0, 2, 0, 0]);
-        assert!(line.try_take().is_some());
+        assert!(queue.try_acquire().is_some());
     }
 
     #[test]
     fn who_comes_back_is_before_its_own_and_after_others() {
-        let line = Line::new(1);
-        let flows = [Flow::Short(peer(1)), Flow::Short(peer(2))];
-        let mut held = line.try_take();
-        assert!(!line.is_wanted_by_others(flows[0]));
-        let mut own = Box::pin(line.take(flows[0]));
-        assert!((&mut own).now_or_never().is_none() && !line.is_wanted_by_others(flows[0]));
-        let mut other = Box::pin(line.take(flows[1]));
-        assert!((&mut other).now_or_never().is_none() && line.is_wanted_by_others(flows[0]));
+        let queue = FairQueue::new(1);
+        let keys = [QueueKey::Short(peer(1)), QueueKey::Short(peer(2))];
+        let mut held = queue.try_acquire();
+        assert!(!queue.has_others_waiting(keys[0]));
+        let mut own = Box::pin(queue.acquire(keys[0]));
+        assert!((&mut own).now_or_never().is_none() && !queue.has_others_waiting(keys[0]));
+        let mut other = Box::pin(queue.acquire(keys[1]));
+        assert!((&mut other).now_or_never().is_none() && queue.has_others_waiting(keys[0]));
         // Its flow is the next in any case, and then the other's.
-        let mut again = Box::pin(line.take_again(flows[0]));
+        let mut again = Box::pin(queue.requeue(keys[0]));
         drop(held.take());
         held = (&mut again).now_or_never();
         assert!(held.is_some() && (&mut own).now_or_never().is_none());
-        let mut again = Box::pin(line.take_again(flows[0]));
+        let mut again = Box::pin(queue.requeue(keys[0]));
         drop(held.take());
         let others = (&mut other).now_or_never();
         assert!(others.is_some() && (&mut again).now_or_never().is_none());
@@ -180,17 +180,17 @@ mod tests {
 
     #[test]
     fn who_leaves_the_line_costs_no_permit() {
-        let line = Line::new(1);
-        let only = line.try_take().unwrap();
-        let mut gone = Box::pin(line.take(Flow::Short(peer(1))));
-        let mut given = Box::pin(line.take(Flow::Short(peer(1))));
-        let mut last = Box::pin(line.take(Flow::Short(peer(1))));
-        assert!([&mut gone, &mut given, &mut last].into_iter().all(|turn| turn.now_or_never().is_none()));
+        let queue = FairQueue::new(1);
+        let only = queue.try_acquire().unwrap();
+        let mut gone = Box::pin(queue.acquire(QueueKey::Short(peer(1))));
+        let mut given = Box::pin(queue.acquire(QueueKey::Short(peer(1))));
+        let mut last = Box::pin(queue.acquire(QueueKey::Short(peer(1))));
+        assert!([&mut gone, &mut given, &mut last].into_iter().all(|permit| permit.now_or_never().is_none()));
         drop(gone);
         drop(only);
         // It has its permit, and leaves without looking.
         drop(given);
         assert!(last.now_or_never().is_some());
-        assert!(line.try_take().is_some());
+        assert!(queue.try_acquire().is_some());
     }
 }

@@ -7,18 +7,18 @@ mod quota;
 mod time_slices;
 
 mod cancel;
-mod gate;
+mod inline_slots;
 mod peer;
 mod pool;
 mod price;
 pub mod stopwatch;
-mod turn;
+mod time_slice;
 
-pub use crate::compute::quota::{NoShare, Share, Shares};
-pub use crate::compute::time_slices::Turns;
-pub use cancel::{Cancel, Cancelled};
-pub use gate::Slot;
+pub use crate::compute::quota::{FairQuota, QuotaExceeded, Reservation};
+pub use crate::compute::time_slices::TimeSlices;
+pub use cancel::{CancelFlag, Cancelled};
+pub use inline_slots::InlineSlot;
 pub use peer::{Network, Peer};
-pub use pool::{Counted, Held, Pool, Refused};
+pub use pool::{GaugeGuard, HeldBytes, Overloaded, Pool};
 pub use price::{Limit, OverBudget, Price};
-pub use turn::Turn;
+pub use time_slice::TimeSlice;

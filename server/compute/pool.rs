@@ -10,14 +10,14 @@ use tokio::runtime::Handle;
 use tokio::task::spawn_blocking;
 use tokio::time::timeout;
 
-use crate::compute::cancel::{Cancel, OnDrop};
-use crate::compute::fair_queue::{Flow, Line, Permit};
-use crate::compute::gate::{Gate, Slot};
+use crate::compute::cancel::{CancelFlag, CancelOnDrop};
+use crate::compute::fair_queue::{FairQueue, Permit, QueueKey};
+use crate::compute::inline_slots::{InlineSlot, InlineSlots};
 use crate::compute::peer::Peer;
 use crate::compute::price::Price;
-use crate::compute::quota::{NoShare, Share, Shares};
-use crate::compute::time_slices::Turns;
-use crate::compute::turn::Turn;
+use crate::compute::quota::{FairQuota, QuotaExceeded, Reservation};
+use crate::compute::time_slice::TimeSlice;
+use crate::compute::time_slices::TimeSlices;
 use crate::limits;
 use crate::limits::Limits;
 
@@ -25,13 +25,13 @@ use crate::limits::Limits;
 #[derive(Debug, Clone)]
 pub struct Pool {
     /// Places to run or to wait in.
-    places: Shares,
+    admission: FairQuota,
     /// Permits to run.
-    line: Arc<Line>,
+    queue: Arc<FairQueue>,
     /// Slots on the async threads.
-    gate: Gate,
+    inline: InlineSlots,
     /// Bytes of results that are still to be taken.
-    results: Shares,
+    results: FairQuota,
     count: usize,
     queue_time: Duration,
     /// Whose work it is.
@@ -42,47 +42,49 @@ pub struct Pool {
 
 /// Work that was not done because there is too much of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Refused {
+pub enum Overloaded {
     /// No place to wait in.
-    Full(NoShare),
+    QueueFull(QuotaExceeded),
     /// Too many bytes of earlier results are still to be taken.
-    Untaken(NoShare),
+    UnreadAnswers(QuotaExceeded),
     /// A place, but no turn in good time.
-    Late {
+    QueueTimeout {
         /// Seconds it waited.
         waited_s: u64,
     },
 }
 
-impl fmt::Display for Refused {
+impl fmt::Display for Overloaded {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Refused::Full(NoShare { held, free }) => {
+            Overloaded::QueueFull(QuotaExceeded { held, free }) => {
                 write!(formatter, "{held} requests from this address are computed or waiting, and ")?;
                 match free {
                     0 => formatter.write_str("no place is left"),
                     free => write!(formatter, "the last {free} places are for others"),
                 }
             }
-            Refused::Untaken(NoShare { held, free }) => {
+            Overloaded::UnreadAnswers(QuotaExceeded { held, free }) => {
                 write!(formatter, "{held} bytes of answers are still to be read from this address, and ")?;
                 write!(formatter, "the last {free} bytes of memory for answers are for others")
             }
-            Refused::Late { waited_s } => write!(formatter, "the request waited {waited_s} s for its turn, the limit"),
+            Overloaded::QueueTimeout { waited_s } => {
+                write!(formatter, "the request waited {waited_s} s for its turn, the limit")
+            }
         }
     }
 }
 
-impl std::error::Error for Refused {}
+impl std::error::Error for Overloaded {}
 
 impl Pool {
     /// A pool that does `permits` pieces of work at a time.
     pub fn new(permits: usize, limits: &Limits) -> Self {
         Self {
-            places: Shares::new(permits * (1 + limits.queue)),
-            line: Line::new(permits),
-            gate: Gate::new(permits),
-            results: Shares::new(limits.held_bytes),
+            admission: FairQuota::new(permits * (1 + limits.queue)),
+            queue: FairQueue::new(permits),
+            inline: InlineSlots::new(permits),
+            results: FairQuota::new(limits.held_bytes),
             count: permits,
             queue_time: limits.queue_time,
             peer: Peer::NOBODY,
@@ -92,13 +94,13 @@ impl Pool {
     }
 
     /// The same pool for the work of this peer.
-    pub fn of(&self, peer: Peer) -> Self {
+    pub fn for_peer(&self, peer: Peer) -> Self {
         Self { peer, ..self.clone() }
     }
 
     /// A result of work, which counts as memory of the peer's until it is dropped.
-    pub fn hold(&self, result: Vec<u8>) -> Held {
-        Held { _share: self.results.hold(self.peer, result.len()), result }
+    pub fn hold(&self, result: Vec<u8>) -> HeldBytes {
+        HeldBytes { _reservation: self.results.charge(self.peer, result.len()), result }
     }
 
     /// How much runs at the moment.
@@ -117,76 +119,83 @@ impl Pool {
     pub async fn run<T, E>(
         &self,
         price: Price,
-        work: impl FnOnce(&Turn) -> Result<T, E> + Clone + Send + 'static,
+        work: impl FnOnce(&TimeSlice) -> Result<T, E> + Clone + Send + 'static,
     ) -> Result<T, E>
     where
         T: Send + 'static,
-        E: From<Refused> + Send + 'static,
+        E: From<Overloaded> + Send + 'static,
     {
         if price.as_bounces() <= limits::INLINE_BOUNCES
             && let Some(result) = self.run_inline(work.clone()).await
         {
             return result;
         }
-        self.run_apart(work).await
+        self.run_on_worker(work).await
     }
 
     /// Does `work` on this thread, when one more work of the peer's may be; none where it takes too long.
-    pub async fn run_inline<T>(&self, work: impl FnOnce(&Turn) -> T) -> Option<T> {
-        let _slot = self.slot().await;
-        let _running = Counted::one(&self.running);
-        let turn = Turn::inline();
-        let result = work(&turn);
-        (!turn.overran()).then_some(result)
+    pub async fn run_inline<T>(&self, work: impl FnOnce(&TimeSlice) -> T) -> Option<T> {
+        let _slot = self.inline_slot().await;
+        let _running = GaugeGuard::new(&self.running);
+        let slice = TimeSlice::inline();
+        let result = work(&slice);
+        (!slice.overran()).then_some(result)
     }
 
     /// The right to work on this thread, which ends with the next await.
-    pub async fn slot(&self) -> Slot {
-        self.gate.enter(self.peer).await
+    pub async fn inline_slot(&self) -> InlineSlot {
+        self.inline.acquire(self.peer).await
     }
 
     /// Does `work` on another thread when it is its turn, which ends and comes again while it goes on. Otherwise as `run`.
-    pub async fn run_apart<T, E>(&self, work: impl FnOnce(&Turn) -> Result<T, E> + Send + 'static) -> Result<T, E>
+    pub async fn run_on_worker<T, E>(
+        &self,
+        work: impl FnOnce(&TimeSlice) -> Result<T, E> + Send + 'static,
+    ) -> Result<T, E>
     where
         T: Send + 'static,
-        E: From<Refused> + Send + 'static,
+        E: From<Overloaded> + Send + 'static,
     {
-        let (place, permit) = self.turn().await?;
-        let (line, flow, runtime) = (self.line.clone(), Flow::Short(self.peer), Handle::current());
+        let (reservation, permit) = self.admit().await?;
+        let (queue, key, runtime) = (self.queue.clone(), QueueKey::Short(self.peer), Handle::current());
         // The permit goes along: it is free again when the work has ended, not when its result is no longer wanted.
-        let work = move |cancel: &Cancel| work(&Turn::permitted(cancel.clone(), permit, line, flow, runtime));
-        self.apart(place, work).await
+        let work = move |cancel: &CancelFlag| work(&TimeSlice::permitted(cancel.clone(), permit, queue, key, runtime));
+        self.spawn_worker(reservation, work).await
     }
 
     /// Does long `work` on another thread when it is its turn. It computes in turns only, on as many threads as there are
     /// permits, and keeps no more than its place in between. Otherwise as `run`.
-    pub async fn run_in_turns<T, E>(&self, work: impl FnOnce(&Turns) -> Result<T, E> + Send + 'static) -> Result<T, E>
+    pub async fn run_in_slices<T, E>(
+        &self,
+        work: impl FnOnce(&TimeSlices) -> Result<T, E> + Send + 'static,
+    ) -> Result<T, E>
     where
         T: Send + 'static,
-        E: From<Refused> + Send + 'static,
+        E: From<Overloaded> + Send + 'static,
     {
-        let (place, _) = self.turn().await?;
-        let (line, peer, threads, runtime) = (self.line.clone(), self.peer, self.count, Handle::current());
-        let work = move |cancel: &Cancel| work(&Turns { cancel: cancel.clone(), line, peer, threads, runtime });
-        self.apart(place, work).await
+        let (reservation, _) = self.admit().await?;
+        let (queue, peer, threads, runtime) = (self.queue.clone(), self.peer, self.count, Handle::current());
+        let work =
+            move |cancel: &CancelFlag| work(&TimeSlices { cancel: cancel.clone(), queue, peer, threads, runtime });
+        self.spawn_worker(reservation, work).await
     }
 
     /// Does `work` on another thread, which holds on to `held` until it has ended.
-    async fn apart<T, E>(
+    async fn spawn_worker<T, E>(
         &self,
         held: impl Send + 'static,
-        work: impl FnOnce(&Cancel) -> Result<T, E> + Send + 'static,
+        work: impl FnOnce(&CancelFlag) -> Result<T, E> + Send + 'static,
     ) -> Result<T, E>
     where
         T: Send + 'static,
         E: Send + 'static,
     {
-        let waiting = OnDrop(Cancel::default());
+        let waiting = CancelOnDrop(CancelFlag::default());
         let cancel = waiting.0.clone();
-        let running = Counted::one(&self.running);
+        let running = GaugeGuard::new(&self.running);
         let task = spawn_blocking(move || {
             let _held = (held, running);
-            stand_back();
+            lower_priority();
             work(&cancel)
         });
         let done = task.await;
@@ -196,28 +205,28 @@ impl Pool {
         })
     }
 
-    async fn turn(&self) -> Result<(Share, Permit), Refused> {
-        self.results.has_room(self.peer).map_err(Refused::Untaken)?;
-        let place = self.places.take(self.peer).map_err(Refused::Full)?;
-        if let Some(permit) = self.line.try_take() {
-            return Ok((place, permit));
+    async fn admit(&self) -> Result<(Reservation, Permit), Overloaded> {
+        self.results.check(self.peer).map_err(Overloaded::UnreadAnswers)?;
+        let reservation = self.admission.try_reserve(self.peer).map_err(Overloaded::QueueFull)?;
+        if let Some(permit) = self.queue.try_acquire() {
+            return Ok((reservation, permit));
         }
-        let _queued = Counted::one(&self.queued);
-        match timeout(self.queue_time, self.line.take(Flow::Short(self.peer))).await {
-            Ok(permit) => Ok((place, permit)),
-            Err(_) => Err(Refused::Late { waited_s: self.queue_time.as_secs() }),
+        let _queued = GaugeGuard::new(&self.queued);
+        match timeout(self.queue_time, self.queue.acquire(QueueKey::Short(self.peer))).await {
+            Ok(permit) => Ok((reservation, permit)),
+            Err(_) => Err(Overloaded::QueueTimeout { waited_s: self.queue_time.as_secs() }),
         }
     }
 }
 
 /// A result that is still to be taken.
 #[derive(Debug)]
-pub struct Held {
+pub struct HeldBytes {
     result: Vec<u8>,
-    _share: Share,
+    _reservation: Reservation,
 }
 
-impl AsRef<[u8]> for Held {
+impl AsRef<[u8]> for HeldBytes {
     fn as_ref(&self) -> &[u8] {
         &self.result
     }
@@ -225,7 +234,7 @@ impl AsRef<[u8]> for Held {
 
 /// Lets this thread, and those that it starts, stand back where more threads than there are cores want one: what takes
 /// microseconds is answered first. Linux has that for single threads.
-fn stand_back() {
+fn lower_priority() {
     #[cfg(target_os = "linux")]
     {
         thread_local!(static STANDS: std::cell::Cell<bool> = const { std::cell::Cell::new(false) });
@@ -238,17 +247,17 @@ fn stand_back() {
 
 /// Counts one in a gauge for as long as it lives.
 #[derive(Debug)]
-pub struct Counted(Gauge);
+pub struct GaugeGuard(Gauge);
 
-impl Counted {
+impl GaugeGuard {
     /// One more.
-    pub fn one(gauge: &Gauge) -> Self {
+    pub fn new(gauge: &Gauge) -> Self {
         gauge.inc();
         Self(gauge.clone())
     }
 }
 
-impl Drop for Counted {
+impl Drop for GaugeGuard {
     fn drop(&mut self) {
         self.0.dec();
     }
@@ -271,7 +280,7 @@ mod tests {
     async fn cheap_work_stays_on_its_thread_and_dear_work_leaves_it() {
         let pool = Pool::new(1, &Limits::default());
         let here = std::thread::current().id();
-        let thread = |_: &Turn| Ok::<_, Refused>(std::thread::current().id());
+        let thread = |_: &TimeSlice| Ok::<_, Overloaded>(std::thread::current().id());
         assert_eq!(pool.run(Price::bounces(1), thread).await, Ok(here));
         assert_ne!(pool.run(dear(), thread).await, Ok(here));
     }
@@ -280,12 +289,12 @@ mod tests {
     async fn work_that_turns_out_dear_is_done_elsewhere() {
         let pool = Pool::new(1, &Limits::default());
         let here = std::thread::current().id();
-        let dear = move |turn: &Turn| {
+        let dear = move |slice: &TimeSlice| {
             let begin = Instant::now();
             while begin.elapsed() < 3 * limits::INLINE_TIME {
-                if !turn.go_on() {
+                if !slice.should_continue() {
                     assert_eq!(std::thread::current().id(), here);
-                    return Err(Refused::Late { waited_s: 0 });
+                    return Err(Overloaded::QueueTimeout { waited_s: 0 });
                 }
             }
             Ok(std::thread::current().id())
@@ -298,21 +307,21 @@ mod tests {
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
     async fn a_turn_ends_in_the_midst_of_work() {
         let pool = Pool::new(1, &Limits::default());
-        let [one, other] = [1, 2].map(|last| pool.of(Peer::at([192, 0, 2, last].into())));
+        let [one, other] = [1, 2].map(|last| pool.for_peer(Peer::at([192, 0, 2, last].into())));
         let endless = |pool: Pool| {
             let (begun, begin) = tokio::sync::oneshot::channel();
-            let work = move |turn: &Turn| {
+            let work = move |slice: &TimeSlice| {
                 let _ = begun.send(());
-                while turn.go_on() {}
-                Ok::<_, Refused>(())
+                while slice.should_continue() {}
+                Ok::<_, Overloaded>(())
             };
-            (tokio::spawn(async move { pool.run_apart(work).await }), begin)
+            (tokio::spawn(async move { pool.run_on_worker(work).await }), begin)
         };
         let (first, begun) = endless(one.clone());
         begun.await.unwrap();
         // Of the same peer: it waits for the first, which does not end.
         let (second, mut begun) = endless(one);
-        let done = other.run_apart(|turn| Ok::<_, Refused>(turn.go_on()));
+        let done = other.run_on_worker(|slice| Ok::<_, Overloaded>(slice.should_continue()));
         assert_eq!(timeout(Duration::from_secs(5), done).await.expect("a turn"), Ok(true));
         assert!(begun.try_recv().is_err());
         // Whoever goes away in the midst of its work or between two turns frees the permit.
@@ -320,7 +329,7 @@ mod tests {
         timeout(Duration::from_secs(5), begun).await.expect("a turn").unwrap();
         second.abort();
         assert_eq!(
-            timeout(Duration::from_secs(5), other.run_apart(|_| Ok::<_, Refused>(7))).await.expect("a turn"),
+            timeout(Duration::from_secs(5), other.run_on_worker(|_| Ok::<_, Overloaded>(7))).await.expect("a turn"),
             Ok(7)
         );
     }
@@ -329,19 +338,19 @@ mod tests {
     async fn dropping_the_future_cancels_the_work_and_frees_the_permit() {
         let pool = Pool::new(1, &Limits::default());
         let (ended, end) = mpsc::channel();
-        let work = pool.run(dear(), move |turn| {
-            while turn.go_on() {
+        let work = pool.run(dear(), move |slice| {
+            while slice.should_continue() {
                 std::thread::yield_now();
             }
             ended.send(Instant::now()).unwrap();
-            Ok::<_, Refused>(())
+            Ok::<_, Overloaded>(())
         });
         assert!(timeout(Duration::from_millis(20), work).await.is_err());
         let dropped = Instant::now();
         let ended = end.recv_timeout(Duration::from_secs(5)).expect("the work should have been cancelled");
         // Some ms on a machine that is not busy; the work would never end.
         assert!(ended.saturating_duration_since(dropped) < Duration::from_secs(1));
-        assert_eq!(pool.run(dear(), |_| Ok::<_, Refused>(7)).await, Ok(7));
+        assert_eq!(pool.run(dear(), |_| Ok::<_, Overloaded>(7)).await, Ok(7));
     }
 
     #[tokio::test]
@@ -350,24 +359,24 @@ mod tests {
         let (release, gate) = mpsc::channel::<()>();
         let busy = tokio::spawn({
             let pool = pool.clone();
-            async move { pool.run_apart(move |_| Ok::<_, Refused>(gate.recv().is_err())).await }
+            async move { pool.run_on_worker(move |_| Ok::<_, Overloaded>(gate.recv().is_err())).await }
         });
         let waiting: Vec<_> = (0..QUEUE)
             .map(|_| {
                 let pool = pool.clone();
-                tokio::spawn(async move { pool.run(dear(), |_| Ok::<_, Refused>(())).await })
+                tokio::spawn(async move { pool.run(dear(), |_| Ok::<_, Overloaded>(())).await })
             })
             .collect();
         while pool.queued().get() < QUEUE as i64 {
             tokio::task::yield_now().await;
         }
         assert_eq!(pool.running().get(), 1);
-        let refused = pool.run(dear(), |_| Ok::<_, Refused>(())).await;
-        assert_eq!(refused, Err(Refused::Full(NoShare { held: 1 + QUEUE, free: QUEUE })));
+        let refused = pool.run(dear(), |_| Ok::<_, Overloaded>(())).await;
+        assert_eq!(refused, Err(Overloaded::QueueFull(QuotaExceeded { held: 1 + QUEUE, free: QUEUE })));
         // Another's request still has a place.
         let other = tokio::spawn({
-            let pool = pool.of(Peer::at([192, 0, 2, 1].into()));
-            async move { pool.run(dear(), |_| Ok::<_, Refused>(())).await }
+            let pool = pool.for_peer(Peer::at([192, 0, 2, 1].into()));
+            async move { pool.run(dear(), |_| Ok::<_, Overloaded>(())).await }
         });
         while pool.queued().get() == QUEUE as i64 {
             tokio::task::yield_now().await;
@@ -386,10 +395,10 @@ mod tests {
         let pool = Pool::new(1, &Limits::default());
         let panicking = tokio::spawn({
             let pool = pool.clone();
-            async move { pool.run(dear(), |_| -> Result<(), Refused> { panic!("on purpose") }).await }
+            async move { pool.run(dear(), |_| -> Result<(), Overloaded> { panic!("on purpose") }).await }
         });
         assert!(panicking.await.unwrap_err().is_panic());
-        assert_eq!(pool.run(dear(), |_| Ok::<_, Refused>(1)).await, Ok(1));
+        assert_eq!(pool.run(dear(), |_| Ok::<_, Overloaded>(1)).await, Ok(1));
         assert_eq!(pool.running().get(), 0);
     }
 }

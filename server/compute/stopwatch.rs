@@ -5,7 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::compute::{Cancel, Cancelled, Turn};
+use crate::compute::{CancelFlag, Cancelled, TimeSlice};
 
 /// What was measured of one piece of work.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,79 +18,79 @@ pub struct Timing {
 
 /// How long to measure.
 #[derive(Debug, Clone, Copy)]
-pub struct Bounds {
+pub struct TimingBudget {
     /// Time for each piece of work; one that takes long has three looks or three times this, whichever is less.
     pub time: Duration,
     /// Least time of one look: work that is shorter is done several times in it, since the clock has a grain.
-    pub look: Duration,
+    pub sample: Duration,
     /// Most looks at one piece of work.
     pub repeats: usize,
 }
 
 /// A piece of work; it may give up when it is cancelled.
-pub type Work<'a> = Box<dyn FnMut(&Cancel) + 'a>;
+pub type TimedWork<'a> = Box<dyn FnMut(&CancelFlag) + 'a>;
 
-struct Watched<'w, 'a> {
-    work: &'w mut Work<'a>,
+struct TimedSeries<'w, 'a> {
+    work: &'w mut TimedWork<'a>,
     /// How often it is done in one look.
     times: u32,
     spent: Duration,
-    looks_s: Vec<f64>,
+    samples_s: Vec<f64>,
 }
 
 /// Times all pieces of work in turns, and says of each when it has been `timed`. Others have their turn between two looks.
 pub fn time(
-    works: &mut [Work<'_>],
-    bounds: Bounds,
+    works: &mut [TimedWork<'_>],
+    budget: TimingBudget,
     timed: &mut dyn FnMut(),
-    turn: &Turn,
+    slice: &TimeSlice,
 ) -> Result<Vec<Timing>, Cancelled> {
-    let goes_on = |watch: &Watched<'_, '_>| {
-        let looks = watch.looks_s.len();
-        let few = looks < 3 && watch.spent < 3 * bounds.time;
-        looks == 0 || few || (watch.spent < bounds.time && looks < bounds.repeats)
+    let goes_on = |series: &TimedSeries<'_, '_>| {
+        let samples = series.samples_s.len();
+        let few = samples < 3 && series.spent < 3 * budget.time;
+        samples == 0 || few || (series.spent < budget.time && samples < budget.repeats)
     };
-    let mut watched = Vec::with_capacity(works.len());
+    let mut all_series = Vec::with_capacity(works.len());
     for work in works {
-        let first = look(work, 1, turn)?;
-        let times = (bounds.look.as_secs_f64() / first.as_secs_f64().max(1e-9)).ceil().clamp(1.0, 1e6) as u32;
-        let mut watch = Watched { work, times, spent: first, looks_s: Vec::new() };
+        let first = sample(work, 1, slice)?;
+        let times = (budget.sample.as_secs_f64() / first.as_secs_f64().max(1e-9)).ceil().clamp(1.0, 1e6) as u32;
+        let mut series = TimedSeries { work, times, spent: first, samples_s: Vec::new() };
         // The first look finds caches cold, which long work does not feel.
         if times == 1 {
-            watch.looks_s.push(first.as_secs_f64());
+            series.samples_s.push(first.as_secs_f64());
         }
-        if !goes_on(&watch) {
+        if !goes_on(&series) {
             timed();
         }
-        watched.push(watch);
+        all_series.push(series);
     }
-    while watched.iter().any(goes_on) {
-        for watch in watched.iter_mut().filter(|watch| goes_on(watch)) {
-            let taken = look(watch.work, watch.times, turn)?;
-            watch.spent += taken;
-            watch.looks_s.push(taken.as_secs_f64() / f64::from(watch.times));
-            if !goes_on(watch) {
+    while all_series.iter().any(goes_on) {
+        for series in all_series.iter_mut().filter(|series| goes_on(series)) {
+            let taken = sample(series.work, series.times, slice)?;
+            series.spent += taken;
+            series.samples_s.push(taken.as_secs_f64() / f64::from(series.times));
+            if !goes_on(series) {
                 timed();
             }
         }
     }
-    Ok(watched.into_iter().map(|watch| timing(watch.looks_s)).collect())
+    Ok(all_series.into_iter().map(|series| timing(series.samples_s)).collect())
 }
 
-fn look(work: &mut Work<'_>, times: u32, turn: &Turn) -> Result<Duration, Cancelled> {
+fn sample(work: &mut TimedWork<'_>, times: u32, slice: &TimeSlice) -> Result<Duration, Cancelled> {
     let start = Instant::now();
     for _ in 0..times {
-        work(turn.cancel());
+        work(slice.cancel());
     }
     let taken = start.elapsed();
-    turn.check().map(|()| taken)
+    slice.check().map(|()| taken)
 }
 
-fn timing(mut looks_s: Vec<f64>) -> Timing {
-    looks_s.sort_by(f64::total_cmp);
+fn timing(mut samples_s: Vec<f64>) -> Timing {
+    samples_s.sort_by(f64::total_cmp);
     // Of an even number the lower one in the middle: what disturbs a look makes it longer.
-    let at = |share: f64| looks_s[((looks_s.len() - 1) as f64 * share).floor() as usize];
-    Timing { quartiles_s: [at(0.25), at(0.5), at(0.75)], repeats: looks_s.len() }
+    let at = |share: f64| samples_s[((samples_s.len() - 1) as f64 * share).floor() as usize];
+    Timing { quartiles_s: [at(0.25), at(0.5), at(0.75)], repeats: samples_s.len() }
 }
 
 #[cfg(test)]
@@ -98,20 +98,21 @@ mod tests {
     use super::*;
     use std::cell::Cell;
 
-    const BOUNDS: Bounds = Bounds { time: Duration::from_millis(40), look: Duration::from_millis(2), repeats: 5 };
+    const BUDGET: TimingBudget =
+        TimingBudget { time: Duration::from_millis(40), sample: Duration::from_millis(2), repeats: 5 };
 
     #[test]
     fn short_work_is_repeated_and_long_work_is_done_once() {
         let (short, long) = (Cell::new(0), Cell::new(0));
-        let mut works: Vec<Work<'_>> = vec![
+        let mut works: Vec<TimedWork<'_>> = vec![
             Box::new(|_| short.set(short.get() + 1)),
             Box::new(|_| {
                 long.set(long.get() + 1);
-                std::thread::sleep(3 * BOUNDS.time);
+                std::thread::sleep(3 * BUDGET.time);
             }),
         ];
         let mut timed = Vec::new();
-        let timings = time(&mut works, BOUNDS, &mut || timed.push(long.get()), &Turn::alone()).unwrap();
+        let timings = time(&mut works, BUDGET, &mut || timed.push(long.get()), &TimeSlice::unbounded()).unwrap();
         drop(works);
         assert_eq!((timings[0].repeats, timings[1].repeats, long.get()), (5, 1, 1));
         assert_eq!(timed, [1, 1], "each is said once");
@@ -121,7 +122,7 @@ mod tests {
 
     #[test]
     fn what_nobody_waits_for_is_given_up() {
-        let mut works: Vec<Work<'_>> = vec![Box::new(|cancel| cancel.set())];
-        assert_eq!(time(&mut works, BOUNDS, &mut || {}, &Turn::alone()), Err(Cancelled));
+        let mut works: Vec<TimedWork<'_>> = vec![Box::new(|cancel| cancel.set())];
+        assert_eq!(time(&mut works, BUDGET, &mut || {}, &TimeSlice::unbounded()), Err(Cancelled));
     }
 }

@@ -7,49 +7,49 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use tokio::runtime::Handle;
 
-use crate::compute::cancel::{Cancel, Cancelled};
-use crate::compute::fair_queue::{Flow, Line};
+use crate::compute::cancel::{CancelFlag, Cancelled};
+use crate::compute::fair_queue::{FairQueue, QueueKey};
 use crate::compute::peer::Peer;
-use crate::compute::turn::Turn;
+use crate::compute::time_slice::TimeSlice;
 
 /// What one piece of long work gets its turns from.
 #[derive(Debug)]
-pub struct Turns {
-    pub(crate) cancel: Cancel,
+pub struct TimeSlices {
+    pub(crate) cancel: CancelFlag,
     /// Permits of the pool, in which the blocks of one peer's long work wait apart from its requests: whatever the number of
     /// blocks, a request finds at most one of each peer's before it.
-    pub(crate) line: Arc<Line>,
+    pub(crate) queue: Arc<FairQueue>,
     pub(crate) peer: Peer,
     pub(crate) threads: usize,
     pub(crate) runtime: Handle,
 }
 
-impl Turns {
+impl TimeSlices {
     /// Does `work` when it is its turn.
-    pub fn take<T>(&self, work: impl FnOnce(&Turn) -> T) -> Result<T, Cancelled> {
-        let turn = self.turn().ok_or(Cancelled)?;
-        Ok(work(&turn))
+    pub fn run_one<T>(&self, work: impl FnOnce(&TimeSlice) -> T) -> Result<T, Cancelled> {
+        let slice = self.next_slice().ok_or(Cancelled)?;
+        Ok(work(&slice))
     }
 
     /// Calls `work` for each block from 0 to `blocks` on all threads, in turns, and hands the results to `done` in the
     /// order of the blocks, each as soon as it and all before it are there. Ends early where `work` gives none or nobody
     /// waits any more.
-    pub fn spread<T: Send>(
+    pub fn parallel_map<T: Send>(
         &self,
         blocks: usize,
-        work: impl Fn(usize, &Turn) -> Option<T> + Sync,
+        work: impl Fn(usize, &TimeSlice) -> Option<T> + Sync,
         done: impl FnMut(T) + Send,
     ) -> Result<(), Cancelled> {
         let next = AtomicUsize::new(0);
-        let order = Mutex::new(Order { next: 0, waiting: BTreeMap::new(), done });
+        let order = Mutex::new(InOrder { next: 0, waiting: BTreeMap::new(), done });
         let take = || {
             while next.load(Ordering::Relaxed) < blocks {
-                let Some(turn) = self.turn() else { return };
+                let Some(slice) = self.next_slice() else { return };
                 let block = next.fetch_add(1, Ordering::Relaxed);
                 if block >= blocks {
                     return;
                 }
-                let Some(result) = work(block, &turn) else {
+                let Some(result) = work(block, &slice) else {
                     next.store(blocks, Ordering::Relaxed);
                     return;
                 };
@@ -68,27 +68,27 @@ impl Turns {
     }
 
     /// Waits, on this thread, as long as somebody waits for the result.
-    fn turn(&self) -> Option<Turn> {
-        let flow = Flow::Long(self.peer);
+    fn next_slice(&self) -> Option<TimeSlice> {
+        let key = QueueKey::Long(self.peer);
         let permit = self.runtime.block_on(async {
             tokio::select! {
                 biased;
                 () = self.cancel.wait() => None,
-                permit = self.line.take(flow) => Some(permit),
+                permit = self.queue.acquire(key) => Some(permit),
             }
         })?;
-        Some(Turn::permitted(self.cancel.clone(), permit, self.line.clone(), flow, self.runtime.clone()))
+        Some(TimeSlice::permitted(self.cancel.clone(), permit, self.queue.clone(), key, self.runtime.clone()))
     }
 }
 
 /// Puts results back in order.
-struct Order<T, Done> {
+struct InOrder<T, Done> {
     next: usize,
     waiting: BTreeMap<usize, T>,
     done: Done,
 }
 
-impl<T, Done: FnMut(T)> Order<T, Done> {
+impl<T, Done: FnMut(T)> InOrder<T, Done> {
     fn add(&mut self, block: usize, result: T) {
         self.waiting.insert(block, result);
         while let Some(result) = self.waiting.remove(&self.next) {
@@ -101,7 +101,7 @@ impl<T, Done: FnMut(T)> Order<T, Done> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compute::{Pool, Price, Refused};
+    use crate::compute::{Overloaded, Pool, Price};
     use crate::limits;
     use crate::limits::Limits;
     use std::sync::atomic::AtomicU64;
@@ -110,8 +110,8 @@ mod tests {
     #[derive(Debug, PartialEq)]
     struct Failed;
 
-    impl From<Refused> for Failed {
-        fn from(_: Refused) -> Self {
+    impl From<Overloaded> for Failed {
+        fn from(_: Overloaded) -> Self {
             Failed
         }
     }
@@ -122,9 +122,9 @@ mod tests {
         }
     }
 
-    fn squares(turns: &Turns, blocks: usize) -> Result<Vec<usize>, Failed> {
+    fn squares(slices: &TimeSlices, blocks: usize) -> Result<Vec<usize>, Failed> {
         let mut squares = Vec::new();
-        turns.spread(blocks, |block, _| Some(block * block), |square| squares.push(square))?;
+        slices.parallel_map(blocks, |block, _| Some(block * block), |square| squares.push(square))?;
         Ok(squares)
     }
 
@@ -134,7 +134,7 @@ mod tests {
             let pool = Pool::new(threads, &Limits::default());
             for blocks in [0, 1, 100] {
                 let expected: Vec<_> = (0..blocks).map(|block| block * block).collect();
-                assert_eq!(pool.run_in_turns(move |turns| squares(turns, blocks)).await, Ok(expected));
+                assert_eq!(pool.run_in_slices(move |slices| squares(slices, blocks)).await, Ok(expected));
             }
         }
     }
@@ -143,14 +143,14 @@ mod tests {
     async fn a_block_that_gives_up_stops_the_others() {
         let begun = Arc::new(AtomicU64::new(0));
         let count = begun.clone();
-        let work = move |turns: &Turns| {
-            let work = |block, _: &Turn| {
+        let work = move |slices: &TimeSlices| {
+            let work = |block, _: &TimeSlice| {
                 count.fetch_add(1, Ordering::Relaxed);
                 (block != 3).then_some(())
             };
-            Ok::<_, Failed>(turns.spread(10_000, work, |()| {})?)
+            Ok::<_, Failed>(slices.parallel_map(10_000, work, |()| {})?)
         };
-        assert_eq!(Pool::new(2, &Limits::default()).run_in_turns(work).await, Err(Failed));
+        assert_eq!(Pool::new(2, &Limits::default()).run_in_slices(work).await, Err(Failed));
         assert!(begun.load(Ordering::Relaxed) < 10_000);
     }
 
@@ -166,17 +166,17 @@ mod tests {
         for _ in 0..2 {
             let (pool, count, begun, steps) = (pool.clone(), blocks_done.clone(), begun.clone(), steps.clone());
             long.push(tokio::spawn(async move {
-                let work = move |turns: &Turns| {
-                    let block = |_, _: &Turn| {
+                let work = move |slices: &TimeSlices| {
+                    let block = |_, _: &TimeSlice| {
                         let _ = begun.send(());
                         // A block lasts until the test lets it end.
                         steps.lock().unwrap().recv().ok()?;
                         count.fetch_add(1, Ordering::Relaxed);
                         Some(())
                     };
-                    Ok::<_, Failed>(turns.spread(usize::MAX, block, |()| {})?)
+                    Ok::<_, Failed>(slices.parallel_map(usize::MAX, block, |()| {})?)
                 };
-                pool.run_in_turns(work).await
+                pool.run_in_slices(work).await
             }));
         }
         // One computes; the other waits for its turn, or still to be admitted.

@@ -7,31 +7,32 @@ use crate::http::problem::Problem;
 use crate::limits;
 
 /// Bytes in memory, as long as somebody waits for them.
-pub struct Output<'a> {
+pub struct OutputBuffer<'a> {
     bytes: Vec<u8>,
-    go_on: &'a dyn Fn() -> bool,
+    should_continue: &'a dyn Fn() -> bool,
     /// Length from which on to look again whether anybody waits.
-    next_look: usize,
-    is_given_up: bool,
+    next_check: usize,
+    is_cancelled: bool,
 }
 
 /// The bytes that `write` writes; `go_on` is asked now and then.
 ///
 /// # Errors
 /// That the work was given up, once `go_on` said `false`; an error of the server's own where `write` fails for another reason.
-pub fn written(
-    go_on: &dyn Fn() -> bool,
-    write: impl FnOnce(&mut Output<'_>) -> io::Result<()>,
+pub fn write_to_memory(
+    should_continue: &dyn Fn() -> bool,
+    write: impl FnOnce(&mut OutputBuffer<'_>) -> io::Result<()>,
 ) -> Result<Vec<u8>, Problem> {
-    let mut output = Output { bytes: Vec::new(), go_on, next_look: limits::WRITE_STEP_BYTES, is_given_up: false };
+    let mut output =
+        OutputBuffer { bytes: Vec::new(), should_continue, next_check: limits::WRITE_STEP_BYTES, is_cancelled: false };
     match write(&mut output) {
         Ok(()) => Ok(output.bytes),
-        Err(_) if output.is_given_up => Err(Cancelled.into()),
+        Err(_) if output.is_cancelled => Err(Cancelled.into()),
         Err(_) => Err(Problem::internal()),
     }
 }
 
-impl Write for Output<'_> {
+impl Write for OutputBuffer<'_> {
     #[inline]
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.write_all(bytes).map(|()| bytes.len())
@@ -40,10 +41,10 @@ impl Write for Output<'_> {
     #[inline]
     fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.bytes.extend_from_slice(bytes);
-        if self.bytes.len() >= self.next_look {
-            self.next_look = self.bytes.len() + limits::WRITE_STEP_BYTES;
-            if !(self.go_on)() {
-                self.is_given_up = true;
+        if self.bytes.len() >= self.next_check {
+            self.next_check = self.bytes.len() + limits::WRITE_STEP_BYTES;
+            if !(self.should_continue)() {
+                self.is_cancelled = true;
                 return Err(io::Error::other(Cancelled));
             }
         }
@@ -63,7 +64,7 @@ mod tests {
 
     #[test]
     fn bytes_come_out_as_they_go_in() {
-        let bytes = written(&|| true, |out| {
+        let bytes = write_to_memory(&|| true, |out| {
             (0..100_000_u32).try_for_each(|number| out.write_all(number.to_string().as_bytes()))
         });
         let all: String = (0..100_000_u32).map(|number| number.to_string()).collect();
@@ -74,7 +75,7 @@ mod tests {
     fn writing_ends_soon_after_nobody_waits() {
         let has_left = Cell::new(false);
         let mut rows = 0;
-        let endless = |out: &mut Output<'_>| {
+        let endless = |out: &mut OutputBuffer<'_>| {
             loop {
                 rows += 1;
                 if rows == 100 {
@@ -83,13 +84,13 @@ mod tests {
                 out.write_all(&[b'0'; 1000])?;
             }
         };
-        assert_eq!(written(&|| !has_left.get(), endless).unwrap_err().status(), 503);
+        assert_eq!(write_to_memory(&|| !has_left.get(), endless).unwrap_err().status(), 503);
         assert!(rows <= 100 + limits::WRITE_STEP_BYTES / 1000 + 1, "{rows}");
     }
 
     #[test]
     fn other_failures_are_the_servers_own() {
-        let failed = written(&|| true, |_| Err(io::Error::other("on purpose")));
+        let failed = write_to_memory(&|| true, |_| Err(io::Error::other("on purpose")));
         assert_eq!(failed.unwrap_err().status(), 500);
     }
 }

@@ -9,8 +9,8 @@ use axum::response::{IntoResponse, Response};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use crate::compute::{OverBudget, Refused};
-use crate::http::request::context::Asked;
+use crate::compute::{Cancelled, OverBudget, Overloaded};
+use crate::http::request::context::RequestContext;
 use crate::limits;
 
 /// One thing wrong with one field.
@@ -189,11 +189,11 @@ impl Problem {
 impl Serialize for Problem {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let parts = &*self.0;
-        let asked = Asked::under_way();
+        let context = RequestContext::current();
         let mut map = serializer.serialize_map(None)?;
         match parts.slug {
             Some(slug) => {
-                let base = asked.as_ref().map_or("", |asked| &asked.base);
+                let base = context.as_ref().map_or("", |context| &context.base);
                 map.serialize_entry("type", &format_args!("{base}/docs#problem-{slug}"))?;
             }
             None => map.serialize_entry("type", "about:blank")?,
@@ -204,8 +204,8 @@ impl Serialize for Problem {
         if !parts.errors.is_empty() {
             map.serialize_entry("errors", &parts.errors)?;
         }
-        if let Some(asked) = &asked {
-            map.serialize_entry("request_id", &*asked.id)?;
+        if let Some(context) = &context {
+            map.serialize_entry("request_id", &*context.id)?;
         }
         map.end()
     }
@@ -235,9 +235,16 @@ impl From<OverBudget> for Problem {
     }
 }
 
-impl From<Refused> for Problem {
-    fn from(refused: Refused) -> Self {
-        Self::overloaded(refused.to_string())
+impl From<Overloaded> for Problem {
+    fn from(overloaded: Overloaded) -> Self {
+        Self::overloaded(overloaded.to_string())
+    }
+}
+
+/// Work is cancelled only when its client has gone, so nobody reads this.
+impl From<Cancelled> for Problem {
+    fn from(cancelled: Cancelled) -> Self {
+        Problem::overloaded(cancelled.to_string())
     }
 }
 

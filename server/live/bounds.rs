@@ -8,7 +8,7 @@ use crate::limits::Limits;
 
 /// The bounds of one session, so that a test can wait for them.
 #[derive(Debug, Clone, Copy)]
-pub struct Bounds {
+pub struct SessionBounds {
     /// Impacts that may wait for a slow client.
     pub queue: usize,
     /// Time that a client may be behind.
@@ -29,9 +29,9 @@ pub struct Bounds {
     pub catch_up: Limit,
 }
 
-impl Bounds {
+impl SessionBounds {
     /// Those of a client that talks.
-    pub fn of_a_talker(limits: &Limits) -> Self {
+    pub fn for_websocket(limits: &Limits) -> Self {
         Self {
             queue: limits::LIVE_QUEUE,
             behind: limits::LIVE_BEHIND_TIME,
@@ -46,28 +46,28 @@ impl Bounds {
     }
 
     /// Those of a client that only listens, and so is never heard.
-    pub fn of_a_listener(limits: &Limits) -> Self {
+    pub fn for_sse(limits: &Limits) -> Self {
         let lifetime = limits.events_time;
-        Self { silence: lifetime, lifetime, stays: false, ..Self::of_a_talker(limits) }
+        Self { silence: lifetime, lifetime, stays: false, ..Self::for_websocket(limits) }
     }
 }
 
 /// Messages that a client may still send: so many a second, saved up for three seconds.
 #[derive(Debug)]
-pub struct Allowance {
+pub struct TokenBucket {
     per_s: f64,
     left: f64,
     at: Instant,
 }
 
-impl Allowance {
+impl TokenBucket {
     /// Three seconds' worth.
     pub fn new(per_s: u32, now: Instant) -> Self {
         Self { per_s: per_s.into(), left: 3.0 * f64::from(per_s), at: now }
     }
 
     /// Whether one more message is within it.
-    pub fn takes(&mut self, now: Instant) -> bool {
+    pub fn try_take(&mut self, now: Instant) -> bool {
         let earned = (now - self.at).as_secs_f64() * self.per_s;
         (self.left, self.at) = ((self.left + earned).min(3.0 * self.per_s), now);
         if self.left < 1.0 {

@@ -14,7 +14,7 @@ use crate::runs::run_url::{read_kick, read_set};
 
 /// What a client can say.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Order {
+pub enum ClientMessage {
     /// Stop the clock.
     Pause,
     /// Let it go on.
@@ -31,7 +31,7 @@ pub enum Order {
     Kick(Kick),
 }
 
-impl Order {
+impl ClientMessage {
     /// Its type, as in the message.
     pub fn name(&self) -> &'static str {
         match self {
@@ -52,16 +52,16 @@ impl Order {
     pub fn read(text: &str) -> Result<Self, Problem> {
         #[derive(Clone, Copy)]
         enum Type {
-            Plain(fn() -> Order),
+            Plain(fn() -> ClientMessage),
             Speed,
             Set,
             Kick,
         }
         const TYPES: [(&str, Type); 7] = [
-            ("pause", Type::Plain(|| Order::Pause)),
-            ("resume", Type::Plain(|| Order::Resume)),
-            ("step", Type::Plain(|| Order::Step)),
-            ("restart", Type::Plain(|| Order::Restart)),
+            ("pause", Type::Plain(|| ClientMessage::Pause)),
+            ("resume", Type::Plain(|| ClientMessage::Resume)),
+            ("step", Type::Plain(|| ClientMessage::Step)),
+            ("restart", Type::Plain(|| ClientMessage::Restart)),
             ("speed", Type::Speed),
             ("set", Type::Set),
             ("kick", Type::Kick),
@@ -73,32 +73,32 @@ impl Order {
         let Some(kind) = reader.choice("type", &TYPES) else {
             return errors.into_result().and_then(|()| Err(Problem::internal()));
         };
-        let order = match kind {
-            Type::Plain(order) => {
+        let message = match kind {
+            Type::Plain(message) => {
                 reader.finish();
-                Some(order())
+                Some(message())
             }
             Type::Speed => {
                 reader.require(&["value"]);
                 let speed = reader.number("value", SPEEDS, "");
                 reader.finish();
-                speed.map(Order::Speed)
+                speed.map(ClientMessage::Speed)
             }
             Type::Kick => {
                 let kick = read_kick(&mut reader);
                 reader.finish();
-                kick.map(Order::Kick)
+                kick.map(ClientMessage::Kick)
             }
             Type::Set => {
                 let paths: Map<String, Value> = fields.clone().into_iter().filter(|(key, _)| key != "type").collect();
                 for (key, _) in paths.iter().filter(|(_, value)| value.is_object()) {
                     errors.push(join("", key), "an object has no place here; name fields by dotted path");
                 }
-                read_set(&paths, "", Source::Json, &mut errors).map(Order::Set)
+                read_set(&paths, "", Source::Json, &mut errors).map(ClientMessage::Set)
             }
         };
         errors.into_result()?;
-        order.ok_or_else(Problem::internal)
+        message.ok_or_else(Problem::internal)
     }
 }
 
@@ -120,21 +120,24 @@ mod tests {
     use super::*;
 
     fn refused(text: &str) -> Vec<String> {
-        let problem = Order::read(text).unwrap_err();
+        let problem = ClientMessage::read(text).unwrap_err();
         assert!(problem.status().is_client_error(), "{text}: {problem:?}");
         problem.into_errors().into_iter().map(|error| error.pointer).collect()
     }
 
     #[test]
     fn orders_are_read() {
-        assert_eq!(Order::read(r#"{"type":"pause"}"#).unwrap(), Order::Pause);
-        assert_eq!(Order::read(r#"{"type":"speed","value":2}"#).unwrap(), Order::Speed(2.0));
+        assert_eq!(ClientMessage::read(r#"{"type":"pause"}"#).unwrap(), ClientMessage::Pause);
+        assert_eq!(ClientMessage::read(r#"{"type":"speed","value":2}"#).unwrap(), ClientMessage::Speed(2.0));
         assert_eq!(
-            Order::read(r#"{"type":"set","table.tilt_gain":1.3,"contact.restitution":0.5}"#).unwrap(),
-            Order::Set(vec![(Name::Restitution, FieldValue::Number(0.5)), (Name::TiltGain, FieldValue::Number(1.3))])
+            ClientMessage::read(r#"{"type":"set","table.tilt_gain":1.3,"contact.restitution":0.5}"#).unwrap(),
+            ClientMessage::Set(vec![
+                (Name::Restitution, FieldValue::Number(0.5)),
+                (Name::TiltGain, FieldValue::Number(1.3))
+            ])
         );
         let kick = Kick { theta_dot: 0.5, ..Kick::default() };
-        assert_eq!(Order::read(r#"{"type":"kick","theta_dot":0.5}"#).unwrap(), Order::Kick(kick));
+        assert_eq!(ClientMessage::read(r#"{"type":"kick","theta_dot":0.5}"#).unwrap(), ClientMessage::Kick(kick));
     }
 
     #[test]
@@ -165,7 +168,7 @@ mod tests {
 
     #[test]
     fn a_message_is_called_a_message() {
-        assert!(Order::read("nonsense").unwrap_err().detail().starts_with("the message is not JSON"));
-        assert_eq!(Order::read("[]").unwrap_err().detail(), "the message must be a JSON object");
+        assert!(ClientMessage::read("nonsense").unwrap_err().detail().starts_with("the message is not JSON"));
+        assert_eq!(ClientMessage::read("[]").unwrap_err().detail(), "the message must be a JSON object");
     }
 }

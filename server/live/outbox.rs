@@ -5,18 +5,18 @@ use std::collections::VecDeque;
 use std::time::Instant;
 
 use crate::limits;
-use crate::live::server_message::{Columns, Frame, Impact, Said};
+use crate::live::server_message::{ImpactColumns, ImpactMessage, OutgoingFrame, ServerMessage};
 
 #[derive(Debug)]
-enum Item {
-    Impact(Box<Impact>),
-    Frame(Frame),
+enum QueuedItem {
+    Impact(Box<ImpactMessage>),
+    Frame(OutgoingFrame),
 }
 
 /// The queue of one client.
 #[derive(Debug)]
 pub struct Outbox {
-    items: VecDeque<Item>,
+    items: VecDeque<QueuedItem>,
     impacts: usize,
     most_impacts: usize,
     gap: Option<(u64, u64)>,
@@ -45,17 +45,17 @@ impl Outbox {
     }
 
     /// Adds anything but an impact.
-    pub fn push(&mut self, frame: Frame) {
-        self.add(Item::Frame(frame));
+    pub fn push(&mut self, frame: OutgoingFrame) {
+        self.add(QueuedItem::Frame(frame));
     }
 
     /// Adds an impact; the oldest one goes if there are too many.
-    pub fn push_impact(&mut self, impact: Impact) {
-        self.add(Item::Impact(Box::new(impact)));
+    pub fn push_impact(&mut self, impact: ImpactMessage) {
+        self.add(QueuedItem::Impact(Box::new(impact)));
         self.impacts += 1;
         if self.impacts > self.most_impacts
-            && let Some(oldest) = self.items.iter().position(|item| matches!(item, Item::Impact(_)))
-            && let Some(Item::Impact(impact)) = self.items.remove(oldest)
+            && let Some(oldest) = self.items.iter().position(|item| matches!(item, QueuedItem::Impact(_)))
+            && let Some(QueuedItem::Impact(impact)) = self.items.remove(oldest)
         {
             self.impacts -= 1;
             self.gap = Some((self.gap.map_or(impact.n, |(from, _)| from), impact.n));
@@ -63,20 +63,20 @@ impl Outbox {
     }
 
     /// Forgets the impacts that wait: they are of a run that is over for the client.
-    pub fn forget_impacts(&mut self) {
-        self.items.retain(|item| matches!(item, Item::Frame(_)));
+    pub fn drop_impacts(&mut self) {
+        self.items.retain(|item| matches!(item, QueuedItem::Frame(_)));
         (self.impacts, self.gap) = (0, None);
         self.note_emptiness();
     }
 
     /// The next frame: impacts that wait one behind the other become one.
-    pub fn pop(&mut self) -> Option<Frame> {
+    pub fn pop(&mut self) -> Option<OutgoingFrame> {
         let frame = match self.items.pop_front()? {
-            Item::Frame(frame) => frame,
-            Item::Impact(impact) => match self.gap.take() {
+            QueuedItem::Frame(frame) => frame,
+            QueuedItem::Impact(impact) => match self.gap.take() {
                 Some((from, to)) => {
-                    self.items.push_front(Item::Impact(impact));
-                    Said::Gap { from, to }.to_frame()
+                    self.items.push_front(QueuedItem::Impact(impact));
+                    ServerMessage::Gap { from, to }.to_frame()
                 }
                 None => self.impacts_from(*impact),
             },
@@ -85,22 +85,22 @@ impl Outbox {
         Some(frame)
     }
 
-    fn impacts_from(&mut self, first: Impact) -> Frame {
+    fn impacts_from(&mut self, first: ImpactMessage) -> OutgoingFrame {
         let mut batch = vec![first];
         while batch.len() < limits::LIVE_BATCH
-            && let Some(Item::Impact(_)) = self.items.front()
-            && let Some(Item::Impact(impact)) = self.items.pop_front()
+            && let Some(QueuedItem::Impact(_)) = self.items.front()
+            && let Some(QueuedItem::Impact(impact)) = self.items.pop_front()
         {
             batch.push(*impact);
         }
         self.impacts -= batch.len();
         match batch.as_slice() {
-            [one] => Said::Impact(one).to_frame(),
-            _ => Said::Impacts { columns: Columns(batch) }.to_frame(),
+            [one] => ServerMessage::Impact(one).to_frame(),
+            _ => ServerMessage::Impacts { columns: ImpactColumns(batch) }.to_frame(),
         }
     }
 
-    fn add(&mut self, item: Item) {
+    fn add(&mut self, item: QueuedItem) {
         self.since.get_or_insert_with(Instant::now);
         self.items.push_back(item);
     }
@@ -115,27 +115,27 @@ impl Outbox {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::runs::playback::Course;
+    use crate::runs::playback::Playback;
     use crate::runs::run::tests::case;
     use serde_json::{Value, json};
 
     fn pop(outbox: &mut Outbox) -> Value {
-        let Some(Frame::Message { text, .. }) = outbox.pop() else { panic!("nothing waits") };
+        let Some(OutgoingFrame::Message { text, .. }) = outbox.pop() else { panic!("nothing waits") };
         serde_json::from_str(&text).unwrap()
     }
 
     #[test]
     fn a_slow_client_is_told_what_it_misses() {
         let run = case("case-1");
-        let mut course = Course::new(&run);
+        let mut playback = Playback::new(&run);
         let mut outbox = Outbox::new(4);
-        outbox.push_impact(course.tell(&run).0);
+        outbox.push_impact(playback.tell(&run).0);
         assert_eq!(pop(&mut outbox)["n"], 1);
         assert!(outbox.waiting_since().is_none());
-        outbox.push_impact(course.tell(&run).0);
-        outbox.push(Frame::Message { kind: "ack", mark: None, text: "1".to_owned() });
+        outbox.push_impact(playback.tell(&run).0);
+        outbox.push(OutgoingFrame::Message { kind: "ack", id: None, text: "1".to_owned() });
         for _ in 3..=12 {
-            outbox.push_impact(course.tell(&run).0);
+            outbox.push_impact(playback.tell(&run).0);
         }
         assert_eq!(pop(&mut outbox), 1);
         assert_eq!(pop(&mut outbox), json!({"type": "gap", "from": 2, "to": 8}));

@@ -1,6 +1,6 @@
 //! What the server says over a live connection, as it is written.
 //!
-//! Not here: when it is said, and what a client says (`order`).
+//! Not here: when it is said, and what a client says (`client_message`).
 
 use equipoise_physics::body::Body;
 use equipoise_physics::bounce::strike::State;
@@ -14,22 +14,22 @@ use crate::api::shared::demand::DemandAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::http::{FieldError, Problem};
-use crate::runs::playback::Course;
+use crate::runs::playback::Playback;
 use crate::runs::run::Run;
 use crate::runs::run_url;
 
 /// A message of the server's.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
-pub enum Said<'a> {
+pub enum ServerMessage<'a> {
     /// First of all, and after a restart: which run it is.
     Hello(Box<Hello<'a>>),
     /// An impact, when it happens.
-    Impact(&'a Impact),
+    Impact(&'a ImpactMessage),
     /// Several of them.
     Impacts {
         /// Column by column.
-        columns: Columns,
+        columns: ImpactColumns,
     },
     /// Impacts that a slow client does not get.
     Gap {
@@ -60,13 +60,13 @@ pub enum Said<'a> {
 
 /// What goes to a client, whatever carries it.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Frame {
+pub enum OutgoingFrame {
     /// A message of the server's.
     Message {
         /// Its type.
         kind: &'static str,
         /// How far the run has been told with it, if it tells of it.
-        mark: Option<Mark>,
+        id: Option<EventId>,
         /// As JSON.
         text: String,
     },
@@ -78,33 +78,33 @@ pub enum Frame {
 
 /// How far a run has been told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
+pub enum EventId {
     /// Up to this impact.
     Impact(u64),
     /// To its end.
     End,
 }
 
-impl Said<'_> {
+impl ServerMessage<'_> {
     /// As it is sent.
-    pub fn to_frame(&self) -> Frame {
-        let (kind, mark) = match self {
-            Said::Hello(_) => ("hello", None),
-            Said::Impact(impact) => ("impact", Some(Mark::Impact(impact.n))),
-            Said::Impacts { columns } => ("impacts", columns.0.last().map(|impact| Mark::Impact(impact.n))),
-            Said::Gap { .. } => ("gap", None),
-            Said::End { .. } => ("end", Some(Mark::End)),
-            Said::Problem { .. } => ("problem", None),
-            Said::Ack(_) => ("ack", None),
+    pub fn to_frame(&self) -> OutgoingFrame {
+        let (kind, id) = match self {
+            ServerMessage::Hello(_) => ("hello", None),
+            ServerMessage::Impact(impact) => ("impact", Some(EventId::Impact(impact.n))),
+            ServerMessage::Impacts { columns } => ("impacts", columns.0.last().map(|impact| EventId::Impact(impact.n))),
+            ServerMessage::Gap { .. } => ("gap", None),
+            ServerMessage::End { .. } => ("end", Some(EventId::End)),
+            ServerMessage::Problem { .. } => ("problem", None),
+            ServerMessage::Ack(_) => ("ack", None),
         };
         let text = serde_json::to_string(self).expect("messages are numbers and text under text keys");
-        Frame::Message { kind, mark, text }
+        OutgoingFrame::Message { kind, id, text }
     }
 }
 
 /// A problem as a message.
-pub fn problem(problem: &Problem) -> Frame {
-    Said::Problem { title: problem.title(), detail: problem.detail(), errors: problem.errors() }.to_frame()
+pub fn problem(problem: &Problem) -> OutgoingFrame {
+    ServerMessage::Problem { title: problem.title(), detail: problem.detail(), errors: problem.errors() }.to_frame()
 }
 
 /// Which run it is and where it is.
@@ -136,14 +136,14 @@ struct Release {
 }
 
 impl<'a> Hello<'a> {
-    /// Of a run that is told from `course` on, at the wall time `now`, unix ms. Its URL begins with `base`.
-    pub fn new(run: &'a Run, course: &'a Course, base: &str, now: u64) -> Self {
+    /// Of a run that is told from `playback` on, at the wall time `now`, unix ms. Its URL begins with `base`.
+    pub fn new(run: &'a Run, playback: &'a Playback, base: &str, now: u64) -> Self {
         let scene = run.scene();
         let release = scene.release();
         let angle = |value| has_angle(scene).then_some(value);
         Self {
             scene: Resolved(scene),
-            scene_in_force: Resolved(course.scene()),
+            scene_in_force: Resolved(playback.scene()),
             model: ModelChoice::of(scene),
             epoch: run.clock.epoch(),
             speed: run.clock.speed(),
@@ -160,7 +160,7 @@ impl<'a> Hello<'a> {
                 y_dot: release.state.y_dot,
                 theta_dot: angle(release.state.theta_dot),
             },
-            flight_time: Course::new(run).next_t(),
+            flight_time: Playback::new(run).next_t(),
             build: BUILD,
         }
     }
@@ -187,7 +187,7 @@ pub struct Ack<'a> {
 
 /// An impact as it is told.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Impact {
+pub struct ImpactMessage {
     /// Its number, from 1.
     pub n: u64,
     /// When, s after release.
@@ -227,7 +227,7 @@ struct Velocity {
     y: f64,
 }
 
-impl Impact {
+impl ImpactMessage {
     /// Of a contact of this body; a point mass has no angle of its own.
     pub fn new(body: &Model, has_angle: bool, contact: &Contact) -> Self {
         let State { theta, x_dot, y_dot, theta_dot } = contact.state;
@@ -268,11 +268,11 @@ impl Impact {
 
 /// Impacts column by column.
 #[derive(Debug)]
-pub struct Columns(pub Vec<Impact>);
+pub struct ImpactColumns(pub Vec<ImpactMessage>);
 
-impl Serialize for Columns {
+impl Serialize for ImpactColumns {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        fn column<T: Serialize>(impacts: &[Impact], of: impl Fn(&Impact) -> T) -> Vec<T> {
+        fn column<T: Serialize>(impacts: &[ImpactMessage], of: impl Fn(&ImpactMessage) -> T) -> Vec<T> {
             impacts.iter().map(of).collect()
         }
         #[derive(Serialize)]
@@ -320,8 +320,8 @@ mod tests {
     use super::*;
     use serde_json::{Value, json};
 
-    fn json_of(frame: Frame) -> Value {
-        let Frame::Message { kind, text, .. } = frame else { panic!("{frame:?}") };
+    fn json_of(frame: OutgoingFrame) -> Value {
+        let OutgoingFrame::Message { kind, text, .. } = frame else { panic!("{frame:?}") };
         let json: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(json["type"], kind);
         json
@@ -329,7 +329,10 @@ mod tests {
 
     #[test]
     fn messages_have_their_type() {
-        assert_eq!(json_of(Said::Gap { from: 3, to: 9 }.to_frame()), json!({"type": "gap", "from": 3, "to": 9}));
+        assert_eq!(
+            json_of(ServerMessage::Gap { from: 3, to: 9 }.to_frame()),
+            json!({"type": "gap", "from": 3, "to": 9})
+        );
         let wrong = json_of(problem(&Problem::invalid_at("/a", "a is wrong")));
         assert_eq!(wrong["errors"], json!([{"pointer": "/a", "detail": "a is wrong"}]));
     }

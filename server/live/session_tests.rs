@@ -9,14 +9,14 @@ use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tokio::time::{sleep, timeout};
 
 use crate::limits::Limits;
-use crate::live::bounds::Bounds;
+use crate::live::bounds::SessionBounds;
 use crate::live::close::Unreadable;
-use crate::live::server_message::Frame;
-use crate::live::session::{Place, caught_up, serve, wall_now};
+use crate::live::server_message::OutgoingFrame;
+use crate::live::session::{SessionContext, catch_up, serve, wall_now};
 use crate::runs::clock::Clock;
 use crate::runs::run::Run;
 use crate::runs::run::tests::case;
-use crate::runs::run_url::Asked;
+use crate::runs::run_url::RunRequest;
 
 /// The client's ends of a connection that takes one message at a time.
 struct Client {
@@ -24,27 +24,28 @@ struct Client {
     hears: Receiver<Message>,
 }
 
-fn open(asked: Asked, bounds: Bounds) -> Client {
+fn open(request: RunRequest, bounds: SessionBounds) -> Client {
     let (says, incoming) = channel(1);
     let (outgoing, hears) = channel(1);
     let incoming = stream::unfold(incoming, async |mut from| from.recv().await.map(|message| (message, from)));
-    let outgoing =
-        sink::unfold(outgoing, async |to: Sender<Message>, frame: Frame| to.send(frame.into()).await.map(|()| to));
-    let place = Place::alone(bounds);
+    let outgoing = sink::unfold(outgoing, async |to: Sender<Message>, frame: OutgoingFrame| {
+        to.send(frame.into()).await.map(|()| to)
+    });
+    let context = SessionContext::for_test(bounds);
     tokio::spawn(async move {
-        let course = caught_up(&asked, &place).await;
-        serve(asked, course, Box::pin(incoming), Box::pin(outgoing), place, std::future::pending()).await;
+        let playback = catch_up(&request, &context).await;
+        serve(request, playback, Box::pin(incoming), Box::pin(outgoing), context, std::future::pending()).await;
     });
     Client { says, hears }
 }
 
-fn bounds() -> Bounds {
-    Bounds::of_a_talker(&Limits::default())
+fn bounds() -> SessionBounds {
+    SessionBounds::for_websocket(&Limits::default())
 }
 
 /// A run of a preset that is released now.
-fn now(preset: &str, speed: f64) -> Asked {
-    Asked { run: Run::new(*case(preset).scene(), Clock::new(wall_now(), speed)), from: None }
+fn now(preset: &str, speed: f64) -> RunRequest {
+    RunRequest { run: Run::new(*case(preset).scene(), Clock::new(wall_now(), speed)), from: None }
 }
 
 impl Client {
@@ -68,7 +69,7 @@ impl Client {
 
 #[tokio::test]
 async fn a_slow_client_gets_a_gap_and_no_impact_twice_or_out_of_order() {
-    let bounds = Bounds { queue: 4, ..bounds() };
+    let bounds = SessionBounds { queue: 4, ..bounds() };
     let mut client = open(now("still-lossy", 20.0), bounds);
     assert!(client.hear().await.is_some());
     sleep(Duration::from_millis(500)).await;
@@ -97,7 +98,7 @@ async fn a_slow_client_gets_a_gap_and_no_impact_twice_or_out_of_order() {
 
 #[tokio::test]
 async fn a_client_that_stays_behind_is_closed_with_1013() {
-    let bounds = Bounds { behind: Duration::from_millis(300), ..bounds() };
+    let bounds = SessionBounds { behind: Duration::from_millis(300), ..bounds() };
     let mut client = open(now("case-1", 20.0), bounds);
     sleep(Duration::from_millis(600)).await;
     assert_eq!(client.rest().await.1, Some(1013));
@@ -105,11 +106,11 @@ async fn a_client_that_stays_behind_is_closed_with_1013() {
 
 #[tokio::test]
 async fn a_catch_up_waits_for_its_client() {
-    let mut asked = now("case-1", 1.0);
-    asked.run.clock = Clock::new(wall_now() - 600_000, 1.0);
-    asked.from = Some(1);
-    let bounds = Bounds { queue: 256, ..bounds() };
-    let mut client = open(asked, bounds);
+    let mut request = now("case-1", 1.0);
+    request.run.clock = Clock::new(wall_now() - 600_000, 1.0);
+    request.from = Some(1);
+    let bounds = SessionBounds { queue: 256, ..bounds() };
+    let mut client = open(request, bounds);
     let mut next = 1;
     while next < 1000 {
         sleep(Duration::from_millis(20)).await;
@@ -126,7 +127,7 @@ async fn a_catch_up_waits_for_its_client() {
 
 #[tokio::test]
 async fn a_silent_client_is_pinged_and_then_given_up() {
-    let bounds = Bounds { ping: Duration::from_millis(50), silence: Duration::from_millis(250), ..bounds() };
+    let bounds = SessionBounds { ping: Duration::from_millis(50), silence: Duration::from_millis(250), ..bounds() };
     let mut client = open(now("case-1", 1.0), bounds);
     let (mut pings, mut code) = (0, None);
     while let Some(message) = client.hear().await {
@@ -142,7 +143,7 @@ async fn a_silent_client_is_pinged_and_then_given_up() {
 
 #[tokio::test]
 async fn a_client_is_let_go_at_the_end_of_its_time() {
-    let mut client = open(now("case-1", 10.0), Bounds { lifetime: Duration::from_millis(500), ..bounds() });
+    let mut client = open(now("case-1", 10.0), SessionBounds { lifetime: Duration::from_millis(500), ..bounds() });
     let (texts, code) = client.rest().await;
     assert_eq!(code, Some(1001));
     assert!(texts.len() > 1 && texts[0]["type"] == "hello", "{texts:?}");
@@ -150,7 +151,7 @@ async fn a_client_is_let_go_at_the_end_of_its_time() {
 
 #[tokio::test]
 async fn a_client_that_answers_pings_stays_until_it_is_idle() {
-    let bounds = Bounds {
+    let bounds = SessionBounds {
         ping: Duration::from_millis(50),
         silence: Duration::from_secs(1),
         idle: Duration::from_millis(2000),

@@ -15,42 +15,44 @@ use crate::http::Reader;
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
 use crate::limits;
-use crate::live::server_message::{Frame, Mark};
+use crate::live::server_message::{EventId, OutgoingFrame};
 use crate::live::session;
-use crate::live::session::Place;
-use crate::runs::playback::Course;
+use crate::live::session::SessionContext;
+use crate::runs::playback::Playback;
 use crate::runs::run_url;
-use crate::runs::run_url::Asked;
+use crate::runs::run_url::RunRequest;
 
 /// The id of a run's last event.
 const END: &str = "end";
 
 /// What a client is to hear.
 #[derive(Debug)]
-pub enum Wanted {
+pub enum EventsRequest {
     /// A run.
-    Run(Box<Asked>),
+    Run(Box<RunRequest>),
     /// Nothing: it has heard the end already.
-    Nothing,
+    AlreadyEnded,
 }
 
 /// Reads a run, and the id of the last event of it that the client has heard: the header that clients send by themselves
 /// when they come back, or the parameter. None if something is wrong; then it is in the errors.
-pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Option<Wanted> {
+pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Option<EventsRequest> {
     const NAME: &str = "last_event_id";
     let has_epoch = reader.has("epoch");
     let parameter = reader.text(NAME).map(str::to_owned);
     let header = headers.get("last-event-id").map(|id| String::from_utf8_lossy(id.as_bytes()).into_owned());
-    let mut asked = run_url::read(reader, now)?;
-    let Some(last) = header.filter(|id| !id.is_empty()).or(parameter) else { return Some(Wanted::Run(asked.into())) };
+    let mut request = run_url::read(reader, now)?;
+    let Some(last) = header.filter(|id| !id.is_empty()).or(parameter) else {
+        return Some(EventsRequest::Run(request.into()));
+    };
     if last == END {
-        return Some(Wanted::Nothing);
+        return Some(EventsRequest::AlreadyEnded);
     }
     let heard = scalar::integer(&Value::from(last), Source::Query, &(1..=limits::LIVE_IMPACTS));
     let problem = match heard {
         Ok(heard) if has_epoch => {
-            asked.from = Some(heard + 1);
-            return Some(Wanted::Run(asked.into()));
+            request.from = Some(heard + 1);
+            return Some(EventsRequest::Run(request.into()));
         }
         // Released now, it would be another run.
         Ok(_) => "is of a run whose epoch is not given; come back to the address in `url` of `hello`".to_owned(),
@@ -62,10 +64,10 @@ pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Optio
 
 /// Tells a run. The session ends when the events are dropped, as they are when the client has gone, or when `closing` does; with it
 /// goes what is `held` for it.
-pub fn tell(
-    asked: Asked,
-    course: Course,
-    place: Place,
+pub fn events(
+    request: RunRequest,
+    playback: Playback,
+    context: SessionContext,
     closing: impl Future<Output = ()> + Send + 'static,
     held: impl Send + 'static,
 ) -> impl Stream<Item = Result<Event, Infallible>> + Send + 'static {
@@ -81,7 +83,7 @@ pub fn tell(
     });
     tokio::spawn(async move {
         let _held = held;
-        session::serve(asked, Ok(course), Box::pin(incoming), Box::pin(outgoing), place, closing).await;
+        session::serve(request, Ok(playback), Box::pin(incoming), Box::pin(outgoing), context, closing).await;
     });
     let first = Event::default().retry(limits::LIVE_RETRY_TIME);
     let rest = stream::unfold((events, here), async |(mut events, here)| {
@@ -91,18 +93,18 @@ pub fn tell(
 }
 
 /// A frame as an event; a goodbye is the end of all events.
-fn event(frame: Frame) -> Option<Event> {
+fn event(frame: OutgoingFrame) -> Option<Event> {
     match frame {
-        Frame::Message { kind, mark, text } => {
+        OutgoingFrame::Message { kind, id, text } => {
             let event = Event::default().event(kind).data(text);
-            Some(match mark {
-                Some(Mark::Impact(n)) => event.id(n.to_string()),
-                Some(Mark::End) => event.id(END),
+            Some(match id {
+                Some(EventId::Impact(n)) => event.id(n.to_string()),
+                Some(EventId::End) => event.id(END),
                 None => event,
             })
         }
-        Frame::Ping => Some(Event::default().comment("")),
-        Frame::Close(..) => None,
+        OutgoingFrame::Ping => Some(Event::default().comment("")),
+        OutgoingFrame::Close(..) => None,
     }
 }
 
@@ -115,21 +117,21 @@ mod tests {
     use prometheus_client::metrics::gauge::Gauge;
 
     use super::*;
-    use crate::compute::Counted;
+    use crate::compute::GaugeGuard;
     use crate::limits::Limits;
-    use crate::live::bounds::Bounds;
+    use crate::live::bounds::SessionBounds;
     use crate::runs::clock::Clock;
     use crate::runs::run::Run;
     use crate::runs::run::tests::case;
 
     /// All that a client hears which begins to read late.
-    async fn heard(preset: &str, bounds: Bounds) -> String {
+    async fn heard(preset: &str, bounds: SessionBounds) -> String {
         let run = Run::new(*case(preset).scene(), Clock::new(session::wall_now(), 20.0));
-        let asked = Asked { run, from: None };
-        let place = Place::alone(bounds);
-        let course = session::caught_up(&asked, &place).await.unwrap();
+        let request = RunRequest { run, from: None };
+        let context = SessionContext::for_test(bounds);
+        let playback = session::catch_up(&request, &context).await.unwrap();
         let sessions = Gauge::default();
-        let events = tell(asked, course, place, std::future::pending(), Counted::one(&sessions));
+        let events = events(request, playback, context, std::future::pending(), GaugeGuard::new(&sessions));
         tokio::time::sleep(Duration::from_millis(500)).await;
         let body = Sse::new(events).into_response().into_body().collect().await.unwrap().to_bytes();
         String::from_utf8(body.to_vec()).unwrap()
@@ -137,7 +139,7 @@ mod tests {
 
     #[tokio::test]
     async fn a_slow_client_is_told_what_it_misses_and_the_end() {
-        let text = heard("still-lossy", Bounds { queue: 4, ..Bounds::of_a_listener(&Limits::default()) }).await;
+        let text = heard("still-lossy", SessionBounds { queue: 4, ..SessionBounds::for_sse(&Limits::default()) }).await;
         assert!(text.contains("event: gap\n"), "{text}");
         assert!(text.ends_with("id: end\n\n"), "{text}");
     }
@@ -145,7 +147,8 @@ mod tests {
     #[tokio::test]
     async fn a_client_is_pinged_and_let_go_in_time() {
         let (ping, lifetime) = (Duration::from_millis(50), Duration::from_millis(700));
-        let text = heard("case-1", Bounds { ping, lifetime, ..Bounds::of_a_listener(&Limits::default()) }).await;
+        let text =
+            heard("case-1", SessionBounds { ping, lifetime, ..SessionBounds::for_sse(&Limits::default()) }).await;
         assert!(text.starts_with("retry: ") && text.contains("\n\n:") && !text.contains("id: end"), "{text}");
     }
 }

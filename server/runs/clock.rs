@@ -7,7 +7,7 @@ pub const SPEEDS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 
 /// From a wall time on: the run time then, and how fast it goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Entry {
+pub struct ClockEntry {
     /// Unix time, ms.
     pub wall: u64,
     /// Run time, s.
@@ -19,14 +19,14 @@ pub struct Entry {
 /// Maps wall time to run time. Neither goes back from entry to entry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clock {
-    release: Entry,
-    entries: Vec<Entry>,
+    release: ClockEntry,
+    entries: Vec<ClockEntry>,
 }
 
 impl Clock {
     /// A clock that shows 0 s at `epoch`, unix ms.
     pub fn new(epoch: u64, speed: f64) -> Self {
-        Self { release: Entry { wall: epoch, run: 0.0, speed }, entries: Vec::new() }
+        Self { release: ClockEntry { wall: epoch, run: 0.0, speed }, entries: Vec::new() }
     }
 
     /// When the run was released, unix ms.
@@ -40,7 +40,7 @@ impl Clock {
     }
 
     /// What was changed since, in order.
-    pub fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[ClockEntry] {
         &self.entries
     }
 
@@ -48,7 +48,7 @@ impl Clock {
     ///
     /// # Errors
     /// Where it goes back behind the last one.
-    pub fn push(&mut self, entry: Entry) -> Result<(), String> {
+    pub fn push(&mut self, entry: ClockEntry) -> Result<(), String> {
         let last = self.last();
         if entry.wall < last.wall {
             return Err(format!("wall is {} ms, before the {} ms of what it follows", entry.wall, last.wall));
@@ -103,7 +103,7 @@ impl Clock {
         let (run, paused) = (self.run_time(self.not_before(wall)), self.is_paused());
         self.change(wall, run, speed);
         if paused {
-            self.entries.push(Entry { speed: 0.0, ..self.last() });
+            self.entries.push(ClockEntry { speed: 0.0, ..self.last() });
         }
     }
 
@@ -119,7 +119,7 @@ impl Clock {
         self.entries.drain(..beyond);
     }
 
-    fn last(&self) -> Entry {
+    fn last(&self) -> ClockEntry {
         self.entries.last().copied().unwrap_or(self.release)
     }
 
@@ -137,7 +137,7 @@ impl Clock {
                 self.entries.pop();
             }
         }
-        self.entries.push(Entry { wall, run, speed });
+        self.entries.push(ClockEntry { wall, run, speed });
     }
 }
 
@@ -192,7 +192,7 @@ mod tests {
         clock.pause(2000);
         clock.resume(1500);
         assert_eq!(clock.run_time(2500), 1.5);
-        assert!(clock.push(Entry { wall: 1999, run: 5.0, speed: 1.0 }).unwrap_err().contains("1999 ms"));
-        assert!(clock.push(Entry { wall: 2000, run: 0.5, speed: 1.0 }).unwrap_err().contains("0.5 s"));
+        assert!(clock.push(ClockEntry { wall: 1999, run: 5.0, speed: 1.0 }).unwrap_err().contains("1999 ms"));
+        assert!(clock.push(ClockEntry { wall: 2000, run: 0.5, speed: 1.0 }).unwrap_err().contains("0.5 s"));
     }
 }

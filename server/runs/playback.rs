@@ -13,16 +13,16 @@ use equipoise_physics::table::actuator_load::{Demand, Meter};
 
 use crate::api::scene::has_angle;
 use crate::api::shared::outcome::Outcome;
-use crate::compute::{Cancelled, Limit, OverBudget, Price, Turn};
+use crate::compute::{Cancelled, Limit, OverBudget, Price, TimeSlice};
 use crate::http::Problem;
 use crate::limits;
-use crate::live::server_message::Impact;
+use crate::live::server_message::ImpactMessage;
 use crate::runs::run::Run;
-use crate::runs::run_url::Asked;
+use crate::runs::run_url::RunRequest;
 
 /// Where a run is: before its coming impact, or at its end. Cheap to clone.
 #[derive(Debug, Clone)]
-pub struct Course {
+pub struct Playback {
     orbit: Orbit<Model>,
     /// The scene in force.
     scene: Arc<Scene>,
@@ -33,7 +33,7 @@ pub struct Course {
     last: u64,
 }
 
-impl Course {
+impl Playback {
     /// A run at its release; at its end, where there is not even a first contact.
     pub fn new(run: &Run) -> Self {
         Self::up_to(run, limits::LIVE_IMPACTS)
@@ -100,10 +100,10 @@ impl Course {
         (contact, price(&contact))
     }
 
-    /// [`Course::advance`], as it is told.
-    pub fn tell(&mut self, run: &Run) -> (Impact, Price) {
+    /// [`Playback::advance`], as it is told.
+    pub fn tell(&mut self, run: &Run) -> (ImpactMessage, Price) {
         let (contact, price) = self.advance(run);
-        (Impact::new(&self.orbit.body, self.has_angle, &contact), price)
+        (ImpactMessage::new(&self.orbit.body, self.has_angle, &contact), price)
     }
 
     fn replace(
@@ -132,7 +132,7 @@ fn price(contact: &Contact) -> Price {
 
 /// Why there is nothing to catch up with.
 #[derive(Debug)]
-pub enum NotCaughtUp {
+pub enum CatchUpError {
     /// It would cost too much.
     OverBudget(OverBudget),
     /// Nobody waits for it.
@@ -144,35 +144,35 @@ pub enum NotCaughtUp {
 ///
 /// # Errors
 /// Where that costs more than `limit`.
-pub fn catch_up(asked: &Asked, until: f64, limit: &Limit, turn: &Turn) -> Result<Course, NotCaughtUp> {
-    let Asked { run, from } = asked;
-    let mut course = Course::new(run);
+pub fn catch_up(request: &RunRequest, until: f64, limit: &Limit, slice: &TimeSlice) -> Result<Playback, CatchUpError> {
+    let RunRequest { run, from } = request;
+    let mut playback = Playback::new(run);
     let mut begin = None;
     let (mut spent, mut looked) = (Price::bounces(0), 0);
-    while let (Some(t), Some(n)) = (course.next_t(), course.next_n())
+    while let (Some(t), Some(n)) = (playback.next_t(), playback.next_n())
         && t <= until
     {
         if from.is_none_or(|from| n == from) {
-            begin = Some(course.clone());
+            begin = Some(playback.clone());
         }
         if from.is_some_and(|from| n >= from) {
             spent = spent.and(Price::bounces(limits::LIVE_IMPACT_PRICE));
         }
-        let (_, price) = course.advance(run);
-        spent = spent.and(price).within(limit).map_err(NotCaughtUp::OverBudget)?;
+        let (_, price) = playback.advance(run);
+        spent = spent.and(price).within(limit).map_err(CatchUpError::OverBudget)?;
         if spent.as_bounces() >= looked {
             looked = spent.as_bounces() + LOOK;
-            turn.check().map_err(|Cancelled| NotCaughtUp::Cancelled)?;
+            slice.check().map_err(|Cancelled| CatchUpError::Cancelled)?;
         }
     }
-    Ok(begin.unwrap_or(course))
+    Ok(begin.unwrap_or(playback))
 }
 
-impl From<NotCaughtUp> for Problem {
-    fn from(error: NotCaughtUp) -> Self {
+impl From<CatchUpError> for Problem {
+    fn from(error: CatchUpError) -> Self {
         match error {
-            NotCaughtUp::OverBudget(over) => over.into(),
-            NotCaughtUp::Cancelled => Cancelled.into(),
+            CatchUpError::OverBudget(over) => over.into(),
+            CatchUpError::Cancelled => Cancelled.into(),
         }
     }
 }
@@ -187,8 +187,8 @@ mod tests {
     const PLENTY: Limit = Limit { name: "work", most: 1_000_000, unit: "bounces" };
 
     fn contacts(run: &Run, count: usize) -> Vec<Contact> {
-        let mut course = Course::new(run);
-        std::iter::from_fn(|| course.next_n().map(|_| course.advance(run).0)).take(count).collect()
+        let mut playback = Playback::new(run);
+        std::iter::from_fn(|| playback.next_n().map(|_| playback.advance(run).0)).take(count).collect()
     }
 
     #[test]
@@ -244,33 +244,35 @@ mod tests {
         let run = case("case-1");
         let all = contacts(&run, 30);
         let until = all[19].t;
-        let begin =
-            |from| catch_up(&Asked { run: run.clone(), from }, until, &PLENTY, &Turn::alone()).unwrap().next_n();
+        let begin = |from| {
+            catch_up(&RunRequest { run: run.clone(), from }, until, &PLENTY, &TimeSlice::unbounded()).unwrap().next_n()
+        };
         assert_eq!(
             [begin(None), begin(Some(7)), begin(Some(20)), begin(Some(21)), begin(Some(25))].map(Option::unwrap),
             [20, 7, 20, 21, 21]
         );
-        let early = Asked { run: run.clone(), from: None };
-        assert_eq!(catch_up(&early, -5.0, &PLENTY, &Turn::alone()).unwrap().next_n(), Some(1));
+        let early = RunRequest { run: run.clone(), from: None };
+        assert_eq!(catch_up(&early, -5.0, &PLENTY, &TimeSlice::unbounded()).unwrap().next_n(), Some(1));
     }
 
     #[test]
     fn catching_up_has_a_price_and_telling_a_higher_one() {
         let limit = Limit { most: 100, ..PLENTY };
-        let ask = |from| Asked { run: case("case-1"), from };
+        let ask = |from| RunRequest { run: case("case-1"), from };
         let until = contacts(&case("case-1"), 200)[49].t;
-        assert!(catch_up(&ask(None), until, &limit, &Turn::alone()).is_ok());
-        let over = catch_up(&ask(Some(1)), until, &limit, &Turn::alone()).unwrap_err();
-        assert!(matches!(over, NotCaughtUp::OverBudget(_)));
-        assert!(catch_up(&ask(None), 1e6, &limit, &Turn::alone()).is_err());
+        assert!(catch_up(&ask(None), until, &limit, &TimeSlice::unbounded()).is_ok());
+        let over = catch_up(&ask(Some(1)), until, &limit, &TimeSlice::unbounded()).unwrap_err();
+        assert!(matches!(over, CatchUpError::OverBudget(_)));
+        assert!(catch_up(&ask(None), 1e6, &limit, &TimeSlice::unbounded()).is_err());
     }
 
     #[test]
     fn a_run_that_has_ended_is_told_from_its_last_impact() {
         let run = case("case-3");
-        let course = catch_up(&Asked { run: run.clone(), from: None }, 1e6, &PLENTY, &Turn::alone()).unwrap();
-        assert_eq!(course.next_n(), Some(49));
-        let course = catch_up(&Asked { run, from: Some(60) }, 1e6, &PLENTY, &Turn::alone()).unwrap();
-        assert_eq!(course.outcome().unwrap().kind, "sinking");
+        let playback =
+            catch_up(&RunRequest { run: run.clone(), from: None }, 1e6, &PLENTY, &TimeSlice::unbounded()).unwrap();
+        assert_eq!(playback.next_n(), Some(49));
+        let playback = catch_up(&RunRequest { run, from: Some(60) }, 1e6, &PLENTY, &TimeSlice::unbounded()).unwrap();
+        assert_eq!(playback.outcome().unwrap().kind, "sinking");
     }
 }

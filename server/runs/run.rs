@@ -1,6 +1,6 @@
 //! A run as a value: scene, clock and interventions. Whoever has it has the run, on any server.
 //!
-//! Not here: how it is written in a URL (`address`) and how its impacts are computed (`course`).
+//! Not here: how it is written in a URL (`run_url`) and how its impacts are computed (`playback`).
 
 use equipoise_physics::body::Kick;
 use equipoise_physics::scene::{Field, FieldError, Name, Scene, Value};

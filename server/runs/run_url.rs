@@ -12,7 +12,7 @@ use crate::http::request::scalar;
 use crate::http::request::scalar::{LARGEST_EXACT, Source};
 use crate::http::{Errors, Reader};
 use crate::limits;
-use crate::runs::clock::{Clock, Entry, SPEEDS};
+use crate::runs::clock::{Clock, ClockEntry, SPEEDS};
 use crate::runs::run::{KICK_SPEED, KICK_SPIN, Run, refusal};
 
 /// Where live runs are.
@@ -30,7 +30,7 @@ const CLOCK_ROOM: usize = limits::LIVE_CLOCK_ENTRIES * 100 + 40;
 
 /// What a client asks for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Asked {
+pub struct RunRequest {
     /// The run.
     pub run: Run,
     /// The first impact that it wants to see; none is the last one so far.
@@ -38,7 +38,7 @@ pub struct Asked {
 }
 
 /// Reads a run, released now, unix ms, unless it says when. None if something is wrong; then it is in the errors.
-pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<Asked> {
+pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<RunRequest> {
     let scene = read_scene(reader);
     let speed = reader.number("speed", SPEEDS, "").unwrap_or(1.0);
     let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
@@ -63,7 +63,7 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<Asked> {
             reader.errors().push(pointer, detail);
         }
     }
-    Some(Asked { run, from })
+    Some(RunRequest { run, from })
 }
 
 /// Reads a run that has no clock: a scene and what is done to it. None if something is wrong; then it is in the errors.
@@ -75,13 +75,13 @@ pub fn read_unclocked(reader: &mut Reader<'_, '_>) -> Option<Run> {
     Some(run)
 }
 
-fn read_interventions(reader: &mut Reader<'_, '_>) -> Vec<Option<Read>> {
+fn read_interventions(reader: &mut Reader<'_, '_>) -> Vec<Option<ReadIntervention>> {
     let mut interventions = Vec::new();
     reader.objects("interventions", limits::LIVE_INTERVENTIONS, |_, item| interventions.push(intervention(item)));
     interventions
 }
 
-fn apply_all(run: &mut Run, interventions: Vec<Option<Read>>, reader: &mut Reader<'_, '_>) {
+fn apply_all(run: &mut Run, interventions: Vec<Option<ReadIntervention>>, reader: &mut Reader<'_, '_>) {
     for (index, read) in interventions.into_iter().enumerate() {
         let Some((impact, set, kick)) = read else { continue };
         let pointer = format!("{}/{index}", reader.pointer_to("interventions"));
@@ -117,9 +117,9 @@ fn apply(
 /// Why a point mass cannot be turned.
 pub const NO_ANGLE: &str = "a point mass has no theta_dot; leave it out";
 
-type Read = (u64, Vec<(Name, FieldValue)>, Option<Kick>);
+type ReadIntervention = (u64, Vec<(Name, FieldValue)>, Option<Kick>);
 
-fn intervention(item: &mut Reader<'_, '_>) -> Option<Read> {
+fn intervention(item: &mut Reader<'_, '_>) -> Option<ReadIntervention> {
     item.require(&["impact"]);
     let impact = item.integer("impact", 1..=limits::LIVE_IMPACTS);
     let (source, pointer) = (item.source(), item.pointer_to("set"));
@@ -138,7 +138,7 @@ fn intervention(item: &mut Reader<'_, '_>) -> Option<Read> {
     Some((impact?, set?, kick.flatten()))
 }
 
-fn clock_entry(item: &mut Reader<'_, '_>) -> Option<Entry> {
+fn clock_entry(item: &mut Reader<'_, '_>) -> Option<ClockEntry> {
     item.require(&["wall", "run", "speed"]);
     let wall = item.integer("wall", 0..=LARGEST_EXACT);
     let run = item.number("run", RUN_TIMES, "s");
@@ -148,7 +148,7 @@ fn clock_entry(item: &mut Reader<'_, '_>) -> Option<Entry> {
         item.refuse("speed", format!("speed is {speed}; it must be {range}, or 0 for a pause"));
         return None;
     }
-    Some(Entry { wall: wall?, run: run?, speed })
+    Some(ClockEntry { wall: wall?, run: run?, speed })
 }
 
 /// Reads a kick: velocities to add, of which there is at least one.
@@ -276,19 +276,19 @@ mod tests {
 
     const NOW: u64 = LARGEST_EXACT;
 
-    fn read_url(url: &str) -> Result<Asked, Vec<(String, String)>> {
+    fn read_url(url: &str) -> Result<RunRequest, Vec<(String, String)>> {
         read_url_at(url, NOW)
     }
 
-    fn read_url_at(url: &str, now: u64) -> Result<Asked, Vec<(String, String)>> {
+    fn read_url_at(url: &str, now: u64) -> Result<RunRequest, Vec<(String, String)>> {
         let query = url.strip_prefix("/v1/live?").unwrap();
         let fields = query::unfold(query::parameters(query).unwrap()).unwrap();
         let mut errors = Errors::default();
         let mut reader = Reader::new(&fields, String::new(), Source::Query, &mut errors);
-        let asked = read(&mut reader, now);
+        let request = read(&mut reader, now);
         reader.finish();
         match errors.into_result() {
-            Ok(()) => Ok(asked.unwrap()),
+            Ok(()) => Ok(request.unwrap()),
             Err(problem) => Err(problem.into_errors().into_iter().map(|error| (error.pointer, error.detail)).collect()),
         }
     }
@@ -349,7 +349,7 @@ mod tests {
             if let Some(from) = from {
                 text += &format!("&from={from}");
             }
-            prop_assert_eq!(read_url(&text).unwrap(), Asked { run, from });
+            prop_assert_eq!(read_url(&text).unwrap(), RunRequest { run, from });
         }
     }
 
@@ -375,8 +375,8 @@ mod tests {
 
     #[test]
     fn the_defaults_are_now_at_normal_speed() {
-        let asked = read_url("/v1/live?preset=case-1").unwrap();
-        assert_eq!((asked.run.clock, asked.from), (Clock::new(NOW, 1.0), Some(1)));
+        let request = read_url("/v1/live?preset=case-1").unwrap();
+        assert_eq!((request.run.clock, request.from), (Clock::new(NOW, 1.0), Some(1)));
     }
 
     #[test]

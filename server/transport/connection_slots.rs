@@ -13,35 +13,35 @@ use crate::limits;
 
 /// The places for connections.
 #[derive(Debug)]
-pub(crate) struct Places {
+pub(crate) struct ConnectionSlots {
     most: usize,
     begin: Instant,
-    open: Mutex<HashMap<u64, Arc<Place>>>,
+    open: Mutex<HashMap<u64, Arc<ConnectionSlot>>>,
     next: AtomicU64,
     freed: Notify,
 }
 
 /// The place of one connection, as far as others may ask for it.
 #[derive(Debug)]
-pub(crate) struct Place {
+pub(crate) struct ConnectionSlot {
     peer: Peer,
     /// When the last byte went over it, ms after the beginning of time.
     moved_ms: AtomicU64,
     /// Whether its client waits for the server, and not the server for its client.
-    answers: AtomicBool,
+    is_answering: AtomicBool,
     end: Notify,
     begin: Instant,
 }
 
 /// A place that is taken; free again when it is dropped.
 #[derive(Debug)]
-pub(crate) struct Taken {
+pub(crate) struct SlotGuard {
     number: u64,
-    place: Arc<Place>,
-    of: Arc<Places>,
+    slot: Arc<ConnectionSlot>,
+    of: Arc<ConnectionSlots>,
 }
 
-impl Places {
+impl ConnectionSlots {
     pub(crate) fn new(most: usize) -> Arc<Self> {
         let begin = Instant::now();
         Arc::new(Self { most, begin, open: Mutex::default(), next: AtomicU64::new(0), freed: Notify::new() })
@@ -49,19 +49,19 @@ impl Places {
 
     /// A place for one more. If there is none, those give way whose clients have been waited for longest. Waits where
     /// everybody is being answered.
-    pub(crate) async fn take(self: &Arc<Self>, peer: Peer) -> Taken {
+    pub(crate) async fn acquire(self: &Arc<Self>, peer: Peer) -> SlotGuard {
         loop {
             let freed = self.freed.notified();
             {
                 let mut open = self.open();
                 if open.len() < self.most {
                     let number = self.next.fetch_add(1, Ordering::Relaxed);
-                    let place = Arc::new(Place::new(peer, self.begin));
-                    open.insert(number, place.clone());
-                    return Taken { number, place, of: self.clone() };
+                    let slot = Arc::new(ConnectionSlot::new(peer, self.begin));
+                    open.insert(number, slot.clone());
+                    return SlotGuard { number, slot, of: self.clone() };
                 }
-                for place in giving_way(open.values(), self.most.div_ceil(limits::CONNECTIONS_AT_ONCE)) {
-                    place.end.notify_one();
+                for slot in eviction_candidates(open.values(), self.most.div_ceil(limits::CONNECTIONS_AT_ONCE)) {
+                    slot.end.notify_one();
                 }
             }
             // Again after a while in any case: one that was being answered may be idle now.
@@ -80,64 +80,67 @@ impl Places {
         }
     }
 
-    fn open(&self) -> MutexGuard<'_, HashMap<u64, Arc<Place>>> {
+    fn open(&self) -> MutexGuard<'_, HashMap<u64, Arc<ConnectionSlot>>> {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 /// So many connections to close, of those whose clients are waited for: where a peer has more than others its own go first, and of
 /// one peer's those over which nothing has gone for longest.
-fn giving_way<'a>(open: impl Iterator<Item = &'a Arc<Place>>, count: usize) -> Vec<&'a Arc<Place>> {
-    let mut peers: HashMap<Peer, Vec<(u64, &Arc<Place>)>> = HashMap::new();
-    for place in open {
+fn eviction_candidates<'a>(
+    open: impl Iterator<Item = &'a Arc<ConnectionSlot>>,
+    count: usize,
+) -> Vec<&'a Arc<ConnectionSlot>> {
+    let mut peers: HashMap<Peer, Vec<(u64, &Arc<ConnectionSlot>)>> = HashMap::new();
+    for slot in open {
         let idle_since =
-            if place.answers.load(Ordering::Relaxed) { u64::MAX } else { place.moved_ms.load(Ordering::Relaxed) };
-        peers.entry(place.peer).or_default().push((idle_since, place));
+            if slot.is_answering.load(Ordering::Relaxed) { u64::MAX } else { slot.moved_ms.load(Ordering::Relaxed) };
+        peers.entry(slot.peer).or_default().push((idle_since, slot));
     }
     let mut ranked = Vec::new();
-    for places in peers.values_mut() {
-        places.sort_unstable_by_key(|(idle_since, _)| std::cmp::Reverse(*idle_since));
-        let idle = places.iter().enumerate().filter(|(_, (idle_since, _))| *idle_since != u64::MAX);
-        ranked.extend(idle.map(|(rank, (_, place))| (rank, *place)));
+    for slots in peers.values_mut() {
+        slots.sort_unstable_by_key(|(idle_since, _)| std::cmp::Reverse(*idle_since));
+        let idle = slots.iter().enumerate().filter(|(_, (idle_since, _))| *idle_since != u64::MAX);
+        ranked.extend(idle.map(|(rank, (_, slot))| (rank, *slot)));
     }
     ranked.sort_unstable_by_key(|(rank, _)| std::cmp::Reverse(*rank));
     ranked.truncate(count);
-    ranked.into_iter().map(|(_, place)| place).collect()
+    ranked.into_iter().map(|(_, slot)| slot).collect()
 }
 
-impl Place {
+impl ConnectionSlot {
     fn new(peer: Peer, begin: Instant) -> Self {
-        let place =
-            Self { peer, moved_ms: AtomicU64::new(0), answers: AtomicBool::new(false), end: Notify::new(), begin };
-        place.moved();
-        place
+        let slot =
+            Self { peer, moved_ms: AtomicU64::new(0), is_answering: AtomicBool::new(false), end: Notify::new(), begin };
+        slot.touch();
+        slot
     }
 
     /// Bytes went over it.
-    pub(crate) fn moved(&self) {
+    pub(crate) fn touch(&self) {
         let ms = u64::try_from(self.begin.elapsed().as_millis()).unwrap_or(u64::MAX - 1);
         self.moved_ms.store(ms, Ordering::Relaxed);
     }
 
     /// Whether its client waits for the server, from now on.
-    pub(crate) fn answers(&self, answers: bool) {
-        self.answers.store(answers, Ordering::Relaxed);
+    pub(crate) fn set_answering(&self, answers: bool) {
+        self.is_answering.store(answers, Ordering::Relaxed);
     }
 }
 
-impl Taken {
+impl SlotGuard {
     /// The place.
-    pub(crate) fn place(&self) -> &Arc<Place> {
-        &self.place
+    pub(crate) fn slot(&self) -> &Arc<ConnectionSlot> {
+        &self.slot
     }
 
     /// Waits until it has to give way.
-    pub(crate) async fn gives_way(&self) {
-        self.place.end.notified().await;
+    pub(crate) async fn evicted(&self) {
+        self.slot.end.notified().await;
     }
 }
 
-impl Drop for Taken {
+impl Drop for SlotGuard {
     fn drop(&mut self) {
         self.of.open().remove(&self.number);
         self.of.freed.notify_waiters();
@@ -153,20 +156,19 @@ mod tests {
         Peer::at([192, 0, 2, last].into())
     }
 
-    fn place(last: u8, moved_ms: u64, answers: bool) -> Arc<Place> {
-        let place = Place::new(peer(last), Instant::now());
-        place.moved_ms.store(moved_ms, Ordering::Relaxed);
-        place.answers(answers);
-        Arc::new(place)
+    fn slot(last: u8, moved_ms: u64, answers: bool) -> Arc<ConnectionSlot> {
+        let slot = ConnectionSlot::new(peer(last), Instant::now());
+        slot.moved_ms.store(moved_ms, Ordering::Relaxed);
+        slot.set_answering(answers);
+        Arc::new(slot)
     }
 
     #[test]
-    fn the_longest_idle_of_who_has_most_gives_way_and_nobody_who_is_answered() {
-        let open =
-            [place(1, 1, false), place(2, 30, false), place(2, 10, true), place(2, 20, false), place(2, 40, false)];
+    fn the_longest_idle_of_who_has_most_evicted_and_nobody_who_is_answered() {
+        let open = [slot(1, 1, false), slot(2, 30, false), slot(2, 10, true), slot(2, 20, false), slot(2, 40, false)];
         let chosen = |count| -> Vec<(Peer, u64)> {
-            let chosen = giving_way(open.iter(), count);
-            chosen.iter().map(|place| (place.peer, place.moved_ms.load(Ordering::Relaxed))).collect()
+            let chosen = eviction_candidates(open.iter(), count);
+            chosen.iter().map(|slot| (slot.peer, slot.moved_ms.load(Ordering::Relaxed))).collect()
         };
         assert_eq!(chosen(2), [(peer(2), 20), (peer(2), 30)]);
         let all = chosen(9);
@@ -177,22 +179,22 @@ mod tests {
 
     #[tokio::test]
     async fn one_more_waits_until_somebody_is_idle() {
-        let places = Places::new(2);
-        let (first, second) = (places.take(peer(1)).await, places.take(peer(1)).await);
-        for taken in [&first, &second] {
-            taken.place().answers(true);
+        let slots = ConnectionSlots::new(2);
+        let (first, second) = (slots.acquire(peer(1)).await, slots.acquire(peer(1)).await);
+        for guard in [&first, &second] {
+            guard.slot().set_answering(true);
         }
-        let mut third = Box::pin(places.take(peer(2)));
+        let mut third = Box::pin(slots.acquire(peer(2)));
         assert!((&mut third).now_or_never().is_none());
-        assert!(first.gives_way().now_or_never().is_none());
-        first.place().answers(false);
+        assert!(first.evicted().now_or_never().is_none());
+        first.slot().set_answering(false);
         let gone = async {
-            first.gives_way().await;
+            first.evicted().await;
             drop(first);
         };
         let (third, ()) = tokio::join!(third, gone);
-        assert!(second.gives_way().now_or_never().is_none());
+        assert!(second.evicted().now_or_never().is_none());
         drop((second, third));
-        places.all_free().await;
+        slots.all_free().await;
     }
 }

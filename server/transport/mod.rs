@@ -4,9 +4,9 @@
 
 mod connection_slots;
 
-mod body;
-mod stream;
-mod wire;
+mod client_socket;
+mod guarded_stream;
+mod request_body;
 
 use std::convert::Infallible;
 use std::io::{self, Write};
@@ -31,14 +31,14 @@ use tower::ServiceExt;
 use crate::compute::Peer;
 use crate::limits;
 use crate::limits::Limits;
-use crate::transport::connection_slots::Places;
-use body::Awaited;
-use stream::{Stream, told};
-use wire::{Wire, attended};
+use crate::transport::connection_slots::ConnectionSlots;
+use client_socket::{ClientSocket, until_client_leaves};
+use guarded_stream::{GuardedStream, full_error_response};
+use request_body::RequestBody;
 
 /// Serves until `stop`, then waits for the answers under way, but not for ever.
 pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop: impl Future<Output = ()>) {
-    let places = Places::new(limits.connections);
+    let slots = ConnectionSlots::new(limits.connections);
     let (closing, _) = watch::channel(false);
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new())
@@ -52,29 +52,29 @@ pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop:
         let next = async {
             let (socket, from) = accept(&listener).await;
             let peer = Peer::from(from);
-            (socket, from, peer, places.take(peer).await)
+            (socket, from, peer, slots.acquire(peer).await)
         };
-        let (socket, from, peer, taken) = tokio::select! {
+        let (socket, from, peer, guard) = tokio::select! {
             next = next => next,
             () = &mut stop => break,
         };
         let (receiving, sending) = socket.into_split();
-        let wire = Wire::new(sending);
-        let stream = Stream::new(receiving, wire.clone(), taken.place().clone(), limits.stall_time);
-        let (router, place, answering) = (router.clone(), taken.place().clone(), wire.clone());
+        let client = ClientSocket::new(sending);
+        let stream = GuardedStream::new(receiving, client.clone(), guard.slot().clone(), limits.stall_time);
+        let (router, slot, answering) = (router.clone(), guard.slot().clone(), client.clone());
         let service = service_fn(move |mut request: Request<Incoming>| {
             let extensions = request.extensions_mut();
             extensions.insert(peer);
             extensions.insert(ConnectInfo(from));
-            let (router, place, wire) = (router.clone(), place.clone(), answering.clone());
+            let (router, slot, client) = (router.clone(), slot.clone(), answering.clone());
             async move {
                 let version = request.version();
-                place.answers(true);
-                wire.begins(version);
-                let request = request.map(|body| Body::new(Awaited::new(body, place.clone())));
+                slot.set_answering(true);
+                client.start_response(version);
+                let request = request.map(|body| Body::new(RequestBody::new(body, slot.clone())));
                 let answer = router.oneshot(request).await;
-                place.answers(false);
-                Ok::<_, Infallible>(wire.sends(version, answer.unwrap_or_else(|never| match never {})))
+                slot.set_answering(false);
+                Ok::<_, Infallible>(client.send_response(version, answer.unwrap_or_else(|never| match never {})))
             }
         });
         let connection = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
@@ -83,22 +83,22 @@ pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop:
             let mut connection = pin!(connection);
             let closes = async { drop(closing.wait_for(|closing| *closing).await) };
             let ended = tokio::select! {
-                ended = attended(connection.as_mut(), &wire) => ended,
-                () = taken.gives_way() => return,
+                ended = until_client_leaves(connection.as_mut(), &client) => ended,
+                () = guard.evicted() => return,
                 () = closes => {
                     connection.as_mut().graceful_shutdown();
-                    attended(connection.as_mut(), &wire).await
+                    until_client_leaves(connection.as_mut(), &client).await
                 }
             };
             // Another error is a client that left or broke the protocol; it has been told what can be told.
-            if let (Some(Err(error)), Some(status)) = (ended, wire.bare_error()) {
-                wire.end_with(&told(status, &error), stall_time).await;
+            if let (Some(Err(error)), Some(status)) = (ended, client.bare_error()) {
+                client.send_last(&full_error_response(status, &error), stall_time).await;
             }
         });
     }
     drop(listener);
     closing.send_replace(true);
-    let _ = timeout(limits.shutdown_time, places.all_free()).await;
+    let _ = timeout(limits.shutdown_time, slots.all_free()).await;
 }
 
 /// Raises how many files the process may open as far as it may, and lowers the numbers of connections and of live runs to what
@@ -150,7 +150,7 @@ fn is_of_one_connection(error: &io::Error) -> bool {
 mod tests {
     use super::*;
     use crate::api::App;
-    use crate::compute::{Cancelled, Pool, Price, Turn};
+    use crate::compute::{Cancelled, Pool, Price, TimeSlice};
     use crate::config::Config;
     use crate::http::Problem;
     use crate::router::router;
@@ -231,9 +231,9 @@ mod tests {
         let pool = Pool::new(1, &Limits::default());
         let work = get(async move || {
             let dear = Price::bounces(limits::INLINE_BOUNCES + 1);
-            let endless = move |turn: &Turn| -> Result<String, Problem> {
+            let endless = move |slice: &TimeSlice| -> Result<String, Problem> {
                 begun.send(()).unwrap();
-                while turn.go_on() {
+                while slice.should_continue() {
                     std::thread::yield_now();
                 }
                 ended.send(()).unwrap();

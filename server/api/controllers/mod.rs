@@ -23,7 +23,7 @@ impl ComputedResource for Controllers {
     type Request = ControllerRequest;
     const WORK: Work<Self> = Work::Pure {
         canonical: ControllerRequest::canonical,
-        compute: |request, format, turn, _| format.write(&ControllerAnswer::compute(request)?, turn),
+        compute: |request, format, slice, _| format.write(&ControllerAnswer::compute(request)?, slice),
     };
 
     fn read(reader: &mut Reader<'_, '_>) -> Option<ControllerRequest> {

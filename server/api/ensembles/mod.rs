@@ -12,8 +12,8 @@ use crate::api::ensembles::request::EnsembleRequest;
 use crate::api::formats::ProgressFormat;
 use crate::api::resource::{ComputedResource, Work};
 use crate::api::shared::progress::Progress;
-use crate::compute::{OverBudget, Price, Turn, Turns};
-use crate::http::{Format, Outlet, Problem, Reader};
+use crate::compute::{OverBudget, Price, TimeSlice, TimeSlices};
+use crate::http::{BodyWriter, Format, Problem, Reader};
 use crate::limits;
 use crate::limits::Limits;
 
@@ -26,7 +26,7 @@ impl ComputedResource for Ensembles {
     type Format = ProgressFormat;
     type Request = EnsembleRequest;
     const WORK: Work<Self> =
-        Work::InTurns { canonical: EnsembleRequest::canonical, streamed: &[Format::Progress], compute };
+        Work::InSlices { canonical: EnsembleRequest::canonical, streamed: &[Format::Progress], compute };
 
     fn read(reader: &mut Reader<'_, '_>) -> Option<EnsembleRequest> {
         EnsembleRequest::read(reader)
@@ -41,17 +41,17 @@ impl ComputedResource for Ensembles {
 fn compute(
     request: &EnsembleRequest,
     format: ProgressFormat,
-    turns: &Turns,
-    out: &mut Outlet,
+    slices: &TimeSlices,
+    out: &mut BodyWriter,
     bounces: &Counter,
 ) -> Result<(), Problem> {
     let ensemble = request.ensemble;
     // The blocks depend on the request alone, never on the machine.
     let block = (limits::ENSEMBLE_BLOCK_WORK / ensemble.impacts).max(1);
     let (numbers, all) = (request.numbers(), request.runs());
-    let compute = |number: usize, turn: &Turn| {
+    let compute = |number: usize, slice: &TimeSlice| {
         let first = numbers.start + number as u64 * block;
-        let runs = ensemble.runs(first..(first + block).min(numbers.end), &mut || turn.go_on())?;
+        let runs = ensemble.runs(first..(first + block).min(numbers.end), &mut || slice.should_continue())?;
         bounces.inc_by(runs.ends.iter().map(|end| end.impacts).sum());
         Some(runs)
     };
@@ -62,25 +62,25 @@ fn compute(
         }
     };
     tell(0);
-    turns.spread(all.div_ceil(block) as usize, compute, |others| {
+    slices.parallel_map(all.div_ceil(block) as usize, compute, |others| {
         runs.append(others);
         tell(runs.ends.len() as u64);
     })?;
     let angles = std::mem::take(&mut runs.angles);
     let (mut sorted, mut found) = (Vec::with_capacity(angles.len()), Vec::with_capacity(angles.len()));
-    let sort = |place: usize, _: &Turn| {
+    let sort = |place: usize, _: &TimeSlice| {
         let mut angles = angles[place].clone();
         angles.sort_unstable_by(f64::total_cmp);
         let quantiles = quantiles(&angles);
         // Angles may be many, so they are kept only for an answer that has them.
         Some((if request.angles { angles } else { Vec::new() }, quantiles))
     };
-    turns.spread(angles.len(), sort, |(angles, quantiles)| {
+    slices.parallel_map(angles.len(), sort, |(angles, quantiles)| {
         sorted.push(angles);
         found.push(quantiles);
     })?;
-    turns.take(|turn| {
+    slices.run_one(|slice| {
         let answer = EnsembleAnswer::new(request, &runs, sorted, &found);
-        Ok(out.send_whole(format.write(&answer, turn)?, turn)?)
+        Ok(out.send_whole(format.write(&answer, slice)?, slice)?)
     })?
 }

@@ -21,10 +21,10 @@ impl ComputedResource for Jacobians {
     type Request = JacobianRequest;
     const WORK: Work<Self> = Work::Pure {
         canonical: JacobianRequest::canonical,
-        compute: |request, format, turn, bounces| {
-            let answer = JacobianAnswer::compute(request, || turn.go_on())?;
+        compute: |request, format, slice, bounces| {
+            let answer = JacobianAnswer::compute(request, || slice.should_continue())?;
             bounces.inc_by(request.period);
-            format.write(&answer, turn)
+            format.write(&answer, slice)
         },
     };
 

@@ -21,10 +21,10 @@ impl ComputedResource for Ladder {
     type Request = LadderRequest;
     const WORK: Work<Self> = Work::Pure {
         canonical: LadderRequest::canonical,
-        compute: |request, format, turn, bounces| {
-            let answer = LadderAnswer::compute(request, || turn.go_on()).ok_or(Cancelled)?;
+        compute: |request, format, slice, bounces| {
+            let answer = LadderAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
             bounces.inc_by(answer.bounces());
-            format.write(&answer, turn)
+            format.write(&answer, slice)
         },
     };
 

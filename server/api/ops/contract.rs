@@ -7,13 +7,13 @@ use axum::http::HeaderMap;
 use axum::routing::get;
 
 use crate::api::app::App;
-use crate::http::response::static_asset::Fixed;
+use crate::http::response::static_asset::StaticAsset;
 
-static YAML: LazyLock<Fixed> =
-    LazyLock::new(|| Fixed::new("application/yaml", include_bytes!("../../../openapi.yaml").as_slice()));
+static YAML: LazyLock<StaticAsset> =
+    LazyLock::new(|| StaticAsset::new("application/yaml", include_bytes!("../../../openapi.yaml").as_slice()));
 
-static JSON: LazyLock<Fixed> = LazyLock::new(|| {
-    Fixed::new("application/json", include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json")).as_slice())
+static JSON: LazyLock<StaticAsset> = LazyLock::new(|| {
+    StaticAsset::new("application/json", include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json")).as_slice())
 });
 
 /// The two of them.

@@ -20,11 +20,11 @@ use crate::compute::Pool;
 #[derive(Debug)]
 pub struct Metrics {
     registry: Registry,
-    requests: Family<Request, Counter>,
-    durations: Family<Place, Histogram, fn() -> Histogram>,
+    requests: Family<RequestLabels, Counter>,
+    durations: Family<RouteLabels, Histogram, fn() -> Histogram>,
     /// Bounces computed for answers and live runs. Whoever computes them counts them.
     pub bounces: Counter,
-    /// Live runs at the moment (`compute::Counted` keeps it).
+    /// Live runs at the moment (`compute::GaugeGuard` keeps it).
     pub live_sessions: Gauge,
     /// How late live runs look for the impacts that are due, s.
     pub live_lags: Histogram,
@@ -34,14 +34,14 @@ pub struct Metrics {
 const BUCKETS_S: [f64; 11] = [1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
-struct Request {
+struct RequestLabels {
     method: String,
     route: String,
     status: u16,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
-struct Place {
+struct RouteLabels {
     method: String,
     route: String,
 }
@@ -49,7 +49,7 @@ struct Place {
 impl Metrics {
     /// Nothing counted yet. The load of `pool` is among what is shown.
     pub fn new(pool: &Pool) -> Self {
-        let durations: Family<Place, Histogram, fn() -> Histogram> =
+        let durations: Family<RouteLabels, Histogram, fn() -> Histogram> =
             Family::new_with_constructor(|| Histogram::new(BUCKETS_S));
         let (requests, bounces, live_sessions) = (Family::default(), Counter::default(), Gauge::default());
         let live_lags = Histogram::new(BUCKETS_S);
@@ -66,14 +66,14 @@ impl Metrics {
     }
 
     /// Counts one answered request. `route` is the template, not the path: clients do not choose how many there are.
-    pub fn answered(&self, method: &str, route: &str, status: u16, duration: Duration) {
+    pub fn record(&self, method: &str, route: &str, status: u16, duration: Duration) {
         let method = match method {
             "GET" | "HEAD" | "POST" | "PUT" | "PATCH" | "DELETE" | "OPTIONS" => method,
             _ => "other",
         };
-        let place = Place { method: method.to_owned(), route: route.to_owned() };
-        self.durations.get_or_create(&place).observe(duration.as_secs_f64());
-        self.requests.get_or_create(&Request { method: place.method, route: place.route, status }).inc();
+        let labels = RouteLabels { method: method.to_owned(), route: route.to_owned() };
+        self.durations.get_or_create(&labels).observe(duration.as_secs_f64());
+        self.requests.get_or_create(&RequestLabels { method: labels.method, route: labels.route, status }).inc();
     }
 
     /// All of it as OpenMetrics.
@@ -118,8 +118,8 @@ mod tests {
     #[test]
     fn what_is_counted_is_shown() {
         let metrics = Metrics::new(&Pool::new(1, &crate::limits::Limits::default()));
-        metrics.answered("GET", "/v1/scenes", 200, Duration::from_millis(1));
-        metrics.answered("BREW", "none", 405, Duration::from_millis(1));
+        metrics.record("GET", "/v1/scenes", 200, Duration::from_millis(1));
+        metrics.record("BREW", "none", 405, Duration::from_millis(1));
         metrics.bounces.inc_by(7);
         let text = metrics.to_open_metrics().unwrap();
         for line in [

@@ -12,7 +12,7 @@ use tower_http::set_header::SetResponseHeaderLayer;
 
 use crate::api::app::App;
 use crate::http::Problem;
-use crate::http::response::static_asset::Fixed;
+use crate::http::response::static_asset::StaticAsset;
 
 include!(concat!(env!("OUT_DIR"), "/assets.rs"));
 
@@ -28,11 +28,11 @@ const EMBED_POLICY: HeaderValue =
 pub fn routes() -> Router<App> {
     let mut router = Router::new();
     for (name, bytes) in ASSETS.iter().copied() {
-        let fixed = Arc::new(Fixed::new(media_type(name), bytes));
+        let fixed = Arc::new(StaticAsset::new(media_type(name), bytes));
         let handler = get(async move |State(app): State<App>, headers: HeaderMap| match &app.config.web {
             None => fixed.answer(&headers),
             Some(folder) => match tokio::task::block_in_place(|| std::fs::read(folder.join(name))) {
-                Ok(bytes) => Fixed::new(media_type(name), bytes).answer(&headers),
+                Ok(bytes) => StaticAsset::new(media_type(name), bytes).answer(&headers),
                 Err(error) => Err(Problem::not_found(format!("{name}: {error}"))),
             },
         });

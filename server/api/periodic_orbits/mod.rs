@@ -22,10 +22,10 @@ impl ComputedResource for PeriodicOrbits {
     type Request = PeriodicOrbitRequest;
     const WORK: Work<Self> = Work::Pure {
         canonical: PeriodicOrbitRequest::canonical,
-        compute: |request, format, turn, bounces| {
-            let answer = PeriodicOrbitAnswer::compute(request, || turn.go_on())?;
+        compute: |request, format, slice, bounces| {
+            let answer = PeriodicOrbitAnswer::compute(request, || slice.should_continue())?;
             bounces.inc_by(answer.bounces());
-            format.write(&answer, turn)
+            format.write(&answer, slice)
         },
     };
 

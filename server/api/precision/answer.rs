@@ -10,7 +10,7 @@ use crate::api::scene::Resolved;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::comparison::{Chart, Method, Point, Reference, Setting, chart};
-use crate::compute::{Cancelled, Turn};
+use crate::compute::{Cancelled, TimeSlice};
 
 #[derive(Debug, Serialize)]
 pub(super) struct MethodAnswer {
@@ -75,10 +75,10 @@ impl<'a> PrecisionAnswer<'a> {
     pub fn compute(
         request: &'a PrecisionRequest,
         progress: &mut dyn FnMut(u64, u64),
-        turn: &Turn,
+        slice: &TimeSlice,
     ) -> Result<Self, Cancelled> {
         let scene = &request.scene;
-        let chart = chart(scene, request.impacts, &request.methods, progress, turn)?;
+        let chart = chart(scene, request.impacts, &request.methods, progress, slice)?;
         let named = |method: &Method| MethodAnswer { name: method.name, title: method.title, about: method.about };
         let mut notes = vec![
             "cost is measured on this machine while it serves others; steps, evaluations and errors are the same everywhere"

@@ -23,16 +23,16 @@ impl ComputedResource for Precision {
     type Request = PrecisionRequest;
     const WORK: Work<Self> = Work::Measured {
         streamed: &[Format::Progress],
-        compute: |request, format, turn, out, bounces| {
+        compute: |request, format, slice, out, bounces| {
             let mut lines = Progress::default();
             let mut tell = |done, of| {
                 if format == ProgressFormat::Progress {
                     out.send(lines.line(done, of));
                 }
             };
-            let answer = PrecisionAnswer::compute(request, &mut tell, turn)?;
+            let answer = PrecisionAnswer::compute(request, &mut tell, slice)?;
             bounces.inc_by(answer.bounces());
-            Ok(out.send_whole(format.write(&answer, turn)?, turn)?)
+            Ok(out.send_whole(format.write(&answer, slice)?, slice)?)
         },
     };
 

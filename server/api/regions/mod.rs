@@ -12,8 +12,8 @@ use crate::api::regions::answer::RegionAnswer;
 use crate::api::regions::request::RegionRequest;
 use crate::api::regions::rows::{RowFormat, Rows};
 use crate::api::resource::{ComputedResource, Work};
-use crate::compute::{Cancelled, OverBudget, Price, Turn, Turns};
-use crate::http::{Format, Outlet, Problem, Reader};
+use crate::compute::{Cancelled, OverBudget, Price, TimeSlice, TimeSlices};
+use crate::http::{BodyWriter, Format, Problem, Reader};
 use crate::limits::Limits;
 
 /// The resource.
@@ -24,25 +24,26 @@ impl ComputedResource for Regions {
     const NAME: &'static str = "regions";
     type Format = ChartFormat;
     type Request = RegionRequest;
-    const WORK: Work<Self> = Work::InTurns {
+    const WORK: Work<Self> = Work::InSlices {
         canonical: RegionRequest::canonical,
         streamed: &[Format::Csv, Format::Ndjson],
-        compute: |request, format, turns, out, bounces| {
+        compute: |request, format, slices, out, bounces| {
             let (cells, block) = (request.numbers(), request.block_cells());
             let blocks = cells.len().div_ceil(block);
-            let compute = |number: usize, turn: &Turn| {
+            let compute = |number: usize, slice: &TimeSlice| {
                 let first = cells.start + number * block;
-                let computed = request.region.cells(first..(first + block).min(cells.end), &mut || turn.go_on())?;
+                let computed =
+                    request.region.cells(first..(first + block).min(cells.end), &mut || slice.should_continue())?;
                 bounces.inc_by(request.bounces_of(&computed));
                 Some(computed)
             };
-            let spread = |done: &mut (dyn FnMut(Vec<Cell>) + Send)| turns.spread(blocks, compute, done);
+            let spread = |done: &mut (dyn FnMut(Vec<Cell>) + Send)| slices.parallel_map(blocks, compute, done);
             match format {
                 ChartFormat::Csv => send_rows(Rows::new(*request, RowFormat::Csv), out, spread),
                 ChartFormat::Ndjson => send_rows(Rows::new(*request, RowFormat::Ndjson), out, spread),
-                ChartFormat::Json => send_whole(request, FigureFormat::Json, turns, out, spread),
-                ChartFormat::Svg => send_whole(request, FigureFormat::Svg, turns, out, spread),
-                ChartFormat::Png => send_whole(request, FigureFormat::Png, turns, out, spread),
+                ChartFormat::Json => send_whole(request, FigureFormat::Json, slices, out, spread),
+                ChartFormat::Svg => send_whole(request, FigureFormat::Svg, slices, out, spread),
+                ChartFormat::Png => send_whole(request, FigureFormat::Png, slices, out, spread),
             }
         },
     };
@@ -60,7 +61,7 @@ impl ComputedResource for Regions {
 /// Sends the cells row by row, as they are computed by `spread`.
 fn send_rows(
     mut rows: Rows,
-    out: &mut Outlet,
+    out: &mut BodyWriter,
     spread: impl FnOnce(&mut (dyn FnMut(Vec<Cell>) + Send)) -> Result<(), Cancelled>,
 ) -> Result<(), Problem> {
     out.send(rows.begin());
@@ -73,14 +74,14 @@ fn send_rows(
 fn send_whole(
     request: &RegionRequest,
     format: FigureFormat,
-    turns: &Turns,
-    out: &mut Outlet,
+    slices: &TimeSlices,
+    out: &mut BodyWriter,
     spread: impl FnOnce(&mut (dyn FnMut(Vec<Cell>) + Send)) -> Result<(), Cancelled>,
 ) -> Result<(), Problem> {
     let mut all = Vec::with_capacity(request.numbers().len());
     spread(&mut |cells| all.extend(cells))?;
-    turns.take(|turn| {
-        let answer = RegionAnswer::new(*request, all, || turn.go_on()).ok_or(Cancelled)?;
-        Ok(out.send_whole(format.write(&answer, turn)?, turn)?)
+    slices.run_one(|slice| {
+        let answer = RegionAnswer::new(*request, all, || slice.should_continue()).ok_or(Cancelled)?;
+        Ok(out.send_whole(format.write(&answer, slice)?, slice)?)
     })?
 }

@@ -18,8 +18,8 @@ use serde::Serialize;
 use crate::api::app::App;
 use crate::api::scene::fields::Fields;
 use crate::api::shared;
-use crate::compute::{Cancelled, Price, Turn};
-use crate::http::{Ask, Format, Problem, Resource};
+use crate::compute::{Cancelled, Price, TimeSlice};
+use crate::http::{ApiRequest, Format, Problem, Resource};
 
 pub use merge::{build_scene, read_value};
 pub use price::{bounce_price, has_angle};
@@ -34,43 +34,47 @@ pub fn routes() -> Router<App> {
         .route("/v1/fields", get(fields))
 }
 
-async fn scenes(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
+async fn scenes(State(app): State<App>, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
     #[derive(Serialize)]
     struct Scenes {
         scenes: Vec<&'static presets::Shown>,
     }
     let price = presets::all().iter().map(presets::Preset::price).sum();
-    fixed(&app, &ask, "scenes", price, |turn| {
-        let go_on = || turn.go_on();
+    fixed(&app, &api_request, "scenes", price, |slice| {
+        let go_on = || slice.should_continue();
         Some(Scenes { scenes: presets::all().iter().map(|preset| preset.shown(&go_on)).collect::<Option<_>>()? })
     })
     .await
 }
 
-async fn scene(State(app): State<App>, Path(name): Path<String>, ask: Ask) -> Result<Response<Body>, Problem> {
+async fn scene(
+    State(app): State<App>,
+    Path(name): Path<String>,
+    api_request: ApiRequest,
+) -> Result<Response<Body>, Problem> {
     let Some(preset) = presets::find(&name) else {
         let names = presets::names().join(", ");
         return Err(Problem::not_found(format!("there is no scene of this name; there are {names}")));
     };
     let price = preset.price();
-    fixed(&app, &ask, &format!("scenes/{name}"), price, |turn| preset.shown(&|| turn.go_on())).await
+    fixed(&app, &api_request, &format!("scenes/{name}"), price, |slice| preset.shown(&|| slice.should_continue())).await
 }
 
-async fn fields(State(app): State<App>, ask: Ask) -> Result<Response<Body>, Problem> {
-    fixed(&app, &ask, "fields", 0, |_| Some(Fields::all())).await
+async fn fields(State(app): State<App>, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
+    fixed(&app, &api_request, "fields", 0, |_| Some(Fields::all())).await
 }
 
 /// Answers with a value that depends on the build alone. `answer` returns None when the client has gone.
 async fn fixed<T: Serialize>(
     app: &App,
-    ask: &Ask,
+    api_request: &ApiRequest,
     canonical: &str,
     price: u64,
-    answer: impl FnOnce(&Turn) -> Option<T> + Clone + Send + 'static,
+    answer: impl FnOnce(&TimeSlice) -> Option<T> + Clone + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
     const RESOURCE: Resource = Resource { name: "fixed", formats: &[Format::Json] };
-    ask.read(|_| Some(()))?;
+    api_request.read(|_| Some(()))?;
     let price = Price::bounces(price);
-    let compute = move |_, turn: &Turn| shared::write::json(&answer(turn).ok_or(Cancelled)?, turn);
-    ask.respond(&app.pool, &RESOURCE, canonical.as_bytes(), price, compute).await
+    let compute = move |_, slice: &TimeSlice| shared::write::json(&answer(slice).ok_or(Cancelled)?, slice);
+    api_request.respond(&app.pool, &RESOURCE, canonical.as_bytes(), price, compute).await
 }

@@ -6,28 +6,28 @@ use serde::Serialize;
 use crate::api::scene::Resolved;
 use crate::api::shared::table::Table;
 use crate::charts::{NoPixels, png};
-use crate::compute::{Cancelled, Turn};
+use crate::compute::{Cancelled, TimeSlice};
 use crate::http::Problem;
-use crate::http::output::written;
+use crate::http::output::write_to_memory;
 
 /// An answer as JSON.
-pub(crate) fn json(answer: &impl Serialize, turn: &Turn) -> Result<Vec<u8>, Problem> {
-    written(&|| turn.go_on(), |out| Ok(serde_json::to_writer(out, answer)?))
+pub(crate) fn json(answer: &impl Serialize, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+    write_to_memory(&|| slice.should_continue(), |out| Ok(serde_json::to_writer(out, answer)?))
 }
 
 /// A table as CSV.
-pub(crate) fn csv(table: &Table, turn: &Turn) -> Result<Vec<u8>, Problem> {
-    written(&|| turn.go_on(), |out| table.write_csv(out))
+pub(crate) fn csv(table: &Table, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+    write_to_memory(&|| slice.should_continue(), |out| table.write_csv(out))
 }
 
 /// A table as NDJSON, with `end` in its last line.
-pub(crate) fn ndjson(table: &Table, end: &impl Serialize, turn: &Turn) -> Result<Vec<u8>, Problem> {
-    written(&|| turn.go_on(), |out| table.write_ndjson(end, out))
+pub(crate) fn ndjson(table: &Table, end: &impl Serialize, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+    write_to_memory(&|| slice.should_continue(), |out| table.write_ndjson(end, out))
 }
 
 /// An SVG in pixels, as PNG.
-pub(crate) fn pixels(svg: &str, turn: &Turn) -> Result<Vec<u8>, Problem> {
-    png(svg, || turn.go_on()).map_err(|none| match none {
+pub(crate) fn pixels(svg: &str, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+    png(svg, || slice.should_continue()).map_err(|none| match none {
         NoPixels::Cancelled => Cancelled.into(),
         NoPixels::Unfit => Problem::internal(),
     })
@@ -54,13 +54,13 @@ mod tests {
     fn a_large_table_is_not_written_for_nobody() {
         let cells = Cells::Decimals(vec![Some(DoubleDouble::from(0.1)); 100_000]);
         let table = Table(vec![Column { name: "t", unit: "s", cells }]);
-        type Way = fn(&Table, &Turn) -> Result<Vec<u8>, Problem>;
-        let ways: [Way; 3] = [|table, turn| json(table, turn), csv, |table, turn| ndjson(table, &"end", turn)];
+        type Way = fn(&Table, &TimeSlice) -> Result<Vec<u8>, Problem>;
+        let ways: [Way; 3] = [|table, slice| json(table, slice), csv, |table, slice| ndjson(table, &"end", slice)];
         for write in ways {
-            let turn = Turn::alone();
-            assert!(write(&table, &turn).unwrap().len() > 3_000_000);
-            turn.cancel().set();
-            assert_eq!(write(&table, &turn).unwrap_err().status(), 503);
+            let slice = TimeSlice::unbounded();
+            assert!(write(&table, &slice).unwrap().len() > 3_000_000);
+            slice.cancel().set();
+            assert_eq!(write(&table, &slice).unwrap_err().status(), 503);
         }
     }
 }

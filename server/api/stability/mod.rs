@@ -24,10 +24,10 @@ impl ComputedResource for Stability {
     type Request = StabilityRequest;
     const WORK: Work<Self> = Work::Pure {
         canonical: StabilityRequest::canonical,
-        compute: |request, format, turn, bounces| {
-            let answer = StabilityAnswer::compute(request, || turn.go_on()).ok_or(Cancelled)?;
+        compute: |request, format, slice, bounces| {
+            let answer = StabilityAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
             bounces.inc_by(answer.bounces());
-            format.write(&answer, turn)
+            format.write(&answer, slice)
         },
     };
 

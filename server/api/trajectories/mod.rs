@@ -14,7 +14,7 @@ use crate::api::trajectories::request::TrajectoryRequest;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits::Limits;
-use crate::runs::playback::Course;
+use crate::runs::playback::Playback;
 
 /// The resource.
 #[derive(Debug)]
@@ -26,16 +26,16 @@ impl ComputedResource for Trajectories {
     type Request = TrajectoryRequest;
     const WORK: Work<Self> = Work::Pure {
         canonical: TrajectoryRequest::canonical,
-        compute: |request, format, turn, bounces| {
+        compute: |request, format, slice, bounces| {
             let run = &request.run;
-            let mut course = Course::up_to(run, request.impacts);
-            let mut contacts = std::iter::from_fn(|| course.next_n().map(|_| course.advance(run).0));
+            let mut playback = Playback::up_to(run, request.impacts);
+            let mut contacts = std::iter::from_fn(|| playback.next_n().map(|_| playback.advance(run).0));
             // Without interventions, and where the body never meets the table, it is the scene's own run.
             let changed = (!run.interventions().is_empty() && run.scene().orbit().is_ok())
                 .then_some(&mut contacts as &mut dyn Iterator<Item = Contact>);
-            let answer = TrajectoryAnswer::compute(request, changed, || turn.go_on())?;
+            let answer = TrajectoryAnswer::compute(request, changed, || slice.should_continue())?;
             bounces.inc_by(answer.outcome.impacts);
-            format.write(&answer, turn)
+            format.write(&answer, slice)
         },
     };
 

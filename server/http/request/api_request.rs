@@ -17,7 +17,7 @@ use crate::limits::Limits;
 
 /// A request for something computed. As an extractor it takes the body, so it stands last.
 #[derive(Debug, Clone)]
-pub struct Ask {
+pub struct ApiRequest {
     /// The fields of the JSON body, or of the body that the query is equivalent to. `format` is not among them.
     pub fields: Map<String, Value>,
     /// Whether leaves are JSON or text.
@@ -30,7 +30,7 @@ pub struct Ask {
     pub(crate) format: Option<String>,
 }
 
-impl Ask {
+impl ApiRequest {
     /// A reader of all fields, which gathers what is wrong in `errors`.
     pub fn reader<'v, 'e>(&'v self, errors: &'e mut Errors) -> Reader<'v, 'e> {
         Reader::new(&self.fields, String::new(), self.source, errors)
@@ -70,7 +70,7 @@ impl Ask {
     }
 }
 
-impl<S: Send + Sync> FromRequest<S> for Ask
+impl<S: Send + Sync> FromRequest<S> for ApiRequest
 where
     Limits: FromRef<S>,
 {
@@ -112,8 +112,8 @@ mod tests {
     use axum::http::header;
     use serde_json::json;
 
-    async fn ask(request: axum::http::request::Builder, body: impl Into<Body>) -> Result<Ask, Problem> {
-        Ask::from_request(request.body(body.into()).unwrap(), &Limits::default()).await
+    async fn ask(request: axum::http::request::Builder, body: impl Into<Body>) -> Result<ApiRequest, Problem> {
+        ApiRequest::from_request(request.body(body.into()).unwrap(), &Limits::default()).await
     }
 
     fn post(media_type: &str) -> axum::http::request::Builder {

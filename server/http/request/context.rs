@@ -13,19 +13,19 @@ use crate::limits;
 pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
 tokio::task_local! {
-    static ASKED: Asked;
+    static CURRENT: RequestContext;
 }
 
 /// What an answer, and above all a problem, has to know of its request.
 #[derive(Debug, Clone)]
-pub struct Asked {
+pub struct RequestContext {
     /// Its id: letters, digits and `-._`.
     pub id: Arc<str>,
     /// What stands before every path, as clients see it.
     pub base: Arc<str>,
 }
 
-impl Asked {
+impl RequestContext {
     /// Of a request with these headers: the id that a proxy or the client chose, or one of its own.
     pub fn new(headers: &HeaderMap, base: Arc<str>) -> Self {
         let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._".contains(&byte);
@@ -35,13 +35,13 @@ impl Asked {
     }
 
     /// Answers the request with `future`, in which it is known.
-    pub async fn answer<T>(self, future: impl Future<Output = T>) -> T {
-        ASKED.scope(self, future).await
+    pub async fn scope<T>(self, future: impl Future<Output = T>) -> T {
+        CURRENT.scope(self, future).await
     }
 
     /// The one that this task answers, if any.
-    pub fn under_way() -> Option<Self> {
-        ASKED.try_with(Clone::clone).ok()
+    pub fn current() -> Option<Self> {
+        CURRENT.try_with(Clone::clone).ok()
     }
 
     /// The id as a header.
@@ -68,7 +68,7 @@ mod tests {
     fn an_id_is_taken_only_where_it_can_stand_in_a_log() {
         let id = |value: &'static [u8]| {
             let headers = [(REQUEST_ID, HeaderValue::from_bytes(value).unwrap())].into_iter().collect();
-            Asked::new(&headers, "".into()).id
+            RequestContext::new(&headers, "".into()).id
         };
         assert_eq!(&*id(b"a-1.b_2"), "a-1.b_2");
         for hostile in [b"".as_slice(), b"a b", b"a\"b", b"\xff", &[b'x'; 65]] {

@@ -18,20 +18,20 @@ pub fn object(body: &[u8]) -> Result<Map<String, Value>, Problem> {
     let text = std::str::from_utf8(body).map_err(|error| {
         Problem::not_readable(format!("the body is not JSON: it is not UTF-8 from byte {} on", error.valid_up_to()))
     })?;
-    let mut reading = Reading::default();
+    let mut state = ParseState::default();
     let mut deserializer = serde_json::Deserializer::from_str(text);
-    let value = Strict(&mut reading).deserialize(&mut deserializer);
+    let value = Strict(&mut state).deserialize(&mut deserializer);
     let value = value.and_then(|value| deserializer.end().map(|()| value));
     match value {
-        Ok(Value::Object(fields)) => reading.errors.into_result().map(|()| fields),
+        Ok(Value::Object(fields)) => state.errors.into_result().map(|()| fields),
         Ok(_) => Err(Problem::invalid_at("", "the body must be a JSON object")),
-        Err(_) if reading.too_deep => Err(Problem::invalid_at(
-            reading.pointer(),
+        Err(_) if state.too_deep => Err(Problem::invalid_at(
+            state.pointer(),
             format!("the body is nested more than {} levels deep", limits::DEPTH),
         )),
         // The one error of the parser's that is about a value and not about the grammar; it has no category of its own.
         Err(error) if error.to_string().starts_with("number out of range") => Err(Problem::invalid_at(
-            reading.pointer(),
+            state.pointer(),
             format!("the number at line {} column {} is not finite in double precision", error.line(), error.column()),
         )),
         Err(error) => Err(Problem::not_readable(format!("the body is not JSON: {error}"))),
@@ -40,13 +40,13 @@ pub fn object(body: &[u8]) -> Result<Map<String, Value>, Problem> {
 
 /// Where the reading is, and what it has found wrong.
 #[derive(Default)]
-struct Reading {
+struct ParseState {
     path: Vec<String>,
     errors: Errors,
     too_deep: bool,
 }
 
-impl Reading {
+impl ParseState {
     fn pointer(&self) -> String {
         self.path.iter().fold(String::new(), |pointer, name| join(&pointer, name))
     }
@@ -64,7 +64,7 @@ impl Reading {
     }
 }
 
-struct Strict<'r>(&'r mut Reading);
+struct Strict<'r>(&'r mut ParseState);
 
 impl<'de> DeserializeSeed<'de> for Strict<'_> {
     type Value = Value;
@@ -113,7 +113,7 @@ impl<'de> Visitor<'de> for Strict<'_> {
         let mut items = Vec::new();
         loop {
             let index = items.len().to_string();
-            let item = self.0.within(index, |reading| sequence.next_element_seed(Strict(reading)))?;
+            let item = self.0.within(index, |state| sequence.next_element_seed(Strict(state)))?;
             match item {
                 Some(item) => items.push(item),
                 None => return Ok(Value::Array(items)),
@@ -131,7 +131,7 @@ impl<'de> Visitor<'de> for Strict<'_> {
                 map.next_value::<IgnoredAny>()?;
                 continue;
             }
-            let value = self.0.within(name.clone(), |reading| map.next_value_seed(Strict(reading)))?;
+            let value = self.0.within(name.clone(), |state| map.next_value_seed(Strict(state)))?;
             if fields.contains_key(&name) {
                 let pointer = join(&self.0.pointer(), &name);
                 self.0.errors.push(pointer, format!("{} is there twice in one object", shortened(&name)));

@@ -6,22 +6,22 @@ use axum::http::HeaderMap;
 
 use crate::compute::Peer;
 use crate::http::problem::Problem;
-use crate::http::request::api_request::{Ask, peer};
+use crate::http::request::api_request::{ApiRequest, peer};
 use crate::http::request::body;
 use crate::http::request::body::NDJSON;
 use crate::limits::Limits;
 
 /// The requests. As an extractor it takes the body, so it stands last.
 #[derive(Debug)]
-pub struct Lines {
+pub struct NdjsonBatch {
     /// What is asked of the answer to all of them; without fields.
-    pub ask: Ask,
+    pub request: ApiRequest,
     body: Bytes,
 }
 
-impl Lines {
+impl NdjsonBatch {
     /// The lines that are not blank, with their numbers from 1 on.
-    pub fn into_each(self) -> impl Iterator<Item = Line> + Send {
+    pub fn into_items(self) -> impl Iterator<Item = BatchItem> + Send {
         let mut rest = Some(self.body);
         let lines = std::iter::from_fn(move || {
             let mut line = rest.take()?;
@@ -31,29 +31,29 @@ impl Lines {
             }
             Some(line)
         });
-        let peer = self.ask.peer;
+        let peer = self.request.peer;
         let numbered = lines.zip(1..).filter(|(line, _)| !line.trim_ascii().is_empty());
-        numbered.map(move |(body, number)| Line { number, body, peer })
+        numbered.map(move |(body, number)| BatchItem { number, body, peer })
     }
 }
 
 /// One of them.
 #[derive(Debug)]
-pub struct Line {
+pub struct BatchItem {
     /// Which line of the body it is, from 1 on.
     pub number: usize,
     body: Bytes,
     peer: Peer,
 }
 
-impl Line {
+impl BatchItem {
     /// The request that it is, as if it had been posted alone.
-    pub fn ask(&self) -> Result<Ask, Problem> {
-        Ask::from_body("", &self.body, HeaderMap::new(), self.peer)
+    pub fn request(&self) -> Result<ApiRequest, Problem> {
+        ApiRequest::from_body("", &self.body, HeaderMap::new(), self.peer)
     }
 }
 
-impl<S: Send + Sync> FromRequest<S> for Lines
+impl<S: Send + Sync> FromRequest<S> for NdjsonBatch
 where
     Limits: FromRef<S>,
 {
@@ -64,11 +64,11 @@ where
         NDJSON.check(&parts.headers)?;
         let body = body::read(body, &parts.headers, &Limits::from_ref(state)).await?;
         let peer = peer(&parts.extensions);
-        let ask = Ask::from_body(parts.uri.query().unwrap_or_default(), b"{}", parts.headers, peer)?;
+        let request = ApiRequest::from_body(parts.uri.query().unwrap_or_default(), b"{}", parts.headers, peer)?;
         if body.trim_ascii().is_empty() {
             return Err(Problem::not_readable("the body is empty; it must be a JSON object on each line"));
         }
-        Ok(Self { ask, body })
+        Ok(Self { request, body })
     }
 }
 
@@ -78,15 +78,15 @@ mod tests {
     use axum::body::Body;
     use axum::http::header;
 
-    async fn lines(query: &str, body: &'static str) -> Result<Lines, Problem> {
+    async fn lines(query: &str, body: &'static str) -> Result<NdjsonBatch, Problem> {
         let request = Request::post(format!("/v1/x{query}")).header(header::CONTENT_TYPE, "application/jsonl");
-        Lines::from_request(request.body(Body::from(body)).unwrap(), &Limits::default()).await
+        NdjsonBatch::from_request(request.body(Body::from(body)).unwrap(), &Limits::default()).await
     }
 
     #[tokio::test]
     async fn each_line_is_a_request_of_its_own() {
         let lines = lines("?format=ndjson", "{\"a\": 1}\r\n\n  \t\n{\"a\": }\n{}").await.unwrap();
-        let asks: Vec<_> = lines.into_each().map(|line| (line.number, line.ask())).collect();
+        let asks: Vec<_> = lines.into_items().map(|line| (line.number, line.request())).collect();
         let numbers: Vec<usize> = asks.iter().map(|(number, _)| *number).collect();
         assert_eq!(numbers, [1, 4, 5]);
         assert_eq!(asks[0].1.as_ref().unwrap().fields["a"], 1);
@@ -103,6 +103,6 @@ mod tests {
     #[tokio::test]
     async fn json_alone_is_not_lines() {
         let request = Request::post("/v1/x").header(header::CONTENT_TYPE, "application/json").body(Body::from("{}"));
-        assert_eq!(Lines::from_request(request.unwrap(), &Limits::default()).await.unwrap_err().status(), 415);
+        assert_eq!(NdjsonBatch::from_request(request.unwrap(), &Limits::default()).await.unwrap_err().status(), 415);
     }
 }

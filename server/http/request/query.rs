@@ -1,6 +1,6 @@
 //! Unfolds a dotted query into the JSON tree it is equivalent to: `a.b=1&c.0=2` is `{"a": {"b": "1"}, "c": ["2"]}`.
 //!
-//! Every leaf is text; what it means is for the schema to say (`leaf`). An array is written by its indices, 0 and up.
+//! Every leaf is text; what it means is for the schema to say (`scalar`). An array is written by its indices, 0 and up.
 
 use std::collections::BTreeMap;
 

@@ -1,19 +1,20 @@
-//! Answers to an `Ask`: negotiated, tagged, computed only if the client does not have them, compressed if it likes.
+//! Answers to an `ApiRequest`: negotiated, tagged, computed only if the client does not have them, compressed if it likes.
 //!
 //! What a resource computes, and what it costs, is the route's to say.
 
 use axum::body::{Body, Bytes};
 use axum::http::{HeaderValue, Response, StatusCode, header};
 
-use crate::compute::{Cancelled, Pool, Price, Turn, Turns};
+use crate::compute::{Pool, Price, TimeSlice, TimeSlices};
 use crate::http::problem::Problem;
-use crate::http::request::api_request::Ask;
+use crate::http::request::api_request::ApiRequest;
 use crate::http::request::scalar::Source;
-use crate::http::response::etag::{EntityTag, Held};
+use crate::http::response::builder::{REVALIDATED, ok, status_only};
+use crate::http::response::etag::{EntityTag, IfNoneMatch};
 use crate::http::response::gzip;
 use crate::http::response::negotiate;
 use crate::http::response::negotiate::{Encoding, Format};
-use crate::http::response::streaming::{Outlet, computed_apart, computed_in_turns};
+use crate::http::response::streaming::{BodyWriter, stream_in_slices, stream_on_worker};
 use crate::{BUILD, limits};
 
 /// A resource as far as negotiation and entity tags go.
@@ -25,10 +26,7 @@ pub struct Resource {
     pub formats: &'static [Format],
 }
 
-/// Clients and proxies may keep it, and ask each time whether it is still right, which costs no work.
-pub(crate) const REVALIDATED: HeaderValue = HeaderValue::from_static("public, max-age=0, must-revalidate");
-
-impl Ask {
+impl ApiRequest {
     /// The answer of a pure resource: 304 if the client has it, else what `compute` writes, done by `pool` at `price`.
     ///
     /// `canonical` is the request with all defaults filled in and in a fixed order: together with the build, the format
@@ -39,36 +37,36 @@ impl Ask {
         resource: &Resource,
         canonical: &[u8],
         price: Price,
-        compute: impl FnOnce(Format, &Turn) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
+        compute: impl FnOnce(Format, &TimeSlice) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
-        self.tagged(
+        self.with_entity_tag(
             resource,
             (format, encoding),
             canonical,
-            computed(&pool.of(self.peer), format, encoding, price, compute),
+            compute_whole(&pool.for_peer(self.peer), format, encoding, price, compute),
         )
         .await
     }
 
     /// The same for long work, which `compute` does in turns. Formats that are in `streamed` are sent piece by piece.
-    pub async fn respond_in_turns(
+    pub async fn respond_in_slices(
         &self,
         pool: &Pool,
         resource: &Resource,
         canonical: &[u8],
         streamed: &[Format],
-        compute: impl FnOnce(Format, &Turns, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+        compute: impl FnOnce(Format, &TimeSlices, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
         let streams = streamed.contains(&format);
-        let pool = pool.of(self.peer);
-        let answer = computed_in_turns(&pool, format, encoding, streams, compute);
-        self.tagged(resource, (format, encoding), canonical, answer).await
+        let pool = pool.for_peer(self.peer);
+        let answer = stream_in_slices(&pool, format, encoding, streams, compute);
+        self.with_entity_tag(resource, (format, encoding), canonical, answer).await
     }
 
     /// An answer under its entity tag, or a 304 without computing it.
-    async fn tagged(
+    async fn with_entity_tag(
         &self,
         resource: &Resource,
         (format, encoding): (Format, Encoding),
@@ -78,9 +76,10 @@ impl Ask {
         let parts = [resource.name, BUILD, format.name(), encoding.name()].map(str::as_bytes);
         let tag = EntityTag::of(&[parts[0], parts[1], parts[2], parts[3], canonical]);
         // A query is a GET or a HEAD; on POST the precondition has no such meaning.
-        let held = if self.source == Source::Query { tag.held_by(&self.headers) } else { Held::Nothing };
-        let mut response = if held == Held::This { status_only(StatusCode::NOT_MODIFIED) } else { answer.await? };
-        if held == Held::Anything {
+        let held = if self.source == Source::Query { tag.if_none_match(&self.headers) } else { IfNoneMatch::NoMatch };
+        let mut response =
+            if held == IfNoneMatch::Match { status_only(StatusCode::NOT_MODIFIED) } else { answer.await? };
+        if held == IfNoneMatch::Any {
             // That there is one at all is known only now.
             response = status_only(StatusCode::NOT_MODIFIED);
         }
@@ -91,23 +90,23 @@ impl Ask {
 
     /// The answer of a resource that measures something: never kept, no entity tag, because the next one is different.
     /// Formats that are in `streamed` are sent piece by piece.
-    pub async fn respond_afresh(
+    pub async fn respond_uncached(
         &self,
         pool: &Pool,
         resource: &Resource,
         streamed: &[Format],
-        compute: impl FnOnce(Format, &Turn, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+        compute: impl FnOnce(Format, &TimeSlice, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
         let streams = streamed.contains(&format);
-        let pool = pool.of(self.peer);
-        let mut response = computed_apart(&pool, (format, encoding), streams, compute).await?;
+        let pool = pool.for_peer(self.peer);
+        let mut response = stream_on_worker(&pool, (format, encoding), streams, compute).await?;
         response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
         Ok(response)
     }
 
     /// An answer that is made while it is sent, and not compressed.
-    pub fn respond_piecewise(&self, resource: &Resource, pieces: Body) -> Result<Response<Body>, Problem> {
+    pub fn respond_stream(&self, resource: &Resource, pieces: Body) -> Result<Response<Body>, Problem> {
         let (format, _) = self.negotiate(resource)?;
         Ok(ok(format.media_type(), Encoding::Identity, pieces))
     }
@@ -124,17 +123,17 @@ impl Ask {
     }
 }
 
-async fn computed(
+async fn compute_whole(
     pool: &Pool,
     format: Format,
     encoding: Encoding,
     price: Price,
-    compute: impl FnOnce(Format, &Turn) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
+    compute: impl FnOnce(Format, &TimeSlice) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
     // Compression is part of the work: it takes as long as computing, and ends with it when the client goes away.
-    let work = move |turn: &Turn| {
-        let bytes = compute(format, turn)?;
-        Ok::<_, Problem>(if encoding == Encoding::Gzip { gzip::gzip(&bytes, turn)? } else { bytes })
+    let work = move |slice: &TimeSlice| {
+        let bytes = compute(format, slice)?;
+        Ok::<_, Problem>(if encoding == Encoding::Gzip { gzip::gzip(&bytes, slice)? } else { bytes })
     };
     let bytes = pool.run(with_drawing(price, format), work).await?;
     Ok(ok(format.media_type(), encoding, Bytes::from_owner(pool.hold(bytes))))
@@ -146,33 +145,6 @@ fn with_drawing(price: Price, format: Format) -> Price {
         Format::Svg => price.and(Price::bounces(limits::SVG_PRICE)),
         Format::Png => price.and(Price::bounces(limits::SVG_PRICE + limits::PNG_PRICE)),
         _ => price,
-    }
-}
-
-/// 200 with its body and the headers that describe it.
-pub(crate) fn ok(media_type: &'static str, encoding: Encoding, bytes: impl Into<Body>) -> Response<Body> {
-    let mut response = Response::new(bytes.into());
-    let headers = response.headers_mut();
-    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(media_type));
-    headers.insert(header::VARY, HeaderValue::from_static("Accept, Accept-Encoding"));
-    if encoding == Encoding::Gzip {
-        headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
-    }
-    response
-}
-
-/// No body. `Vary` as it would be with one.
-pub(crate) fn status_only(status: StatusCode) -> Response<Body> {
-    let mut response = Response::new(Body::empty());
-    *response.status_mut() = status;
-    response.headers_mut().insert(header::VARY, HeaderValue::from_static("Accept, Accept-Encoding"));
-    response
-}
-
-/// Work is given up only when nobody is left to read this, so it says no more than that.
-impl From<Cancelled> for Problem {
-    fn from(cancelled: Cancelled) -> Self {
-        Problem::overloaded(cancelled.to_string())
     }
 }
 
@@ -188,12 +160,13 @@ mod tests {
 
     async fn get(query: &str, headers: &[(&str, &str)], work: &'static AtomicUsize) -> Response<Body> {
         let request = headers.iter().fold(Request::get(query), |request, (name, value)| request.header(*name, *value));
-        let ask = Ask::from_request(request.body(Body::empty()).unwrap(), &Limits::default()).await.unwrap();
-        let compute = |format: Format, _: &Turn| {
+        let request = ApiRequest::from_request(request.body(Body::empty()).unwrap(), &Limits::default()).await.unwrap();
+        let compute = |format: Format, _: &TimeSlice| {
             work.fetch_add(1, Ordering::Relaxed);
             Ok(format.name().repeat(1000).into_bytes())
         };
-        ask.respond(&Pool::new(1, &Limits::default()), &RESOURCE, b"canonical", Price::bounces(1), compute)
+        request
+            .respond(&Pool::new(1, &Limits::default()), &RESOURCE, b"canonical", Price::bounces(1), compute)
             .await
             .unwrap()
     }

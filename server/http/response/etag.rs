@@ -11,13 +11,13 @@ pub struct EntityTag(String);
 
 /// What of a resource a client says it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Held {
+pub enum IfNoneMatch {
     /// What is asked for.
-    This,
+    Match,
     /// Whatever there is of it, if there is anything.
-    Anything,
+    Any,
     /// Nothing, or something else.
-    Nothing,
+    NoMatch,
 }
 
 impl EntityTag {
@@ -37,14 +37,14 @@ impl EntityTag {
     }
 
     /// Whether the client has it already: `If-None-Match` lists it (compared weakly, as on GET) or is `*`.
-    pub fn held_by(&self, headers: &HeaderMap) -> Held {
+    pub fn if_none_match(&self, headers: &HeaderMap) -> IfNoneMatch {
         let listed = list(headers, &header::IF_NONE_MATCH);
         // Our own tags have no comma, so splitting a foreign one that has does no harm.
         let mut tags = listed.split(',').map(str::trim);
         match tags.find(|tag| *tag == "*" || tag.strip_prefix("W/").unwrap_or(tag) == self.0) {
-            Some("*") => Held::Anything,
-            Some(_) => Held::This,
-            None => Held::Nothing,
+            Some("*") => IfNoneMatch::Any,
+            Some(_) => IfNoneMatch::Match,
+            None => IfNoneMatch::NoMatch,
         }
     }
 }
@@ -70,17 +70,17 @@ mod tests {
         let tag = EntityTag::of(&[b"x"]);
         let own = &tag.0;
         for (held, expected) in [
-            (own.clone(), Held::This),
-            (format!("W/{own}"), Held::This),
-            (format!("\"other\", {own}"), Held::This),
-            ("*".to_owned(), Held::Anything),
-            ("\"other\"".to_owned(), Held::Nothing),
-            (own.trim_matches('"').to_owned(), Held::Nothing),
-            (String::new(), Held::Nothing),
+            (own.clone(), IfNoneMatch::Match),
+            (format!("W/{own}"), IfNoneMatch::Match),
+            (format!("\"other\", {own}"), IfNoneMatch::Match),
+            ("*".to_owned(), IfNoneMatch::Any),
+            ("\"other\"".to_owned(), IfNoneMatch::NoMatch),
+            (own.trim_matches('"').to_owned(), IfNoneMatch::NoMatch),
+            (String::new(), IfNoneMatch::NoMatch),
         ] {
             let headers: HeaderMap = [(header::IF_NONE_MATCH, held.parse().unwrap())].into_iter().collect();
-            assert_eq!(tag.held_by(&headers), expected, "{held}");
+            assert_eq!(tag.if_none_match(&headers), expected, "{held}");
         }
-        assert_eq!(tag.held_by(&HeaderMap::new()), Held::Nothing);
+        assert_eq!(tag.if_none_match(&HeaderMap::new()), IfNoneMatch::NoMatch);
     }
 }

@@ -5,26 +5,26 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-use crate::compute::{Cancelled, Turn};
+use crate::compute::{Cancelled, TimeSlice};
 use crate::limits;
 
 /// Fast rather than small: digits of doubles hardly shrink more.
 const FAST: Compression = Compression::new(1);
 
 /// Compresses an answer that was computed for one request.
-pub fn gzip(bytes: &[u8], turn: &Turn) -> Result<Vec<u8>, Cancelled> {
-    compress(bytes, FAST, turn)
+pub fn gzip(bytes: &[u8], slice: &TimeSlice) -> Result<Vec<u8>, Cancelled> {
+    compress(bytes, FAST, slice)
 }
 
 /// Compresses what is sent many times, as well as it goes.
 pub fn gzip_best(bytes: &[u8]) -> Vec<u8> {
-    compress(bytes, Compression::best(), &Turn::alone()).expect("nobody cancels it")
+    compress(bytes, Compression::best(), &TimeSlice::unbounded()).expect("nobody cancels it")
 }
 
-fn compress(bytes: &[u8], level: Compression, turn: &Turn) -> Result<Vec<u8>, Cancelled> {
+fn compress(bytes: &[u8], level: Compression, slice: &TimeSlice) -> Result<Vec<u8>, Cancelled> {
     // No time, no name and no system in the header, so that equal answers are equal bytes.
     let mut encoder = GzEncoder::new(Vec::with_capacity(bytes.len() / 2), level);
-    feed(&mut encoder, bytes, turn)?;
+    feed(&mut encoder, bytes, slice)?;
     Ok(encoder.finish().expect("a vector takes all bytes"))
 }
 
@@ -34,9 +34,9 @@ pub(crate) fn encoder() -> GzEncoder<Vec<u8>> {
 }
 
 /// Compresses a large piece, as long as somebody waits for it.
-pub(crate) fn feed(encoder: &mut GzEncoder<Vec<u8>>, bytes: &[u8], turn: &Turn) -> Result<(), Cancelled> {
+pub(crate) fn feed(encoder: &mut GzEncoder<Vec<u8>>, bytes: &[u8], slice: &TimeSlice) -> Result<(), Cancelled> {
     for step in bytes.chunks(limits::GZIP_STEP_BYTES) {
-        turn.check()?;
+        slice.check()?;
         encoder.write_all(step).expect("a vector takes all bytes");
     }
     Ok(())
@@ -50,7 +50,7 @@ mod tests {
     #[test]
     fn what_goes_in_comes_out() {
         let bytes: Vec<u8> = (0..300_000_u32).flat_map(|n| n.to_string().into_bytes()).collect();
-        for packed in [gzip(&bytes, &Turn::alone()).unwrap(), gzip_best(&bytes)] {
+        for packed in [gzip(&bytes, &TimeSlice::unbounded()).unwrap(), gzip_best(&bytes)] {
             assert!(packed.len() < bytes.len() / 2);
             assert_eq!(packed[4..8], [0; 4], "a time in the header would make equal answers differ");
             let mut unpacked = Vec::new();
@@ -61,8 +61,8 @@ mod tests {
 
     #[test]
     fn nobody_waiting_is_nothing_to_do() {
-        let turn = Turn::alone();
-        turn.cancel().set();
-        assert_eq!(gzip(b"text", &turn), Err(Cancelled));
+        let slice = TimeSlice::unbounded();
+        slice.cancel().set();
+        assert_eq!(gzip(b"text", &slice), Err(Cancelled));
     }
 }

@@ -1,5 +1,6 @@
 //! Answers: negotiated, tagged, compressed, whole or streamed.
 
+pub(crate) mod builder;
 pub mod cached;
 pub mod etag;
 pub mod gzip;

@@ -6,21 +6,21 @@ use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, Response, StatusCode, header};
 
 use crate::http::problem::Problem;
-use crate::http::response::cached::{REVALIDATED, ok, status_only};
-use crate::http::response::etag::{EntityTag, Held};
+use crate::http::response::builder::{REVALIDATED, ok, status_only};
+use crate::http::response::etag::{EntityTag, IfNoneMatch};
 use crate::http::response::gzip;
 use crate::http::response::negotiate;
 use crate::http::response::negotiate::Encoding;
 
 /// Bytes of one media type, and their compressed form.
 #[derive(Debug)]
-pub struct Fixed {
+pub struct StaticAsset {
     media_type: &'static str,
     identity: Bytes,
     gzip: OnceLock<Option<Bytes>>,
 }
 
-impl Fixed {
+impl StaticAsset {
     /// These bytes, as this media type.
     pub fn new(media_type: &'static str, bytes: impl Into<Bytes>) -> Self {
         Self { media_type, identity: bytes.into(), gzip: OnceLock::new() }
@@ -33,9 +33,9 @@ impl Fixed {
             _ => (Encoding::Identity, &self.identity),
         };
         let tag = EntityTag::of(&[self.media_type.as_bytes(), bytes]);
-        let mut response = match tag.held_by(headers) {
-            Held::This | Held::Anything => status_only(StatusCode::NOT_MODIFIED),
-            Held::Nothing => ok(self.media_type, encoding, bytes.clone()),
+        let mut response = match tag.if_none_match(headers) {
+            IfNoneMatch::Match | IfNoneMatch::Any => status_only(StatusCode::NOT_MODIFIED),
+            IfNoneMatch::NoMatch => ok(self.media_type, encoding, bytes.clone()),
         };
         response.headers_mut().insert(header::ETAG, tag.header());
         response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);
@@ -63,16 +63,16 @@ mod tests {
 
     #[test]
     fn compressed_where_it_helps() {
-        let long = Fixed::new("text/css", "a { color: red }\n".repeat(100));
+        let long = StaticAsset::new("text/css", "a { color: red }\n".repeat(100));
         assert_eq!(long.answer(&accepting_gzip()).unwrap().headers()[header::CONTENT_ENCODING], "gzip");
         assert!(long.answer(&HeaderMap::new()).unwrap().headers().get(header::CONTENT_ENCODING).is_none());
-        let short = Fixed::new("text/css", "a{}");
+        let short = StaticAsset::new("text/css", "a{}");
         assert!(short.answer(&accepting_gzip()).unwrap().headers().get(header::CONTENT_ENCODING).is_none());
     }
 
     #[test]
     fn each_form_has_its_tag() {
-        let page = Fixed::new("text/html", "text ".repeat(100));
+        let page = StaticAsset::new("text/html", "text ".repeat(100));
         let tag = |headers: &HeaderMap| page.answer(headers).unwrap().headers()[header::ETAG].clone();
         let mut held = accepting_gzip();
         assert_ne!(tag(&held), tag(&HeaderMap::new()));

@@ -15,21 +15,21 @@ use futures_util::future::BoxFuture;
 use futures_util::{FutureExt, StreamExt, stream};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-use crate::compute::{Cancelled, Pool, Turn, Turns};
+use crate::compute::{Cancelled, Pool, TimeSlice, TimeSlices};
 use crate::http::problem::Problem;
-use crate::http::response::cached::ok;
+use crate::http::response::builder::ok;
 use crate::http::response::gzip;
 use crate::http::response::negotiate::{Encoding, Format};
 
 /// Where work puts the bytes of its answer.
 #[derive(Debug)]
-pub struct Outlet {
+pub struct BodyWriter {
     to: UnboundedSender<Bytes>,
     gzip: Option<GzEncoder<Vec<u8>>>,
     pool: Pool,
 }
 
-impl Outlet {
+impl BodyWriter {
     /// Sends a piece of the answer. The same pieces give the same bytes, compressed ones as well: each can be read at once.
     pub fn send(&mut self, piece: Vec<u8>) {
         if piece.is_empty() {
@@ -47,10 +47,10 @@ impl Outlet {
     }
 
     /// Sends an answer as a whole.
-    pub fn send_whole(&mut self, answer: Vec<u8>, turn: &Turn) -> Result<(), Cancelled> {
+    pub fn send_whole(&mut self, answer: Vec<u8>, slice: &TimeSlice) -> Result<(), Cancelled> {
         match &mut self.gzip {
             None => self.send(answer),
-            Some(gzip) => gzip::feed(gzip, &answer, turn)?,
+            Some(gzip) => gzip::feed(gzip, &answer, slice)?,
         }
         Ok(())
     }
@@ -64,13 +64,13 @@ impl Outlet {
 }
 
 /// The pieces of an answer, and the work that makes them.
-struct Pieces {
+struct BodyPieces {
     made: UnboundedReceiver<Bytes>,
     /// Dropping it cancels the work.
     work: Option<BoxFuture<'static, Result<(), Problem>>>,
 }
 
-impl Pieces {
+impl BodyPieces {
     /// The next one; none at the end. An error instead where the work has failed.
     async fn next(&mut self) -> Result<Option<Bytes>, Problem> {
         loop {
@@ -99,54 +99,54 @@ impl Pieces {
 }
 
 /// Does `compute` in turns. Where it `streams` the answer begins with the first piece, else it is whole.
-pub(crate) async fn computed_in_turns(
+pub(crate) async fn stream_in_slices(
     pool: &Pool,
     format: Format,
     encoding: Encoding,
     streams: bool,
-    compute: impl FnOnce(Format, &Turns, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+    compute: impl FnOnce(Format, &TimeSlices, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
     let working = pool.clone();
-    let work = |mut outlet: Outlet| async move {
-        let compute = move |turns: &Turns| {
-            compute(format, turns, &mut outlet)?;
-            outlet.finish();
+    let work = |mut writer: BodyWriter| async move {
+        let compute = move |slices: &TimeSlices| {
+            compute(format, slices, &mut writer)?;
+            writer.finish();
             Ok(())
         };
-        working.run_in_turns(compute).await
+        working.run_in_slices(compute).await
     };
-    in_pieces(pool, (format, encoding), streams, work).await
+    stream_body(pool, (format, encoding), streams, work).await
 }
 
 /// The same of work that is done on one thread.
-pub(crate) async fn computed_apart(
+pub(crate) async fn stream_on_worker(
     pool: &Pool,
     (format, encoding): (Format, Encoding),
     streams: bool,
-    compute: impl FnOnce(Format, &Turn, &mut Outlet) -> Result<(), Problem> + Send + 'static,
+    compute: impl FnOnce(Format, &TimeSlice, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
     let working = pool.clone();
-    let work = |mut outlet: Outlet| async move {
-        let compute = move |turn: &Turn| {
-            compute(format, turn, &mut outlet)?;
-            outlet.finish();
+    let work = |mut writer: BodyWriter| async move {
+        let compute = move |slice: &TimeSlice| {
+            compute(format, slice, &mut writer)?;
+            writer.finish();
             Ok(())
         };
-        working.run_apart(compute).await
+        working.run_on_worker(compute).await
     };
-    in_pieces(pool, (format, encoding), streams, work).await
+    stream_body(pool, (format, encoding), streams, work).await
 }
 
-async fn in_pieces<Work: Future<Output = Result<(), Problem>> + Send + 'static>(
+async fn stream_body<Work: Future<Output = Result<(), Problem>> + Send + 'static>(
     pool: &Pool,
     (format, encoding): (Format, Encoding),
     streams: bool,
-    work: impl FnOnce(Outlet) -> Work,
+    work: impl FnOnce(BodyWriter) -> Work,
 ) -> Result<Response<Body>, Problem> {
     let (to, made) = unbounded_channel();
     let gzip = (encoding == Encoding::Gzip).then(gzip::encoder);
-    let outlet = Outlet { to, gzip, pool: pool.clone() };
-    let mut pieces = Pieces { made, work: Some(Box::pin(work(outlet))) };
+    let writer = BodyWriter { to, gzip, pool: pool.clone() };
+    let mut pieces = BodyPieces { made, work: Some(Box::pin(work(writer))) };
     let first = pieces.next().await?.unwrap_or_default();
     if streams {
         return Ok(ok(format.media_type(), encoding, pieces.into_body(first)));
@@ -165,10 +165,10 @@ mod tests {
 
     async fn answer(
         streams: bool,
-        compute: impl FnOnce(&mut Outlet) -> Result<(), Problem> + Send + 'static,
+        compute: impl FnOnce(&mut BodyWriter) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
-        let compute = |_: Format, _: &Turns, out: &mut Outlet| compute(out);
-        computed_in_turns(
+        let compute = |_: Format, _: &TimeSlices, out: &mut BodyWriter| compute(out);
+        stream_in_slices(
             &Pool::new(1, &crate::limits::Limits::default()),
             Format::Ndjson,
             Encoding::Identity,
@@ -190,7 +190,7 @@ mod tests {
     async fn what_fails_after_it_breaks_off() {
         for panics in [true, false] {
             let (go, wait) = std::sync::mpsc::channel();
-            let compute = move |out: &mut Outlet| {
+            let compute = move |out: &mut BodyWriter| {
                 out.send(b"first\n".to_vec());
                 wait.recv().unwrap();
                 if panics { panic!("on purpose") } else { Err(Problem::internal()) }
@@ -205,7 +205,7 @@ mod tests {
     #[tokio::test]
     async fn a_stream_begins_before_the_work_ends_and_a_whole_answer_does_not() {
         let (go, wait) = std::sync::mpsc::channel();
-        let compute = move |out: &mut Outlet| {
+        let compute = move |out: &mut BodyWriter| {
             out.send(b"a\n".to_vec());
             wait.recv().unwrap();
             out.send(b"b\n".to_vec());
@@ -214,7 +214,7 @@ mod tests {
         let response = answer(true, compute).await.unwrap();
         go.send(()).unwrap();
         assert_eq!(response.into_body().collect().await.unwrap().to_bytes(), "a\nb\n");
-        let pieces = |out: &mut Outlet| {
+        let pieces = |out: &mut BodyWriter| {
             out.send(b"a".to_vec());
             out.send(b"b".to_vec());
             Ok(())

@@ -3,10 +3,10 @@
 use equipoise::api::scene::{has_angle, value_to_json};
 use equipoise::http::{Errors, Problem, Reader, Source};
 use equipoise::limits;
-use equipoise::live::client_message::Order;
+use equipoise::live::client_message::ClientMessage;
 use equipoise::runs::run::Run;
 use equipoise::runs::run_url;
-use equipoise::runs::run_url::Asked;
+use equipoise::runs::run_url::RunRequest;
 use serde_json::{Map, Value, json};
 
 use super::{problem, query};
@@ -28,7 +28,7 @@ pub(crate) fn check(data: &[u8]) {
     let (first, messages) = text.split_once('\n').unwrap_or((text, ""));
     let mut run = begin(first);
     for (message, n) in messages.lines().zip(1..) {
-        let order = match Order::read(message) {
+        let order = match ClientMessage::read(message) {
             Ok(order) => order,
             Err(refused) => {
                 let sent = serde_json::from_str::<Value>(message).ok();
@@ -37,7 +37,7 @@ pub(crate) fn check(data: &[u8]) {
                 continue;
             }
         };
-        let again = Order::read(&written(&order)).unwrap_or_else(|refused| panic!("{message}: {refused:?}"));
+        let again = ClientMessage::read(&written(&order)).unwrap_or_else(|refused| panic!("{message}: {refused:?}"));
         assert_eq!(again, order, "{message}");
         let Some(run) = &mut run else { continue };
         let changed = carried_out(run, &order, n);
@@ -58,7 +58,7 @@ fn begin(text: &str) -> Option<Run> {
         }
     };
     match read(&fields, NOW) {
-        Ok(Asked { run, from }) => {
+        Ok(RunRequest { run, from }) => {
             reads_back(&run, from, NOW);
             Some(run)
         }
@@ -69,7 +69,7 @@ fn begin(text: &str) -> Option<Run> {
     }
 }
 
-fn read(fields: &Map<String, Value>, now: u64) -> Result<Asked, Problem> {
+fn read(fields: &Map<String, Value>, now: u64) -> Result<RunRequest, Problem> {
     let mut errors = Errors::default();
     let mut reader = Reader::new(fields, String::new(), Source::Query, &mut errors);
     let asked = run_url::read(&mut reader, now);
@@ -85,22 +85,22 @@ fn reads_back(run: &Run, from: Option<u64>, now: u64) {
     let query = from.map_or_else(|| query.to_owned(), |from| format!("{query}&from={from}"));
     let asked = query::tree(&query).and_then(|fields| read(&fields, now));
     let asked = asked.unwrap_or_else(|refused| panic!("{url} was refused: {refused:?}"));
-    assert_eq!(asked, Asked { run: run.clone(), from }, "{url}");
+    assert_eq!(asked, RunRequest { run: run.clone(), from }, "{url}");
     assert_eq!(run_url::url(&asked.run), url);
 }
 
 /// The JSON text of a message.
-fn written(order: &Order) -> String {
+fn written(order: &ClientMessage) -> String {
     let mut message = json!({"type": order.name()});
     match order {
-        Order::Pause | Order::Resume | Order::Step | Order::Restart => {}
-        Order::Speed(speed) => message["value"] = json!(speed),
-        Order::Set(changes) => {
+        ClientMessage::Pause | ClientMessage::Resume | ClientMessage::Step | ClientMessage::Restart => {}
+        ClientMessage::Speed(speed) => message["value"] = json!(speed),
+        ClientMessage::Set(changes) => {
             for (name, value) in changes {
                 message[name.row().path] = value_to_json(*value);
             }
         }
-        Order::Kick(kick) => {
+        ClientMessage::Kick(kick) => {
             for (name, value) in [("x_dot", kick.x_dot), ("y_dot", kick.y_dot), ("theta_dot", kick.theta_dot)] {
                 message[name] = json!(value);
             }
@@ -110,32 +110,32 @@ fn written(order: &Order) -> String {
 }
 
 /// The run after a message, as in a session; unchanged if the run refuses the message.
-fn carried_out(run: &Run, order: &Order, n: u64) -> Run {
+fn carried_out(run: &Run, order: &ClientMessage, n: u64) -> Run {
     let (now, impact) = (now(n), PACE.1 * n);
     let mut changed = run.clone();
     match order {
-        Order::Pause => changed.clock.pause(now),
-        Order::Resume => changed.clock.resume(now),
-        Order::Speed(speed) => changed.clock.set_speed(now, *speed),
-        Order::Step => {
+        ClientMessage::Pause => changed.clock.pause(now),
+        ClientMessage::Resume => changed.clock.resume(now),
+        ClientMessage::Speed(speed) => changed.clock.set_speed(now, *speed),
+        ClientMessage::Step => {
             if changed.clock.is_paused() {
                 let to = changed.clock.run_time(now) + 0.3;
                 changed.clock.step(now, to);
             }
         }
-        Order::Set(changes) => {
+        ClientMessage::Set(changes) => {
             if let Err(errors) = changed.set(impact, changes) {
                 assert!(!errors.is_empty());
                 assert_eq!(changed, *run, "what is refused leaves the run as it was");
             }
         }
-        Order::Kick(kick) => {
+        ClientMessage::Kick(kick) => {
             if kick.theta_dot == 0.0 || has_angle(run.scene()) {
                 // Too many kicks, or a sum of kicks that is too large.
                 let _ = changed.kick(impact, *kick);
             }
         }
-        Order::Restart => changed = run.restarted(now, impact),
+        ClientMessage::Restart => changed = run.restarted(now, impact),
     }
     changed.clock.forget_beyond(limits::LIVE_CLOCK_ENTRIES);
     changed

@@ -10,23 +10,23 @@ use std::time::Instant;
 
 use tokio::runtime::Handle;
 
-use crate::compute::cancel::{Cancel, Cancelled};
-use crate::compute::fair_queue::{Flow, Line, Permit};
+use crate::compute::cancel::{CancelFlag, Cancelled};
+use crate::compute::fair_queue::{FairQueue, Permit, QueueKey};
 use crate::limits;
 
 /// A turn to compute. Work asks it every millisecond or so whether to go on.
 #[derive(Debug)]
-pub struct Turn {
-    cancel: Cancel,
+pub struct TimeSlice {
+    cancel: CancelFlag,
     began: Cell<Instant>,
-    way: Way,
+    placement: Placement,
 }
 
 /// The place at which a turn is taken.
 #[derive(Debug)]
-enum Way {
+enum Placement {
     /// A thread that nobody else wants.
-    Alone,
+    Dedicated,
     /// On an async thread, for a short time.
     Inline {
         /// True if that was too short.
@@ -36,50 +36,56 @@ enum Way {
     Permitted {
         /// None only after the work was cancelled.
         permit: RefCell<Option<Permit>>,
-        line: Arc<Line>,
-        flow: Flow,
+        queue: Arc<FairQueue>,
+        key: QueueKey,
         runtime: Handle,
     },
 }
 
-impl Turn {
+impl TimeSlice {
     /// A turn without end, for work that someone waits for in any case.
-    pub fn alone() -> Self {
-        Self::new(Cancel::never(), Way::Alone)
+    pub fn unbounded() -> Self {
+        Self::new(CancelFlag::never(), Placement::Dedicated)
     }
 
     pub(crate) fn inline() -> Self {
-        Self::new(Cancel::never(), Way::Inline { overran: Cell::new(false) })
+        Self::new(CancelFlag::never(), Placement::Inline { overran: Cell::new(false) })
     }
 
     /// A turn with a permit that `flow` got in `line`.
-    pub(crate) fn permitted(cancel: Cancel, permit: Permit, line: Arc<Line>, flow: Flow, runtime: Handle) -> Self {
-        Self::new(cancel, Way::Permitted { permit: RefCell::new(Some(permit)), line, flow, runtime })
+    pub(crate) fn permitted(
+        cancel: CancelFlag,
+        permit: Permit,
+        queue: Arc<FairQueue>,
+        key: QueueKey,
+        runtime: Handle,
+    ) -> Self {
+        Self::new(cancel, Placement::Permitted { permit: RefCell::new(Some(permit)), queue, key, runtime })
     }
 
-    fn new(cancel: Cancel, way: Way) -> Self {
-        Self { cancel, began: Cell::new(Instant::now()), way }
+    fn new(cancel: CancelFlag, placement: Placement) -> Self {
+        Self { cancel, began: Cell::new(Instant::now()), placement }
     }
 
     /// Tells whether to go on: not where nobody waits for the result any more. Passes the permit on where it is time to, and then
     /// comes back with the next one. Costs a look at the clock; in a loop of nanoseconds ask every hundred rounds.
-    pub fn go_on(&self) -> bool {
+    pub fn should_continue(&self) -> bool {
         if self.cancel.is_set() {
             return false;
         }
-        match &self.way {
-            Way::Alone => true,
-            Way::Inline { overran } => {
+        match &self.placement {
+            Placement::Dedicated => true,
+            Placement::Inline { overran } => {
                 overran.set(self.began.get().elapsed() >= limits::INLINE_TIME);
                 !overran.get()
             }
-            Way::Permitted { permit, line, flow, runtime } => {
+            Placement::Permitted { permit, queue, key, runtime } => {
                 if self.began.get().elapsed() < limits::TURN_TIME {
                     return true;
                 }
-                if line.is_wanted_by_others(*flow) {
+                if queue.has_others_waiting(*key) {
                     // Back in the line before the permit is passed on, so that the order of the line is kept.
-                    let next = line.take_again(*flow);
+                    let next = queue.requeue(*key);
                     permit.take();
                     let next = runtime.block_on(async {
                         tokio::select! {
@@ -99,21 +105,21 @@ impl Turn {
         }
     }
 
-    /// [`Turn::go_on`] as an error, for `?`.
+    /// [`TimeSlice::should_continue`] as an error, for `?`.
     ///
     /// # Errors
     /// [`Cancelled`] once nobody waits for the result.
     pub fn check(&self) -> Result<(), Cancelled> {
-        if self.go_on() { Ok(()) } else { Err(Cancelled) }
+        if self.should_continue() { Ok(()) } else { Err(Cancelled) }
     }
 
     /// The flag that says whether anybody still waits, for work that is not to be interrupted.
-    pub fn cancel(&self) -> &Cancel {
+    pub fn cancel(&self) -> &CancelFlag {
         &self.cancel
     }
 
     /// Tells whether an inline turn was too short for the work.
     pub(crate) fn overran(&self) -> bool {
-        matches!(&self.way, Way::Inline { overran } if overran.get())
+        matches!(&self.placement, Placement::Inline { overran } if overran.get())
     }
 }

@@ -36,18 +36,18 @@ const CLOSED: Interest = Interest::READABLE;
 
 /// The sending half of a connection, and how far it is with the answer.
 #[derive(Debug)]
-pub(crate) struct Wire {
+pub(crate) struct ClientSocket {
     socket: OwnedWriteHalf,
-    state: Mutex<State>,
+    state: Mutex<SendState>,
 }
 
 #[derive(Debug)]
-struct State {
-    coming: Coming,
+struct SendState {
+    expected: Expected,
     /// True if the HTTP library has written all that it had.
     is_flushed: bool,
     /// Bytes of the status line that went out ahead of it.
-    ahead: usize,
+    sent_ahead: usize,
     /// Zeros that went out ahead of the size of a chunk.
     zeros: usize,
     /// Number of writes.
@@ -58,7 +58,7 @@ struct State {
 
 /// What the client waits for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Coming {
+enum Expected {
     /// Nothing, or the rest of an answer that is made.
     Nothing,
     /// An answer, whose status line begins so.
@@ -69,48 +69,54 @@ enum Coming {
     Bytes,
 }
 
-impl Wire {
+impl ClientSocket {
     pub(crate) fn new(socket: OwnedWriteHalf) -> Arc<Self> {
-        let state =
-            State { coming: Coming::Nothing, is_flushed: true, ahead: 0, zeros: 0, writes: 0, bare_error: None };
+        let state = SendState {
+            expected: Expected::Nothing,
+            is_flushed: true,
+            sent_ahead: 0,
+            zeros: 0,
+            writes: 0,
+            bare_error: None,
+        };
         Arc::new(Self { socket, state: Mutex::new(state) })
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, SendState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn comes(&self, coming: Coming) {
-        self.state().coming = coming;
+    fn expect(&self, expected: Expected) {
+        self.state().expected = expected;
     }
 
     /// An answer is being made.
-    pub(crate) fn begins(&self, version: Version) {
-        self.comes(Coming::Head(if version == Version::HTTP_10 { b"HTTP/1.0 " } else { b"HTTP/1.1 " }));
+    pub(crate) fn start_response(&self, version: Version) {
+        self.expect(Expected::Head(if version == Version::HTTP_10 { b"HTTP/1.0 " } else { b"HTTP/1.1 " }));
     }
 
     /// An answer is made, or its pieces will be while it is sent.
-    pub(crate) fn sends(self: &Arc<Self>, version: Version, answer: Response<Body>) -> Response<Body> {
+    pub(crate) fn send_response(self: &Arc<Self>, version: Version, answer: Response<Body>) -> Response<Body> {
         if answer.body().size_hint().exact().is_some() {
-            self.comes(Coming::Nothing);
+            self.expect(Expected::Nothing);
             return answer;
         }
-        self.comes(if version == Version::HTTP_10 { Coming::Bytes } else { Coming::Chunk });
-        let wire = self.clone();
-        answer.map(|body| Body::new(Pieces { body, wire }))
+        self.expect(if version == Version::HTTP_10 { Expected::Bytes } else { Expected::Chunk });
+        let client = self.clone();
+        answer.map(|body| Body::new(TrackedBody { body, client }))
     }
 
     /// Writes what the HTTP library has to write, but for what went out ahead of it.
     pub(crate) fn poll_write(&self, context: &mut Context<'_>, buffers: &[IoSlice<'_>]) -> Poll<io::Result<usize>> {
         let mut state = self.state();
         state.is_flushed = false;
-        let ahead = state.ahead;
+        let sent_ahead = state.sent_ahead;
         let mut cut;
         let mut rest = buffers;
-        if ahead > 0 {
+        if sent_ahead > 0 {
             cut = buffers.to_vec();
             let mut after = cut.as_mut_slice();
-            IoSlice::advance_slices(&mut after, ahead);
+            IoSlice::advance_slices(&mut after, sent_ahead);
             rest = after;
         }
         loop {
@@ -119,9 +125,9 @@ impl Wire {
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
                 Err(error) => return Poll::Ready(Err(error)),
                 Ok(written) => {
-                    (state.ahead, state.zeros) = (0, 0);
+                    (state.sent_ahead, state.zeros) = (0, 0);
                     state.writes += 1;
-                    return Poll::Ready(Ok(ahead + written));
+                    return Poll::Ready(Ok(sent_ahead + written));
                 }
             }
         }
@@ -132,7 +138,7 @@ impl Wire {
         self.state().is_flushed = true;
     }
 
-    /// Keeps a bare error from being written: [`Wire::bare_error`] is asked for it when the connection has ended, and it is known
+    /// Keeps a bare error from being written: [`ClientSocket::bare_error`] is asked for it when the connection has ended, and it is known
     /// what was wrong.
     pub(crate) fn withhold(&self, status: StatusCode) {
         self.state().bare_error = Some(status);
@@ -143,7 +149,7 @@ impl Wire {
     }
 
     /// Writes an answer at the end of a connection. Gives up after `time`.
-    pub(crate) async fn end_with(&self, mut answer: &[u8], time: Duration) {
+    pub(crate) async fn send_last(&self, mut answer: &[u8], time: Duration) {
         let writing = async {
             while !answer.is_empty() {
                 self.socket.writable().await?;
@@ -176,20 +182,20 @@ impl Wire {
     }
 
     /// Sends a byte that stands before what comes, if there is one left, unless something has been written since `writes`.
-    fn sound(&self, writes: &mut Option<u64>) -> io::Result<()> {
+    fn probe(&self, writes: &mut Option<u64>) -> io::Result<()> {
         let mut state = self.state();
         if writes.replace(state.writes).is_some_and(|before| before != state.writes) || !state.is_flushed {
             return Ok(());
         }
-        let next = match state.coming {
-            Coming::Head(line) => line.get(state.ahead..=state.ahead),
-            Coming::Chunk if state.zeros < limits::PRESENCE_ZEROS => Some(b"0".as_slice()),
-            Coming::Chunk | Coming::Bytes | Coming::Nothing => None,
+        let next = match state.expected {
+            Expected::Head(line) => line.get(state.sent_ahead..=state.sent_ahead),
+            Expected::Chunk if state.zeros < limits::PRESENCE_ZEROS => Some(b"0".as_slice()),
+            Expected::Chunk | Expected::Bytes | Expected::Nothing => None,
         };
         let Some(byte) = next else { return Ok(()) };
         match self.socket.try_write(byte) {
-            Ok(written) if state.coming == Coming::Chunk => state.zeros += written,
-            Ok(written) => state.ahead += written,
+            Ok(written) if state.expected == Expected::Chunk => state.zeros += written,
+            Ok(written) => state.sent_ahead += written,
             // Bytes wait already for a client that takes none.
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
             Err(error) => return Err(error),
@@ -198,13 +204,13 @@ impl Wire {
     }
 
     /// Waits until the client has gone.
-    async fn gone(self: Arc<Self>) {
+    async fn wait_until_gone(self: Arc<Self>) {
         if self.half_closed().await.is_err() {
             return;
         }
         let begin = Instant::now();
         let mut writes = None;
-        while self.sound(&mut writes).is_ok() {
+        while self.probe(&mut writes).is_ok() {
             let next = limits::PRESENCE_TIME.max(2 * begin.elapsed());
             tokio::select! {
                 biased;
@@ -218,29 +224,32 @@ impl Wire {
 
 /// Drives a connection to its end, which it gives, or until its client has gone while it waits for an answer. What is worked on for
 /// the client is dropped with the connection.
-pub(crate) async fn attended<C: Future>(mut connection: Pin<&mut C>, wire: &Arc<Wire>) -> Option<C::Output> {
+pub(crate) async fn until_client_leaves<C: Future>(
+    mut connection: Pin<&mut C>,
+    client: &Arc<ClientSocket>,
+) -> Option<C::Output> {
     let mut look = None;
     let driven = poll_fn(|context| {
         if let Poll::Ready(ended) = connection.as_mut().poll(context) {
             return Poll::Ready(Some(ended));
         }
-        if wire.state().coming == Coming::Nothing {
+        if client.state().expected == Expected::Nothing {
             look = None;
             return Poll::Pending;
         }
-        let look = look.get_or_insert_with(|| Box::pin(wire.clone().gone()));
+        let look = look.get_or_insert_with(|| Box::pin(client.clone().wait_until_gone()));
         look.as_mut().poll(context).map(|()| None)
     });
     driven.await
 }
 
 /// A body that is made piece by piece while it is sent.
-struct Pieces {
+struct TrackedBody {
     body: Body,
-    wire: Arc<Wire>,
+    client: Arc<ClientSocket>,
 }
 
-impl HttpBody for Pieces {
+impl HttpBody for TrackedBody {
     type Data = Bytes;
     type Error = axum::Error;
 
@@ -261,8 +270,8 @@ impl HttpBody for Pieces {
 }
 
 /// Its last piece is made, or nobody wants it.
-impl Drop for Pieces {
+impl Drop for TrackedBody {
     fn drop(&mut self) {
-        self.wire.comes(Coming::Nothing);
+        self.client.expect(Expected::Nothing);
     }
 }

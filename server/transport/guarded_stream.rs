@@ -15,35 +15,40 @@ use tokio::time::{Sleep, sleep};
 
 use crate::http::{Problem, transfer};
 use crate::limits;
-use crate::middleware::seal;
-use crate::transport::connection_slots::Place;
-use crate::transport::wire::Wire;
+use crate::middleware::add_common_headers;
+use crate::transport::client_socket::ClientSocket;
+use crate::transport::connection_slots::ConnectionSlot;
 
 /// A socket that withholds a bare error, and gives up on a client that does not read.
 #[derive(Debug)]
-pub(crate) struct Stream {
+pub(crate) struct GuardedStream {
     socket: OwnedReadHalf,
-    wire: Arc<Wire>,
-    place: Arc<Place>,
+    client: Arc<ClientSocket>,
+    slot: Arc<ConnectionSlot>,
     /// Runs while the socket takes too little, and what it has taken since.
     stall: Option<(Pin<Box<Sleep>>, usize)>,
     stall_time: Duration,
 }
 
-impl Stream {
-    pub(crate) fn new(socket: OwnedReadHalf, wire: Arc<Wire>, place: Arc<Place>, stall_time: Duration) -> Self {
-        Self { socket, wire, place, stall: None, stall_time }
+impl GuardedStream {
+    pub(crate) fn new(
+        socket: OwnedReadHalf,
+        client: Arc<ClientSocket>,
+        slot: Arc<ConnectionSlot>,
+        stall_time: Duration,
+    ) -> Self {
+        Self { socket, client, slot, stall: None, stall_time }
     }
 
     fn poll_socket(&mut self, context: &mut Context<'_>, buffers: &[IoSlice<'_>]) -> Poll<io::Result<usize>> {
-        let written = self.wire.poll_write(context, buffers);
+        let written = self.client.poll_write(context, buffers);
         if let Poll::Ready(written) = written {
-            self.place.moved();
+            self.slot.touch();
             let (took, offered) =
                 (*written.as_ref().unwrap_or(&0), buffers.iter().map(|part| part.len()).sum::<usize>());
             // A client that takes a byte now and then is as slow as one that takes none.
-            self.stall = self.stall.take().map(|(stall, taken)| (stall, taken + took));
-            self.stall.take_if(|(_, taken)| took == offered || *taken >= limits::STALL_BYTES);
+            self.stall = self.stall.take().map(|(stall, guard)| (stall, guard + took));
+            self.stall.take_if(|(_, guard)| took == offered || *guard >= limits::STALL_BYTES);
             return Poll::Ready(written);
         }
         let time = self.stall_time;
@@ -52,7 +57,7 @@ impl Stream {
     }
 }
 
-impl AsyncWrite for Stream {
+impl AsyncWrite for GuardedStream {
     fn poll_write(self: Pin<&mut Self>, context: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         self.poll_write_vectored(context, &[IoSlice::new(bytes)])
     }
@@ -65,7 +70,7 @@ impl AsyncWrite for Stream {
         let this = self.get_mut();
         if let Some(status) = buffers.first().and_then(|head| bare_error(head)) {
             // To the library, it has been written.
-            this.wire.withhold(status);
+            this.client.withhold(status);
             return Poll::Ready(Ok(buffers.iter().map(|buffer| buffer.len()).sum()));
         }
         this.poll_socket(context, buffers)
@@ -76,22 +81,22 @@ impl AsyncWrite for Stream {
     }
 
     fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
-        self.wire.flushed();
+        self.client.flushed();
         Poll::Ready(Ok(()))
     }
 
     fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
         // After a bare error there is still something to say.
-        Poll::Ready(if self.wire.bare_error().is_some() { Ok(()) } else { self.wire.shutdown() })
+        Poll::Ready(if self.client.bare_error().is_some() { Ok(()) } else { self.client.shutdown() })
     }
 }
 
-impl AsyncRead for Stream {
+impl AsyncRead for GuardedStream {
     fn poll_read(mut self: Pin<&mut Self>, context: &mut Context<'_>, into: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
         let before = into.filled().len();
         let polled = Pin::new(&mut self.socket).poll_read(context, into);
         if into.filled().len() > before {
-            self.place.moved();
+            self.slot.touch();
         }
         polled
     }
@@ -113,7 +118,7 @@ fn bare_error(head: &[u8]) -> Option<StatusCode> {
 
 /// The whole answer, head and body, that says what the bare error only hints at. `error` is why the library has ended the
 /// connection.
-pub(crate) fn told(status: StatusCode, error: &hyper::Error) -> Vec<u8> {
+pub(crate) fn full_error_response(status: StatusCode, error: &hyper::Error) -> Vec<u8> {
     let problem = match status {
         _ if error.to_string() == UNKNOWN_CODING => transfer::not_implemented(None),
         StatusCode::URI_TOO_LONG => Problem::url_too_long("more than 65534"),
@@ -125,7 +130,7 @@ pub(crate) fn told(status: StatusCode, error: &hyper::Error) -> Vec<u8> {
     };
     let (status, body) = (problem.status(), problem.to_json());
     let mut response = problem.into_response();
-    seal(response.headers_mut());
+    add_common_headers(response.headers_mut());
     let mut answer =
         format!("HTTP/1.1 {status}\r\nconnection: close\r\ncontent-length: {}\r\n", body.len()).into_bytes();
     response.headers_mut().remove(header::CONNECTION);

@@ -8,27 +8,27 @@ use axum::body::{Bytes, HttpBody};
 use http_body::{Frame, SizeHint};
 use hyper::body::Incoming;
 
-use crate::transport::connection_slots::Place;
+use crate::transport::connection_slots::ConnectionSlot;
 
 /// A body that arrives over a connection with this place.
-pub(crate) struct Awaited {
+pub(crate) struct RequestBody {
     body: Incoming,
-    place: Arc<Place>,
+    slot: Arc<ConnectionSlot>,
 }
 
-impl Awaited {
-    pub(crate) fn new(body: Incoming, place: Arc<Place>) -> Self {
-        Self { body, place }
+impl RequestBody {
+    pub(crate) fn new(body: Incoming, slot: Arc<ConnectionSlot>) -> Self {
+        Self { body, slot }
     }
 }
 
-impl HttpBody for Awaited {
+impl HttpBody for RequestBody {
     type Data = Bytes;
     type Error = hyper::Error;
 
     fn poll_frame(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<hyper::Result<Frame<Bytes>>>> {
         let polled = Pin::new(&mut self.body).poll_frame(context);
-        self.place.answers(polled.is_ready());
+        self.slot.set_answering(polled.is_ready());
         polled
     }
 
