@@ -10,9 +10,10 @@ use std::time::Instant;
 use case_1::{ROD, RULES};
 use equipoise_physics::batch::batch_run::{Start, sweep_on, sweep_rough_on};
 use equipoise_physics::bounce::friction::{Law, Slide};
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::dispatch::{Path, Work, dispatch_on};
-use equipoise_physics::run::orbit::Rules;
+use equipoise_physics::run::rules::Rules;
 
 const RUNS: usize = 64;
 const BOUNCES: u64 = 2000;

@@ -2,8 +2,10 @@
 
 use equipoise::integrators::{Impact, Location, Method, Simulation, Work, simulate};
 use equipoise_physics::body::Release;
-use equipoise_physics::bounce::strike::{Rod, State};
-use equipoise_physics::run::orbit::{Contact, Orbit, Rules, run};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::run::orbit::{Contact, Orbit, run};
+use equipoise_physics::run::rules::Rules;
 
 const RULES: Rules =
     Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None };

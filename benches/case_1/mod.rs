@@ -1,7 +1,7 @@
 //! The rod of the paper's case 1, for benches.
 
-use equipoise_physics::bounce::strike::Rod;
-use equipoise_physics::run::orbit::Rules;
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::run::rules::Rules;
 
 /// The rod.
 pub(crate) const ROD: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.1);

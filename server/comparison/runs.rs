@@ -3,12 +3,15 @@
 use std::hint::black_box;
 
 use equipoise_physics::bounce::contact_time;
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Number;
+use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::linear_solution::LinearSolution;
-use equipoise_physics::run::orbit::{LOOK, Orbit, Rules};
+use equipoise_physics::run::orbit::Orbit;
+use equipoise_physics::run::rules::Rules;
 use equipoise_physics::run::{extended, orbit};
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
@@ -48,7 +51,7 @@ impl<'a> Subject<'a> {
         let ending = run_extended(scene, impacts, |contact| {
             state = contact.state;
             (reference.impacts, reference.t) = (contact.n, contact.t.to_f64());
-            !contact.n.is_multiple_of(LOOK) || slice.should_continue()
+            !contact.n.is_multiple_of(CHECK_INTERVAL) || slice.should_continue()
         });
         slice.check()?;
         reference.outcome = ending.map_or("diverged", Ending::name);

@@ -90,7 +90,7 @@ pub(crate) const ANGLE: Side = Side::new("angle at the contact", "|θ|", "rad").
 /// farthest from 1: (re, im).
 fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f64, (f64, f64)) {
     let upright =
-        equipoise_physics::bounce::strike::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
+        equipoise_physics::bounce::state::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
     let matrix = jacobian::jacobian(&scene.model(), &upright, 1).map(|linearization| linearization.matrix);
     let values = matrix.ok().and_then(|matrix| jacobian::eigenvalues(&matrix)).unwrap_or_default();
     let radius = values.iter().copied().map(modulus).fold(0.0, f64::max);

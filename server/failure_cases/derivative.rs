@@ -3,8 +3,9 @@
 use crate::charts::{Chart, Curve, Look, Plot, Side};
 use crate::failure_cases::{Case, Says, Seen, built, rod, with};
 use equipoise_physics::body::Body;
-use equipoise_physics::bounce::strike::State;
-use equipoise_physics::run::orbit::{Orbit, Rules};
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::run::orbit::Orbit;
+use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::jacobian::{finite_difference, jacobian};
 use nalgebra::DMatrix;

@@ -12,7 +12,7 @@ mod horizon;
 mod steps;
 
 use crate::charts::Chart;
-use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 

@@ -3,12 +3,15 @@
 //! Not here: how they move the rod.
 
 use equipoise_physics::body::Release;
-use equipoise_physics::bounce::strike::{Rod, State, Strike};
-use equipoise_physics::run::orbit::{Rules, SPEED_LIMIT};
-use equipoise_physics::run::settling::{Rebound, SETTLED_SHARE, stay, time_to_rest};
+use equipoise_physics::bounce::rebound::Rebound;
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::Strike;
+use equipoise_physics::run::rules::{Rules, SPEED_LIMIT};
+use equipoise_physics::run::settling::{SETTLED_SHARE, stay, time_to_rest};
 
 use crate::integrators::motion::Motion;
-use crate::integrators::{Ending, Impact, Work};
+use crate::integrators::simulation::{Ending, Impact, Work};
 
 /// Why a method stops.
 pub(crate) enum Halt {

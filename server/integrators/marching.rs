@@ -5,8 +5,8 @@
 
 use std::convert::Infallible;
 
-use crate::integrators::Location;
 use crate::integrators::course::{Course, Halt, bisect};
+use crate::integrators::method::Location;
 
 pub(crate) fn run(course: &mut Course, step: f64, location: Location) -> Result<Infallible, Halt> {
     let (mut motion, at_contact) = course.start();

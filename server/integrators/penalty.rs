@@ -9,8 +9,8 @@
 use std::convert::Infallible;
 use std::f64::consts::PI;
 
+use equipoise_physics::bounce::rebound::Rebound;
 use equipoise_physics::bounce::strike::Strike;
-use equipoise_physics::run::settling::Rebound;
 
 use crate::integrators::course::{Course, Halt};
 use crate::integrators::motion::Motion;

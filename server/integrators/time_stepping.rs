@@ -2,12 +2,13 @@
 //! gap at its middle, Newton's restitution between the velocities at its ends.
 //!
 //! With U the relative velocity along the normal, 0 ≤ U⁺ + e U⁻ ⊥ P ≥ 0 while the gap is closed. The table moves as the strike says,
-//! so that impulse comes from [`Rod::strike`](equipoise_physics::bounce::strike::Rod::strike); a step's share of gravity is added, which a
+//! so that impulse comes from [`Rod::strike`](equipoise_physics::bounce::rod::Rod::strike); a step's share of gravity is added, which a
 //! closed contact has to carry too. A contact is known to half a step: the method is of order 1.
 
 use std::convert::Infallible;
 
-use equipoise_physics::bounce::strike::{State, Strike};
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::Strike;
 
 use crate::integrators::course::{Course, Halt};
 use crate::integrators::motion::Motion;

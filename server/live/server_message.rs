@@ -3,7 +3,7 @@
 //! Not here: when it is said, and what a client says (`client_message`).
 
 use equipoise_physics::body::Body;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::bounce::state::State;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::model::Model;
 use serde::{Serialize, Serializer};

@@ -5,8 +5,9 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::orbit::{Contact, LOOK, Orbit};
+use equipoise_physics::run::orbit::{Contact, Orbit};
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::table::actuator_load::{Demand, Meter};
@@ -93,7 +94,9 @@ impl Playback {
             contact.ending = Some(Ending::Completed);
             contact.flight_time = None;
         }
-        self.meter.look(&contact);
+        if let Some(strike) = &contact.strike {
+            self.meter.track(strike, contact.flight_time);
+        }
         if let Some(ending) = contact.ending {
             self.outcome = Some(Arc::new(Outcome::new(ending, n, contact.t)));
         }
@@ -161,7 +164,7 @@ pub fn catch_up(request: &RunRequest, until: f64, limit: &Limit, slice: &TimeSli
         let (_, price) = playback.advance(run);
         spent = spent.and(price).within(limit).map_err(CatchUpError::OverBudget)?;
         if spent.as_bounces() >= looked {
-            looked = spent.as_bounces() + LOOK;
+            looked = spent.as_bounces() + CHECK_INTERVAL;
             slice.check().map_err(|Cancelled| CatchUpError::Cancelled)?;
         }
     }

@@ -5,9 +5,11 @@
 
 use std::time::Instant;
 
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
 use equipoise_physics::body::Release;
-use equipoise_physics::run::orbit::{run, Orbit, Rules};
+use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::run::rules::Rules;
 use rapier2d_f64::prelude::*;
 use serde_json::{Value, json};
 

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::control::{BounceModel, ClosedLoop, Design, NoDesign, STATE};
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};

@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 
 use equipoise_physics::body::point::Point;
-use equipoise_physics::bounce::strike::State;
-use equipoise_physics::run::orbit::{LOOK, run};
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::run::cancellation::CHECK_INTERVAL;
+use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian;
@@ -230,7 +231,7 @@ fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64,
             let mut last = (orbit.x(), *orbit.state());
             let ending = run(&mut orbit, impact, |contact| {
                 last = (contact.x, contact.state);
-                !contact.n.is_multiple_of(LOOK) || go_on()
+                !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
             });
             let ending = ending.ok_or(Refusal::Cancelled)?;
             if orbit.contacts() < impact {

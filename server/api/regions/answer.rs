@@ -1,6 +1,6 @@
 //! The answer of `regions`: a quantity and an outcome for each pair of values of two fields.
 
-use equipoise_physics::batch::batch_run::Outcome;
+use equipoise_physics::run::ending::Outcome;
 use equipoise_physics::surveys::stability_map;
 use equipoise_physics::surveys::stability_map::{Axis, Cell, Quantity};
 use serde::{Serialize, Serializer};

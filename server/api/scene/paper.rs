@@ -4,8 +4,9 @@
 //! Not here: the printed values, which stand with the presets.
 
 use equipoise_physics::numbers::trig;
+use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::orbit::{Contact, LOOK, run};
+use equipoise_physics::run::orbit::{Contact, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::jacobian_at;
@@ -174,7 +175,7 @@ fn end_of(
     let mut orbit = scene.orbit().ok()?;
     let ending = run(&mut orbit, impacts, |contact| {
         visit(contact);
-        !contact.n.is_multiple_of(LOOK) || go_on()
+        !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;
     Some((ending, orbit.contacts()))
 }

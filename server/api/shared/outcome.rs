@@ -4,7 +4,7 @@
 
 use equipoise_physics::body::Touch;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::orbit::SPEED_LIMIT;
+use equipoise_physics::run::rules::SPEED_LIMIT;
 use equipoise_physics::table::actuator_load::Excess;
 use serde::Serialize;
 

@@ -1,6 +1,6 @@
 //! The state of the body just before a contact, as it is asked for.
 
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::bounce::state::State;
 
 use crate::http::Reader;
 

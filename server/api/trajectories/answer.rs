@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 
 use equipoise_physics::body::Body;
+use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::method;
 use equipoise_physics::run::method::{Impact, Method, choose_method, run_by};
-use equipoise_physics::run::orbit::{Contact, LOOK};
+use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Rung;
 use equipoise_physics::table::actuator_load::Meter;
@@ -150,7 +151,9 @@ impl<'a> TrajectoryAnswer<'a> {
                     flights.push(scene, contact.n, contact.t, contact.x, y, &strike.after, length, samples);
                 }
             }
-            meter.look(contact);
+            if let Some(strike) = &contact.strike {
+                meter.track(strike, contact.flight_time);
+            }
             if let Some(outline) = scene.outline() {
                 nearest_vertex = Some(NearestVertex::or(nearest_vertex, outline, contact));
             }
@@ -160,7 +163,7 @@ impl<'a> TrajectoryAnswer<'a> {
             if predictable.is_none() && lost {
                 predictable = Some(contact.n - 1);
             }
-            !contact.n.is_multiple_of(LOOK) || go_on()
+            !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
         };
         let run = match changed {
             None => run_by(scene, method, impacts, visit),

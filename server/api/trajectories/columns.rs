@@ -3,7 +3,8 @@
 //! Not here: how the run is computed, and how it ended ([`crate::api::trajectories::answer`]).
 
 use equipoise_physics::body::Body;
-use equipoise_physics::bounce::strike::{State, Strike};
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::method::Impact;

@@ -5,10 +5,12 @@
 
 use crate::batch::lanes::{Bounced, Far, Moving, Near, Rods, Rough, Scratch, Smooth, Surface, WIDTH, bounce};
 use crate::bounce::friction::{Law, Slide};
-use crate::bounce::strike::{Rod, State};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
 use crate::numbers::dispatch::{Path, Work, dispatch, dispatch_on};
-pub use crate::run::ending::Outcome;
-use crate::run::orbit::{Midst, Rules};
+use crate::run::ending::Outcome;
+use crate::run::orbit::Midst;
+use crate::run::rules::Rules;
 
 /// One run to be made.
 #[derive(Clone, Copy, Debug)]

@@ -5,58 +5,22 @@
 //! [`crate::table::noise`], [`crate::body::polygon`]; here they meet.
 
 use crate::body::polygon::Outline;
-use crate::body::{Arrival, Body, Coming, NoContact, Plan, Release, Touch};
+use crate::body::{Arrival, Body, Coming, NoContact, Release, Touch};
 use crate::bounce::contact_time::{first_contact, first_descent};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
 use crate::bounce::friction::{Friction, Law, Slide, as_it_is};
-use crate::bounce::strike::{Rod, State, Strike, Tilt};
-use crate::numbers::number::Number;
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
+use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::tilt::Tilt;
 use crate::numbers::trig;
+use crate::table::control_law::Steering;
 use crate::table::noise::{Draw, Noise, Reading};
 
 /// Least time, s, from one strike to the next: a table that is timed too early strikes then.
 pub const LEAST_FLIGHT: f64 = 1e-6;
-
-/// How the table's tilt follows from what it senses.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Steering<N = f64> {
-    /// α = κθ.
-    TiltGain,
-    /// α = −K·(x, θ, ẋ, θ̇).
-    Feedback(Gains<N>),
-}
-
-/// K of a state feedback.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Gains<N = f64> {
-    /// rad/m.
-    pub x: N,
-    /// 1.
-    pub theta: N,
-    /// rad·s/m.
-    pub x_dot: N,
-    /// s.
-    pub theta_dot: N,
-}
-
-impl<N: Number> Gains<N> {
-    /// α, rad, at a place of the centre of gravity (m) and a state.
-    #[inline(always)]
-    pub fn tilt(&self, x: N, state: &State<N>) -> N {
-        -(self.x * x + self.theta * state.theta + self.x_dot * state.x_dot + self.theta_dot * state.theta_dot)
-    }
-}
-
-impl Steering {
-    /// The table's tilt at a place and a state, in any kind of number.
-    pub(crate) fn tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>) -> Tilt<N> {
-        let Self::Feedback(gains) = self else { return rod.tilt(state.theta) };
-        let [x_gain, theta, x_dot, theta_dot] = [gains.x, gains.theta, gains.x_dot, gains.theta_dot].map(N::from_f64);
-        let alpha = Gains { x: x_gain, theta, x_dot, theta_dot }.tilt(x, state);
-        Tilt::new(state.theta, alpha, state.theta - alpha)
-    }
-}
 
 /// A rod with what a scene asks for beyond the plain one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,7 +100,7 @@ impl Rig {
         let tilt = self.tilt(x, seen, error);
         let Tilt { alpha, sin_alpha, cos_alpha, .. } = tilt;
         let (table_x, table_y) = self.rod.strike_with(seen, &tilt, self.rod.leverage()).table_velocity;
-        let plan = Plan {
+        let plan = PlannedTableMotion {
             alpha,
             normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
             tangential_velocity: self.friction.map_or(0.0, |friction| friction.table_speed(&self.rod, seen, &tilt)),

@@ -5,11 +5,12 @@
 pub mod general;
 pub mod point;
 pub mod polygon;
+pub mod rod;
 
-use crate::bounce::contact_time;
 use crate::bounce::contact_time::TooManyPieces;
-use crate::bounce::flight::Flight;
-use crate::bounce::strike::{Rod, State, Strike};
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
+use crate::bounce::table_motion::PlannedTableMotion;
 
 /// What starts a run: a free body at t = 0, before its first contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +44,7 @@ pub struct Arrival {
     /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
     pub clearance: f64,
     /// What the table has set out to do, where it planned ahead.
-    pub plan: Option<Plan>,
+    pub plan: Option<PlannedTableMotion>,
 }
 
 impl From<(f64, State)> for Arrival {
@@ -51,17 +52,6 @@ impl From<(f64, State)> for Arrival {
     fn from((t, state): (f64, State)) -> Self {
         Self { t, state, clearance: 0.0, plan: None }
     }
-}
-
-/// A table that moves as it was planned before the contact, whatever it then meets.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plan {
-    /// α, rad.
-    pub alpha: f64,
-    /// The table's velocity along its normal, m/s.
-    pub normal_velocity: f64,
-    /// The table's velocity along itself, m/s.
-    pub tangential_velocity: f64,
 }
 
 /// A contact that is about to happen.
@@ -76,7 +66,7 @@ pub struct Coming {
     /// As in [`Arrival`], m.
     pub clearance: f64,
     /// As in [`Arrival`].
-    pub plan: Option<Plan>,
+    pub plan: Option<PlannedTableMotion>,
 }
 
 impl Coming {
@@ -158,99 +148,4 @@ pub trait Body: Copy {
 
     /// Vertical velocity of the contact point, m/s.
     fn contact_speed(&self, state: &State) -> f64;
-}
-
-impl Rod {
-    /// Time of the first contact (0 if it is on the table already and does not rise), s, and the state just before it.
-    ///
-    /// # Errors
-    /// [`TooManyPieces`] where the contact time passed its work limit; likewise in [`Rod::fly`].
-    pub fn fall(&self, release: &Release) -> Result<(f64, State), TooManyPieces> {
-        let flight = self.flight_from(release);
-        let gap = flight.gap(0.0);
-        if flight.clearance == 0.0 && (gap.slope < 0.0 || (gap.slope == 0.0 && gap.bend <= 0.0)) {
-            return Ok((0.0, release.state));
-        }
-        let t = contact_time::first_contact(&flight)?;
-        Ok((t, flight.end(t)))
-    }
-
-    /// The flight that begins at a release.
-    pub(crate) fn flight_from(&self, release: &Release) -> Flight {
-        let sin_cos_theta = crate::numbers::trig::sin_cos(release.state.theta);
-        let height = self.contact_distance * sin_cos_theta.1;
-        let clearance = release.height - height;
-        // A height typed as l cos θ means a contact, whatever the last digit.
-        let clearance =
-            if clearance <= 4.0 * f64::EPSILON * release.height.abs().max(height.abs()) { 0.0 } else { clearance };
-        Flight {
-            start: release.state,
-            sin_cos_theta,
-            clearance,
-            contact_distance: self.contact_distance,
-            gravity: self.gravity,
-        }
-    }
-
-    /// Length of the flight after a strike, s, and the state at its end.
-    ///
-    /// # Errors
-    /// As [`Rod::fall`].
-    #[inline(always)]
-    pub fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
-        let flight = self.flight(strike);
-        let t = contact_time::first_contact(&flight)?;
-        Ok((t, flight.end(t)))
-    }
-}
-
-impl Body for Rod {
-    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
-        Ok(Rod::fall(self, release)?.into())
-    }
-
-    #[inline(always)]
-    fn strike(&self, coming: &Coming) -> Strike {
-        Rod::strike(self, &coming.state)
-    }
-
-    #[inline(always)]
-    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
-        Rod::hold_energy(self, strike, energy)
-    }
-
-    #[inline(always)]
-    fn fly(&self, _: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
-        Ok(Rod::fly(self, strike)?.into())
-    }
-
-    fn contact_distance(&self) -> f64 {
-        self.contact_distance
-    }
-
-    fn contact_height(&self, state: &State) -> f64 {
-        self.contact_distance * crate::numbers::trig::sin_cos(state.theta).1
-    }
-
-    fn energy(&self, state: &State) -> f64 {
-        Rod::energy(self, state)
-    }
-
-    fn contact_speed(&self, state: &State) -> f64 {
-        Rod::contact_speed(self, state)
-    }
-}
-
-impl<N: crate::numbers::number::Number> Rod<N> {
-    /// The flight that follows a strike.
-    #[inline(always)]
-    pub fn flight(&self, strike: &Strike<N>) -> Flight<N> {
-        Flight {
-            start: strike.after,
-            sin_cos_theta: strike.sin_cos_theta,
-            clearance: N::from_f64(0.0),
-            contact_distance: self.contact_distance,
-            gravity: self.gravity,
-        }
-    }
 }

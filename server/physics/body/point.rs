@@ -5,7 +5,9 @@
 //! rod whose contact point is its centre of gravity.
 
 use crate::body::{Arrival, Body, Coming, NoContact, Release};
-use crate::bounce::strike::{Rod, State, Strike};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
 
 /// A point mass. In its states `theta` is the angle of the velocity from straight down, counter-clockwise, and
 /// `theta_dot` is 0.

@@ -5,7 +5,7 @@
 //! inflections of the gap into convex and concave pieces, on each of which a down-crossing is found or excluded.
 
 use crate::bounce::flight::{Flight, Gap};
-use crate::bounce::strike::State;
+use crate::bounce::state::State;
 use crate::numbers::number::{Number, Real};
 use std::cell::Cell;
 use std::f64::consts::TAU;
@@ -118,14 +118,6 @@ fn look_for_contact(flight: &Flight, eye: impl Eye) -> Result<f64, TooManyPieces
     }
     let end = latest_contact(flight);
     Ok(newton(flight, eye, end, eye.gap(flight, end)))
-}
-
-impl<N: Number> Flight<N> {
-    /// l θ̇², m/s²: up to G the gap is concave.
-    #[inline(always)]
-    pub(crate) fn bulge(&self) -> N {
-        self.contact_distance * self.start.theta_dot * self.start.theta_dot
-    }
 }
 
 /// Where to start on a flight from the table.

@@ -2,7 +2,9 @@
 //!
 //! Not here: which root of the gap is the next contact ([`crate::bounce::contact_time`]).
 
-use crate::bounce::strike::State;
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
 use crate::numbers::number::Number;
 
 /// A flight, from the moment it starts.
@@ -60,6 +62,12 @@ impl<N: Number> Flight<N> {
         State { theta: theta + theta_dot * t, x_dot, y_dot: y_dot - self.gravity * t, theta_dot }
     }
 
+    /// l θ̇², m/s²: up to G the gap is concave.
+    #[inline(always)]
+    pub(crate) fn bulge(&self) -> N {
+        self.contact_distance * self.start.theta_dot * self.start.theta_dot
+    }
+
     /// A root of the gap found in `f64`, carried over to this kind of number by one Newton step: in dual numbers that
     /// is the exact derivative of the implicit contact time, ∂τ = −∂g/ẏ_c⁻.
     #[inline(always)]
@@ -67,5 +75,19 @@ impl<N: Number> Flight<N> {
         let root = N::from_f64(root);
         let gap = self.gap(root);
         root - gap.value / gap.slope
+    }
+}
+
+impl<N: Number> Rod<N> {
+    /// The flight that follows a strike.
+    #[inline(always)]
+    pub fn flight(&self, strike: &Strike<N>) -> Flight<N> {
+        Flight {
+            start: strike.after,
+            sin_cos_theta: strike.sin_cos_theta,
+            clearance: N::from_f64(0.0),
+            contact_distance: self.contact_distance,
+            gravity: self.gravity,
+        }
     }
 }

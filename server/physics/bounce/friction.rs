@@ -4,8 +4,12 @@
 //! One formula in any kind of number; which way it takes is decided in `f64`, by whoever asks. Flights are the rod's, and what else
 //! a contact needs is in [`crate::body::general`]. Not here: error bounds and linear verdicts.
 
-use crate::body::Plan;
-use crate::bounce::strike::{RISE_UNITS, Rod, State, Strike, Tilt};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::ContactMode;
+use crate::bounce::strike::{RISE_UNITS, Strike};
+use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 
 /// Law of restitution.
@@ -26,34 +30,6 @@ pub enum Slide {
     None,
     /// As fast as the contact point just before.
     Matched,
-}
-
-/// What the contact did along the table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// Nothing held it.
-    Frictionless,
-    /// It slid one way from first to last.
-    Slide,
-    /// It was at rest, or came to rest, and stayed.
-    Stick,
-    /// It came to rest and slid on the other way.
-    ReverseSlide,
-    /// It was at rest and friction could not hold it.
-    SlideThrough,
-}
-
-impl Mode {
-    /// Its name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Frictionless => "frictionless",
-            Self::Slide => "slide",
-            Self::Stick => "stick",
-            Self::ReverseSlide => "reverse_slide",
-            Self::SlideThrough => "slide_through",
-        }
-    }
 }
 
 /// A contact with friction, and how the table moves along itself.
@@ -86,7 +62,7 @@ pub struct Impulse<N = f64> {
     /// P_t.
     pub tangential: N,
     /// What the contact did.
-    pub mode: Mode,
+    pub mode: ContactMode,
 }
 
 /// What has to be known of an impact to say which formula holds.
@@ -169,11 +145,11 @@ impl Friction {
         if !rests {
             let end = (one + restitution) * alone;
             let mode = if self.coefficient == 0.0 {
-                Mode::Frictionless
+                ContactMode::Frictionless
             } else if v_t == 0.0 {
-                Mode::SlideThrough
+                ContactMode::SlideThrough
             } else {
-                Mode::Slide
+                ContactMode::Slide
             };
             return Impulse { normal: end, tangential: slope * end, mode };
         }
@@ -215,9 +191,9 @@ impl Friction {
             }
         };
         let mode = match (holds, v_t == 0.0) {
-            (true, _) => Mode::Stick,
-            (false, true) => Mode::SlideThrough,
-            (false, false) => Mode::ReverseSlide,
+            (true, _) => ContactMode::Stick,
+            (false, true) => ContactMode::SlideThrough,
+            (false, false) => ContactMode::ReverseSlide,
         };
         Impulse { normal: end, tangential: slope * turn + beyond * (end - turn), mode }
     }
@@ -229,7 +205,7 @@ impl Friction {
         rod: &Rod<N>,
         before: &State<N>,
         tilt: &Tilt<N>,
-        plan: Option<&Plan>,
+        plan: Option<&PlannedTableMotion>,
         leverage: N,
         decide: impl FnMut(Decision) -> bool,
     ) -> Strike<N> {

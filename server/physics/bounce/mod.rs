@@ -3,4 +3,9 @@
 pub mod contact_time;
 pub mod flight;
 pub mod friction;
+pub mod rebound;
+pub mod rod;
+pub mod state;
 pub mod strike;
+pub mod table_motion;
+pub(crate) mod tilt;

@@ -7,7 +7,7 @@
 pub mod margin;
 pub mod riccati;
 
-use crate::bounce::strike::Rod;
+use crate::bounce::rod::Rod;
 use crate::stability::contact_regime::ContactRegime;
 use crate::stability::jacobian::{eigenvalues, modulus};
 use margin::{Margin, margin};

@@ -6,7 +6,7 @@
 use super::closed::{Course, Plane, Solution, correct};
 use super::symmetric::on_course;
 use super::{Failure, PeriodicOrbit, Place};
-use crate::bounce::strike::State;
+use crate::bounce::state::State;
 use crate::scene::{Name, Scene};
 
 /// Step along the branch at first, and at most; θ in rad, velocities in parts of the scene's, the parameter of its range.

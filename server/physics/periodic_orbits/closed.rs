@@ -6,7 +6,8 @@
 
 use super::{Failure, Place, Setting, advance};
 use crate::bounce::flight::Flight;
-use crate::bounce::strike::{Rod, State};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use crate::scene::{Kind, Name, Scene, Value};

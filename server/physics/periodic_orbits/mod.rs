@@ -12,9 +12,11 @@ mod symmetric;
 
 pub use symmetric::symmetric;
 
-use crate::bounce::strike::{Rod, State};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
 use crate::run::ending::Ending;
-use crate::run::orbit::{Orbit, Rules};
+use crate::run::orbit::Orbit;
+use crate::run::rules::Rules;
 use crate::scene::Scene;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::find_fixed_point;

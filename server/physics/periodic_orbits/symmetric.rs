@@ -4,7 +4,8 @@
 
 use super::closed::Course;
 use super::{Failure, Place};
-use crate::bounce::strike::{Rod, State};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
 use crate::numbers::trig;
 
 /// The orbit through an angle, rad, at the energy that it has; none where V² would not be positive.

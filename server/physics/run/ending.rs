@@ -36,7 +36,7 @@ pub enum Ending {
         /// When it comes to rest, s, from the geometric tail of its flights.
         settle_time: f64,
     },
-    /// A speed passed [`crate::run::orbit::SPEED_LIMIT`], or the next contact could not be found within its work limit.
+    /// A speed passed [`crate::run::rules::SPEED_LIMIT`], or the next contact could not be found within its work limit.
     Diverged {
         /// The larger of the speeds, m/s; not finite where the arithmetic overflowed.
         speed: f64,

@@ -7,13 +7,16 @@
 use crate::bounce::contact_time;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::strike::{Rod, State, Strike};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
 use crate::numbers::double_double;
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
+use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::extended;
-use crate::run::orbit::{Contact, LOOK};
+use crate::run::orbit::Contact;
 use crate::scene::Scene;
 use crate::scene::model::{Model, Rung};
 
@@ -77,7 +80,7 @@ pub fn predictable_impacts(
             return Some(n);
         }
         let contact = orbit.advance();
-        if contact.flight_time.is_none() || (n.is_multiple_of(LOOK) && !go_on()) {
+        if contact.flight_time.is_none() || (n.is_multiple_of(CHECK_INTERVAL) && !go_on()) {
             break;
         }
         estimate.pass(&contact);

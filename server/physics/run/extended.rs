@@ -8,13 +8,15 @@ use crate::body::Release;
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::Friction;
-use crate::bounce::strike::{Rod, State, Strike};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
 use crate::bounce::{contact_time, friction};
 use crate::numbers::double_double::{DoubleDouble, ROUNDING};
 use crate::numbers::number::Number;
 use crate::numbers::trig;
 use crate::run::ending::Ending;
-use crate::run::orbit::{Rules, SPEED_LIMIT};
+use crate::run::rules::{Rules, SPEED_LIMIT};
 use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
 
 /// Most Newton steps of a lift: one does, except where the rod grazes the table.

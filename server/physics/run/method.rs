@@ -5,12 +5,13 @@
 //! Whether a method is accurate enough is its own bound's to say.
 
 use crate::body::{Body, Coming};
-use crate::bounce::strike::State;
+use crate::bounce::state::State;
 use crate::numbers::double_double::DoubleDouble;
+use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::error_estimate::ErrorEstimate;
 use crate::run::linear_solution::LinearSolution;
-use crate::run::orbit::{Contact, LOOK};
+use crate::run::orbit::Contact;
 use crate::run::{extended, orbit};
 use crate::scene::Scene;
 use crate::scene::model::Rung;
@@ -167,7 +168,7 @@ fn reach(
             return false;
         }
         largest = f64::max(largest, bound);
-        !impact.contact.n.is_multiple_of(LOOK) || go_on()
+        !impact.contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     });
     match (run, lost) {
         (Err(why), _) => Some(Reach::None(why)),

@@ -1,10 +1,12 @@
 //! Runs from contact to contact: how they go on and end, how they are computed (doubles, 31 digits, closed form), and how large
 //! their errors are.
 
+pub mod cancellation;
 pub mod ending;
 pub mod error_estimate;
 pub mod extended;
 pub mod linear_solution;
 pub mod method;
 pub mod orbit;
+pub mod rules;
 pub mod settling;

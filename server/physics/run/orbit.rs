@@ -2,70 +2,16 @@
 //!
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
-use crate::body::{Arrival, Body, Coming, Kick, NoContact, Plan, Release};
-use crate::bounce::strike::{State, Strike};
+use crate::body::{Arrival, Body, Coming, Kick, NoContact, Release};
+use crate::bounce::rebound::Rebound;
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
+use crate::bounce::table_motion::PlannedTableMotion;
 use crate::numbers::dispatch::{Work, dispatch};
 use crate::run::ending::Ending;
-pub use crate::run::settling::SETTLED_SHARE;
-use crate::run::settling::{Rebound, stay, time_to_rest};
-use crate::table::actuator_load::{Limits, Pose};
-
-/// Fastest speed, m/s, of the centre of gravity or of the contact point about it, that a run may reach: beyond it
-/// doubles no longer resolve a flight, and only a wrong energy feedback gets there.
-pub const SPEED_LIMIT: f64 = 1e6;
-
-/// Contacts between two questions of whether to go on: far less than a millisecond for any body, its derivatives included.
-pub const LOOK: u64 = 128;
-
-/// Price of beginning a run, in contacts.
-const BEGINNING: u64 = 8;
-
-/// Asks whether to go on, every [`LOOK`] contacts of many runs, each of which may be shorter.
-pub(crate) struct Looks<'a> {
-    contacts: u64,
-    go_on: &'a mut dyn FnMut() -> bool,
-}
-
-impl<'a> Looks<'a> {
-    /// Nothing done yet.
-    pub(crate) fn new(go_on: &'a mut dyn FnMut() -> bool) -> Self {
-        Self { contacts: 0, go_on }
-    }
-
-    /// Tells whether to begin a run.
-    pub(crate) fn begin(&mut self) -> bool {
-        self.pass(BEGINNING)
-    }
-
-    /// Tells whether to go on after a contact.
-    pub(crate) fn contact(&mut self) -> bool {
-        self.pass(1)
-    }
-
-    fn pass(&mut self, contacts: u64) -> bool {
-        let before = self.contacts / LOOK;
-        self.contacts += contacts;
-        self.contacts / LOOK == before || (self.go_on)()
-    }
-}
-
-/// What decides, beside the physics, when a run ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rules {
-    /// |θ| at which a contact counts as toppled, rad; infinite for a body without an angle.
-    pub topple_angle: f64,
-    /// Whether strikes take energy away, always or at times, so that a run can settle.
-    pub settles: bool,
-    /// Whether rounding is kept off the energy ([`Orbit`]); not where a settling run loses it to G l (1 − cos θ).
-    pub holds_energy: bool,
-    /// What the table can do, if that is limited.
-    pub limits: Option<Limits>,
-}
-
-impl Rules {
-    /// The map alone: nothing but what the physics itself forbids ends a run, and nothing is corrected.
-    pub const BARE_MAP: Self = Self { topple_angle: f64::INFINITY, settles: false, holds_energy: false, limits: None };
-}
+use crate::run::rules::{Rules, SPEED_LIMIT};
+use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
+use crate::table::actuator_load::Pose;
 
 /// One contact of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,7 +62,7 @@ pub struct Orbit<B> {
     /// Just before the coming contact.
     state: State,
     clearance: f64,
-    plan: Option<Plan>,
+    plan: Option<PlannedTableMotion>,
     n: u64,
     t: Sum,
     x: Sum,

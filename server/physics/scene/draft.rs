@@ -3,12 +3,12 @@
 use super::fields::{FIELDS, Name, Value};
 use super::{BodyShape, Scene, Striking};
 use crate::body::Release;
-use crate::body::general::{Gains, Steering};
 use crate::body::polygon::{FLUSH, Outline, PolygonError, Vertices};
 use crate::bounce::friction::{Law, Slide};
-use crate::bounce::strike::State;
+use crate::bounce::state::State;
 use crate::numbers::trig;
 use crate::table::actuator_load::Limits;
+use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::{Noise, Reading};
 
 /// What is wrong with a field, in words with numbers, limits and units.

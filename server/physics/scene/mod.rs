@@ -11,11 +11,11 @@ pub use draft::{Draft, FieldError, VERTICES};
 pub use fields::{FIELDS, Field, Kind, Name, Value, field};
 
 use crate::body::Release;
-use crate::body::general::Steering;
 use crate::body::polygon::{Outline, Vertices};
 use crate::bounce::friction::{Law, Slide};
-use crate::bounce::strike::State;
+use crate::bounce::state::State;
 use crate::table::actuator_load::Limits;
+use crate::table::control_law::Steering;
 use crate::table::noise::Noise;
 
 /// Which body bounces.

@@ -1,16 +1,20 @@
 //! Chooses the smallest model that is exact for a scene, and says why.
 
-use crate::body::general::{Gains, Rig, Steering};
+use crate::body::general::Rig;
 use crate::body::point::Point;
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, Coming, NoContact, Release, Touch};
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::strike::{Rod, State, Strike};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
 use crate::numbers::number::Number;
 use crate::run::extended;
-use crate::run::orbit::{Orbit, Rules};
+use crate::run::orbit::Orbit;
+use crate::run::rules::Rules;
 use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
+use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::Noise;
 
 /// The rungs of the ladder of models, from the least.

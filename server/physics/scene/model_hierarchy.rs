@@ -2,10 +2,10 @@
 //!
 //! What a rung leaves out is left out of the scene itself, so each runs as it would if it had been asked for alone.
 
-use crate::bounce::strike::State;
+use crate::bounce::state::State;
+use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::method::{Method, run_by};
-use crate::run::orbit::LOOK;
 use crate::scene::model::{Forced, Rung};
 use crate::scene::{Name, Scene, Value};
 use crate::table::actuator_load::{Demand, Meter};
@@ -97,9 +97,11 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
         let (mut course, mut meter) = (Vec::new(), Meter::default());
         let run = run_by(&reduced, method, impacts, |impact| {
             let contact = &impact.contact;
-            meter.look(contact);
+            if let Some(strike) = &contact.strike {
+                meter.track(strike, contact.flight_time);
+            }
             course.push(Here { t: contact.t, x: contact.x, state: contact.state });
-            !contact.n.is_multiple_of(LOOK) || go_on()
+            !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
         });
         let run = match run {
             Err(why) => Err(why),

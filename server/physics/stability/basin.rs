@@ -3,10 +3,11 @@
 //! A scan in lanes and a search of its edges. Not a map over two fields, and no proof: between two angles of the scan a
 //! narrow hole stays unseen.
 
-use crate::batch::batch_run::{End, Outcome, Start, sweep, sweep_rough};
+use crate::batch::batch_run::{End, Start, sweep, sweep_rough};
 use crate::body::Release;
 use crate::bounce::friction::Friction;
-use crate::bounce::strike::State;
+use crate::bounce::state::State;
+use crate::run::ending::Outcome;
 use crate::scene::Scene;
 use crate::scene::model::Rung;
 use std::cell::Cell;

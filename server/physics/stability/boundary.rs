@@ -1,7 +1,7 @@
 //! The upper end κ_c of the tilt gain: the coefficient that says whether stability is lost softly there, and the orbit of period 2
 //! that branches off.
 
-use crate::bounce::strike::Rod;
+use crate::bounce::rod::Rod;
 use crate::numbers::trig;
 use crate::scene::model::Model;
 use crate::stability::contact_regime::{ContactRegime, contact_regime};

@@ -5,7 +5,8 @@
 //! [`crate::stability::verdict`]).
 
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::strike::{Rod, State};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
 use crate::scene::model::Model;
 use nalgebra::Complex;
 

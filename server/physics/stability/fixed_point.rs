@@ -2,7 +2,7 @@
 //!
 //! Not here: how a small deviation from it moves ([`crate::stability::linear_verdict`]).
 
-use crate::bounce::strike::Rod;
+use crate::bounce::rod::Rod;
 use crate::scene::model::Rung;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, lent_by_table};

@@ -5,16 +5,21 @@
 //! a point mass.
 
 use crate::body::Body;
-use crate::body::general::{Rig, Steering};
+use crate::body::general::Rig;
 use crate::body::point::Point;
 use crate::bounce::contact_time::first_contact;
 use crate::bounce::flight::Flight;
-use crate::bounce::friction::{Fork, Law, Mode, Slide, as_it_is};
-use crate::bounce::strike::{Rod, State, Strike};
+use crate::bounce::friction::{Fork, Law, Slide, as_it_is};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::ContactMode;
+use crate::bounce::strike::Strike;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
-use crate::run::orbit::{Contact, Orbit, Rules};
+use crate::run::orbit::{Contact, Orbit};
+use crate::run::rules::Rules;
 use crate::scene::model::Model;
+use crate::table::control_law::Steering;
 use nalgebra::{Complex, DMatrix, Schur};
 
 /// The map linearized about one orbit segment.
@@ -32,7 +37,7 @@ pub struct Linearization {
     /// ẏ_c just before the contact nearest to grazing, m/s: derivatives grow without bound as it goes to 0.
     pub contact_speed: f64,
     /// What the first contact did along the table.
-    pub contact_mode: Mode,
+    pub contact_mode: ContactMode,
     /// Where the map has a kink, its derivatives on all sides of it; else none.
     pub one_sided: Vec<Side>,
 }
@@ -41,7 +46,7 @@ pub struct Linearization {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Side {
     /// What the contact does along the table on that side.
-    pub contact_mode: Mode,
+    pub contact_mode: ContactMode,
     /// As [`Linearization::matrix`].
     pub matrix: DMatrix<f64>,
 }
@@ -77,7 +82,7 @@ pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearizati
 /// # Errors
 /// As [`jacobian`].
 pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
-    let smooth = |matrix| vec![Side { contact_mode: Mode::Frictionless, matrix }];
+    let smooth = |matrix| vec![Side { contact_mode: ContactMode::Frictionless, matrix }];
     let size = state_order(model).len();
     along(model, x, start, period, |Contact { x, state, .. }| match model {
         Model::Rod(rod) => rod_jacobian(rod, state).map(smooth),
@@ -157,7 +162,7 @@ fn along(
 ) -> Result<Linearization, Box<Contact>> {
     let size = state_order(model).len();
     let mut orbit = Orbit::at(*model, Rules::BARE_MAP, *start).moved(x);
-    let mut sides = vec![Side { contact_mode: Mode::Frictionless, matrix: DMatrix::identity(size, size) }];
+    let mut sides = vec![Side { contact_mode: ContactMode::Frictionless, matrix: DMatrix::identity(size, size) }];
     let mut contact_mode = None;
     let (mut flight_time, mut contact_speed) = (0.0, f64::NEG_INFINITY);
     for _ in 0..period {
@@ -176,7 +181,7 @@ fn along(
         x: orbit.x(),
         flight_time,
         contact_speed,
-        contact_mode: contact_mode.unwrap_or(Mode::Frictionless),
+        contact_mode: contact_mode.unwrap_or(ContactMode::Frictionless),
         one_sided: if sides.len() > 1 { sides } else { Vec::new() },
     })
 }
@@ -212,7 +217,7 @@ fn rig_jacobians<const K: usize>(rig: &Rig, x: f64, state: &State) -> Option<Vec
     let Some(friction) = &rig.friction else {
         let root = first_contact(&rod.flight(&rod.strike_with(state, &plain, rod.leverage()))).ok()?;
         let matrix = after_flight(&lifted, place, &lifted.strike_with(&start, &tilt, leverage), root);
-        return Some(vec![Side { contact_mode: Mode::Frictionless, matrix }]);
+        return Some(vec![Side { contact_mode: ContactMode::Frictionless, matrix }]);
     };
     let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched);
     let strike = friction.strike(rod, state, &plain, None, rod.leverage(), |decision| {
@@ -243,9 +248,9 @@ fn rig_jacobians<const K: usize>(rig: &Rig, x: f64, state: &State) -> Option<Vec
             answer
         });
         let contact_mode = match strike.mode {
-            Mode::SlideThrough if !tied.contains(&Fork::Forward) => Mode::SlideThrough,
-            Mode::SlideThrough if rests => Mode::ReverseSlide,
-            Mode::SlideThrough => Mode::Slide,
+            ContactMode::SlideThrough if !tied.contains(&Fork::Forward) => ContactMode::SlideThrough,
+            ContactMode::SlideThrough if rests => ContactMode::ReverseSlide,
+            ContactMode::SlideThrough => ContactMode::Slide,
             mode => mode,
         };
         let side = Side { contact_mode, matrix: after_flight(&lifted, place, &strike, root) };

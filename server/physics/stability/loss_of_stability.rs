@@ -5,7 +5,7 @@
 //! the tilt gain that is C of [`Boundary`]; for the energy gain the height flips; for state feedback a pair or a real eigenvalue
 //! leaves the circle at a factor on the gains.
 
-use crate::bounce::strike::State;
+use crate::bounce::state::State;
 use crate::control::margin::crossings;
 use crate::control::{BounceModel, STABLE};
 use crate::periodic_orbits::branch::Kind as Bifurcation;

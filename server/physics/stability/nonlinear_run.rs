@@ -1,7 +1,8 @@
 //! The run of the scene itself, summed up for the verdict.
 
+use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
-use crate::run::orbit::{LOOK, run};
+use crate::run::orbit::run;
 use crate::scene::Scene;
 use crate::table::actuator_load::{Demand, Meter};
 
@@ -34,10 +35,12 @@ pub fn run_nonlinear(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
     let mut t = 0.0;
     let mut meter = Meter::default();
     let ending = run(&mut orbit, impacts, |contact| {
-        meter.look(contact);
+        if let Some(strike) = &contact.strike {
+            meter.track(strike, contact.flight_time);
+        }
         max_theta = max_theta.max(contact.state.theta.abs());
         t = contact.t;
-        !contact.n.is_multiple_of(LOOK) || go_on()
+        !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;
     Some(NonlinearRun { ending, impacts: orbit.contacts(), t, max_theta, demand: meter.most })
 }

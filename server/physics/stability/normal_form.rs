@@ -8,14 +8,16 @@
 //! manifold of an odd direction bends, to second order, along ẏ only; no odd quadratic term exists; and of the strong resonances
 //! only those of order 1, 2 and 4 matter. Not here: what is concluded from a coefficient ([`crate::stability::verdict`]).
 
-use crate::body::general::{Gains, Rig, Steering};
+use crate::body::general::Rig;
 use crate::bounce::friction::{Friction, Slide, as_it_is};
-use crate::bounce::strike::{Rod, State};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
 use crate::numbers::number::Number;
 use crate::numbers::taylor::Taylor;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::jacobian::{eigenvalues, modulus};
+use crate::table::control_law::{Gains, Steering};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Distance of λᵏ from 1, for k = 1, 2 and 4, up to which the coefficient of a pair is not defined (strong resonance).

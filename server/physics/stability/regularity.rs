@@ -3,15 +3,17 @@
 //! All of it comes from one watch over the first contacts of a run, with the exact derivative of the map carried along.
 //! Not here: what is concluded from it ([`crate::stability::verdict`]).
 
-use crate::body::general::{Rig, Steering};
+use crate::body::general::Rig;
 use crate::bounce::friction::Friction;
-use crate::bounce::strike::{Rod, State};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
 use crate::numbers::dual::Dual;
 use crate::numbers::trig;
 use crate::run::orbit::Orbit;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::linear_verdict::Linear;
+use crate::table::control_law::Steering;
 use std::f64::consts::TAU;
 
 /// Contacts that are watched at most. Four tangents cost some four bounces each.

@@ -4,9 +4,10 @@
 //! Every run is watched for the same number of contacts, so none is lost sight of before the last: the survival curve of
 //! Kaplan and Meier is the share of runs still going, and its intervals are binomial. Not here: which threads do it.
 
+use crate::run::cancellation::CancellationCheck;
 use crate::run::ending::Ending;
 use crate::run::ending::Outcome;
-use crate::run::orbit::{Looks, run};
+use crate::run::orbit::run;
 use crate::scene::Scene;
 use std::ops::Range;
 
@@ -71,7 +72,7 @@ impl Ensemble {
     pub fn runs(&self, numbers: Range<u64>, go_on: &mut dyn FnMut() -> bool) -> Option<Runs> {
         let watched = self.watched();
         let mut found = Runs { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
-        let mut looks = Looks::new(go_on);
+        let mut looks = CancellationCheck::new(go_on);
         for number in numbers {
             if !looks.begin() {
                 return None;

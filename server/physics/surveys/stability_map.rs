@@ -2,10 +2,12 @@
 //!
 //! Not here: which threads do it, and how it is drawn.
 
-use crate::batch::batch_run::{End, Outcome, Start, sweep, sweep_rough};
+use crate::batch::batch_run::{End, Start, sweep, sweep_rough};
 use crate::bounce::friction::Friction;
-use crate::bounce::strike::Rod;
-use crate::run::orbit::{Looks, run};
+use crate::bounce::rod::Rod;
+use crate::run::cancellation::CancellationCheck;
+use crate::run::ending::Outcome;
+use crate::run::orbit::run;
 use crate::scene::{Draft, Name, Scene, Value};
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::{Linear, linear_verdict};
@@ -161,7 +163,7 @@ impl Region {
         if stopped {
             return None;
         }
-        let mut looks = Looks::new(go_on);
+        let mut looks = CancellationCheck::new(go_on);
         for (index, scene) in alone {
             cells[index] = self.cell(&run_alone(&scene, self.impacts, &mut looks)?);
         }
@@ -255,7 +257,7 @@ fn start_of(scene: &Scene) -> Option<(Start, Option<Friction>)> {
 }
 
 /// None once `go_on` said `false`. What never meets the table has ended before its first contact.
-fn run_alone(scene: &Scene, impacts: u64, looks: &mut Looks<'_>) -> Option<End> {
+fn run_alone(scene: &Scene, impacts: u64, looks: &mut CancellationCheck<'_>) -> Option<End> {
     if !looks.begin() {
         return None;
     }

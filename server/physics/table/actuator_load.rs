@@ -3,7 +3,7 @@
 //! Between two strikes nothing of the table touches the body, so how it gets from one to the next is the rig's affair; what is
 //! told here is the least that any rig needs.
 
-use crate::run::orbit::Contact;
+use crate::bounce::strike::Strike;
 
 /// The table at a strike.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,13 +86,12 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// Looks at a contact of the run, one after the other; at one without a strike nothing is asked of the table.
+    /// Takes in the next strike of the run, and the flight after it, s, if there is one.
     #[inline(always)]
-    pub fn look(&mut self, contact: &Contact) {
-        let Some(strike) = &contact.strike else { return };
+    pub fn track(&mut self, strike: &Strike, flight_time: Option<f64>) {
         let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
         self.most = self.most.or(pose.demand(self.last));
-        self.last = contact.flight_time.map(|time| (pose, time));
+        self.last = flight_time.map(|time| (pose, time));
     }
 }
 

@@ -1,7 +1,8 @@
 //! What holding the energy gains, over runs near upright computed with 50 digits (`tests/oracle/runs.py`):
 //! `cargo test -p equipoise-physics --test accuracy -- --nocapture` prints it.
 
-use equipoise_physics::run::orbit::{Orbit, Rules, run};
+use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Value};
 use serde_json::Value as Json;
 

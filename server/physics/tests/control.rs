@@ -2,7 +2,8 @@
 //! against eigenvalues, and laws that have to hold.
 
 use equipoise_physics::body::{Body, Coming};
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
 use equipoise_physics::control::{BounceModel, NoDesign, RESIDUAL, STABLE};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;

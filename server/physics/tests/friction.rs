@@ -1,8 +1,9 @@
 //! Friction: the worked example, the energy of random impacts under each law, and runs with and without a matched table.
 
 use equipoise_physics::body::{Body, Coming};
-use equipoise_physics::bounce::friction::{Friction, Law, Mobility, Mode, Slide, as_it_is};
-use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::bounce::friction::{Friction, Law, Mobility, Slide, as_it_is};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::numbers::trig;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -22,7 +23,7 @@ fn energies(
     friction: f64,
     law: Law,
     e: f64,
-) -> Option<(f64, f64, Mode)> {
+) -> Option<(f64, f64, ContactMode)> {
     let (sin, cos) = trig::sin_cos(beta);
     let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
     let tangential = x_dot + l * cos * theta_dot;
@@ -77,7 +78,7 @@ fn poisson_and_stronge_never_gain_energy_and_newton_does() {
     }
     println!("of {impacts} impacts gained energy: {gains:?} by {LAWS:?}; modes {seen:?}");
     assert!(gains[0] == 0 && gains[2] == 0 && gains[1] > 100, "{gains:?}");
-    for mode in [Mode::Slide, Mode::Stick, Mode::ReverseSlide, Mode::SlideThrough] {
+    for mode in [ContactMode::Slide, ContactMode::Stick, ContactMode::ReverseSlide, ContactMode::SlideThrough] {
         assert!(seen.contains(&mode), "{mode:?}");
     }
 }

@@ -5,7 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
 
 use equipoise_physics::bounce::contact_time::{first_contact, first_descent};
 use equipoise_physics::bounce::flight::Flight;
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::trig;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::stability::jacobian::{finite_difference, jacobian};

@@ -1,12 +1,16 @@
 //! Lanes and one orbit alone are the same: outcome, number of contacts and largest angle, bit for bit, over random rods.
 
-use equipoise_physics::batch::batch_run::{End, Outcome, Start, sweep, sweep_on, sweep_rough, sweep_rough_on};
+use equipoise_physics::batch::batch_run::{End, Start, sweep, sweep_on, sweep_rough, sweep_rough_on};
 use equipoise_physics::body::Body;
-use equipoise_physics::body::general::{Rig, Steering};
+use equipoise_physics::body::general::Rig;
 use equipoise_physics::bounce::friction::{Friction, Law, Slide};
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::dispatch::Path;
-use equipoise_physics::run::orbit::{Orbit, Rules, run};
+use equipoise_physics::run::ending::Outcome;
+use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::run::rules::Rules;
+use equipoise_physics::table::control_law::Steering;
 use proptest::prelude::*;
 
 prop_compose! {

@@ -2,7 +2,7 @@
 
 mod paper;
 
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::bounce::state::State;
 use equipoise_physics::periodic_orbits::branch::{Branch, Kind, Start, Sweep, follow};
 use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
 use equipoise_physics::run::orbit::Orbit;

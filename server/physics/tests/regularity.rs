@@ -101,7 +101,7 @@ fn the_period_two_orbit_is_one() {
         let speed_squared =
             rod.gravity * rho * rho * theta * alpha.cos() / (length * ((tilt_gain - 1.0) * theta).sin());
         let speed = speed_squared.sqrt();
-        let start = equipoise_physics::bounce::strike::State {
+        let start = equipoise_physics::bounce::state::State {
             theta,
             x_dot: speed * alpha.tan(),
             y_dot: -speed,

@@ -1,13 +1,18 @@
 //! Derivatives through impacts with friction: against differences over every mode and law, on both sides of every kind of
 //! kink, under the mirror, and at the fixed point in closed form.
 
-use equipoise_physics::body::general::{Rig, Steering};
+use equipoise_physics::body::general::Rig;
 use equipoise_physics::body::{Body, Coming};
-use equipoise_physics::bounce::friction::{Friction, Law, Mode, Slide};
-use equipoise_physics::bounce::strike::{Rod, State, Strike};
-use equipoise_physics::run::orbit::{Orbit, Rules};
+use equipoise_physics::bounce::friction::{Friction, Law, Slide};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::ContactMode;
+use equipoise_physics::bounce::strike::Strike;
+use equipoise_physics::run::orbit::Orbit;
+use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::stability::jacobian::{Linearization, finite_difference, jacobian};
+use equipoise_physics::table::control_law::Steering;
 use nalgebra::{DMatrix, Matrix4};
 
 #[path = "support/random.rs"]
@@ -113,11 +118,11 @@ fn derivatives_are_those_of_differences_in_every_mode_and_law() {
     println!("worst {worst:.1e} over {} kinds", seen.len());
     for law in LAWS {
         for (mode, slide) in [
-            (Mode::Slide, Slide::None),
-            (Mode::Stick, Slide::None),
-            (Mode::ReverseSlide, Slide::None),
-            (Mode::Stick, Slide::Matched),
-            (Mode::SlideThrough, Slide::Matched),
+            (ContactMode::Slide, Slide::None),
+            (ContactMode::Stick, Slide::None),
+            (ContactMode::ReverseSlide, Slide::None),
+            (ContactMode::Stick, Slide::Matched),
+            (ContactMode::SlideThrough, Slide::Matched),
         ] {
             assert!(seen.contains(&(mode, law, slide)), "{mode:?} {law:?} {slide:?}");
         }
@@ -188,12 +193,12 @@ fn change<T: PartialEq>(mut from: f64, mut to: f64, what: impl Fn(f64) -> T) -> 
     Some([from, to])
 }
 
-fn mode(rough: &RoughRod, state: &State) -> Mode {
+fn mode(rough: &RoughRod, state: &State) -> ContactMode {
     rough.strike(state).mode
 }
 
 /// Holds the derivative at a kink against differences; counts it if they could tell.
-fn look(rough: &RoughRod, state: &State, modes: &[Mode], counts: &mut Vec<((Law, Vec<Mode>), u32)>) {
+fn look(rough: &RoughRod, state: &State, modes: &[ContactMode], counts: &mut Vec<((Law, Vec<ContactMode>), u32)>) {
     let Ok(linearization) = jacobian(&Model::Rig(rough.rig()), state, 1) else { return };
     let sides: Vec<&DMatrix<f64>> = if linearization.one_sided.is_empty() {
         vec![&linearization.matrix]
@@ -201,7 +206,7 @@ fn look(rough: &RoughRod, state: &State, modes: &[Mode], counts: &mut Vec<((Law,
         linearization.one_sided.iter().map(|side| &side.matrix).collect()
     };
     assert_eq!(*sides[0], linearization.matrix);
-    let mut told: Vec<Mode> = linearization.one_sided.iter().map(|side| side.contact_mode).collect();
+    let mut told: Vec<ContactMode> = linearization.one_sided.iter().map(|side| side.contact_mode).collect();
     if told.is_empty() {
         told.push(linearization.contact_mode);
     }
@@ -221,7 +226,7 @@ fn look(rough: &RoughRod, state: &State, modes: &[Mode], counts: &mut Vec<((Law,
     }
 }
 
-fn assert_seen(counts: &[((Law, Vec<Mode>), u32)], modes: &[Mode]) {
+fn assert_seen(counts: &[((Law, Vec<ContactMode>), u32)], modes: &[ContactMode]) {
     for law in LAWS {
         let count = counts.iter().find(|(kind, _)| kind.0 == law && kind.1 == modes).map_or(0, |(_, count)| *count);
         assert!(count >= 5, "{law:?} {modes:?}: {count}");
@@ -236,7 +241,9 @@ fn where_the_sliding_ends_with_the_impact_both_sides_are_told() {
         let start = state(&mut random);
         let at = |x_dot: f64| State { x_dot, ..start };
         let to = random.between(-4.0, 4.0);
-        let Some(ends) = change(start.x_dot, to, |x_dot| mode(&rough, &at(x_dot)) == Mode::Slide) else { continue };
+        let Some(ends) = change(start.x_dot, to, |x_dot| mode(&rough, &at(x_dot)) == ContactMode::Slide) else {
+            continue;
+        };
         let modes = ends.map(|x_dot| mode(&rough, &at(x_dot)));
         let speed = |x_dot: f64| rough.strike(&at(x_dot)).impulse_tangential.abs();
         if speed(ends[0]) > 0.0 && !at_rest(&rough, &at(ends[0])) {
@@ -244,8 +251,8 @@ fn where_the_sliding_ends_with_the_impact_both_sides_are_told() {
         }
     }
     println!("{counts:?}");
-    assert_seen(&counts, &[Mode::Slide, Mode::Stick]);
-    assert_seen(&counts, &[Mode::ReverseSlide, Mode::Slide]);
+    assert_seen(&counts, &[ContactMode::Slide, ContactMode::Stick]);
+    assert_seen(&counts, &[ContactMode::ReverseSlide, ContactMode::Slide]);
 }
 
 /// v_t = cos α ẋ + sin α ẏ + l cos β θ̇, m/s.
@@ -270,12 +277,12 @@ fn a_contact_at_rest_is_a_kink_only_outside_the_stick_cone() {
         let at = |x_dot: f64| State { x_dot, ..start };
         let Some([_, rest]) = change(-6.0, 6.0, |x_dot| sliding(&rough, &at(x_dot)) > 0.0) else { continue };
         let modes = [-1e-6, 1e-6].map(|aside| mode(&rough, &at(rest + aside)));
-        let modes = if modes == [Mode::Stick; 2] { &modes[..1] } else { &modes };
+        let modes = if modes == [ContactMode::Stick; 2] { &modes[..1] } else { &modes };
         look(&rough, &at(rest), modes, &mut counts);
     }
     println!("{counts:?}");
-    assert_seen(&counts, &[Mode::Stick]);
-    assert_seen(&counts, &[Mode::ReverseSlide, Mode::Slide]);
+    assert_seen(&counts, &[ContactMode::Stick]);
+    assert_seen(&counts, &[ContactMode::ReverseSlide, ContactMode::Slide]);
 }
 
 #[test]
@@ -285,15 +292,17 @@ fn the_edge_of_the_stick_cone_is_a_kink() {
         let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
         let start = state(&mut random);
         let with = |coefficient: f64| RoughRod { friction: Friction { coefficient, ..rough.friction }, ..rough };
-        let Some(ends) = change(1.0, 0.01, |friction| mode(&with(friction), &start) == Mode::Stick) else { continue };
+        let Some(ends) = change(1.0, 0.01, |friction| mode(&with(friction), &start) == ContactMode::Stick) else {
+            continue;
+        };
         let modes = ends.map(|friction| mode(&with(friction), &start));
-        if modes[1] != Mode::Slide {
+        if modes[1] != ContactMode::Slide {
             look(&with(ends[0]), &start, &modes, &mut counts);
         }
     }
     println!("{counts:?}");
-    assert_seen(&counts, &[Mode::SlideThrough, Mode::Stick]);
-    assert_seen(&counts, &[Mode::ReverseSlide, Mode::Stick]);
+    assert_seen(&counts, &[ContactMode::SlideThrough, ContactMode::Stick]);
+    assert_seen(&counts, &[ContactMode::ReverseSlide, ContactMode::Stick]);
 }
 
 #[test]
@@ -313,9 +322,11 @@ fn the_end_of_compression_is_a_kink_for_poisson_alone() {
         let start = state(&mut random);
         let at = |x_dot: f64| State { x_dot, ..start };
         let to = random.between(-4.0, 4.0);
-        let Some([kink, _]) = change(start.x_dot, to, |x_dot| mode(&dead, &at(x_dot)) == Mode::Slide) else { continue };
+        let Some([kink, _]) = change(start.x_dot, to, |x_dot| mode(&dead, &at(x_dot)) == ContactMode::Slide) else {
+            continue;
+        };
         let mode = mode(&rough, &at(kink));
-        if mode != Mode::Slide && !at_rest(&rough, &at(kink)) {
+        if mode != ContactMode::Slide && !at_rest(&rough, &at(kink)) {
             let modes = if rough.friction.law == Law::Poisson { vec![mode; 2] } else { vec![mode] };
             look(&rough, &at(kink), &modes, &mut counts);
         }
@@ -323,7 +334,7 @@ fn the_end_of_compression_is_a_kink_for_poisson_alone() {
     println!("{counts:?}");
     for law in LAWS {
         let times = if law == Law::Poisson { 2 } else { 1 };
-        for mode in [Mode::Stick, Mode::ReverseSlide] {
+        for mode in [ContactMode::Stick, ContactMode::ReverseSlide] {
             assert!(counts.iter().any(|((l, modes), count)| *l == law && *modes == vec![mode; times] && *count >= 5));
         }
     }
@@ -341,7 +352,7 @@ fn at_the_fixed_point_it_has_a_closed_form() {
         rough.rod.target_energy = g * l + 0.5 * v * v;
         let state = State { theta: 0.0, x_dot: 0.0, y_dot: -v, theta_dot: 0.0 };
         let ours = jacobian(&Model::Rig(rough.rig()), &state, 1).unwrap();
-        assert!(ours.one_sided.is_empty() && ours.contact_mode == Mode::Stick);
+        assert!(ours.one_sided.is_empty() && ours.contact_mode == ContactMode::Stick);
         let (k, tau) = (rho * rho + l * l, 2.0 * v / g);
         // ẋ and θ̇ after the strike, by θ, ẋ and θ̇.
         let (x, spin) = match rough.friction.slide {

@@ -1,11 +1,11 @@
 //! Stability with friction: eigenvalues against the derivative, drift and energy against long runs, the stick cone, and a table
 //! that only tilts.
 
-use equipoise_physics::batch::batch_run::Outcome;
 use equipoise_physics::body::Body;
-use equipoise_physics::bounce::friction::Mode;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::ending::Outcome;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::basin::find_basin;
@@ -135,7 +135,7 @@ fn the_stick_cone_is_where_a_matched_contact_begins_to_slide() {
         let cone =
             stick_cone(&scene("matched", &[(Name::Friction, friction), (Name::TiltGain, kappa)]).model()).unwrap();
         assert!((cone - friction * TURNING / (L * L * (kappa - 1.0_f64).abs())).abs() < 1e-15);
-        for (share, mode) in [(0.99, Mode::Stick), (1.01, Mode::SlideThrough)] {
+        for (share, mode) in [(0.99, ContactMode::Stick), (1.01, ContactMode::SlideThrough)] {
             let values = [(Name::Friction, friction), (Name::TiltGain, kappa), (Name::Theta, share * cone)];
             let strike = scene("matched", &values).orbit().unwrap().advance().strike.unwrap();
             assert_eq!(strike.mode, mode, "{friction} {kappa} {share}");

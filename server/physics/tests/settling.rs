@@ -1,9 +1,9 @@
 //! Runs that come to rest: contacts with friction that lose their speed, and strikes that stop the contact point at once. Against a
 //! simulation of its own, written from the equations; in the map, with 31 digits and in lanes alike.
 
-use equipoise_physics::batch::batch_run::Outcome;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::ending::Outcome;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};

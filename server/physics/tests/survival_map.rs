@@ -2,7 +2,8 @@
 //! survival_map -- --nocapture` prints its outline.
 
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::orbit::{Orbit, Rules, run};
+use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Value};
 use equipoise_physics::surveys::stability_map::{Axis, Cell, Quantity, Region};
 

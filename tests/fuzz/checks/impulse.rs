@@ -2,8 +2,11 @@
 //! the contact. The checks use 31 digits and the same velocities.
 
 use equipoise_physics::body::{Body, Coming};
-use equipoise_physics::bounce::friction::{Friction, Impulse, Law, Mobility, Mode, Slide, as_it_is};
-use equipoise_physics::bounce::strike::{Rod, State, Strike};
+use equipoise_physics::bounce::friction::{Friction, Impulse, Law, Mobility, Slide, as_it_is};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::ContactMode;
+use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Real;
 use equipoise_physics::numbers::trig;
@@ -140,17 +143,17 @@ impl Path {
         let speed = self.velocities[0] + a * number(found.tangential) + c * pressed;
         let speeds = (a.to_f64() * self.friction.to_f64() + c.to_f64().abs()) * found.normal * off;
         match found.mode {
-            Mode::Stick => zero("it sticks", speed.to_f64(), speeds, of),
-            Mode::ReverseSlide => assert!(
+            ContactMode::Stick => zero("it sticks", speed.to_f64(), speeds, of),
+            ContactMode::ReverseSlide => assert!(
                 speed.to_f64() * self.velocities[0].to_f64() <= ROUNDINGS * f64::EPSILON * speeds * speeds,
                 "it does not turn: {of:?}"
             ),
-            Mode::Slide => assert!(
+            ContactMode::Slide => assert!(
                 speed.to_f64() * self.velocities[0].to_f64() >= -ROUNDINGS * f64::EPSILON * speeds * speeds,
                 "it turns: {of:?}"
             ),
-            Mode::SlideThrough => assert_eq!(self.velocities[0].to_f64(), 0.0, "{of:?}"),
-            Mode::Frictionless => assert_eq!(found.tangential, 0.0, "{of:?}"),
+            ContactMode::SlideThrough => assert_eq!(self.velocities[0].to_f64(), 0.0, "{of:?}"),
+            ContactMode::Frictionless => assert_eq!(found.tangential, 0.0, "{of:?}"),
         }
         let compressed = self.compressed();
         match law {

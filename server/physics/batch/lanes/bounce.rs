@@ -9,8 +9,13 @@ use super::{Lanes, WIDTH};
 use crate::bounce::contact_time;
 use crate::bounce::contact_time::Step;
 use crate::bounce::flight::Flight;
-use crate::bounce::strike::{Rod, State, Strike, Tilt};
-use crate::run::orbit::{Midst, Rules, SETTLED_SHARE, SPEED_LIMIT};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
+use crate::bounce::tilt::Tilt;
+use crate::run::orbit::Midst;
+use crate::run::rules::{Rules, SPEED_LIMIT};
+use crate::run::settling::SETTLED_SHARE;
 
 /// What bounces, and how far it may tilt.
 #[derive(Clone, Debug)]

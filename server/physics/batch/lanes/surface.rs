@@ -6,10 +6,12 @@
 use super::bounce::{Moving, Rods, SURE_RISE, Scratch};
 use super::number::Lane;
 use super::{Lanes, WIDTH};
-use crate::body::general::{Rig, Steering};
+use crate::body::general::Rig;
 use crate::bounce::friction::{Friction, Law, Slide, as_it_is};
 use crate::run::ending::Ending;
-use crate::run::orbit::{Midst, Rules};
+use crate::run::orbit::Midst;
+use crate::run::rules::Rules;
+use crate::table::control_law::Steering;
 
 /// A kind of contact.
 pub(crate) trait Surface {

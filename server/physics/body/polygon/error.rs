@@ -1,6 +1,6 @@
 //! Why vertices are no body, in words with numbers, limits and units.
 
-use super::{FARTHEST, LENGTHS, MAX_VERTICES};
+use super::bounds::{FARTHEST, LENGTHS, MAX_VERTICES};
 use std::fmt;
 
 /// Why vertices are no body. Vertices are counted from 0; edge i goes from vertex i to the next.

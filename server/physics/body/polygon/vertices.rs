@@ -1,6 +1,7 @@
 //! The vertices of a polygon: whether they are one, and what an even sheet of that shape weighs where.
 
-use super::{FARTHEST, MAX_VERTICES, PolygonError};
+use super::bounds::{FARTHEST, MAX_VERTICES};
+use super::error::PolygonError;
 
 /// Least area as a share of the diagonal squared. The centre of gravity of a thinner polygon has too few digits.
 const THINNEST: f64 = 1e-9;
@@ -17,7 +18,7 @@ impl Vertices {
     ///
     /// # Errors
     /// Where there are too few or too many of them, or one lies too far out. Whether they are a polygon is found with
-    /// its contact vertex ([`Outline::new`]).
+    /// its contact vertex ([`Outline::new`](super::Outline::new)).
     pub fn new(places: &[[f64; 2]]) -> Result<Self, PolygonError> {
         let count = places.len();
         if count < 3 {

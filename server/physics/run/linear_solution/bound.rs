@@ -1,7 +1,8 @@
 //! How far the linear solution may be off: what each bounce leaves out, carried on by the powers that the solution takes, and rounding.
 
-use super::{LinearImpact, LinearSolution, power};
-use crate::bounce::strike::State;
+use super::closed_form::{LinearImpact, LinearSolution, power};
+use super::left_out::LeftOut;
+use crate::bounce::state::State;
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::number::Number;
 use crate::numbers::trig;
@@ -13,31 +14,6 @@ pub const SAFETY: f64 = 1.5;
 
 /// Points at which what a bounce leaves out is looked at: phases of half a turn, or bounces of a run.
 const SAMPLES: u64 = 12;
-
-/// Sizes of the terms that one bounce leaves out: of θ, u, ẋ beside its law, ẏ and the flight time.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LeftOut {
-    theta: f64,
-    u: f64,
-    /// Of θ and u together, in the norm that the rotation keeps.
-    turned: f64,
-    drift: f64,
-    pub(super) y_dot: f64,
-    t: f64,
-}
-
-impl LeftOut {
-    fn or(self, other: Self) -> Self {
-        Self {
-            theta: self.theta.max(other.theta),
-            u: self.u.max(other.u),
-            turned: self.turned.max(other.turned),
-            drift: self.drift.max(other.drift),
-            y_dot: self.y_dot.max(other.y_dot),
-            t: self.t.max(other.t),
-        }
-    }
-}
 
 impl LinearSolution {
     /// The state at the end of the fall: nothing is left out there, and it is known but for its last digit.

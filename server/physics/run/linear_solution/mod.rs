@@ -7,58 +7,18 @@
 //! Not here: the bound itself ([`bound`]), point masses, and tables that stand still, which have no fixed point.
 
 mod bound;
+mod closed_form;
+mod left_out;
 
 pub use bound::SAFETY;
+pub use closed_form::{LinearImpact, LinearSolution};
 
-use crate::bounce::strike::{Rod, State};
-use crate::numbers::double_double::DoubleDouble;
-use crate::numbers::trig;
 use crate::run::extended;
 use crate::scene::Scene;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::{Class, linear_verdict};
-
-/// Largest exponent of a growth that is multiplied as it is: e^709 is the largest double.
-const MOST_GROWTH: f64 = 600.0;
-
-/// The linear solution of one run.
-#[derive(Clone, Copy, Debug)]
-pub struct LinearSolution {
-    rod: Rod,
-    extended: Rod<DoubleDouble>,
-    /// V, m/s.
-    speed: f64,
-    /// τ, s.
-    flight_time: f64,
-    residue: f64,
-    class: Class,
-    /// Rotation or growth per bounce, rad or 1.
-    exponent: f64,
-    /// Eigenvalue of ẏ; none where the energy is exact.
-    energy_eigenvalue: Option<f64>,
-    /// Just before the first impact.
-    start: State,
-    t: f64,
-    x: f64,
-    /// The most that bounces leave out where the angle circles: at any time, and more on the approach to the wanted energy.
-    circling: [bound::LeftOut; 2],
-}
-
-/// The linear state just before one impact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinearImpact {
-    /// When, s after release.
-    pub t: f64,
-    /// Horizontal place of the centre of gravity, m.
-    pub x: f64,
-    /// Angle and velocities just before it.
-    pub state: State,
-    /// Bound on the largest of |ρδθ| (m), |δẋ|, |δẏ| and |ρδθ̇| (m/s).
-    pub error_estimate: f64,
-    /// Bound on the error of `t`, s.
-    pub t_error: f64,
-}
+use left_out::LeftOut;
 
 impl LinearSolution {
     /// The linear solution of the run of a scene.
@@ -104,7 +64,7 @@ impl LinearSolution {
             t: orbit.t().to_f64(),
             x: orbit.x().to_f64(),
             rod,
-            circling: [bound::LeftOut::default(); 2],
+            circling: [LeftOut::default(); 2],
         };
         if solution.class == Class::Elliptic {
             solution.circling = solution.on_circle(0.0);
@@ -128,131 +88,4 @@ impl LinearSolution {
         let (error_estimate, t_error) = self.errors(m, &state);
         LinearImpact { t: self.t + self.time(m), x: self.x + along, state, error_estimate, t_error }
     }
-
-    fn start_u(&self) -> f64 {
-        self.flight_time * self.start.theta_dot
-    }
-
-    /// How far ẏ starts from its fixed point, m/s.
-    fn start_excess(&self) -> f64 {
-        self.start.y_dot + self.speed
-    }
-
-    fn is_at_lower_end(&self) -> bool {
-        self.class == Class::Parabolic && self.residue < 0.5
-    }
-
-    /// sin mσ / sin σ, or what takes its place: Chebyshev's U of index m − 1 at 1 − 2R.
-    fn chebyshev(&self, m: u64) -> f64 {
-        let count = m as f64;
-        let size = match self.class {
-            Class::Parabolic => count,
-            Class::Elliptic => {
-                let sine = 2.0 * (self.residue * (1.0 - self.residue)).sqrt();
-                return trig::sin_cos(count * self.exponent).0 / sine;
-            }
-            _ => libm::sinh(count * self.exponent) / libm::sinh(self.exponent),
-        };
-        if self.residue > 0.5 && m.is_multiple_of(2) { -size } else { size }
-    }
-
-    /// θ and u after `m` bounces: A^m = U_{m−1} A − U_{m−2}.
-    fn angle(&self, m: u64) -> (f64, f64) {
-        let (theta, u) = (self.start.theta, self.start_u());
-        if m == 0 {
-            return (theta, u);
-        }
-        let (next_theta, next_u) = self.step(theta, u);
-        if self.grows_beyond_doubles(m) {
-            return (self.grown(m, next_theta, theta), self.grown(m, next_u, u));
-        }
-        let (now, before) = (self.chebyshev(m), self.chebyshev(m - 1));
-        (now * next_theta - before * theta, now * next_u - before * u)
-    }
-
-    /// Tells whether U of index m − 1 may be beyond the range of doubles, however small what it multiplies.
-    fn grows_beyond_doubles(&self, m: u64) -> bool {
-        self.class == Class::Hyperbolic && m as f64 * self.exponent > MOST_GROWTH
-    }
-
-    /// U_{m−1} `next` − U_{m−2} `start` where the U are beyond doubles: e^((m−1)s)/(2 sinh s) · (eˢ `next` ∓ `start`), the growing part
-    /// alone. It stays 0 where that is 0.
-    fn grown(&self, m: u64, next: f64, start: f64) -> f64 {
-        let turns = self.residue > 0.5;
-        let start = if turns { -start } else { start };
-        let growing = (libm::exp(self.exponent) * next - start) / (2.0 * libm::sinh(self.exponent));
-        let half = libm::exp(0.5 * (m - 1) as f64 * self.exponent);
-        let size = if growing == 0.0 { 0.0 } else { growing * half * half };
-        if turns && m.is_multiple_of(2) { -size } else { size }
-    }
-
-    fn step(&self, theta: f64, u: f64) -> (f64, f64) {
-        ((1.0 - 4.0 * self.residue) * theta + u, u - 4.0 * self.residue * theta)
-    }
-
-    /// ẋ per u along the motion: ẋ − this·u is the drift and stays.
-    fn lever(&self) -> f64 {
-        self.speed * self.rod.tilt_gain / (2.0 * self.residue)
-    }
-
-    fn state(&self, theta: f64, u: f64, m: u64) -> State {
-        let x_dot = if self.is_at_lower_end() {
-            let count = m as f64;
-            let sum = count * self.start.theta + 0.5 * count * (count - 1.0) * self.start_u();
-            self.start.x_dot - 2.0 * self.speed * self.rod.tilt_gain * sum
-        } else {
-            self.start.x_dot + self.lever() * (u - self.start_u())
-        };
-        let theta_dot = u / self.flight_time;
-        let y_dot = match self.energy_eigenvalue {
-            Some(eigenvalue) => -self.speed + power(eigenvalue, m) * self.start_excess(),
-            None => self.on_energy(theta, x_dot, theta_dot),
-        };
-        State { theta, x_dot, y_dot, theta_dot }
-    }
-
-    /// −√(ẏ₀² − (ẋ² − ẋ₀²) − ρ²(θ̇² − θ̇₀²) + 2Gl(cos θ₀ − cos θ)), each difference by its factors.
-    fn on_energy(&self, theta: f64, x_dot: f64, theta_dot: f64) -> f64 {
-        let Self { start, rod, .. } = self;
-        let rho = rod.radius_of_gyration;
-        let aside = (x_dot - start.x_dot) * (x_dot + start.x_dot);
-        let turned = rho * (theta_dot - start.theta_dot) * rho * (theta_dot + start.theta_dot);
-        let (half_sum, _) = trig::sin_cos(0.5 * (theta + start.theta));
-        let (half_way, _) = trig::sin_cos(0.5 * (theta - start.theta));
-        let sunk = 4.0 * rod.gravity * rod.contact_distance * half_sum * half_way;
-        -f64::max(start.y_dot * start.y_dot - aside - turned + sunk, 0.0).sqrt()
-    }
-
-    /// Σ of the flight times, 2|ẏ|/G at the end of each.
-    fn time(&self, m: u64) -> f64 {
-        let late = self.energy_eigenvalue.map_or(0.0, |eigenvalue| {
-            eigenvalue * (1.0 - power(eigenvalue, m)) / (1.0 - eigenvalue) * self.start_excess()
-        });
-        m as f64 * self.flight_time - 2.0 * late / self.rod.gravity
-    }
-
-    /// Σ ẋτ over the flights.
-    fn x_along(&self, m: u64, theta: f64) -> f64 {
-        let (count, tau) = (m as f64, self.flight_time);
-        if self.is_at_lower_end() {
-            let twice = 0.5 * count * (count + 1.0) * self.start.theta
-                + self.start_u() * (count - 1.0) * count * (count + 1.0) / 6.0;
-            return tau * (count * self.start.x_dot - 2.0 * self.speed * self.rod.tilt_gain * twice);
-        }
-        let turned = theta - self.start.theta - count * self.start_u();
-        tau * (count * self.start.x_dot + self.lever() * turned)
-    }
-}
-
-/// base^m for |base| ≤ 1.
-fn power(base: f64, m: u64) -> f64 {
-    let (mut result, mut square, mut left) = (1.0, base, m);
-    while left > 0 {
-        if left & 1 == 1 {
-            result *= square;
-        }
-        square *= square;
-        left >>= 1;
-    }
-    result
 }

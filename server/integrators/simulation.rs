@@ -1,0 +1,66 @@
+//! The result of a simulation: the contacts that a method saw, its ending and its work.
+
+use equipoise_physics::bounce::state::State;
+
+/// One contact, as a method saw it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// Its number, from 1.
+    pub n: u64,
+    /// When, s after release.
+    pub t: f64,
+    /// Where the centre of gravity is, m.
+    pub x: f64,
+    /// Angle and velocities just before it.
+    pub state: State,
+}
+
+/// Why a simulation ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ending {
+    /// As runs of the map end.
+    Run(equipoise_physics::run::ending::Ending),
+    /// The rod is below the table and falls, and no contact was seen.
+    Missed {
+        /// When that was noticed, s.
+        t: f64,
+    },
+    /// It took all the steps that it was given.
+    OutOfSteps {
+        /// How many.
+        steps: u64,
+    },
+}
+
+impl Ending {
+    /// Its name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Run(ending) => ending.name(),
+            Self::Missed { .. } => "missed",
+            Self::OutOfSteps { .. } => "out_of_steps",
+        }
+    }
+}
+
+/// What a simulation took: counts, the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Steps, or looks at the flight, those that a method tried and gave up included.
+    pub steps: u64,
+    /// Evaluations of the right-hand side of the equations of motion.
+    pub accelerations: u64,
+    /// Evaluations of the gap between contact point and table.
+    pub gaps: u64,
+}
+
+/// What a method made of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// The contacts that it saw.
+    pub impacts: Vec<Impact>,
+    /// Why it ended.
+    pub ending: Ending,
+    /// What it took.
+    pub work: Work,
+}

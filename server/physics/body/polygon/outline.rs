@@ -1,0 +1,168 @@
+//! The outline of a polygonal body about its centre of gravity, and which of its vertices meets the table.
+
+use super::bounds::LENGTHS;
+use super::error::PolygonError;
+use super::vertices::{Vertices, cross, dot, minus};
+use crate::body::Touch;
+use crate::bounce::contact_time::{TooManyPieces, first_descent_before};
+use crate::bounce::flight::Flight;
+use crate::bounce::state::State;
+use crate::numbers::trig;
+use std::f64::consts::PI;
+
+/// How far below the table a vertex counts as flush with it, as a share of the body's size.
+pub const FLUSH: f64 = 1e-9;
+
+/// How far before the contact vertex another has to arrive to count as earlier, as a share of the flight.
+const EARLIER: f64 = 1e-12;
+
+/// A body whose vertices are known: the polygon about its centre of gravity, turned so that at θ = 0 that stands straight
+/// above the contact vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outline {
+    /// In the order in which they were given.
+    vertices: Vertices,
+    contact_vertex: usize,
+    contact_distance: f64,
+    radius_of_gyration: f64,
+    /// From the contact vertex to the one farthest from it, m.
+    size: f64,
+}
+
+/// A vertex near the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// Its place in the order in which the vertices were given, from 0.
+    pub vertex: usize,
+    /// Its distance from the table, m; negative below it.
+    pub clearance: f64,
+}
+
+impl Outline {
+    /// The body of these vertices on that one of them.
+    ///
+    /// # Errors
+    /// Where they are no simple polygon, l or ρ is out of its range, or the contact vertex can never be the only one on
+    /// a flat table.
+    pub fn new(vertices: &Vertices, contact_vertex: usize) -> Result<Self, PolygonError> {
+        vertices.check()?;
+        let count = vertices.count;
+        if contact_vertex >= count {
+            return Err(PolygonError::NoSuchVertex { contact_vertex, count });
+        }
+        let vertices = &vertices.about_the_first();
+        let (centre, radius_of_gyration) = vertices.centre_and_radius();
+        if !LENGTHS.contains(&radius_of_gyration) {
+            return Err(PolygonError::RadiusOfGyration(radius_of_gyration));
+        }
+        let down = minus(vertices.places[contact_vertex], centre);
+        let contact_distance = dot(down, down).sqrt();
+        if !LENGTHS.contains(&contact_distance) {
+            return Err(PolygonError::ContactDistance { contact_vertex, contact_distance });
+        }
+        let down = down.map(|it| it / contact_distance);
+        let mut turned = *vertices;
+        for place in &mut turned.places[..count] {
+            let from_centre = minus(*place, centre);
+            *place = [cross(down, from_centre), -dot(from_centre, down)];
+        }
+        turned.places[contact_vertex] = [0.0, -contact_distance];
+        let mut outline = Self { vertices: turned, contact_vertex, contact_distance, radius_of_gyration, size: 0.0 };
+        // Seen from a corner of the hull, all lies within less than half a turn.
+        let (mut left, mut right) = (0.0_f64, 0.0_f64);
+        let mut size = 0.0_f64;
+        for (_, [x, y]) in outline.others() {
+            let angle = libm::atan2(x, y + contact_distance);
+            (left, right) = (left.min(angle), right.max(angle));
+            size = size.max(dot([x, y + contact_distance], [x, y + contact_distance]).sqrt());
+        }
+        if right - left > PI - FLUSH {
+            return Err(PolygonError::Hidden(contact_vertex));
+        }
+        outline.size = size;
+        Ok(outline)
+    }
+
+    /// l, m.
+    pub fn contact_distance(&self) -> f64 {
+        self.contact_distance
+    }
+
+    /// ρ, m.
+    pub fn radius_of_gyration(&self) -> f64 {
+        self.radius_of_gyration
+    }
+
+    /// The vertices about the centre of gravity at θ = 0, m, in the order in which they were given.
+    pub fn vertices(&self) -> &[[f64; 2]] {
+        self.vertices.places()
+    }
+
+    /// All but the contact vertex.
+    fn others(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let contact_vertex = self.contact_vertex;
+        self.vertices().iter().copied().enumerate().filter(move |(vertex, _)| *vertex != contact_vertex)
+    }
+
+    /// The vertex beside the contact vertex that is nearest to the table, or deepest below it, where that touches the
+    /// contact vertex: given sin β, cos β of β = θ − α.
+    pub fn nearest(&self, sin_cos_beta: (f64, f64)) -> Nearest {
+        let (sin, cos) = sin_cos_beta;
+        let mut nearest = Nearest { vertex: self.contact_vertex, clearance: f64::INFINITY };
+        for (vertex, [x, y]) in self.others() {
+            let clearance = x * sin + (y + self.contact_distance) * cos;
+            if clearance < nearest.clearance {
+                nearest = Nearest { vertex, clearance };
+            }
+        }
+        nearest
+    }
+
+    /// [`Outline::nearest`] where it is below the table, by more than [`FLUSH`] of the body's size: an edge may lie on it.
+    pub fn below_table(&self, sin_cos_beta: (f64, f64)) -> Option<Nearest> {
+        let nearest = self.nearest(sin_cos_beta);
+        (nearest.clearance < -FLUSH * self.size).then_some(nearest)
+    }
+
+    /// The first vertex that comes down to y = 0 in a flight of the contact vertex, before that arrives at the time
+    /// `arrival`; one that is below y = 0 already, or flush with it and sinking, has to rise first.
+    ///
+    /// # Errors
+    /// [`TooManyPieces`] where the work limit is passed.
+    pub fn first_touch(&self, flight: &Flight, arrival: f64) -> Result<Option<Touch>, TooManyPieces> {
+        let State { theta, theta_dot, .. } = flight.start;
+        let (sin, cos) = flight.sin_cos_theta;
+        let drop = flight.clearance + flight.contact_distance * cos;
+        let fall = arrival * (flight.start.y_dot - 0.5 * flight.gravity * arrival);
+        let (end_sin, end_cos) = trig::sin_cos(theta + theta_dot * arrival);
+        let mut first: Option<Touch> = None;
+        for (vertex, [x, y]) in self.others() {
+            let distance = dot([x, y], [x, y]).sqrt();
+            // Its height has no inflection, and it is not below at the end: it comes down later, whatever it was before.
+            let below = drop + fall + (x * end_sin + y * end_cos) < -FLUSH * self.size;
+            if !below && distance * theta_dot * theta_dot <= flight.gravity {
+                continue;
+            }
+            let clearance = drop + (x * sin + y * cos);
+            let own = Flight {
+                start: State { theta: theta + libm::atan2(x, -y), ..flight.start },
+                // An angle φ on, with sin φ = x/r, cos φ = −y/r.
+                sin_cos_theta: if distance == 0.0 {
+                    (0.0, 1.0)
+                } else {
+                    ((cos * x - sin * y) / distance, -(cos * y + sin * x) / distance)
+                },
+                clearance: if clearance.abs() <= FLUSH * self.size { 0.0 } else { clearance },
+                contact_distance: distance,
+                gravity: flight.gravity,
+            };
+            let limit = first.map_or(arrival * (1.0 - EARLIER), |touch| touch.t);
+            if let Some(t) = first_descent_before(&own, limit)?
+                && t < limit
+            {
+                first = Some(Touch { vertex, t });
+            }
+        }
+        Ok(first)
+    }
+}
