@@ -6,14 +6,14 @@ use std::hint::black_box;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as bench_all};
-use equipoise_physics::batch::batch_run::{Start, sweep_on};
+use equipoise_physics::batch::batch_run::{RunStart, run_batch_on};
 use equipoise_physics::body::Release;
 use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::numbers::dispatch::Path;
+use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::extended;
-use equipoise_physics::run::method::{Method, run_by};
+use equipoise_physics::run::method::{RunMethod, run_by};
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -78,7 +78,7 @@ fn rungs(bencher: Bencher, rung: &str) {
             draft.set(Name::Theta, Some(Value::Number(1e-3))).expect("a value in its range");
             let scene = draft.build().expect("a scene");
             return bencher
-                .bench(|| run_by(black_box(&scene), Method::Linear, BOUNCES, |impact| impact.error_estimate < 1.0));
+                .bench(|| run_by(black_box(&scene), RunMethod::Linear, BOUNCES, |impact| impact.error_estimate < 1.0));
         }
         "point" => {
             for name in [Name::ContactDistance, Name::RadiusOfGyration, Name::Theta] {
@@ -149,7 +149,7 @@ fn with_error_estimate(bencher: Bencher) {
     let scene = case_1();
     bencher
         .counter(ItemsCount::new(BOUNCES))
-        .bench(|| run_by(black_box(&scene), Method::Map, BOUNCES, |impact| impact.error_estimate < 1.0));
+        .bench(|| run_by(black_box(&scene), RunMethod::Map, BOUNCES, |impact| impact.error_estimate < 1.0));
 }
 
 /// The exact derivative of the map, a product over the bounces.
@@ -175,8 +175,8 @@ fn sine_and_cosine(bencher: Bencher, whose: &str) {
 }
 
 /// Eight rods side by side with their survival counts, on one core, as regions run. Items are bounces.
-#[divan::bench(args = Path::ALL)]
-fn lanes(bencher: Bencher, path: Path) {
+#[divan::bench(args = InstructionSet::ALL)]
+fn lanes(bencher: Bencher, path: InstructionSet) {
     const RUNS: u64 = 32;
     let state = |theta| State { theta, x_dot: 0.0, y_dot: -1.15, theta_dot: 0.0 };
     bencher.counter(ItemsCount::new(RUNS * BOUNCES)).bench(|| {
@@ -184,10 +184,10 @@ fn lanes(bencher: Bencher, path: Path) {
         let next = || {
             left = left.checked_sub(1)?;
             let rod = Rod { tilt_gain: black_box(1.1 + 0.01 * left as f64), ..case_1::ROD };
-            Some((0, Start { rod, rules: case_1::RULES, state: state(0.002 * left as f64) }))
+            Some((0, RunStart { rod, rules: case_1::RULES, state: state(0.002 * left as f64) }))
         };
         let mut survived = 0;
-        sweep_on(path, BOUNCES, next, |_, end| survived += end.impacts, || true);
+        run_batch_on(path, BOUNCES, next, |_, end| survived += end.impacts, || true);
         assert_eq!(survived, RUNS * BOUNCES);
     });
 }

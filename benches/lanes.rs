@@ -8,19 +8,19 @@ use std::thread;
 use std::time::Instant;
 
 use case_1::{ROD, RULES};
-use equipoise_physics::batch::batch_run::{Start, sweep_on, sweep_rough_on};
-use equipoise_physics::bounce::friction::{Law, Slide};
+use equipoise_physics::batch::batch_run::{RunStart, run_batch_on, run_batch_with_friction_on};
+use equipoise_physics::bounce::friction::{RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::numbers::dispatch::{Path, Work, dispatch_on};
+use equipoise_physics::numbers::dispatch::{InstructionSet, Kernel, dispatch_on};
 use equipoise_physics::run::rules::Rules;
 
 const RUNS: usize = 64;
 const BOUNCES: u64 = 2000;
 const ROUNDS: usize = 25;
 
-fn start(run: usize, wide: f64) -> Start {
-    Start {
+fn start(run: usize, wide: f64) -> RunStart {
+    RunStart {
         rod: Rod { tilt_gain: 1.05 + 0.004 * run as f64, ..ROD },
         rules: RULES,
         state: State { theta: wide * (1 + run % 32) as f64, x_dot: 0.0, y_dot: -1.15, theta_dot: 0.0 },
@@ -28,28 +28,28 @@ fn start(run: usize, wide: f64) -> Start {
 }
 
 /// Time per bounce of the batch run that regions use, ns.
-fn ours(path: Path, wide: f64) -> f64 {
+fn ours(path: InstructionSet, wide: f64) -> f64 {
     let mut runs = (0..RUNS).map(|run| (run, start(black_box(run), wide)));
     let mut bounces = 0;
     let clock = Instant::now();
-    sweep_on(path, BOUNCES, || runs.next(), |_, end| bounces += end.impacts, || true);
+    run_batch_on(path, BOUNCES, || runs.next(), |_, end| bounces += end.impacts, || true);
     clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
 }
 
 /// Time per bounce of the same with friction, ns.
-fn rough(path: Path, contact: (Law, Slide), wide: f64) -> f64 {
+fn rough(path: InstructionSet, contact: (RestitutionLaw, Slide), wide: f64) -> f64 {
     let mut runs = (0..RUNS).map(|run| {
         let start = start(black_box(run), wide);
-        (run, Start { rules: Rules { holds_energy: false, ..start.rules }, ..start }, 0.3)
+        (run, RunStart { rules: Rules { holds_energy: false, ..start.rules }, ..start }, 0.3)
     });
     let mut bounces = 0;
     let clock = Instant::now();
-    sweep_rough_on(path, contact, BOUNCES, || runs.next(), |_, end| bounces += end.impacts, || true);
+    run_batch_with_friction_on(path, contact, BOUNCES, || runs.next(), |_, end| bounces += end.impacts, || true);
     clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
 }
 
 /// Time per bounce of the bare loop, ns.
-fn bare(path: Path, wide: f64) -> f64 {
+fn bare(path: InstructionSet, wide: f64) -> f64 {
     let clock = Instant::now();
     let (bounces, _) = black_box(dispatch_on(path, Bare { wide }));
     clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
@@ -63,7 +63,7 @@ struct Bare {
 
 const LANES: usize = 16;
 
-impl Work for Bare {
+impl Kernel for Bare {
     type Output = (usize, f64);
 
     #[inline(always)]
@@ -71,7 +71,8 @@ impl Work for Bare {
         let (l, per_square, g) = (ROD.contact_distance, ROD.radius_of_gyration.powi(-2), ROD.gravity);
         let (mut bounces, mut sum) = (0, 0.0);
         for chunk in 0..RUNS / LANES {
-            let starts: [Start; LANES] = std::array::from_fn(|lane| start(black_box(chunk * LANES + lane), self.wide));
+            let starts: [RunStart; LANES] =
+                std::array::from_fn(|lane| start(black_box(chunk * LANES + lane), self.wide));
             let kappa = starts.map(|start| start.rod.tilt_gain);
             let mut theta = starts.map(|start| start.state.theta);
             let mut x_dot = starts.map(|start| start.state.x_dot);
@@ -146,14 +147,14 @@ fn compare(first: impl Fn() -> f64, second: impl Fn() -> f64) -> [f64; 3] {
 
 fn main() {
     println!("{RUNS} runs of {BOUNCES} bounces, ns a bounce, medians of {ROUNDS} rounds");
-    for path in Path::ALL.into_iter().filter(|path| path.is_there()) {
+    for path in InstructionSet::ALL.into_iter().filter(|path| path.is_there()) {
         for (name, wide) in [("|θ| ≤ 0.03", 0.001), ("|θ| ≤ 0.13", 0.004)] {
             let [ours, bare, ratio] = compare(|| ours(path, wide), || bare(path, wide));
             println!("{path:?}, {name}: sweep {ours:.2}, bare loop {bare:.2}, ratio {ratio:.2}");
         }
     }
-    for path in Path::ALL.into_iter().filter(|path| path.is_there()) {
-        for law in [Law::Poisson, Law::Newton, Law::Stronge] {
+    for path in InstructionSet::ALL.into_iter().filter(|path| path.is_there()) {
+        for law in [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge] {
             // With friction, a table that only tilts balances only the upright rod.
             for (slide, wide) in [(Slide::Matched, 0.001), (Slide::None, 0.0)] {
                 let [with, without, ratio] = compare(|| rough(path, (law, slide), wide), || ours(path, wide));
@@ -161,15 +162,15 @@ fn main() {
             }
         }
     }
-    let best = Path::ALL.into_iter().find(|path| path.is_there()).unwrap_or(Path::Portable);
-    let two = |work: fn(Path, f64) -> f64| {
+    let best = InstructionSet::ALL.into_iter().find(|path| path.is_there()).unwrap_or(InstructionSet::Portable);
+    let two = |work: fn(InstructionSet, f64) -> f64| {
         thread::scope(|scope| {
             let other = scope.spawn(|| work(best, 0.001));
             let here = work(best, 0.001);
             0.25 * (here + other.join().unwrap_or(f64::NAN))
         })
     };
-    for (name, work) in [("sweep", ours as fn(Path, f64) -> f64), ("bare loop", bare)] {
+    for (name, work) in [("sweep", ours as fn(InstructionSet, f64) -> f64), ("bare loop", bare)] {
         let [one, two, ratio] = compare(|| work(best, 0.001), || two(work));
         println!("{name}, two threads side by side: {two:.2} a bounce for {one:.2} on one, {ratio:.2} times as fast");
     }

@@ -1,6 +1,6 @@
 //! General simulation methods against the exact map: agreement, order of convergence, and scenes on which they are wrong.
 
-use equipoise::integrators::{Impact, Location, Method, Simulation, Work, simulate};
+use equipoise::integrators::{Integrator, Location, SimulatedImpact, Simulation, WorkCount, simulate};
 use equipoise_physics::body::Release;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
@@ -42,7 +42,7 @@ fn spinning(tilt_gain: f64, height: f64, theta: f64, theta_dot: f64) -> Scene {
 const STEPS: u64 = 20_000_000;
 
 impl Scene {
-    fn by(&self, method: Method, impacts: u64) -> Simulation {
+    fn by(&self, method: Integrator, impacts: u64) -> Simulation {
         simulate(method, (&self.rod, &self.rules, &self.release), impacts, STEPS, &mut || true).unwrap()
     }
 
@@ -57,13 +57,13 @@ impl Scene {
     }
 
     /// Distance from the map at a contact; infinite if the method found fewer contacts.
-    fn error(&self, method: Method, n: usize) -> f64 {
+    fn error(&self, method: Integrator, n: usize) -> f64 {
         let (exact, _) = self.exact(n as u64);
         self.by(method, n as u64).impacts.get(n - 1).map_or(f64::INFINITY, |impact| distance(&exact[n - 1], impact))
     }
 }
 
-fn distance(exact: &Contact, impact: &Impact) -> f64 {
+fn distance(exact: &Contact, impact: &SimulatedImpact) -> f64 {
     let (ours, theirs) = (exact.state, impact.state);
     [
         exact.t - impact.t,
@@ -78,29 +78,29 @@ fn distance(exact: &Contact, impact: &Impact) -> f64 {
     .fold(0.0, f64::max)
 }
 
-fn runge_kutta(location: Location) -> impl Fn(f64) -> Method {
-    move |step| Method::RungeKutta { step, location }
+fn runge_kutta(location: Location) -> impl Fn(f64) -> Integrator {
+    move |step| Integrator::RungeKutta { step, location }
 }
 
-fn time_stepping(step: f64) -> Method {
-    Method::TimeStepping { step }
+fn time_stepping(step: f64) -> Integrator {
+    Integrator::TimeStepping { step }
 }
 
-fn penalty(step: f64) -> Method {
-    Method::Penalty { step }
+fn penalty(step: f64) -> Integrator {
+    Integrator::Penalty { step }
 }
 
-fn sampling(step: f64) -> Method {
-    Method::Sampling { step }
+fn sampling(step: f64) -> Integrator {
+    Integrator::Sampling { step }
 }
 
-fn adaptive(tolerance: f64) -> Method {
-    Method::Adaptive { tolerance }
+fn adaptive(tolerance: f64) -> Integrator {
+    Integrator::Adaptive { tolerance }
 }
 
 /// Order of the error at a contact: the power of the step, from a step to a tenth of it. The place of a contact within its step is as
 /// good as random, so the mean square over several steps is used.
-fn order(method: impl Fn(f64) -> Method, step: f64, n: usize) -> f64 {
+fn order(method: impl Fn(f64) -> Integrator, step: f64, n: usize) -> f64 {
     let mean_square = |step: f64| {
         let steps = (0..16).map(|index| step * (1.0 + 0.04 * f64::from(index)));
         steps.map(|step| case_1().error(method(step), n).powi(2)).sum::<f64>()
@@ -309,7 +309,7 @@ fn work_is_counted_alike_everywhere() {
         (sampling(1e-2), 1889, 0, 7284),
         (adaptive(1e-6), 250, 2050, 5908),
     ] {
-        assert_eq!(work(method), Work { steps, accelerations, gaps }, "{method:?}");
+        assert_eq!(work(method), WorkCount { steps, accelerations, gaps }, "{method:?}");
     }
 }
 

@@ -84,7 +84,7 @@ impl<'a> Subject<'a> {
         let rho = match self.model {
             Model::Rod(rod) => rod.radius_of_gyration,
             Model::Point(_) => 0.0,
-            Model::Rig(rig) => rig.rod.radius_of_gyration,
+            Model::General(rig) => rig.rod.radius_of_gyration,
         };
         let parts = [rho * theta, x_dot, y_dot, rho * theta_dot].map(f64::abs);
         if parts.iter().any(|part| part.is_nan()) { f64::NAN } else { parts.into_iter().fold(0.0, f64::max) }
@@ -178,21 +178,21 @@ impl<'a> Subject<'a> {
         Some((n, state, ending.name()))
     }
 
-    fn general(&self, kind: Kind, setting: Option<Setting>) -> Result<(integrators::Method, Rod), String> {
-        use integrators::Method;
+    fn general(&self, kind: Kind, setting: Option<Setting>) -> Result<(integrators::Integrator, Rod), String> {
+        use integrators::Integrator;
         let Model::Rod(rod) = self.model else {
             return Err("general methods move a body with an angle of its own, and a point mass has none".to_owned());
         };
         let value = setting.map_or(f64::NAN, |setting| setting.value);
-        let runge_kutta = |location| Method::RungeKutta { step: value, location };
+        let runge_kutta = |location| Integrator::RungeKutta { step: value, location };
         let method = match kind {
-            Kind::Adaptive => Method::Adaptive { tolerance: value },
+            Kind::Adaptive => Integrator::Adaptive { tolerance: value },
             Kind::StepEnd => runge_kutta(Location::StepEnd),
             Kind::Secant => runge_kutta(Location::Secant),
             Kind::Bisection => runge_kutta(Location::Bisection),
-            Kind::TimeStepping => Method::TimeStepping { step: value },
-            Kind::Penalty => Method::Penalty { step: value },
-            Kind::Sampling => Method::Sampling { step: value },
+            Kind::TimeStepping => Integrator::TimeStepping { step: value },
+            Kind::Penalty => Integrator::Penalty { step: value },
+            Kind::Sampling => Integrator::Sampling { step: value },
             Kind::Map | Kind::MapFree | Kind::Linear | Kind::Extended => {
                 return Err("it is no general method".to_owned());
             }
@@ -202,7 +202,7 @@ impl<'a> Subject<'a> {
 
     fn simulate(
         &self,
-        method: integrators::Method,
+        method: integrators::Integrator,
         rod: &Rod,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Option<integrators::Simulation> {
@@ -211,7 +211,7 @@ impl<'a> Subject<'a> {
         simulate(method, (rod, &rules, release), self.impacts, most, go_on)
     }
 
-    fn simulated(&self, method: integrators::Method, rod: &Rod, slice: &TimeSlice) -> Result<Done, Cancelled> {
+    fn simulated(&self, method: integrators::Integrator, rod: &Rod, slice: &TimeSlice) -> Result<Done, Cancelled> {
         let simulation = self.simulate(method, rod, &mut || slice.should_continue()).ok_or(Cancelled)?;
         let last = simulation.impacts.last();
         let work = simulation.work;
@@ -225,7 +225,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::Contact) -> bool) -> Option<Ending> {
+fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::ExtendedContact) -> bool) -> Option<Ending> {
     let mut orbit = scene.extended_orbit().ok()?;
     extended::run(&mut orbit, impacts, visit)
 }

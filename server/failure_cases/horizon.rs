@@ -3,7 +3,7 @@
 use crate::charts::{Chart, Curve, Look, Plot, Side};
 use crate::failure_cases::course::{Course, upright};
 use crate::failure_cases::{Case, Says, Seen, built, rod, rod_of, with};
-use equipoise_physics::batch::batch_run::{Start, sweep_all};
+use equipoise_physics::batch::batch_run::{RunStart, run_all};
 use equipoise_physics::body::Release;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Orbit, run};
@@ -153,16 +153,16 @@ fn horizon(scene: &Scene) -> Option<u64> {
 /// At which contacts the runs of an ensemble end, upwards: those whose starts have these numbers.
 fn ends(scene: &Scene, impacts: u64, numbers: std::ops::Range<usize>) -> Vec<u64> {
     let rod = rod_of(scene);
-    let starts: Vec<Start> = numbers
+    let starts: Vec<RunStart> = numbers
         .filter_map(|number| {
             let mut release: Release = *scene.release();
             // The scene's own start is not one of them.
             release.state.theta += SPACING * (number as f64 + 1.0);
             let (_, state) = rod.fall(&release).ok()?;
-            Some(Start { rod, rules: scene.rules(), state })
+            Some(RunStart { rod, rules: scene.rules(), state })
         })
         .collect();
-    let ends = sweep_all(impacts, &starts, &mut || true).unwrap_or_default();
+    let ends = run_all(impacts, &starts, &mut || true).unwrap_or_default();
     let mut ends: Vec<u64> = ends.iter().map(|end| end.impacts).collect();
     ends.sort_unstable();
     ends

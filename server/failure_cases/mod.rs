@@ -131,6 +131,6 @@ fn rod_of(scene: &Scene) -> Rod {
     match scene.model() {
         Model::Rod(rod) => rod,
         Model::Point(point) => *point.parameters(),
-        Model::Rig(rig) => rig.rod,
+        Model::General(rig) => rig.rod,
     }
 }

@@ -3,7 +3,7 @@
 use crate::charts::{Chart, Curve, Look, Plot, Side};
 use crate::failure_cases::course::Course;
 use crate::failure_cases::{Case, Says, Seen, built, rod, rod_of};
-use crate::integrators::{Ending, Location, Method, Simulation, simulate};
+use crate::integrators::{Integrator, Location, Simulation, SimulationEnding, simulate};
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
 
@@ -25,7 +25,7 @@ pub(crate) const INVENTED: Case = Case {
         built(rod(&[(Name::RadiusOfGyration, rho), (Name::TiltGain, 1.105), (Name::Theta, 0.35)]))
     },
     look: |scene, impacts| {
-        let secant = |step| Method::RungeKutta { step, location: Location::Secant };
+        let secant = |step| Integrator::RungeKutta { step, location: Location::Secant };
         let says = vec![
             stepped("Runge-Kutta with one secant step, 10 ms", scene, secant(1e-2), impacts),
             stepped("the same with steps of 1 ms", scene, secant(1e-3), impacts),
@@ -34,7 +34,7 @@ pub(crate) const INVENTED: Case = Case {
         Seen { truth: "falls", detail: format!("the run of the map: {}", says[2].detail), says }
     },
     picture: |scene, impacts| {
-        let method = Method::RungeKutta { step: 1e-2, location: Location::Secant };
+        let method = Integrator::RungeKutta { step: 1e-2, location: Location::Secant };
         beside(INVENTED.title, "Runge-Kutta with one secant step, 10 ms", scene, method, impacts)
     },
 };
@@ -55,14 +55,14 @@ pub(crate) const DESTROYED: Case = Case {
     scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.3)])),
     look: |scene, impacts| {
         let says = vec![
-            stepped("penalty contact, steps of 1 ms", scene, Method::Penalty { step: 1e-3 }, impacts),
-            stepped("the same with steps of 0.1 ms", scene, Method::Penalty { step: 1e-4 }, impacts),
+            stepped("penalty contact, steps of 1 ms", scene, Integrator::Penalty { step: 1e-3 }, impacts),
+            stepped("the same with steps of 0.1 ms", scene, Integrator::Penalty { step: 1e-4 }, impacts),
             Course::of(scene, 20_000).says("the map"),
         ];
         Seen { truth: "bounded", detail: format!("the run of the map: {}", says[2].detail), says }
     },
     picture: |scene, impacts| {
-        beside(DESTROYED.title, "penalty contact, steps of 1 ms", scene, Method::Penalty { step: 1e-3 }, impacts)
+        beside(DESTROYED.title, "penalty contact, steps of 1 ms", scene, Integrator::Penalty { step: 1e-3 }, impacts)
     },
 };
 
@@ -93,9 +93,9 @@ pub(crate) const MISSED: Case = Case {
         };
         let stepped = |method| simulated(scene, method, impacts).impacts.iter().map(|impact| impact.t).collect();
         let says = vec![
-            says("adaptive Runge-Kutta 5(4), tolerance 1e-9", stepped(Method::Adaptive { tolerance: 1e-9 })),
-            says("the exact flight, looked at every 10 ms", stepped(Method::Sampling { step: 1e-2 })),
-            says("the exact flight, looked at every 1 ms", stepped(Method::Sampling { step: 1e-3 })),
+            says("adaptive Runge-Kutta 5(4), tolerance 1e-9", stepped(Integrator::Adaptive { tolerance: 1e-9 })),
+            says("the exact flight, looked at every 10 ms", stepped(Integrator::Sampling { step: 1e-2 })),
+            says("the exact flight, looked at every 1 ms", stepped(Integrator::Sampling { step: 1e-3 })),
             says("the map", truth.iter().map(|contact| contact.0).collect()),
         ];
         let detail = format!("the tip meets the table at {second:.6} s, at {:.4} m/s", contact_speed(scene));
@@ -163,26 +163,28 @@ pub(crate) const ZENO: Case = Case {
         let limit = limit(scene);
         let says = |method, simulation: Simulation| {
             let last = simulation.impacts.last().map(|impact| impact.t);
-            let verdict =
-                if matches!(simulation.ending, Ending::Run(equipoise_physics::run::ending::Ending::Settled { .. })) {
-                    "settles"
-                } else {
-                    "goes on"
-                };
+            let verdict = if matches!(
+                simulation.ending,
+                SimulationEnding::Run(equipoise_physics::run::ending::Ending::Settled { .. })
+            ) {
+                "settles"
+            } else {
+                "goes on"
+            };
             let past = last.map_or(0.0, |last| last - limit);
             let detail = format!("its contact {} is {past:.3e} s past the limit", simulation.impacts.len());
             Says { method, verdict, value: last, unit: Some("s"), detail }
         };
-        let fixed = Method::RungeKutta { step: 1e-3, location: Location::StepEnd };
+        let fixed = Integrator::RungeKutta { step: 1e-3, location: Location::StepEnd };
         let mut says = vec![
             says("Runge-Kutta, steps of 1 ms", simulated(scene, fixed, impacts)),
             says(
                 "Moreau and Jean's time stepping, 1 ms",
-                simulated(scene, Method::TimeStepping { step: 1e-3 }, impacts),
+                simulated(scene, Integrator::TimeStepping { step: 1e-3 }, impacts),
             ),
             says(
                 "adaptive Runge-Kutta 5(4) with event location",
-                simulated(scene, Method::Adaptive { tolerance: 1e-9 }, impacts),
+                simulated(scene, Integrator::Adaptive { tolerance: 1e-9 }, impacts),
             ),
         ];
         let (ending, settle_time) = settled(scene, impacts);
@@ -198,7 +200,7 @@ pub(crate) const ZENO: Case = Case {
     },
     picture: |scene, impacts| {
         let exact = contacts(scene, impacts);
-        let fixed = Method::RungeKutta { step: 1e-3, location: Location::StepEnd };
+        let fixed = Integrator::RungeKutta { step: 1e-3, location: Location::StepEnd };
         let stepped = simulated(scene, fixed, impacts);
         let numbered = |times: &mut dyn Iterator<Item = f64>| {
             times.enumerate().map(|(n, t)| (t, n as f64 + 1.0)).collect::<Vec<_>>()
@@ -231,7 +233,7 @@ pub(crate) const ZENO: Case = Case {
 /// Steps after which a method is given up. No case takes as many.
 const MOST_STEPS: u64 = 2_000_000;
 
-fn simulated(scene: &Scene, method: Method, impacts: u64) -> Simulation {
+fn simulated(scene: &Scene, method: Integrator, impacts: u64) -> Simulation {
     let run = (&rod_of(scene), &scene.rules(), scene.release());
     simulate(method, run, impacts, MOST_STEPS, &mut || true).expect("nobody stops it")
 }
@@ -239,15 +241,15 @@ fn simulated(scene: &Scene, method: Method, impacts: u64) -> Simulation {
 fn course(simulation: &Simulation) -> Course {
     let angles = simulation.impacts.iter().map(|impact| impact.state.theta).collect();
     let ending = match simulation.ending {
-        Ending::Run(ending) => ending,
-        Ending::Missed { .. } | Ending::OutOfSteps { .. } => {
+        SimulationEnding::Run(ending) => ending,
+        SimulationEnding::Missed { .. } | SimulationEnding::OutOfSteps { .. } => {
             equipoise_physics::run::ending::Ending::Diverged { speed: f64::NAN }
         }
     };
     Course { angles, ending }
 }
 
-fn stepped(name: &'static str, scene: &Scene, method: Method, impacts: u64) -> Says {
+fn stepped(name: &'static str, scene: &Scene, method: Integrator, impacts: u64) -> Says {
     let simulation = simulated(scene, method, impacts);
     let mut says = course(&simulation).says(name);
     says.detail += &format!("; {} steps", simulation.work.steps);
@@ -255,7 +257,7 @@ fn stepped(name: &'static str, scene: &Scene, method: Method, impacts: u64) -> S
 }
 
 /// The angles of a method and of the map.
-fn beside(title: &'static str, name: &'static str, scene: &Scene, method: Method, impacts: u64) -> Chart {
+fn beside(title: &'static str, name: &'static str, scene: &Scene, method: Integrator, impacts: u64) -> Chart {
     let (exact, stepped) = (Course::of(scene, impacts), course(&simulated(scene, method, impacts)));
     let dots = |course: &Course| course.angles.iter().enumerate().map(|(n, theta)| (n as f64 + 1.0, *theta)).collect();
     let curve = |label, look, points| Curve { label, look, points };

@@ -12,14 +12,14 @@ use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 use differential_equations::status::Status;
 use equipoise_physics::run::ending::Ending;
 
-use crate::integrators::course::{Course, Halt, bisect};
 use crate::integrators::motion::Motion;
+use crate::integrators::simulation_run::{Halt, SimulationRun, bisect};
 
-struct Flight {
+struct FreeFlight {
     gravity: f64,
 }
 
-impl ODE<f64, [f64; 6]> for Flight {
+impl ODE<f64, [f64; 6]> for FreeFlight {
     fn diff(&self, _: f64, motion: &[f64; 6], change: &mut [f64; 6]) {
         *change = [motion[3], motion[4], motion[5], 0.0, -self.gravity, 0.0];
     }
@@ -28,35 +28,35 @@ impl ODE<f64, [f64; 6]> for Flight {
 /// No flight is longer, s: the library wants an end.
 const HORIZON: f64 = 1e6;
 
-pub(crate) fn run(course: &mut Course, tolerance: f64) -> Result<Infallible, Halt> {
-    let (mut motion, at_contact) = course.start();
+pub(crate) fn simulate(run: &mut SimulationRun, tolerance: f64) -> Result<Infallible, Halt> {
+    let (mut motion, at_contact) = run.start();
     let mut t = 0.0;
     if at_contact {
-        course.strike(t, &mut motion)?;
+        run.strike(t, &mut motion)?;
     }
     loop {
-        t += fly(course, tolerance, t, &mut motion)?;
-        course.strike(t, &mut motion)?;
+        t += fly(run, tolerance, t, &mut motion)?;
+        run.strike(t, &mut motion)?;
     }
 }
 
 /// One flight, from just after a contact to the next one, whose time from its start it gives.
-fn fly(course: &mut Course, tolerance: f64, t: f64, motion: &mut Motion) -> Result<f64, Halt> {
-    let flight = Flight { gravity: course.rod.gravity };
+fn fly(run: &mut SimulationRun, tolerance: f64, t: f64, motion: &mut Motion) -> Result<f64, Halt> {
+    let flight = FreeFlight { gravity: run.rod.gravity };
     let mut solver = ExplicitRungeKutta::dopri5().rtol(tolerance).atol(tolerance).max_steps(usize::MAX);
     // Its step control gives up where the numbers are no longer finite or the tolerance is below rounding.
     let failed = |_| Halt::from(Ending::Diverged { speed: motion.velocity[0].abs().max(motion.velocity[1].abs()) });
     let evaluations = solver.init(&flight, 0.0, HORIZON, &numbers(motion)).map_err(failed)?;
-    course.work.accelerations += evaluations.function as u64;
-    let mut gap = course.gap(motion);
+    run.work.accelerations += evaluations.function as u64;
+    let mut gap = run.gap(motion);
     loop {
-        course.step(t + solver.t(), &rod(solver.y()))?;
+        run.step(t + solver.t(), &rod(solver.y()))?;
         let evaluations = solver.step(&flight).map_err(failed)?;
-        course.work.accelerations += evaluations.function as u64;
+        run.work.accelerations += evaluations.function as u64;
         if matches!(solver.status(), Status::RejectedStep) {
             continue;
         }
-        let next_gap = course.gap(&rod(solver.y()));
+        let next_gap = run.gap(&rod(solver.y()));
         if next_gap > 0.0 || (gap <= 0.0 && next_gap >= gap) {
             gap = next_gap;
             continue;
@@ -66,7 +66,7 @@ fn fly(course: &mut Course, tolerance: f64, t: f64, motion: &mut Motion) -> Resu
         // Within the step the library has no reason to refuse; what it would leave out is the step's end.
         let mut dense =
             |part: f64| solver.interpolate((begin + part).min(end)).map_or(rod(solver.y()), |there| rod(&there));
-        let part = bisect(end - begin, |part| course.gap(&dense(part)) > 0.0);
+        let part = bisect(end - begin, |part| run.gap(&dense(part)) > 0.0);
         *motion = dense(part);
         return Ok(begin + part);
     }

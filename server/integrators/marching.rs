@@ -5,22 +5,22 @@
 
 use std::convert::Infallible;
 
-use crate::integrators::course::{Course, Halt, bisect};
-use crate::integrators::method::Location;
+use crate::integrators::integrator::Location;
+use crate::integrators::simulation_run::{Halt, SimulationRun, bisect};
 
-pub(crate) fn run(course: &mut Course, step: f64, location: Location) -> Result<Infallible, Halt> {
-    let (mut motion, at_contact) = course.start();
+pub(crate) fn simulate(run: &mut SimulationRun, step: f64, location: Location) -> Result<Infallible, Halt> {
+    let (mut motion, at_contact) = run.start();
     // Steps are counted from the last contact, so that rounding of t does not add up.
     let (mut contact_t, mut steps) = (0.0, 0.0);
     if at_contact {
-        course.strike(0.0, &mut motion)?;
+        run.strike(0.0, &mut motion)?;
     }
-    let mut gap = course.gap(&motion);
+    let mut gap = run.gap(&motion);
     loop {
         let t = contact_t + steps * step;
-        course.step(t, &motion)?;
-        let next = course.fly(&motion, step);
-        let next_gap = course.gap(&next);
+        run.step(t, &motion)?;
+        let next = run.fly(&motion, step);
+        let next_gap = run.gap(&next);
         // After a strike at the end of a step the contact point may be below the table, on its way up.
         let falls = next_gap < gap;
         if next_gap > 0.0 || (gap <= 0.0 && !falls) {
@@ -32,13 +32,13 @@ pub(crate) fn run(course: &mut Course, step: f64, location: Location) -> Result<
             Location::Secant if gap > 0.0 => step * (gap / (gap - next_gap)),
             Location::Secant => 0.0,
             Location::Bisection => bisect(step, |part| {
-                let there = course.fly(&motion, part);
-                course.gap(&there) > 0.0
+                let there = run.fly(&motion, part);
+                run.gap(&there) > 0.0
             }),
         };
-        motion = if location == Location::StepEnd { next } else { course.fly(&motion, part) };
+        motion = if location == Location::StepEnd { next } else { run.fly(&motion, part) };
         (contact_t, steps) = (t + part, 0.0);
-        course.strike(contact_t, &mut motion)?;
-        gap = course.gap(&motion);
+        run.strike(contact_t, &mut motion)?;
+        gap = run.gap(&motion);
     }
 }

@@ -4,46 +4,46 @@
 //! rod and how it notices that it meets the table. Times are in s, lengths in m, angles in rad.
 
 mod adaptive;
-mod course;
+mod integrator;
 mod marching;
-mod method;
 mod motion;
 mod penalty;
 mod sampling;
 mod simulation;
+mod simulation_run;
 mod time_stepping;
 
 use equipoise_physics::body::Release;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::run::rules::Rules;
 
-use course::{Course, Halt};
+use simulation_run::{Halt, SimulationRun};
 
-pub use method::{Location, Method};
+pub use integrator::{Integrator, Location};
 pub use penalty::STEPS_PER_CONTACT;
-pub use simulation::{Ending, Impact, Simulation, Work};
+pub use simulation::{SimulatedImpact, Simulation, SimulationEnding, WorkCount};
 
 /// Runs a method from the release for so many contacts and at most so many steps. `go_on` is asked every few thousand steps, and there
 /// is no answer once it says `false`.
 ///
 /// The reasons for which a run ends are those of [`equipoise_physics::run::orbit::Orbit`], in the same order. Steps that are not positive end as `out_of_steps`.
 pub fn simulate(
-    method: Method,
+    method: Integrator,
     (rod, rules, release): (&Rod, &Rules, &Release),
     impacts: u64,
     most_steps: u64,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Option<Simulation> {
-    let mut course = Course::new(*rod, *rules, *release, impacts, most_steps, go_on);
+    let mut run = SimulationRun::new(*rod, *rules, *release, impacts, most_steps, go_on);
     let Err(halt) = match method {
-        Method::RungeKutta { step, location } => marching::run(&mut course, step, location),
-        Method::Adaptive { tolerance } => adaptive::run(&mut course, tolerance),
-        Method::TimeStepping { step } => time_stepping::run(&mut course, step),
-        Method::Penalty { step } => penalty::run(&mut course, step),
-        Method::Sampling { step } => sampling::run(&mut course, step),
+        Integrator::RungeKutta { step, location } => marching::simulate(&mut run, step, location),
+        Integrator::Adaptive { tolerance } => adaptive::simulate(&mut run, tolerance),
+        Integrator::TimeStepping { step } => time_stepping::simulate(&mut run, step),
+        Integrator::Penalty { step } => penalty::simulate(&mut run, step),
+        Integrator::Sampling { step } => sampling::simulate(&mut run, step),
     };
     match halt {
         Halt::Stopped => None,
-        Halt::Ended(ending) => Some(Simulation { impacts: course.impacts, ending, work: course.work }),
+        Halt::Ended(ending) => Some(Simulation { impacts: run.impacts, ending, work: run.work }),
     }
 }

@@ -12,8 +12,8 @@ use std::f64::consts::PI;
 use equipoise_physics::bounce::rebound::Rebound;
 use equipoise_physics::bounce::strike::Strike;
 
-use crate::integrators::course::{Course, Halt};
 use crate::integrators::motion::Motion;
+use crate::integrators::simulation_run::{Halt, SimulationRun};
 use crate::integrators::time_stepping::per_impulse;
 
 /// Steps of an undamped contact. More make the table softer; with fewer, Runge-Kutta itself damps the contact, which smaller steps do not
@@ -23,31 +23,31 @@ pub const STEPS_PER_CONTACT: f64 = 16.0;
 /// Largest damping ratio for which Runge-Kutta is stable at that stiffness (2ζω₀h < 2.78): restitutions under 0.005 become 0.005.
 const MOST_DAMPING: f64 = 7.0;
 
-pub(crate) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
-    let damping = damping_ratio(course.rod.restitution);
-    let (mut motion, mut meets) = course.start();
+pub(crate) fn simulate(run: &mut SimulationRun, step: f64) -> Result<Infallible, Halt> {
+    let damping = damping_ratio(run.rod.restitution);
+    let (mut motion, mut meets) = run.start();
     let mut steps = 0.0;
-    let mut gap = course.gap(&motion);
+    let mut gap = run.gap(&motion);
     loop {
         if meets {
-            let strike = course.contact(steps * step, &motion)?;
-            let spring = Spring::new(course, &motion, &strike, damping, step);
+            let strike = run.contact(steps * step, &motion)?;
+            let spring = Spring::new(run, &motion, &strike, damping, step);
             let mut elapsed = 0.0;
             loop {
-                course.step(steps * step, &motion)?;
-                course.work.accelerations += 4;
+                run.step(steps * step, &motion)?;
+                run.work.accelerations += 4;
                 motion = motion.runge_kutta(step, |motion, part| spring.acceleration(motion, elapsed + part));
                 (steps, elapsed) = (steps + 1.0, elapsed + step);
                 if spring.lets_go(&motion, elapsed) {
                     break;
                 }
             }
-            course.leave(&motion.state(), spring.rebound(&motion))?;
-            gap = course.gap(&motion);
+            run.leave(&motion.state(), spring.rebound(&motion))?;
+            gap = run.gap(&motion);
         }
-        course.step(steps * step, &motion)?;
-        let next = course.fly(&motion, step);
-        let next_gap = course.gap(&next);
+        run.step(steps * step, &motion)?;
+        let next = run.fly(&motion, step);
+        let next_gap = run.gap(&next);
         meets = next_gap <= 0.0 && (gap > 0.0 || next_gap < gap);
         (motion, gap, steps) = (next, next_gap, steps + 1.0);
     }
@@ -68,8 +68,8 @@ struct Spring {
 }
 
 impl Spring {
-    fn new(course: &Course, motion: &Motion, strike: &Strike, damping_ratio: f64, step: f64) -> Self {
-        let rod = course.rod;
+    fn new(run: &SimulationRun, motion: &Motion, strike: &Strike, damping_ratio: f64, step: f64) -> Self {
+        let rod = run.rod;
         let direction = per_impulse(&motion.state(), strike);
         let turn = rod.radius_of_gyration * direction[2];
         let weight = direction[0] * direction[0] + direction[1] * direction[1] + turn * turn;

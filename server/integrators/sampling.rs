@@ -7,30 +7,30 @@ use std::convert::Infallible;
 use equipoise_physics::bounce::flight::Flight;
 use equipoise_physics::numbers::trig;
 
-use crate::integrators::course::{Course, Halt, bisect};
 use crate::integrators::motion::Motion;
+use crate::integrators::simulation_run::{Halt, SimulationRun, bisect};
 
-pub(crate) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
-    let (mut motion, at_contact) = course.start();
+pub(crate) fn simulate(run: &mut SimulationRun, step: f64) -> Result<Infallible, Halt> {
+    let (mut motion, at_contact) = run.start();
     let mut contact_t = 0.0;
     let mut flight = if at_contact {
-        let strike = course.strike(0.0, &mut motion)?;
-        course.rod.flight(&strike)
+        let strike = run.strike(0.0, &mut motion)?;
+        run.rod.flight(&strike)
     } else {
         Flight {
             start: motion.state(),
             sin_cos_theta: trig::sin_cos(motion.place[2]),
-            clearance: course.gap(&motion),
-            contact_distance: course.rod.contact_distance,
-            gravity: course.rod.gravity,
+            clearance: run.gap(&motion),
+            contact_distance: run.rod.contact_distance,
+            gravity: run.rod.gravity,
         }
     };
     loop {
         let mut looks = 0.0;
         let end = loop {
-            course.step(contact_t, &motion)?;
+            run.step(contact_t, &motion)?;
             looks += 1.0;
-            course.work.gaps += 1;
+            run.work.gaps += 1;
             if flight.gap(looks * step).value <= 0.0 {
                 break looks * step;
             }
@@ -38,13 +38,13 @@ pub(crate) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
         let begin = end - step;
         let t = begin
             + bisect(step, |part| {
-                course.work.gaps += 1;
+                run.work.gaps += 1;
                 flight.gap(begin + part).value > 0.0
             });
         motion = after(&motion, &flight, t);
         contact_t += t;
-        let strike = course.strike(contact_t, &mut motion)?;
-        flight = course.rod.flight(&strike);
+        let strike = run.strike(contact_t, &mut motion)?;
+        flight = run.rod.flight(&strike);
     }
 }
 

@@ -4,7 +4,7 @@ use equipoise_physics::bounce::state::State;
 
 /// One contact, as a method saw it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Impact {
+pub struct SimulatedImpact {
     /// Its number, from 1.
     pub n: u64,
     /// When, s after release.
@@ -17,7 +17,7 @@ pub struct Impact {
 
 /// Why a simulation ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ending {
+pub enum SimulationEnding {
     /// As runs of the map end.
     Run(equipoise_physics::run::ending::Ending),
     /// The rod is below the table and falls, and no contact was seen.
@@ -32,7 +32,7 @@ pub enum Ending {
     },
 }
 
-impl Ending {
+impl SimulationEnding {
     /// Its name in answers.
     pub fn name(self) -> &'static str {
         match self {
@@ -45,7 +45,7 @@ impl Ending {
 
 /// What a simulation took: counts, the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct WorkCount {
     /// Steps, or looks at the flight, those that a method tried and gave up included.
     pub steps: u64,
     /// Evaluations of the right-hand side of the equations of motion.
@@ -58,9 +58,9 @@ pub struct Work {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
     /// The contacts that it saw.
-    pub impacts: Vec<Impact>,
+    pub impacts: Vec<SimulatedImpact>,
     /// Why it ended.
-    pub ending: Ending,
+    pub ending: SimulationEnding,
     /// What it took.
-    pub work: Work,
+    pub work: WorkCount,
 }

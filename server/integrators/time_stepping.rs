@@ -10,31 +10,31 @@ use std::convert::Infallible;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::Strike;
 
-use crate::integrators::course::{Course, Halt};
 use crate::integrators::motion::Motion;
+use crate::integrators::simulation_run::{Halt, SimulationRun};
 
-pub(crate) fn run(course: &mut Course, step: f64) -> Result<Infallible, Halt> {
-    let (mut motion, at_contact) = course.start();
+pub(crate) fn simulate(run: &mut SimulationRun, step: f64) -> Result<Infallible, Halt> {
+    let (mut motion, at_contact) = run.start();
     if at_contact {
-        course.strike(0.0, &mut motion)?;
+        run.strike(0.0, &mut motion)?;
     }
     // At a release from its contact height the strike has just been.
     let mut was_closed = at_contact;
-    let (half, gravity) = (0.5 * step, course.rod.gravity);
+    let (half, gravity) = (0.5 * step, run.rod.gravity);
     let mut steps = 0.0;
     loop {
         let t = steps * step;
-        course.step(t, &motion)?;
+        run.step(t, &motion)?;
         let middle = drift(&motion, half);
-        let closed = course.gap(&middle) <= 0.0;
+        let closed = run.gap(&middle) <= 0.0;
         let mut velocity = motion.velocity;
         velocity[1] -= gravity * step;
         // While a contact stays closed, only a table that is approached strikes again.
-        if closed && (!was_closed || course.rod.strike(&middle.state()).push < 0.0) {
-            let strike = course.contact(t + half, &middle)?;
-            course.leave(&strike.after, course.rebound_of(&strike, &middle))?;
+        if closed && (!was_closed || run.rod.strike(&middle.state()).push < 0.0) {
+            let strike = run.contact(t + half, &middle)?;
+            run.leave(&strike.after, run.rebound_of(&strike, &middle))?;
             let direction = per_impulse(&middle.state(), &strike);
-            let turn = course.rod.radius_of_gyration * direction[2];
+            let turn = run.rod.radius_of_gyration * direction[2];
             let weight = direction[0] * direction[0] + direction[1] * direction[1] + turn * turn;
             let impulse = strike.impulse_normal + step * gravity * direction[1] / weight;
             velocity = std::array::from_fn(|row| velocity[row] + direction[row] * impulse.max(0.0));

@@ -10,7 +10,7 @@ use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, Orbit};
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
-use equipoise_physics::table::actuator_load::{Demand, Meter};
+use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker};
 
 use crate::api::scene::has_angle;
 use crate::api::shared::outcome::Outcome;
@@ -29,7 +29,7 @@ pub struct Playback {
     scene: Arc<Scene>,
     has_angle: bool,
     outcome: Option<Arc<Outcome>>,
-    meter: Meter,
+    meter: LoadTracker,
     /// The impact after which it has completed.
     last: u64,
 }
@@ -50,7 +50,14 @@ impl Playback {
                 (nowhere, Some(Arc::new(Outcome::new(none.ending(0.0, 0.0), 0, 0.0))))
             }
         };
-        Self { orbit, scene: Arc::new(scene), has_angle: has_angle(&scene), outcome, meter: Meter::default(), last }
+        Self {
+            orbit,
+            scene: Arc::new(scene),
+            has_angle: has_angle(&scene),
+            outcome,
+            meter: LoadTracker::default(),
+            last,
+        }
     }
 
     /// When the coming impact is, s; none after the end.
@@ -69,7 +76,7 @@ impl Playback {
     }
 
     /// The most that the run has asked of the table so far.
-    pub fn demand(&self) -> Demand {
+    pub fn demand(&self) -> ActuatorLoad {
         self.meter.most
     }
 

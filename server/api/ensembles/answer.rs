@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::run::ending::Outcome;
+use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::scene::model::Rung;
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::surveys::ensemble::{Ensemble, Runs, SHARES, Survival, late_half_life, median_impacts};
@@ -53,7 +53,7 @@ pub(super) struct Summary {
     pub(super) median_impacts: Option<u64>,
     half_life: Option<f64>,
     #[serde(serialize_with = "by_name")]
-    pub(super) counts: [u64; Outcome::ALL.len()],
+    pub(super) counts: [u64; EndingKind::ALL.len()],
     notes: Vec<String>,
 }
 
@@ -66,8 +66,8 @@ pub(super) struct Survived {
     pub(super) upper: f64,
 }
 
-fn by_name<S: Serializer>(counts: &[u64; Outcome::ALL.len()], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(Outcome::ALL.into_iter().map(Outcome::name).zip(counts))
+fn by_name<S: Serializer>(counts: &[u64; EndingKind::ALL.len()], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(EndingKind::ALL.into_iter().map(EndingKind::name).zip(counts))
 }
 
 impl<'a> EnsembleAnswer<'a> {
@@ -135,7 +135,7 @@ impl Summary {
     fn new(request: &EnsembleRequest, runs: &Runs, curve: &[Survival]) -> Self {
         let EnsembleRequest { ensemble, tile, .. } = request;
         let impacts = ensemble.impacts;
-        let survived = runs.count(Outcome::Completed);
+        let survived = runs.count(EndingKind::Completed);
         let (share, (lower, upper)) = curve.last().map_or((1.0, (0.0, 1.0)), |last| (last.share, last.interval));
         let (median, half_life) = (median_impacts(curve), late_half_life(curve));
         let mut notes = vec![
@@ -181,7 +181,7 @@ impl Summary {
             mean_impacts: runs.mean_impacts(),
             median_impacts: median,
             half_life,
-            counts: Outcome::ALL.map(|outcome| runs.count(outcome)),
+            counts: EndingKind::ALL.map(|outcome| runs.count(outcome)),
             notes,
         }
     }

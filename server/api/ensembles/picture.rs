@@ -1,6 +1,6 @@
 //! The picture of `ensembles`: the survival curve and the quantiles of the angle.
 
-use equipoise_physics::run::ending::Outcome;
+use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 use crate::api::ensembles::answer::{EnsembleAnswer, Survived, is_noisy};
@@ -13,7 +13,7 @@ impl Pictured for EnsembleAnswer<'_> {
     fn to_picture(&self) -> Result<String, Problem> {
         let Survived { runs, share, lower, upper } = self.summary.survived;
         let percent = |share: f64| significant(100.0 * share, 3);
-        let counts = Outcome::ALL.into_iter().zip(self.summary.counts).filter(|(_, count)| *count > 0);
+        let counts = EndingKind::ALL.into_iter().zip(self.summary.counts).filter(|(_, count)| *count > 0);
         let counts: Vec<_> = counts.map(|(outcome, count)| format!("{count} {}", outcome.name())).collect();
         let median = match self.summary.median_impacts {
             Some(median) => format!("half have ended by contact {median}"),

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::body::point::Point;
+use equipoise_physics::body::point::PointMass;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::orbit::run;
@@ -224,7 +224,7 @@ fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64,
                     "a point mass has no theta and no theta_dot; leave them out".to_owned(),
                 ));
             }
-            Ok((x, Point::state(x_dot, y_dot)))
+            Ok((x, PointMass::state(x_dot, y_dot)))
         }
         At::Impact(impact) => {
             let mut orbit = scene.orbit().map_err(|_| ("/at/impact", "the run has no contact".to_owned()))?;

@@ -1,6 +1,6 @@
 //! The answer of `regions`: a quantity and an outcome for each pair of values of two fields.
 
-use equipoise_physics::run::ending::Outcome;
+use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::surveys::stability_map;
 use equipoise_physics::surveys::stability_map::{Axis, Cell, Quantity};
 use serde::{Serialize, Serializer};
@@ -45,11 +45,11 @@ pub(crate) fn written(value: f64) -> String {
 
 /// Number of a cell's outcome. The number after the last outcome stands for a cell without a run.
 pub(super) fn code(cell: &Cell) -> usize {
-    cell.outcome.map_or(Outcome::ALL.len(), |outcome| outcome as usize)
+    cell.outcome.map_or(EndingKind::ALL.len(), |outcome| outcome as usize)
 }
 
 pub(crate) fn outcome_name(cell: &Cell) -> &'static str {
-    cell.outcome.map_or(NO_RUN, Outcome::name)
+    cell.outcome.map_or(NO_RUN, EndingKind::name)
 }
 
 pub(crate) fn quantity_name(quantity: Quantity) -> &'static str {
@@ -90,7 +90,7 @@ impl Serialize for Outcomes<'_> {
 #[derive(Debug, Default, Serialize)]
 pub(crate) struct Counts {
     #[serde(serialize_with = "by_name")]
-    counts: [u64; Outcome::ALL.len() + 1],
+    counts: [u64; EndingKind::ALL.len() + 1],
 }
 
 impl Counts {
@@ -101,12 +101,12 @@ impl Counts {
     }
 }
 
-fn by_name<S: Serializer>(counts: &[u64; Outcome::ALL.len() + 1], serializer: S) -> Result<S::Ok, S::Error> {
+fn by_name<S: Serializer>(counts: &[u64; EndingKind::ALL.len() + 1], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(outcome_names().zip(counts))
 }
 
 fn outcome_names() -> impl Iterator<Item = &'static str> {
-    Outcome::ALL.into_iter().map(Outcome::name).chain([NO_RUN])
+    EndingKind::ALL.into_iter().map(EndingKind::name).chain([NO_RUN])
 }
 
 /// A segment of the linear boundary.

@@ -1,6 +1,6 @@
 //! The most that a run asks of the table's actuators, as it is answered.
 
-use equipoise_physics::table::actuator_load::Demand;
+use equipoise_physics::table::actuator_load::ActuatorLoad;
 use serde::Serialize;
 
 /// The largest tilt, rad, tilt rate, rad/s, speed, m/s, and stroke, m, that a run asks of the table.
@@ -12,8 +12,8 @@ pub struct DemandAnswer {
     stroke: f64,
 }
 
-impl From<Demand> for DemandAnswer {
-    fn from(Demand { tilt, tilt_rate, speed, stroke }: Demand) -> Self {
+impl From<ActuatorLoad> for DemandAnswer {
+    fn from(ActuatorLoad { tilt, tilt_rate, speed, stroke }: ActuatorLoad) -> Self {
         Self { tilt, tilt_rate, speed, stroke }
     }
 }

@@ -1,6 +1,6 @@
 //! The model that a scene is computed with, as it is answered.
 
-use equipoise_physics::run::method::Method;
+use equipoise_physics::run::method::RunMethod;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::{Forced, Rung};
 use serde::Serialize;
@@ -45,8 +45,8 @@ impl ModelChoice {
     }
 
     /// The model that a method needs of it.
-    pub(crate) fn by_method(scene: &Scene, method: Method) -> Self {
-        if method != Method::Linear {
+    pub(crate) fn by_method(scene: &Scene, method: RunMethod) -> Self {
+        if method != RunMethod::Linear {
             return Self::of(scene);
         }
         let reason = "the linear solution is accurate enough here, or was asked for: the angle block in closed form";

@@ -1,6 +1,6 @@
 //! How near the vertices of a polygon come to the table, other than the one that bounces.
 
-use equipoise_physics::body::polygon::{Nearest, Outline};
+use equipoise_physics::body::polygon::{Outline, VertexClearance};
 use equipoise_physics::numbers::trig::sin_cos;
 use equipoise_physics::run::orbit::Contact;
 use serde::Serialize;
@@ -17,7 +17,7 @@ pub struct NearestVertex {
 impl NearestVertex {
     /// The nearer of the nearest so far and that at a contact.
     pub(crate) fn or(so_far: Option<Self>, outline: &Outline, contact: &Contact) -> Self {
-        let Nearest { vertex, clearance } = outline.nearest(sin_cos(contact.state.theta - contact.alpha));
+        let VertexClearance { vertex, clearance } = outline.nearest(sin_cos(contact.state.theta - contact.alpha));
         match so_far {
             Some(nearest) if nearest.clearance <= clearance => nearest,
             _ => Self { vertex, clearance, impact: contact.n, t: contact.t },

@@ -5,7 +5,7 @@
 use equipoise_physics::body::Touch;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules::SPEED_LIMIT;
-use equipoise_physics::table::actuator_load::Excess;
+use equipoise_physics::table::actuator_load::LimitViolation;
 use serde::Serialize;
 
 /// How a run ended.
@@ -48,7 +48,7 @@ impl Outcome {
                 ),
                 None,
             ),
-            Ending::BeyondLimits(Excess { quantity, value, limit, unit }) => (
+            Ending::BeyondLimits(LimitViolation { quantity, value, limit, unit }) => (
                 format!(
                     "{at}, the strike asks for a {quantity} of {value} {unit}; table.limits.{quantity} is {limit} {unit}"
                 ),

@@ -5,11 +5,11 @@ use std::borrow::Cow;
 use equipoise_physics::body::Body;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::method;
-use equipoise_physics::run::method::{Impact, Method, choose_method, run_by};
+use equipoise_physics::run::method::{ComputedImpact, RunMethod, choose_method, run_by};
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Rung;
-use equipoise_physics::table::actuator_load::Meter;
+use equipoise_physics::table::actuator_load::LoadTracker;
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
@@ -32,7 +32,7 @@ const NO_BOUND: &str = "no bound is derived for a run that is changed under way"
 /// Refuses methods and tolerances for a run that is changed under way: only the map runs on through a change, without a bound.
 fn admits_changes(request: &TrajectoryRequest) -> Result<(), Refusal> {
     match (request.method, request.tolerance) {
-        (None | Some(Method::Map), None) => Ok(()),
+        (None | Some(RunMethod::Map), None) => Ok(()),
         (_, Some(_)) => Err(Refusal::At("/tolerance", NO_BOUND.to_owned())),
         (Some(other), None) => Err(Refusal::At("/method", format!("{} does not apply: {NO_BOUND}", other.name()))),
     }
@@ -65,7 +65,7 @@ impl MethodAnswer {
         scene: &Scene,
         request: &TrajectoryRequest,
         go_on: &mut impl FnMut() -> bool,
-    ) -> Result<(Method, Self), Refusal> {
+    ) -> Result<(RunMethod, Self), Refusal> {
         let TrajectoryRequest { impacts, method, tolerance, .. } = *request;
         if let (None, Some(tolerance)) = (method, tolerance) {
             if let Some(error) = scene.beyond(&[Rung::Friction]) {
@@ -74,7 +74,7 @@ impl MethodAnswer {
             let choice = choose_method(scene, impacts, tolerance, go_on)
                 .ok_or(Refusal::Cancelled)?
                 .map_err(|refusal| ("/tolerance", refusal.detail))?;
-            let method::Choice { method, cost_us, next, reason, .. } = choice;
+            let method::MethodChoice { method, cost_us, next, reason, .. } = choice;
             let next = next.map(|(method, cost_us)| Dearer { name: method.name(), cost_us });
             return Ok((method, Self { name: method.name(), reason, cost_us, next }));
         }
@@ -82,7 +82,7 @@ impl MethodAnswer {
             Some(_) => "as asked for",
             None => "the map from contact to contact in closed form; no tolerance was asked for",
         };
-        let method = method.unwrap_or(Method::Map);
+        let method = method.unwrap_or(RunMethod::Map);
         let cost_us = method.cost_us(impacts);
         Ok((method, Self { name: method.name(), reason: reason.to_owned(), cost_us, next: None }))
     }
@@ -136,10 +136,10 @@ impl<'a> TrajectoryAnswer<'a> {
         let mut flights = (samples > 0).then(|| Flights::new(epoch));
         let body = scene.model();
         let (mut last, mut unknown, mut predictable) = (None, 0, None);
-        let mut meter = Meter::default();
+        let mut meter = LoadTracker::default();
         let mut nearest_vertex = None;
-        let mut visit = |impact: &Impact<'_>| {
-            let Impact { contact, error_estimate, .. } = impact;
+        let mut visit = |impact: &ComputedImpact<'_>| {
+            let ComputedImpact { contact, error_estimate, .. } = impact;
             contacts.push(impact);
             if let Some(flights) = &mut flights {
                 if contact.n == 1 {
@@ -171,7 +171,7 @@ impl<'a> TrajectoryAnswer<'a> {
                 let mut ending = None;
                 for contact in contacts {
                     ending = contact.ending;
-                    if !visit(&Impact { contact, error_estimate: f64::INFINITY, extended: None }) {
+                    if !visit(&ComputedImpact { contact, error_estimate: f64::INFINITY, extended: None }) {
                         ending = None;
                         break;
                     }

@@ -7,7 +7,7 @@ use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::extended;
-use equipoise_physics::run::method::Impact;
+use equipoise_physics::run::method::ComputedImpact;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
 
@@ -75,7 +75,7 @@ impl Contacts {
     }
 
     /// Adds one.
-    pub(crate) fn push(&mut self, impact: &Impact<'_>) {
+    pub(crate) fn push(&mut self, impact: &ComputedImpact<'_>) {
         let contact = &impact.contact;
         let State { theta, x_dot, y_dot, theta_dot } = contact.state;
         // + 0.0: a table at rest moves by 0, not by −0.
@@ -177,7 +177,7 @@ impl Default for Digits {
 }
 
 impl Digits {
-    fn push(&mut self, orbit: &extended::Orbit, contact: &extended::Contact, has_angle: bool) {
+    fn push(&mut self, orbit: &extended::ExtendedOrbit, contact: &extended::ExtendedContact, has_angle: bool) {
         let State { theta, x_dot, y_dot, theta_dot } = contact.state;
         let strike = contact.strike;
         let values = [

@@ -1,6 +1,6 @@
 //! The request for `trajectories`: a run, the method that computes it, and the numbers that are asked for.
 
-use equipoise_physics::run::method::{Method, deviations_circle};
+use equipoise_physics::run::method::{RunMethod, deviations_circle};
 use equipoise_physics::scene::{Name, Scene};
 
 use crate::api::shared::write;
@@ -20,7 +20,7 @@ pub struct TrajectoryRequest {
     /// Points along each flight.
     pub samples_per_flight: u64,
     /// The method, if one is named.
-    pub method: Option<Method>,
+    pub method: Option<RunMethod>,
     /// Wanted bound on the error, m/s, if any.
     pub tolerance: Option<f64>,
     /// Time of the release, unix ms. Without it there is no column `time`.
@@ -60,7 +60,7 @@ impl TrajectoryRequest {
         let run = run_url::read_unclocked(reader);
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
         let samples_per_flight = reader.integer("samples_per_flight", 0..=limits::SAMPLES_PER_FLIGHT).unwrap_or(0);
-        let [linear, map, extended] = Method::ALL.map(|method| (method.name(), Some(method)));
+        let [linear, map, extended] = RunMethod::ALL.map(|method| (method.name(), Some(method)));
         let method = reader.choice("method", &[("auto", None), map, linear, extended]).flatten();
         let tolerance = reader.number("tolerance", TOLERANCES, "m/s");
         let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
@@ -70,7 +70,7 @@ impl TrajectoryRequest {
     /// Everything that determines the answer.
     pub fn canonical(&self) -> Vec<u8> {
         let Self { run, impacts, samples_per_flight, method, tolerance, epoch } = self;
-        let rest = (impacts, samples_per_flight, method.map(Method::name), tolerance, epoch);
+        let rest = (impacts, samples_per_flight, method.map(RunMethod::name), tolerance, epoch);
         write::canonical(run.scene(), &(rest, run_url::url(run)))
     }
 
@@ -84,9 +84,9 @@ impl TrajectoryRequest {
     pub fn price(&self) -> u64 {
         let scene = self.run.scene();
         let (once, impact) = match (self.method, self.tolerance) {
-            (Some(Method::Linear), _) => (LINEAR_ONCE, linear_price(scene) + ROW_PRICE),
-            (Some(Method::Map), _) | (None, None) => (0, MAP_PRICE + ROW_PRICE),
-            (Some(Method::Extended), _) => (0, EXTENDED_PRICE + LONG_ROW_PRICE),
+            (Some(RunMethod::Linear), _) => (LINEAR_ONCE, linear_price(scene) + ROW_PRICE),
+            (Some(RunMethod::Map), _) | (None, None) => (0, MAP_PRICE + ROW_PRICE),
+            (Some(RunMethod::Extended), _) => (0, EXTENDED_PRICE + LONG_ROW_PRICE),
             // Each may be tried, the linear one where the angle circles, and the dearest run again.
             (None, Some(_)) => {
                 let linear = if deviations_circle(scene) { linear_price(scene) } else { 0 };

@@ -4,17 +4,17 @@
 //! rod at once, so that dead cells cost nothing; a bounce that is not a common one is done alone, by the map itself.
 
 use crate::batch::lanes::{Bounced, Far, Moving, Near, Rods, Rough, Scratch, Smooth, Surface, WIDTH, bounce};
-use crate::bounce::friction::{Law, Slide};
+use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
-use crate::numbers::dispatch::{Path, Work, dispatch, dispatch_on};
-use crate::run::ending::Outcome;
-use crate::run::orbit::Midst;
+use crate::numbers::dispatch::{InstructionSet, Kernel, dispatch, dispatch_on};
+use crate::run::ending::EndingKind;
+use crate::run::orbit::LaneRunState;
 use crate::run::rules::Rules;
 
 /// One run to be made.
 #[derive(Clone, Copy, Debug)]
-pub struct Start {
+pub struct RunStart {
     /// What bounces.
     pub rod: Rod,
     /// When it ends.
@@ -25,16 +25,16 @@ pub struct Start {
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End {
+pub struct RunEnd {
     /// Contacts, the last included.
     pub impacts: u64,
-    /// The name of the ending, as [`Outcome::name`].
-    pub outcome: Outcome,
+    /// The name of the ending, as [`EndingKind::name`].
+    pub outcome: EndingKind,
     /// Largest |θ| at a contact, rad.
     pub max_theta: f64,
 }
 
-impl Start {
+impl RunStart {
     fn energy(&self) -> f64 {
         self.rod.strike(&self.state).energy
     }
@@ -44,60 +44,60 @@ impl Start {
 /// end, in any order. `go_on` is asked every few thousand bounces; after a `false` no more are run.
 ///
 /// No table may be limited: lanes do not look.
-pub fn sweep(
+pub fn run_batch(
     impacts: u64,
-    mut next: impl FnMut() -> Option<(usize, Start)>,
-    done: impl FnMut(usize, End),
+    mut next: impl FnMut() -> Option<(usize, RunStart)>,
+    done: impl FnMut(usize, RunEnd),
     go_on: impl FnMut() -> bool,
 ) {
     let next = || next().map(|(number, start)| (number, start, ()));
-    dispatch(Sweep { surface: Smooth, impacts, next, done, go_on });
+    dispatch(BatchRun { surface: Smooth, impacts, next, done, go_on });
 }
 
-/// [`sweep`] with friction of one law and one way to slide: `next` gives its coefficient too.
-pub fn sweep_rough(
-    (law, slide): (Law, Slide),
+/// [`run_batch`] with friction of one law and one way to slide: `next` gives its coefficient too.
+pub fn run_batch_with_friction(
+    (law, slide): (RestitutionLaw, Slide),
     impacts: u64,
-    next: impl FnMut() -> Option<(usize, Start, f64)>,
-    done: impl FnMut(usize, End),
+    next: impl FnMut() -> Option<(usize, RunStart, f64)>,
+    done: impl FnMut(usize, RunEnd),
     go_on: impl FnMut() -> bool,
 ) {
-    dispatch(Sweep { surface: Rough::new(law, slide), impacts, next, done, go_on });
+    dispatch(BatchRun { surface: Rough::new(law, slide), impacts, next, done, go_on });
 }
 
-/// [`sweep`] over all of `starts`: their ends, in the same order. None once `go_on` said `false`.
-pub fn sweep_all(impacts: u64, starts: &[Start], go_on: &mut dyn FnMut() -> bool) -> Option<Vec<End>> {
+/// [`run_batch`] over all of `starts`: their ends, in the same order. None once `go_on` said `false`.
+pub fn run_all(impacts: u64, starts: &[RunStart], go_on: &mut dyn FnMut() -> bool) -> Option<Vec<RunEnd>> {
     let mut ends = vec![None; starts.len()];
     let mut starts = starts.iter().copied().enumerate();
-    sweep(impacts, || starts.next(), |number, end| ends[number] = Some(end), go_on);
+    run_batch(impacts, || starts.next(), |number, end| ends[number] = Some(end), go_on);
     ends.into_iter().collect()
 }
 
-/// [`sweep`] with one kind of instructions, to hold all of them together.
-pub fn sweep_on(
-    path: Path,
+/// [`run_batch`] with one kind of instructions, to hold all of them together.
+pub fn run_batch_on(
+    path: InstructionSet,
     impacts: u64,
-    mut next: impl FnMut() -> Option<(usize, Start)>,
-    done: impl FnMut(usize, End),
+    mut next: impl FnMut() -> Option<(usize, RunStart)>,
+    done: impl FnMut(usize, RunEnd),
     go_on: impl FnMut() -> bool,
 ) {
     let next = || next().map(|(number, start)| (number, start, ()));
-    dispatch_on(path, Sweep { surface: Smooth, impacts, next, done, go_on });
+    dispatch_on(path, BatchRun { surface: Smooth, impacts, next, done, go_on });
 }
 
-/// [`sweep_rough`] with one kind of instructions.
-pub fn sweep_rough_on(
-    path: Path,
-    (law, slide): (Law, Slide),
+/// [`run_batch_with_friction`] with one kind of instructions.
+pub fn run_batch_with_friction_on(
+    path: InstructionSet,
+    (law, slide): (RestitutionLaw, Slide),
     impacts: u64,
-    next: impl FnMut() -> Option<(usize, Start, f64)>,
-    done: impl FnMut(usize, End),
+    next: impl FnMut() -> Option<(usize, RunStart, f64)>,
+    done: impl FnMut(usize, RunEnd),
     go_on: impl FnMut() -> bool,
 ) {
-    dispatch_on(path, Sweep { surface: Rough::new(law, slide), impacts, next, done, go_on });
+    dispatch_on(path, BatchRun { surface: Rough::new(law, slide), impacts, next, done, go_on });
 }
 
-struct Sweep<S, Next, Done, GoOn> {
+struct BatchRun<S, Next, Done, GoOn> {
     surface: S,
     impacts: u64,
     next: Next,
@@ -108,18 +108,18 @@ struct Sweep<S, Next, Done, GoOn> {
 /// How often `go_on` is asked, in bounces of all lanes.
 const LOOK: u64 = 256;
 
-impl<S, Next, Done, GoOn> Work for Sweep<S, Next, Done, GoOn>
+impl<S, Next, Done, GoOn> Kernel for BatchRun<S, Next, Done, GoOn>
 where
     S: Surface,
-    Next: FnMut() -> Option<(usize, Start, S::Of)>,
-    Done: FnMut(usize, End),
+    Next: FnMut() -> Option<(usize, RunStart, S::Of)>,
+    Done: FnMut(usize, RunEnd),
     GoOn: FnMut() -> bool,
 {
     type Output = ();
 
     #[inline(always)]
     fn call(mut self) {
-        let mut orbits = Orbits::idle(self.surface, self.impacts);
+        let mut orbits = LaneRuns::idle(self.surface, self.impacts);
         for lane in 0..WIDTH {
             orbits.load(lane, (self.next)());
         }
@@ -162,7 +162,7 @@ fn bits(mut mask: Mask) -> impl Iterator<Item = usize> {
 }
 
 /// Orbits side by side.
-struct Orbits<S> {
+struct LaneRuns<S> {
     surface: S,
     rods: Rods,
     moving: Moving,
@@ -174,7 +174,7 @@ struct Orbits<S> {
     first: [u64; WIDTH],
     /// The turn of its last one.
     last: [u64; WIDTH],
-    outcome: [Outcome; WIDTH],
+    outcome: [EndingKind; WIDTH],
     number: [usize; WIDTH],
     busy: Mask,
     /// Lanes before the first flight of a run that can settle.
@@ -184,7 +184,7 @@ struct Orbits<S> {
 }
 
 /// What an idle lane does: it bounces upright, for ever, and nobody looks.
-const IDLE: Start = Start {
+const IDLE: RunStart = RunStart {
     rod: Rod {
         contact_distance: 1.0,
         radius_of_gyration: 1.0,
@@ -199,7 +199,7 @@ const IDLE: Start = Start {
     state: State { theta: 0.0, x_dot: 0.0, y_dot: -1.0, theta_dot: 0.0 },
 };
 
-impl<S: Surface> Orbits<S> {
+impl<S: Surface> LaneRuns<S> {
     fn idle(surface: S, impacts: u64) -> Self {
         Self {
             surface,
@@ -209,7 +209,7 @@ impl<S: Surface> Orbits<S> {
             turn: 0,
             first: [0; WIDTH],
             last: [u64::MAX; WIDTH],
-            outcome: [Outcome::Completed; WIDTH],
+            outcome: [EndingKind::Completed; WIDTH],
             number: [0; WIDTH],
             busy: 0,
             fresh: 0,
@@ -218,7 +218,7 @@ impl<S: Surface> Orbits<S> {
     }
 
     /// Gives a lane its next run, or none.
-    fn load(&mut self, lane: usize, next: Option<(usize, Start, S::Of)>) {
+    fn load(&mut self, lane: usize, next: Option<(usize, RunStart, S::Of)>) {
         let (start, of, last) = match next {
             Some((number, start, of)) => {
                 self.number[lane] = number;
@@ -237,11 +237,11 @@ impl<S: Surface> Orbits<S> {
         self.fresh &= !(1 << lane);
         self.fresh |= u16::from(start.rules.settles) << lane;
         (self.first[lane], self.last[lane]) = (self.turn, last);
-        self.outcome[lane] = Outcome::Completed;
+        self.outcome[lane] = EndingKind::Completed;
     }
 
-    fn end(&self, lane: usize) -> End {
-        End {
+    fn end(&self, lane: usize) -> RunEnd {
+        RunEnd {
             impacts: self.turn - self.first[lane],
             outcome: self.outcome[lane],
             max_theta: self.moving.max_theta[lane],
@@ -304,12 +304,12 @@ impl<S: Surface> Orbits<S> {
     /// One contact of one lane: how its run ends there, if it does.
     #[cold]
     #[inline(never)]
-    fn alone(&mut self, lane: usize) -> Option<Outcome> {
+    fn alone(&mut self, lane: usize) -> Option<EndingKind> {
         let theta = self.moving.state(lane).theta;
         let max_theta = &mut self.moving.max_theta[lane];
         *max_theta = max_theta.max(theta.abs());
         match self.surface.contact(&self.rods, lane, self.rods.midst(&self.moving, lane)) {
-            Ok(Midst { state, energy, first_flight }) => {
+            Ok(LaneRunState { state, energy, first_flight }) => {
                 self.moving.set(lane, &state, energy);
                 self.rods.begin(lane, first_flight);
                 None

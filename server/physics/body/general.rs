@@ -5,11 +5,11 @@
 //! [`crate::table::noise`], [`crate::body::polygon`]; here they meet.
 
 use crate::body::polygon::Outline;
-use crate::body::{Arrival, Body, Coming, NoContact, Release, Touch};
+use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::contact_time::{first_contact, first_descent};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
-use crate::bounce::friction::{Friction, Law, Slide, as_it_is};
+use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -17,14 +17,14 @@ use crate::bounce::table_motion::PlannedTableMotion;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::trig;
 use crate::table::control_law::Steering;
-use crate::table::noise::{Draw, Noise, Reading};
+use crate::table::noise::{Noise, NoiseModel, NoiseSample};
 
 /// Least time, s, from one strike to the next: a table that is timed too early strikes then.
 pub const LEAST_FLIGHT: f64 = 1e-6;
 
 /// A rod with what a scene asks for beyond the plain one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rig {
+pub struct GeneralBody {
     /// The rod and its table without it.
     pub rod: Rod,
     /// How the table tilts.
@@ -38,9 +38,9 @@ pub struct Rig {
 }
 
 /// A contact without friction, for a table that moves as planned.
-const SMOOTH: Friction = Friction { coefficient: 0.0, law: Law::Poisson, slide: Slide::None };
+const SMOOTH: Friction = Friction { coefficient: 0.0, law: RestitutionLaw::Poisson, slide: Slide::None };
 
-impl Rig {
+impl GeneralBody {
     /// The table's tilt at a place and a state, the angle sensed with an error (rad).
     fn tilt(&self, x: f64, state: &State, error: f64) -> Tilt<f64> {
         let sensed = State { theta: state.theta + error, ..*state };
@@ -58,8 +58,8 @@ impl Rig {
         Rod { target_energy: self.rod.target_energy - self.rod.gravity * clearance, ..self.rod }
     }
 
-    fn draw(&self, n: u64) -> Draw {
-        self.noise.map_or(Draw { timing: 0.0, angle: 0.0 }, |noise| noise.draw(n))
+    fn draw(&self, n: u64) -> NoiseSample {
+        self.noise.map_or(NoiseSample { timing: 0.0, angle: 0.0 }, |noise| noise.draw(n))
     }
 
     /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`.
@@ -76,15 +76,15 @@ impl Rig {
     /// Where a table that strikes about the time `t`, when the contact point is at y = 0, meets the body.
     fn meet_timed(&self, flight: &Flight, t: f64, n: u64, x: f64) -> Result<Arrival, NoContact> {
         let Some(noise) = self.noise else { return Ok((t, flight.end(t)).into()) };
-        let Draw { timing, angle } = noise.draw(n);
+        let NoiseSample { timing, angle } = noise.draw(n);
         let struck = if timing == 0.0 { t } else { (t + timing).max(LEAST_FLIGHT) };
         let state = flight.end(struck);
         match noise.model {
-            Reading::Strike => {
+            NoiseModel::Strike => {
                 let clearance = if timing == 0.0 { 0.0 } else { flight.gap(struck).value };
                 Ok(Arrival { t: struck, state, clearance, plan: None })
             }
-            Reading::Plan => match self.meet(flight, struck, &state, x + state.x_dot * struck, angle) {
+            NoiseModel::Plan => match self.meet(flight, struck, &state, x + state.x_dot * struck, angle) {
                 // Released onto the table: it is on the plane, whatever was planned for later.
                 Err(NoContact::Missed) if t == 0.0 => Ok((LEAST_FLIGHT, flight.end(LEAST_FLIGHT)).into()),
                 met => met,
@@ -130,12 +130,12 @@ impl Rig {
         Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan) })
     }
 
-    fn flight(&self, from: &Coming, strike: &Strike) -> Flight {
+    fn flight(&self, from: &PreImpact, strike: &Strike) -> Flight {
         Flight { clearance: from.clearance, ..self.rod.flight(strike) }
     }
 }
 
-impl Body for Rig {
+impl Body for GeneralBody {
     fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
         let (t, _) = self.rod.fall(release)?;
         self.arrive(&self.rod.flight_from(release), t, 1, release.x)
@@ -143,8 +143,8 @@ impl Body for Rig {
 
     // Out of the loop of the plain rod, which shares its code with this one; likewise below.
     #[inline(never)]
-    fn strike(&self, coming: &Coming) -> Strike {
-        let Coming { n, x, state, clearance, plan } = coming;
+    fn strike(&self, coming: &PreImpact) -> Strike {
+        let PreImpact { n, x, state, clearance, plan } = coming;
         let rod = self.seen_at(*clearance);
         let tilt = match plan {
             Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
@@ -154,13 +154,13 @@ impl Body for Rig {
             (None, None) => rod.strike_with(state, &tilt, rod.leverage()),
             (friction, plan) => {
                 let friction = friction.as_ref().unwrap_or(&SMOOTH);
-                friction.strike(&rod, state, &tilt, plan.as_ref(), rod.leverage(), as_it_is)
+                friction.strike(&rod, state, &tilt, plan.as_ref(), rod.leverage(), actual_branch)
             }
         }
     }
 
     #[inline(never)]
-    fn touches(&self, coming: &Coming, strike: &Strike) -> Option<Touch> {
+    fn touches(&self, coming: &PreImpact, strike: &Strike) -> Option<Touch> {
         let nearest = self.outline.as_ref()?.below_table(trig::sin_cos(coming.state.theta - strike.alpha))?;
         Some(Touch { vertex: nearest.vertex, t: 0.0 })
     }
@@ -178,7 +178,7 @@ impl Body for Rig {
     }
 
     #[inline(never)]
-    fn fly(&self, from: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+    fn fly(&self, from: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact> {
         let flight = self.flight(from, strike);
         let t = if flight.clearance < 0.0 {
             first_descent(&flight)?.ok_or(NoContact::Sinking)?

@@ -56,7 +56,7 @@ impl From<(f64, State)> for Arrival {
 
 /// A contact that is about to happen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coming {
+pub struct PreImpact {
     /// Its number, from 1.
     pub n: u64,
     /// Where the centre of gravity is, m.
@@ -69,7 +69,7 @@ pub struct Coming {
     pub plan: Option<PlannedTableMotion>,
 }
 
-impl Coming {
+impl PreImpact {
     /// A contact at y = 0, on a table that has planned nothing.
     #[inline(always)]
     pub fn at(n: u64, x: f64, state: State) -> Self {
@@ -114,11 +114,11 @@ pub trait Body: Copy {
     fn fall(&self, release: &Release) -> Result<Arrival, NoContact>;
 
     /// The strike at a contact.
-    fn strike(&self, coming: &Coming) -> Strike;
+    fn strike(&self, coming: &PreImpact) -> Strike;
 
     /// Another vertex that is below the table's line at a strike.
     #[inline(always)]
-    fn touches(&self, _: &Coming, _: &Strike) -> Option<Touch> {
+    fn touches(&self, _: &PreImpact, _: &Strike) -> Option<Touch> {
         None
     }
 
@@ -135,7 +135,7 @@ pub trait Body: Copy {
     ///
     /// # Errors
     /// As [`Body::fall`].
-    fn fly(&self, from: &Coming, strike: &Strike) -> Result<Arrival, NoContact>;
+    fn fly(&self, from: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact>;
 
     /// l, m: how far the contact point is from the centre of gravity.
     fn contact_distance(&self) -> f64;

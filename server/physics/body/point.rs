@@ -4,7 +4,7 @@
 //! A body of its own, never a cheaper rung of a rod: a rod's table follows the rod's angle. Its arithmetic is that of a
 //! rod whose contact point is its centre of gravity.
 
-use crate::body::{Arrival, Body, Coming, NoContact, Release};
+use crate::body::{Arrival, Body, NoContact, PreImpact, Release};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -12,11 +12,11 @@ use crate::bounce::strike::Strike;
 /// A point mass. In its states `theta` is the angle of the velocity from straight down, counter-clockwise, and
 /// `theta_dot` is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct PointMass {
     rod: Rod,
 }
 
-impl Point {
+impl PointMass {
     /// The point mass with the table, gravity and restitution of `rod`, whose own lengths drop out.
     pub fn new(rod: Rod) -> Self {
         Self { rod: Rod { contact_distance: 0.0, radius_of_gyration: 1.0, ..rod } }
@@ -37,12 +37,12 @@ impl Point {
     }
 }
 
-impl Body for Point {
+impl Body for PointMass {
     fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
         Ok(Self::turned(self.rod.fall(release)?))
     }
 
-    fn strike(&self, coming: &Coming) -> Strike {
+    fn strike(&self, coming: &PreImpact) -> Strike {
         self.rod.strike(&coming.state)
     }
 
@@ -50,7 +50,7 @@ impl Body for Point {
         self.rod.hold_energy(strike, energy)
     }
 
-    fn fly(&self, _: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+    fn fly(&self, _: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact> {
         Ok(Self::turned(self.rod.fly(strike)?))
     }
 

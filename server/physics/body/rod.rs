@@ -1,6 +1,6 @@
 //! The plain rod as a body: its falls and its flights.
 
-use crate::body::{Arrival, Body, Coming, NoContact, Release};
+use crate::body::{Arrival, Body, NoContact, PreImpact, Release};
 use crate::bounce::contact_time;
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::flight::Flight;
@@ -58,7 +58,7 @@ impl Body for Rod {
     }
 
     #[inline(always)]
-    fn strike(&self, coming: &Coming) -> Strike {
+    fn strike(&self, coming: &PreImpact) -> Strike {
         Rod::strike(self, &coming.state)
     }
 
@@ -68,7 +68,7 @@ impl Body for Rod {
     }
 
     #[inline(always)]
-    fn fly(&self, _: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+    fn fly(&self, _: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact> {
         Ok(Rod::fly(self, strike)?.into())
     }
 

@@ -84,21 +84,21 @@ pub fn evaluations(flight: &Flight) -> u64 {
 }
 
 /// Who looks at the gap; nothing to pass where nobody counts.
-trait Eye: Copy {
+trait EvaluationCounter: Copy {
     fn gap(self, flight: &Flight, t: f64) -> Gap;
 }
 
 #[derive(Clone, Copy)]
 struct Uncounted;
 
-impl Eye for Uncounted {
+impl EvaluationCounter for Uncounted {
     #[inline(always)]
     fn gap(self, flight: &Flight, t: f64) -> Gap {
         flight.gap(t)
     }
 }
 
-impl Eye for &Cell<u64> {
+impl EvaluationCounter for &Cell<u64> {
     fn gap(self, flight: &Flight, t: f64) -> Gap {
         self.set(self.get() + 1);
         flight.gap(t)
@@ -106,7 +106,7 @@ impl Eye for &Cell<u64> {
 }
 
 #[inline(always)]
-fn look_for_contact(flight: &Flight, eye: impl Eye) -> Result<f64, TooManyPieces> {
+fn look_for_contact(flight: &Flight, eye: impl EvaluationCounter) -> Result<f64, TooManyPieces> {
     if flight.bulge() > flight.gravity {
         return first_contact_spinning(*flight, eye);
     }
@@ -189,9 +189,9 @@ fn passes(flight: &Flight, drop: f64) -> (f64, f64) {
 /// the root. The last step uses the second derivative too, as soon as what it leaves out is below half a unit in the
 /// last place.
 #[inline(always)]
-fn newton(flight: &Flight, eye: impl Eye, mut t: f64, mut gap: Gap) -> f64 {
+fn newton(flight: &Flight, eye: impl EvaluationCounter, mut t: f64, mut gap: Gap) -> f64 {
     for steps in 0..MAX_STEPS {
-        let step = Step::new(flight, t, &gap);
+        let step = NewtonStep::new(flight, t, &gap);
         // A step most of the way back to zero would keep the rounding of the longer time.
         if step.left_out <= step.negligible && step.newton > -0.5 * t {
             return step.refined;
@@ -214,13 +214,13 @@ fn newton(flight: &Flight, eye: impl Eye, mut t: f64, mut gap: Gap) -> f64 {
 ///
 /// As [`newton`], which never passes the last root: passing the top proves that there is none, and so does passing `from`,
 /// since the tangent lies above the gap.
-fn last_root(flight: &Flight, eye: impl Eye, from: f64, mut t: f64, mut gap: Gap) -> Option<f64> {
+fn last_root(flight: &Flight, eye: impl EvaluationCounter, from: f64, mut t: f64, mut gap: Gap) -> Option<f64> {
     for steps in 0..MAX_STEPS {
         // Above zero at or before the top is a double root to rounding.
         if gap.slope >= 0.0 || t < from {
             return (gap.value > 0.0 && t >= from).then_some(t);
         }
-        let step = Step::new(flight, t, &gap);
+        let step = NewtonStep::new(flight, t, &gap);
         if step.left_out <= step.negligible {
             return Some(step.refined);
         }
@@ -234,7 +234,7 @@ fn last_root(flight: &Flight, eye: impl Eye, from: f64, mut t: f64, mut gap: Gap
 }
 
 /// One step from `t`: Newton's, and one that uses the second derivative too.
-pub(crate) struct Step<N> {
+pub(crate) struct NewtonStep<N> {
     /// What Newton adds to t.
     pub(crate) newton: N,
     /// The better t.
@@ -245,7 +245,7 @@ pub(crate) struct Step<N> {
     pub(crate) negligible: N,
 }
 
-impl<N: Real> Step<N> {
+impl<N: Real> NewtonStep<N> {
     #[inline(always)]
     pub(crate) fn new(flight: &Flight<N>, t: N, gap: &Gap<N>) -> Self {
         let number = N::from_f64;
@@ -267,7 +267,7 @@ impl<N: Real> Step<N> {
 /// [`first_contact`] where l θ̇² > G.
 #[cold]
 #[inline(never)]
-fn first_contact_spinning(flight: Flight, eye: impl Eye) -> Result<f64, TooManyPieces> {
+fn first_contact_spinning(flight: Flight, eye: impl EvaluationCounter) -> Result<f64, TooManyPieces> {
     let t = first_descent_spinning(flight, eye, true, f64::INFINITY, &mut { MAX_PIECES })?;
     Ok(t.unwrap_or_else(|| latest_contact(&flight)))
 }
@@ -278,12 +278,12 @@ fn first_contact_spinning(flight: Flight, eye: impl Eye) -> Result<f64, TooManyP
 #[inline(never)]
 fn first_descent_spinning(
     flight: Flight,
-    eye: impl Eye,
+    eye: impl EvaluationCounter,
     mut above: bool,
     limit: f64,
     budget: &mut u32,
 ) -> Result<Option<f64>, TooManyPieces> {
-    let pieces = Pieces::new(&flight, eye);
+    let pieces = GapPieces::new(&flight, eye);
     let latest = latest_contact(&flight);
     let end = latest.min(limit);
     // While the centre of gravity is lower than −l, the point is below the table.
@@ -307,7 +307,7 @@ fn first_descent_spinning(
 }
 
 /// The pieces between the inflections of the gap, at cos(θ + θ̇t) = G/(l θ̇²).
-struct Pieces<'a, E> {
+struct GapPieces<'a, E> {
     flight: &'a Flight,
     eye: E,
     /// |θ̇|, and θ seen so that it grows.
@@ -317,7 +317,7 @@ struct Pieces<'a, E> {
     half_width: f64,
 }
 
-impl<'a, E: Eye> Pieces<'a, E> {
+impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
     fn new(flight: &'a Flight, eye: E) -> Self {
         let State { theta, theta_dot, .. } = flight.start;
         let bulge = flight.contact_distance * theta_dot * theta_dot;

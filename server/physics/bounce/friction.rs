@@ -14,7 +14,7 @@ use crate::numbers::number::Number;
 
 /// Law of restitution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Law {
+pub enum RestitutionLaw {
     /// The normal impulse of restitution is e times that of compression.
     Poisson,
     /// The normal velocity after is −e times that before.
@@ -38,7 +38,7 @@ pub struct Friction {
     /// μ.
     pub coefficient: f64,
     /// Law of restitution.
-    pub law: Law,
+    pub law: RestitutionLaw,
     /// How the table moves along itself.
     pub slide: Slide,
 }
@@ -67,7 +67,7 @@ pub struct Impulse<N = f64> {
 
 /// What has to be known of an impact to say which formula holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fork {
+pub enum FrictionBranch {
     /// Whether the contact point slides forwards at first: v_t ≥ 0.
     Forward,
     /// Whether it comes to rest before the end.
@@ -78,11 +78,11 @@ pub enum Fork {
     RestsEarly,
 }
 
-/// An answer to a [`Fork`], and how far it is from the other: a number that changes its sign there, beside its scale.
+/// An answer to a [`FrictionBranch`], and how far it is from the other: a number that changes its sign there, beside its scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
     /// Which question.
-    pub fork: Fork,
+    pub fork: FrictionBranch,
     /// The answer that holds.
     pub answer: bool,
     /// How far it is from the other answer.
@@ -93,7 +93,7 @@ pub struct Decision {
 
 /// Takes every answer that holds.
 #[inline(always)]
-pub fn as_it_is(decision: Decision) -> bool {
+pub fn actual_branch(decision: Decision) -> bool {
     decision.answer
 }
 
@@ -129,7 +129,7 @@ impl Friction {
         let (v_t, v_n, cross) = (tangential.to_f64(), normal.to_f64(), c.to_f64());
         // From rest it goes the way the normal impulse drives it.
         let forward = if v_t == 0.0 { cross >= 0.0 } else { v_t > 0.0 };
-        let forward = decide(Decision { fork: Fork::Forward, answer: forward, margin: v_t, scale: -v_n });
+        let forward = decide(Decision { fork: FrictionBranch::Forward, answer: forward, margin: v_t, scale: -v_n });
         // Friction acts against the sliding.
         let (slope, driven, speed) = if forward { (-friction, c, tangential) } else { (friction, -c, -tangential) };
         let first = b + c * slope;
@@ -138,7 +138,8 @@ impl Friction {
         let margin = push.to_f64() - end_of_sliding.to_f64();
         let mut rests = (slowing.to_f64() > 0.0) & (self.coefficient != 0.0);
         if rests {
-            rests = decide(Decision { fork: Fork::Rests, answer: margin > 0.0, margin, scale: push.to_f64() });
+            rests =
+                decide(Decision { fork: FrictionBranch::Rests, answer: margin > 0.0, margin, scale: push.to_f64() });
         }
         // Where compression would end if it slid for ever.
         let alone = -normal / first;
@@ -155,7 +156,7 @@ impl Friction {
         }
         let hold = (friction * a).to_f64();
         let margin = hold - cross.abs();
-        let holds = decide(Decision { fork: Fork::Holds, answer: margin >= 0.0, margin, scale: hold });
+        let holds = decide(Decision { fork: FrictionBranch::Holds, answer: margin >= 0.0, margin, scale: hold });
         let beyond = if holds {
             -c / a
         } else if cross >= 0.0 {
@@ -168,18 +169,19 @@ impl Friction {
         // v_n as the sliding ends.
         let middle = normal + first * turn;
         let end = match self.law {
-            Law::Newton => turn + (restitution * -normal - middle) / second,
-            Law::Poisson | Law::Stronge => {
+            RestitutionLaw::Newton => turn + (restitution * -normal - middle) / second,
+            RestitutionLaw::Poisson | RestitutionLaw::Stronge => {
                 let margin = middle.to_f64();
-                let early = decide(Decision { fork: Fork::RestsEarly, answer: margin < 0.0, margin, scale: -v_n });
+                let early =
+                    decide(Decision { fork: FrictionBranch::RestsEarly, answer: margin < 0.0, margin, scale: -v_n });
                 let compression = if early { turn - middle / second } else { alone };
                 match (self.law, early) {
-                    (Law::Stronge, true) => {
+                    (RestitutionLaw::Stronge, true) => {
                         // −2 of the work of compression.
                         let work = middle * middle / second - (normal + middle) * turn;
                         compression + restitution * (work / second).sqrt()
                     }
-                    (Law::Stronge, false) => {
+                    (RestitutionLaw::Stronge, false) => {
                         // 2 of the work of restitution that is left.
                         let bounce = restitution * normal;
                         let rest = (bounce * bounce - middle * middle) / first;
@@ -252,7 +254,7 @@ impl Friction {
     /// The same over a table that tilts by α = κθ, as it is.
     #[inline(always)]
     pub(crate) fn strike_by_tilt_gain<N: Number>(&self, rod: &Rod<N>, before: &State<N>) -> Strike<N> {
-        self.strike(rod, before, &rod.tilt(before.theta), None, rod.leverage(), as_it_is)
+        self.strike(rod, before, &rod.tilt(before.theta), None, rod.leverage(), actual_branch)
     }
 
     /// The table's velocity along itself where nothing delays it, m/s.

@@ -6,7 +6,7 @@
 #![allow(unsafe_code)]
 
 /// Work that gains by it. Not a closure, since those are not inlined on demand, and what is not inlined is not recompiled.
-pub trait Work {
+pub trait Kernel {
     /// What it gives.
     type Output;
 
@@ -16,7 +16,7 @@ pub trait Work {
 
 /// A kind of instructions to compile for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Path {
+pub enum InstructionSet {
     /// AVX-512 (F, VL and DQ).
     Avx512,
     /// AVX2.
@@ -25,7 +25,7 @@ pub enum Path {
     Portable,
 }
 
-impl Path {
+impl InstructionSet {
     /// All of them, the best first.
     pub const ALL: [Self; 3] = [Self::Avx512, Self::Avx2, Self::Portable];
 
@@ -50,33 +50,33 @@ impl Path {
 
 /// Does `work`, compiled for the best instructions there are.
 #[inline]
-pub fn dispatch<W: Work>(work: W) -> W::Output {
-    let best = Path::ALL.into_iter().find(|path| path.is_there()).unwrap_or(Path::Portable);
+pub fn dispatch<W: Kernel>(work: W) -> W::Output {
+    let best = InstructionSet::ALL.into_iter().find(|path| path.is_there()).unwrap_or(InstructionSet::Portable);
     dispatch_on(best, work)
 }
 
 /// Does `work` on one path, or on the portable one where this CPU cannot take it; the bits are the same on all.
 #[inline]
-pub fn dispatch_on<W: Work>(path: Path, work: W) -> W::Output {
+pub fn dispatch_on<W: Kernel>(path: InstructionSet, work: W) -> W::Output {
     match path {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: the CPU has just these features, which is all that calling this needs.
-        Path::Avx512 if path.is_there() => unsafe { with_avx512(work) },
+        InstructionSet::Avx512 if path.is_there() => unsafe { with_avx512(work) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        Path::Avx2 if path.is_there() => unsafe { with_avx2(work) },
+        InstructionSet::Avx2 if path.is_there() => unsafe { with_avx2(work) },
         _ => work.call(),
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq")]
-fn with_avx512<W: Work>(work: W) -> W::Output {
+fn with_avx512<W: Kernel>(work: W) -> W::Output {
     work.call()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn with_avx2<W: Work>(work: W) -> W::Output {
+fn with_avx2<W: Kernel>(work: W) -> W::Output {
     work.call()
 }

@@ -1,7 +1,7 @@
 //! How runs can end: with the numbers that decided, and without them, as a cell of a region keeps it.
 
 use crate::body::{NoContact, Touch};
-use crate::table::actuator_load::Excess;
+use crate::table::actuator_load::LimitViolation;
 
 /// Why a run ended, with the number that decided.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub enum Ending {
         limit: f64,
     },
     /// The strike asks more of the table than its limits allow.
-    BeyondLimits(Excess),
+    BeyondLimits(LimitViolation),
     /// The contact point does not approach the moving table: it could only pull.
     Separating {
         /// Velocity relative to the table along its normal, m/s, ≥ 0.
@@ -60,7 +60,7 @@ impl NoContact {
 impl Ending {
     /// Its name in answers.
     pub fn name(self) -> &'static str {
-        Outcome::from(self).name()
+        EndingKind::from(self).name()
     }
 }
 
@@ -68,7 +68,7 @@ impl Ending {
 #[allow(missing_docs)] // as in `Ending`
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Outcome {
+pub enum EndingKind {
     Completed,
     Toppled,
     Separating,
@@ -80,7 +80,7 @@ pub enum Outcome {
     BeyondLimits,
 }
 
-impl Outcome {
+impl EndingKind {
     /// All of them, each at the place of its number.
     pub const ALL: [Self; 9] = [
         Self::Completed,
@@ -110,7 +110,7 @@ impl Outcome {
     }
 }
 
-impl From<Ending> for Outcome {
+impl From<Ending> for EndingKind {
     fn from(ending: Ending) -> Self {
         match ending {
             Ending::Completed => Self::Completed,

@@ -167,7 +167,7 @@ impl ErrorEstimate {
     }
 
     /// The same with a contact of 31 digits.
-    pub fn pass_extended(&mut self, contact: &extended::Contact) {
+    pub fn pass_extended(&mut self, contact: &extended::ExtendedContact) {
         let state = extended::in_doubles(&contact.state);
         let flight_time = contact.flight_time.map(DoubleDouble::to_f64);
         self.bounce(contact.n, &state, flight_time);

@@ -27,7 +27,7 @@ const NEGLIGIBLE: f64 = 1e-33;
 
 /// One contact of a run, as [`crate::run::orbit::Contact`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub struct ExtendedContact {
     /// Its number, from 1.
     pub n: u64,
     /// When, s after release.
@@ -46,7 +46,7 @@ pub struct Contact {
 
 /// A run that is computed contact by contact with 31 digits.
 #[derive(Clone, Copy, Debug)]
-pub struct Orbit {
+pub struct ExtendedOrbit {
     rod: Rod<DoubleDouble>,
     friction: Option<Friction>,
     is_point: bool,
@@ -60,7 +60,7 @@ pub struct Orbit {
     energy: Option<DoubleDouble>,
 }
 
-impl Orbit {
+impl ExtendedOrbit {
     /// A run from its release, with 31 digits.
     ///
     /// # Errors
@@ -142,12 +142,12 @@ impl Orbit {
     }
 
     /// The coming contact. After one with an ending, call it no more: the state stays that of the last contact.
-    pub fn advance(&mut self) -> Contact {
+    pub fn advance(&mut self) -> ExtendedContact {
         let zero = DoubleDouble::from_f64(0.0);
         self.n += 1;
         let Self { state, rules, .. } = *self;
         let mut contact =
-            Contact { n: self.n, t: self.t, x: self.x, state, strike: None, flight_time: None, ending: None };
+            ExtendedContact { n: self.n, t: self.t, x: self.x, state, strike: None, flight_time: None, ending: None };
         let theta = state.theta.to_f64();
         if theta.abs() >= rules.topple_angle {
             contact.ending = Some(Ending::Toppled { theta, limit: rules.topple_angle });
@@ -214,7 +214,7 @@ impl Orbit {
 }
 
 /// Visits contact after contact up to number `impacts`, as [`crate::run::orbit::run`].
-pub fn run(orbit: &mut Orbit, impacts: u64, mut visit: impl FnMut(&Contact) -> bool) -> Option<Ending> {
+pub fn run(orbit: &mut ExtendedOrbit, impacts: u64, mut visit: impl FnMut(&ExtendedContact) -> bool) -> Option<Ending> {
     loop {
         let mut contact = orbit.advance();
         if contact.ending.is_none() && contact.n >= impacts {

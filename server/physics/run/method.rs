@@ -4,7 +4,7 @@
 //! A pure function: costs come from a table and not from a clock, so that the same question always gets the same answer.
 //! Whether a method is accurate enough is its own bound's to say.
 
-use crate::body::{Body, Coming};
+use crate::body::{Body, PreImpact};
 use crate::bounce::state::State;
 use crate::numbers::double_double::DoubleDouble;
 use crate::run::cancellation::CHECK_INTERVAL;
@@ -20,7 +20,7 @@ use crate::stability::linear_verdict::{Class, linear_verdict};
 
 /// How a run is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum RunMethod {
     /// [`crate::run::linear_solution`].
     Linear,
     /// [`crate::run::orbit`].
@@ -29,7 +29,7 @@ pub enum Method {
     Extended,
 }
 
-impl Method {
+impl RunMethod {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Linear, Self::Map, Self::Extended];
 
@@ -56,33 +56,33 @@ impl Method {
 
 /// One impact of a run by some method.
 #[derive(Clone, Copy, Debug)]
-pub struct Impact<'a> {
+pub struct ComputedImpact<'a> {
     /// In doubles.
     pub contact: Contact,
     /// Bound on the largest of |ρδθ| (m), |δẋ|, |δẏ| and |ρδθ̇| (m/s) just before it; infinite where nothing is known.
     pub error_estimate: f64,
     /// All its digits and the orbit that it is of, where the method has more than doubles.
-    pub extended: Option<(&'a extended::Orbit, &'a extended::Contact)>,
+    pub extended: Option<(&'a extended::ExtendedOrbit, &'a extended::ExtendedContact)>,
 }
 
 /// The method chosen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
+pub struct MethodChoice {
     /// Which.
-    pub method: Method,
+    pub method: RunMethod,
     /// Its largest error estimate over the run, m/s.
     pub error_estimate: f64,
     /// What it costs, microseconds of the table.
     pub cost_us: f64,
     /// The next dearer one that applies and its cost, if there is one.
-    pub next: Option<(Method, f64)>,
+    pub next: Option<(RunMethod, f64)>,
     /// Why, in a sentence.
     pub reason: String,
 }
 
 /// No method holds the tolerance over the run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Refusal {
+pub struct NoMethod {
     /// Up to which impact the best method holds it.
     pub horizon: u64,
     /// What it says, in a sentence.
@@ -90,7 +90,7 @@ pub struct Refusal {
 }
 
 /// How far a method holds a tolerance.
-enum Reach {
+enum MethodReach {
     /// Over all impacts, with this largest bound.
     All(f64),
     /// Up to this impact, at most.
@@ -108,17 +108,18 @@ pub fn choose_method(
     impacts: u64,
     tolerance: f64,
     mut go_on: impl FnMut() -> bool,
-) -> Option<Result<Choice, Refusal>> {
-    let mut methods = Method::ALL;
+) -> Option<Result<MethodChoice, NoMethod>> {
+    let mut methods = RunMethod::ALL;
     methods.sort_by(|one, other| one.cost_us(impacts).total_cmp(&other.cost_us(impacts)));
     let (mut failed, mut horizon) = (Vec::new(), 0);
     for (index, method) in methods.into_iter().enumerate() {
         match reach(scene, method, impacts, tolerance, &mut go_on)? {
-            Reach::All(error_estimate) => {
-                let next =
-                    methods[index + 1..].iter().find(|dearer| **dearer != Method::Linear || deviations_circle(scene));
+            MethodReach::All(error_estimate) => {
+                let next = methods[index + 1..]
+                    .iter()
+                    .find(|dearer| **dearer != RunMethod::Linear || deviations_circle(scene));
                 failed.push(format!("the error estimate of {} is at most {error_estimate:.1e} m/s", method.name()));
-                return Some(Ok(Choice {
+                return Some(Ok(MethodChoice {
                     method,
                     error_estimate,
                     cost_us: method.cost_us(impacts),
@@ -126,11 +127,11 @@ pub fn choose_method(
                     reason: failed.join("; "),
                 }));
             }
-            Reach::Until(last) => {
+            MethodReach::Until(last) => {
                 horizon = horizon.max(last);
                 failed.push(format!("{} holds {tolerance:e} m/s for {last} impacts", method.name()));
             }
-            Reach::None(why) => failed.push(format!("{} does not apply: {why}", method.name())),
+            MethodReach::None(why) => failed.push(format!("{} does not apply: {why}", method.name())),
         }
     }
     let fewer = if horizon > 0 { format!("ask for at most {horizon} impacts, or ") } else { String::new() };
@@ -138,7 +139,7 @@ pub fn choose_method(
         "no method holds a tolerance of {tolerance:e} m/s over {impacts} impacts: {}; {fewer}tolerate more",
         failed.join("; ")
     );
-    Some(Err(Refusal { horizon, detail }))
+    Some(Err(NoMethod { horizon, detail }))
 }
 
 /// Whether small deviations circle: elsewhere the linear solution is soon off, and its bound costs as much as a run.
@@ -152,13 +153,13 @@ pub fn deviations_circle(scene: &Scene) -> bool {
 
 fn reach(
     scene: &Scene,
-    method: Method,
+    method: RunMethod,
     impacts: u64,
     tolerance: f64,
     go_on: &mut impl FnMut() -> bool,
-) -> Option<Reach> {
-    if method == Method::Linear && !deviations_circle(scene) {
-        return Some(Reach::None("small deviations do not circle about a fixed point".to_owned()));
+) -> Option<MethodReach> {
+    if method == RunMethod::Linear && !deviations_circle(scene) {
+        return Some(MethodReach::None("small deviations do not circle about a fixed point".to_owned()));
     }
     let (mut largest, mut lost) = (0.0, None);
     let run = run_by(scene, method, impacts, |impact| {
@@ -171,9 +172,9 @@ fn reach(
         !impact.contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     });
     match (run, lost) {
-        (Err(why), _) => Some(Reach::None(why)),
-        (Ok(_), Some(last)) => Some(Reach::Until(last)),
-        (Ok(ending), None) => ending.map(|_| Reach::All(largest)),
+        (Err(why), _) => Some(MethodReach::None(why)),
+        (Ok(_), Some(last)) => Some(MethodReach::Until(last)),
+        (Ok(ending), None) => ending.map(|_| MethodReach::All(largest)),
     }
 }
 
@@ -184,12 +185,12 @@ fn reach(
 /// Why the method does not apply, in a sentence.
 pub fn run_by(
     scene: &Scene,
-    method: Method,
+    method: RunMethod,
     impacts: u64,
-    mut visit: impl FnMut(&Impact<'_>) -> bool,
+    mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Result<Option<Ending>, String> {
-    if method != Method::Map {
-        let known: &[Rung] = if method == Method::Extended { &[Rung::Friction] } else { &[] };
+    if method != RunMethod::Map {
+        let known: &[Rung] = if method == RunMethod::Extended { &[Rung::Friction] } else { &[] };
         if let Some(error) = scene.beyond(known) {
             return Err(error.detail);
         }
@@ -201,11 +202,11 @@ pub fn run_by(
         }
     }
     match method {
-        Method::Linear => {
+        RunMethod::Linear => {
             let solution = LinearSolution::of_scene(scene)?;
             Ok(run_linear(scene, &solution, impacts, visit))
         }
-        Method::Map => {
+        RunMethod::Map => {
             let mut orbit = match scene.orbit() {
                 Ok(orbit) => orbit,
                 Err(none) => return Ok(Some(none.ending(0.0, 0.0))),
@@ -214,17 +215,17 @@ pub fn run_by(
             Ok(orbit::run(&mut orbit, impacts, |contact| {
                 let error_estimate = estimate.bound();
                 estimate.pass(contact);
-                visit(&Impact { contact: *contact, error_estimate, extended: None })
+                visit(&ComputedImpact { contact: *contact, error_estimate, extended: None })
             }))
         }
-        Method::Extended => {
+        RunMethod::Extended => {
             let mut orbit = scene.extended_orbit().map_err(|_| "the first contact is not found".to_owned())?;
             let (rod, body) = (orbit, scene.model());
             let mut estimate = ErrorEstimate::of_extended_run(scene, orbit.t().to_f64());
             Ok(extended::run(&mut orbit, impacts, |contact| {
                 let error_estimate = estimate.bound();
                 estimate.pass_extended(contact);
-                let coming = Coming::at(contact.n, contact.x.to_f64(), extended::in_doubles(&contact.state));
+                let coming = PreImpact::at(contact.n, contact.x.to_f64(), extended::in_doubles(&contact.state));
                 let strike = body.strike(&coming);
                 let rounded = Contact {
                     n: contact.n,
@@ -237,7 +238,7 @@ pub fn run_by(
                     flight_time: contact.flight_time.map(DoubleDouble::to_f64),
                     ending: contact.ending,
                 };
-                visit(&Impact { contact: rounded, error_estimate, extended: Some((&rod, contact)) })
+                visit(&ComputedImpact { contact: rounded, error_estimate, extended: Some((&rod, contact)) })
             }))
         }
     }
@@ -248,7 +249,7 @@ fn run_linear(
     scene: &Scene,
     solution: &LinearSolution,
     impacts: u64,
-    mut visit: impl FnMut(&Impact<'_>) -> bool,
+    mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Option<Ending> {
     let body = scene.model();
     let mut next = solution.impact(1);
@@ -256,7 +257,7 @@ fn run_linear(
         let here = next;
         next = solution.impact(n + 1);
         let State { theta, .. } = here.state;
-        let strike = body.strike(&Coming::at(n, here.x, here.state));
+        let strike = body.strike(&PreImpact::at(n, here.x, here.state));
         let ending = if theta.abs() >= scene.topple_angle {
             Some(Ending::Toppled { theta, limit: scene.topple_angle })
         } else if strike.push >= 0.0 {
@@ -281,7 +282,7 @@ fn run_linear(
             ending,
         };
         let error_estimate = if safe { here.error_estimate } else { f64::INFINITY };
-        if !visit(&Impact { contact, error_estimate, extended: None }) {
+        if !visit(&ComputedImpact { contact, error_estimate, extended: None }) {
             return None;
         }
         if ending.is_some() {

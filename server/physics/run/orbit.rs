@@ -2,12 +2,12 @@
 //!
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
-use crate::body::{Arrival, Body, Coming, Kick, NoContact, Release};
+use crate::body::{Arrival, Body, Kick, NoContact, PreImpact, Release};
 use crate::bounce::rebound::Rebound;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
-use crate::numbers::dispatch::{Work, dispatch};
+use crate::numbers::dispatch::{Kernel, dispatch};
 use crate::run::ending::Ending;
 use crate::run::rules::{Rules, SPEED_LIMIT};
 use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
@@ -38,12 +38,12 @@ pub struct Contact {
 
 /// A sum of many terms that keeps what rounding would lose (Neumaier's form is not needed: the terms are smaller).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Sum {
+struct CompensatedSum {
     value: f64,
     lost: f64,
 }
 
-impl Sum {
+impl CompensatedSum {
     #[inline(always)]
     fn add(&mut self, term: f64) {
         let term = term - self.lost;
@@ -64,8 +64,8 @@ pub struct Orbit<B> {
     clearance: f64,
     plan: Option<PlannedTableMotion>,
     n: u64,
-    t: Sum,
-    x: Sum,
+    t: CompensatedSum,
+    x: CompensatedSum,
     /// Of a run that can settle, s; 0 until there is one.
     first_flight: f64,
     /// s; 0 until there is one.
@@ -99,8 +99,8 @@ impl<B: Body> Orbit<B> {
             clearance: 0.0,
             plan: None,
             n: 0,
-            t: Sum::default(),
-            x: Sum::default(),
+            t: CompensatedSum::default(),
+            x: CompensatedSum::default(),
             first_flight: 0.0,
             last_flight: 0.0,
             energy: None,
@@ -167,7 +167,7 @@ impl<B: Body> Orbit<B> {
     fn advance_disturbed(&mut self, disturb: impl FnOnce(&mut Self, &mut Strike)) -> Contact {
         self.n += 1;
         let Self { n, state, clearance, plan, .. } = *self;
-        let coming = Coming { n, x: self.x.value, state, clearance, plan };
+        let coming = PreImpact { n, x: self.x.value, state, clearance, plan };
         let mut strike = self.body.strike(&coming);
         let mut contact = Contact {
             n,
@@ -265,7 +265,7 @@ impl<B: Body> Orbit<B> {
 
 /// A run between two contacts, as lanes keep it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Midst {
+pub(crate) struct LaneRunState {
     /// Just before the coming contact.
     pub(crate) state: State,
     /// Energy that the run should have there, m²/s².
@@ -274,7 +274,7 @@ pub(crate) struct Midst {
     pub(crate) first_flight: f64,
 }
 
-impl Midst {
+impl LaneRunState {
     /// One contact and the flight after it, or why the run ends.
     pub(crate) fn advance<B: Body>(self, body: B, rules: Rules) -> Result<Self, Ending> {
         let Self { state, energy, first_flight } = self;
@@ -288,16 +288,16 @@ impl Midst {
 /// Visits contact after contact up to number `impacts`, which ends as [`Ending::Completed`] unless it ended otherwise;
 /// the visitor may stop it early by returning `false`, and then there is no ending.
 pub fn run<B: Body>(orbit: &mut Orbit<B>, impacts: u64, visit: impl FnMut(&Contact) -> bool) -> Option<Ending> {
-    dispatch(Run { orbit, impacts, visit })
+    dispatch(RunLoop { orbit, impacts, visit })
 }
 
-struct Run<'a, B, V> {
+struct RunLoop<'a, B, V> {
     orbit: &'a mut Orbit<B>,
     impacts: u64,
     visit: V,
 }
 
-impl<B: Body, V: FnMut(&Contact) -> bool> Work for Run<'_, B, V> {
+impl<B: Body, V: FnMut(&Contact) -> bool> Kernel for RunLoop<'_, B, V> {
     type Output = Option<Ending>;
 
     #[inline(always)]

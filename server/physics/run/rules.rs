@@ -1,6 +1,6 @@
 //! The rules of a run: when it ends, beside the physics.
 
-use crate::table::actuator_load::Limits;
+use crate::table::actuator_load::ActuatorLimits;
 
 /// Fastest speed, m/s, of the centre of gravity or of the contact point about it, that a run may reach: beyond it
 /// doubles no longer resolve a flight, and only a wrong energy feedback gets there.
@@ -16,7 +16,7 @@ pub struct Rules {
     /// Whether rounding is kept off the energy ([`Orbit`]); not where a settling run loses it to G l (1 − cos θ).
     pub holds_energy: bool,
     /// What the table can do, if that is limited.
-    pub limits: Option<Limits>,
+    pub limits: Option<ActuatorLimits>,
 }
 
 impl Rules {

@@ -4,12 +4,12 @@ use super::fields::{FIELDS, Name, Value};
 use super::{BodyShape, Scene, Striking};
 use crate::body::Release;
 use crate::body::polygon::{FLUSH, Outline, PolygonError, Vertices};
-use crate::bounce::friction::{Law, Slide};
+use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::bounce::state::State;
 use crate::numbers::trig;
-use crate::table::actuator_load::Limits;
+use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::{Gains, Steering};
-use crate::table::noise::{Noise, Reading};
+use crate::table::noise::{Noise, NoiseModel};
 
 /// What is wrong with a field, in words with numbers, limits and units.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,9 +159,9 @@ impl Draft {
             restitution: self.required(Name::Restitution, &mut errors),
             friction,
             law: match self.get(Name::Law) {
-                Some(Value::Choice("newton")) => Law::Newton,
-                Some(Value::Choice("stronge")) => Law::Stronge,
-                _ => Law::Poisson,
+                Some(Value::Choice("newton")) => RestitutionLaw::Newton,
+                Some(Value::Choice("stronge")) => RestitutionLaw::Stronge,
+                _ => RestitutionLaw::Poisson,
             },
             slide,
             steering,
@@ -208,8 +208,8 @@ impl Draft {
             return None;
         }
         let model = match self.values[Name::NoiseModel as usize].get_or_insert(Value::Choice("strike")) {
-            Value::Choice("plan") => Reading::Plan,
-            _ => Reading::Strike,
+            Value::Choice("plan") => NoiseModel::Plan,
+            _ => NoiseModel::Strike,
         };
         let [seed, run] = [Name::Seed, Name::NoiseRun].map(|name| {
             match self.values[name as usize].get_or_insert(Value::Integer(0)) {
@@ -220,11 +220,11 @@ impl Draft {
         Some(Noise { timing_sd, angle_sd, model, seed, run })
     }
 
-    fn limits(&self) -> Option<Limits> {
+    fn limits(&self) -> Option<ActuatorLimits> {
         let names = [Name::TiltLimit, Name::TiltRateLimit, Name::SpeedLimit, Name::StrokeLimit];
         let [tilt, tilt_rate, speed, stroke] = names.map(|name| self.number(name));
         let most = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
-        names.iter().any(|&name| self.get(name).is_some()).then(|| Limits {
+        names.iter().any(|&name| self.get(name).is_some()).then(|| ActuatorLimits {
             tilt: most(tilt),
             tilt_rate: most(tilt_rate),
             speed: most(speed),

@@ -12,9 +12,9 @@ pub use fields::{FIELDS, Field, Kind, Name, Value, field};
 
 use crate::body::Release;
 use crate::body::polygon::{Outline, Vertices};
-use crate::bounce::friction::{Law, Slide};
+use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::bounce::state::State;
-use crate::table::actuator_load::Limits;
+use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::Steering;
 use crate::table::noise::Noise;
 
@@ -56,7 +56,7 @@ pub struct Scene {
     pub(crate) restitution: f64,
     /// μ.
     pub(crate) friction: f64,
-    pub(crate) law: Law,
+    pub(crate) law: RestitutionLaw,
     pub(crate) slide: Slide,
     pub(crate) steering: Steering,
     /// 0 with state feedback.
@@ -69,7 +69,7 @@ pub struct Scene {
     pub(crate) strike: Striking,
     pub(crate) release: Release,
     pub(crate) topple_angle: f64,
-    pub(crate) limits: Option<Limits>,
+    pub(crate) limits: Option<ActuatorLimits>,
     pub(crate) noise: Option<Noise>,
     draft: Draft,
 }

@@ -1,9 +1,9 @@
 //! Chooses the smallest model that is exact for a scene, and says why.
 
-use crate::body::general::Rig;
-use crate::body::point::Point;
+use crate::body::general::GeneralBody;
+use crate::body::point::PointMass;
 use crate::body::polygon::Outline;
-use crate::body::{Arrival, Body, Coming, NoContact, Release, Touch};
+use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
@@ -83,9 +83,9 @@ pub enum Model {
     /// A rod; its strike gain says which of the rungs it stands on.
     Rod(Rod),
     /// A point mass.
-    Point(Point),
+    Point(PointMass),
     /// A rod with more than that.
-    Rig(Rig),
+    General(GeneralBody),
 }
 
 impl Model {
@@ -94,7 +94,7 @@ impl Model {
         match self {
             Self::Rod(rod) => rod,
             Self::Point(point) => point.parameters(),
-            Self::Rig(rig) => &rig.rod,
+            Self::General(rig) => &rig.rod,
         }
     }
 
@@ -102,7 +102,7 @@ impl Model {
     pub fn friction(&self) -> Option<Friction> {
         match self {
             Self::Rod(_) | Self::Point(_) => None,
-            Self::Rig(rig) => rig.friction,
+            Self::General(rig) => rig.friction,
         }
     }
 
@@ -110,7 +110,7 @@ impl Model {
     pub fn feedback(&self) -> Option<[f64; 4]> {
         match self {
             Self::Rod(_) | Self::Point(_) => None,
-            Self::Rig(rig) => match rig.steering {
+            Self::General(rig) => match rig.steering {
                 Steering::TiltGain => None,
                 Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) => Some([x, theta, x_dot, theta_dot]),
             },
@@ -121,7 +121,7 @@ impl Model {
     pub(crate) fn in_lanes(&self) -> Option<(Rod, Option<Friction>)> {
         match *self {
             Self::Rod(rod) => Some((rod, None)),
-            Self::Rig(Rig {
+            Self::General(GeneralBody {
                 rod,
                 steering: Steering::TiltGain,
                 friction: Some(friction),
@@ -149,13 +149,13 @@ impl Scene {
     fn model_of(&self, noise: Option<Noise>, outline: Option<Outline>) -> Model {
         let rod = self.parameters();
         if self.body == BodyShape::Point {
-            return Model::Point(Point::new(rod));
+            return Model::Point(PointMass::new(rod));
         }
         let friction = self.contact_friction();
         if friction.is_none() && self.steering == Steering::TiltGain && noise.is_none() && outline.is_none() {
             return Model::Rod(rod);
         }
-        Model::Rig(Rig { rod, steering: self.steering, friction, noise, outline })
+        Model::General(GeneralBody { rod, steering: self.steering, friction, noise, outline })
     }
 
     /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
@@ -263,9 +263,9 @@ impl Scene {
     ///
     /// # Errors
     /// [`TooManyPieces`], which the ranges of a scene exclude.
-    pub fn extended_orbit(&self) -> Result<extended::Orbit, TooManyPieces> {
+    pub fn extended_orbit(&self) -> Result<extended::ExtendedOrbit, TooManyPieces> {
         let is_point = self.body == BodyShape::Point;
-        extended::Orbit::new(self.parameters(), self.contact_friction(), is_point, self.rules(), &self.release)
+        extended::ExtendedOrbit::new(self.parameters(), self.contact_friction(), is_point, self.rules(), &self.release)
     }
 
     /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.
@@ -361,7 +361,7 @@ macro_rules! either {
         match $model {
             Model::Rod($body) => $call,
             Model::Point($body) => $call,
-            Model::Rig($body) => $call,
+            Model::General($body) => $call,
         }
     };
 }
@@ -372,12 +372,12 @@ impl Body for Model {
     }
 
     #[inline(always)]
-    fn strike(&self, coming: &Coming) -> Strike {
+    fn strike(&self, coming: &PreImpact) -> Strike {
         either!(self, body => Body::strike(body, coming))
     }
 
     #[inline(always)]
-    fn touches(&self, coming: &Coming, strike: &Strike) -> Option<Touch> {
+    fn touches(&self, coming: &PreImpact, strike: &Strike) -> Option<Touch> {
         either!(self, body => body.touches(coming, strike))
     }
 
@@ -392,7 +392,7 @@ impl Body for Model {
     }
 
     #[inline(always)]
-    fn fly(&self, from: &Coming, strike: &Strike) -> Result<Arrival, NoContact> {
+    fn fly(&self, from: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact> {
         either!(self, body => Body::fly(body, from, strike))
     }
 

@@ -5,10 +5,10 @@
 use crate::bounce::state::State;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
-use crate::run::method::{Method, run_by};
+use crate::run::method::{RunMethod, run_by};
 use crate::scene::model::{Forced, Rung};
 use crate::scene::{Name, Scene, Value};
-use crate::table::actuator_load::{Demand, Meter};
+use crate::table::actuator_load::{ActuatorLoad, LoadTracker};
 
 /// One rung.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ pub struct Run {
     /// When, s.
     pub t: f64,
     /// The most that it asked of the table.
-    pub demand: Demand,
+    pub demand: ActuatorLoad,
     /// What this rung changed against the next lower one that applies.
     pub change: Option<Change>,
 }
@@ -93,8 +93,8 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
     let mut below: Option<(Vec<Here>, Ending)> = None;
     for (rung, forced) in rungs(scene) {
         let reduced = at_level(scene, rung);
-        let method = if rung == Rung::Linear { Method::Linear } else { Method::Map };
-        let (mut course, mut meter) = (Vec::new(), Meter::default());
+        let method = if rung == Rung::Linear { RunMethod::Linear } else { RunMethod::Map };
+        let (mut course, mut meter) = (Vec::new(), LoadTracker::default());
         let run = run_by(&reduced, method, impacts, |impact| {
             let contact = &impact.contact;
             if let Some(strike) = &contact.strike {

@@ -3,11 +3,11 @@
 //! A scan in lanes and a search of its edges. Not a map over two fields, and no proof: between two angles of the scan a
 //! narrow hole stays unseen.
 
-use crate::batch::batch_run::{End, Start, sweep, sweep_rough};
+use crate::batch::batch_run::{RunEnd, RunStart, run_batch, run_batch_with_friction};
 use crate::body::Release;
 use crate::bounce::friction::Friction;
 use crate::bounce::state::State;
-use crate::run::ending::Outcome;
+use crate::run::ending::EndingKind;
 use crate::scene::Scene;
 use crate::scene::model::Rung;
 use std::cell::Cell;
@@ -86,15 +86,15 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
     let start = |theta: f64| {
         let state = State { theta, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
         let (_, state) = rod.fall(&Release { x: 0.0, height, state }).ok()?;
-        Some(Start { rod, rules, state })
+        Some(RunStart { rod, rules, state })
     };
     let bounces = Cell::new(0);
     let mut survive = |angles: &[f64]| {
         let mut survivors = vec![false; angles.len()];
         let mut stopped = false;
         let mut starts = angles.iter().enumerate().filter_map(|(index, theta)| Some((index, start(*theta)?)));
-        let done = |index: usize, end: End| {
-            survivors[index] = end.outcome == Outcome::Completed;
+        let done = |index: usize, end: RunEnd| {
+            survivors[index] = end.outcome == EndingKind::Completed;
             bounces.set(bounces.get() + end.impacts);
         };
         let go_on = || {
@@ -102,10 +102,10 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
             !stopped
         };
         match friction {
-            None => sweep(impacts, || starts.next(), done, go_on),
+            None => run_batch(impacts, || starts.next(), done, go_on),
             Some(Friction { coefficient, law, slide }) => {
                 let next = || starts.next().map(|(index, start)| (index, start, coefficient));
-                sweep_rough((law, slide), impacts, next, done, go_on);
+                run_batch_with_friction((law, slide), impacts, next, done, go_on);
             }
         }
         if stopped { Err(NoBasin::Stopped) } else { Ok(survivors) }

@@ -5,11 +5,11 @@
 //! a point mass.
 
 use crate::body::Body;
-use crate::body::general::Rig;
-use crate::body::point::Point;
+use crate::body::general::GeneralBody;
+use crate::body::point::PointMass;
 use crate::bounce::contact_time::first_contact;
 use crate::bounce::flight::Flight;
-use crate::bounce::friction::{Fork, Law, Slide, as_it_is};
+use crate::bounce::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::ContactMode;
@@ -61,10 +61,10 @@ pub const MOST_SIDES: usize = 16;
 /// Names of the components of a state, in the order of a matrix's rows and columns.
 pub fn state_order(model: &Model) -> &'static [&'static str] {
     match model {
-        Model::Rig(Rig { steering: Steering::Feedback(_), .. }) => {
+        Model::General(GeneralBody { steering: Steering::Feedback(_), .. }) => {
             &["rho_theta", "x_dot", "y_dot", "rho_theta_dot", "x"]
         }
-        Model::Rod(_) | Model::Rig(_) => &["rho_theta", "x_dot", "y_dot", "rho_theta_dot"],
+        Model::Rod(_) | Model::General(_) => &["rho_theta", "x_dot", "y_dot", "rho_theta_dot"],
         Model::Point(_) => &["x_dot", "y_dot"],
     }
 }
@@ -88,10 +88,10 @@ pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<
         Model::Rod(rod) => rod_jacobian(rod, state).map(smooth),
         Model::Point(point) => Some(smooth(point_jacobian(point, state))),
         // Not derived, and nobody is to take anything else for it.
-        Model::Rig(Rig { noise: Some(_), .. }) => Some(smooth(DMatrix::from_element(size, size, f64::NAN))),
+        Model::General(GeneralBody { noise: Some(_), .. }) => Some(smooth(DMatrix::from_element(size, size, f64::NAN))),
         // The outline of a polygon ends runs and changes no bounce.
-        Model::Rig(rig) if size == 5 => rig_jacobians::<5>(rig, *x, state),
-        Model::Rig(rig) => rig_jacobians::<4>(rig, *x, state),
+        Model::General(rig) if size == 5 => rig_jacobians::<5>(rig, *x, state),
+        Model::General(rig) => rig_jacobians::<4>(rig, *x, state),
     })
 }
 
@@ -207,7 +207,7 @@ fn rod_jacobian(rod: &Rod, state: &State) -> Option<DMatrix<f64>> {
 ///
 /// Coming to rest at once, v_t = 0, is no kink where friction holds: the impulse depends on the sliding before only by where it
 /// ends, and there in the same way from both sides.
-fn rig_jacobians<const K: usize>(rig: &Rig, x: f64, state: &State) -> Option<Vec<Side>> {
+fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Option<Vec<Side>> {
     let rod = &rig.rod;
     let lifted: Rod<Dual<K>> = rod.lift();
     let (start, leverage) = (along_all(rod, state), lifted.leverage());
@@ -222,19 +222,19 @@ fn rig_jacobians<const K: usize>(rig: &Rig, x: f64, state: &State) -> Option<Vec
     let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched);
     let strike = friction.strike(rod, state, &plain, None, rod.leverage(), |decision| {
         let is_tied = decision.margin.abs() <= TIED * decision.scale;
-        held |= decision.fork == Fork::Holds && decision.answer && !is_tied;
+        held |= decision.fork == FrictionBranch::Holds && decision.answer && !is_tied;
         if is_tied {
             tied.push(decision.fork);
         }
-        as_it_is(decision)
+        actual_branch(decision)
     });
     // Without restitution the impact ends where compression does.
-    let ends_early = [Fork::Rests, Fork::RestsEarly].iter().all(|fork| tied.contains(fork));
+    let ends_early = [FrictionBranch::Rests, FrictionBranch::RestsEarly].iter().all(|fork| tied.contains(fork));
     tied.retain(|fork| match fork {
-        Fork::Forward => !held,
+        FrictionBranch::Forward => !held,
         // The work of compression has no kink where the sliding ends.
-        Fork::RestsEarly => friction.law == Law::Poisson && !ends_early,
-        Fork::Rests | Fork::Holds => true,
+        FrictionBranch::RestsEarly => friction.law == RestitutionLaw::Poisson && !ends_early,
+        FrictionBranch::Rests | FrictionBranch::Holds => true,
     });
     let root = first_contact(&rod.flight(&strike)).ok()?;
     let mut sides: Vec<Side> = Vec::new();
@@ -243,12 +243,12 @@ fn rig_jacobians<const K: usize>(rig: &Rig, x: f64, state: &State) -> Option<Vec
         let strike = friction.strike(&lifted, &start, &tilt, None, leverage, |decision| {
             let at = tied.iter().position(|fork| *fork == decision.fork);
             let mut answer = decision.answer ^ at.is_some_and(|at| flipped >> at & 1 == 1);
-            answer |= decision.fork == Fork::RestsEarly && ends_early;
-            rests |= decision.fork == Fork::Rests && answer;
+            answer |= decision.fork == FrictionBranch::RestsEarly && ends_early;
+            rests |= decision.fork == FrictionBranch::Rests && answer;
             answer
         });
         let contact_mode = match strike.mode {
-            ContactMode::SlideThrough if !tied.contains(&Fork::Forward) => ContactMode::SlideThrough,
+            ContactMode::SlideThrough if !tied.contains(&FrictionBranch::Forward) => ContactMode::SlideThrough,
             ContactMode::SlideThrough if rests => ContactMode::ReverseSlide,
             ContactMode::SlideThrough => ContactMode::Slide,
             mode => mode,
@@ -286,7 +286,7 @@ fn after_flight<const K: usize>(
     rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, place + t * end.x_dot])
 }
 
-fn point_jacobian(point: &Point, state: &State) -> DMatrix<f64> {
+fn point_jacobian(point: &PointMass, state: &State) -> DMatrix<f64> {
     let State { theta, x_dot, y_dot, .. } = *state;
     let speed_squared = x_dot * x_dot + y_dot * y_dot;
     let lifted: Rod<Dual<2>> = point.parameters().lift();
@@ -307,7 +307,7 @@ fn rows<const K: usize>(components: &[Dual<K>]) -> DMatrix<f64> {
 fn to_vector(model: &Model, state: &State, x: f64) -> DMatrix<f64> {
     let size = state_order(model).len();
     match model {
-        Model::Rod(rod) | Model::Rig(Rig { rod, .. }) => {
+        Model::Rod(rod) | Model::General(GeneralBody { rod, .. }) => {
             let rho = rod.radius_of_gyration;
             let components = [rho * state.theta, state.x_dot, state.y_dot, rho * state.theta_dot, x];
             DMatrix::from_column_slice(size, 1, &components[..size])
@@ -318,12 +318,12 @@ fn to_vector(model: &Model, state: &State, x: f64) -> DMatrix<f64> {
 
 fn from_vector(model: &Model, vector: &DMatrix<f64>) -> (State, f64) {
     match model {
-        Model::Rod(rod) | Model::Rig(Rig { rod, .. }) => {
+        Model::Rod(rod) | Model::General(GeneralBody { rod, .. }) => {
             let rho = rod.radius_of_gyration;
             let state =
                 State { theta: vector[0] / rho, x_dot: vector[1], y_dot: vector[2], theta_dot: vector[3] / rho };
             (state, vector.get(4).copied().unwrap_or(0.0))
         }
-        Model::Point(_) => (Point::state(vector[0], vector[1]), 0.0),
+        Model::Point(_) => (PointMass::state(vector[0], vector[1]), 0.0),
     }
 }

@@ -4,7 +4,7 @@ use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::orbit::run;
 use crate::scene::Scene;
-use crate::table::actuator_load::{Demand, Meter};
+use crate::table::actuator_load::{ActuatorLoad, LoadTracker};
 
 /// The summary of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct NonlinearRun {
     /// Largest |θ| at a contact, rad.
     pub max_theta: f64,
     /// The most that it asked of the table.
-    pub demand: Demand,
+    pub demand: ActuatorLoad,
 }
 
 /// Runs the scene for up to `impacts` contacts; `go_on` is asked now and then, and `None` follows a `false`.
@@ -28,12 +28,12 @@ pub fn run_nonlinear(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
         Err(none) => {
             let (ending, t) = (none.ending(0.0, 0.0), 0.0);
             let max_theta = scene.start().theta.abs();
-            return Some(NonlinearRun { ending, impacts: 0, t, max_theta, demand: Demand::default() });
+            return Some(NonlinearRun { ending, impacts: 0, t, max_theta, demand: ActuatorLoad::default() });
         }
     };
     let mut max_theta: f64 = 0.0;
     let mut t = 0.0;
-    let mut meter = Meter::default();
+    let mut meter = LoadTracker::default();
     let ending = run(&mut orbit, impacts, |contact| {
         if let Some(strike) = &contact.strike {
             meter.track(strike, contact.flight_time);

@@ -8,8 +8,8 @@
 //! manifold of an odd direction bends, to second order, along ẏ only; no odd quadratic term exists; and of the strong resonances
 //! only those of order 1, 2 and 4 matter. Not here: what is concluded from a coefficient ([`crate::stability::verdict`]).
 
-use crate::body::general::Rig;
-use crate::bounce::friction::{Friction, Slide, as_it_is};
+use crate::body::general::GeneralBody;
+use crate::bounce::friction::{Friction, Slide, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::number::Number;
@@ -73,8 +73,10 @@ impl Bounce {
     pub fn of(model: &Model, fixed_point: &FixedPoint) -> Result<Self, String> {
         let (rod, steering, friction) = match *model {
             Model::Rod(rod) => (rod, Steering::TiltGain, None),
-            Model::Rig(Rig { rod, steering, friction, noise: None, outline: _ }) => (rod, steering, friction),
-            Model::Rig(_) => return Err("it is not derived with noise".to_owned()),
+            Model::General(GeneralBody { rod, steering, friction, noise: None, outline: _ }) => {
+                (rod, steering, friction)
+            }
+            Model::General(_) => return Err("it is not derived with noise".to_owned()),
             Model::Point(_) => return Err("a point mass has no angle of its own".to_owned()),
         };
         if friction.is_some_and(|friction| friction.coefficient != 0.0 && friction.slide == Slide::None) {
@@ -106,7 +108,7 @@ impl Bounce {
         let tilt = self.steering.tilt(&rod, x, &before);
         let strike = match &self.friction {
             None => rod.strike_with(&before, &tilt, rod.leverage()),
-            Some(friction) => friction.strike(&rod, &before, &tilt, None, rod.leverage(), as_it_is),
+            Some(friction) => friction.strike(&rod, &before, &tilt, None, rod.leverage(), actual_branch),
         };
         let flight = rod.flight(&strike);
         // Each of Newton's steps doubles the degree up to which the implicit contact time is exact: 1, then 3.

@@ -3,7 +3,7 @@
 //! All of it comes from one watch over the first contacts of a run, with the exact derivative of the map carried along.
 //! Not here: what is concluded from it ([`crate::stability::verdict`]).
 
-use crate::body::general::Rig;
+use crate::body::general::GeneralBody;
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -102,8 +102,10 @@ pub fn measure_regularity(
 ) -> Option<Regularity> {
     let (rod, friction) = match orbit.body {
         Model::Rod(rod) => (rod, None),
-        Model::Rig(Rig { rod, steering: Steering::TiltGain, friction, noise: None, outline: _ }) => (rod, friction),
-        Model::Rig(_) | Model::Point(_) => return None,
+        Model::General(GeneralBody { rod, steering: Steering::TiltGain, friction, noise: None, outline: _ }) => {
+            (rod, friction)
+        }
+        Model::General(_) | Model::Point(_) => return None,
     };
     let undisturbed = orbit.state().theta == 0.0 && orbit.state().theta_dot == 0.0;
     let mut tangents = Tangents::new(&rod, friction, fixed_point.flight_time);

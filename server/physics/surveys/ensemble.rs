@@ -6,7 +6,7 @@
 
 use crate::run::cancellation::CancellationCheck;
 use crate::run::ending::Ending;
-use crate::run::ending::Outcome;
+use crate::run::ending::EndingKind;
 use crate::run::orbit::run;
 use crate::scene::Scene;
 use std::ops::Range;
@@ -36,7 +36,7 @@ pub struct End {
     /// Contacts, the last included; 0 where there was not even a first one.
     pub impacts: u64,
     /// Why.
-    pub outcome: Outcome,
+    pub outcome: EndingKind,
 }
 
 /// What is kept of some runs.
@@ -114,7 +114,7 @@ impl Runs {
     pub fn survival(&self, impacts: u64) -> Vec<Survival> {
         let runs = self.ends.len() as u64;
         let mut ended = vec![0; usize::try_from(impacts).unwrap_or(usize::MAX)];
-        for end in self.ends.iter().filter(|end| end.outcome != Outcome::Completed) {
+        for end in self.ends.iter().filter(|end| end.outcome != EndingKind::Completed) {
             ended[end.impacts.max(1) as usize - 1] += 1;
         }
         let mut at_risk = runs;
@@ -129,7 +129,7 @@ impl Runs {
     }
 
     /// How many runs ended so.
-    pub fn count(&self, outcome: Outcome) -> u64 {
+    pub fn count(&self, outcome: EndingKind) -> u64 {
         self.ends.iter().filter(|end| end.outcome == outcome).count() as u64
     }
 
@@ -186,8 +186,8 @@ mod tests {
     use crate::scene::{Draft, Name, Value};
 
     fn ends(impacts: u64, ended: &[u64], completed: usize) -> Runs {
-        let fell = ended.iter().map(|&impacts| End { impacts, outcome: Outcome::Toppled });
-        let stood = std::iter::repeat_n(End { impacts, outcome: Outcome::Completed }, completed);
+        let fell = ended.iter().map(|&impacts| End { impacts, outcome: EndingKind::Toppled });
+        let stood = std::iter::repeat_n(End { impacts, outcome: EndingKind::Completed }, completed);
         Runs { ends: fell.chain(stood).collect(), angles: Vec::new() }
     }
 
@@ -271,7 +271,7 @@ mod tests {
         assert_eq!(watched, [1, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50]);
         let runs = ensemble.runs(0..3, &mut || true).unwrap();
         let last = runs.ends[0].impacts;
-        assert!((5..50).contains(&last) && runs.count(Outcome::Completed) == 0, "{:?}", runs.ends);
+        assert!((5..50).contains(&last) && runs.count(EndingKind::Completed) == 0, "{:?}", runs.ends);
         for (n, angles) in watched.iter().zip(&runs.angles) {
             assert_eq!(angles.len(), if *n < last { 3 } else { 0 }, "{n}: {last}");
         }

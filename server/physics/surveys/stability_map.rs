@@ -2,11 +2,11 @@
 //!
 //! Not here: which threads do it, and how it is drawn.
 
-use crate::batch::batch_run::{End, Start, sweep, sweep_rough};
+use crate::batch::batch_run::{RunEnd, RunStart, run_batch, run_batch_with_friction};
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::run::cancellation::CancellationCheck;
-use crate::run::ending::Outcome;
+use crate::run::ending::EndingKind;
 use crate::run::orbit::run;
 use crate::scene::{Draft, Name, Scene, Value};
 use crate::stability::fixed_point::find_fixed_point;
@@ -72,7 +72,7 @@ pub struct Cell {
     /// Its quantity; none where the scene cannot be, or has no fixed point to ask.
     pub value: Option<f64>,
     /// How its run ended; none where there was no run.
-    pub outcome: Option<Outcome>,
+    pub outcome: Option<EndingKind>,
 }
 
 /// Cells between two looks at whether to go on, where there are no runs: the linear analysis of the dearest takes 10 µs.
@@ -136,7 +136,7 @@ impl Region {
             }
             None
         };
-        sweep(
+        run_batch(
             self.impacts,
             start,
             |index, end| cells[index] = self.cell(&end),
@@ -149,7 +149,7 @@ impl Region {
             // All of one law and one way to slide: a region is over numbers.
             let mut rough = rough.into_iter();
             let done = |index: usize, end| cells[index] = self.cell(&end);
-            sweep_rough(
+            run_batch_with_friction(
                 contact,
                 self.impacts,
                 || rough.next(),
@@ -170,7 +170,7 @@ impl Region {
         Some(cells)
     }
 
-    fn cell(&self, end: &End) -> Cell {
+    fn cell(&self, end: &RunEnd) -> Cell {
         let value = if self.quantity == Quantity::MaxTheta { end.max_theta } else { end.impacts as f64 };
         Cell { value: Some(value), outcome: Some(end.outcome) }
     }
@@ -250,25 +250,25 @@ fn in_lanes(scene: &Scene) -> Option<(Rod, Option<Friction>)> {
 }
 
 /// The start of a run that can go in a lane, with its friction.
-fn start_of(scene: &Scene) -> Option<(Start, Option<Friction>)> {
+fn start_of(scene: &Scene) -> Option<(RunStart, Option<Friction>)> {
     let (rod, friction) = in_lanes(scene)?;
     let (_, state) = rod.fall(scene.release()).ok()?;
-    Some((Start { rod, rules: scene.rules(), state }, friction))
+    Some((RunStart { rod, rules: scene.rules(), state }, friction))
 }
 
 /// None once `go_on` said `false`. What never meets the table has ended before its first contact.
-fn run_alone(scene: &Scene, impacts: u64, looks: &mut CancellationCheck<'_>) -> Option<End> {
+fn run_alone(scene: &Scene, impacts: u64, looks: &mut CancellationCheck<'_>) -> Option<RunEnd> {
     if !looks.begin() {
         return None;
     }
     let mut orbit = match scene.orbit() {
         Ok(orbit) => orbit,
-        Err(none) => return Some(End { impacts: 0, outcome: none.ending(0.0, 0.0).into(), max_theta: 0.0 }),
+        Err(none) => return Some(RunEnd { impacts: 0, outcome: none.ending(0.0, 0.0).into(), max_theta: 0.0 }),
     };
     let mut max_theta: f64 = 0.0;
     let ending = run(&mut orbit, impacts, |contact| {
         max_theta = max_theta.max(contact.state.theta.abs());
         looks.contact()
     })?;
-    Some(End { impacts: orbit.contacts(), outcome: ending.into(), max_theta })
+    Some(RunEnd { impacts: orbit.contacts(), outcome: ending.into(), max_theta })
 }

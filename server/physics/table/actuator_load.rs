@@ -16,7 +16,7 @@ pub struct Pose {
 
 /// What is asked of the table, at one strike and on the way to it or at most over a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Demand {
+pub struct ActuatorLoad {
     /// |α|, rad.
     pub tilt: f64,
     /// |Δα| over the time between the strikes, rad/s: less than the largest rate of any way there.
@@ -28,13 +28,13 @@ pub struct Demand {
     pub stroke: f64,
 }
 
-/// How much of each the table can do; infinite where nothing limits it. Units as in [`Demand`].
-pub type Limits = Demand;
+/// How much of each the table can do; infinite where nothing limits it. Units as in [`ActuatorLoad`].
+pub type ActuatorLimits = ActuatorLoad;
 
 /// A limit that a strike goes beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Excess {
-    /// Which: a name of [`Demand`]'s.
+pub struct LimitViolation {
+    /// Which: a name of [`ActuatorLoad`]'s.
     pub quantity: &'static str,
     /// What the strike asks for.
     pub value: f64,
@@ -47,14 +47,14 @@ pub struct Excess {
 impl Pose {
     /// What this strike asks for, after the last one and the flight between them, s, if there was one.
     #[inline(never)]
-    pub fn demand(&self, last: Option<(Self, f64)>) -> Demand {
+    pub fn demand(&self, last: Option<(Self, f64)>) -> ActuatorLoad {
         let (x, y) = self.velocity;
         let (tilt_rate, stroke) = last.map_or((0.0, 0.0), |(last, time)| {
             // The least flights are so short that this would be infinite.
             let rate = ((self.alpha - last.alpha).abs() / time).min(f64::MAX);
             (rate, stroke(last.velocity.1, y, time))
         });
-        Demand { tilt: self.alpha.abs(), tilt_rate, speed: (x * x + y * y).sqrt(), stroke }
+        ActuatorLoad { tilt: self.alpha.abs(), tilt_rate, speed: (x * x + y * y).sqrt(), stroke }
     }
 }
 
@@ -78,14 +78,14 @@ fn stroke(v0: f64, v1: f64, time: f64) -> f64 {
 
 /// What a run has demanded so far.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Meter {
+pub struct LoadTracker {
     /// The most of each.
-    pub most: Demand,
+    pub most: ActuatorLoad,
     /// The last strike and the flight after it, s.
     last: Option<(Pose, f64)>,
 }
 
-impl Meter {
+impl LoadTracker {
     /// Takes in the next strike of the run, and the flight after it, s, if there is one.
     #[inline(always)]
     pub fn track(&mut self, strike: &Strike, flight_time: Option<f64>) {
@@ -95,7 +95,7 @@ impl Meter {
     }
 }
 
-impl Demand {
+impl ActuatorLoad {
     /// The more of each.
     pub fn or(self, other: Self) -> Self {
         Self {
@@ -118,11 +118,11 @@ impl Demand {
 
     /// The first of these limits that `demand` goes beyond.
     #[inline(never)]
-    pub fn exceeded(&self, demand: &Demand) -> Option<Excess> {
+    pub fn exceeded(&self, demand: &ActuatorLoad) -> Option<LimitViolation> {
         let pairs = demand.quantities().into_iter().zip(self.quantities());
         pairs
             .filter(|((_, value, _), (_, limit, _))| value > limit)
-            .map(|((quantity, value, unit), (_, limit, _))| Excess { quantity, value, limit, unit })
+            .map(|((quantity, value, unit), (_, limit, _))| LimitViolation { quantity, value, limit, unit })
             .next()
     }
 }
@@ -164,11 +164,11 @@ mod tests {
 
     #[test]
     fn the_first_limit_passed_is_named() {
-        let limits = Limits { tilt: 0.3, tilt_rate: f64::INFINITY, speed: 1.0, stroke: 0.1 };
-        let demand = Demand { tilt: 0.2, tilt_rate: 50.0, speed: 1.5, stroke: 0.2 };
+        let limits = ActuatorLimits { tilt: 0.3, tilt_rate: f64::INFINITY, speed: 1.0, stroke: 0.1 };
+        let demand = ActuatorLoad { tilt: 0.2, tilt_rate: 50.0, speed: 1.5, stroke: 0.2 };
         let excess = limits.exceeded(&demand).unwrap();
         assert_eq!((excess.quantity, excess.value, excess.limit, excess.unit), ("speed", 1.5, 1.0, "m/s"));
-        assert_eq!(limits.exceeded(&Demand { speed: 1.0, ..demand }).unwrap().quantity, "stroke");
-        assert_eq!(limits.exceeded(&Demand::default()), None);
+        assert_eq!(limits.exceeded(&ActuatorLoad { speed: 1.0, ..demand }).unwrap().quantity, "stroke");
+        assert_eq!(limits.exceeded(&ActuatorLoad::default()), None);
     }
 }

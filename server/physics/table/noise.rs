@@ -7,7 +7,7 @@ use rand_philox::philox4x32_10;
 
 /// What the table does with a wrong time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reading {
+pub enum NoiseModel {
     /// The paper's: it meets the object at the wrong time, wherever that then is.
     Strike,
     /// What a real table does: it carries out the plan made for the wrong time, and the object meets that plane when it
@@ -15,7 +15,7 @@ pub enum Reading {
     Plan,
 }
 
-impl Reading {
+impl NoiseModel {
     /// Its name in scenes.
     pub fn name(self) -> &'static str {
         match self {
@@ -33,7 +33,7 @@ pub struct Noise {
     /// Standard deviation of the angle that it senses, rad.
     pub angle_sd: f64,
     /// What it does with a wrong time.
-    pub model: Reading,
+    pub model: NoiseModel,
     /// Which errors, of all that there could be.
     pub seed: u64,
     /// Which run of them.
@@ -42,7 +42,7 @@ pub struct Noise {
 
 /// The errors at one contact, independent of each other and of those at any other contact, run or seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Draw {
+pub struct NoiseSample {
     /// Of the time, s.
     pub timing: f64,
     /// Of the angle, rad.
@@ -52,11 +52,11 @@ pub struct Draw {
 impl Noise {
     /// The errors at contact `n`: a block of Philox4x32-10 (Salmon et al. 2011) with the seed as its key and (n, run) as its
     /// counter is 128 bits, just what one pair of normal deviates takes.
-    pub fn draw(&self, n: u64) -> Draw {
+    pub fn draw(&self, n: u64) -> NoiseSample {
         let counter = [low(n), high(n), low(self.run), high(self.run)];
         let [a, b, c, d] = philox4x32_10(counter, [low(self.seed), high(self.seed)]);
         let [first, second] = normals(joined(a, b), joined(c, d));
-        Draw { timing: self.timing_sd * first, angle: self.angle_sd * second }
+        NoiseSample { timing: self.timing_sd * first, angle: self.angle_sd * second }
     }
 }
 
@@ -88,10 +88,10 @@ fn joined(low: u32, high: u32) -> u64 {
 mod tests {
     use super::*;
 
-    const UNIT: Noise = Noise { timing_sd: 1.0, angle_sd: 1.0, model: Reading::Strike, seed: 0, run: 0 };
+    const UNIT: Noise = Noise { timing_sd: 1.0, angle_sd: 1.0, model: NoiseModel::Strike, seed: 0, run: 0 };
 
     fn pairs(noise: Noise, count: u64) -> Vec<(f64, f64)> {
-        (1..=count).map(|n| noise.draw(n)).map(|Draw { timing, angle }| (timing, angle)).collect()
+        (1..=count).map(|n| noise.draw(n)).map(|NoiseSample { timing, angle }| (timing, angle)).collect()
     }
 
     /// Mean of a product over its pairs.
@@ -116,7 +116,7 @@ mod tests {
             // And a draw takes its bits from just this block.
             let noise = Noise { seed: joined(key[0], key[1]), run: joined(counter[2], counter[3]), ..UNIT };
             let [first, second] = normals(joined(block[0], block[1]), joined(block[2], block[3]));
-            assert_eq!(noise.draw(joined(counter[0], counter[1])), Draw { timing: first, angle: second });
+            assert_eq!(noise.draw(joined(counter[0], counter[1])), NoiseSample { timing: first, angle: second });
         }
     }
 
@@ -191,7 +191,7 @@ mod tests {
     fn no_deviation_is_no_error() {
         let exact = Noise { timing_sd: 0.0, angle_sd: 0.0, ..UNIT };
         for n in 0..1000 {
-            assert_eq!(exact.draw(n), Draw { timing: 0.0, angle: 0.0 });
+            assert_eq!(exact.draw(n), NoiseSample { timing: 0.0, angle: 0.0 });
         }
     }
 }

@@ -5,7 +5,7 @@ use equipoise_physics::body::Body;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::extended;
-use equipoise_physics::run::method::{Method, choose_method, run_by};
+use equipoise_physics::run::method::{RunMethod, choose_method, run_by};
 use equipoise_physics::scene::Scene;
 
 #[path = "support/random.rs"]
@@ -34,7 +34,7 @@ fn exact(scene: &Scene, impacts: u64) -> Exact {
 }
 
 /// The largest error of a method's states; none where it ends otherwise or does not apply.
-fn error(scene: &Scene, method: Method, impacts: u64, exact: &Exact) -> Option<f64> {
+fn error(scene: &Scene, method: RunMethod, impacts: u64, exact: &Exact) -> Option<f64> {
     let (mut worst, mut made) = (0.0_f64, 0);
     let ending: Ending = run_by(scene, method, impacts, |impact| {
         let state = impact.contact.state;
@@ -71,16 +71,16 @@ fn the_choice_holds_and_is_nearly_always_the_cheapest() {
             };
             chosen[choice.method as usize] += 1;
             let exact = exact(&scene, impacts);
-            if choice.method != Method::Extended {
+            if choice.method != RunMethod::Extended {
                 let off = error(&scene, choice.method, impacts, &exact);
                 assert!(off.is_some_and(|off| off <= tolerance), "{kind:?} {run}: {choice:?} is off by {off:?}");
             }
             // Of the impacts that there were.
-            let cost = |method: Method| method.cost_us(exact.states.len() as u64);
-            let cheaper = |method: &Method| cost(*method) < cost(choice.method);
+            let cost = |method: RunMethod| method.cost_us(exact.states.len() as u64);
+            let cheaper = |method: &RunMethod| cost(*method) < cost(choice.method);
             let would_do =
-                |method: &Method| error(&scene, *method, impacts, &exact).is_some_and(|off| off <= tolerance);
-            cheapest += usize::from(!Method::ALL.iter().filter(|method| cheaper(method)).any(would_do));
+                |method: &RunMethod| error(&scene, *method, impacts, &exact).is_some_and(|off| off <= tolerance);
+            cheapest += usize::from(!RunMethod::ALL.iter().filter(|method| cheaper(method)).any(would_do));
         }
     }
     let all: usize = chosen.iter().sum();

@@ -1,7 +1,7 @@
 //! State feedback: the linear model against the bounce itself, the Riccati equation against its plain iteration, margins
 //! against eigenvalues, and laws that have to hold.
 
-use equipoise_physics::body::{Body, Coming};
+use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::control::{BounceModel, NoDesign, RESIDUAL, STABLE};
@@ -50,7 +50,7 @@ fn speed(rod: &Rod) -> f64 {
 /// One bounce of a scene from (x, θ, ẋ, θ̇) and ẏ.
 fn bounce(scene: &Scene, [x, theta, x_dot, theta_dot]: [f64; 4], y_dot: f64) -> [f64; 4] {
     let model = scene.model();
-    let coming = Coming::at(1, x, State { theta, x_dot, y_dot, theta_dot });
+    let coming = PreImpact::at(1, x, State { theta, x_dot, y_dot, theta_dot });
     let arrival = model.fly(&coming, &model.strike(&coming)).unwrap();
     let end = arrival.state;
     [x + arrival.t * end.x_dot, end.theta, end.x_dot, end.theta_dot]

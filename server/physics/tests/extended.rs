@@ -4,7 +4,7 @@ use equipoise_physics::body::Body;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::error_estimate::ErrorEstimate;
 use equipoise_physics::run::extended;
-use equipoise_physics::run::extended::Contact;
+use equipoise_physics::run::extended::ExtendedContact;
 use equipoise_physics::scene::model::Rung;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use serde_json::Value as Json;
@@ -12,7 +12,7 @@ use serde_json::Value as Json;
 #[path = "support/reference.rs"]
 mod reference;
 
-fn contacts(scene: &Scene, impacts: u64) -> (Vec<Contact>, &'static str) {
+fn contacts(scene: &Scene, impacts: u64) -> (Vec<ExtendedContact>, &'static str) {
     let mut contacts = Vec::new();
     let ending = extended::run(&mut scene.extended_orbit().unwrap(), impacts, |contact| {
         contacts.push(*contact);
@@ -21,7 +21,7 @@ fn contacts(scene: &Scene, impacts: u64) -> (Vec<Contact>, &'static str) {
     (contacts, ending.unwrap().name())
 }
 
-fn worst(contacts: &[Contact], states: &Json) -> f64 {
+fn worst(contacts: &[ExtendedContact], states: &Json) -> f64 {
     let mut worst: f64 = 0.0;
     for (index, contact) in contacts.iter().enumerate() {
         let state = contact.state;

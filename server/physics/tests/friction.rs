@@ -1,7 +1,7 @@
 //! Friction: the worked example, the energy of random impacts under each law, and runs with and without a matched table.
 
-use equipoise_physics::body::{Body, Coming};
-use equipoise_physics::bounce::friction::{Friction, Law, Mobility, Slide, as_it_is};
+use equipoise_physics::body::{Body, PreImpact};
+use equipoise_physics::bounce::friction::{Friction, Mobility, RestitutionLaw, Slide, actual_branch};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::numbers::trig;
@@ -11,7 +11,7 @@ use equipoise_physics::scene::{Draft, Name, Scene, Value};
 #[path = "support/random.rs"]
 mod random;
 
-const LAWS: [Law; 3] = [Law::Poisson, Law::Newton, Law::Stronge];
+const LAWS: [RestitutionLaw; 3] = [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge];
 
 const ROD: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.1);
 
@@ -21,7 +21,7 @@ fn energies(
     beta: f64,
     [x_dot, y_dot, theta_dot]: [f64; 3],
     friction: f64,
-    law: Law,
+    law: RestitutionLaw,
     e: f64,
 ) -> Option<(f64, f64, ContactMode)> {
     let (sin, cos) = trig::sin_cos(beta);
@@ -31,7 +31,7 @@ fn energies(
     let energy = |[x, y, spin]: [f64; 3]| 0.5 * (x * x + y * y + rho * rho * spin * spin);
     (normal < 0.0).then(|| {
         let contact = Friction { coefficient: friction, law, slide: Slide::None };
-        let impulse = contact.impulse(&Mobility::new(rod, sin, cos), tangential, normal, e, as_it_is);
+        let impulse = contact.impulse(&Mobility::new(rod, sin, cos), tangential, normal, e, actual_branch);
         assert!(impulse.tangential.abs() <= friction * impulse.normal * (1.0 + 1e-12));
         let spin = theta_dot + l * (cos * impulse.tangential + sin * impulse.normal) / (rho * rho);
         let after = [x_dot + impulse.tangential, y_dot + impulse.normal, spin];
@@ -64,7 +64,7 @@ fn poisson_and_stronge_never_gain_energy_and_newton_does() {
             let along = ROD.contact_distance * trig::sin_cos(beta).1 * spin;
             velocities[0] = -along;
         }
-        if energies(&ROD, beta, velocities, friction, Law::Poisson, e).is_none() {
+        if energies(&ROD, beta, velocities, friction, RestitutionLaw::Poisson, e).is_none() {
             continue;
         }
         impacts += 1;
@@ -116,7 +116,7 @@ fn a_matched_table_balances_and_one_that_only_tilts_does_not() {
 #[test]
 fn without_friction_it_is_the_frictionless_strike() {
     let (plain, matched) = (scene(0.0, "none", 1.1).model(), scene(0.0, "matched", 1.1).model());
-    let coming = Coming::at(1, 0.0, *scene(0.0, "none", 1.1).orbit().unwrap().state());
+    let coming = PreImpact::at(1, 0.0, *scene(0.0, "none", 1.1).orbit().unwrap().state());
     let (plain, matched) = (plain.strike(&coming), matched.strike(&coming));
     for (one, other) in [
         (plain.after.x_dot, matched.after.x_dot),

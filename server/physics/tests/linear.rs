@@ -2,7 +2,7 @@
 
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::linear_solution::LinearSolution;
-use equipoise_physics::run::method::{Method, run_by};
+use equipoise_physics::run::method::{RunMethod, run_by};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
@@ -208,7 +208,7 @@ fn bounds_hold_over_scenes_of_all_sizes() {
     for number in 0..6000 {
         let Some(scene) = wide(&mut random, number) else { continue };
         let mut ours = Vec::new();
-        let told = run_by(&scene, Method::Linear, 100, |impact| {
+        let told = run_by(&scene, RunMethod::Linear, 100, |impact| {
             ours.push((impact.contact, impact.error_estimate));
             true
         });
@@ -256,7 +256,7 @@ fn an_upright_body_stays_upright_at_any_gain() {
         }
         let scene = draft.build().unwrap();
         let mut last = 0;
-        let ending = run_by(&scene, Method::Linear, 20_000, |impact| {
+        let ending = run_by(&scene, RunMethod::Linear, 20_000, |impact| {
             let state = impact.contact.state;
             assert_eq!((state.theta, state.theta_dot), (0.0, 0.0), "κ = {kappa}, contact {}", impact.contact.n);
             // The sum of the bounces, exact but for rounding.
@@ -285,7 +285,7 @@ fn the_least_angle_grows_beyond_the_range_of_its_growth() {
         let scene = draft.build().unwrap();
         let growth = linear_verdict(&scene, &find_fixed_point(&scene).unwrap()).spectral_radius();
         let mut last = (0, 0.0);
-        let ending = run_by(&scene, Method::Linear, 20_000, |impact| {
+        let ending = run_by(&scene, RunMethod::Linear, 20_000, |impact| {
             last = (impact.contact.n, impact.contact.state.theta);
             assert!(last.1.is_finite(), "κ = {kappa}: {impact:?}");
             true

@@ -1,7 +1,7 @@
 //! The choice of a method: the cheapest that holds, the same every time, and a refusal where none does.
 
 use equipoise_physics::run::error_estimate::predictable_impacts;
-use equipoise_physics::run::method::{Method, choose_method};
+use equipoise_physics::run::method::{RunMethod, choose_method};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 /// The paper's body with κ, θ₀ and an energy that is V = 1.14 m/s upright.
@@ -22,9 +22,9 @@ fn scene(tilt_gain: f64, theta: f64) -> Scene {
 #[test]
 fn small_angles_over_many_impacts_are_linear() {
     let choice = choose_method(&scene(1.1, 1e-4), 5000, 1e-6, || true).unwrap().unwrap();
-    assert_eq!(choice.method, Method::Linear, "{choice:?}");
+    assert_eq!(choice.method, RunMethod::Linear, "{choice:?}");
     assert!(choice.error_estimate <= 1e-6 && choice.error_estimate > 1e-12, "{choice:?}");
-    assert_eq!(choice.next, Some((Method::Map, Method::Map.cost_us(5000))));
+    assert_eq!(choice.next, Some((RunMethod::Map, RunMethod::Map.cost_us(5000))));
     assert_eq!(choice, choose_method(&scene(1.1, 1e-4), 5000, 1e-6, || true).unwrap().unwrap());
 }
 
@@ -32,7 +32,7 @@ fn small_angles_over_many_impacts_are_linear() {
 fn few_impacts_or_large_angles_are_the_maps() {
     for (theta, impacts) in [(1e-4, 20), (0.3, 1000)] {
         let choice = choose_method(&scene(1.1, theta), impacts, 1e-6, || true).unwrap().unwrap();
-        assert_eq!(choice.method, Method::Map, "{choice:?}");
+        assert_eq!(choice.method, RunMethod::Map, "{choice:?}");
         assert!(choice.error_estimate < 1e-9, "{choice:?}");
         let dearer = choice.next.unwrap();
         assert!(dearer.1 > choice.cost_us, "{choice:?}");
@@ -42,7 +42,7 @@ fn few_impacts_or_large_angles_are_the_maps() {
 #[test]
 fn more_digits_than_doubles_hold_are_extended() {
     let choice = choose_method(&scene(1.1, 0.3), 1000, 1e-20, || true).unwrap().unwrap();
-    assert_eq!((choice.method, choice.next), (Method::Extended, None), "{choice:?}");
+    assert_eq!((choice.method, choice.next), (RunMethod::Extended, None), "{choice:?}");
     assert!(choice.error_estimate <= 1e-20, "{choice:?}");
 }
 
@@ -54,12 +54,12 @@ fn beyond_the_horizon_it_is_refused() {
     let refusal = within(100_000).unwrap_err();
     assert!(refusal.horizon > 50 && refusal.horizon < 100_000, "{refusal:?}");
     assert!(refusal.detail.contains(&format!("at most {} impacts", refusal.horizon)), "{refusal:?}");
-    assert_eq!(within(refusal.horizon).unwrap().method, Method::Extended);
+    assert_eq!(within(refusal.horizon).unwrap().method, RunMethod::Extended);
     assert_eq!(within(refusal.horizon + 1), Err(within(refusal.horizon + 1).unwrap_err()));
     let map = predictable_impacts(&chaotic, 100_000, 1e-3, || true).unwrap();
     assert!(map < refusal.horizon, "{map} {}", refusal.horizon);
-    assert_eq!(within(map).unwrap().method, Method::Map);
-    assert_eq!(within(map + 1).unwrap().method, Method::Extended);
+    assert_eq!(within(map).unwrap().method, RunMethod::Map);
+    assert_eq!(within(map + 1).unwrap().method, RunMethod::Extended);
 }
 
 #[test]

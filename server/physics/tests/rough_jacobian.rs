@@ -1,9 +1,9 @@
 //! Derivatives through impacts with friction: against differences over every mode and law, on both sides of every kind of
 //! kink, under the mirror, and at the fixed point in closed form.
 
-use equipoise_physics::body::general::Rig;
-use equipoise_physics::body::{Body, Coming};
-use equipoise_physics::bounce::friction::{Friction, Law, Slide};
+use equipoise_physics::body::general::GeneralBody;
+use equipoise_physics::body::{Body, PreImpact};
+use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::ContactMode;
@@ -27,20 +27,26 @@ struct RoughRod {
 }
 
 impl RoughRod {
-    fn rig(&self) -> Rig {
-        Rig { rod: self.rod, steering: Steering::TiltGain, friction: Some(self.friction), noise: None, outline: None }
+    fn rig(&self) -> GeneralBody {
+        GeneralBody {
+            rod: self.rod,
+            steering: Steering::TiltGain,
+            friction: Some(self.friction),
+            noise: None,
+            outline: None,
+        }
     }
 
     fn strike(&self, state: &State) -> Strike {
-        self.rig().strike(&Coming::at(1, 0.0, *state))
+        self.rig().strike(&PreImpact::at(1, 0.0, *state))
     }
 }
 
-const LAWS: [Law; 3] = [Law::Poisson, Law::Newton, Law::Stronge];
+const LAWS: [RestitutionLaw; 3] = [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge];
 const SLIDES: [Slide; 2] = [Slide::None, Slide::Matched];
 const STEP: f64 = 1e-6;
 
-fn model(random: &mut Random, law: Law, slide: Slide) -> RoughRod {
+fn model(random: &mut Random, law: RestitutionLaw, slide: Slide) -> RoughRod {
     let length = random.between(0.05, 0.5);
     let restitution = random.between(0.1, 1.0);
     let energy_gain = random.between(0.0, 0.1);
@@ -94,7 +100,7 @@ fn derivatives_are_those_of_differences_in_every_mode_and_law() {
     let mut worst: f64 = 0.0;
     for round in 0..6000 {
         let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
-        let (model, start) = (Model::Rig(rough.rig()), state(&mut random));
+        let (model, start) = (Model::General(rough.rig()), state(&mut random));
         let period = 1 + round as u64 % 2;
         let Ok(exact) = jacobian(&model, &start, period) else { continue };
         assert!(exact.one_sided.is_empty(), "{rough:?} {start:?}");
@@ -135,7 +141,7 @@ fn the_mirror_commutes_with_the_derivative() {
     let mut random = Random(6);
     for round in 0..300 {
         let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
-        let (model, start) = (Model::Rig(rough.rig()), state(&mut random));
+        let (model, start) = (Model::General(rough.rig()), state(&mut random));
         let image = State { theta: -start.theta, x_dot: -start.x_dot, theta_dot: -start.theta_dot, ..start };
         let (Ok(one), Ok(other)) = (jacobian(&model, &start, 1), jacobian(&model, &image, 1)) else { continue };
         assert_eq!(&mirror * one.matrix * &mirror, other.matrix);
@@ -198,8 +204,13 @@ fn mode(rough: &RoughRod, state: &State) -> ContactMode {
 }
 
 /// Holds the derivative at a kink against differences; counts it if they could tell.
-fn look(rough: &RoughRod, state: &State, modes: &[ContactMode], counts: &mut Vec<((Law, Vec<ContactMode>), u32)>) {
-    let Ok(linearization) = jacobian(&Model::Rig(rough.rig()), state, 1) else { return };
+fn look(
+    rough: &RoughRod,
+    state: &State,
+    modes: &[ContactMode],
+    counts: &mut Vec<((RestitutionLaw, Vec<ContactMode>), u32)>,
+) {
+    let Ok(linearization) = jacobian(&Model::General(rough.rig()), state, 1) else { return };
     let sides: Vec<&DMatrix<f64>> = if linearization.one_sided.is_empty() {
         vec![&linearization.matrix]
     } else {
@@ -226,7 +237,7 @@ fn look(rough: &RoughRod, state: &State, modes: &[ContactMode], counts: &mut Vec
     }
 }
 
-fn assert_seen(counts: &[((Law, Vec<ContactMode>), u32)], modes: &[ContactMode]) {
+fn assert_seen(counts: &[((RestitutionLaw, Vec<ContactMode>), u32)], modes: &[ContactMode]) {
     for law in LAWS {
         let count = counts.iter().find(|(kind, _)| kind.0 == law && kind.1 == modes).map_or(0, |(_, count)| *count);
         assert!(count >= 5, "{law:?} {modes:?}: {count}");
@@ -327,13 +338,13 @@ fn the_end_of_compression_is_a_kink_for_poisson_alone() {
         };
         let mode = mode(&rough, &at(kink));
         if mode != ContactMode::Slide && !at_rest(&rough, &at(kink)) {
-            let modes = if rough.friction.law == Law::Poisson { vec![mode; 2] } else { vec![mode] };
+            let modes = if rough.friction.law == RestitutionLaw::Poisson { vec![mode; 2] } else { vec![mode] };
             look(&rough, &at(kink), &modes, &mut counts);
         }
     }
     println!("{counts:?}");
     for law in LAWS {
-        let times = if law == Law::Poisson { 2 } else { 1 };
+        let times = if law == RestitutionLaw::Poisson { 2 } else { 1 };
         for mode in [ContactMode::Stick, ContactMode::ReverseSlide] {
             assert!(counts.iter().any(|((l, modes), count)| *l == law && *modes == vec![mode; times] && *count >= 5));
         }
@@ -351,7 +362,7 @@ fn at_the_fixed_point_it_has_a_closed_form() {
         // The wanted energy is that of this bounce.
         rough.rod.target_energy = g * l + 0.5 * v * v;
         let state = State { theta: 0.0, x_dot: 0.0, y_dot: -v, theta_dot: 0.0 };
-        let ours = jacobian(&Model::Rig(rough.rig()), &state, 1).unwrap();
+        let ours = jacobian(&Model::General(rough.rig()), &state, 1).unwrap();
         assert!(ours.one_sided.is_empty() && ours.contact_mode == ContactMode::Stick);
         let (k, tau) = (rho * rho + l * l, 2.0 * v / g);
         // ẋ and θ̇ after the strike, by θ, ẋ and θ̇.

@@ -5,7 +5,7 @@ use equipoise_physics::body::Body;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::ending::Outcome;
+use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::basin::find_basin;
@@ -176,7 +176,7 @@ fn the_stick_cone_shows_in_a_region_over_friction_and_tilt_gain() {
         let scene = region.scene(index % 40, index / 40).unwrap();
         let cone = stick_cone(&scene.model()).unwrap();
         let residue = linear_verdict(&scene, &find_fixed_point(&scene).unwrap()).residue.unwrap();
-        let survived = cell.outcome == Some(Outcome::Completed);
+        let survived = cell.outcome == Some(EndingKind::Completed);
         if theta / (1.0 - residue).sqrt() < cone {
             inside += 1;
             assert!(survived, "{index} {cell:?} {cone}");

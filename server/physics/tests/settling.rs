@@ -3,7 +3,7 @@
 
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::ending::Outcome;
+use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -60,7 +60,7 @@ fn end_of(ending: Option<Ending>, impacts: u64, flights: &[f64]) -> End {
 }
 
 /// Contacts and outcome of the same run in a lane: a region of one scene.
-fn by_lanes(draft: &Draft, impacts: u64) -> (u64, Outcome) {
+fn by_lanes(draft: &Draft, impacts: u64) -> (u64, EndingKind) {
     let Some(Value::Number(theta)) = draft.get(Name::Theta) else { panic!("it has an angle") };
     let Some(Value::Number(kappa)) = draft.get(Name::TiltGain) else { panic!("it has a tilt gain") };
     let axis = |name, value| Axis { name, from: value, to: value, count: 2 };
@@ -136,7 +136,7 @@ fn contacts_with_friction_come_to_rest_where_the_equations_do() {
         assert!((by_map - t).abs() <= 1e-9 * t, "{number} {simple:?}: {by_map} {t}");
         assert!((by_extended - t).abs() <= 1e-9 * t, "{number} {simple:?}: {by_extended} {t}");
         assert_eq!(map.impacts, exact.impacts, "{number} {simple:?}: {map:?} {exact:?}");
-        assert_eq!(by_lanes(&draft, most), (map.impacts, Outcome::Settled), "{number} {simple:?}");
+        assert_eq!(by_lanes(&draft, most), (map.impacts, EndingKind::Settled), "{number} {simple:?}");
         if first == 0.0 { stopped += 1 } else { rested += 1 }
     }
     println!("{rested} come to rest, {stopped} at once, {others} do not");
@@ -227,12 +227,12 @@ fn restitution_0_on_a_still_table_is_a_dead_stop() {
             kinds[0] += 1;
             assert_eq!((map.settle_time(), map.impacts), (Some(t), 1), "{said}");
             assert_eq!((exact.settle_time().is_some(), exact.impacts), (true, 1), "{said}");
-            assert_eq!(by_lanes(&draft, 50), (1, Outcome::Settled), "{said}");
+            assert_eq!(by_lanes(&draft, 50), (1, EndingKind::Settled), "{said}");
         } else if strike.contact_rise < -1e-9 {
             kinds[1] += 1;
             assert!(matches!(map.ending, Ending::Sinking { contact_rise } if contact_rise < -1e-9), "{said}");
             assert!(matches!(exact.ending, Ending::Sinking { contact_rise } if contact_rise < -1e-9), "{said}");
-            assert_eq!(by_lanes(&draft, 50), (1, Outcome::Sinking), "{said}");
+            assert_eq!(by_lanes(&draft, 50), (1, EndingKind::Sinking), "{said}");
         } else {
             kinds[2] += 1;
             assert!(map.impacts > 1 && exact.impacts > 1, "{said}");

@@ -1,8 +1,8 @@
 //! A strike never pulls, keeps to the friction cone, balances momentum and energy, and obeys its law of restitution along the path of
 //! the contact. The checks use 31 digits and the same velocities.
 
-use equipoise_physics::body::{Body, Coming};
-use equipoise_physics::bounce::friction::{Friction, Impulse, Law, Mobility, Slide, as_it_is};
+use equipoise_physics::body::{Body, PreImpact};
+use equipoise_physics::bounce::friction::{Friction, Impulse, Mobility, RestitutionLaw, Slide, actual_branch};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::ContactMode;
@@ -14,7 +14,8 @@ use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 use super::numbers::Numbers;
 
-const LAWS: [(Law, &str); 3] = [(Law::Poisson, "poisson"), (Law::Newton, "newton"), (Law::Stronge, "stronge")];
+const LAWS: [(RestitutionLaw, &str); 3] =
+    [(RestitutionLaw::Poisson, "poisson"), (RestitutionLaw::Newton, "newton"), (RestitutionLaw::Stronge, "stronge")];
 
 /// Allowed error of an identity, in roundings of its terms.
 const ROUNDINGS: f64 = 64.0;
@@ -34,7 +35,7 @@ fn zero(what: &str, size: f64, terms: f64, of: &dyn std::fmt::Debug) {
 }
 
 /// Routh's impulse alone.
-fn impulse(numbers: &Numbers, law: Law) {
+fn impulse(numbers: &Numbers, law: RestitutionLaw) {
     let rod = Rod::lossless(
         numbers.within("contact_distance", 1e-3..=10.0, 0.2),
         numbers.within("radius_of_gyration", 1e-3..=10.0, 0.1),
@@ -47,7 +48,7 @@ fn impulse(numbers: &Numbers, law: Law) {
     let tangential = numbers.within("tangential", -1e6..=1e6, 0.5);
     let normal = numbers.within("normal", -1e6..=-1e-9, -1.0);
     let strike =
-        |tangential, mobility: &Mobility| friction.impulse(mobility, tangential, normal, restitution, as_it_is);
+        |tangential, mobility: &Mobility| friction.impulse(mobility, tangential, normal, restitution, actual_branch);
     let found = strike(tangential, &mobility);
     let of = (&friction, &mobility, tangential, normal, restitution, &found);
     let coefficient = friction.coefficient;
@@ -128,7 +129,7 @@ impl Path {
     }
 
     /// Panics unless the path ends at this impulse by its law.
-    fn hold(&self, found: &Impulse, law: Law, restitution: f64, of: &dyn std::fmt::Debug) {
+    fn hold(&self, found: &Impulse, law: RestitutionLaw, restitution: f64, of: &dyn std::fmt::Debug) {
         let (number, e) = (DoubleDouble::from, DoubleDouble::from(restitution));
         let [_, normal] = self.velocities;
         let pressed = number(found.normal);
@@ -157,11 +158,11 @@ impl Path {
         }
         let compressed = self.compressed();
         match law {
-            Law::Newton => zero("Newton", (end + e * normal).to_f64(), moved, of),
-            Law::Poisson => {
+            RestitutionLaw::Newton => zero("Newton", (end + e * normal).to_f64(), moved, of),
+            RestitutionLaw::Poisson => {
                 zero("Poisson", (pressed - (number(1.0) + e) * compressed).to_f64(), found.normal * off, of);
             }
-            Law::Stronge => {
+            RestitutionLaw::Stronge => {
                 let [.., least] = self.at(compressed);
                 zero("Stronge", (work - least + e * e * least).to_f64(), moved * found.normal, of);
             }
@@ -170,7 +171,7 @@ impl Path {
         let gained = (number(found.tangential) * t + pressed * n).to_f64();
         let worked = moved * found.normal + speeds * found.normal;
         assert!(
-            law == Law::Newton || gained <= ROUNDINGS * f64::EPSILON * worked,
+            law == RestitutionLaw::Newton || gained <= ROUNDINGS * f64::EPSILON * worked,
             "it gains {gained} of terms of {worked}: {of:?}"
         );
     }
@@ -186,7 +187,7 @@ fn strike(numbers: &Numbers, law: &'static str) {
         theta_dot: numbers.within("theta_dot", -1e6..=1e6, 1.0),
     };
     let model = scene.model();
-    let found = model.strike(&Coming::at(1, numbers.within("x", -1e3..=1e3, 0.0), before));
+    let found = model.strike(&PreImpact::at(1, numbers.within("x", -1e3..=1e3, 0.0), before));
     let rod = model.rod();
     // As in the return map: no strike if the table would have to pull, and no run at excessive speed.
     if found.push >= 0.0 || found.approach >= 0.0 || found.speed_squared > 1e12 {

@@ -7,13 +7,13 @@ use super::number::{Lane, Near};
 use super::surface::Surface;
 use super::{Lanes, WIDTH};
 use crate::bounce::contact_time;
-use crate::bounce::contact_time::Step;
+use crate::bounce::contact_time::NewtonStep;
 use crate::bounce::flight::Flight;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::tilt::Tilt;
-use crate::run::orbit::Midst;
+use crate::run::orbit::LaneRunState;
 use crate::run::rules::{Rules, SPEED_LIMIT};
 use crate::run::settling::SETTLED_SHARE;
 
@@ -162,7 +162,7 @@ fn fall<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut 
         let flight = flight::<L>(rods, moving, next, scratch, lane);
         let t = scratch.t[lane];
         let gap = flight.gap(L::from_f64(t));
-        let step = Step::new(&flight, L::from_f64(t), &gap);
+        let step = NewtonStep::new(&flight, L::from_f64(t), &gap);
         let turned = (next.theta_dot[lane] * t).abs();
         near &= turned <= Near::REACH;
         let refined = step.left_out.to_f64() <= step.negligible.to_f64();
@@ -294,9 +294,9 @@ impl Rods {
     }
 
     /// Where the run in a lane is.
-    pub(crate) fn midst(&self, moving: &Moving, lane: usize) -> Midst {
+    pub(crate) fn midst(&self, moving: &Moving, lane: usize) -> LaneRunState {
         let first_flight = Some(self.first_flight[lane]).filter(|&flight| flight != BEFORE_FLIGHT).unwrap_or(0.0);
-        Midst { state: moving.state(lane), energy: moving.energy[lane], first_flight }
+        LaneRunState { state: moving.state(lane), energy: moving.energy[lane], first_flight }
     }
 }
 

@@ -6,10 +6,10 @@
 use super::bounce::{Moving, Rods, SURE_RISE, Scratch};
 use super::number::Lane;
 use super::{Lanes, WIDTH};
-use crate::body::general::Rig;
-use crate::bounce::friction::{Friction, Law, Slide, as_it_is};
+use crate::body::general::GeneralBody;
+use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
 use crate::run::ending::Ending;
-use crate::run::orbit::Midst;
+use crate::run::orbit::LaneRunState;
 use crate::run::rules::Rules;
 use crate::table::control_law::Steering;
 
@@ -28,7 +28,7 @@ pub(crate) trait Surface {
     fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch);
 
     /// One contact of one lane by the map itself: where the run is then, or why it ends.
-    fn contact(&self, rods: &Rods, lane: usize, midst: Midst) -> Result<Midst, Ending>;
+    fn contact(&self, rods: &Rods, lane: usize, midst: LaneRunState) -> Result<LaneRunState, Ending>;
 }
 
 /// Without friction; rounding is kept off the energy, but not where a run can settle.
@@ -56,7 +56,7 @@ impl Surface for Smooth {
         }
     }
 
-    fn contact(&self, rods: &Rods, lane: usize, midst: Midst) -> Result<Midst, Ending> {
+    fn contact(&self, rods: &Rods, lane: usize, midst: LaneRunState) -> Result<LaneRunState, Ending> {
         midst.advance(rods.rod(lane), Rules { holds_energy: !rods.settles(lane), ..rods.rules(lane) })
     }
 }
@@ -69,12 +69,12 @@ const ROUGH_SURE_RISE: f64 = 10.0 * SURE_RISE;
 #[repr(align(64))]
 pub(crate) struct Rough {
     coefficient: Lanes,
-    law: Law,
+    law: RestitutionLaw,
     slide: Slide,
 }
 
 impl Rough {
-    pub(crate) fn new(law: Law, slide: Slide) -> Self {
+    pub(crate) fn new(law: RestitutionLaw, slide: Slide) -> Self {
         Self { coefficient: [Self::IDLE; WIDTH], law, slide }
     }
 
@@ -82,7 +82,7 @@ impl Rough {
     #[inline(always)]
     fn strike_by<L: Lane>(
         &self,
-        law: Law,
+        law: RestitutionLaw,
         slide: Slide,
         rods: &Rods,
         moving: &Moving,
@@ -95,7 +95,7 @@ impl Rough {
             let tilt = scratch.tilt::<L>(lane);
             let friction = Friction { coefficient: self.coefficient[lane], law, slide };
             let before = moving.state(lane).map(number);
-            let strike = friction.strike(&rod, &before, &tilt, None, number(rods.leverage(lane)), as_it_is);
+            let strike = friction.strike(&rod, &before, &tilt, None, number(rods.leverage(lane)), actual_branch);
             let lever_squared = rods.lever_squared(lane);
             next.struck(lane, &strike, moving.energy[lane], ROUGH_SURE_RISE * (1.0 + lever_squared), scratch);
         }
@@ -116,8 +116,8 @@ impl Surface for Rough {
         macro_rules! by {
             ($($law:ident $slide:ident),*) => {
                 match (self.law, self.slide) {
-                    $((Law::$law, Slide::$slide) => {
-                        self.strike_by::<L>(Law::$law, Slide::$slide, rods, moving, next, scratch);
+                    $((RestitutionLaw::$law, Slide::$slide) => {
+                        self.strike_by::<L>(RestitutionLaw::$law, Slide::$slide, rods, moving, next, scratch);
                     })*
                 }
             };
@@ -125,9 +125,9 @@ impl Surface for Rough {
         by!(Poisson None, Poisson Matched, Newton None, Newton Matched, Stronge None, Stronge Matched);
     }
 
-    fn contact(&self, rods: &Rods, lane: usize, midst: Midst) -> Result<Midst, Ending> {
+    fn contact(&self, rods: &Rods, lane: usize, midst: LaneRunState) -> Result<LaneRunState, Ending> {
         let friction = Friction { coefficient: self.coefficient[lane], law: self.law, slide: self.slide };
-        let rig = Rig {
+        let rig = GeneralBody {
             rod: rods.rod(lane),
             steering: Steering::TiltGain,
             friction: Some(friction),

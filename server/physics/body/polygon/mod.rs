@@ -10,5 +10,5 @@ mod vertices;
 
 pub use bounds::{FARTHEST, LENGTHS, MAX_VERTICES};
 pub use error::PolygonError;
-pub use outline::{FLUSH, Nearest, Outline};
+pub use outline::{FLUSH, Outline, VertexClearance};
 pub use vertices::Vertices;

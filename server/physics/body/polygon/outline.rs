@@ -31,7 +31,7 @@ pub struct Outline {
 
 /// A vertex near the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
+pub struct VertexClearance {
     /// Its place in the order in which the vertices were given, from 0.
     pub vertex: usize,
     /// Its distance from the table, m; negative below it.
@@ -106,20 +106,20 @@ impl Outline {
 
     /// The vertex beside the contact vertex that is nearest to the table, or deepest below it, where that touches the
     /// contact vertex: given sin β, cos β of β = θ − α.
-    pub fn nearest(&self, sin_cos_beta: (f64, f64)) -> Nearest {
+    pub fn nearest(&self, sin_cos_beta: (f64, f64)) -> VertexClearance {
         let (sin, cos) = sin_cos_beta;
-        let mut nearest = Nearest { vertex: self.contact_vertex, clearance: f64::INFINITY };
+        let mut nearest = VertexClearance { vertex: self.contact_vertex, clearance: f64::INFINITY };
         for (vertex, [x, y]) in self.others() {
             let clearance = x * sin + (y + self.contact_distance) * cos;
             if clearance < nearest.clearance {
-                nearest = Nearest { vertex, clearance };
+                nearest = VertexClearance { vertex, clearance };
             }
         }
         nearest
     }
 
     /// [`Outline::nearest`] where it is below the table, by more than [`FLUSH`] of the body's size: an edge may lie on it.
-    pub fn below_table(&self, sin_cos_beta: (f64, f64)) -> Option<Nearest> {
+    pub fn below_table(&self, sin_cos_beta: (f64, f64)) -> Option<VertexClearance> {
         let nearest = self.nearest(sin_cos_beta);
         (nearest.clearance < -FLUSH * self.size).then_some(nearest)
     }

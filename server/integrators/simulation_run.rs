@@ -7,23 +7,24 @@ use equipoise_physics::bounce::rebound::Rebound;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::Strike;
+use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules::{Rules, SPEED_LIMIT};
 use equipoise_physics::run::settling::{SETTLED_SHARE, stay, time_to_rest};
 
 use crate::integrators::motion::Motion;
-use crate::integrators::simulation::{Ending, Impact, Work};
+use crate::integrators::simulation::{SimulatedImpact, SimulationEnding, WorkCount};
 
 /// Why a method stops.
 pub(crate) enum Halt {
     /// The run is over.
-    Ended(Ending),
+    Ended(SimulationEnding),
     /// Nobody waits for it any more.
     Stopped,
 }
 
-impl From<equipoise_physics::run::ending::Ending> for Halt {
-    fn from(ending: equipoise_physics::run::ending::Ending) -> Self {
-        Self::Ended(Ending::Run(ending))
+impl From<Ending> for Halt {
+    fn from(ending: Ending) -> Self {
+        Self::Ended(SimulationEnding::Run(ending))
     }
 }
 
@@ -31,11 +32,11 @@ impl From<equipoise_physics::run::ending::Ending> for Halt {
 const STEPS_PER_QUESTION: u64 = 128;
 
 /// A run that a method is on.
-pub(crate) struct Course<'a> {
+pub(crate) struct SimulationRun<'a> {
     pub(crate) rod: Rod,
     pub(crate) release: Release,
-    pub(crate) impacts: Vec<Impact>,
-    pub(crate) work: Work,
+    pub(crate) impacts: Vec<SimulatedImpact>,
+    pub(crate) work: WorkCount,
     rules: Rules,
     wanted: u64,
     most_steps: u64,
@@ -47,7 +48,7 @@ pub(crate) struct Course<'a> {
     rebound: Rebound,
 }
 
-impl<'a> Course<'a> {
+impl<'a> SimulationRun<'a> {
     pub(crate) fn new(
         rod: Rod,
         rules: Rules,
@@ -60,7 +61,7 @@ impl<'a> Course<'a> {
             rod,
             release,
             impacts: Vec::new(),
-            work: Work::default(),
+            work: WorkCount::default(),
             rules,
             wanted,
             most_steps,
@@ -95,10 +96,10 @@ impl<'a> Course<'a> {
     /// Before every step: whether there may be one.
     pub(crate) fn step(&mut self, t: f64, motion: &Motion) -> Result<(), Halt> {
         if motion.place[1] < -self.rod.contact_distance && motion.velocity[1] <= 0.0 {
-            return Err(Halt::Ended(Ending::Missed { t }));
+            return Err(Halt::Ended(SimulationEnding::Missed { t }));
         }
         if self.work.steps >= self.most_steps {
-            return Err(Halt::Ended(Ending::OutOfSteps { steps: self.most_steps }));
+            return Err(Halt::Ended(SimulationEnding::OutOfSteps { steps: self.most_steps }));
         }
         if self.work.steps.is_multiple_of(STEPS_PER_QUESTION) && !(self.go_on)() {
             return Err(Halt::Stopped);
@@ -113,20 +114,16 @@ impl<'a> Course<'a> {
         self.settle(t)?;
         let contacts = self.impacts.len() as u64;
         if contacts >= self.wanted {
-            return Err(equipoise_physics::run::ending::Ending::Completed.into());
+            return Err(Ending::Completed.into());
         }
         let state = motion.state();
-        self.impacts.push(Impact { n: contacts + 1, t, x: motion.place[0], state });
+        self.impacts.push(SimulatedImpact { n: contacts + 1, t, x: motion.place[0], state });
         if state.theta.abs() >= self.rules.topple_angle {
-            return Err(equipoise_physics::run::ending::Ending::Toppled {
-                theta: state.theta,
-                limit: self.rules.topple_angle,
-            }
-            .into());
+            return Err(Ending::Toppled { theta: state.theta, limit: self.rules.topple_angle }.into());
         }
         let strike = self.rod.strike(&state);
         if strike.push >= 0.0 {
-            return Err(equipoise_physics::run::ending::Ending::Separating { approach: strike.approach }.into());
+            return Err(Ending::Separating { approach: strike.approach }.into());
         }
         Ok(strike)
     }
@@ -136,7 +133,7 @@ impl<'a> Course<'a> {
         let spin = self.rod.contact_distance * state.theta_dot;
         let speed_squared = state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin;
         if speed_squared.is_nan() || speed_squared > SPEED_LIMIT * SPEED_LIMIT {
-            return Err(equipoise_physics::run::ending::Ending::Diverged { speed: speed_squared.sqrt() }.into());
+            return Err(Ending::Diverged { speed: speed_squared.sqrt() }.into());
         }
         if !rebound.rises() {
             let t = self.impacts.last().map_or(0.0, |impact| impact.t);
@@ -145,12 +142,12 @@ impl<'a> Course<'a> {
         self.rebound = rebound;
         // Where a run can settle, the flight after its last contact decides too.
         if !self.rules.settles && self.impacts.len() as u64 >= self.wanted {
-            return Err(equipoise_physics::run::ending::Ending::Completed.into());
+            return Err(Ending::Completed.into());
         }
         Ok(())
     }
 
-    /// A contact without duration: [`Course::contact`] and [`Course::leave`], and the velocities changed.
+    /// A contact without duration: [`SimulationRun::contact`] and [`SimulationRun::leave`], and the velocities changed.
     pub(crate) fn strike(&mut self, t: f64, motion: &mut Motion) -> Result<Strike, Halt> {
         let strike = self.contact(t, motion)?;
         self.leave(&strike.after, self.rebound_of(&strike, motion))?;
@@ -171,7 +168,7 @@ impl<'a> Course<'a> {
         }
         if flight_time < SETTLED_SHARE * self.first_flight && self.rebound.is_slow() {
             let settle_time = before.t + time_to_rest(flight_time, self.last_flight);
-            return Err(equipoise_physics::run::ending::Ending::Settled { flight_time, settle_time }.into());
+            return Err(Ending::Settled { flight_time, settle_time }.into());
         }
         self.last_flight = flight_time;
         Ok(())

@@ -2,7 +2,7 @@
 
 /// A method with its setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Method {
+pub enum Integrator {
     /// Runge-Kutta of order 4 with a fixed step. A contact shows by the sign of the gap at the end of a step.
     RungeKutta {
         /// Step, s.
@@ -44,7 +44,7 @@ pub enum Location {
     Bisection,
 }
 
-impl Method {
+impl Integrator {
     /// Its name in answers.
     pub fn name(self) -> &'static str {
         match self {
