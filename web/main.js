@@ -1,23 +1,23 @@
 // The page: joins the form, the run and the panels. Not for what any of them does.
 
-import { MOST_IMPACTS, Problem, fieldsOf, get, pathOf, playedAt, same, server, setAt, valueAt } from './api.js';
-import { Circle } from './circle.js';
-import { Controls } from './controls.js';
-import { Form } from './form.js';
-import { Run } from './run.js';
-import { SceneView } from './scene-view.js';
-import { Verdict } from './verdict.js';
-import { anglePlane, velocityPlane } from './plane.js';
-import { byId, copy, h, prose, settled } from './dom.js';
-import { clearNotice, connectionNotice, notice } from './notices.js';
-import { energyPlot } from './energy.js';
-import { enlarger } from './enlarger.js';
-import { invalidate } from './surface.js';
-import { FASTEST, SLOWEST, interventionsOf, merged, readLink, sceneQuery } from './link.js';
+import { MOST_IMPACTS, Problem, fieldsOf, get, pathOf, playedAt, same, server, setAt, valueAt } from './api/api.js';
+import { Circle } from './charts/eigenvalue-circle.js';
+import { Controls } from './run/controls.js';
+import { Form } from './form/form.js';
+import { Run } from './run/run.js';
+import { SceneView } from './scene/scene-view.js';
+import { Verdict } from './panels/verdict/verdict.js';
+import { anglePlane, velocityPlane } from './charts/impacts/phase-planes.js';
+import { byId, copy, h, prose, settled } from './dom/dom.js';
+import { clearNotice, connectionNotice, notice } from './dom/notices.js';
+import { energyPlot } from './charts/impacts/energy-plot.js';
+import { enlarger } from './export/enlarge-button.js';
+import { invalidate } from './charts/surface.js';
+import { FASTEST, SLOWEST, interventionsOf, merged, readLink, sceneQuery } from './app/link.js';
 
-/** @typedef {import('./api.js').Field} Field */
-/** @typedef {import('./api.js').Case} Case */
-/** @typedef {import('./api.js').Scene} Scene */
+/** @typedef {import('./api/api.js').Field} Field */
+/** @typedef {import('./api/api.js').Case} Case */
+/** @typedef {import('./api/api.js').Scene} Scene */
 
 const GAIN = 'table.tilt_gain';
 /** What `[` and `]` go through. */
@@ -35,13 +35,13 @@ let form = null;
 let speed = 1;
 /** What was typed when the run began. @type {Scene} */
 let releasedAs = {};
-/** Those below the fold, which come after the first plot. @type {import('./panels.js').Panels | null} */
+/** Those below the fold, which come after the first plot. @type {import('./panels/panels.js').Panels | null} */
 let panels = null;
-/** What acts on all charts of the impacts, after the first plot too. @type {import('./planes/acts.js').Acts | null} */
+/** What acts on all charts of the impacts, after the first plot too. @type {import('./charts/impacts/plot-interaction.js').Acts | null} */
 let acts = null;
 /** What they show by the link, and the newest verdict, until they are there. */
 let panelLink = new URLSearchParams();
-/** @type {import('./panels.js').Judged | null} */
+/** @type {import('./panels/panels.js').Judged | null} */
 let judged = null;
 /** Whether the run has lost the server, and whether the newest scene has no verdict for want of one. */
 let [away, unjudged] = [false, false];
@@ -111,8 +111,8 @@ function impactsPath() {
 /**
  * @param {string} id
  * @param {string} title
- * @param {import('./save/record.js').Layered} view
- * @returns {import('./save/actions.js').Saves}
+ * @param {import('./export/capture.js').Layered} view
+ * @returns {import('./export/save-actions.js').Saves}
  */
 function savesOf(id, title, view) {
   addressNow();
@@ -397,7 +397,7 @@ async function begin() {
   // The plots of the first look are drawn in the next frame; what nobody sees yet comes after.
   await new Promise((resolve) => requestAnimationFrame(resolve));
   performance.mark('first plot');
-  const late = await Promise.all([import('./panels.js'), import('./keys.js'), import('./planes/acts.js')]).catch(() => null);
+  const late = await Promise.all([import('./panels/panels.js'), import('./app/keys.js'), import('./charts/impacts/plot-interaction.js')]).catch(() => null);
   // A browser remembers a module that it did not get, so that only a fresh page gets it.
   if (!late) return notice('server', ['Part of the page did not load. ', h('button', { type: 'button', click: () => location.reload() }, 'Load it again')], { caution: true });
   const [{ Panels }, { listenToKeys }, { Acts }] = late;
@@ -422,7 +422,7 @@ async function focusIn(body) {
   first()?.focus({ preventScroll: true });
 }
 
-/** @type {import('./keys.js').Key[]} */
+/** @type {import('./app/keys.js').Key[]} */
 const KEYS = [
   { keys: [' '], label: 'Space', name: 'Run, pause, resume', act: toggle },
   { keys: ['.'], label: '.', name: 'Stop at the next strike', act: () => { if (run.active) run.step(); } },

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { angleStart, velocityStart, within } from '../../web/planes/start.js';
+import { angleStart, velocityStart, within } from '../../web/physics/first-impact.js';
 import { Stage, ink, numbers, reachImpact, reachPhase, speedUp } from './stage.js';
 
 const stage = await Stage.open();
@@ -279,7 +279,7 @@ test('by touch a tap points and the second one there starts; the page still scro
 test('beyond twenty thousand impacts the dots are put down as pixels, selected ones over the rest', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
   const found = await page.evaluate(async () => {
-    const [{ Impacts, COLUMNS }, { Selection }, { anglePlane }] = await Promise.all([import('./impacts.js'), import('./selection.js'), import('./plane.js')]);
+    const [{ Impacts, COLUMNS }, { Selection }, { anglePlane }] = await Promise.all([import('./run/impacts.js'), import('./run/selection.js'), import('./charts/impacts/phase-planes.js')]);
     const impacts = new Impacts(1 << 18);
     for (let n = 1; n <= 100_000; n += 1) {
       const impact = Object.fromEntries(COLUMNS.map((name) => [name, 0]));

@@ -93,10 +93,10 @@ test('without a server the gallery says so and can be asked for again', async ()
 
 test('a part that cannot be loaded says so and can be tried again', async () => {
   const { page, context } = await stage.page('?preset=case-1');
-  await context.route('**/gallery/gallery.css', (route) => route.abort());
+  await context.route('**/panels/gallery/gallery.css', (route) => route.abort());
   await page.locator('#gallery-body').scrollIntoViewIfNeeded();
   await page.locator('#gallery-body', { hasText: 'did not load' }).waitFor();
-  await context.unroute('**/gallery/gallery.css');
+  await context.unroute('**/panels/gallery/gallery.css');
   await page.locator('#gallery-body button').click();
   await page.locator('article').first().waitFor();
 });

@@ -77,10 +77,10 @@ test('going back after a click in a plane restores the run before', async () => 
 
 test('what does not load after the first look is said, and asked for again', async () => {
   const { page } = await stage.page('?preset=case-1');
-  await page.route('**/panels.js', (route) => route.abort());
+  await page.route('**/panels/panels.js', (route) => route.abort());
   await page.reload();
   await page.locator('.notice', { hasText: 'Part of the page did not load' }).waitFor();
-  await page.unroute('**/panels.js');
+  await page.unroute('**/panels/panels.js');
   await page.getByRole('button', { name: 'Load it again' }).click();
   await page.locator('#map').waitFor();
 });

@@ -1,19 +1,19 @@
 // One panel of the page alone, for a frame in somebody's dashboard: the scene, and the run if there is one, are in the address.
 // Not for changing either: that is for the whole page, one click away.
 
-import { Circle } from '../circle.js';
-import { Problem, fieldsOf, get } from '../api.js';
-import { Run } from '../run.js';
-import { SceneView } from '../scene-view.js';
-import { Selection } from '../selection.js';
-import { anglePlane, velocityPlane } from '../plane.js';
-import { byId, h } from '../dom.js';
-import { clearNotice, connectionNotice, notice } from '../notices.js';
-import { energyPlot } from '../energy.js';
-import { invalidate } from '../surface.js';
-import { listen } from '../planes/pointing.js';
-import { merged, readLink, sceneQuery } from '../link.js';
-import { PANELS, card } from '../panels.js';
+import { Circle } from '../charts/eigenvalue-circle.js';
+import { Problem, fieldsOf, get } from '../api/api.js';
+import { Run } from '../run/run.js';
+import { SceneView } from '../scene/scene-view.js';
+import { Selection } from '../run/selection.js';
+import { anglePlane, velocityPlane } from '../charts/impacts/phase-planes.js';
+import { byId, h } from '../dom/dom.js';
+import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
+import { energyPlot } from '../charts/impacts/energy-plot.js';
+import { invalidate } from '../charts/surface.js';
+import { listen } from '../charts/impacts/plot-pointer.js';
+import { merged, readLink, sceneQuery } from '../app/link.js';
+import { PANELS, card } from '../panels/panels.js';
 
 const id = location.pathname.split('/').at(-1) ?? '';
 const main = byId('main');
@@ -34,7 +34,7 @@ const VIEWS = {
   energy: (/** @type {Run} */ run) => plot(energyPlot(run.impacts, () => run.scene), run),
 };
 
-/** @param {import('../impact-plot.js').ImpactPlot} view @param {Run} run */
+/** @param {import('../charts/impacts/impact-plot.js').ImpactPlot} view @param {Run} run */
 function plot(view, { impacts }) {
   const selection = new Selection(impacts);
   const spoken = h('p', { class: 'unseen', role: 'status' });
@@ -80,7 +80,7 @@ async function begin() {
   const fields = fieldsOf(table);
   const link = readLink(location.search, fields, cases);
   dropped(link.dropped);
-  const named = cases.find((/** @type {import('../api.js').Case} */ one) => one.name === link.preset);
+  const named = cases.find((/** @type {import('../api/api.js').Case} */ one) => one.name === link.preset);
   const chosen = named ?? (Object.keys(link.changes).length === 0 ? cases[0] : null);
   const scene = merged(chosen?.scene ?? {}, link.changes);
   const query = sceneQuery(scene, chosen, fields);
@@ -96,7 +96,7 @@ async function begin() {
     return main.append(h('p', { class: 'card' }, `There is no panel “${id.slice(0, 40)}”. There are: ${[...Object.keys(VIEWS), 'circle', ...PANELS.map((one) => one.id)].join(', ')}.`));
   }
   // To run another scene, the whole page opens beside the dashboard.
-  const play = (/** @type {import('../api.js').Scene} */ other) => void open(`./?${sceneQuery(other, null, fields)}`, '_blank', 'noopener');
+  const play = (/** @type {import('../api/api.js').Scene} */ other) => void open(`./?${sceneQuery(other, null, fields)}`, '_blank', 'noopener');
   const page = { fields, query: () => new URLSearchParams(query), scene: () => scene, chosen: () => chosen ?? null, played: () => new URLSearchParams(query), play, changed: () => {},
     launch: (/** @type {Record<string, number>} */ values) => { const other = new URLSearchParams(query); for (const [path, value] of Object.entries(values)) other.set(`scene.${path}`, String(value)); void open(`./?${other}`, '_blank', 'noopener'); } };
   const { element, bring } = card(own, page, () => link.panels, async (panel) => {

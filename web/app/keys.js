@@ -1,0 +1,36 @@
+// Single keys for the run, which can be turned off for those whose tools send letters. Not for what the keys do.
+
+import { byId, h } from '../dom/dom.js';
+
+/** @typedef {{keys: string[], label: string, name: string, act: (key: string) => void}} Key */
+
+const STORED = 'equipoise.keys';
+
+/** A browser may refuse to store anything. */
+function stored() {
+  try { return localStorage.getItem(STORED) !== 'off'; } catch { return true; }
+}
+
+/** @param {Key[]} keys */
+export function listenToKeys(keys) {
+  const dialog = byId('keys', HTMLDialogElement);
+  const on = byId('keys-on', HTMLInputElement);
+  on.checked = stored();
+  on.addEventListener('change', () => {
+    try { localStorage.setItem(STORED, on.checked ? 'on' : 'off'); } catch { /* lasts for this visit only */ }
+  });
+  const all = [...keys, { keys: ['?'], label: '?', name: 'Show these keys', act: () => dialog.showModal() }];
+  byId('keys-list').append(...all.map(({ label, name }) => h('div', {}, h('dt', {}, h('kbd', {}, label)), h('dd', {}, name))));
+  byId('keys-open').addEventListener('click', () => dialog.showModal());
+  addEventListener('keydown', (event) => {
+    if (!on.checked || document.querySelector('dialog[open]') || event.defaultPrevented || event.repeat || event.ctrlKey || event.metaKey || event.altKey) return;
+    const target = event.target instanceof Element ? event.target : null;
+    // Letters belong to where one types, and Space to whatever it presses.
+    if (target?.closest('input:not([type=range]):not([type=checkbox]), select, textarea, [contenteditable]')) return;
+    if (event.key === ' ' && target?.closest('button, a, summary, input, [tabindex]')) return;
+    const found = all.find(({ keys: known }) => known.includes(event.key));
+    if (!found) return;
+    event.preventDefault();
+    found.act(event.key);
+  });
+}

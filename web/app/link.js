@@ -1,0 +1,210 @@
+// The page's address: scene and run in the words of `/v1/live`, read with care, since links grow old. Not for sending anything.
+
+import { number, quantity } from '../dom/numbers.js';
+import { playedAt, same, setAt } from '../api/api.js';
+
+/** @typedef {import('../api/api.js').Field} Field */
+/** @typedef {import('../api/api.js').Case} Case */
+/** @typedef {import('../api/api.js').Scene} Scene */
+/** @typedef {{impact: number, set: Record<string, number | string>, kick: Record<string, number>}} Intervention */
+
+/** What belongs to a panel, by its name. */
+const PANEL_KEYS = /^(map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input))|brush\.\w+\.(from|to))$/;
+
+export const SLOWEST = 0.05;
+export const FASTEST = 20;
+
+/**
+ * @typedef {object} Link
+ * @property {string | null} preset
+ * @property {Scene} changes to the preset, or the whole scene without one
+ * @property {number} speed
+ * @property {URLSearchParams | null} run epoch, interventions and clock of a run to join
+ * @property {URLSearchParams} panels what the panels show, read where each is drawn
+ * @property {string[]} dropped what could not be kept, in words
+ */
+
+/**
+ * @param {string} search
+ * @param {Field[]} fields
+ * @param {Case[]} cases
+ * @returns {Link}
+ */
+export function readLink(search, fields, cases) {
+  /** @type {Link} */
+  const link = { preset: null, changes: {}, speed: 1, run: null, panels: new URLSearchParams(), dropped: [] };
+  const run = new URLSearchParams();
+  const query = new URLSearchParams(search);
+  let whole = true;
+  /** @param {string} what */
+  const dropScene = (what) => { whole = false; link.dropped.push(what); };
+  for (const [key, text] of query) {
+    const value = text.trim() === '' ? NaN : Number(text);
+    if (key === 'preset') {
+      if (cases.some((one) => one.name === text)) link.preset = text;
+      else dropScene(`the case “${shown(text)}”, which is not known here`);
+    } else if (/^scene\.body\.vertices\.\d{1,2}\.[01]$/.test(key) && Number.isFinite(value)) {
+      const [index, axis] = key.split('.').slice(3).map(Number);
+      const body = link.changes.body ??= {};
+      ((body.vertices ??= [])[index] ??= [])[axis] = value;
+    } else if (key.startsWith('scene.')) {
+      const refused = readField(key.slice(6), text, fields, link.changes);
+      if (refused) dropScene(refused);
+    } else if (key === 'speed') {
+      if (value >= SLOWEST && value <= FASTEST) link.speed = value;
+      else link.dropped.push(`the speed “${shown(text)}”: it must be from ${SLOWEST} to ${FASTEST}`);
+    } else if (key === 'epoch') {
+      if (Number.isFinite(value) && value >= 0) run.set(key, text);
+      else link.dropped.push(`the start “${shown(text)}”, which is not a time in ms`);
+    } else if (/^(interventions\.\d+\.(impact|(set|kick)\.[a-z_.]+)|clock\.\d+\.(wall|run|speed))$/.test(key)) {
+      if (Number.isFinite(value) || isChoice(key, text, fields)) run.set(key, text);
+      else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
+    } else if (PANEL_KEYS.test(key)) {
+      link.panels.set(key, text);
+    } else if (key !== 'from') {
+      link.dropped.push(`“${shown(key)}”, which has no meaning here`);
+    }
+  }
+  /** @type {number[][] | undefined} */
+  const vertices = link.changes.body?.vertices;
+  if (vertices && Array.from(vertices).some((place) => place?.[0] === undefined || place[1] === undefined)) {
+    delete link.changes.body.vertices;
+    dropScene('the vertices, which are not whole');
+  }
+  if (run.has('epoch') && !whole) link.dropped.push('the run itself, since its scene is not whole');
+  else if (run.has('epoch')) link.run = joined(run, fields, link.dropped);
+  else if ([...run.keys()].length > 0) link.dropped.push('the interventions, which belong to a run without a start');
+  return link;
+}
+
+/** Whether an intervention sets a choice to one there is. @param {string} key @param {string} text @param {Field[]} fields */
+function isChoice(key, text, fields) {
+  const path = /^interventions\.\d+\.set\.(.+)$/.exec(key)?.[1];
+  return fields.some((field) => field.path === path && field.choices?.includes(text));
+}
+
+/** Foreign text, short enough to print. @param {string} text */
+const shown = (text) => (text.length > 40 ? `${text.slice(0, 40)}…` : text);
+
+/**
+ * @param {string} path
+ * @param {string} text
+ * @param {Field[]} fields
+ * @param {Scene} changes where the value goes
+ * @returns {string | null} why it was not taken
+ */
+function readField(path, text, fields, changes) {
+  const field = fields.find((one) => one.path === path);
+  if (!field) return `“scene.${shown(path)}”, which is no field of a scene`;
+  /** @type {unknown} */
+  let value = text;
+  if (text === 'null' && path !== 'body.point') {
+    setAt(changes, path, null);
+    return null;
+  }
+  if (field.kind === 'number' || field.kind === 'integer') {
+    value = text.trim() === '' ? NaN : Number(text);
+    const { minimum, maximum } = field;
+    if (!Number.isFinite(value)) return `${field.title.toLowerCase()} “${shown(text)}”, which is not a number`;
+    if ((minimum != null && Number(value) < minimum) || (maximum != null && Number(value) > maximum)) {
+      return `${field.title.toLowerCase()} ${number(Number(value))}: it must be from ${number(minimum)} to ${quantity(maximum, field.unit)}`;
+    }
+  } else if (field.kind === 'boolean') {
+    if (text !== 'true' && text !== 'false') return `${field.title.toLowerCase()} “${shown(text)}”, which is neither true nor false`;
+    value = text === 'true';
+  } else if (field.choices && !field.choices.includes(text)) {
+    return `${field.title.toLowerCase()} “${shown(text)}”: it must be one of ${field.choices.join(', ')}`;
+  }
+  setAt(changes, path, value);
+  return null;
+}
+
+/**
+ * The run's part of a link with what is whole in it, numbered anew.
+ * @param {URLSearchParams} run
+ * @param {Field[]} fields
+ * @param {string[]} dropped
+ */
+function joined(run, fields, dropped) {
+  const kept = new URLSearchParams({ epoch: /** @type {string} */ (run.get('epoch')) });
+  const interventions = interventionsOf(run);
+  const whole = interventions.filter(({ impact, set, kick }) => impact >= 1 && Object.keys(set).every((path) => fields.some((field) => field.path === path && field.live))
+    && Object.keys(kick).every((name) => ['theta_dot', 'x_dot', 'y_dot'].includes(name)) && Object.keys(set).length + Object.keys(kick).length > 0);
+  if (whole.length < interventions.length) dropped.push(`${interventions.length - whole.length} of ${interventions.length} interventions, which are not whole`);
+  whole.forEach(({ impact, set, kick }, index) => {
+    kept.set(`interventions.${index}.impact`, String(impact));
+    for (const [path, value] of Object.entries(set)) kept.set(`interventions.${index}.set.${path}`, String(value));
+    for (const [name, value] of Object.entries(kick)) kept.set(`interventions.${index}.kick.${name}`, String(value));
+  });
+  const marks = [...new Set([...run.keys()].filter((key) => key.startsWith('clock.')).map((key) => Number(key.split('.')[1])))].sort((a, b) => a - b);
+  const complete = marks.filter((mark) => ['wall', 'run', 'speed'].every((part) => run.has(`clock.${mark}.${part}`)));
+  if (complete.length < marks.length) dropped.push('a pause or a change of speed, which is not whole');
+  complete.forEach((mark, index) => {
+    for (const part of ['wall', 'run', 'speed']) kept.set(`clock.${index}.${part}`, /** @type {string} */ (run.get(`clock.${mark}.${part}`)));
+  });
+  return kept;
+}
+
+/**
+ * @param {URLSearchParams} query
+ * @returns {Intervention[]} in their order
+ */
+export function interventionsOf(query) {
+  /** @type {Map<number, Intervention>} */
+  const found = new Map();
+  for (const [key, text] of query) {
+    const match = /^interventions\.(\d+)\.(impact$|set\.|kick\.)(.*)$/.exec(key);
+    if (!match) continue;
+    const index = Number(match[1]);
+    const one = found.get(index) ?? { impact: 0, set: {}, kick: {} };
+    found.set(index, one);
+    const value = Number.isFinite(Number(text)) ? Number(text) : text;
+    if (match[2] === 'impact') one.impact = Number(text);
+    else if (match[2] === 'set.') one.set[match[3]] = value;
+    else one.kick[match[3]] = Number(text);
+  }
+  return [...found.keys()].sort((a, b) => a - b).map((index) => /** @type {Intervention} */ (found.get(index)));
+}
+
+/**
+ * A preset with changes laid over it; a body of another kind replaces the preset's whole.
+ * @param {Scene} preset
+ * @param {Scene} changes
+ * @returns {Scene}
+ */
+export function merged(preset, changes) {
+  const base = structuredClone(preset);
+  const kind = (/** @type {Scene} */ { body }) => (body?.point ? 'point' : body?.vertices ? 'polygon' : 'rod');
+  if (changes.body && kind(changes) !== kind(base) && (kind(changes) !== 'rod' || kind(base) === 'point')) delete base.body;
+  /** @param {Scene} into @param {Scene} from */
+  const lay = (into, from) => {
+    for (const [key, value] of Object.entries(from)) {
+      if (value === null) delete into[key];
+      else if (typeof value === 'object' && !Array.isArray(value)) lay(into[key] ??= {}, value);
+      else into[key] = value;
+    }
+    return into;
+  };
+  return lay(base, changes);
+}
+
+/**
+ * A scene as the shortest query that means it: the preset and what differs, `null` where a value is taken back, or all of it where the
+ * body is another one.
+ * @param {Scene} scene with what was set only, defaults left out
+ * @param {Case | null} preset
+ * @param {Field[]} fields
+ */
+export function sceneQuery(scene, preset, fields) {
+  const query = new URLSearchParams();
+  const covered = preset && fields.every((field) => !field.path.startsWith('body.') || playedAt(preset.scene, field) === undefined || playedAt(scene, field) !== undefined);
+  if (covered) query.set('preset', preset.name);
+  for (const field of fields) {
+    const value = playedAt(scene, field);
+    if (value === undefined && covered && playedAt(preset.scene, field) !== undefined) query.set(`scene.${field.path}`, 'null');
+    if (value === undefined || same(value, covered ? playedAt(preset.scene, field) : field.default)) continue;
+    if (field.kind === 'vertices') value.forEach((/** @type {number[]} */ place, /** @type {number} */ index) => place.forEach((coordinate, axis) => query.set(`scene.${field.path}.${index}.${axis}`, String(coordinate))));
+    else query.set(`scene.${field.path}`, String(value));
+  }
+  return query;
+}

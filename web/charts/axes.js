@@ -1,0 +1,160 @@
+// Scales with round numbers, their ticks and marks for canvases. Not for what is plotted on them.
+
+import { number } from '../dom/numbers.js';
+import { SANS, SERIF, theme } from './theme.js';
+
+/** @typedef {{low: number, high: number}} Range */
+
+/** The round step (1, 2 or 5 times a power of ten) that parts a span into about so many. @param {number} span @param {number} count */
+export function roundStep(span, count) {
+  const raw = span / count;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const multiple = raw / power;
+  return power * (multiple < 1.5 ? 1 : multiple < 3.5 ? 2 : multiple < 7.5 ? 5 : 10);
+}
+
+/** @param {Range} range @param {number} count */
+export function ticks({ low, high }, count) {
+  const step = roundStep(high - low, count);
+  const found = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k += 1) found.push(Number((k * step).toPrecision(12)));
+  return found;
+}
+
+/**
+ * The round range around what there is, with some room so that it need not grow at once.
+ * @param {Range} extent
+ * @param {{symmetric?: boolean, span?: number, from?: number}} [wish] least span; a low end that stays
+ * @returns {Range}
+ */
+export function roundRange({ low, high }, { symmetric = false, span = 0, from } = {}) {
+  if (from !== undefined) {
+    const need = Math.max(high - from, span) * 1.25;
+    const step = roundStep(need, 8);
+    return { low: from, high: from + Math.ceil(need / step) * step };
+  }
+  if (symmetric) {
+    high = Math.max(Math.abs(low), Math.abs(high), span / 2);
+    low = -high;
+  }
+  const lack = Math.max(0, span - (high - low)) / 2;
+  const room = (high - low + 2 * lack || 1) * 0.06;
+  const step = roundStep(high - low + 2 * lack + 2 * room, 8);
+  return { low: Math.floor((low - lack - room) / step) * step, high: Math.ceil((high + lack + room) / step) * step };
+}
+
+/**
+ * @typedef {object} Frame where a plot lies on its canvas, and its scales
+ * @property {number} left
+ * @property {number} top
+ * @property {number} width
+ * @property {number} height
+ * @property {Range} x
+ * @property {Range} y
+ */
+
+/** Around every plot: room for the numbers and the names of the axes. */
+export const MARGIN = { left: 44, right: 8, top: 24, bottom: 36 };
+
+/** @param {Frame} frame @param {number} value */
+export const toX = ({ left, width, x }, value) => left + (value - x.low) / (x.high - x.low) * width;
+/** @param {Frame} frame @param {number} value */
+export const toY = ({ top, height, y }, value) => top + height - (value - y.low) / (y.high - y.low) * height;
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {Frame} frame
+ * @param {string} xName with its unit
+ * @param {string} yName
+ */
+export function drawAxes(context, frame, xName, yName) {
+  const colours = theme();
+  const { left, top, width, height } = frame;
+  context.font = `11px ${SANS}`;
+  context.lineWidth = 1;
+  context.fillStyle = colours.muted;
+  context.textAlign = 'center';
+  context.textBaseline = 'top';
+  for (const value of ticks(frame.x, Math.max(2, width / 70))) {
+    const x = Math.round(toX(frame, value)) + 0.5;
+    line(context, value === 0 ? colours.line : colours.faint, x, top, x, top + height);
+    context.fillText(number(value), x, top + height + 5);
+  }
+  context.textAlign = 'right';
+  context.textBaseline = 'middle';
+  for (const value of ticks(frame.y, Math.max(2, height / 42))) {
+    const y = Math.round(toY(frame, value)) + 0.5;
+    line(context, value === 0 ? colours.line : colours.faint, left, y, left + width, y);
+    context.fillText(number(value), left - 6, y);
+  }
+  context.strokeStyle = colours.line;
+  context.strokeRect(left + 0.5, top + 0.5, width - 1, height - 1);
+  context.font = `italic 13px ${SERIF}`;
+  context.fillStyle = colours.ink;
+  context.textBaseline = 'top';
+  context.textAlign = 'right';
+  context.fillText(xName, left + width, top + height + 19);
+  context.textAlign = 'left';
+  context.textBaseline = 'bottom';
+  context.fillText(yName, Math.max(2, left - 40), top - 5);
+}
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {string} colour
+ * @param {number} x0
+ * @param {number} y0
+ * @param {number} x1
+ * @param {number} y1
+ */
+export function line(context, colour, x0, y0, x1, y1) {
+  context.strokeStyle = colour;
+  context.beginPath();
+  context.moveTo(x0, y0);
+  context.lineTo(x1, y1);
+  context.stroke();
+}
+
+/**
+ * One impact: its colour and shape tell which parameters it was played with, so that neither is needed alone.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number} series
+ * @param {number} x
+ * @param {number} y
+ * @param {number} r
+ */
+export function drawMark(context, series, x, y, r) {
+  context.beginPath();
+  if (series % 4 === 0) context.arc(x, y, r, 0, 2 * Math.PI);
+  else if (series % 4 === 1) context.rect(x - r, y - r, 2 * r, 2 * r);
+  else if (series % 4 === 2) { context.moveTo(x, y - r * 1.4); context.lineTo(x + r * 1.4, y); context.lineTo(x, y + r * 1.4); context.lineTo(x - r * 1.4, y); context.closePath(); }
+  else { context.moveTo(x, y - r * 1.3); context.lineTo(x + r * 1.3, y + r); context.lineTo(x - r * 1.3, y + r); context.closePath(); }
+}
+
+/** @param {number} series */
+export const seriesColour = (series) => theme()[/** @type {'series-0'} */ (`series-${series % 4}`)];
+
+/** @typedef {'plain' | 'selected' | 'receded'} Look */
+
+/**
+ * The dot of an impact: whether it is selected is told by size and ring as well as by colour.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number} series
+ * @param {number} x
+ * @param {number} y
+ * @param {Look} look
+ * @param {boolean} many a dot among so many that it must be small
+ */
+export function drawDot(context, series, x, y, look, many) {
+  const size = many ? 0.6 : 1;
+  drawMark(context, series, x, y, size * { plain: 1.8, selected: 3, receded: 1.3 }[look]);
+  context.fillStyle = seriesColour(series);
+  context.globalAlpha = look === 'receded' ? 0.4 : 1;
+  context.fill();
+  context.globalAlpha = 1;
+  // Rings that overlap would hide what they surround.
+  if (look !== 'selected' || many) return;
+  context.lineWidth = 1.25;
+  context.strokeStyle = theme().ink;
+  context.stroke();
+}

@@ -1,0 +1,249 @@
+// A plot with one mark per impact, drawn on and on without starting over. What its axes mean is said by who makes it.
+
+import { Figure } from '../figure.js';
+import { MARGIN, drawAxes, drawDot, drawMark, line, roundRange, toX, toY } from '../axes.js';
+import { SANS, theme, onThemeChange } from '../theme.js';
+import { invalidate, surfaces } from '../surface.js';
+
+/** @typedef {import('../axes.js').Frame} Frame */
+
+/**
+ * @typedef {object} Axis
+ * @property {import('../../run/impacts.js').Lasting} column
+ * @property {string} name with its unit, for the axis
+ * @property {boolean} [symmetric] about zero
+ * @property {number} [span] least span, so that rounding does not look like motion
+ * @property {number} [from] a low end that stays
+ */
+
+/**
+ * @typedef {object} Meaning
+ * @property {string} id
+ * @property {string} title
+ * @property {string | Node} about
+ * @property {Axis} x
+ * @property {Axis} y
+ * @property {string[]} head of the table of numbers
+ * @property {(impacts: import('../../run/impacts.js').Impacts, place: number) => string[]} cells
+ * @property {(impacts: import('../../run/impacts.js').Impacts, place: number) => string} readout
+ * @property {string} hint while there is nothing
+ * @property {string} [lacking] when impacts have no such values
+ * @property {string} spoken what it shows, for those who do not see it
+ * @property {() => {value: number, name: string}[]} [levels] horizontal lines worth comparing with
+ * @property {'angle' | 'velocity'} [start] which part of a first impact a place in it is
+ */
+
+/** More dots than these are drawn pixel by pixel, and small. */
+export const MANY = 20_000;
+
+export class ImpactPlot {
+  figure;
+  meaning;
+  /** Its canvases, the lowest first. @type {import('../surface.js').Surface[]} */
+  layers;
+  /** @type {Frame} */
+  frame = { left: 0, top: 0, width: 0, height: 0, x: { low: 0, high: 1 }, y: { low: 0, high: 1 } };
+  /** Which impacts stand out. @type {import('../../run/selection.js').Selection | null} */
+  selection = null;
+  /** Draws over the dots. @type {((context: CanvasRenderingContext2D) => void) | null} */
+  over = null;
+  #impacts;
+  #drawn = 0;
+  /** @type {number | null} */
+  #pointed = null;
+  #stale = true;
+  /** Whether the hint stands where impacts go. */
+  #hinting = false;
+  /** Draws many dots at once, where that is loaded. @type {typeof import('./dense-dots.js').drawPixels | null} */
+  #pixels = null;
+  #many = false;
+  /** Measured points under the dots. @type {[number, number][]} */
+  #laid = [];
+  /** @type {{x: import('../axes.js').Range, y: import('../axes.js').Range}} */
+  #extent = ImpactPlot.#nothing();
+
+  static #nothing() {
+    return { x: { low: Infinity, high: -Infinity }, y: { low: Infinity, high: -Infinity } };
+  }
+
+  /**
+   * @param {import('../../run/impacts.js').Impacts} impacts
+   * @param {Meaning} meaning
+   */
+  constructor(impacts, meaning) {
+    this.#impacts = impacts;
+    this.meaning = meaning;
+    this.figure = new Figure(meaning.id, meaning.title, meaning.about, { head: meaning.head, rows: () => this.#rows() });
+    this.layers = surfaces(this.figure.box, 2, () => this.redraw());
+    onThemeChange(() => this.redraw());
+  }
+
+  #rows() {
+    const rows = [];
+    for (let place = this.#impacts.end - 1; place >= this.#impacts.begin && rows.length < 50; place -= 1) rows.push(this.meaning.cells(this.#impacts, place));
+    return rows;
+  }
+
+  /** Everything anew in the next frame. */
+  redraw() {
+    this.#stale = true;
+    invalidate(this);
+  }
+
+  clear() {
+    this.#extent = ImpactPlot.#nothing();
+    this.#pointed = null;
+    this.#drawn = 0;
+    this.redraw();
+  }
+
+  /** @param {number | null} place */
+  point(place) {
+    if (place === this.#pointed) return;
+    this.#pointed = place;
+    invalidate(this);
+  }
+
+  /** Measured points, drawn under the dots and held by the scales. @param {[number, number][]} points */
+  lay(points) {
+    this.#laid = points;
+    this.redraw();
+  }
+
+  /** Where an impact lies, px. @param {number} place */
+  at(place) {
+    const { x, y } = this.meaning;
+    return [toX(this.frame, this.#impacts.at(x.column, place)), toY(this.frame, this.#impacts.at(y.column, place))];
+  }
+
+  /** @param {number} from @returns {boolean} whether all of it lies within the frame */
+  #extend(from) {
+    let inside = true;
+    for (const axis of /** @type {const} */ (['x', 'y'])) {
+      const extent = this.#extent[axis];
+      for (let place = from; place < this.#impacts.end; place += 1) {
+        const value = this.#impacts.at(this.meaning[axis].column, place);
+        if (value < extent.low) extent.low = value;
+        if (value > extent.high) extent.high = value;
+      }
+      if (extent.low < this.frame[axis].low || extent.high > this.frame[axis].high) inside = false;
+    }
+    return inside;
+  }
+
+  /** @param {number} now_ms */
+  draw(now_ms) {
+    const { begin, end } = this.#impacts;
+    if (end < this.#drawn) this.#drawn = begin;
+    if (!this.#extend(Math.max(begin, this.#drawn)) || (this.#hinting && end > 0)) this.#stale = true;
+    this.selection?.update();
+    const many = end - begin > MANY;
+    if (many !== this.#many) {
+      this.#many = many;
+      this.#stale = true;
+    }
+    if (this.#stale) this.#paper();
+    this.#dots(Math.max(begin, this.#drawn), end);
+    this.#drawn = end;
+    this.#highlight();
+    this.figure.name(now_ms, () => (end === 0 ? `${this.meaning.spoken}: nothing yet` : `${this.meaning.spoken}. ${end} impacts; the last: ${this.meaning.readout(this.#impacts, end - 1)}`));
+    this.figure.list(now_ms);
+    return false;
+  }
+
+  /** @param {number} from @param {number} to */
+  #dots(from, to) {
+    const [surface] = this.layers;
+    const { selection } = this;
+    if (to - from > MANY) {
+      if (this.#pixels) return this.#pixels(surface, this, this.#impacts, selection);
+      void import('./dense-dots.js').then(({ drawPixels }) => { this.#pixels = drawPixels; this.redraw(); }, () => {});
+    }
+    for (let place = from; place < to; place += 1) {
+      const [x, y] = this.at(place);
+      if (Number.isNaN(x) || Number.isNaN(y)) continue;
+      drawDot(surface.context, this.#impacts.at('series', place), x, y, !selection?.active ? 'plain' : selection.has(place) ? 'selected' : 'receded', this.#many);
+    }
+  }
+
+  /** The empty plot with scales that hold what there is. */
+  #paper() {
+    const { context, width, height } = this.layers[0];
+    const { x, y, hint, lacking, levels } = this.meaning;
+    const extent = structuredClone(this.#extent);
+    const beside = [...(levels?.() ?? []).map(({ value }) => [NaN, value]), ...this.#laid];
+    for (const [across, up] of beside) {
+      if (across < extent.x.low) extent.x.low = across;
+      if (across > extent.x.high) extent.x.high = across;
+      if (up < extent.y.low) extent.y.low = up;
+      if (up > extent.y.high) extent.y.high = up;
+    }
+    const empty = !(extent.x.high >= extent.x.low) || !(extent.y.high >= extent.y.low);
+    this.frame = {
+      left: MARGIN.left, top: MARGIN.top, width: Math.max(1, width - MARGIN.left - MARGIN.right), height: Math.max(1, height - MARGIN.top - MARGIN.bottom),
+      x: extent.x.high >= extent.x.low ? roundRange(extent.x, x) : roundRange({ low: 0, high: 0 }, { ...x, span: x.span || 1 }),
+      y: extent.y.high >= extent.y.low ? roundRange(extent.y, y) : roundRange({ low: 0, high: 0 }, { ...y, span: y.span || 1 }),
+    };
+    context.clearRect(0, 0, width, height);
+    drawAxes(context, this.frame, x.name, y.name);
+    const colours = theme();
+    for (const { value, name } of levels?.() ?? []) {
+      const at = toY(this.frame, value);
+      context.setLineDash([5, 4]);
+      line(context, colours.good, this.frame.left, at, this.frame.left + this.frame.width, at);
+      context.setLineDash([]);
+      context.font = `11px ${SANS}`;
+      context.fillStyle = colours.good;
+      context.textAlign = 'right';
+      context.textBaseline = 'bottom';
+      context.fillText(name, this.frame.left + this.frame.width, this.frame.top - 6);
+    }
+    this.#hinting = this.#impacts.end === 0;
+    if (empty || this.#hinting) {
+      context.font = `12px ${SANS}`;
+      context.fillStyle = colours.muted;
+      context.textAlign = 'center';
+      context.textBaseline = 'middle';
+      context.fillText(this.#impacts.end > 0 && lacking ? lacking : hint, this.frame.left + this.frame.width / 2, this.frame.top + this.frame.height / 2 - 14, this.frame.width - 16);
+    }
+    context.lineWidth = 1.5;
+    context.strokeStyle = colours.measured;
+    for (const [across, up] of this.#laid) {
+      drawMark(context, 2, toX(this.frame, across), toY(this.frame, up), 3.6);
+      context.stroke();
+    }
+    this.#drawn = 0;
+    this.#stale = false;
+  }
+
+  #highlight() {
+    const { context, width, height } = this.layers[1];
+    context.clearRect(0, 0, width, height);
+    this.over?.(context);
+    const { begin, end } = this.#impacts;
+    const place = this.#pointed !== null && this.#pointed >= begin && this.#pointed < end ? this.#pointed : end - 1;
+    if (place < 0) return this.figure.read('');
+    const [x, y] = this.at(place);
+    const { left, top, width: w, height: h } = this.frame;
+    const colours = theme();
+    if (Number.isFinite(x) && Number.isFinite(y)) {
+      context.lineWidth = 1;
+      line(context, colours.muted, left, Math.round(y) + 0.5, left + 5, Math.round(y) + 0.5);
+      line(context, colours.muted, Math.round(x) + 0.5, top + h - 5, Math.round(x) + 0.5, top + h);
+      if (place === this.#pointed) {
+        context.setLineDash([2, 3]);
+        line(context, colours.muted, left, y, left + w, y);
+        line(context, colours.muted, x, top, x, top + h);
+        context.setLineDash([]);
+      }
+      context.beginPath();
+      context.arc(x, y, 5, 0, 2 * Math.PI);
+      context.fillStyle = colours.surface;
+      context.fill();
+      context.lineWidth = 2;
+      context.strokeStyle = colours.strike;
+      context.stroke();
+    }
+    this.figure.read(this.meaning.readout(this.#impacts, place));
+  }
+}

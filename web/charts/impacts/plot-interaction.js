@@ -1,0 +1,125 @@
+// What acts on all charts of the impacts: one selection, one impact pointed at, a start by a click, a lab's own impacts. Not for drawing them.
+
+import { Selection } from '../../run/selection.js';
+import { drawContacts } from './overlay.js';
+import { h } from '../../dom/dom.js';
+import { invalidate } from '../surface.js';
+import { listen } from './plot-pointer.js';
+import { notice } from '../../dom/notices.js';
+import { styles } from '../../panels/panels.js';
+
+/**
+ * @typedef {object} Page
+ * @property {import('../../run/run.js').Run} run
+ * @property {import('../../scene/scene-view.js').SceneView} view
+ * @property {import('./impact-plot.js').ImpactPlot[]} plots
+ * @property {() => import('../../api/api.js').Scene | null} typed what a run would be released with; null while some of it is no value
+ * @property {import('../../api/api.js').Field[]} fields
+ * @property {(values: Record<string, number>) => void} launch
+ * @property {() => void} changed what the address says
+ */
+
+const BY_POINTER = 'Drag over a plot to select impacts; click in a plane to say where a run first lands.';
+const BY_KEYS = 'Left and right go from impact to impact, with Shift they select; Enter starts a run whose first impact is that one; Escape clears the selection.';
+
+export class Acts {
+  #bar;
+  #page;
+  #selection;
+  #told = h('span', { id: 'brush-told' }, BY_POINTER);
+  #clear = h('button', { type: 'button', id: 'brush-clear', hidden: true, click: () => this.#selection.set([]) }, 'Clear');
+  #load = h('button', { type: 'button', id: 'measured-load', click: () => this.#file.click() }, 'Load measured impacts…');
+  #file = h('input', { type: 'file', id: 'measured-file', accept: '.csv,.tsv,.txt,text/csv,text/tab-separated-values', hidden: true, change: () => {
+    void this.#take(this.#file.files?.[0]);
+    this.#file.value = '';
+  } });
+  #hint = h('p', { class: 'unseen', id: 'impacts-hint' }, BY_KEYS);
+  // Spoken when keys move or a selection is made; a pointer's way over a chart is not.
+  #spoken = h('p', { class: 'unseen', role: 'status', id: 'impacts-spoken' });
+  /** @type {import('../../panels/measured/panel.js').MeasuredPanel | null} */
+  #measured = null;
+  /** Whether keys go to one of the plots. */
+  #keyed = false;
+
+  /** @param {HTMLElement} bar over the plots @param {Page} page */
+  constructor(bar, page) {
+    const { run: { impacts }, view, plots } = page;
+    this.#bar = bar;
+    this.#page = page;
+    const selection = this.#selection = new Selection(impacts);
+    selection.changed = () => this.#selected();
+    bar.append(this.#told, this.#clear, this.#load, this.#file, this.#hint, this.#spoken);
+    view.under = (surface, scale, scene) => drawContacts(surface, scale, scene, impacts, selection);
+    for (const plot of plots) {
+      listen(plot, { ...page, impacts, selection, point: (place) => { for (const one of plots) one.point(place); }, say: (words) => { this.#spoken.textContent = words; } });
+      const { box } = plot.figure;
+      box.setAttribute('aria-describedby', this.#hint.id);
+      // A pointer does not give the focus.
+      for (const event of ['focus', 'blur']) box.addEventListener(event, () => { this.#keyed = event === 'focus'; invalidate(this); });
+    }
+    const root = /** @type {HTMLElement} */ (bar.parentElement);
+    // Wherever on the page: a file beside the charts is meant for them, not for the browser.
+    const over = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes('Files') ?? false;
+    addEventListener('dragover', (event) => {
+      if (!over(event)) return;
+      event.preventDefault();
+      root.classList.add('awaited');
+    });
+    addEventListener('dragleave', (event) => { if (!event.relatedTarget) root.classList.remove('awaited'); });
+    addEventListener('drop', (event) => {
+      root.classList.remove('awaited');
+      if (!over(event)) return;
+      event.preventDefault();
+      void this.#take(event.dataTransfer?.files[0]);
+    });
+  }
+
+  query() { return this.#selection.query(); }
+
+  /** @param {URLSearchParams} link */
+  restore(link) { return this.#selection.restore(link); }
+
+  /** The selection is another one. */
+  #selected() {
+    const { plots, view, changed } = this.#page;
+    for (const plot of plots) plot.redraw();
+    view.redraw();
+    invalidate(this);
+    changed();
+  }
+
+  /** There are new impacts. */
+  struck() {
+    this.#selection.update();
+    invalidate(this);
+    this.#measured?.struck();
+  }
+
+  /** The impacts are those of another run. */
+  cleared() {
+    this.#selection.forget();
+    invalidate(this);
+    this.#measured?.struck();
+  }
+
+  /** Reads measured impacts. @param {File | undefined} file */
+  async #take(file) {
+    if (!file) return;
+    try {
+      const [{ MeasuredPanel }] = await Promise.all([import('../../panels/measured/panel.js'), this.#measured ?? styles('panels/measured/measured.css')]);
+      this.#measured ??= new MeasuredPanel(this.#bar, this.#page);
+    } catch {
+      return notice('measured', ['What reads measured impacts did not load.'], { caution: true });
+    }
+    await this.#measured.take(file);
+  }
+
+  draw() {
+    const { active, places } = this.#selection;
+    const { begin, end } = this.#page.run.impacts;
+    this.#clear.hidden = !active;
+    const words = active ? `${places.length} of ${end - begin} impacts selected` : this.#keyed ? BY_KEYS : BY_POINTER;
+    if (this.#told.textContent !== words) this.#told.textContent = words;
+    return false;
+  }
+}

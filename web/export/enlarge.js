@@ -1,0 +1,28 @@
+// A panel in a dialog as large as the window: the card itself goes there and comes back. Not for what is saved of it.
+
+import { actions } from './save-actions.js';
+import { h } from '../dom/dom.js';
+
+/**
+ * @param {HTMLElement} card
+ * @param {string} title
+ * @param {import('./save-actions.js').Saves | null} saves
+ */
+export function enlarge(card, title, saves) {
+  if (card.closest('dialog')) return;
+  // What it leaves keeps its size, so that nothing jumps.
+  const { height } = card.getBoundingClientRect();
+  const room = h('div', { class: card.className });
+  room.style.height = `${height}px`;
+  const dialog = h('dialog', { class: 'large', 'aria-label': title },
+    h('form', { method: 'dialog', class: 'large-head' }, ...(saves ? [h('p', { class: 'actions' }, ...actions(saves))] : []), h('button', { autofocus: true }, 'Close')));
+  card.before(room);
+  dialog.append(card);
+  document.body.append(dialog);
+  dialog.addEventListener('close', () => {
+    room.replaceWith(card);
+    dialog.remove();
+    /** @type {HTMLElement | null} */ (card.querySelector('button.enlarge'))?.focus();
+  });
+  dialog.showModal();
+}

@@ -1,0 +1,161 @@
+// A law α = −K·(x, θ, ẋ, θ̇) for the page's scene by weights to choose: the server designs it, the page shows and runs it. Not for the design.
+
+import { Problem, get } from '../../api/api.js';
+import { h, marked, prose, symbol } from '../../dom/dom.js';
+import { actions } from '../../export/save-actions.js';
+import { number, parse, quantity } from '../../dom/numbers.js';
+
+/** @typedef {import('../../api/api.js').Scene} Scene */
+/** @typedef {import('../../api/api.js').Eigenvalue} Eigenvalue */
+/**
+ * @typedef {object} Controller
+ * @property {Scene} scene with the law in it
+ * @property {'frictionless' | 'stick'} contact
+ * @property {Record<string, number>} gain
+ * @property {boolean} stable
+ * @property {Eigenvalue[]} eigenvalues
+ * @property {Eigenvalue[]} open_loop
+ * @property {number} spectral_radius
+ * @property {number | null} bounces_per_decade
+ * @property {{lower: number | null, upper: number | null} | null} gain_margin
+ * @property {number} residual
+ * @property {{designed: string | null, proportional: string | null} | null} regions
+ * @property {string[]} notes
+ */
+
+/** @type {[string, string, string, string][]} name, sign, weight at first, unit of the gain */
+const STATES = [['x', 'x', '1', 'rad/m'], ['theta', 'θ', '10', '1'], ['x_dot', 'ẋ', '0.1', 'rad·s/m'], ['theta_dot', 'θ̇', '0.1', 's']];
+const INPUT = '10';
+const CONTACTS = { '': 'As the scene’s', frictionless: 'Frictionless', stick: 'Sticks' };
+
+/** From where the page is, behind whatever proxy. @param {string} path */
+const here = (path) => path.replace(/^\//, '');
+
+/** @param {Eigenvalue} eigenvalue */
+const complex = ({ re, im }) => (im === 0 ? number(re) : `${number(re)} ${im < 0 ? '\u2212' : '+'} ${number(Math.abs(im))} i`);
+
+/** @type {import('../panels.js').Module['mount']} */
+export const mount = (root, page) => new DesignPanel(root, page);
+
+class DesignPanel {
+  #page;
+  /** @type {Map<string, HTMLInputElement>} */
+  #weights = new Map();
+  #error = h('p', { class: 'error', id: 'design-error' });
+  #contact = h('select', { id: 'design-contact', change: () => this.#page.changed() }, ...Object.entries(CONTACTS).map(([value, words]) => h('option', { value }, words)));
+  #told = h('div', { class: 'design-told', id: 'design-told', role: 'status' });
+  #sheet = h('div', { class: 'design-sheet', id: 'design-sheet', hidden: true });
+  /** @type {AbortController | null} */
+  #asking = null;
+
+  /**
+   * @param {HTMLElement} root
+   * @param {import('../panels.js').Page} page
+   */
+  constructor(root, page) {
+    this.#page = page;
+    const row = (/** @type {string} */ name, /** @type {string} */ sign, /** @type {string} */ value) => {
+      const input = h('input', { id: `design-${name}`, type: 'text', inputmode: 'decimal', autocomplete: 'off', value, 'aria-describedby': 'design-error', change: () => page.changed() });
+      this.#weights.set(name, input);
+      return h('p', { class: 'design-row' }, h('label', { for: `design-${name}` }, 'of ', symbol(sign)), input);
+    };
+    root.append(h('form', { novalidate: true, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.ask(); } },
+      h('fieldset', {}, h('legend', {}, 'Weights, squared deviations'), ...STATES.map(([name, sign, value]) => row(name, sign, value)), row('input', 'α', INPUT)),
+      this.#error, h('p', { class: 'design-row' }, h('label', { for: 'design-contact' }, 'Contact'), this.#contact),
+      h('p', { class: 'buttons' }, h('button', { type: 'submit', id: 'design-start' }, 'Design')), this.#told), this.#sheet);
+    this.#told.append('A tilt in proportion to the angle leaves the rod circling and drifting. A law that feeds back the whole state brings it to rest in place.');
+  }
+
+  /** Its part of the page’s address. */
+  query() {
+    const query = new URLSearchParams([...this.#weights].filter(([, input]) => input.value.trim() !== input.defaultValue).map(([name, input]) => [`design.weights.${name}`, input.value.trim()]));
+    if (this.#contact.value) query.set('design.contact', this.#contact.value);
+    return query;
+  }
+
+  /** @param {URLSearchParams} link */
+  restore(link) {
+    const dropped = [];
+    for (const [name, input] of this.#weights) {
+      const text = link.get(`design.weights.${name}`);
+      const right = text === null || parse(text, '1') !== null;
+      if (!right) dropped.push(`the weight “${text.slice(0, 40)}”, which is not a number`);
+      input.value = right && text !== null ? text : input.defaultValue;
+    }
+    const contact = link.get('design.contact') ?? '';
+    if (contact in CONTACTS) this.#contact.value = contact;
+    else dropped.push(`the contact “${contact.slice(0, 40)}”`);
+    return dropped;
+  }
+
+  /** The scene of the page is another one. */
+  sceneChanged() {
+    this.#asking?.abort();
+    if (!this.#sheet.hidden) this.#told.replaceChildren('The scene has changed since; design anew for it.');
+  }
+
+  /** What is asked for; null where something typed is wrong, which is said. */
+  #request() {
+    const request = this.#page.query();
+    /** @type {HTMLInputElement | null} */
+    let wrong = null;
+    for (const [name, input] of this.#weights) {
+      const value = parse(input.value, '1');
+      const right = value !== null && (name === 'input' ? value > 0 : value >= 0);
+      input.setAttribute('aria-invalid', String(!right));
+      if (right) request?.set(name === 'input' ? 'weights.input' : `weights.state.${name}`, String(value));
+      else wrong ??= input;
+    }
+    this.#error.textContent = wrong ? 'Weights must be numbers from 0 on, that of the tilt above 0.' : '';
+    if (wrong) {
+      wrong.focus();
+      return null;
+    }
+    if (this.#contact.value) request?.set('contact', this.#contact.value);
+    if (!request) this.#told.replaceChildren('A parameter of the scene is not a number; it is marked among them.');
+    return request;
+  }
+
+  async ask() {
+    const request = this.#request();
+    if (!request) return;
+    this.#asking?.abort();
+    const { signal } = this.#asking = new AbortController();
+    const path = `v1/controllers?${request}`;
+    try {
+      const answer = await get(path, signal);
+      if (!signal.aborted) this.#show(answer, path);
+    } catch (error) {
+      if (signal.aborted) return;
+      this.#sheet.hidden = true;
+      this.#told.replaceChildren(...marked(error instanceof Problem ? error.errors.map(({ detail }) => detail).join(' ') || error.message : 'The server does not answer.'));
+    }
+  }
+
+  /** @param {Controller} answer @param {string} path */
+  #show(answer, path) {
+    const { scene, gain, stable, eigenvalues, open_loop: open, spectral_radius: radius, bounces_per_decade: decade, gain_margin: margin, regions, notes, contact } = answer;
+    this.#told.replaceChildren(stable ? 'Every small deviation that is fed back dies out.' : 'This law does not hold: a small deviation grows.');
+    /** @type {[string | Node, string, string][]} */
+    const rows = [...STATES.filter(([name]) => name in gain).map(([name, sign, , unit]) => /** @type {[Node, string, string]} */ ([symbol(`K_${sign}`), quantity(gain[name], unit, 5), `gain of ${sign}`])),
+      ['max |λ|', number(radius, 5), 'spectral radius of the closed loop'],
+      ['decade', decade === null ? '–' : number(decade), 'bounces to a tenth'],
+      ['margin', margin ? `${number(margin.lower)} to ${number(margin.upper)}` : '–', 'factors on the whole gain that still hold'],
+      ['contact', contact, 'that the law is for'],
+      ['residual', number(answer.residual, 2), 'of the Riccati equation']];
+    const region = (/** @type {string} */ name, /** @type {string | null | undefined} */ address) => address && h('a', { href: `${here(address)}&format=svg` }, name);
+    const picture = `${path}&format=svg`;
+    this.#sheet.replaceChildren(
+      h('a', { class: 'picture', href: picture }, h('img', { src: picture, alt: `Eigenvalues of the closed loop on the unit circle, the largest ${number(radius)}; they are in the table. Below, the largest as the gain is scaled.` })),
+      h('div', {}, h('dl', { class: 'numbers', id: 'design-gains' }, ...rows.map(([name, value, meaning]) => h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning)))),
+        h('p', { class: 'buttons' }, h('button', { type: 'button', id: 'design-run', class: 'primary', click: () => this.#page.play(scene) }, 'Put it into the scene and run')),
+        h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Eigenvalues' }, h('table', { class: 'eigenvalues' },
+          h('thead', {}, h('tr', {}, ...['λ of the closed loop', '|λ|', 'λ without a law', '|λ|'].map((name) => h('th', { scope: 'col' }, name)))),
+          h('tbody', {}, ...Array.from({ length: Math.max(eigenvalues.length, open.length) }, (_, index) => h('tr', {},
+            ...[eigenvalues[index], open[index]].flatMap((one) => (one ? [complex(one), number(one.modulus)] : ['–', '–'])).map((text, column) => (column === 0 ? h('th', { scope: 'row' }, text) : h('td', {}, text)))))))),
+        ...notes.map((note) => h('p', { class: 'muted small' }, ...prose(note[0].toUpperCase() + note.slice(1)), '.')),
+        (regions?.designed || regions?.proportional) && h('p', { class: 'actions', id: 'design-regions' }, 'What it survives: ', region('with the law', regions.designed), region('with the tilt gain', regions.proportional)),
+        h('p', { class: 'actions', id: 'design-links' }, ...actions({ id: 'design', title: 'Design a controller', path, formats: ['svg', 'png', 'csv', 'json'] }))));
+    this.#sheet.hidden = false;
+  }
+}

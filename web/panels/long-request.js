@@ -1,0 +1,116 @@
+// A question that takes the server a while: how far it is, how to stop it, and what went wrong, in words. Not for what is asked.
+
+import { Problem, problemOf } from '../api/api.js';
+import { h, marked } from '../dom/dom.js';
+import { lines } from '../api/ndjson.js';
+import { number } from '../dom/numbers.js';
+
+export class Asking {
+  /** The button that asks, and the one that stops. */
+  buttons;
+  /** What has come of it. */
+  told;
+  #start;
+  #cancel;
+  // The count is left to the bar, which is asked for its value: spoken by itself it would not stop.
+  #words = h('span', { role: 'status' });
+  #count = h('span');
+  #bar = h('progress', { hidden: true });
+  #doing;
+  #units;
+  /** @type {AbortController | null} */
+  #under = null;
+  #answered = false;
+
+  /**
+   * @param {string} name what the ids of all of it begin with
+   * @param {HTMLButtonElement} start the button that asks
+   * @param {string} doing while it is under way
+   * @param {string} units what its work is counted in
+   */
+  constructor(name, start, doing, units) {
+    this.#doing = doing;
+    this.#units = units;
+    this.#start = start;
+    this.#cancel = h('button', { type: 'button', id: `${name}-cancel`, disabled: true, click: () => this.stop('Cancelled.') }, 'Cancel');
+    this.#bar.setAttribute('aria-label', doing);
+    this.buttons = h('p', { class: 'buttons' }, this.#start, this.#cancel);
+    this.told = h('div', { class: `${name}-told`, id: `${name}-told` }, this.#words, ' ', this.#count, this.#bar);
+  }
+
+  get active() {
+    return this.#under !== null;
+  }
+
+  /** @param {string} words */
+  say(words) {
+    this.#words.replaceChildren(...marked(words));
+  }
+
+  /** @param {string} words why */
+  stop(words) {
+    if (!this.#under) return;
+    this.#under.abort();
+    this.#busy(null);
+    this.#fail(words);
+  }
+
+  /**
+   * The answer; null where there is none, which is told. One question at a time.
+   * @param {string} path with a query, and no format
+   * @returns {Promise<any>}
+   */
+  async ask(path) {
+    const under = new AbortController();
+    const { signal } = under;
+    this.#under?.abort();
+    this.#busy(under);
+    this.say(`${this.#doing}…`);
+    let answer = null;
+    try {
+      const response = await fetch(`${path}&format=progress`, { signal });
+      if (!response.ok || !response.body) throw await problemOf(response);
+      for await (const line of lines(response.body)) {
+        if (signal.aborted) return null;
+        if (line.progress) this.#show(line.progress);
+        else answer = line.end;
+      }
+      if (!answer) throw new TypeError('no end');
+      this.#answered = true;
+      return answer;
+    } catch (error) {
+      if (signal.aborted) return null;
+      const far = this.#count.textContent;
+      if (error instanceof Problem) this.#fail(error.errors.map(({ detail }) => detail).join(' ') || error.message);
+      else this.#fail(far ? `The answer broke off at ${far}.` : 'The server does not answer.');
+      return null;
+    } finally {
+      if (this.#under === under) this.#busy(null);
+    }
+  }
+
+  /** @param {string} words */
+  #fail(words) {
+    this.say(this.#answered ? `${words} What is shown is from before.` : words);
+  }
+
+  /** @param {{done: number, of: number}} progress */
+  #show({ done, of }) {
+    this.#bar.max = of;
+    this.#bar.value = done;
+    this.#count.textContent = `${number(done, 7)} of ${number(of, 7)} ${this.#units}`;
+  }
+
+  /** @param {AbortController | null} under */
+  #busy(under) {
+    const [on, off] = under ? [this.#cancel, this.#start] : [this.#start, this.#cancel];
+    this.#under = under;
+    on.disabled = false;
+    // Whoever pressed it should not find the focus gone.
+    if (off === document.activeElement) on.focus();
+    off.disabled = true;
+    this.#bar.hidden = under === null;
+    this.#bar.removeAttribute('value');
+    this.#count.textContent = '';
+  }
+}

@@ -1,0 +1,210 @@
+// What a map is asked for, as controls with their errors beside them, and how far its answer is. Not for asking.
+
+import { COLUMNS, QUANTITIES, rowsOf, sidesOf } from './settings.js';
+import { MOST_IMPACTS } from '../../api/api.js';
+import { h } from '../../dom/dom.js';
+import { number, parse, unitAfter } from '../../dom/numbers.js';
+import { sliderRange } from '../../form/form.js';
+
+/** @typedef {import('../../api/api.js').Field} Field */
+/** @typedef {import('./settings.js').Settings} Settings */
+/** @typedef {'x' | 'y'} Name */
+
+/**
+ * @typedef {object} Acts
+ * @property {(settings: Settings) => void} changed
+ * @property {() => void} compute
+ * @property {() => void} cancel
+ * @property {() => void} back
+ */
+
+/** @param {number} count */
+const times = (count) => `${count} × ${rowsOf(count)}`;
+
+export class Controls {
+  element;
+  #acts;
+  #fields;
+  /** @type {Settings} */
+  #settings;
+  #sides;
+  #quantity;
+  #impacts;
+  #impactsError = h('p', { class: 'error', id: 'map-impacts-error' });
+  #columns;
+  #compute = h('button', { type: 'button', id: 'map-compute', click: () => this.#acts.compute() }, 'Compute');
+  #cancel = h('button', { type: 'button', id: 'map-cancel', disabled: true, click: () => this.#acts.cancel() }, 'Cancel');
+  #back = h('button', { type: 'button', id: 'map-back', disabled: true, click: () => this.#acts.back() }, 'Back');
+  #progress = h('progress', { id: 'map-progress', 'aria-label': 'Rows of the map', max: 1, value: 0 });
+  #count = h('span', { class: 'muted' });
+  #told = h('p', { class: 'map-told', id: 'map-told', role: 'status' });
+
+  /**
+   * @param {Field[]} fields
+   * @param {Settings} settings
+   * @param {Acts} acts
+   */
+  constructor(fields, settings, acts) {
+    this.#acts = acts;
+    this.#fields = sidesOf(fields);
+    this.#settings = settings;
+    this.#sides = { x: this.#side('x', 'Across'), y: this.#side('y', 'Upwards') };
+    this.#quantity = h('select', { id: 'map-quantity', change: () => this.#read() }, ...Object.entries(QUANTITIES).map(([value, { title }]) => h('option', { value }, title)));
+    this.#impacts = h('input', { id: 'map-impacts', type: 'text', inputmode: 'numeric', autocomplete: 'off', 'aria-describedby': 'map-impacts-error', change: () => this.#read() });
+    this.#columns = h('select', { id: 'map-columns', change: () => this.#read() }, ...COLUMNS.map((value) => h('option', { value }, times(value))));
+    this.element = h('form', { class: 'map-controls', novalidate: true, submit: (event) => { event.preventDefault(); this.#acts.compute(); } },
+      this.#sides.x.element, this.#sides.y.element,
+      h('fieldset', {}, h('legend', {}, 'Shown'),
+        h('p', { class: 'map-row' }, h('label', { for: 'map-quantity' }, 'Colour'), this.#quantity),
+        h('p', { class: 'map-row' }, h('label', { for: 'map-impacts' }, 'Contacts'), this.#impacts), this.#impactsError,
+        h('p', { class: 'map-row' }, h('label', { for: 'map-columns' }, 'Cells'), this.#columns)),
+      h('div', { class: 'map-go' }, h('p', { class: 'buttons' }, this.#compute, this.#cancel, this.#back),
+        h('p', { class: 'map-progress' }, this.#progress, this.#count), this.#told));
+    this.show(settings);
+  }
+
+  /** @param {Name} name @param {string} title */
+  #side(name, title) {
+    const id = `map-${name}`;
+    const error = h('p', { class: 'error', id: `${id}-error` });
+    const groups = [...new Set(this.#fields.map(({ group }) => group))];
+    const field = h('select', { id, 'aria-label': `Field ${title.toLowerCase()}`, 'aria-describedby': error.id, change: () => this.#turn(name) },
+      ...groups.map((group) => h('optgroup', { label: group[0].toUpperCase() + group.slice(1) },
+        ...this.#fields.filter((one) => one.group === group).map((one) => h('option', { value: one.path }, `${one.title}${one.symbol && !one.symbol.includes('_') ? ` ${one.symbol}` : ''}`)))));
+    /** @param {'from' | 'to'} end */
+    const ending = (end) => h('input', { id: `${id}-${end}`, type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false', 'aria-describedby': error.id, change: () => this.#read() });
+    const [from, to, unit] = [ending('from'), ending('to'), h('span', { class: 'unit' })];
+    const element = h('fieldset', {}, h('legend', {}, title), field,
+      h('p', { class: 'map-ends' }, h('label', { for: from.id }, 'from'), from, h('label', { for: to.id }, 'to'), to, unit), error);
+    return { element, field, from, to, unit, error };
+  }
+
+  /** Another field begins where its slider would; two sides cannot have the same one, so they change places. @param {Name} name */
+  #turn(name) {
+    const other = name === 'x' ? 'y' : 'x';
+    const settings = structuredClone(this.#settings);
+    const parameter = this.#sides[name].field.value;
+    const field = this.#fields.find(({ path }) => path === parameter);
+    if (!field) return;
+    if (settings[other].parameter === parameter) [settings.x, settings.y] = [settings.y, settings.x];
+    else {
+      const [from, to] = sliderRange(field, null);
+      settings[name] = { parameter, from, to };
+    }
+    this.show(settings);
+    this.#acts.changed(settings);
+  }
+
+  /** @param {HTMLInputElement} input @param {number} value */
+  #put(input, value) {
+    input.value = String(Number(value.toPrecision(8)));
+    // What a shortened text stands for, until it is edited.
+    input.dataset.text = input.value;
+    input.dataset.value = String(value);
+  }
+
+  /** @param {Settings} settings */
+  show(settings) {
+    this.#settings = settings;
+    for (const name of /** @type {const} */ (['x', 'y'])) {
+      const { field, from, to, unit } = this.#sides[name];
+      field.value = settings[name].parameter;
+      this.#put(from, settings[name].from);
+      this.#put(to, settings[name].to);
+      unit.textContent = unitAfter(this.#fields.find(({ path }) => path === settings[name].parameter)?.unit ?? '').trim();
+    }
+    this.#quantity.value = settings.quantity;
+    this.#impacts.value = String(settings.impacts);
+    this.#columns.value = String(settings.columns);
+    this.#impacts.disabled = !QUANTITIES[settings.quantity].runs;
+    this.blame([]);
+  }
+
+  /** What is typed; nothing happens while some of it is no value, but that this is said. */
+  #read() {
+    const settings = structuredClone(this.#settings);
+    /** @type {import('../../api/api.js').FieldError[]} */
+    const errors = [];
+    for (const name of /** @type {const} */ (['x', 'y'])) {
+      const side = this.#sides[name];
+      const unit = this.#fields.find(({ path }) => path === side.field.value)?.unit ?? null;
+      for (const end of /** @type {const} */ (['from', 'to'])) {
+        const input = side[end];
+        const value = input.value === input.dataset.text ? Number(input.dataset.value) : parse(input.value, unit);
+        if (value === null) errors.push({ pointer: `/${name}/${end}`, detail: `“${input.value.trim()}” is not a number.` });
+        else settings[name][end] = value;
+      }
+      if (errors.length === 0 && settings[name].from >= settings[name].to) errors.push({ pointer: `/${name}/from`, detail: `It must be below ${number(settings[name].to, 8)}.` });
+    }
+    const impacts = parse(this.#impacts.value, null);
+    if (impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS) settings.impacts = impacts;
+    else errors.push({ pointer: '/impacts', detail: `It must be a whole number from 1 to ${number(MOST_IMPACTS)}.` });
+    settings.quantity = this.#quantity.value;
+    settings.columns = Number(this.#columns.value);
+    this.#impacts.disabled = !QUANTITIES[settings.quantity].runs;
+    this.blame(errors);
+    if (errors.length > 0) return;
+    this.#settings = settings;
+    this.#acts.changed(settings);
+  }
+
+  /**
+   * Errors beside what they are about.
+   * @param {import('../../api/api.js').FieldError[]} errors
+   * @returns {string[]} those that belong to no control here
+   */
+  blame(errors) {
+    for (const { from, to, field, error } of Object.values(this.#sides)) {
+      for (const input of [from, to, field]) input.removeAttribute('aria-invalid');
+      error.textContent = '';
+    }
+    this.#impacts.removeAttribute('aria-invalid');
+    this.#impactsError.textContent = '';
+    /** @type {string[]} */
+    const homeless = [];
+    for (const { pointer, detail } of errors) {
+      const [, place, end] = pointer.split('/');
+      if (place === 'x' || place === 'y') {
+        const side = this.#sides[place];
+        (end === 'from' || end === 'to' ? side[end] : side.field).setAttribute('aria-invalid', 'true');
+        side.error.textContent += `${side.error.textContent ? ' ' : ''}${detail}`;
+      } else if (place === 'impacts') {
+        this.#impacts.setAttribute('aria-invalid', 'true');
+        this.#impactsError.textContent = detail;
+      } else homeless.push(detail);
+    }
+    return homeless;
+  }
+
+  /** @param {{arrived: number, rows: number} | null} progress null when nothing is under way */
+  busy(progress) {
+    const ended = this.#cancel === document.activeElement && progress === null;
+    this.#cancel.disabled = progress === null;
+    // Whoever pressed it should not find the focus gone.
+    if (ended) this.#compute.focus();
+    this.#progress.hidden = progress === null;
+    if (!progress) return;
+    this.#progress.max = progress.rows;
+    this.#progress.value = progress.arrived;
+    this.count(progress);
+  }
+
+  /** @param {{arrived: number, rows: number}} progress */
+  count({ arrived, rows }) {
+    this.#progress.value = arrived;
+    this.#count.textContent = `${arrived} / ${rows} rows`;
+  }
+
+  /** @param {boolean} possible */
+  canGoBack(possible) {
+    if (!possible && this.#back === document.activeElement) this.#compute.focus();
+    this.#back.disabled = !possible;
+  }
+
+  /** @param {(string | Node)[]} words @param {'said' | 'wrong' | 'stale'} manner */
+  say(words, manner = 'said') {
+    this.#told.classList.toggle('error', manner === 'wrong');
+    this.#compute.classList.toggle('attention', manner !== 'said');
+    this.#told.replaceChildren(...words);
+  }
+}

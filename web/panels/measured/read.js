@@ -1,0 +1,172 @@
+// A table of measured impacts as labs write them: which column is what, in which unit, and what could not be read. Not for judging the values.
+
+import { parse } from '../../dom/numbers.js';
+
+export const QUANTITIES = /** @type {const} */ (['n', 't', 'theta', 'x_dot', 'y_dot', 'theta_dot']);
+/** @typedef {(typeof QUANTITIES)[number]} Quantity */
+/** @typedef {Record<Quantity, number>} Measured in SI units; what is not there is NaN */
+
+/**
+ * @typedef {object} Reading
+ * @property {Measured[]} impacts
+ * @property {Quantity[]} columns that there are
+ * @property {string[]} remarks what was left out, in words
+ */
+
+/** A file with nothing in it to show; its message is for people. */
+export class Unreadable extends Error {}
+
+/** Files larger than this are no table of impacts that a page can draw. */
+export const LIMIT_BYTES = 4_000_000;
+/** More impacts than these are not drawn as diamonds. */
+export const LIMIT_IMPACTS = 20_000;
+/** Remarks about single lines beyond these are counted only. */
+const REMARKS = 8;
+
+/** What a column may be called, in small letters without anything between them. @type {Record<string, Quantity>} */
+const NAMES = {
+  n: 'n', no: 'n', impact: 'n', contact: 'n', bounce: 'n', number: 'n', impactnumber: 'n',
+  t: 't', time: 't', theta: 'theta', angle: 'theta',
+  xdot: 'x_dot', vx: 'x_dot', ydot: 'y_dot', vy: 'y_dot', thetadot: 'theta_dot', omega: 'theta_dot', angularvelocity: 'theta_dot', spin: 'theta_dot',
+};
+
+const TURN = Math.PI / 180;
+/** Units by what they measure, with what makes SI of them. @type {Record<'1' | 's' | 'rad' | 'm/s' | 'rad/s', Record<string, number>>} */
+const UNITS = {
+  1: { 1: 1 },
+  s: { s: 1, sec: 1, ms: 1e-3, us: 1e-6, µs: 1e-6, μs: 1e-6 },
+  rad: { rad: 1, mrad: 1e-3, deg: TURN, degree: TURN, degrees: TURN, '°': TURN },
+  'm/s': { 'm/s': 1, 'cm/s': 1e-2, 'mm/s': 1e-3 },
+  'rad/s': { 'rad/s': 1, 'mrad/s': 1e-3, 'deg/s': TURN, '°/s': TURN, rpm: Math.PI / 30 },
+};
+/** @type {Record<Quantity, keyof typeof UNITS>} */
+const MEASURE = { n: '1', t: 's', theta: 'rad', x_dot: 'm/s', y_dot: 'm/s', theta_dot: 'rad/s' };
+
+/** @param {string} text short enough to print */
+const shown = (text) => (text.length > 30 ? `${text.slice(0, 30)}…` : text);
+
+/** A dot over a letter in words, Greek in Latin, and nothing else but letters. @param {string} name */
+const plain = (name) => name.normalize('NFD').toLowerCase().replaceAll('\u0307', 'dot').replaceAll('θ', 'theta').replaceAll('ω', 'omega').replace(/[^a-z]/g, '');
+
+/** @param {string} unit */
+const plainUnit = (unit) => unit.trim().replace(/_per_/g, '/').replace(/[\s·*\u202f]*s(?:⁻¹|\^?-1)$/, '/s').replace(/^(?:-|1\/1)$/, '1');
+
+/**
+ * @param {string} head
+ * @returns {{quantity: Quantity | undefined, unit: string}} the unit '' where none is told
+ */
+function columnOf(head) {
+  const told = /^(.+?)\s*(?:[([]([^)\]]*)[)\]]|\/(.+))$/.exec(head.trim()) ?? /^(.+?)_((?:k|c|m)?(?:s|rad|deg|m_per_s|rad_per_s|deg_per_s))$/.exec(head.trim());
+  const whole = NAMES[plain(head)];
+  if (!told || whole) return { quantity: whole, unit: '' };
+  return { quantity: NAMES[plain(told[1])], unit: plainUnit(told[2] ?? told[3]) };
+}
+
+/**
+ * The cells of every line that has any. Quotes hold what is between them together, ends of lines included.
+ * @param {string} text
+ * @param {string} between two cells
+ */
+function* records(text, between) {
+  /** @type {string[]} */
+  let cells = [];
+  let cell = '';
+  let quoted = false;
+  let line = 1;
+  let first = 1;
+  for (let at = 0; at <= text.length; at += 1) {
+    const letter = text[at];
+    if (letter === '\n') line += 1;
+    if (quoted && letter !== undefined) {
+      if (letter !== '"') cell += letter;
+      else if (text[at + 1] === '"') { cell += '"'; at += 1; }
+      else quoted = false;
+    } else if (letter === '"' && cell.trim() === '') { cell = ''; quoted = true; }
+    else if (letter === between) { cells.push(cell.trim()); cell = ''; }
+    else if (letter === '\n' || letter === undefined) {
+      cells.push(cell.trim());
+      if (cells.some((one) => one !== '')) yield { line: first, cells };
+      cells = [];
+      cell = '';
+      first = line;
+    } else cell += letter;
+  }
+}
+
+/**
+ * @param {string} text
+ * @returns {Reading}
+ */
+export function read(text) {
+  const lines = text.replace(/^\ufeff/, '').replace(/\r\n?/g, '\n');
+  const opening = lines.split('\n', 20).find((one) => one.trim() !== '' && !/^\s*#/.test(one)) ?? '';
+  const between = ['\t', ';', ','].find((mark) => opening.includes(mark)) ?? ',';
+  /** @type {{quantity: Quantity, place: number, factor: number, head: string}[] | null} */
+  let columns = null;
+  /** @type {string[]} */
+  const remarks = [];
+  /** @type {Measured[]} */
+  const impacts = [];
+  let bad = 0;
+  for (const { line, cells } of records(lines, between)) {
+    const comment = cells[0].startsWith('#');
+    if (!columns) {
+      if (comment) cells[0] = cells[0].slice(1);
+      const found = header(cells, remarks);
+      if (found.length > 0) columns = found;
+      else if (!comment) throw new Unreadable(`The first line names none of the columns n, t, theta, x_dot, y_dot and theta_dot. It is “${shown(cells.join(' '))}”.`);
+      else remarks.length = 0;
+      continue;
+    }
+    if (comment) continue;
+    /** @type {Measured} */
+    const impact = { n: NaN, t: NaN, theta: NaN, x_dot: NaN, y_dot: NaN, theta_dot: NaN };
+    let wrong = '';
+    for (const { quantity, place, factor, head } of columns) {
+      const cell = cells[place] ?? '';
+      if (/^(|-|–|nan|na|null)$/i.test(cell)) continue;
+      const value = parse(cell, null);
+      if (value === null) wrong ||= `${head} is “${shown(cell)}”, which is not a number`;
+      else if (quantity === 'n' && !(Number.isInteger(value) && value >= 1)) wrong ||= `${head} is ${shown(cell)}, which is no number of an impact`;
+      else impact[quantity] = value * factor;
+    }
+    if (!wrong && QUANTITIES.every((quantity) => quantity === 'n' || Number.isNaN(impact[quantity]))) wrong = 'it has no value';
+    if (!wrong && impacts.length === LIMIT_IMPACTS) {
+      remarks.push(`Impacts from line ${line} on are left out: at most ${LIMIT_IMPACTS} are shown.`);
+      break;
+    }
+    if (!wrong) impacts.push(impact);
+    else if ((bad += 1) <= REMARKS) remarks.push(`Line ${line} is left out: ${wrong}.`);
+  }
+  if (bad > REMARKS) remarks.push(`${bad - REMARKS} more lines are left out.`);
+  if (!columns) throw new Unreadable('The file is empty.');
+  if (impacts.length === 0) throw new Unreadable(`No line after the first has an impact in it. ${remarks.join(' ')}`.trim());
+  const numbered = columns.some(({ quantity }) => quantity === 'n') && impacts.every(({ n }, index) => Number.isFinite(n) && (index === 0 || n > impacts[index - 1].n));
+  if (!numbered) {
+    if (columns.some(({ quantity }) => quantity === 'n')) remarks.push('The impacts are numbered by their lines: the numbers in the file do not rise from line to line.');
+    for (const [index, impact] of impacts.entries()) impact.n = index + 1;
+  }
+  return { impacts, columns: columns.map(({ quantity }) => quantity), remarks };
+}
+
+/**
+ * @param {string[]} heads
+ * @param {string[]} remarks
+ */
+function header(heads, remarks) {
+  /** @type {{quantity: Quantity, place: number, factor: number, head: string}[]} */
+  const columns = [];
+  /** @type {string[]} */
+  const unknown = [];
+  for (const [place, head] of heads.entries()) {
+    const { quantity, unit } = columnOf(head);
+    if (!quantity) { unknown.push(head); continue; }
+    const factor = unit === '' ? 1 : UNITS[MEASURE[quantity]][unit];
+    if (columns.some((column) => column.quantity === quantity)) remarks.push(`The column “${shown(head)}” is left out: there is one of ${quantity} before it.`);
+    else if (factor === undefined) remarks.push(`The column “${shown(head)}” is left out: “${shown(unit)}” is not known as a unit of ${quantity}.`);
+    else columns.push({ quantity, place, factor, head: shown(head) });
+  }
+  const named = unknown.filter((head) => head !== '');
+  if (named.length > 0) remarks.push(`Not used: ${named.slice(0, 20).map(shown).join(', ')}${named.length > 20 ? ' and more' : ''}.`);
+  return columns;
+}

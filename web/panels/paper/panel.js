@@ -1,0 +1,44 @@
+// The paper's printed values beside the computed ones. Not for computing either.
+
+import { h, prose, symbol } from '../../dom/dom.js';
+import { quantity } from '../../dom/numbers.js';
+
+/** @typedef {import('../../api/api.js').PaperValue} PaperValue */
+
+/** Whether the print is the computed value to its own digits. @param {PaperValue['value']} printed @param {PaperValue['value']} computed */
+function same(printed, computed) {
+  if (printed === null || computed === null) return true;
+  if (typeof printed === 'string' || typeof computed === 'string') return printed === computed;
+  const decimals = (String(printed).split('.')[1] ?? '').length;
+  return Math.abs(printed - computed) <= 0.5000001 * 10 ** -decimals;
+}
+
+/** @type {import('../panels.js').Module['mount']} */
+export function mount(root, { chosen }) {
+  const sceneChanged = () => show(root, chosen());
+  sceneChanged();
+  return { sceneChanged };
+}
+
+/** @param {HTMLElement} root @param {import('../../api/api.js').Case | null} chosen */
+function show(root, chosen) {
+  if (!chosen || chosen.computed.length === 0) {
+    root.replaceChildren(h('p', { class: 'muted' }, chosen ? 'The paper prints no number for this case.' : 'Choose a case to compare it with the paper.'));
+    return;
+  }
+  const rows = chosen.computed.flatMap((computed, index) => {
+    const printed = chosen.printed[index];
+    const differs = Boolean(computed.why) || !same(printed?.value ?? null, computed.value);
+    const name = h('th', { scope: 'row' }, computed.symbol ? symbol(computed.symbol) : computed.quantity, h('span', { class: 'muted name' }, ...computed.quantity.split(/(?<=[._])/).flatMap((part) => [part, h('wbr')])));
+    const row = h('tr', { class: differs ? 'differs' : '' }, name, cell(printed), cell(computed), h('td', {}, printed?.value == null ? '' : differs ? '≠' : '='));
+    return computed.why ? [row, h('tr', { class: 'why' }, h('td', { colspan: 4 }, ...prose(computed.why[0].toUpperCase() + computed.why.slice(1))))] : [row];
+  });
+  root.replaceChildren(h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Printed and computed values' }, h('table', { class: 'paper' },
+    h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Quantity'), h('th', { scope: 'col' }, 'Printed'), h('th', { scope: 'col' }, 'Computed'), h('th', { scope: 'col' }, h('span', { class: 'unseen' }, 'Equal')))),
+    h('tbody', {}, ...rows))));
+}
+
+/** @param {PaperValue | undefined} value */
+function cell(value) {
+  return h('td', {}, typeof value?.value === 'string' ? value.value : quantity(value?.value, value?.unit ?? '', 5), h('span', { class: 'muted where' }, value?.where ?? ''));
+}

@@ -1,0 +1,96 @@
+// The release whose first impact is a wanted one, in closed form. Not for asking, and not for what the impact then does.
+
+import { contactDistance, effectiveGravity } from './flight.js';
+import { number, quantity } from '../dom/numbers.js';
+
+/** @typedef {import('../api/api.js').Scene} Scene */
+/** @typedef {{values: Record<string, number>, words: string} | {values: null, words: string}} Start what to release with, or why nothing does */
+
+/** Contact points closer to the table than this touch it, m. */
+const TOUCHING_M = 1e-9;
+/** Steps to search a flight for an earlier contact: more than any that comes down at more than a graze. */
+const STEPS = 2000;
+
+/** @param {string} words @returns {Start} */
+const refused = (words) => ({ values: null, words });
+
+/**
+ * The first impact at an angle with an angular velocity: only the release's own angle and spin are moved, and its height gives the time
+ * T to the contact at y = l cos θ, so that θ₀ = θ − θ̇T. In flight the centre of gravity falls freely and the spin stays.
+ * @param {Scene} scene
+ * @param {number} theta
+ * @param {number} theta_dot
+ * @returns {Start}
+ */
+export function angleStart(scene, theta, theta_dot) {
+  if (scene.body?.point) return refused('a point mass has no spin');
+  const { height = 0, y_dot = 0 } = scene.release ?? {};
+  const gravity = effectiveGravity(scene);
+  const square = y_dot ** 2 + 2 * gravity * (height - contactDistance(scene) * Math.cos(theta));
+  const T = (y_dot + Math.sqrt(square)) / gravity;
+  if (!(T > 0)) return refused(`out of reach: released at ${number(height)}\u202fm`);
+  return reached(scene, T, { 'release.theta': theta - theta_dot * T, 'release.theta_dot': theta_dot });
+}
+
+/**
+ * The first impact with these velocities of the centre of gravity: ẋ is that of the release, and ẏ = ẏ₀ − GT gives T, hence the angle
+ * at the contact and the height y₀ = l cos θ + (ẏ² − ẏ₀²)/(2G).
+ * @param {Scene} scene
+ * @param {number} x_dot
+ * @param {number} y_dot
+ * @returns {Start}
+ */
+export function velocityStart(scene, x_dot, y_dot) {
+  const { y_dot: risen = 0, theta = 0, theta_dot = 0 } = scene.release ?? {};
+  const gravity = effectiveGravity(scene);
+  const T = (risen - y_dot) / gravity;
+  if (!(T > 0)) return refused(`out of reach: needs ẏ < ${number(risen)}`);
+  const height = contactDistance(scene) * Math.cos(theta + theta_dot * T) + (y_dot ** 2 - risen ** 2) / (2 * gravity);
+  return reached(scene, T, { 'release.x_dot': x_dot, 'release.height': height });
+}
+
+/**
+ * Whether the contact point comes down to the table after T, and not before.
+ * @param {Scene} scene
+ * @param {number} T s
+ * @param {Record<string, number>} values what the release is to have
+ * @returns {Start}
+ */
+function reached(scene, T, values) {
+  const gravity = effectiveGravity(scene);
+  const l = contactDistance(scene);
+  const { height = 0, y_dot = 0, theta = 0, theta_dot = 0 } = { ...scene.release, ...Object.fromEntries(Object.entries(values).map(([path, value]) => [path.slice('release.'.length), value])) };
+  const h = (/** @type {number} */ t) => height + y_dot * t - gravity * t * t / 2 - l * Math.cos(theta + theta_dot * t);
+  if (h(0) < 0) return refused('out of reach: it would start below the table');
+  if (y_dot - gravity * T + l * theta_dot * Math.sin(theta + theta_dot * T) >= 0) return refused('out of reach: the contact point would rise');
+  // It falls no faster than this, so that no step of h over it passes a contact.
+  const fastest = Math.abs(y_dot) + gravity * T + l * Math.abs(theta_dot);
+  let t = h(0) < TOUCHING_M ? T * 1e-6 : 0;
+  for (let step = 0; step < STEPS && h(t) >= TOUCHING_M; step += 1) t += h(t) / fastest;
+  if (T - t > T * 1e-3) return refused('out of reach: it would strike before');
+  const aside = scene.noise?.timing_sd > 0 ? ', noise aside' : '';
+  return { values, words: Object.entries(values).map(([path, value]) => NAMES[path](value)).join(', ') + aside };
+}
+
+/** @type {Record<string, (value: number) => string>} */
+const NAMES = {
+  'release.theta': (value) => `θ₀ ${quantity(value, 'rad')}`, 'release.theta_dot': (value) => `θ̇₀ ${quantity(value, 'rad/s')}`,
+  'release.x_dot': (value) => `ẋ₀ ${quantity(value, 'm/s')}`, 'release.height': (value) => `y₀ ${quantity(value, 'm')}`,
+};
+
+/**
+ * The start, unless it lies beyond what the server takes.
+ * @param {Start} start
+ * @param {import('../api/api.js').Field[]} fields
+ * @returns {Start}
+ */
+export function within(start, fields) {
+  for (const [path, value] of Object.entries(start.values ?? {})) {
+    const field = fields.find((one) => one.path === path);
+    const { minimum, maximum } = field ?? {};
+    if (field && ((minimum != null && value < minimum) || (maximum != null && value > maximum))) {
+      return refused(`out of range: ${NAMES[path](value)}, limit ${quantity(value > 0 ? maximum : minimum, field.unit)}`);
+    }
+  }
+  return start;
+}

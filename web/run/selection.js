@@ -1,0 +1,78 @@
+// The impacts picked out in every chart: ranges of columns, so that those to come are judged alike and an address can hold them.
+
+import { LASTING } from './impacts.js';
+
+/** @typedef {[import('./impacts.js').Lasting, import('../charts/axes.js').Range]} Limits */
+
+export class Selection {
+  /** Where the selected impacts are kept, oldest first. @type {number[]} */
+  places = [];
+  /** None selects nothing. @type {Limits[]} */
+  ranges = [];
+  changed = () => {};
+  #impacts;
+  #judged = 0;
+
+  /** @param {import('./impacts.js').Impacts} impacts */
+  constructor(impacts) {
+    this.#impacts = impacts;
+  }
+
+  get active() { return this.ranges.length > 0; }
+
+  /** @param {Limits[]} ranges */
+  set(ranges) {
+    this.ranges = ranges;
+    this.forget();
+    this.update();
+    this.changed();
+  }
+
+  /** @param {number} place */
+  has(place) {
+    for (const [column, { low, high }] of this.ranges) {
+      const value = this.#impacts.at(column, place);
+      if (!(value >= low && value <= high)) return false;
+    }
+    return true;
+  }
+
+  /** A new run has impacts of its own. */
+  forget() {
+    this.places = [];
+    this.#judged = 0;
+  }
+
+  /** Judges the impacts that are new. */
+  update() {
+    const { begin, end } = this.#impacts;
+    if (!this.active) return;
+    if (end < this.#judged) this.forget();
+    if (this.places[0] < begin) this.places = this.places.filter((place) => place >= begin);
+    for (let place = Math.max(begin, this.#judged); place < end; place += 1) if (this.has(place)) this.places.push(place);
+    this.#judged = end;
+  }
+
+  /** Its part of the page's address. */
+  query() {
+    return new URLSearchParams(this.ranges.flatMap(([column, { low, high }]) => [[`brush.${column}.from`, String(low)], [`brush.${column}.to`, String(high)]]));
+  }
+
+  /**
+   * @param {URLSearchParams} params of an address
+   * @returns {string[]} what was dropped, in words
+   */
+  restore(params) {
+    const dropped = [];
+    /** @type {Limits[]} */
+    const ranges = [];
+    for (const name of new Set([...params.keys()].filter((key) => key.startsWith('brush.')).map((key) => key.split('.')[1]))) {
+      const column = LASTING.find((one) => one === name);
+      const [low, high] = ['from', 'to'].map((end) => Number(params.get(`brush.${name}.${end}`)?.trim() || NaN));
+      if (column && low <= high) ranges.push([column, { low, high }]);
+      else dropped.push(`the selection by “${name.slice(0, 40)}”, which is no range of what impacts have`);
+    }
+    if (ranges.length > 0 || this.active) this.set(ranges);
+    return dropped;
+  }
+}
