@@ -50,8 +50,16 @@ let lastSent = 'other';
 
 const run = new Run({
   changed: showRun,
-  struck: () => { for (const plot of plots) invalidate(plot); acts?.struck(); view.redraw(); },
-  cleared: () => { for (const plot of plots) plot.clear(); acts?.cleared(); view.reset(); },
+  struck: () => {
+    for (const plot of plots) invalidate(plot);
+    acts?.struck();
+    view.redraw();
+  },
+  cleared: () => {
+    for (const plot of plots) plot.clear();
+    acts?.cleared();
+    view.reset();
+  },
   lost: (seconds) => {
     connectionNotice(seconds, () => run.retry());
     if (!Number.isNaN(seconds)) away = true;
@@ -60,30 +68,63 @@ const run = new Run({
   refused: (problem) => {
     clearNotice('connection');
     const homeless = form?.blame(problem.errors) ?? [];
-    notice('run', [h('strong', {}, 'The server did not take this run. '), problem.message, homeless.length > 0 ? ` ${homeless.join(' ')}` : '', ' Its scene is kept; Run releases it anew.'], { caution: true });
+    notice(
+      'run',
+      [
+        h('strong', {}, 'The server did not take this run. '),
+        problem.message,
+        homeless.length > 0 ? ` ${homeless.join(' ')}` : '',
+        ' Its scene is kept; Run releases it anew.',
+      ],
+      { caution: true },
+    );
     address();
   },
   problem: ({ title, detail, errors }) => {
-    const homeless = form?.blame(errors.filter(({ pointer }) => fields.some((field) => field.path === pathOf(pointer)))) ?? [];
-    const others = [...homeless, ...errors.filter(({ pointer }) => !fields.some((field) => field.path === pathOf(pointer))).map((error) => error.detail)];
+    const homeless =
+      form?.blame(errors.filter(({ pointer }) => fields.some((field) => field.path === pathOf(pointer)))) ?? [];
+    const others = [
+      ...homeless,
+      ...errors
+        .filter(({ pointer }) => !fields.some((field) => field.path === pathOf(pointer)))
+        .map((error) => error.detail),
+    ];
     const words = others.join(' ') || (errors.length > 0 ? '' : detail || title);
     if (lastSent === 'kick') controls.blameKick(words || detail);
     else if (words) notice('message', [words], { caution: true });
   },
 });
 const view = new SceneView(byId('scene-frame'), byId('scene-readout'), run);
-const plots = [anglePlane(run.impacts), velocityPlane(run.impacts), energyPlot(run.impacts, () => run.scene ?? form?.read().scene ?? null)];
+const plots = [
+  anglePlane(run.impacts),
+  velocityPlane(run.impacts),
+  energyPlot(run.impacts, () => run.scene ?? form?.read().scene ?? null),
+];
 const circle = new Circle();
 const verdict = new Verdict(byId('verdict'));
 const controls = new Controls(byId('controls'), {
   toggle,
-  step: () => { lastSent = 'other'; run.step(); },
+  step: () => {
+    lastSent = 'other';
+    run.step();
+  },
   restart,
   speed: setSpeed,
-  gain: (value, final) => { form?.put(GAIN, value); edited(GAIN, final); },
-  kick: (velocities) => { lastSent = 'kick'; run.kick(velocities); },
+  gain: (value, final) => {
+    form?.put(GAIN, value);
+    edited(GAIN, final);
+  },
+  kick: (velocities) => {
+    lastSent = 'kick';
+    run.kick(velocities);
+  },
 });
-byId('impacts-bar').before(plots[0].figure.element, plots[1].figure.element, circle.figure.element, plots[2].figure.element);
+byId('impacts-bar').before(
+  plots[0].figure.element,
+  plots[1].figure.element,
+  circle.figure.element,
+  plots[2].figure.element,
+);
 for (const one of [...plots, circle]) one.figure.offer(() => savesOf(one.figure.id, one.figure.title, one));
 const sceneCard = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
 sceneCard.querySelector('.card-head')?.append(enlarger(sceneCard, 'Scene', () => savesOf('scene', 'Scene', view)));
@@ -117,7 +158,13 @@ function impactsPath() {
 function savesOf(id, title, view) {
   addressNow();
   const query = playedQuery();
-  return { id, title, view, formats: ['csv', 'json'], path: id === 'circle' ? query && `v1/stability?${typedQuery() ?? query}` : impactsPath() };
+  return {
+    id,
+    title,
+    view,
+    formats: ['csv', 'json'],
+    path: id === 'circle' ? query && `v1/stability?${typedQuery() ?? query}` : impactsPath(),
+  };
 }
 
 /** Fields whose typed value the run does not play. */
@@ -126,7 +173,9 @@ function unplayed() {
   const { asked } = run;
   if (!typed || !asked) return [];
   // What was left open at the release the server has filled in.
-  const open = (/** @type {Field} */ { path }) => [typed, releasedAs].every((scene) => valueAt(scene, path) === undefined) && same(valueAt(asked, path), valueAt(run.released ?? {}, path));
+  const open = (/** @type {Field} */ { path }) =>
+    [typed, releasedAs].every((scene) => valueAt(scene, path) === undefined) &&
+    same(valueAt(asked, path), valueAt(run.released ?? {}, path));
   return fields.filter((field) => !same(playedAt(typed, field), playedAt(asked, field)) && !open(field));
 }
 
@@ -150,7 +199,7 @@ const askSoon = settled(120, async () => {
   asking?.abort();
   const query = typedQuery();
   if (!query) return verdict.fail('A parameter is not a number; it is marked below.');
-  const mine = asking = new AbortController();
+  const mine = (asking = new AbortController());
   try {
     const answer = await get(`v1/stability?${query}`, mine.signal);
     unjudged = false;
@@ -166,7 +215,11 @@ const askSoon = settled(120, async () => {
     unjudged = !(error instanceof Problem);
     if (error instanceof Problem && error.errors.length > 0) {
       const homeless = form?.blame(error.errors) ?? [];
-      verdict.fail(homeless.length > 0 ? homeless.join(' ') : 'The server does not take this scene; the parameter is marked below.');
+      verdict.fail(
+        homeless.length > 0
+          ? homeless.join(' ')
+          : 'The server does not take this scene; the parameter is marked below.',
+      );
     } else {
       verdict.fail(error instanceof Problem ? error.message : 'The server does not answer.', ask);
     }
@@ -185,7 +238,12 @@ const sendChanges = settled(100, () => {
   if (!typed || !run.active) return;
   // One law for another is no change of a value: it is for a restart.
   const swapped = Boolean(typed.table?.feedback) !== Boolean(run.asked?.table?.feedback);
-  const changes = Object.fromEntries(unplayed().filter(({ live, path }) => live && !(swapped && /^table\.(tilt_gain$|feedback)/.test(path))).map((field) => [field.path, playedAt(typed, field)]).filter(([, value]) => value !== undefined));
+  const changes = Object.fromEntries(
+    unplayed()
+      .filter(({ live, path }) => live && !(swapped && /^table\.(tilt_gain$|feedback)/.test(path)))
+      .map((field) => [field.path, playedAt(typed, field)])
+      .filter(([, value]) => value !== undefined),
+  );
   if (Object.keys(changes).length === 0) return;
   lastSent = 'set';
   run.set(changes);
@@ -263,7 +321,11 @@ function showRun() {
   state.dataset.phase = phase;
   const told = byId('outcome');
   told.hidden = phase !== 'ended' && run.impacts.missing === 0;
-  told.replaceChildren(...(phase === 'ended' ? prose(sentence(outcome?.detail ?? '')) : [`${run.impacts.missing} impacts were skipped over.`]));
+  told.replaceChildren(
+    ...(phase === 'ended'
+      ? prose(sentence(outcome?.detail ?? ''))
+      : [`${run.impacts.missing} impacts were skipped over.`]),
+  );
   controls.show(phase, run.phase !== 'idle' && unplayed().length > 0, form !== null);
   if (run.active) {
     speed = run.clock.speed || speed;
@@ -280,7 +342,8 @@ const sentence = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
 const plain = (text) => text.replaceAll('κ_', 'κ');
 
 /** The case that a scene is, if it is one. @param {Scene} scene */
-const caseOf = (scene) => cases.find((one) => fields.every((field) => same(playedAt(one.scene, field), playedAt(scene, field)))) ?? null;
+const caseOf = (scene) =>
+  cases.find((one) => fields.every((field) => same(playedAt(one.scene, field), playedAt(scene, field)))) ?? null;
 
 /** Says which case the typed scene is, or what of it is another. */
 function nameScene() {
@@ -290,12 +353,33 @@ function nameScene() {
   const shows = byId('case-shows');
   chooser.value = one?.name ?? '';
   document.title = one ? `${plain(one.title)}${other.length > 0 ? ', changed' : ''} · equipoise` : 'equipoise';
-  const named = other.slice(0, 3).map(({ title }) => title.toLowerCase()).join(', ');
-  const words = other.length > 0 ? `Changed from the case: ${named}${other.length > 3 ? ` and ${other.length - 3} more` : ''}. ` : one?.shows ?? 'A scene of your own.';
+  const named = other
+    .slice(0, 3)
+    .map(({ title }) => title.toLowerCase())
+    .join(', ');
+  const words =
+    other.length > 0
+      ? `Changed from the case: ${named}${other.length > 3 ? ` and ${other.length - 3} more` : ''}. `
+      : (one?.shows ?? 'A scene of your own.');
   // A button that is being pressed has to stay.
   if (shows.dataset.words === words) return;
   shows.dataset.words = words;
-  shows.replaceChildren(...prose(words), one && other.length > 0 ? h('button', { type: 'button', id: 'case-back', click: () => { if (chosen) choose(chosen); } }, 'Back to the case') : '');
+  shows.replaceChildren(
+    ...prose(words),
+    one && other.length > 0
+      ? h(
+          'button',
+          {
+            type: 'button',
+            id: 'case-back',
+            click: () => {
+              if (chosen) choose(chosen);
+            },
+          },
+          'Back to the case',
+        )
+      : '',
+  );
 }
 
 /** Shows a scene without running it. @param {Scene} scene */
@@ -329,7 +413,11 @@ function launch(values) {
 /** Shows a scene from further below and runs it. @param {Scene} scene */
 function play(scene) {
   chosen = caseOf(scene);
-  history.pushState(null, '', `?${new URLSearchParams([...sceneQuery(scene, chosen, fields), ...(panels?.query() ?? panelLink)])}`);
+  history.pushState(
+    null,
+    '',
+    `?${new URLSearchParams([...sceneQuery(scene, chosen, fields), ...(panels?.query() ?? panelLink)])}`,
+  );
   run.reset();
   present(scene);
   start();
@@ -339,7 +427,15 @@ function play(scene) {
 
 /** @param {string} kind @param {string[]} dropped */
 function notWhole(kind, dropped) {
-  notice(kind, [h('strong', {}, 'This link was not whole. '), 'Dropped: ', h('ul', {}, ...dropped.map((what) => h('li', {}, what)))], { caution: true });
+  notice(
+    kind,
+    [
+      h('strong', {}, 'This link was not whole. '),
+      'Dropped: ',
+      h('ul', {}, ...dropped.map((what) => h('li', {}, what))),
+    ],
+    { caution: true },
+  );
 }
 
 /** @param {string} search */
@@ -358,7 +454,8 @@ function restore(search) {
   const query = sceneQuery(scene, chosen, fields);
   for (const [key, value] of link.run) query.set(key, value);
   query.set('speed', String(speed));
-  for (const { set } of interventionsOf(link.run)) for (const [path, value] of Object.entries(set)) setAt(scene, path, value);
+  for (const { set } of interventionsOf(link.run))
+    for (const [path, value] of Object.entries(set)) setAt(scene, path, value);
   present(scene);
   releasedAs = form?.read().scene ?? {};
   run.start(query);
@@ -382,29 +479,74 @@ async function begin() {
     cases = list.scenes;
   } catch {
     verdict.fail('The server does not answer.');
-    return notice('server', ['The server does not answer. ', h('button', { type: 'button', click: begin }, 'Try again')], { dismissible: false, caution: true });
+    return notice(
+      'server',
+      ['The server does not answer. ', h('button', { type: 'button', click: begin }, 'Try again')],
+      { dismissible: false, caution: true },
+    );
   }
   const root = byId('parameters');
   root.replaceChildren();
   form = new Form(root, fields, edited);
   controls.knowGain(fields.find((field) => field.path === GAIN) ?? null);
-  chooser.replaceChildren(h('option', { value: '', hidden: true }, 'A scene of your own'), ...cases.map(({ name, title }) => h('option', { value: name }, plain(title))));
+  chooser.replaceChildren(
+    h('option', { value: '', hidden: true }, 'A scene of your own'),
+    ...cases.map(({ name, title }) => h('option', { value: name }, plain(title))),
+  );
   chooser.disabled = false;
-  chooser.addEventListener('change', () => { const one = cases.find(({ name }) => name === chooser.value); if (one) choose(one); });
+  chooser.addEventListener('change', () => {
+    const one = cases.find(({ name }) => name === chooser.value);
+    if (one) choose(one);
+  });
   byId('build').textContent = server.build;
   restore(location.search);
   showRun();
   // The plots of the first look are drawn in the next frame; what nobody sees yet comes after.
   await new Promise((resolve) => requestAnimationFrame(resolve));
   performance.mark('first plot');
-  const late = await Promise.all([import('./panels/panels.js'), import('./app/keys.js'), import('./charts/impacts/plot-interaction.js')]).catch(() => null);
+  const late = await Promise.all([
+    import('./panels/panels.js'),
+    import('./app/keys.js'),
+    import('./charts/impacts/plot-interaction.js'),
+  ]).catch(() => null);
   // A browser remembers a module that it did not get, so that only a fresh page gets it.
-  if (!late) return notice('server', ['Part of the page did not load. ', h('button', { type: 'button', click: () => location.reload() }, 'Load it again')], { caution: true });
+  if (!late)
+    return notice(
+      'server',
+      [
+        'Part of the page did not load. ',
+        h('button', { type: 'button', click: () => location.reload() }, 'Load it again'),
+      ],
+      { caution: true },
+    );
   const [{ Panels }, { listenToKeys }, { Acts }] = late;
   listenToKeys(KEYS);
-  panels = new Panels(byId('main'), { fields, query: typedQuery, scene: () => form?.read().scene ?? {}, chosen: () => chosen, played: playedQuery, launch, play, changed: address },
-    (id, dropped) => (dropped.length > 0 ? notWhole(`link-${id}`, dropped) : clearNotice(`link-${id}`)));
-  acts = new Acts(byId('impacts-bar'), { run, view, plots, typed: () => { const read = form?.read(); return read?.complete ? read.scene : null; }, fields, launch, changed: address });
+  panels = new Panels(
+    byId('main'),
+    {
+      fields,
+      query: typedQuery,
+      scene: () => form?.read().scene ?? {},
+      chosen: () => chosen,
+      played: playedQuery,
+      launch,
+      play,
+      changed: address,
+    },
+    (id, dropped) => (dropped.length > 0 ? notWhole(`link-${id}`, dropped) : clearNotice(`link-${id}`)),
+  );
+  acts = new Acts(byId('impacts-bar'), {
+    run,
+    view,
+    plots,
+    typed: () => {
+      const read = form?.read();
+      return read?.complete ? read.scene : null;
+    },
+    fields,
+    launch,
+    changed: address,
+  });
   panels.join('brush', acts);
   panels.restore(panelLink);
   if (judged) panels.judged(judged);
@@ -418,21 +560,71 @@ addEventListener('popstate', () => restore(location.search));
 /** The focus to the first control of a panel, which may only come now. @param {HTMLElement} body */
 async function focusIn(body) {
   const first = () => /** @type {HTMLElement | null} */ (body.querySelector('input, select, button'));
-  while (!first()) await new Promise((resolve) => new MutationObserver((_, observer) => { observer.disconnect(); resolve(null); }).observe(body, { childList: true, subtree: true }));
+  while (!first())
+    await new Promise((resolve) =>
+      new MutationObserver((_, observer) => {
+        observer.disconnect();
+        resolve(null);
+      }).observe(body, { childList: true, subtree: true }),
+    );
   first()?.focus({ preventScroll: true });
 }
 
 /** @type {import('./app/keys.js').Key[]} */
 const KEYS = [
   { keys: [' '], label: 'Space', name: 'Run, pause, resume', act: toggle },
-  { keys: ['.'], label: '.', name: 'Stop at the next strike', act: () => { if (run.active) run.step(); } },
+  {
+    keys: ['.'],
+    label: '.',
+    name: 'Stop at the next strike',
+    act: () => {
+      if (run.active) run.step();
+    },
+  },
   { keys: ['r'], label: 'r', name: 'Restart from the release', act: restart },
-  { keys: ['k'], label: 'k', name: 'Kick', act: () => { if (run.active) controls.kick(); } },
-  { keys: ['1', '2', '3', '4', '5'], label: '1 – 5', name: 'Cases 1 to 5 of the paper', act: (key) => { const one = cases.find(({ name }) => name === `case-${key}`); if (one) choose(one); } },
-  { keys: ['[', ']'], label: '[ ]', name: 'Slower, faster', act: (key) => setSpeed((key === '[' ? SPEEDS.findLast((one) => one < speed) : SPEEDS.find((one) => one > speed)) ?? speed) },
-  { keys: ['m'], label: 'm', name: 'Go to the stability map', act: () => { byId('map').scrollIntoView(); void focusIn(byId('map-body')); } },
+  {
+    keys: ['k'],
+    label: 'k',
+    name: 'Kick',
+    act: () => {
+      if (run.active) controls.kick();
+    },
+  },
+  {
+    keys: ['1', '2', '3', '4', '5'],
+    label: '1 – 5',
+    name: 'Cases 1 to 5 of the paper',
+    act: (key) => {
+      const one = cases.find(({ name }) => name === `case-${key}`);
+      if (one) choose(one);
+    },
+  },
+  {
+    keys: ['[', ']'],
+    label: '[ ]',
+    name: 'Slower, faster',
+    act: (key) =>
+      setSpeed((key === '[' ? SPEEDS.findLast((one) => one < speed) : SPEEDS.find((one) => one > speed)) ?? speed),
+  },
+  {
+    keys: ['m'],
+    label: 'm',
+    name: 'Go to the stability map',
+    act: () => {
+      byId('map').scrollIntoView();
+      void focusIn(byId('map-body'));
+    },
+  },
   { keys: ['s'], label: 's', name: 'Copy the link', act: () => byId('share').click() },
-  { keys: ['e'], label: 'e', name: 'Save the impacts as CSV', act: () => { const path = impactsPath(); if (path) h('a', { href: `${path}&format=csv`, download: 'equipoise-impacts.csv' }).click(); } },
+  {
+    keys: ['e'],
+    label: 'e',
+    name: 'Save the impacts as CSV',
+    act: () => {
+      const path = impactsPath();
+      if (path) h('a', { href: `${path}&format=csv`, download: 'equipoise-impacts.csv' }).click();
+    },
+  },
 ];
 showRun();
 void begin();

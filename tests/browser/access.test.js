@@ -12,13 +12,18 @@ const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.mi
 async function violations(page) {
   await page.evaluate(axe);
   const { violations: found } = await page.evaluate(() => globalThis.axe.run(document));
-  return found.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join('; ')}`);
+  return found.map(
+    ({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join('; ')}`,
+  );
 }
 
 for (const colorScheme of ['light', 'dark']) {
   for (const width of [320, 800, 1280]) {
     test(`axe finds nothing at ${width} px, ${colorScheme}`, async () => {
-      const { page } = await stage.page('?preset=case-4&colour=blue', { colorScheme, viewport: { width, height: 800 } });
+      const { page } = await stage.page('?preset=case-4&colour=blue', {
+        colorScheme,
+        viewport: { width, height: 800 },
+      });
       await verdict(page);
       assert.deepEqual(await violations(page), [], 'idle, with a notice');
       await page.click('#run');
@@ -39,7 +44,13 @@ for (const colorScheme of ['light', 'dark']) {
         await page.click(`#${id} .enlarge`);
         await page.locator('dialog.large').waitFor();
         assert.deepEqual(await violations(page), [], `with ${id} at its largest`);
-        assert.equal(await page.evaluate(() => document.querySelector('dialog.large').scrollWidth - document.querySelector('dialog.large').clientWidth), 0);
+        assert.equal(
+          await page.evaluate(
+            () =>
+              document.querySelector('dialog.large').scrollWidth - document.querySelector('dialog.large').clientWidth,
+          ),
+          0,
+        );
         await page.keyboard.press('Escape');
       }
       await stage.stopServer();
@@ -51,7 +62,9 @@ for (const colorScheme of ['light', 'dark']) {
 }
 
 test('nothing is wider than 320 px', async () => {
-  const { page, clean } = await stage.page('?preset=case-4&scene.table.wobble=3', { viewport: { width: 320, height: 640 } });
+  const { page, clean } = await stage.page('?preset=case-4&scene.table.wobble=3', {
+    viewport: { width: 320, height: 640 },
+  });
   const excess = () => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   await verdict(page);
   assert.equal(await excess(), 0);
@@ -68,7 +81,18 @@ test('a whole session needs no pointer', async () => {
   const { page, clean } = await stage.page('');
   await verdict(page);
   // Panels that load later are passed before they are there; the next round reaches what is in them.
-  const missing = new Set(['share', 'keys-open', 'case', 'run', 'gain', 'speed', 'field-table-tilt_gain', 'map-box', 'map-compute', 'field-release-theta']);
+  const missing = new Set([
+    'share',
+    'keys-open',
+    'case',
+    'run',
+    'gain',
+    'speed',
+    'field-table-tilt_gain',
+    'map-box',
+    'map-compute',
+    'field-release-theta',
+  ]);
   for (let k = 0; k < 1000 && missing.size > 0; k += 1) {
     await page.keyboard.press('Tab');
     missing.delete(await page.evaluate(() => document.activeElement?.id ?? ''));
@@ -138,11 +162,14 @@ test('the colours of the canvases follow the scheme while the page is open', asy
   await page.click('#run');
   await reachPhase(page, 'paused');
   const light = await page.evaluate(() => getComputedStyle(document.documentElement).getPropertyValue('--series-0'));
-  assert.ok(await ink(page, '#plane-angle', '--series-0') > 10);
+  assert.ok((await ink(page, '#plane-angle', '--series-0')) > 10);
   await page.emulateMedia({ colorScheme: 'dark' });
-  await page.waitForFunction((before) => getComputedStyle(document.documentElement).getPropertyValue('--series-0') !== before, light);
+  await page.waitForFunction(
+    (before) => getComputedStyle(document.documentElement).getPropertyValue('--series-0') !== before,
+    light,
+  );
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  assert.ok(await ink(page, '#plane-angle', '--series-0') > 10, 'the dots have the dark scheme’s colour');
+  assert.ok((await ink(page, '#plane-angle', '--series-0')) > 10, 'the dots have the dark scheme’s colour');
   clean();
 });
 
@@ -151,7 +178,10 @@ test('with motion unwanted the scene stands still between impacts, unless asked 
   await page.click('#run');
   await reachImpact(page, 2);
   // So slow that the next impact is seconds away.
-  await page.locator('#speed').evaluate((slider) => { slider.value = '0'; slider.dispatchEvent(new Event('change')); });
+  await page.locator('#speed').evaluate((slider) => {
+    slider.value = '0';
+    slider.dispatchEvent(new Event('change'));
+  });
   await page.waitForFunction(() => /clock\.\d+\.speed=0\.05/.test(location.search));
   const n = await impacts(page);
   await reachImpact(page, n + 1);
@@ -160,7 +190,7 @@ test('with motion unwanted the scene stands still between impacts, unless asked 
   const before = await picture();
   await page.waitForTimeout(300);
   const still = await picture();
-  if (await impacts(page) === n + 1) assert.equal(still, before);
+  if ((await impacts(page)) === n + 1) assert.equal(still, before);
   await page.locator('.motion input').check();
   const moving = await picture();
   await page.waitForFunction((old) => document.querySelector('#scene-frame canvas').toDataURL() !== old, moving);

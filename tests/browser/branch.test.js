@@ -14,19 +14,36 @@ async function open(query) {
 
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 
-for (const [preset, kind] of [['case-1', 'soft'], ['critical-hard', 'hard']]) {
+for (const [preset, kind] of [
+  ['case-1', 'soft'],
+  ['critical-hard', 'hard'],
+]) {
   test(`${preset}: picture and changes of a ${kind} boundary`, async () => {
     const { page, clean } = await open(`?preset=${preset}`);
     const image = page.locator('#branch-body img');
     await image.evaluate((element) => element.decode());
     assert.ok(await image.evaluate((element) => element.naturalWidth > 300));
-    const { changes } = await (await fetch(await page.locator('#branch-body .actions a', { hasText: 'JSON' }).evaluate((link) => link.href))).json();
-    const rows = await page.locator('.changes tbody tr').evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.firstChild.textContent)));
-    assert.deepEqual(rows.map(([name]) => name), changes.map((change) => change.kind.replaceAll('_', ' ')));
+    const { changes } = await (
+      await fetch(await page.locator('#branch-body .actions a', { hasText: 'JSON' }).evaluate((link) => link.href))
+    ).json();
+    const rows = await page
+      .locator('.changes tbody tr')
+      .evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.firstChild.textContent)));
+    assert.deepEqual(
+      rows.map(([name]) => name),
+      changes.map((change) => change.kind.replaceAll('_', ' ')),
+    );
     for (const [index, [, gain, theta]] of rows.entries()) {
-      assert.ok(Math.abs(Number(gain) - changes[index].parameter) < 1e-4 && Math.abs(Number(theta) - changes[index].theta) < 1e-4, String(rows[index]));
+      assert.ok(
+        Math.abs(Number(gain) - changes[index].parameter) < 1e-4 &&
+          Math.abs(Number(theta) - changes[index].theta) < 1e-4,
+        String(rows[index]),
+      );
     }
-    assert.match(plain(await page.locator('#branch-body').innerText()), new RegExp(`a ${kind} boundary \\(C = ${kind === 'hard' ? '-' : ''}0\\.\\d+\\)`));
+    assert.match(
+      plain(await page.locator('#branch-body').innerText()),
+      new RegExp(`a ${kind} boundary \\(C = ${kind === 'hard' ? '-' : ''}0\\.\\d+\\)`),
+    );
     clean();
   });
 }
@@ -51,14 +68,21 @@ test('it follows the scene, and a body without an angle has none', async () => {
 });
 
 test('without a server it says so and can be asked for again', async () => {
-  const { page } = await stage.page('?preset=case-1', { prepare: () => {
-    const real = globalThis.fetch;
-    globalThis.refuse = true;
-    globalThis.fetch = (input, init) => (globalThis.refuse && String(input).includes('periodic-orbits') ? Promise.reject(new TypeError('no network')) : real(input, init));
-  } });
+  const { page } = await stage.page('?preset=case-1', {
+    prepare: () => {
+      const real = globalThis.fetch;
+      globalThis.refuse = true;
+      globalThis.fetch = (input, init) =>
+        globalThis.refuse && String(input).includes('periodic-orbits')
+          ? Promise.reject(new TypeError('no network'))
+          : real(input, init);
+    },
+  });
   await page.locator('#branch-body').scrollIntoViewIfNeeded();
   await page.locator('#branch-body', { hasText: 'The server does not answer' }).waitFor();
-  await page.evaluate(() => { globalThis.refuse = false; });
+  await page.evaluate(() => {
+    globalThis.refuse = false;
+  });
   await page.locator('#branch-body button').click();
   await page.locator('#branch-body img').waitFor();
 });

@@ -18,7 +18,11 @@ test('an early strike with friction is shown where and as what it was', async ()
   for (const n of [1, 2]) {
     await page.click('#step');
     await reachImpact(page, n);
-    await page.waitForFunction((wanted) => document.querySelector('#scene-readout').textContent.replaceAll('\u00a0', ' ').includes(`impact ${wanted} `), n);
+    await page.waitForFunction(
+      (wanted) =>
+        document.querySelector('#scene-readout').textContent.replaceAll('\u00a0', ' ').includes(`impact ${wanted} `),
+      n,
+    );
     const words = plain(await page.locator('#scene-readout').innerText());
     assert.ok(words.includes(`contact: ${impacts.contact_mode[n - 1].replace('_', ' ')}`), words);
     const shown = Number(/struck at (-?[\d.]+) m/.exec(words)[1]);
@@ -28,8 +32,8 @@ test('an early strike with friction is shown where and as what it was', async ()
     const l = 2 / 15;
     assert.ok(Math.abs(y - l * Math.cos(impacts.theta[n - 1]) - impacts.clearance[n - 1]) < 1e-4, words);
   }
-  assert.ok(await ink(page, '#scene-frame', '--strike') > 40, 'the impulse');
-  assert.ok(await ink(page, '#scene-frame', '--good') > 40, 'friction');
+  assert.ok((await ink(page, '#scene-frame', '--strike')) > 40, 'the impulse');
+  assert.ok((await ink(page, '#scene-frame', '--good')) > 40, 'friction');
   clean();
 });
 
@@ -42,7 +46,7 @@ test('a strike without friction at y = 0 has neither', async () => {
   await page.click('#step');
   await reachImpact(page, 1);
   assert.doesNotMatch(await page.locator('#scene-readout').innerText(), /contact|struck/);
-  assert.ok(await ink(page, '#scene-frame', '--strike') > 40);
+  assert.ok((await ink(page, '#scene-frame', '--strike')) > 40);
   assert.equal(await ink(page, '#scene-frame', '--good'), 0);
   clean();
 });

@@ -30,17 +30,28 @@ test('gains, eigenvalues and picture are the server’s', async () => {
   assert.equal(answer.weights.input, 5);
   const shown = await page.locator('#design-gains > div > dd:nth-child(2)').allInnerTexts();
   for (const [index, name] of ['x', 'theta', 'x_dot', 'theta_dot'].entries()) {
-    assert.ok(Math.abs(Number.parseFloat(plain(shown[index])) / answer.gain[name] - 1) < 1e-4, `${shown[index]} ${answer.gain[name]}`);
+    assert.ok(
+      Math.abs(Number.parseFloat(plain(shown[index])) / answer.gain[name] - 1) < 1e-4,
+      `${shown[index]} ${answer.gain[name]}`,
+    );
   }
-  const moduli = await page.locator('.eigenvalues tbody tr').evaluateAll((all) => all.map((row) => [row.children[1].textContent, row.children[3].textContent].map(Number)));
+  const moduli = await page
+    .locator('.eigenvalues tbody tr')
+    .evaluateAll((all) => all.map((row) => [row.children[1].textContent, row.children[3].textContent].map(Number)));
   assert.equal(moduli.length, 4);
   for (const [index, [closed, loose]] of moduli.entries()) {
-    assert.ok(Math.abs(closed - answer.eigenvalues[index].modulus) < 1e-3 && Math.abs(loose / answer.open_loop[index].modulus - 1) < 1e-3);
+    assert.ok(
+      Math.abs(closed - answer.eigenvalues[index].modulus) < 1e-3 &&
+        Math.abs(loose / answer.open_loop[index].modulus - 1) < 1e-3,
+    );
   }
   const image = page.locator('#design-sheet img');
   await image.evaluate((element) => element.decode());
   assert.ok(await image.evaluate((element) => element.naturalWidth > 300));
-  for (const href of await page.locator('#design-links a, #design-regions a').evaluateAll((links) => links.map((link) => link.href))) assert.ok((await fetch(href)).ok, href);
+  for (const href of await page
+    .locator('#design-links a, #design-regions a')
+    .evaluateAll((links) => links.map((link) => link.href)))
+    assert.ok((await fetch(href)).ok, href);
   assert.equal(await page.locator('#design-regions a').count(), 2);
   clean();
 });
@@ -62,7 +73,10 @@ for (const preset of ['case-1', 'triangle-polygon']) {
     await reachImpact(second.page, 3);
     assert.equal(await second.page.locator('#notices').innerText(), '');
     assert.equal(await second.page.inputValue('#field-table-tilt_gain'), '');
-    assert.equal(await second.page.inputValue('#field-table-feedback-x_dot'), await page.inputValue('#field-table-feedback-x_dot'));
+    assert.equal(
+      await second.page.inputValue('#field-table-feedback-x_dot'),
+      await page.inputValue('#field-table-feedback-x_dot'),
+    );
     second.clean();
     clean();
   });
@@ -70,7 +84,12 @@ for (const preset of ['case-1', 'triangle-polygon']) {
 
 test('a link keeps noise and limits, and the form wants one law or the other', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
-  for (const [path, text] of [['noise-timing_sd', '0.002'], ['table-limits-tilt', '0.6'], ['table-limits-stroke', '0.1'], ['table-feedback-theta', '-1.1']]) {
+  for (const [path, text] of [
+    ['noise-timing_sd', '0.002'],
+    ['table-limits-tilt', '0.6'],
+    ['table-limits-stroke', '0.1'],
+    ['table-feedback-theta', '-1.1'],
+  ]) {
     await page.locator(`#field-${path}`).fill(text);
   }
   await page.locator('#field-table-tilt_gain').fill('');
@@ -80,7 +99,14 @@ test('a link keeps noise and limits, and the form wants one law or the other', a
   assert.match(await page.locator('#verdict .reason').innerText(), /noise/, 'the server took it');
   assert.equal(await page.locator('.field .error:not(:empty)').count(), 0);
   const second = await stage.page(new URL(page.url()).search);
-  for (const [path, text] of [['noise-timing_sd', '0.002'], ['noise-model', 'plan'], ['table-limits-tilt', '0.6'], ['table-limits-stroke', '0.1'], ['table-feedback-theta', '-1.1'], ['table-tilt_gain', '']]) {
+  for (const [path, text] of [
+    ['noise-timing_sd', '0.002'],
+    ['noise-model', 'plan'],
+    ['table-limits-tilt', '0.6'],
+    ['table-limits-stroke', '0.1'],
+    ['table-feedback-theta', '-1.1'],
+    ['table-tilt_gain', ''],
+  ]) {
     assert.equal(await second.page.inputValue(`#field-${path}`), text, path);
   }
   assert.equal(await second.page.locator('#notices').innerText(), '');

@@ -11,9 +11,13 @@ async function viewer(hash = '') {
   const { context } = await stage.page();
   const page = await context.newPage();
   const wrongs = [];
-  page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) wrongs.push(`console: ${message.text()}`); });
+  page.on('console', (message) => {
+    if (['error', 'warning'].includes(message.type())) wrongs.push(`console: ${message.text()}`);
+  });
   page.on('pageerror', (error) => wrongs.push(`exception: ${error.stack}`));
-  page.on('request', (request) => { if (!request.url().startsWith(stage.url)) wrongs.push(`request elsewhere: ${request.url()}`); });
+  page.on('request', (request) => {
+    if (!request.url().startsWith(stage.url)) wrongs.push(`request elsewhere: ${request.url()}`);
+  });
   await page.goto(`${stage.url}docs${hash}`);
   await page.locator('.opblock').first().waitFor();
   return { page, clean: () => assert.deepEqual(wrongs, []) };

@@ -12,9 +12,20 @@ const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.mi
 
 /** Every panel, and what is there once it is. */
 const SIGNS = {
-  scene: '.readout:has-text("impact 2")', 'plane-angle': '.readout:has-text("n 2")', 'plane-velocity': '.readout:has-text("n 2")', energy: '.readout:has-text("n 2")',
-  circle: '.readout:has-text("κ 1.100")', map: '#map-links a', survival: '#survival-told:has-text("outlast")', ladder: '.rungs td', design: '#design-sheet img', branch: '.changes', precision: '#precision-told:has-text("Measured over")',
-  paper: '.paper', calls: '.call', gallery: 'article',
+  scene: '.readout:has-text("impact 2")',
+  'plane-angle': '.readout:has-text("n 2")',
+  'plane-velocity': '.readout:has-text("n 2")',
+  energy: '.readout:has-text("n 2")',
+  circle: '.readout:has-text("κ 1.100")',
+  map: '#map-links a',
+  survival: '#survival-told:has-text("outlast")',
+  ladder: '.rungs td',
+  design: '#design-sheet img',
+  branch: '.changes',
+  precision: '#precision-told:has-text("Measured over")',
+  paper: '.paper',
+  calls: '.call',
+  gallery: 'article',
 };
 
 test('the contract names every panel', async () => {
@@ -24,12 +35,28 @@ test('the contract names every panel', async () => {
 
 for (const [id, sign] of Object.entries(SIGNS)) {
   test(`the panel ${id} stands alone`, async () => {
-    const { page, clean } = await stage.page('?preset=case-1&speed=2', { path: `embed/${id}`, sign, viewport: { width: 480, height: 360 }, colorScheme: 'dark' });
-    assert.deepEqual(await page.evaluate(() => [document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]), [0, 0]);
+    const { page, clean } = await stage.page('?preset=case-1&speed=2', {
+      path: `embed/${id}`,
+      sign,
+      viewport: { width: 480, height: 360 },
+      colorScheme: 'dark',
+    });
+    assert.deepEqual(
+      await page.evaluate(() => [
+        document.documentElement.scrollWidth - innerWidth,
+        document.documentElement.scrollHeight - innerHeight,
+      ]),
+      [0, 0],
+    );
     assert.equal(await page.locator('.card').count(), 1);
     await page.evaluate(axe);
-    const { violations } = await page.evaluate(() => globalThis.axe.run(document, { rules: { 'page-has-heading-one': { enabled: false } } }));
-    assert.deepEqual(violations.map(({ id: rule, nodes }) => `${rule} ${nodes[0].target}`), []);
+    const { violations } = await page.evaluate(() =>
+      globalThis.axe.run(document, { rules: { 'page-has-heading-one': { enabled: false } } }),
+    );
+    assert.deepEqual(
+      violations.map(({ id: rule, nodes }) => `${rule} ${nodes[0].target}`),
+      [],
+    );
     clean();
   });
 }
@@ -37,7 +64,9 @@ for (const [id, sign] of Object.entries(SIGNS)) {
 test('a frame of another origin holds a panel, and not the page', async () => {
   const host = createServer((_, response) => {
     response.setHeader('content-type', 'text/html');
-    response.end(`<iframe name="panel" src="${stage.url}embed/plane-angle?preset=case-1"></iframe><iframe name="whole" src="${stage.url}"></iframe>`);
+    response.end(
+      `<iframe name="panel" src="${stage.url}embed/plane-angle?preset=case-1"></iframe><iframe name="whole" src="${stage.url}"></iframe>`,
+    );
   }).listen(0, '127.0.0.1');
   await new Promise((resolve) => host.once('listening', resolve));
   const { page } = await stage.page('', { path: 'health/live', sign: 'body' });
@@ -52,7 +81,10 @@ test('the copied frame shows the run of the page', async () => {
   await page.click('#plane-angle .enlarge');
   await page.locator('dialog.large').getByRole('button', { name: 'Copy embed' }).click();
   const code = await page.evaluate(() => navigator.clipboard.readText());
-  const source = await page.evaluate((html) => new DOMParser().parseFromString(html, 'text/html').querySelector('iframe').src, code);
+  const source = await page.evaluate(
+    (html) => new DOMParser().parseFromString(html, 'text/html').querySelector('iframe').src,
+    code,
+  );
   await page.keyboard.press('Escape');
   const shown = await numbers(page, 'plane-angle');
   const other = await stage.page(source.slice(stage.url.length), { sign: '.readout:has-text("n ")' });

@@ -14,7 +14,7 @@ const disclose = (page) => page.locator('.evidence:not([open]) summary').click()
 const words = async (page) => {
   // It comes after the verdict, with a module of its own.
   await page.locator('.evidence').waitFor();
-  if (await page.locator('.evidence:not([open])').count() > 0) await disclose(page);
+  if ((await page.locator('.evidence:not([open])').count()) > 0) await disclose(page);
   return plain(await page.locator('.evidence dl').innerText());
 };
 const short = (value, digits = 4) => String(Number(value.toPrecision(digits)));
@@ -27,7 +27,10 @@ test('rotation, chaos and predictability are told with the server’s numbers', 
   assert.ok(told.includes(`${short(rotation.measured)} turns a bounce`), told);
   assert.ok(told.includes(`small deviations ${short(rotation.linear)}`), told);
   assert.ok(told.includes(`${rotation.resonance.p}/${rotation.resonance.q}`), told);
-  assert.ok(told.includes('Regular') && told.includes(`MEGNO ${short(chaos.indicator, 3)} over ${chaos.impacts} impacts`), told);
+  assert.ok(
+    told.includes('Regular') && told.includes(`MEGNO ${short(chaos.indicator, 3)} over ${chaos.impacts} impacts`),
+    told,
+  );
   assert.match(told, /For all 500 impacts watched/);
   clean();
 });
@@ -50,7 +53,10 @@ test('a line tells it for a first look, and what was opened stays open', async (
   await verdict(page);
   const gist = async () => plain(await page.locator('.evidence summary').innerText());
   const { rotation_number: rotation, chaos } = await ask('preset=case-1');
-  assert.equal(await gist(), `Regular · ${short(rotation.measured, 3)} turns a bounce · predictable ≥ ${chaos.impacts} impacts`);
+  assert.equal(
+    await gist(),
+    `Regular · ${short(rotation.measured, 3)} turns a bounce · predictable ≥ ${chaos.impacts} impacts`,
+  );
   assert.ok(!(await page.locator('.evidence dl').isVisible()));
   await disclose(page);
   await page.locator('#field-table-tilt_gain').fill('1.375');
@@ -62,7 +68,14 @@ test('a line tells it for a first look, and what was opened stays open', async (
 test('at 1280 × 860 scene, verdict, planes and eigenvalues are seen at once', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
   await verdict(page);
-  for (const selector of ['#scene-frame', '#controls', '#verdict', '#plane-angle canvas', '#plane-velocity canvas', '#circle canvas']) {
+  for (const selector of [
+    '#scene-frame',
+    '#controls',
+    '#verdict',
+    '#plane-angle canvas',
+    '#plane-velocity canvas',
+    '#circle canvas',
+  ]) {
     const box = await page.locator(selector).first().boundingBox();
     assert.ok(box.y >= 0 && box.y + box.height <= 860, `${selector} ends at ${box.y + box.height} px`);
   }
@@ -80,7 +93,9 @@ test('a resonance nearby is named', async () => {
 test('the basin is measured when somebody asks, and belongs to its scene', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
   const asked = [];
-  page.on('request', (request) => { if (request.url().includes('basin=true')) asked.push(request.url()); });
+  page.on('request', (request) => {
+    if (request.url().includes('basin=true')) asked.push(request.url());
+  });
   await verdict(page);
   assert.equal(asked.length, 0);
   await disclose(page);
@@ -88,7 +103,12 @@ test('the basin is measured when somebody asks, and belongs to its scene', async
   await page.locator('.evidence', { hasText: 'Released at rest' }).waitFor();
   const { basin } = await ask('preset=case-1&basin=true');
   const told = await words(page);
-  assert.ok(told.includes(`${basin.impacts} impacts from up to ${short(basin.unbroken)} rad (${short(basin.unbroken * 180 / Math.PI, 3)} °)`), told);
+  assert.ok(
+    told.includes(
+      `${basin.impacts} impacts from up to ${short(basin.unbroken)} rad (${short((basin.unbroken * 180) / Math.PI, 3)} °)`,
+    ),
+    told,
+  );
   assert.ok(told.includes(`${basin.holes.length} gaps up to ${short(basin.theta)} rad`), told);
   assert.equal(asked.length, 1);
   await page.locator('#field-table-tilt_gain').fill('1.2');

@@ -35,10 +35,18 @@ test('what is no number is said so, kept, and not sent', async () => {
 });
 
 test('a finger that scrolls past a slider changes nothing', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2345', { hasTouch: true, isMobile: true, viewport: { width: 390, height: 844 } });
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2345', {
+    hasTouch: true,
+    isMobile: true,
+    viewport: { width: 390, height: 844 },
+  });
   const fingers = await page.context().newCDPSession(page);
   const touch = (type, ...touchPoints) => fingers.send('Input.dispatchTouchEvent', { type, touchPoints });
-  for (const [slider, field, value] of [['#gain', '#field-table-tilt_gain', '1.1'], ['.field:has(#field-release-theta) input[type=range]', '#field-release-theta', '0.2345'], ['#speed', null, null]]) {
+  for (const [slider, field, value] of [
+    ['#gain', '#field-table-tilt_gain', '1.1'],
+    ['.field:has(#field-release-theta) input[type=range]', '#field-release-theta', '0.2345'],
+    ['#speed', null, null],
+  ]) {
     const track = page.locator(slider);
     await track.evaluate((element) => element.scrollIntoView({ block: 'center' }));
     const { x, y, width, height } = await track.boundingBox();
@@ -76,9 +84,16 @@ test('a value that clashes with another is shown where the server points', async
 
 test('degrees, fractions of π and a decimal comma are understood', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
-  for (const [text, value] of [['pi/4', Math.PI / 4], ['45°', Math.PI / 4], ['1,2', 1.2]]) {
+  for (const [text, value] of [
+    ['pi/4', Math.PI / 4],
+    ['45°', Math.PI / 4],
+    ['1,2', 1.2],
+  ]) {
     await page.locator('#field-incline').fill(text);
-    await page.waitForFunction((wanted) => Math.abs(Number(new URLSearchParams(location.search).get('scene.incline')) - wanted) < 1e-12, value);
+    await page.waitForFunction(
+      (wanted) => Math.abs(Number(new URLSearchParams(location.search).get('scene.incline')) - wanted) < 1e-12,
+      value,
+    );
     assert.equal(await page.inputValue('#field-incline'), text);
   }
   clean();
@@ -90,7 +105,7 @@ test('every field has a control with a name', async () => {
   for (const { path, title } of fields) {
     const control = page.locator(`#field-${path.replaceAll('.', '-')}`);
     assert.equal(await control.count(), 1, path);
-    assert.ok(await page.getByLabel(title).count() > 0, title);
+    assert.ok((await page.getByLabel(title).count()) > 0, title);
   }
   clean();
 });
@@ -105,7 +120,7 @@ test('the printed values stand beside the computed ones, with the reason where t
   await page.locator('#paper tbody tr').first().waitFor();
   const text = letters(await page.locator('#paper').innerText());
   for (const { why } of differing) assert.ok(text.includes(letters(why)), why);
-  assert.ok(await page.locator('#paper tbody tr').count() > 0);
+  assert.ok((await page.locator('#paper tbody tr').count()) > 0);
   clean();
 });
 
@@ -169,7 +184,9 @@ test('a polygon is typed, runs, and is in the link', async () => {
 });
 
 test('a link whose vertices are not whole drops them', async () => {
-  const { page, clean } = await stage.page('?preset=triangle-polygon&scene.body.vertices.0.0=0&scene.body.vertices.2.1=1');
+  const { page, clean } = await stage.page(
+    '?preset=triangle-polygon&scene.body.vertices.0.0=0&scene.body.vertices.2.1=1',
+  );
   assert.match(await page.locator('.notice').innerText(), /vertices, which are not whole/);
   clean();
 });

@@ -20,7 +20,12 @@ const letters = (text) => text.toLowerCase().replace(/[^a-z0-9]+/g, '');
 test('nothing of the gallery is loaded before it comes near', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
   await verdict(page);
-  assert.equal(await page.evaluate(() => performance.getEntriesByType('resource').filter(({ name }) => /gallery|failures/.test(name)).length), 0);
+  assert.equal(
+    await page.evaluate(
+      () => performance.getEntriesByType('resource').filter(({ name }) => /gallery|failures/.test(name)).length,
+    ),
+    0,
+  );
   clean();
 });
 
@@ -32,12 +37,24 @@ test('every case has its card, with right and wrong in words', async () => {
   for (const [index, { title, why, says, truth }] of all.entries()) {
     const card = cards.nth(index);
     const text = letters(await card.innerText());
-    for (const words of [title, why, truth.verdict, truth.detail, ...says.flatMap(({ method, verdict: claim, detail }) => [method, claim, detail])]) {
+    for (const words of [
+      title,
+      why,
+      truth.verdict,
+      truth.detail,
+      ...says.flatMap(({ method, verdict: claim, detail }) => [method, claim, detail]),
+    ]) {
       assert.ok(text.includes(letters(words)), `${title}: ${words}`);
     }
     const rows = await card.locator('.says li').allInnerTexts();
-    assert.deepEqual(rows.map((row) => (/(right|wrong)\n/.exec(row) ?? [])[1]), says.map(({ right }) => (right ? 'right' : 'wrong')));
-    assert.deepEqual(rows.map((row) => row[0]), says.map(({ right }) => (right ? '✓' : '✗')));
+    assert.deepEqual(
+      rows.map((row) => (/(right|wrong)\n/.exec(row) ?? [])[1]),
+      says.map(({ right }) => (right ? 'right' : 'wrong')),
+    );
+    assert.deepEqual(
+      rows.map((row) => row[0]),
+      says.map(({ right }) => (right ? '✓' : '✗')),
+    );
   }
   clean();
 });
@@ -48,7 +65,13 @@ for (const colorScheme of ['light', 'dark']) {
     for (const image of await page.locator('article img').all()) {
       await image.scrollIntoViewIfNeeded();
       await image.evaluate((element) => element.decode());
-      assert.ok(await image.evaluate((element) => element.naturalWidth > 300 && Math.abs(element.naturalWidth / element.naturalHeight - element.clientWidth / element.clientHeight) < 0.02));
+      assert.ok(
+        await image.evaluate(
+          (element) =>
+            element.naturalWidth > 300 &&
+            Math.abs(element.naturalWidth / element.naturalHeight - element.clientWidth / element.clientHeight) < 0.02,
+        ),
+      );
     }
     clean();
   });
@@ -66,7 +89,13 @@ test('a card loads its scene and runs it, and Back returns', async () => {
   assert.equal(Number(query.get('scene.table.tilt_gain')), scene.table.tilt_gain);
   assert.equal(Number(query.get('scene.release.theta')), scene.release.theta);
   assert.equal(await page.evaluate(() => document.activeElement.id), 'case');
-  assert.ok(await page.locator('#run-state').evaluate((element) => element.getBoundingClientRect().top >= 0 && element.getBoundingClientRect().bottom < innerHeight));
+  assert.ok(
+    await page
+      .locator('#run-state')
+      .evaluate(
+        (element) => element.getBoundingClientRect().top >= 0 && element.getBoundingClientRect().bottom < innerHeight,
+      ),
+  );
   await page.goBack();
   await page.waitForFunction(() => document.querySelector('#case').value === 'case-1');
   assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.1');
@@ -75,18 +104,26 @@ test('a card loads its scene and runs it, and Back returns', async () => {
 
 test('what a card asks the server is answered', async () => {
   const { page } = await open();
-  for (const href of await page.locator('article .actions a').evaluateAll((links) => links.map((link) => link.href))) assert.ok((await fetch(href)).ok, href);
+  for (const href of await page.locator('article .actions a').evaluateAll((links) => links.map((link) => link.href)))
+    assert.ok((await fetch(href)).ok, href);
 });
 
 test('without a server the gallery says so and can be asked for again', async () => {
-  const { page } = await stage.page('?preset=case-1', { prepare: () => {
-    const real = globalThis.fetch;
-    globalThis.refuse = true;
-    globalThis.fetch = (input, init) => (globalThis.refuse && String(input).includes('failures') ? Promise.reject(new TypeError('no network')) : real(input, init));
-  } });
+  const { page } = await stage.page('?preset=case-1', {
+    prepare: () => {
+      const real = globalThis.fetch;
+      globalThis.refuse = true;
+      globalThis.fetch = (input, init) =>
+        globalThis.refuse && String(input).includes('failures')
+          ? Promise.reject(new TypeError('no network'))
+          : real(input, init);
+    },
+  });
   await page.locator('#gallery-body').scrollIntoViewIfNeeded();
   await page.locator('#gallery-body', { hasText: 'The server does not answer' }).waitFor();
-  await page.evaluate(() => { globalThis.refuse = false; });
+  await page.evaluate(() => {
+    globalThis.refuse = false;
+  });
   await page.locator('#gallery-body button').click();
   await page.locator('article').first().waitFor();
 });

@@ -15,8 +15,12 @@ async function open(query) {
   return opened;
 }
 
-const asked = async (page) => (await fetch(await page.locator('#ladder-links a', { hasText: 'JSON' }).evaluate((link) => link.href))).json();
-const rows = (page) => page.locator('.rungs tbody tr').evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+const asked = async (page) =>
+  (await fetch(await page.locator('#ladder-links a', { hasText: 'JSON' }).evaluate((link) => link.href))).json();
+const rows = (page) =>
+  page
+    .locator('.rungs tbody tr')
+    .evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
 
 for (const preset of ['triangle-polygon', 'case-4', 'point-mass']) {
   test(`${preset}: every rung with what forced it, what it changed and whether it was needed`, async () => {
@@ -30,11 +34,13 @@ for (const preset of ['triangle-polygon', 'case-4', 'point-mass']) {
       assert.ok(forced ? field.startsWith(forced.field) : field === '–', field);
       assert.equal(Number(time), cost);
       assert.ok(!outcome || end === `${outcome.kind.replaceAll('_', ' ')}, ${outcome.impacts}`, end);
-      if (change?.state.difference != null) assert.ok(Math.abs(Number.parseFloat(most) - change.state.difference) <= 0.01 * change.state.difference, most);
+      if (change?.state.difference != null)
+        assert.ok(Math.abs(Number.parseFloat(most) - change.state.difference) <= 0.01 * change.state.difference, most);
       assert.equal(verdictOf, needed === null ? '–' : needed ? 'needed' : 'not needed');
     }
     assert.equal(await page.locator('.rungs .enough').count(), 1);
-    for (const href of await page.locator('#ladder-links a').evaluateAll((links) => links.map((link) => link.href))) assert.ok((await fetch(href)).ok, href);
+    for (const href of await page.locator('#ladder-links a').evaluateAll((links) => links.map((link) => link.href)))
+      assert.ok((await fetch(href)).ok, href);
     clean();
   });
 }
@@ -57,9 +63,16 @@ test('it follows the scene and its own two numbers', async () => {
 
 test('the verdict tells what the run asks of the table', async () => {
   const { page, clean } = await open('?preset=case-4');
-  const { nonlinear: { demand } } = await (await fetch(`${stage.url}v1/stability?preset=case-4`)).json();
+  const {
+    nonlinear: { demand },
+  } = await (await fetch(`${stage.url}v1/stability?preset=case-4`)).json();
   const text = plain(await page.locator('#verdict').innerText());
-  for (const [value, unit] of [[demand.tilt, 'rad'], [demand.tilt_rate, 'rad/s'], [demand.speed, 'm/s'], [demand.stroke, 'm']]) {
+  for (const [value, unit] of [
+    [demand.tilt, 'rad'],
+    [demand.tilt_rate, 'rad/s'],
+    [demand.speed, 'm/s'],
+    [demand.stroke, 'm'],
+  ]) {
     assert.ok(text.includes(`${Number(value.toPrecision(3))} ${unit}`), `${value} ${unit} in ${text}`);
   }
   clean();

@@ -25,7 +25,8 @@ test('a link restores parameters, interventions and the same impacts in another 
   const second = await stage.page(new URL(link).search);
   await reachPhase(second.page, 'paused');
   await reachImpact(second.page, 16);
-  for (const id of ['plane-angle', 'plane-velocity', 'energy']) assert.deepEqual(await numbers(second.page, id), await numbers(first.page, id));
+  for (const id of ['plane-angle', 'plane-velocity', 'energy'])
+    assert.deepEqual(await numbers(second.page, id), await numbers(first.page, id));
   assert.equal(await second.page.inputValue('#field-release-theta'), '0.2');
   assert.equal(await second.page.inputValue('#field-table-tilt_gain'), '1.2');
   assert.equal(await second.page.locator('#notices').innerText(), '');
@@ -68,9 +69,15 @@ test('going back after a click in a plane restores the run before', async () => 
   await box.scrollIntoViewIfNeeded();
   const { width, height } = await box.boundingBox();
   await box.click({ position: { x: width * 0.6, y: height * 0.45 } });
-  await page.waitForFunction((before) => { const now = new URLSearchParams(location.search); return now.get('epoch') && now.get('epoch') !== before && !/kick/.test(location.search); }, epoch);
+  await page.waitForFunction((before) => {
+    const now = new URLSearchParams(location.search);
+    return now.get('epoch') && now.get('epoch') !== before && !/kick/.test(location.search);
+  }, epoch);
   await page.goBack();
-  await page.waitForFunction((before) => new URLSearchParams(location.search).get('epoch') === before && /kick/.test(location.search), epoch);
+  await page.waitForFunction(
+    (before) => new URLSearchParams(location.search).get('epoch') === before && /kick/.test(location.search),
+    epoch,
+  );
   await reachImpact(page, 5);
   clean();
 });
@@ -107,10 +114,15 @@ for (const [query, words] of BROKEN) {
 }
 
 test('interventions that are not whole are dropped from a run that is joined', async () => {
-  const { page, clean } = await stage.page(`?preset=case-1&epoch=${Date.now() - 2000}&interventions.0.set.table.tilt_gain=1.2&interventions.7.impact=2&interventions.7.kick.theta_dot=0.1&clock.3.wall=5`);
+  const { page, clean } = await stage.page(
+    `?preset=case-1&epoch=${Date.now() - 2000}&interventions.0.set.table.tilt_gain=1.2&interventions.7.impact=2&interventions.7.kick.theta_dot=0.1&clock.3.wall=5`,
+  );
   assert.match(await page.locator('.notice').innerText(), /1 of 2 interventions[\s\S]*pause/);
   await reachImpact(page, 2);
-  await page.waitForFunction(() => /interventions\.0\.kick\.theta_dot=0\.1/.test(location.search) && !/clock|interventions\.7/.test(location.search));
+  await page.waitForFunction(
+    () =>
+      /interventions\.0\.kick\.theta_dot=0\.1/.test(location.search) && !/clock|interventions\.7/.test(location.search),
+  );
   clean();
 });
 
@@ -130,11 +142,39 @@ async function brokenLinks() {
   const links = fields.flatMap(({ path, kind, minimum, maximum }) => {
     if (kind === 'choice') return [`scene.${path}=none-such`, `scene.${path}=`];
     if (kind === 'boolean') return [`scene.${path}=perhaps`];
-    return [`scene.${path}=steep`, `scene.${path}=`, `scene.${path}=1e999`, ...(maximum === null ? [] : [`scene.${path}=${maximum + 1 + Math.abs(maximum)}`]), ...(minimum === null ? [] : [`scene.${path}=${minimum - 1 - Math.abs(minimum)}`])];
+    return [
+      `scene.${path}=steep`,
+      `scene.${path}=`,
+      `scene.${path}=1e999`,
+      ...(maximum === null ? [] : [`scene.${path}=${maximum + 1 + Math.abs(maximum)}`]),
+      ...(minimum === null ? [] : [`scene.${path}=${minimum - 1 - Math.abs(minimum)}`]),
+    ];
   });
-  const parts = ['speed', 'epoch', 'colour', 'scene', 'scene.', 'scene.body', '__proto__', 'scene.__proto__.x', 'scene.constructor', 'interventions.0.impact', 'interventions.x.impact', 'interventions.0.kick.spin', 'clock.0.wall', 'clock.0', 'map.z.parameter', 'map', 'survival.rums', 'brush.mass.from', 'toString', 'preset'];
+  const parts = [
+    'speed',
+    'epoch',
+    'colour',
+    'scene',
+    'scene.',
+    'scene.body',
+    '__proto__',
+    'scene.__proto__.x',
+    'scene.constructor',
+    'interventions.0.impact',
+    'interventions.x.impact',
+    'interventions.0.kick.spin',
+    'clock.0.wall',
+    'clock.0',
+    'map.z.parameter',
+    'map',
+    'survival.rums',
+    'brush.mass.from',
+    'toString',
+    'preset',
+  ];
   const values = ['', '-1', 'NaN', '[object Object]', '%00', '9'.repeat(300), '<script>alert(1)</script>'];
-  for (const part of parts) for (const value of values) links.push(`${part}=${value.startsWith('%') ? value : encodeURIComponent(value)}`);
+  for (const part of parts)
+    for (const value of values) links.push(`${part}=${value.startsWith('%') ? value : encodeURIComponent(value)}`);
   return links.filter((link) => !/^epoch=9+$/.test(link)).slice(0, 200);
 }
 
@@ -143,14 +183,18 @@ test('of 200 broken links none throws, and each is told', async () => {
   assert.equal(links.length, 200);
   const { page, wrongs } = await stage.page('?preset=case-1');
   await verdict(page);
-  const silent = await page.evaluate((all) => all.filter((link) => {
-    history.pushState(null, '', '?preset=case-1');
-    dispatchEvent(new PopStateEvent('popstate'));
-    if (document.querySelector('#notices .notice')) return true;
-    history.pushState(null, '', `?preset=case-1&${link}`);
-    dispatchEvent(new PopStateEvent('popstate'));
-    return !document.querySelector('#notices .notice li');
-  }), links);
+  const silent = await page.evaluate(
+    (all) =>
+      all.filter((link) => {
+        history.pushState(null, '', '?preset=case-1');
+        dispatchEvent(new PopStateEvent('popstate'));
+        if (document.querySelector('#notices .notice')) return true;
+        history.pushState(null, '', `?preset=case-1&${link}`);
+        dispatchEvent(new PopStateEvent('popstate'));
+        return !document.querySelector('#notices .notice li');
+      }),
+    links,
+  );
   assert.deepEqual(silent, []);
   assert.deepEqual(wrongs, []);
   await page.locator('#run:enabled').waitFor();
@@ -160,7 +204,10 @@ test('no mangled link throws', async () => {
   const { page, wrongs } = await stage.page('');
   // A fixed generator: the same links every time.
   let seed = 7;
-  const random = (below) => { seed = (seed * 48271) % 2147483647; return seed % below; };
+  const random = (below) => {
+    seed = (seed * 48271) % 2147483647;
+    return seed % below;
+  };
   const whole = 'preset=case-1&scene.table.tilt_gain=1.2&scene.release.theta=0.1&speed=2';
   const letters = '&=.-0eE%<>"[]{}';
   for (let round = 0; round < 40; round += 1) {
@@ -173,6 +220,9 @@ test('no mangled link throws', async () => {
     await page.locator('#case:enabled').waitFor();
     await page.waitForFunction(() => document.querySelector('.notice, .verdict-words'));
   }
-  assert.deepEqual(wrongs.filter((wrong) => wrong.startsWith('exception')), []);
+  assert.deepEqual(
+    wrongs.filter((wrong) => wrong.startsWith('exception')),
+    [],
+  );
   assert.ok(await verdict(page));
 });

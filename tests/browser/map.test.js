@@ -13,7 +13,9 @@ function gate() {
   const real = globalThis.fetch;
   globalThis.fetch = async (input, init) => {
     if (!String(input).includes('format=ndjson')) return real(input, init);
-    init?.signal?.addEventListener('abort', () => { globalThis.aborted += 1; });
+    init?.signal?.addEventListener('abort', () => {
+      globalThis.aborted += 1;
+    });
     const response = await real(input, init);
     let passed = 0;
     let rest = '';
@@ -22,14 +24,18 @@ function gate() {
         const lines = (rest + new TextDecoder().decode(chunk)).split('\n');
         rest = lines.pop();
         for (const line of lines) {
-          while (passed >= globalThis.linesLet && !init.signal.aborted) await new Promise((done) => setTimeout(done, 5));
+          while (passed >= globalThis.linesLet && !init.signal.aborted)
+            await new Promise((done) => setTimeout(done, 5));
           if (init.signal.aborted) return;
           passed += 1;
           out.enqueue(new TextEncoder().encode(`${line}\n`));
         }
       },
     });
-    return new Response(response.ok ? response.body.pipeThrough(slow) : response.body, { status: response.status, headers: response.headers });
+    return new Response(response.ok ? response.body.pipeThrough(slow) : response.body, {
+      status: response.status,
+      headers: response.headers,
+    });
   };
 }
 
@@ -52,7 +58,8 @@ async function anew(page, act) {
 }
 
 const readout = async (page) => (await page.locator('#map-readout').innerText()).replaceAll('\u2212', '-');
-const frames = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+const frames = (page) =>
+  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 /** Where the cells are on the screen: what the canvas leaves for axes and colour bar is known. */
 async function place(page, across, upwards) {
@@ -63,12 +70,28 @@ async function place(page, across, upwards) {
 /** The colour at a share of the map, as [r, g, b, a]. */
 async function colourAt(page, across, upwards) {
   await frames(page);
-  return page.locator('#map-box canvas').first().evaluate((canvas, [right, up]) => {
-    const ratio = devicePixelRatio;
-    const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height }).getContext('2d', { willReadFrequently: true });
-    copy.drawImage(canvas, 0, 0);
-    return [...copy.getImageData(Math.round(52 * ratio + (canvas.width - 70 * ratio) * right), Math.round(24 * ratio + (canvas.height - 120 * ratio) * (1 - up)), 1, 1).data];
-  }, [across, upwards]);
+  return page
+    .locator('#map-box canvas')
+    .first()
+    .evaluate(
+      (canvas, [right, up]) => {
+        const ratio = devicePixelRatio;
+        const copy = Object.assign(document.createElement('canvas'), {
+          width: canvas.width,
+          height: canvas.height,
+        }).getContext('2d', { willReadFrequently: true });
+        copy.drawImage(canvas, 0, 0);
+        return [
+          ...copy.getImageData(
+            Math.round(52 * ratio + (canvas.width - 70 * ratio) * right),
+            Math.round(24 * ratio + (canvas.height - 120 * ratio) * (1 - up)),
+            1,
+            1,
+          ).data,
+        ];
+      },
+      [across, upwards],
+    );
 }
 
 const isColour = ([r, g, b], [R, G, B]) => Math.abs(r - R) + Math.abs(g - G) + Math.abs(b - B) < 30;
@@ -85,16 +108,22 @@ async function drag(page, from, to) {
   await page.mouse.up();
 }
 
-const inputs = (page) => page.evaluate(() => ['map-x-from', 'map-x-to', 'map-y-from', 'map-y-to'].map((id) => Number(document.getElementById(id).value)));
+const inputs = (page) =>
+  page.evaluate(() =>
+    ['map-x-from', 'map-x-to', 'map-y-from', 'map-y-to'].map((id) => Number(document.getElementById(id).value)),
+  );
 
 test('nothing of the map is loaded before it comes near', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
   await verdict(page);
-  const asked = () => page.evaluate(() => performance.getEntriesByType('resource').filter(({ name }) => /\/map\/|regions/.test(name)).length);
+  const asked = () =>
+    page.evaluate(
+      () => performance.getEntriesByType('resource').filter(({ name }) => /\/map\/|regions/.test(name)).length,
+    );
   assert.equal(await asked(), 0);
   await page.locator('#map-body').scrollIntoViewIfNeeded();
   await whole(page);
-  assert.ok(await asked() > 3);
+  assert.ok((await asked()) > 3);
   clean();
 });
 
@@ -104,35 +133,59 @@ test('what is drawn is what the server computes, with the linear boundary over i
   const href = await page.locator('#map-links a', { hasText: 'JSON' }).getAttribute('href');
   const answer = await (await fetch(stage.url + href)).json();
   assert.equal(answer.x.length * answer.y.length, 6144);
-  for (const [column, row] of [[10, 10], [60, 20], [90, 60], [30, 50], [48, 1]]) {
+  for (const [column, row] of [
+    [10, 10],
+    [60, 20],
+    [90, 60],
+    [30, 50],
+    [48, 1],
+  ]) {
     const [across, upwards] = [(column + 0.5) / 96, (row + 0.5) / 64];
     const value = answer.values[row][column];
     if (value === 1000) assert.ok(isColour(await colourAt(page, across, upwards), LIGHTEST), `${column} ${row}`);
     if (value < 5) assert.ok(isColour(await colourAt(page, across, upwards), DARKEST), `${column} ${row}`);
-    await page.mouse.move(...await place(page, across, upwards));
-    await page.waitForFunction((wanted) => document.querySelector('#map-readout').textContent.replaceAll('\u00a0', ' ').includes(`${wanted} of 1000 contacts`), value);
-    assert.ok((await readout(page)).replaceAll('\u00a0', ' ').includes(answer.outcome_names[answer.outcomes[row][column]]));
+    await page.mouse.move(...(await place(page, across, upwards)));
+    await page.waitForFunction(
+      (wanted) =>
+        document
+          .querySelector('#map-readout')
+          .textContent.replaceAll('\u00a0', ' ')
+          .includes(`${wanted} of 1000 contacts`),
+      value,
+    );
+    assert.ok(
+      (await readout(page)).replaceAll('\u00a0', ' ').includes(answer.outcome_names[answer.outcomes[row][column]]),
+    );
   }
   const boundary = answer.boundary.filter(({ residue }) => residue === 1);
   assert.ok(boundary.length > 10 && boundary.every(({ x }) => Math.abs(x[0] - 1.5) < 1e-9));
   const half = 0.6 / 95 / 2;
-  const around = await Promise.all([-0.002, -0.001, 0, 0.001, 0.002].map((aside) => colourAt(page, (1.5 - 1 + half) / (0.6 + 2 * half) + aside, 0.8)));
-  assert.ok(around.some((colour) => isColour(colour, [255, 255, 255])), `a light line at κ_c: ${around}`);
+  const around = await Promise.all(
+    [-0.002, -0.001, 0, 0.001, 0.002].map((aside) => colourAt(page, (1.5 - 1 + half) / (0.6 + 2 * half) + aside, 0.8)),
+  );
+  assert.ok(
+    around.some((colour) => isColour(colour, [255, 255, 255])),
+    `a light line at κ_c: ${around}`,
+  );
   clean();
 });
 
 test('rows are drawn as they arrive, with their count', async () => {
   const { page, clean } = await stage.page('?preset=case-1', { prepare: gate });
-  await page.evaluate(() => { globalThis.linesLet = 20; });
+  await page.evaluate(() => {
+    globalThis.linesLet = 20;
+  });
   await page.locator('#map-body').scrollIntoViewIfNeeded();
   await page.locator('.map-progress', { hasText: '20 / 64 rows' }).waitFor();
   assert.equal(await page.locator('#map-progress').evaluate((bar) => bar.value / bar.max), 20 / 64);
   assert.ok(isColour(await colourAt(page, 0.4, 0.1), LIGHTEST), 'the rows that are there');
   assert.ok(!isColour(await colourAt(page, 0.97, 0.6), DARKEST), 'and no other');
   assert.ok(await page.locator('#map-cancel').isEnabled());
-  await page.mouse.move(...await place(page, 0.4, 0.6));
+  await page.mouse.move(...(await place(page, 0.4, 0.6)));
   assert.match(await readout(page), /not.computed.yet/);
-  await page.evaluate(() => { globalThis.linesLet = Infinity; });
+  await page.evaluate(() => {
+    globalThis.linesLet = Infinity;
+  });
   await whole(page);
   assert.ok(isColour(await colourAt(page, 0.97, 0.6), DARKEST));
   assert.ok(await page.locator('#map-cancel').isDisabled());
@@ -143,19 +196,26 @@ test('cancel keeps what is there and frees the server', async () => {
   const { page, clean } = await open('?preset=case-1', { prepare: gate });
   await whole(page);
   // A first row may come before the cancel, and would take the place of the map before.
-  await page.evaluate(() => { globalThis.linesLet = 0; });
-  const running = async () => Number(/^equipoise_jobs_running (\d+)/m.exec(await (await fetch(`${stage.url}metrics`)).text())[1]);
-  const aborted = page.waitForEvent('requestfailed', (request) => request.url().includes('impacts=100000&format=ndjson'));
+  await page.evaluate(() => {
+    globalThis.linesLet = 0;
+  });
+  const running = async () =>
+    Number(/^equipoise_jobs_running (\d+)/m.exec(await (await fetch(`${stage.url}metrics`)).text())[1]);
+  const aborted = page.waitForEvent('requestfailed', (request) =>
+    request.url().includes('impacts=100000&format=ndjson'),
+  );
   await page.fill('#map-impacts', '100000');
   await page.locator('#map-impacts').blur();
-  while (await running() === 0) await new Promise((done) => setTimeout(done, 5));
+  while ((await running()) === 0) await new Promise((done) => setTimeout(done, 5));
   await page.click('#map-cancel');
   await aborted;
-  while (await running() > 0) await new Promise((done) => setTimeout(done, 5));
+  while ((await running()) > 0) await new Promise((done) => setTimeout(done, 5));
   assert.equal(await page.locator('#map-told').innerText(), 'Cancelled.');
   assert.ok(await page.locator('#map-cancel').isDisabled());
   assert.ok(isColour(await colourAt(page, 0.4, 0.1), LIGHTEST), 'the map before is still there');
-  await page.evaluate(() => { globalThis.linesLet = Infinity; });
+  await page.evaluate(() => {
+    globalThis.linesLet = Infinity;
+  });
   await page.fill('#map-impacts', '500');
   await page.locator('#map-impacts').blur();
   await whole(page);
@@ -165,14 +225,18 @@ test('cancel keeps what is there and frees the server', async () => {
 test('of questions in quick succession only the last is answered', async () => {
   const { page, clean } = await open('?preset=case-1', { prepare: gate });
   await whole(page);
-  await page.evaluate(() => { globalThis.linesLet = 3; });
+  await page.evaluate(() => {
+    globalThis.linesLet = 3;
+  });
   for (const impacts of [200, 300, 400]) {
     await page.fill('#map-impacts', String(impacts));
     await page.locator('#map-impacts').blur();
     await page.locator('.map-progress', { hasText: /^3 \/ 64/ }).waitFor();
   }
   assert.equal(await page.evaluate(() => globalThis.aborted), 2);
-  await page.evaluate(() => { globalThis.linesLet = Infinity; });
+  await page.evaluate(() => {
+    globalThis.linesLet = Infinity;
+  });
   await whole(page);
   assert.match(await page.locator('#map-links a').first().getAttribute('href'), /impacts=400/);
   assert.match((await readout(page)).replaceAll('\u00a0', ' '), /400 of 400/);
@@ -182,7 +246,7 @@ test('of questions in quick succession only the last is answered', async () => {
 test('a click runs the scene of its cell, and the run ends as the map says', async () => {
   const { page, clean } = await open();
   await whole(page);
-  await page.mouse.click(...await place(page, 0.7, 0.8));
+  await page.mouse.click(...(await place(page, 0.7, 0.8)));
   const words = (await readout(page)).replaceAll('\u00a0', ' ');
   const survived = Number(/(\d+) of 1000 contacts survived/.exec(words)[1]);
   assert.ok(survived < 20, words);
@@ -228,9 +292,9 @@ test('a drag that ends with Escape, or is too thin, does nothing', async () => {
   await whole(page);
   const before = await inputs(page);
   await page.locator('#map-box').focus();
-  await page.mouse.move(...await place(page, 0.3, 0.3));
+  await page.mouse.move(...(await place(page, 0.3, 0.3)));
   await page.mouse.down();
-  await page.mouse.move(...await place(page, 0.6, 0.6), { steps: 4 });
+  await page.mouse.move(...(await place(page, 0.6, 0.6)), { steps: 4 });
   await page.keyboard.press('Escape');
   await page.mouse.up();
   await drag(page, [0.3, 0.3], [0.6, 0.301]);
@@ -289,11 +353,17 @@ test('a link restores the map', async () => {
   await anew(first.page, () => first.page.selectOption('#map-y', 'release.theta_dot'));
   await anew(first.page, () => first.page.selectOption('#map-quantity', 'max_theta'));
   await anew(first.page, () => first.page.selectOption('#map-columns', '48'));
-  await anew(first.page, async () => { await first.page.fill('#map-x-to', '1,3'); await first.page.locator('#map-x-to').blur(); });
+  await anew(first.page, async () => {
+    await first.page.fill('#map-x-to', '1,3');
+    await first.page.locator('#map-x-to').blur();
+  });
   await first.page.waitForFunction(() => /map\.x\.to=1\.3/.test(location.search));
   const second = await open(new URL(first.page.url()).search);
   await whole(second.page);
-  assert.equal(await second.page.locator('#map-links a').first().getAttribute('href'), await first.page.locator('#map-links a').first().getAttribute('href'));
+  assert.equal(
+    await second.page.locator('#map-links a').first().getAttribute('href'),
+    await first.page.locator('#map-links a').first().getAttribute('href'),
+  );
   assert.equal(await second.page.locator('#map-told').innerText(), await first.page.locator('#map-told').innerText());
   assert.equal(await second.page.locator('#notices').innerText(), '');
   first.clean();
@@ -301,7 +371,9 @@ test('a link restores the map', async () => {
 });
 
 test('what a link says wrongly of the map is dropped and told there', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&map.x.parameter=body.colour&map.x.from=1&map.x.to=2&map.quantity=beauty&map.impacts=-3&map.columns=7');
+  const { page, clean } = await stage.page(
+    '?preset=case-1&map.x.parameter=body.colour&map.x.from=1&map.x.to=2&map.quantity=beauty&map.impacts=-3&map.columns=7',
+  );
   await page.locator('#map-body').scrollIntoViewIfNeeded();
   await page.locator('#map-links a').first().waitFor();
   const told = await page.locator('#map-notice').innerText();
@@ -313,7 +385,10 @@ test('what a link says wrongly of the map is dropped and told there', async () =
 test('errors stand beside what they are about, and what was typed stays', async () => {
   const { page } = await open();
   await whole(page);
-  const type = async (id, text) => { await page.fill(`#${id}`, text); await page.locator(`#${id}`).blur(); };
+  const type = async (id, text) => {
+    await page.fill(`#${id}`, text);
+    await page.locator(`#${id}`).blur();
+  };
   await type('map-x-from', '2');
   assert.match(await page.locator('#map-x-error').innerText(), /below 1\.6/);
   assert.equal(await page.getAttribute('#map-x-from', 'aria-invalid'), 'true');
@@ -351,21 +426,25 @@ test('without a server the map says so and can be asked for again', async () => 
 });
 
 test('an answer that is cut off keeps its rows and says so', async () => {
-  const { page } = await stage.page('?preset=case-1', { prepare: () => {
-    const real = globalThis.fetch;
-    globalThis.fetch = async (input, init) => {
-      const response = await real(input, init);
-      if (!String(input).includes('format=ndjson')) return response;
-      return new Response((await response.text()).split('\n').slice(0, 30).join('\n'), { headers: response.headers });
-    };
-  } });
+  const { page } = await stage.page('?preset=case-1', {
+    prepare: () => {
+      const real = globalThis.fetch;
+      globalThis.fetch = async (input, init) => {
+        const response = await real(input, init);
+        if (!String(input).includes('format=ndjson')) return response;
+        return new Response((await response.text()).split('\n').slice(0, 30).join('\n'), { headers: response.headers });
+      };
+    },
+  });
   await page.locator('#map-body').scrollIntoViewIfNeeded();
   await page.locator('#map-told', { hasText: /cut off\. \d+ of 64 rows/ }).waitFor();
   assert.ok(isColour(await colourAt(page, 0.4, 0.1), LIGHTEST));
 });
 
 test('a point mass and a quantity without runs have their maps too', async () => {
-  const { page, clean } = await open('?preset=point-mass&map.y.parameter=release.x_dot&map.y.from=-0.2&map.y.to=0.2&map.columns=48');
+  const { page, clean } = await open(
+    '?preset=point-mass&map.y.parameter=release.x_dot&map.y.from=-0.2&map.y.to=0.2&map.columns=48',
+  );
   await whole(page);
   await anew(page, () => page.selectOption('#map-quantity', 'spectral_radius'));
   assert.match(await page.locator('#map-told').innerText(), /1536 cells, from/);

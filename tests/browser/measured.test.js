@@ -9,13 +9,18 @@ import { Stage, ink, reachImpact, reachPhase, speedUp } from './stage.js';
 const stage = await Stage.open();
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const COUNT = 12;
-const csv = async (query = 'preset=case-1') => (await fetch(`${stage.url}v1/trajectories?${query}&impacts=${COUNT}&format=csv`)).text();
+const csv = async (query = 'preset=case-1') =>
+  (await fetch(`${stage.url}v1/trajectories?${query}&impacts=${COUNT}&format=csv`)).text();
 
-const drop = (page, name, text) => page.locator('#plane-angle').evaluate((element, [file, content]) => {
-  const carried = new DataTransfer();
-  carried.items.add(new File([content], file, { type: 'text/csv' }));
-  element.dispatchEvent(new DragEvent('drop', { bubbles: true, cancelable: true, dataTransfer: carried }));
-}, [name, text]);
+const drop = (page, name, text) =>
+  page.locator('#plane-angle').evaluate(
+    (element, [file, content]) => {
+      const carried = new DataTransfer();
+      carried.items.add(new File([content], file, { type: 'text/csv' }));
+      element.dispatchEvent(new DragEvent('drop', { bubbles: true, cancelable: true, dataTransfer: carried }));
+    },
+    [name, text],
+  );
 const told = (page, words) => page.locator('#measured-told', { hasText: words }).waitFor();
 
 /** A run of case 1 that has more impacts than are measured, and stands still. */
@@ -31,19 +36,41 @@ async function paused(options) {
   return opened;
 }
 
-const value = (text) => (text === '–' ? NaN : Number(text.replace('\u2212', '-').replace(/\u202f×\u202f10(.*)/, (_, power) => `e${[...power].map((digit) => (digit === '⁻' ? '-' : '⁰¹²³⁴⁵⁶⁷⁸⁹'.indexOf(digit))).join('')}`)));
+const value = (text) =>
+  text === '–'
+    ? NaN
+    : Number(
+        text
+          .replace('\u2212', '-')
+          .replace(
+            /\u202f×\u202f10(.*)/,
+            (_, power) => `e${[...power].map((digit) => (digit === '⁻' ? '-' : '⁰¹²³⁴⁵⁶⁷⁸⁹'.indexOf(digit))).join('')}`,
+          ),
+      );
 
 /** The residuals in sum: RMS, largest and where, by name. */
 async function sums(page) {
-  const rows = await page.locator('.measured-sheet table').first().locator('tbody tr').evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
-  return Object.fromEntries(rows.map(([name, rms, largest, at]) => [name.split(' / ')[0], { rms: value(rms), largest: value(largest), at: value(at) }]));
+  const rows = await page
+    .locator('.measured-sheet table')
+    .first()
+    .locator('tbody tr')
+    .evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  return Object.fromEntries(
+    rows.map(([name, rms, largest, at]) => [
+      name.split(' / ')[0],
+      { rms: value(rms), largest: value(largest), at: value(at) },
+    ]),
+  );
 }
 
 /** The residuals one by one. */
 async function residuals(page) {
-  if (!(await page.locator('.measured-sheet details').evaluate((details) => details.open))) await page.locator('.measured-sheet summary').click();
+  if (!(await page.locator('.measured-sheet details').evaluate((details) => details.open)))
+    await page.locator('.measured-sheet summary').click();
   await page.locator('.measured-sheet details tbody tr').first().waitFor();
-  const rows = await page.locator('.measured-sheet details tbody tr').evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  const rows = await page
+    .locator('.measured-sheet details tbody tr')
+    .evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
   return rows.map((row) => row.map(value));
 }
 
@@ -54,17 +81,29 @@ test('what the server computes has no residual, and a file that is dropped goes 
   page.on('request', (request) => asked.push(`${request.method()} ${request.url()} ${request.postData() ?? ''}`));
   await drop(page, 'rig.csv', await csv());
   await told(page, `All ${COUNT} measured impacts are simulated.`);
-  assert.deepEqual(asked.filter((one) => !/^GET [^?]+\.(js|css|svg) $/.test(one)), [], 'nothing but files of the page are asked for, which nothing is sent with');
+  assert.deepEqual(
+    asked.filter((one) => !/^GET [^?]+\.(js|css|svg) $/.test(one)),
+    [],
+    'nothing but files of the page are asked for, which nothing is sent with',
+  );
   asked.length = 0;
   await drop(page, 'rig-2.csv', await csv());
   await page.locator('#measured-title', { hasText: 'rig-2.csv' }).waitFor();
   await told(page, `All ${COUNT} measured impacts are simulated.`);
-  assert.deepEqual(asked.filter((one) => !one.includes('icon.svg')), []);
-  for (const [name, { rms, largest }] of Object.entries(await sums(page))) assert.deepEqual([name, rms, largest], [name, 0, 0]);
+  assert.deepEqual(
+    asked.filter((one) => !one.includes('icon.svg')),
+    [],
+  );
+  for (const [name, { rms, largest }] of Object.entries(await sums(page)))
+    assert.deepEqual([name, rms, largest], [name, 0, 0]);
   const rows = await residuals(page);
-  assert.deepEqual(rows, Array.from({ length: COUNT }, (_, index) => [index + 1, 0, 0, 0, 0, 0]));
+  assert.deepEqual(
+    rows,
+    Array.from({ length: COUNT }, (_, index) => [index + 1, 0, 0, 0, 0, 0]),
+  );
   assert.match(await page.locator('#measured-chip').innerText(), /measured \(12\)/);
-  for (const id of ['plane-angle', 'plane-velocity', 'energy']) assert.ok(await ink(page, `#${id}`, '--measured') > before + 40, `diamonds in ${id}`);
+  for (const id of ['plane-angle', 'plane-velocity', 'energy'])
+    assert.ok((await ink(page, `#${id}`, '--measured')) > before + 40, `diamonds in ${id}`);
   assert.match(await page.locator('#measured-remarks').innerText(), /Not used: x_m, alpha_rad/);
   await page.locator('#measured-remove').focus();
   await page.keyboard.press('Enter');
@@ -77,12 +116,19 @@ test('what the server computes has no residual, and a file that is dropped goes 
 
 test('an error put in shows as large as it is, where it is', async () => {
   const { page, clean } = await paused();
-  const lines = (await csv()).trim().split('\n').map((line) => line.split(','));
+  const lines = (await csv())
+    .trim()
+    .split('\n')
+    .map((line) => line.split(','));
   const [theta, time] = ['theta_rad', 't_s'].map((name) => lines[0].indexOf(name));
   lines[5][theta] = String(Number(lines[5][theta]) + 0.01);
   // A clock that began 3 s before, as every clock of its own does; that is no residual.
   for (const line of lines.slice(1)) line[time] = String(Number(line[time]) + 3);
-  await page.setInputFiles('#measured-file', { name: 'rig.csv', mimeType: 'text/csv', buffer: Buffer.from(lines.map((line) => line.join(',')).join('\n')) });
+  await page.setInputFiles('#measured-file', {
+    name: 'rig.csv',
+    mimeType: 'text/csv',
+    buffer: Buffer.from(lines.map((line) => line.join(',')).join('\n')),
+  });
   await told(page, /All 12/);
   const found = await sums(page);
   assert.equal(found.θ.at, 5);
@@ -93,7 +139,9 @@ test('an error put in shows as large as it is, where it is', async () => {
   // Taken for later ones than they are, they are all off.
   await page.fill('#measured-first', '2');
   await page.locator('#measured-first').blur();
-  await page.waitForFunction(() => Number(document.querySelector('.measured-sheet tbody tr:nth-child(2) td').textContent) > 0.05);
+  await page.waitForFunction(
+    () => Number(document.querySelector('.measured-sheet tbody tr:nth-child(2) td').textContent) > 0.05,
+  );
   await page.fill('#measured-first', '0');
   await page.locator('#measured-first').blur();
   assert.match(await page.locator('#measured-first-error').innerText(), /whole number/);
@@ -104,7 +152,21 @@ test('units, decimal commas, other names and missing columns are understood', as
   const { page, clean } = await paused();
   const answer = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${COUNT}`)).json()).impacts;
   const german = (number) => String(number).replace('.', ',');
-  const text = ['# Prüfstand 2', '"Impact";"time (ms)";angle [deg];θ̇ / rad s⁻¹;remark', ...answer.n.slice(2).map((n, index) => [n, german(answer.t[index + 2] * 1e3), german(answer.theta[index + 2] * 180 / Math.PI), german(answer.theta_dot[index + 2]), '"ok; more or less"'].join(';'))].join('\r\n');
+  const text = [
+    '# Prüfstand 2',
+    '"Impact";"time (ms)";angle [deg];θ̇ / rad s⁻¹;remark',
+    ...answer.n
+      .slice(2)
+      .map((n, index) =>
+        [
+          n,
+          german(answer.t[index + 2] * 1e3),
+          german((answer.theta[index + 2] * 180) / Math.PI),
+          german(answer.theta_dot[index + 2]),
+          '"ok; more or less"',
+        ].join(';'),
+      ),
+  ].join('\r\n');
   await drop(page, 'labor.csv', `\ufeff${text}`);
   await told(page, /All 10/);
   const found = await sums(page);
@@ -112,7 +174,7 @@ test('units, decimal commas, other names and missing columns are understood', as
   for (const { rms } of Object.values(found)) assert.ok(rms < 1e-12, JSON.stringify(found));
   assert.equal(await page.inputValue('#measured-first'), '3');
   assert.equal(await ink(page, '#plane-velocity', '--measured'), 0, 'where a column is missing nothing is drawn');
-  assert.ok(await ink(page, '#plane-angle', '--measured') > 40);
+  assert.ok((await ink(page, '#plane-angle', '--measured')) > 40);
   clean();
 });
 
@@ -135,11 +197,19 @@ for (const [name, text, words] of [
   ['no impacts', `${HEAD}\n`, /No line after the first/],
   ['a picture', `\u0089PNG\r\n\u001a\n${'\u0000\u0001\ufffd'.repeat(400)}`, /names none of the columns/],
   ['an unknown unit', 'theta (furlong),theta_dot\n1,2\n', /“furlong” is not known as a unit of theta/],
-  ['bad lines', `${HEAD}\n0,0.1,0\nsoon,0.1,0\n0.2,"0,3",1\n,,\n`, /Line 3 is left out: t is “soon”, which is not a number/],
+  [
+    'bad lines',
+    `${HEAD}\n0,0.1,0\nsoon,0.1,0\n0.2,"0,3",1\n,,\n`,
+    /Line 3 is left out: t is “soon”, which is not a number/,
+  ],
   ['the same twice', 'theta,angle\n0.1,0.1\n', /“angle” is left out: there is one of theta/],
   ['too many', `${HEAD}\n${'0,0,0\n'.repeat(20_001)}`, /Impacts from line 20002 on are left out: at most 20000/],
   ['too large', `${HEAD}\n${'x'.repeat(4_000_001)}`, /4 MB; at most 4 MB are read/],
-  ['a quote without end', `${HEAD}\n0,"0.1,0\n0,1,2\n`, /No line after the first has an impact in it. Line 2 is left out/],
+  [
+    'a quote without end',
+    `${HEAD}\n0,"0.1,0\n0,1,2\n`,
+    /No line after the first has an impact in it. Line 2 is left out/,
+  ],
   ['markup', '<img src=x onerror=alert(1)>,theta\n1,0.1', /Not used: <img src=x/],
 ]) {
   test(`a file with ${name} is answered in words`, async () => {
@@ -153,10 +223,17 @@ for (const [name, text, words] of [
   });
 }
 
-for (const [colorScheme, width] of [['light', 1280], ['dark', 320]]) {
+for (const [colorScheme, width] of [
+  ['light', 1280],
+  ['dark', 320],
+]) {
   test(`with a selection and measured impacts axe finds nothing and nothing is too wide: ${colorScheme}, ${width} px`, async () => {
     const { page, clean } = await paused({ colorScheme, viewport: { width, height: 800 } });
-    await drop(page, 'a-very-long-name-of-a-file-from-the-rig-of-the-laboratory-on-the-third-floor.csv', (await csv()).replace('0.3,0.0', 'much,0.0'));
+    await drop(
+      page,
+      'a-very-long-name-of-a-file-from-the-rig-of-the-laboratory-on-the-third-floor.csv',
+      (await csv()).replace('0.3,0.0', 'much,0.0'),
+    );
     await told(page, /All 11/);
     await page.locator('#plane-angle .canvas-box').focus();
     await page.keyboard.press('End');
@@ -167,7 +244,13 @@ for (const [colorScheme, width] of [['light', 1280], ['dark', 320]]) {
     await page.locator('#measured-first').blur();
     await page.evaluate(axe);
     const { violations } = await page.evaluate(() => globalThis.axe.run(document));
-    assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join('; ')}`), []);
+    assert.deepEqual(
+      violations.map(
+        ({ id, nodes }) =>
+          `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join('; ')}`,
+      ),
+      [],
+    );
     assert.equal(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth), 0);
     clean();
   });

@@ -28,9 +28,17 @@ test('it is measured when somebody asks, and shows every point that has an error
   const drawn = (cost) => points.filter((point) => point.error !== null && cost(point) > 0);
   assert.equal(await marks(page), drawn((point) => point.cost_ns_per_impact).length);
   // Costs rise to the right and errors upwards: the order on the screen is that of the numbers.
-  const places = await page.locator('#precision-box .mark').evaluateAll((all) => all.map((one) => { const { x, y, width, height } = one.getBBox(); return [x + width / 2, y + height / 2]; }));
+  const places = await page.locator('#precision-box .mark').evaluateAll((all) =>
+    all.map((one) => {
+      const { x, y, width, height } = one.getBBox();
+      return [x + width / 2, y + height / 2];
+    }),
+  );
   const timed = drawn((point) => point.cost_ns_per_impact);
-  const [left, right] = [places.findIndex(([x]) => x === Math.min(...places.map(([h]) => h))), places.findIndex(([, y]) => y === Math.min(...places.map(([, v]) => v)))];
+  const [left, right] = [
+    places.findIndex(([x]) => x === Math.min(...places.map(([h]) => h))),
+    places.findIndex(([, y]) => y === Math.min(...places.map(([, v]) => v))),
+  ];
   assert.equal(timed[right].error, Math.max(...timed.map(({ error }) => error)));
   assert.ok(timed[left].cost_ns_per_impact <= 1.2 * Math.min(...timed.map((point) => point.cost_ns_per_impact)));
   assert.equal(await page.locator('#precision-box .front').count(), 1);
@@ -38,12 +46,20 @@ test('it is measured when somebody asks, and shows every point that has an error
   assert.equal(listed.length, methods.length);
   for (const [index, { title }] of methods.entries()) assert.ok(listed[index].startsWith(title), listed[index]);
   await page.locator('.precision-sheet summary', { hasText: 'Numbers' }).click();
-  const rows = await page.locator('.precision-sheet tbody tr').evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  const rows = await page
+    .locator('.precision-sheet tbody tr')
+    .evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
   assert.equal(rows.length, points.length);
-  assert.deepEqual(rows.map((row) => Number(plain(row[4]).replaceAll(' ', ''))).filter((steps) => steps < 1e6), points.map(({ steps }) => steps).filter((steps) => steps < 1e6));
+  assert.deepEqual(
+    rows.map((row) => Number(plain(row[4]).replaceAll(' ', ''))).filter((steps) => steps < 1e6),
+    points.map(({ steps }) => steps).filter((steps) => steps < 1e6),
+  );
   await page.selectOption('#precision-axis', 'evaluations');
   assert.equal(await marks(page), drawn((point) => point.evaluations).length);
-  assert.match(await page.locator('#precision-links a', { hasText: 'SVG' }).getAttribute('href'), /impacts=20&axis=evaluations&format=svg$/);
+  assert.match(
+    await page.locator('#precision-links a', { hasText: 'SVG' }).getAttribute('href'),
+    /impacts=20&axis=evaluations&format=svg$/,
+  );
   await page.selectOption('#precision-axis', 'steps');
   assert.equal(await marks(page), drawn((point) => point.steps).length);
   assert.equal(await page.locator('#precision-box .front').count(), 0);
@@ -63,7 +79,10 @@ test('pointer and keys read the points', async () => {
   assert.ok((await readout()).startsWith(title(timed[0].method)));
   await page.keyboard.press('End');
   const last = timed.at(-1);
-  assert.ok((await readout()).startsWith(title(last.method)) && (await readout()).includes(last.setting.name), await readout());
+  assert.ok(
+    (await readout()).startsWith(title(last.method)) && (await readout()).includes(last.setting.name),
+    await readout(),
+  );
   await page.keyboard.press('ArrowUp');
   assert.ok(!(await page.locator('.precision-sheet .unseen').innerText()).startsWith(title(last.method)));
   await page.keyboard.press('Escape');
@@ -81,7 +100,9 @@ test('it counts what is done, can be cancelled, and says when the scene is anoth
   await page.fill('#precision-impacts', '1000');
   await page.click('#precision-measure');
   await page.waitForFunction(() => document.querySelector('#precision-told progress').value > 3);
-  const [value, most, words] = await page.locator('#precision-told').evaluate((told) => [told.querySelector('progress').value, told.querySelector('progress').max, told.innerText]);
+  const [value, most, words] = await page
+    .locator('#precision-told')
+    .evaluate((told) => [told.querySelector('progress').value, told.querySelector('progress').max, told.innerText]);
   assert.ok(value < most && most > 50);
   assert.match(words, new RegExp(`^Measuring… ${value} of ${most} parts$`));
   await page.click('#precision-cancel');
@@ -93,7 +114,11 @@ test('it counts what is done, can be cancelled, and says when the scene is anoth
   assert.match(await page.locator('#precision-error').innerText(), /from 1 to 1000/);
   await measure(page);
   const before = (await answers()).length;
-  await slide(page, '#gain', await page.locator('#gain').evaluate((slider) => Number(slider.value) + Number(slider.step || 1)));
+  await slide(
+    page,
+    '#gain',
+    await page.locator('#gain').evaluate((slider) => Number(slider.value) + Number(slider.step || 1)),
+  );
   await page.locator('#precision-told', { hasText: 'has changed' }).waitFor();
   assert.equal((await answers()).length, before);
   clean();
@@ -101,7 +126,10 @@ test('it counts what is done, can be cancelled, and says when the scene is anoth
 
 test('its settings are in the address, and what is broken of them is dropped in words', async () => {
   const { page, clean } = await open('?preset=case-1&precision.impacts=7&precision.axis=steps');
-  assert.deepEqual([await page.inputValue('#precision-impacts'), await page.inputValue('#precision-axis')], ['7', 'steps']);
+  assert.deepEqual(
+    [await page.inputValue('#precision-impacts'), await page.inputValue('#precision-axis')],
+    ['7', 'steps'],
+  );
   await page.fill('#precision-impacts', '100');
   await page.selectOption('#precision-axis', 'evaluations');
   await page.waitForFunction(() => location.search.includes('evaluations'));
@@ -109,20 +137,34 @@ test('its settings are in the address, and what is broken of them is dropped in 
   clean();
   const broken = await open('?preset=case-1&precision.impacts=0&precision.axis=luck');
   const words = await broken.page.locator('#notices').innerText();
-  for (const said of ['impacts “0”: it must be a whole number from 1 to 1000', 'axis “luck”: it must be one of time, evaluations, steps']) assert.ok(words.includes(`precision.${said}`), words);
-  assert.deepEqual([await broken.page.inputValue('#precision-impacts'), await broken.page.inputValue('#precision-axis')], ['100', 'time']);
+  for (const said of [
+    'impacts “0”: it must be a whole number from 1 to 1000',
+    'axis “luck”: it must be one of time, evaluations, steps',
+  ])
+    assert.ok(words.includes(`precision.${said}`), words);
+  assert.deepEqual(
+    [await broken.page.inputValue('#precision-impacts'), await broken.page.inputValue('#precision-axis')],
+    ['100', 'time'],
+  );
   broken.clean();
 });
 
 test('what the server refuses is told, and it can be asked again', async () => {
-  const { page } = await open('?preset=case-1', { prepare: () => {
-    const real = globalThis.fetch;
-    globalThis.refuse = true;
-    globalThis.fetch = (input, init) => (globalThis.refuse && String(input).includes('v1/precision') ? Promise.reject(new TypeError('no network')) : real(input, init));
-  } });
+  const { page } = await open('?preset=case-1', {
+    prepare: () => {
+      const real = globalThis.fetch;
+      globalThis.refuse = true;
+      globalThis.fetch = (input, init) =>
+        globalThis.refuse && String(input).includes('v1/precision')
+          ? Promise.reject(new TypeError('no network'))
+          : real(input, init);
+    },
+  });
   await page.fill('#precision-impacts', '10');
   await page.click('#precision-measure');
   await page.locator('#precision-told', { hasText: 'The server does not answer' }).waitFor();
-  await page.evaluate(() => { globalThis.refuse = false; });
+  await page.evaluate(() => {
+    globalThis.refuse = false;
+  });
   await measure(page);
 });

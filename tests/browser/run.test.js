@@ -14,18 +14,20 @@ test('case 1 runs, its impacts arrive, and a gain beyond the critical one turns 
   await speedUp(page);
   await reachImpact(page, 10);
   await reachPhase(page, 'running');
-  assert.ok(await ink(page, '#plane-angle', '--series-0') > 20, 'the angle plane has dots');
-  assert.ok(await ink(page, '#plane-velocity', '--series-0') > 20, 'the velocity plane has dots');
-  assert.ok(await ink(page, '#energy', '--series-0') > 20, 'the energy plot has dots');
-  assert.ok(await ink(page, '#circle', '--accent') > 20, 'the circle has its eigenvalues');
-  assert.ok(await ink(page, '#scene-frame', '--accent') > 200, 'the scene has its table');
+  assert.ok((await ink(page, '#plane-angle', '--series-0')) > 20, 'the angle plane has dots');
+  assert.ok((await ink(page, '#plane-velocity', '--series-0')) > 20, 'the velocity plane has dots');
+  assert.ok((await ink(page, '#energy', '--series-0')) > 20, 'the energy plot has dots');
+  assert.ok((await ink(page, '#circle', '--accent')) > 20, 'the circle has its eigenvalues');
+  assert.ok((await ink(page, '#scene-frame', '--accent')) > 200, 'the scene has its table');
   await slide(page, '#gain', 1.55);
-  await page.waitForFunction(() => /unstable/i.test(document.querySelector('#verdict[aria-busy=false] .verdict-words')?.textContent ?? ''));
+  await page.waitForFunction(() =>
+    /unstable/i.test(document.querySelector('#verdict[aria-busy=false] .verdict-words')?.textContent ?? ''),
+  );
   assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.55');
   await page.waitForFunction(() => /interventions\.0\.set\.table\.tilt_gain=1\.55/.test(location.search));
   await reachPhase(page, 'ended');
   assert.match(await page.locator('#outcome').innerText(), /\d/);
-  assert.ok(await ink(page, '#plane-angle', '--series-1') > 5, 'impacts with the new gain have their own colour');
+  assert.ok((await ink(page, '#plane-angle', '--series-1')) > 5, 'impacts with the new gain have their own colour');
   clean();
 });
 
@@ -59,7 +61,10 @@ test('between impacts the rod is where its flight takes it', async () => {
   await reachPhase(page, 'paused');
   await page.locator('#scene-readout', { hasText: /t\s\d+\.\d{4}\ss/ }).waitFor();
   const words = (await page.locator('#scene-readout').innerText()).replaceAll('\u2212', '-');
-  const [t, n, theta, x, y] = /t\s(\S+)\ss\s+impact\s(\d+)\s+θ\s(\S+)\srad\s+x\s(\S+)\sm\s+y\s(\S+)\sm/.exec(words).slice(1).map(Number);
+  const [t, n, theta, x, y] = /t\s(\S+)\ss\s+impact\s(\d+)\s+θ\s(\S+)\srad\s+x\s(\S+)\sm\s+y\s(\S+)\sm/
+    .exec(words)
+    .slice(1)
+    .map(Number);
   const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=200`)).json();
   const { impacts: all, scene } = answer;
   const [before, after] = [n - 1, n];
@@ -69,7 +74,7 @@ test('between impacts the rod is where its flight takes it', async () => {
   const even = (column) => column[before] + (column[after] - column[before]) * part;
   const l = scene.body.contact_distance;
   const [from, to] = [l * Math.cos(all.theta[before]), l * Math.cos(all.theta[after])];
-  const height = from + (to - from) * part + scene.gravity / 2 * (t - all.t[before]) * (all.t[after] - t);
+  const height = from + (to - from) * part + (scene.gravity / 2) * (t - all.t[before]) * (all.t[after] - t);
   assert.ok(Math.abs(theta - even(all.theta)) < 1e-3, `theta ${theta}, ${even(all.theta)}`);
   assert.ok(Math.abs(x - even(all.x)) < 1e-3, `x ${x}, ${even(all.x)}`);
   assert.ok(Math.abs(y - height) < 1e-3, `y ${y}, ${height}`);
@@ -94,7 +99,11 @@ test('pause holds the run, step moves it by one impact, restart begins again', a
   await page.click('#run');
   await reachImpact(page, held + 4);
   await page.click('#restart');
-  await page.waitForFunction((before) => Number(/^n\s(\d+)/.exec(document.querySelector('#plane-angle .readout').textContent)?.[1] ?? 0) < before, held);
+  await page.waitForFunction(
+    (before) =>
+      Number(/^n\s(\d+)/.exec(document.querySelector('#plane-angle .readout').textContent)?.[1] ?? 0) < before,
+    held,
+  );
   await reachImpact(page, 1);
   await reachPhase(page, 'running');
   clean();
@@ -144,7 +153,11 @@ test('a server that goes away for three seconds and comes back loses no impact',
   await reachImpact(page, before + 6);
   const rows = await numbers(page, 'plane-angle');
   const seen = rows.map(([n]) => Number(n));
-  assert.deepEqual(seen, seen.map((_, index) => seen[0] - index), 'every number once');
+  assert.deepEqual(
+    seen,
+    seen.map((_, index) => seen[0] - index),
+    'every number once',
+  );
 });
 
 test('what was missed while the server was away is made up for', async () => {
@@ -166,16 +179,18 @@ test('what was missed while the server was away is made up for', async () => {
 });
 
 test('a server that comes back between a try and the question why it failed is not given up', async () => {
-  const { page } = await stage.page('?preset=case-1', { prepare: () => {
-    const real = globalThis.fetch;
-    globalThis.asked = 0;
-    globalThis.fetch = (input, init) => {
-      if (!String(input).startsWith('v1/live?')) return real(input, init);
-      globalThis.asked += 1;
-      // As the server answers that is there again by the third question.
-      return globalThis.asked === 3 ? Promise.resolve(new Response('{}', { status: 426 })) : real(input, init);
-    };
-  } });
+  const { page } = await stage.page('?preset=case-1', {
+    prepare: () => {
+      const real = globalThis.fetch;
+      globalThis.asked = 0;
+      globalThis.fetch = (input, init) => {
+        if (!String(input).startsWith('v1/live?')) return real(input, init);
+        globalThis.asked += 1;
+        // As the server answers that is there again by the third question.
+        return globalThis.asked === 3 ? Promise.resolve(new Response('{}', { status: 426 })) : real(input, init);
+      };
+    },
+  });
   await page.click('#run');
   await reachImpact(page, 2);
   await stage.stopServer();
@@ -195,18 +210,30 @@ test('the point mass runs with what it has', async () => {
 });
 
 test('without frames, as in a hidden tab, nothing is drawn, and all of it on return', async () => {
-  const { page, clean } = await stage.page('?preset=case-1', { prepare: () => {
-    const frame = requestAnimationFrame.bind(globalThis);
-    const held = [];
-    globalThis.hide = () => { globalThis.requestAnimationFrame = (callback) => held.push(callback); };
-    globalThis.show = () => { globalThis.requestAnimationFrame = frame; for (const callback of held.splice(0)) frame(callback); };
-    globalThis.heldFrames = () => held.length;
-    globalThis.heard = 0;
-    const Socket = WebSocket;
-    globalThis.WebSocket = class extends Socket {
-      set onmessage(listener) { super.onmessage = (event) => { globalThis.heard += 1; listener(event); }; }
-    };
-  } });
+  const { page, clean } = await stage.page('?preset=case-1', {
+    prepare: () => {
+      const frame = requestAnimationFrame.bind(globalThis);
+      const held = [];
+      globalThis.hide = () => {
+        globalThis.requestAnimationFrame = (callback) => held.push(callback);
+      };
+      globalThis.show = () => {
+        globalThis.requestAnimationFrame = frame;
+        for (const callback of held.splice(0)) frame(callback);
+      };
+      globalThis.heldFrames = () => held.length;
+      globalThis.heard = 0;
+      const Socket = WebSocket;
+      globalThis.WebSocket = class extends Socket {
+        set onmessage(listener) {
+          super.onmessage = (event) => {
+            globalThis.heard += 1;
+            listener(event);
+          };
+        }
+      };
+    },
+  });
   await speedUp(page);
   await page.click('#run');
   await reachImpact(page, 3);
@@ -221,6 +248,6 @@ test('without frames, as in a hidden tab, nothing is drawn, and all of it on ret
   assert.equal(await page.evaluate(() => globalThis.heldFrames()), 1, 'one frame waits, however much there is to draw');
   await page.evaluate(() => globalThis.show());
   await reachImpact(page, 11);
-  assert.ok(await ink(page, '#plane-angle', '--series-0') > dots);
+  assert.ok((await ink(page, '#plane-angle', '--series-0')) > dots);
   clean();
 });

@@ -11,7 +11,13 @@ const stage = await Stage.open();
 const shell = promisify(execFile);
 
 async function saved(page, name) {
-  const [download] = await Promise.all([page.waitForEvent('download'), page.locator('dialog.large').getByRole(name === 'CSV' || name === 'JSON' ? 'link' : 'button', { name: `Save as ${name}` }).click()]);
+  const [download] = await Promise.all([
+    page.waitForEvent('download'),
+    page
+      .locator('dialog.large')
+      .getByRole(name === 'CSV' || name === 'JSON' ? 'link' : 'button', { name: `Save as ${name}` })
+      .click(),
+  ]);
   return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
 }
 
@@ -26,10 +32,28 @@ test('the CSV of a plot is the API’s, bit for bit, and has the impacts that th
   assert.equal(name, 'equipoise-plane-angle.csv');
   const href = await page.locator('dialog.large').getByRole('link', { name: 'Save as CSV' }).getAttribute('href');
   assert.deepEqual(bytes, Buffer.from(await (await fetch(stage.url + href)).arrayBuffer()));
-  const [head, ...rows] = bytes.toString().trim().split('\r\n').map((line) => line.split(','));
+  const [head, ...rows] = bytes
+    .toString()
+    .trim()
+    .split('\r\n')
+    .map((line) => line.split(','));
   assert.equal(rows.length, last);
-  const cell = (row, column, digits) => { const text = Number(row[head.indexOf(column)]).toFixed(digits); return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−'); };
-  assert.deepEqual(rows.toReversed().map((row) => [row[0], cell(row, 't_s', 4), cell(row, 'theta_rad', 6), cell(row, 'theta_dot_rad_per_s', 6), cell(row, 'alpha_rad', 6)]), shown);
+  const cell = (row, column, digits) => {
+    const text = Number(row[head.indexOf(column)]).toFixed(digits);
+    return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−');
+  };
+  assert.deepEqual(
+    rows
+      .toReversed()
+      .map((row) => [
+        row[0],
+        cell(row, 't_s', 4),
+        cell(row, 'theta_rad', 6),
+        cell(row, 'theta_dot_rad_per_s', 6),
+        cell(row, 'alpha_rad', 6),
+      ]),
+    shown,
+  );
   clean();
 });
 
@@ -43,7 +67,10 @@ test('the copied curl runs, and gives the data of the plots with all that was do
   const { stdout } = await shell('sh', ['-c', `${command} -s`]);
   const answer = JSON.parse(stdout);
   assert.equal(answer.impacts.n.length, await impacts(page));
-  assert.deepEqual(answer.impacts.x_dot.toReversed().map((value) => value.toFixed(6).replace('-', '−')), shown.map((row) => row[2]));
+  assert.deepEqual(
+    answer.impacts.x_dot.toReversed().map((value) => value.toFixed(6).replace('-', '−')),
+    shown.map((row) => row[2]),
+  );
   clean();
 });
 
@@ -55,7 +82,13 @@ test('every plot is saved as SVG, with a mark for every impact, and as PNG', asy
     const svg = (await saved(page, 'SVG')).bytes.toString();
     const found = await page.evaluate((text) => {
       const file = new DOMParser().parseFromString(text, 'image/svg+xml');
-      return { error: file.querySelector('parsererror')?.textContent ?? null, title: file.querySelector('title')?.textContent, texts: [...file.querySelectorAll('text')].map((one) => one.textContent), arcs: (text.match(/A[\d.]+ /g) ?? []).length, wild: /NaN|undefined|Infinity/.test(text) };
+      return {
+        error: file.querySelector('parsererror')?.textContent ?? null,
+        title: file.querySelector('title')?.textContent,
+        texts: [...file.querySelectorAll('text')].map((one) => one.textContent),
+        arcs: (text.match(/A[\d.]+ /g) ?? []).length,
+        wild: /NaN|undefined|Infinity/.test(text),
+      };
     }, svg);
     assert.deepEqual([found.error, found.wild], [null, false], id);
     assert.ok(found.title && found.texts.length > 6, `${id} has its axes`);
@@ -66,7 +99,10 @@ test('every plot is saved as SVG, with a mark for every impact, and as PNG', asy
     const { name, bytes } = await saved(page, 'PNG');
     assert.equal(name, `equipoise-${id}.png`);
     assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
-    const canvas = await page.locator(`#${id} canvas`).first().evaluate(({ width, height }) => [width, height]);
+    const canvas = await page
+      .locator(`#${id} canvas`)
+      .first()
+      .evaluate(({ width, height }) => [width, height]);
     assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], canvas);
     await page.keyboard.press('Escape');
   }
@@ -82,20 +118,36 @@ test('what was recorded looks as it is drawn', async () => {
   await open(page, 'plane-angle');
   const [svg, png] = [(await saved(page, 'SVG')).bytes.toString(), (await saved(page, 'PNG')).bytes];
   const sheet = await context.newPage();
-  const differing = await sheet.evaluate(async ([text, pixels]) => {
-    const load = async (source) => { const image = new Image(); image.src = source; await image.decode(); return image; };
-    const [drawn, seen] = [await load(`data:image/svg+xml;base64,${btoa(unescape(encodeURIComponent(text)))}`), await load(`data:image/png;base64,${pixels}`)];
-    const { width, height } = seen;
-    const [one, other] = [drawn, seen].map((image) => {
-      const canvas = Object.assign(document.createElement('canvas'), { width, height });
-      const paper = canvas.getContext('2d');
-      paper.drawImage(image, 0, 0, width, height);
-      return paper.getImageData(0, 0, width, height).data;
-    });
-    let count = 0;
-    for (let k = 0; k < one.length; k += 4) if (Math.abs(one[k] - other[k]) + Math.abs(one[k + 1] - other[k + 1]) + Math.abs(one[k + 2] - other[k + 2]) > 120) count += 1;
-    return count / (width * height);
-  }, [svg, png.toString('base64')]);
+  const differing = await sheet.evaluate(
+    async ([text, pixels]) => {
+      const load = async (source) => {
+        const image = new Image();
+        image.src = source;
+        await image.decode();
+        return image;
+      };
+      const [drawn, seen] = [
+        await load(`data:image/svg+xml;base64,${btoa(unescape(encodeURIComponent(text)))}`),
+        await load(`data:image/png;base64,${pixels}`),
+      ];
+      const { width, height } = seen;
+      const [one, other] = [drawn, seen].map((image) => {
+        const canvas = Object.assign(document.createElement('canvas'), { width, height });
+        const paper = canvas.getContext('2d');
+        paper.drawImage(image, 0, 0, width, height);
+        return paper.getImageData(0, 0, width, height).data;
+      });
+      let count = 0;
+      for (let k = 0; k < one.length; k += 4)
+        if (
+          Math.abs(one[k] - other[k]) + Math.abs(one[k + 1] - other[k + 1]) + Math.abs(one[k + 2] - other[k + 2]) >
+          120
+        )
+          count += 1;
+      return count / (width * height);
+    },
+    [svg, png.toString('base64')],
+  );
   // Letters and edges are smoothed in another way.
   assert.ok(differing < 0.01, `${differing} of the pixels differ`);
   clean();
@@ -105,7 +157,11 @@ test('a panel opens large, and comes back to its place and size with the focus w
   const { page, clean } = await stage.page('?preset=case-1');
   await verdict(page);
   await loadAll(page);
-  const place = (id) => page.evaluate((name) => { const { left, top, width, height } = document.getElementById(name).getBoundingClientRect(); return [left, top + scrollY, width, height].map(Math.round); }, id);
+  const place = (id) =>
+    page.evaluate((name) => {
+      const { left, top, width, height } = document.getElementById(name).getBoundingClientRect();
+      return [left, top + scrollY, width, height].map(Math.round);
+    }, id);
   for (const id of ['plane-angle', 'circle', 'map', 'survival', 'ladder', 'design', 'branch', 'precision', 'gallery']) {
     const before = await place(id);
     await page.locator(`#${id} .enlarge`).focus();
@@ -126,7 +182,9 @@ test('all that a panel names to be saved is there', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
   await verdict(page);
   await loadAll(page);
-  const paths = await page.locator('.lazy a[download]').evaluateAll((links) => links.map((link) => link.getAttribute('href')));
+  const paths = await page
+    .locator('.lazy a[download]')
+    .evaluateAll((links) => links.map((link) => link.getAttribute('href')));
   assert.ok(paths.length >= 20, `${paths.length}`);
   for (const path of paths) {
     // Measuring anew takes seconds.

@@ -8,7 +8,9 @@ const viewport = { width: 1200, height: 900 };
 
 /** What the page is brought to, and where it is looked at. @type {Record<string, (page: import('playwright-core').Page) => Promise<void>>} */
 const STATES = {
-  idle: async (page) => { await verdict(page); },
+  idle: async (page) => {
+    await verdict(page);
+  },
   running: async (page) => {
     await speedUp(page);
     await page.click('#run');

@@ -7,7 +7,15 @@ import assert from 'node:assert/strict';
 import { chromium } from 'playwright-core';
 
 const PROGRAM = process.env.EQUIPOISE ?? new URL('../../target/release/equipoise', import.meta.url).pathname;
-const FLAGS = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const FLAGS = [
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
 /** How long a condition may take before a test gives up; no test measures speed by it. */
 export const PATIENCE_MS = 60_000;
 
@@ -33,7 +41,10 @@ export class Stage {
     // A page that is left open goes on running beside the next test.
     hooks?.afterEach(() => Promise.all(stage.#contexts.splice(0).map((context) => context.close())));
     await stage.startServer();
-    stage.#browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: FLAGS });
+    stage.#browser = await chromium.launch({
+      executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+      args: FLAGS,
+    });
     return stage;
   }
 
@@ -41,8 +52,12 @@ export class Stage {
     const server = spawn(PROGRAM, ['--listen', `127.0.0.1:${this.port}`], { stdio: ['ignore', 'ignore', 'inherit'] });
     this.#server = server;
     let gone = null;
-    server.once('error', (error) => { gone = error; });
-    server.once('exit', (code) => { gone ??= new Error(`the server ended with ${code}`); });
+    server.once('error', (error) => {
+      gone = error;
+    });
+    server.once('exit', (code) => {
+      gone ??= new Error(`the server ended with ${code}`);
+    });
     for (;;) {
       if (gone) throw gone;
       const answer = await fetch(`${this.url}health/ready`).catch(() => null);
@@ -84,11 +99,21 @@ export class Stage {
     const page = await context.newPage();
     page.setDefaultTimeout(PATIENCE_MS);
     const wrongs = [];
-    page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) wrongs.push(`console: ${message.text()}`); });
+    page.on('console', (message) => {
+      if (['error', 'warning'].includes(message.type())) wrongs.push(`console: ${message.text()}`);
+    });
     page.on('pageerror', (error) => wrongs.push(`exception: ${error.stack}`));
-    page.on('request', (request) => { if (!request.url().startsWith(this.url)) wrongs.push(`request elsewhere: ${request.url()}`); });
-    page.on('websocket', (socket) => { if (!socket.url().startsWith(this.url.replace('http', 'ws'))) wrongs.push(`socket elsewhere: ${socket.url()}`); });
-    await page.addInitScript(() => addEventListener('securitypolicyviolation', (event) => console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`)));
+    page.on('request', (request) => {
+      if (!request.url().startsWith(this.url)) wrongs.push(`request elsewhere: ${request.url()}`);
+    });
+    page.on('websocket', (socket) => {
+      if (!socket.url().startsWith(this.url.replace('http', 'ws'))) wrongs.push(`socket elsewhere: ${socket.url()}`);
+    });
+    await page.addInitScript(() =>
+      addEventListener('securitypolicyviolation', (event) =>
+        console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`),
+      ),
+    );
     if (prepare) await page.addInitScript(prepare);
     await page.goto(this.url + path + query);
     await page.locator(sign).first().waitFor();
@@ -99,7 +124,7 @@ export class Stage {
 /** Waits until the server does nothing more: far less than the work would take that was cancelled. @param {Stage} stage */
 export async function free(stage) {
   const begin = Date.now();
-  while (await stage.running() > 0) {
+  while ((await stage.running()) > 0) {
     assert.ok(Date.now() - begin < 5000, 'the work goes on for nobody');
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
@@ -115,7 +140,14 @@ export async function answersOf(page, path) {
     globalThis.answers = [];
     globalThis.fetch = async (input, init) => {
       const response = await real(input, init);
-      if (String(input).includes(wanted)) globalThis.answers.push(response.clone().text().then((text) => JSON.parse(text.trim().split('\n').at(-1)).end ?? null).catch(() => null));
+      if (String(input).includes(wanted))
+        globalThis.answers.push(
+          response
+            .clone()
+            .text()
+            .then((text) => JSON.parse(text.trim().split('\n').at(-1)).end ?? null)
+            .catch(() => null),
+        );
       return response;
     };
   }, path);
@@ -134,25 +166,38 @@ export async function impacts(page) {
   return Number(/^n\s(\d+)/.exec(text)?.[1] ?? 0);
 }
 
-export const reachImpact = (page, n) => page.waitForFunction((wanted) => Number(/^n\s(\d+)/.exec(document.querySelector('#plane-angle .readout')?.textContent ?? '')?.[1] ?? 0) >= wanted, n);
+export const reachImpact = (page, n) =>
+  page.waitForFunction(
+    (wanted) =>
+      Number(/^n\s(\d+)/.exec(document.querySelector('#plane-angle .readout')?.textContent ?? '')?.[1] ?? 0) >= wanted,
+    n,
+  );
 
 export const reachPhase = (page, phase) => page.locator(`#run-state[data-phase=${phase}]`).waitFor();
 
 /** How many pixels of a canvas have (nearly) the colour of the style sheet's property. */
 export function ink(page, selector, property) {
-  return page.locator(`${selector} canvas`).first().evaluate((canvas, name) => {
-    const probe = document.createElement('canvas').getContext('2d');
-    probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-    probe.fillRect(0, 0, 1, 1);
-    const [r, g, b] = probe.getImageData(0, 0, 1, 1).data;
-    // Read from a copy: reading the page's own canvas would change how the browser keeps it.
-    const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height }).getContext('2d', { willReadFrequently: true });
-    copy.drawImage(canvas, 0, 0);
-    const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200 && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 40) count += 1;
-    return count;
-  }, property);
+  return page
+    .locator(`${selector} canvas`)
+    .first()
+    .evaluate((canvas, name) => {
+      const probe = document.createElement('canvas').getContext('2d');
+      probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+      probe.fillRect(0, 0, 1, 1);
+      const [r, g, b] = probe.getImageData(0, 0, 1, 1).data;
+      // Read from a copy: reading the page's own canvas would change how the browser keeps it.
+      const copy = Object.assign(document.createElement('canvas'), {
+        width: canvas.width,
+        height: canvas.height,
+      }).getContext('2d', { willReadFrequently: true });
+      copy.drawImage(canvas, 0, 0);
+      const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4)
+        if (data[i + 3] > 200 && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 40)
+          count += 1;
+      return count;
+    }, property);
 }
 
 /** The numbers behind a chart, as its table shows them. */
@@ -160,7 +205,9 @@ export async function numbers(page, id) {
   const summary = page.locator(`#${id} summary`);
   if (!(await page.locator(`#${id} details`).evaluate((details) => details.open))) await summary.click();
   await page.waitForFunction((chart) => document.querySelectorAll(`#${chart} tbody tr`).length > 0, id);
-  return page.locator(`#${id} tbody tr`).evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
+  return page
+    .locator(`#${id} tbody tr`)
+    .evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
 }
 
 /** Moves a slider as a hand would, from its first value to its last. */
@@ -183,7 +230,13 @@ export async function measure(page, impacts = 10) {
 
 /** What a panel below the fold shows once it is whole. */
 const LATER = {
-  'map-body': '#map-links a', 'survival-body': '#survival-start', 'ladder-body': '.rungs td', 'design-body': '#design-start', 'branch-body': '.changes', 'precision-body': '#precision-measure', 'gallery-body': 'article',
+  'map-body': '#map-links a',
+  'survival-body': '#survival-start',
+  'ladder-body': '.rungs td',
+  'design-body': '#design-start',
+  'branch-body': '.changes',
+  'precision-body': '#precision-measure',
+  'gallery-body': 'article',
 };
 
 /** Brings all panels that load later, those that are asked for included. */

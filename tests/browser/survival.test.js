@@ -34,7 +34,10 @@ test('a scene without noise is tried with some, by either reading', async () => 
   await page.click('#survival-start');
   await page.waitForFunction(() => /noise\.model=plan/.test(document.querySelector('#survival-links a').href));
   const [strike, plan] = await answers();
-  assert.deepEqual([strike.scene.noise.timing_sd, strike.scene.noise.model, plan.scene.noise.timing_sd, plan.scene.noise.model], [0.01, 'strike', 0.005, 'plan']);
+  assert.deepEqual(
+    [strike.scene.noise.timing_sd, strike.scene.noise.model, plan.scene.noise.timing_sd, plan.scene.noise.model],
+    [0.01, 'strike', 0.005, 'plan'],
+  );
   assert.equal(await page.inputValue('#field-noise-timing_sd'), '', 'the scene of the page is left as it is');
   clean();
 });
@@ -46,7 +49,10 @@ test('curve, numbers at risk, table and figures are the server’s', async () =>
   await runAll(page, 80, 300);
   const { survival, quantiles, survived, counts, runs, impacts } = (await answers())[0];
   assert.ok(survived.runs > 0 && survived.runs < runs, 'a curve that falls, but not to the ground');
-  assert.match(plain(await page.locator('#survival-told').innerText()), new RegExp(`^${survived.runs} of 80 runs outlast 300`));
+  assert.match(
+    plain(await page.locator('#survival-told').innerText()),
+    new RegExp(`^${survived.runs} of 80 runs outlast 300`),
+  );
   const risk = await page.locator('#survival-box .risk').allTextContents();
   assert.equal(risk[0], String(runs));
   assert.equal(risk.at(-1), String(survival.at_risk[impacts - 1]));
@@ -55,17 +61,27 @@ test('curve, numbers at risk, table and figures are the server’s', async () =>
     const last = (path) => Number(path.getAttribute('d').split('L').at(-1).replace('Z', '').split(' ')[1]);
     const edge = box.querySelector('.edge');
     const [top, height] = ['y', 'height'].map((name) => Number(edge.getAttribute(name)));
-    const band = box.querySelector('.band').getAttribute('d').slice(1, -1).split('L').map((pair) => pair.split(' ').map(Number));
+    const band = box
+      .querySelector('.band')
+      .getAttribute('d')
+      .slice(1, -1)
+      .split('L')
+      .map((pair) => pair.split(' ').map(Number));
     const right = Math.max(...band.map(([x]) => x));
     const share = (y) => 1 - (y - top) / height;
-    return { curve: share(last(box.querySelector('.curve'))), band: band.filter(([x]) => x === right).map(([, y]) => share(y)) };
+    return {
+      curve: share(last(box.querySelector('.curve'))),
+      band: band.filter(([x]) => x === right).map(([, y]) => share(y)),
+    };
   });
   const near = (one, other) => assert.ok(Math.abs(one - other) < 0.003, `${one} is not ${other}`);
   near(heights.curve, survived.share);
   near(Math.max(...heights.band), survived.upper);
   near(Math.min(...heights.band), survived.lower);
   await page.locator('.survival-sheet summary', { hasText: 'Numbers' }).click();
-  const rows = await page.locator('.survival-sheet tbody tr').evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  const rows = await page
+    .locator('.survival-sheet tbody tr')
+    .evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
   assert.equal(rows.length, quantiles.n.length);
   for (const [index, row] of rows.entries()) {
     const at = quantiles.n[index] - 1;
@@ -74,7 +90,8 @@ test('curve, numbers at risk, table and figures are the server’s', async () =>
     if (quantiles.q50[index] !== null) near(Number(row[8]), quantiles.q50[index]);
   }
   const ends = await page.locator('#survival-numbers').innerText();
-  for (const [name, count] of Object.entries(counts)) if (name !== 'completed' && count > 0) assert.ok(ends.includes(`${count} ${name.replaceAll('_', ' ')}`), ends);
+  for (const [name, count] of Object.entries(counts))
+    if (name !== 'completed' && count > 0) assert.ok(ends.includes(`${count} ${name.replaceAll('_', ' ')}`), ends);
 });
 
 test('pointer and keys read the curve', async () => {
@@ -84,7 +101,10 @@ test('pointer and keys read the curve', async () => {
   const readout = async () => plain(await page.locator('#survival-readout').innerText());
   await page.focus('#survival-box');
   await page.keyboard.press('End');
-  assert.ok((await readout()).startsWith('contact 200') && (await readout()).includes(`at risk ${survival.at_risk[199]}`), await readout());
+  assert.ok(
+    (await readout()).startsWith('contact 200') && (await readout()).includes(`at risk ${survival.at_risk[199]}`),
+    await readout(),
+  );
   await page.keyboard.press('ArrowLeft');
   assert.match(await readout(), /^contact 199 /);
   await page.keyboard.press('PageDown');
@@ -103,7 +123,8 @@ test('its links answer, and the first run can be watched', async () => {
   const { page, answers, clean } = await open('?preset=case-1');
   await page.fill('#survival-timing', '8');
   await runAll(page, 20, 40);
-  for (const href of await page.locator('#survival-links a').evaluateAll((links) => links.map((link) => link.href))) assert.ok((await fetch(href)).ok, href);
+  for (const href of await page.locator('#survival-links a').evaluateAll((links) => links.map((link) => link.href)))
+    assert.ok((await fetch(href)).ok, href);
   await page.click('#survival-links button');
   const call = await page.evaluate(() => navigator.clipboard.readText());
   assert.deepEqual(await (await fetch(/^curl '(.+)'$/.exec(call)[1])).json(), (await answers())[0]);
@@ -128,9 +149,17 @@ test('progress is counted in runs, and Cancel frees the server', async () => {
   const bar = page.locator('#survival-told progress');
   await page.waitForFunction(() => document.querySelector('#survival-told progress').value > 0);
   assert.equal(await bar.getAttribute('max'), '20000');
-  const [value, words] = await page.locator('#survival-told').evaluate((told) => [told.querySelector('progress').value, told.innerText]);
-  assert.match(plain(words), new RegExp(`^Running… ${plain(value.toLocaleString('en').replace(',', value > 9999 ? ' ' : ''))} of 20 000 runs$`));
-  assert.ok(!(await page.locator('#survival-told [role=status]').innerText()).includes('of'), 'the count is not spoken at every step');
+  const [value, words] = await page
+    .locator('#survival-told')
+    .evaluate((told) => [told.querySelector('progress').value, told.innerText]);
+  assert.match(
+    plain(words),
+    new RegExp(`^Running… ${plain(value.toLocaleString('en').replace(',', value > 9999 ? ' ' : ''))} of 20 000 runs$`),
+  );
+  assert.ok(
+    !(await page.locator('#survival-told [role=status]').innerText()).includes('of'),
+    'the count is not spoken at every step',
+  );
   assert.equal(await page.locator('#survival-box .curve').getAttribute('d'), before, 'what was there stays');
   assert.notEqual(await stage.running(), 0);
   assert.equal(await page.evaluate(() => document.activeElement.id), 'survival-cancel');
@@ -145,50 +174,78 @@ test('progress is counted in runs, and Cancel frees the server', async () => {
 });
 
 test('an answer that breaks off says how far it came', async () => {
-  const { page } = await open('?preset=case-1', { prepare: () => {
-    const real = globalThis.fetch;
-    globalThis.cut = true;
-    globalThis.fetch = (input, init) => {
-      if (!globalThis.cut || !String(input).includes('v1/ensembles')) return real(input, init);
-      const lines = [0, 90].map((done) => `${JSON.stringify({ progress: { done, of: 300 } })}\n`);
-      return Promise.resolve(new Response(new ReadableStream({
-        async pull(controller) {
-          const line = lines.shift();
-          if (line) return controller.enqueue(new TextEncoder().encode(line));
-          await new Promise((resolve) => { setTimeout(resolve, 50); });
-          if (globalThis.cut === 'clean') controller.close();
-          else controller.error(new TypeError('network error'));
-        },
-      })));
-    };
-  } });
+  const { page } = await open('?preset=case-1', {
+    prepare: () => {
+      const real = globalThis.fetch;
+      globalThis.cut = true;
+      globalThis.fetch = (input, init) => {
+        if (!globalThis.cut || !String(input).includes('v1/ensembles')) return real(input, init);
+        const lines = [0, 90].map((done) => `${JSON.stringify({ progress: { done, of: 300 } })}\n`);
+        return Promise.resolve(
+          new Response(
+            new ReadableStream({
+              async pull(controller) {
+                const line = lines.shift();
+                if (line) return controller.enqueue(new TextEncoder().encode(line));
+                await new Promise((resolve) => {
+                  setTimeout(resolve, 50);
+                });
+                if (globalThis.cut === 'clean') controller.close();
+                else controller.error(new TypeError('network error'));
+              },
+            }),
+          ),
+        );
+      };
+    },
+  });
   for (const cut of ['clean', true]) {
-    await page.evaluate((way) => { globalThis.cut = way; }, cut);
+    await page.evaluate((way) => {
+      globalThis.cut = way;
+    }, cut);
     await page.click('#survival-start');
     await page.locator('#survival-told', { hasText: 'The answer broke off at 90 of 300 runs.' }).waitFor();
     assert.ok(await page.locator('#survival-told progress').isHidden());
     assert.ok(await page.locator('.survival-sheet').isHidden());
   }
-  await page.evaluate(() => { globalThis.cut = false; });
+  await page.evaluate(() => {
+    globalThis.cut = false;
+  });
   await runAll(page, 30, 50);
 });
 
 test('its settings are in the address, and what is broken of them is dropped in words', async () => {
   const link = 'survival.runs=1000&survival.impacts=50&survival.timing_sd=0.0025&survival.model=plan';
   const { page, clean } = await open(`?preset=case-1&${link}`);
-  const shown = () => Promise.all(['runs', 'impacts', 'timing', 'reading'].map((name) => page.inputValue(`#survival-${name}`)));
+  const shown = () =>
+    Promise.all(['runs', 'impacts', 'timing', 'reading'].map((name) => page.inputValue(`#survival-${name}`)));
   assert.deepEqual(await shown(), ['1000', '50', '2.5', 'plan']);
   await page.fill('#survival-runs', '300');
   await page.fill('#survival-timing', '12,5');
   await page.selectOption('#survival-reading', 'strike');
   await page.waitForFunction(() => !location.search.includes('survival.model'));
-  assert.equal(new URL(page.url()).search, '?preset=case-1&survival.runs=300&survival.impacts=50&survival.timing_sd=0.0125');
+  assert.equal(
+    new URL(page.url()).search,
+    '?preset=case-1&survival.runs=300&survival.impacts=50&survival.timing_sd=0.0125',
+  );
   clean();
-  const broken = await open('?preset=case-1&survival.runs=20001&survival.impacts=1.5&survival.timing_sd=&survival.model=toString');
+  const broken = await open(
+    '?preset=case-1&survival.runs=20001&survival.impacts=1.5&survival.timing_sd=&survival.model=toString',
+  );
   const words = plain(await broken.page.locator('#notices').innerText());
-  for (const said of ['runs “20001”: it must be a whole number from 1 to 20 000', 'impacts “1.5”: it must be a whole number from 1 to 100 000',
-    'timing_sd “”: it must be a number above 0 and up to 1000 ms', 'model “toString”: it must be strike or plan']) assert.ok(words.includes(`survival.${said}`), words);
-  assert.deepEqual(await Promise.all(['runs', 'impacts', 'timing', 'reading'].map((name) => broken.page.inputValue(`#survival-${name}`))), ['200', '400', '10', 'strike']);
+  for (const said of [
+    'runs “20001”: it must be a whole number from 1 to 20 000',
+    'impacts “1.5”: it must be a whole number from 1 to 100 000',
+    'timing_sd “”: it must be a number above 0 and up to 1000 ms',
+    'model “toString”: it must be strike or plan',
+  ])
+    assert.ok(words.includes(`survival.${said}`), words);
+  assert.deepEqual(
+    await Promise.all(
+      ['runs', 'impacts', 'timing', 'reading'].map((name) => broken.page.inputValue(`#survival-${name}`)),
+    ),
+    ['200', '400', '10', 'strike'],
+  );
   broken.clean();
 });
 

@@ -57,8 +57,19 @@
 
 /** A polygon's vertices, the one part of a scene that is no single value. @type {Field} */
 const VERTICES = {
-  path: 'body.vertices', symbol: null, group: 'body', title: 'Vertices', about: 'Of a polygon, in place of the two lengths: x and y of one in a line, counter-clockwise.',
-  unit: 'm', kind: 'vertices', minimum: null, maximum: null, default: null, required: false, choices: null, live: false,
+  path: 'body.vertices',
+  symbol: null,
+  group: 'body',
+  title: 'Vertices',
+  about: 'Of a polygon, in place of the two lengths: x and y of one in a line, counter-clockwise.',
+  unit: 'm',
+  kind: 'vertices',
+  minimum: null,
+  maximum: null,
+  default: null,
+  required: false,
+  choices: null,
+  live: false,
 };
 
 /** All that a scene is made of, group by group. @param {{fields: Field[]}} table @returns {Field[]} */
@@ -114,7 +125,11 @@ export async function problemOf(response) {
  * A dotted field path from the pointer of an error, wherever the server found the field.
  * @param {string} pointer
  */
-export const pathOf = (pointer) => pointer.replace(/^\//, '').replace(/^scene[/.]/, '').replaceAll('/', '.');
+export const pathOf = (pointer) =>
+  pointer
+    .replace(/^\//, '')
+    .replace(/^scene[/.]/, '')
+    .replaceAll('/', '.');
 
 /**
  * @param {Scene} scene

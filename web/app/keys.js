@@ -8,7 +8,11 @@ const STORED = 'equipoise.keys';
 
 /** A browser may refuse to store anything. */
 function stored() {
-  try { return localStorage.getItem(STORED) !== 'off'; } catch { return true; }
+  try {
+    return localStorage.getItem(STORED) !== 'off';
+  } catch {
+    return true;
+  }
 }
 
 /** @param {Key[]} keys */
@@ -17,13 +21,28 @@ export function listenToKeys(keys) {
   const on = byId('keys-on', HTMLInputElement);
   on.checked = stored();
   on.addEventListener('change', () => {
-    try { localStorage.setItem(STORED, on.checked ? 'on' : 'off'); } catch { /* lasts for this visit only */ }
+    try {
+      localStorage.setItem(STORED, on.checked ? 'on' : 'off');
+    } catch {
+      /* lasts for this visit only */
+    }
   });
   const all = [...keys, { keys: ['?'], label: '?', name: 'Show these keys', act: () => dialog.showModal() }];
-  byId('keys-list').append(...all.map(({ label, name }) => h('div', {}, h('dt', {}, h('kbd', {}, label)), h('dd', {}, name))));
+  byId('keys-list').append(
+    ...all.map(({ label, name }) => h('div', {}, h('dt', {}, h('kbd', {}, label)), h('dd', {}, name))),
+  );
   byId('keys-open').addEventListener('click', () => dialog.showModal());
   addEventListener('keydown', (event) => {
-    if (!on.checked || document.querySelector('dialog[open]') || event.defaultPrevented || event.repeat || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (
+      !on.checked ||
+      document.querySelector('dialog[open]') ||
+      event.defaultPrevented ||
+      event.repeat ||
+      event.ctrlKey ||
+      event.metaKey ||
+      event.altKey
+    )
+      return;
     const target = event.target instanceof Element ? event.target : null;
     // Letters belong to where one types, and Space to whatever it presses.
     if (target?.closest('input:not([type=range]):not([type=checkbox]), select, textarea, [contenteditable]')) return;

@@ -9,7 +9,8 @@ import { playedAt, same, setAt } from '../api/api.js';
 /** @typedef {{impact: number, set: Record<string, number | string>, kick: Record<string, number>}} Intervention */
 
 /** What belongs to a panel, by its name. */
-const PANEL_KEYS = /^(map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input))|brush\.\w+\.(from|to))$/;
+const PANEL_KEYS =
+  /^(map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input))|brush\.\w+\.(from|to))$/;
 
 export const SLOWEST = 0.05;
 export const FASTEST = 20;
@@ -37,7 +38,10 @@ export function readLink(search, fields, cases) {
   const query = new URLSearchParams(search);
   let whole = true;
   /** @param {string} what */
-  const dropScene = (what) => { whole = false; link.dropped.push(what); };
+  const dropScene = (what) => {
+    whole = false;
+    link.dropped.push(what);
+  };
   for (const [key, text] of query) {
     const value = text.trim() === '' ? NaN : Number(text);
     if (key === 'preset') {
@@ -45,7 +49,7 @@ export function readLink(search, fields, cases) {
       else dropScene(`the case “${shown(text)}”, which is not known here`);
     } else if (/^scene\.body\.vertices\.\d{1,2}\.[01]$/.test(key) && Number.isFinite(value)) {
       const [index, axis] = key.split('.').slice(3).map(Number);
-      const body = link.changes.body ??= {};
+      const body = (link.changes.body ??= {});
       ((body.vertices ??= [])[index] ??= [])[axis] = value;
     } else if (key.startsWith('scene.')) {
       const refused = readField(key.slice(6), text, fields, link.changes);
@@ -110,7 +114,8 @@ function readField(path, text, fields, changes) {
       return `${field.title.toLowerCase()} ${number(Number(value))}: it must be from ${number(minimum)} to ${quantity(maximum, field.unit)}`;
     }
   } else if (field.kind === 'boolean') {
-    if (text !== 'true' && text !== 'false') return `${field.title.toLowerCase()} “${shown(text)}”, which is neither true nor false`;
+    if (text !== 'true' && text !== 'false')
+      return `${field.title.toLowerCase()} “${shown(text)}”, which is neither true nor false`;
     value = text === 'true';
   } else if (field.choices && !field.choices.includes(text)) {
     return `${field.title.toLowerCase()} “${shown(text)}”: it must be one of ${field.choices.join(', ')}`;
@@ -128,19 +133,30 @@ function readField(path, text, fields, changes) {
 function joined(run, fields, dropped) {
   const kept = new URLSearchParams({ epoch: /** @type {string} */ (run.get('epoch')) });
   const interventions = interventionsOf(run);
-  const whole = interventions.filter(({ impact, set, kick }) => impact >= 1 && Object.keys(set).every((path) => fields.some((field) => field.path === path && field.live))
-    && Object.keys(kick).every((name) => ['theta_dot', 'x_dot', 'y_dot'].includes(name)) && Object.keys(set).length + Object.keys(kick).length > 0);
-  if (whole.length < interventions.length) dropped.push(`${interventions.length - whole.length} of ${interventions.length} interventions, which are not whole`);
+  const whole = interventions.filter(
+    ({ impact, set, kick }) =>
+      impact >= 1 &&
+      Object.keys(set).every((path) => fields.some((field) => field.path === path && field.live)) &&
+      Object.keys(kick).every((name) => ['theta_dot', 'x_dot', 'y_dot'].includes(name)) &&
+      Object.keys(set).length + Object.keys(kick).length > 0,
+  );
+  if (whole.length < interventions.length)
+    dropped.push(
+      `${interventions.length - whole.length} of ${interventions.length} interventions, which are not whole`,
+    );
   whole.forEach(({ impact, set, kick }, index) => {
     kept.set(`interventions.${index}.impact`, String(impact));
     for (const [path, value] of Object.entries(set)) kept.set(`interventions.${index}.set.${path}`, String(value));
     for (const [name, value] of Object.entries(kick)) kept.set(`interventions.${index}.kick.${name}`, String(value));
   });
-  const marks = [...new Set([...run.keys()].filter((key) => key.startsWith('clock.')).map((key) => Number(key.split('.')[1])))].sort((a, b) => a - b);
+  const marks = [
+    ...new Set([...run.keys()].filter((key) => key.startsWith('clock.')).map((key) => Number(key.split('.')[1]))),
+  ].sort((a, b) => a - b);
   const complete = marks.filter((mark) => ['wall', 'run', 'speed'].every((part) => run.has(`clock.${mark}.${part}`)));
   if (complete.length < marks.length) dropped.push('a pause or a change of speed, which is not whole');
   complete.forEach((mark, index) => {
-    for (const part of ['wall', 'run', 'speed']) kept.set(`clock.${index}.${part}`, /** @type {string} */ (run.get(`clock.${mark}.${part}`)));
+    for (const part of ['wall', 'run', 'speed'])
+      kept.set(`clock.${index}.${part}`, /** @type {string} */ (run.get(`clock.${mark}.${part}`)));
   });
   return kept;
 }
@@ -175,12 +191,13 @@ export function interventionsOf(query) {
 export function merged(preset, changes) {
   const base = structuredClone(preset);
   const kind = (/** @type {Scene} */ { body }) => (body?.point ? 'point' : body?.vertices ? 'polygon' : 'rod');
-  if (changes.body && kind(changes) !== kind(base) && (kind(changes) !== 'rod' || kind(base) === 'point')) delete base.body;
+  if (changes.body && kind(changes) !== kind(base) && (kind(changes) !== 'rod' || kind(base) === 'point'))
+    delete base.body;
   /** @param {Scene} into @param {Scene} from */
   const lay = (into, from) => {
     for (const [key, value] of Object.entries(from)) {
       if (value === null) delete into[key];
-      else if (typeof value === 'object' && !Array.isArray(value)) lay(into[key] ??= {}, value);
+      else if (typeof value === 'object' && !Array.isArray(value)) lay((into[key] ??= {}), value);
       else into[key] = value;
     }
     return into;
@@ -197,13 +214,24 @@ export function merged(preset, changes) {
  */
 export function sceneQuery(scene, preset, fields) {
   const query = new URLSearchParams();
-  const covered = preset && fields.every((field) => !field.path.startsWith('body.') || playedAt(preset.scene, field) === undefined || playedAt(scene, field) !== undefined);
+  const covered =
+    preset &&
+    fields.every(
+      (field) =>
+        !field.path.startsWith('body.') ||
+        playedAt(preset.scene, field) === undefined ||
+        playedAt(scene, field) !== undefined,
+    );
   if (covered) query.set('preset', preset.name);
   for (const field of fields) {
     const value = playedAt(scene, field);
-    if (value === undefined && covered && playedAt(preset.scene, field) !== undefined) query.set(`scene.${field.path}`, 'null');
+    if (value === undefined && covered && playedAt(preset.scene, field) !== undefined)
+      query.set(`scene.${field.path}`, 'null');
     if (value === undefined || same(value, covered ? playedAt(preset.scene, field) : field.default)) continue;
-    if (field.kind === 'vertices') value.forEach((/** @type {number[]} */ place, /** @type {number} */ index) => place.forEach((coordinate, axis) => query.set(`scene.${field.path}.${index}.${axis}`, String(coordinate))));
+    if (field.kind === 'vertices')
+      value.forEach((/** @type {number[]} */ place, /** @type {number} */ index) =>
+        place.forEach((coordinate, axis) => query.set(`scene.${field.path}.${index}.${axis}`, String(coordinate))),
+      );
     else query.set(`scene.${field.path}`, String(value));
   }
   return query;

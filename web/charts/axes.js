@@ -17,7 +17,8 @@ export function roundStep(span, count) {
 export function ticks({ low, high }, count) {
   const step = roundStep(high - low, count);
   const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k += 1) found.push(Number((k * step).toPrecision(12)));
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k += 1)
+    found.push(Number((k * step).toPrecision(12)));
   return found;
 }
 
@@ -57,9 +58,9 @@ export function roundRange({ low, high }, { symmetric = false, span = 0, from } 
 export const MARGIN = { left: 44, right: 8, top: 24, bottom: 36 };
 
 /** @param {Frame} frame @param {number} value */
-export const toX = ({ left, width, x }, value) => left + (value - x.low) / (x.high - x.low) * width;
+export const toX = ({ left, width, x }, value) => left + ((value - x.low) / (x.high - x.low)) * width;
 /** @param {Frame} frame @param {number} value */
-export const toY = ({ top, height, y }, value) => top + height - (value - y.low) / (y.high - y.low) * height;
+export const toY = ({ top, height, y }, value) => top + height - ((value - y.low) / (y.high - y.low)) * height;
 
 /**
  * @param {CanvasRenderingContext2D} context
@@ -127,8 +128,18 @@ export function drawMark(context, series, x, y, r) {
   context.beginPath();
   if (series % 4 === 0) context.arc(x, y, r, 0, 2 * Math.PI);
   else if (series % 4 === 1) context.rect(x - r, y - r, 2 * r, 2 * r);
-  else if (series % 4 === 2) { context.moveTo(x, y - r * 1.4); context.lineTo(x + r * 1.4, y); context.lineTo(x, y + r * 1.4); context.lineTo(x - r * 1.4, y); context.closePath(); }
-  else { context.moveTo(x, y - r * 1.3); context.lineTo(x + r * 1.3, y + r); context.lineTo(x - r * 1.3, y + r); context.closePath(); }
+  else if (series % 4 === 2) {
+    context.moveTo(x, y - r * 1.4);
+    context.lineTo(x + r * 1.4, y);
+    context.lineTo(x, y + r * 1.4);
+    context.lineTo(x - r * 1.4, y);
+    context.closePath();
+  } else {
+    context.moveTo(x, y - r * 1.3);
+    context.lineTo(x + r * 1.3, y + r);
+    context.lineTo(x - r * 1.3, y + r);
+    context.closePath();
+  }
 }
 
 /** @param {number} series */

@@ -18,7 +18,15 @@ export function anglePair(residue) {
   const middle = 1 - 2 * residue;
   const square = residue * (residue - 1);
   const root = 2 * Math.sqrt(Math.abs(square));
-  return square <= 0 ? [{ re: middle, im: root }, { re: middle, im: -root }] : [{ re: middle + root, im: 0 }, { re: middle - root, im: 0 }];
+  return square <= 0
+    ? [
+        { re: middle, im: root },
+        { re: middle, im: -root },
+      ]
+    : [
+        { re: middle + root, im: 0 },
+        { re: middle - root, im: 0 },
+      ];
 }
 
 const WIDEST = 6;
@@ -32,16 +40,29 @@ export class Circle {
   #gain = null;
 
   constructor() {
-    this.figure = new Figure('circle', 'Eigenvalues', 'Of one bounce: on the circle a dial of the tilt gain, off it balance is lost.', {
-      head: ['eigenvalue', 'real', 'imaginary', 'modulus'],
-      rows: () => (this.#answer?.linear?.eigenvalues ?? []).map(({ re, im, modulus }, index) => [String(index + 1), fixed(re, 6), fixed(im, 6), fixed(modulus, 6)]),
-    });
+    this.figure = new Figure(
+      'circle',
+      'Eigenvalues',
+      'Of one bounce: on the circle a dial of the tilt gain, off it balance is lost.',
+      {
+        head: ['eigenvalue', 'real', 'imaginary', 'modulus'],
+        rows: () =>
+          (this.#answer?.linear?.eigenvalues ?? []).map(({ re, im, modulus }, index) => [
+            String(index + 1),
+            fixed(re, 6),
+            fixed(im, 6),
+            fixed(modulus, 6),
+          ]),
+      },
+    );
     this.layers = surfaces(this.figure.box, 1, () => this.redraw());
     [this.#surface] = this.layers;
     onThemeChange(() => this.redraw());
   }
 
-  redraw() { invalidate(this); }
+  redraw() {
+    invalidate(this);
+  }
 
   /** @param {Stability | null} answer */
   show(answer) {
@@ -59,7 +80,13 @@ export class Circle {
   /** The residue as a function of the gain, where the closed form holds. @returns {Residue | null} */
   #residue() {
     const gain = this.#answer?.linear?.tilt_gain;
-    if (this.#answer?.linear?.residue == null || gain?.critical == null || gain.lower == null || gain.critical === gain.lower) return null;
+    if (
+      this.#answer?.linear?.residue == null ||
+      gain?.critical == null ||
+      gain.lower == null ||
+      gain.critical === gain.lower
+    )
+      return null;
     const { lower, critical } = gain;
     return { lower, critical, at: (/** @type {number} */ value) => (value - lower) / (critical - lower) };
   }
@@ -71,14 +98,21 @@ export class Circle {
     const linear = this.#answer?.linear ?? null;
     const residue = this.#residue();
     const pair = residue && this.#gain !== null ? anglePair(residue.at(this.#gain)) : [];
-    const largest = Math.max(1, ...pair.map(({ re }) => Math.abs(re)), ...(linear?.eigenvalues ?? []).map(({ modulus }) => modulus));
+    const largest = Math.max(
+      1,
+      ...pair.map(({ re }) => Math.abs(re)),
+      ...(linear?.eigenvalues ?? []).map(({ modulus }) => modulus),
+    );
     const half = Math.min(WIDEST, Math.max(1.55, largest * 1.2));
     const { left, top } = MARGIN;
     const room = { width: Math.max(1, width - left - MARGIN.right), height: Math.max(1, height - top - MARGIN.bottom) };
     const unit = Math.min(room.width, room.height) / (2 * half);
     const frame = {
-      left, top, ...room,
-      x: { low: -room.width / unit / 2, high: room.width / unit / 2 }, y: { low: -room.height / unit / 2, high: room.height / unit / 2 },
+      left,
+      top,
+      ...room,
+      x: { low: -room.width / unit / 2, high: room.width / unit / 2 },
+      y: { low: -room.height / unit / 2, high: room.height / unit / 2 },
     };
     context.clearRect(0, 0, width, height);
     drawAxes(context, frame, 'Re λ', 'Im λ');
@@ -104,7 +138,11 @@ export class Circle {
       context.fillStyle = colours.muted;
       context.textAlign = 'center';
       context.textBaseline = 'middle';
-      context.fillText(this.#answer ? 'No linear map here' : 'Waiting for the server', frame.left + frame.width / 2, frame.top + frame.height / 2 - 14);
+      context.fillText(
+        this.#answer ? 'No linear map here' : 'Waiting for the server',
+        frame.left + frame.width / 2,
+        frame.top + frame.height / 2 - 14,
+      );
     }
     this.figure.read(this.#words(residue));
     this.figure.name(now_ms, () => `Eigenvalues of one bounce on the unit circle. ${this.#words(residue)}`);
@@ -118,7 +156,10 @@ export class Circle {
     if (!linear) return this.#answer?.notes[0] ?? '';
     if (!residue || this.#gain === null) return `spectral radius ${number(linear.spectral_radius)}`;
     const at = residue.at(this.#gain);
-    const turn = at > 0 && at < 1 ? `   σ ${fixed(Math.acos(1 - 2 * at) * 180 / Math.PI, 1)}°` : `   max |λ| ${fixed(Math.max(...anglePair(at).map(({ re }) => Math.abs(re))), 3)}`;
+    const turn =
+      at > 0 && at < 1
+        ? `   σ ${fixed((Math.acos(1 - 2 * at) * 180) / Math.PI, 1)}°`
+        : `   max |λ| ${fixed(Math.max(...anglePair(at).map(({ re }) => Math.abs(re))), 3)}`;
     return `κ ${fixed(this.#gain, 3)}   R ${fixed(at, 3)}${turn}`;
   }
 
@@ -160,7 +201,14 @@ export class Circle {
       const angle = Math.acos(1 - 2 * residue.at(gain));
       const [dx, dy] = [Math.cos(angle), -Math.sin(angle)];
       context.lineWidth = 1.5;
-      line(context, colours.muted, cx + dx * (unit - 4), cy + dy * (unit - 4), cx + dx * (unit + 4), cy + dy * (unit + 4));
+      line(
+        context,
+        colours.muted,
+        cx + dx * (unit - 4),
+        cy + dy * (unit - 4),
+        cx + dx * (unit + 4),
+        cy + dy * (unit + 4),
+      );
       context.fillText(number(gain), cx + dx * (unit + 17), cy + dy * (unit + 13));
     }
     if (unit < 62) return;

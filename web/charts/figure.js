@@ -37,12 +37,30 @@ export class Figure {
     this.box = h('div', { class: 'canvas-box', role: 'img', 'aria-label': 'Nothing to show yet' });
     this.#readout = h('output', { class: 'readout', 'aria-live': 'off' });
     this.#body = h('tbody');
-    this.#disclosure = h('details', { toggle: () => this.list(Infinity) }, h('summary', {}, 'Numbers'),
-      h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': `Numbers: ${title}` },
-        h('table', {}, h('thead', {}, h('tr', {}, ...table.head.map((name) => h('th', { scope: 'col' }, name)))), this.#body)));
+    this.#disclosure = h(
+      'details',
+      { toggle: () => this.list(Infinity) },
+      h('summary', {}, 'Numbers'),
+      h(
+        'div',
+        { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': `Numbers: ${title}` },
+        h(
+          'table',
+          {},
+          h('thead', {}, h('tr', {}, ...table.head.map((name) => h('th', { scope: 'col' }, name)))),
+          this.#body,
+        ),
+      ),
+    );
     this.#head = h('div', { class: 'card-head' }, h('h3', {}, title));
-    this.element = h('figure', { class: 'card chart', id }, h('figcaption', {}, this.#head, h('p', { class: 'muted' }, about)),
-      this.box, this.#readout, this.#disclosure);
+    this.element = h(
+      'figure',
+      { class: 'card chart', id },
+      h('figcaption', {}, this.#head, h('p', { class: 'muted' }, about)),
+      this.box,
+      this.#readout,
+      this.#disclosure,
+    );
   }
 
   /** What of it can be taken away. @param {() => import('../export/save-actions.js').Saves} saves */
@@ -70,6 +88,11 @@ export class Figure {
   list(now_ms) {
     if (!this.#disclosure.open || now_ms - this.#listed_ms < 1000) return;
     this.#listed_ms = now_ms === Infinity ? -Infinity : now_ms;
-    this.#body.replaceChildren(...this.#table.rows().slice(0, LISTED).map((cells) => h('tr', {}, ...cells.map((cell) => h('td', {}, cell)))));
+    this.#body.replaceChildren(
+      ...this.#table
+        .rows()
+        .slice(0, LISTED)
+        .map((cells) => h('tr', {}, ...cells.map((cell) => h('td', {}, cell)))),
+    );
   }
 }

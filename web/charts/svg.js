@@ -9,7 +9,8 @@ const NAMESPACE = 'http://www.w3.org/2000/svg';
  */
 export function svg(tag, attributes = {}, ...children) {
   const element = document.createElementNS(NAMESPACE, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, typeof value === 'number' ? String(Math.round(value * 100) / 100) : value);
+  for (const [name, value] of Object.entries(attributes))
+    element.setAttribute(name, typeof value === 'number' ? String(Math.round(value * 100) / 100) : value);
   element.append(...children);
   return element;
 }

@@ -1,6 +1,20 @@
 // The style sheet's colours for canvases, read once per change of scheme. Not for elements: those have the style sheet.
 
-const NAMES = /** @type {const} */ (['ink', 'muted', 'line', 'faint', 'surface', 'accent', 'strike', 'good', 'series-0', 'series-1', 'series-2', 'series-3', 'measured']);
+const NAMES = /** @type {const} */ ([
+  'ink',
+  'muted',
+  'line',
+  'faint',
+  'surface',
+  'accent',
+  'strike',
+  'good',
+  'series-0',
+  'series-1',
+  'series-2',
+  'series-3',
+  'measured',
+]);
 
 /** @typedef {Record<(typeof NAMES)[number], string>} Colours */
 
@@ -13,7 +27,9 @@ const listeners = new Set();
 export function theme() {
   if (colours) return colours;
   const style = getComputedStyle(document.documentElement);
-  return colours = /** @type {Colours} */ (Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])));
+  return (colours = /** @type {Colours} */ (
+    Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]))
+  ));
 }
 
 /** @param {() => void} listener */

@@ -6,11 +6,12 @@
 /** Query parameters as a form should start with them: empty, because the viewer would fill in and send every default. */
 function withoutPrefill(contract) {
   for (const parameter of Object.values(contract.components.parameters)) {
-    if (parameter.in !== "query" || parameter.name === "preset") continue;
-    const name = parameter.schema.$ref?.replace("#/components/schemas/", "");
+    if (parameter.in !== 'query' || parameter.name === 'preset') continue;
+    const name = parameter.schema.$ref?.replace('#/components/schemas/', '');
     const schema = { ...(name ? resolved(contract, name) : parameter.schema) };
-    const rest = schema.default ?? schema["x-default"];
-    if (rest !== undefined) parameter.description += ` Unless given${"x-default" in schema ? ", by a preset too" : ""}: ${rest}.`;
+    const rest = schema.default ?? schema['x-default'];
+    if (rest !== undefined)
+      parameter.description += ` Unless given${'x-default' in schema ? ', by a preset too' : ''}: ${rest}.`;
     delete schema.default;
     delete parameter.example;
     parameter.schema = schema;
@@ -19,16 +20,16 @@ function withoutPrefill(contract) {
 }
 
 function resolved(contract, name) {
-  return name.split("/").reduce((node, key) => node[key], contract.components.schemas);
+  return name.split('/').reduce((node, key) => node[key], contract.components.schemas);
 }
 
 /** The queries that run as printed, as links under their operation. */
 function withLinks(contract) {
   for (const [path, item] of Object.entries(contract.paths)) {
-    const queries = item.get?.["x-queries"]?.filter((query) => query && !path.includes("{"));
+    const queries = item.get?.['x-queries']?.filter((query) => query && !path.includes('{'));
     if (!queries?.length) continue;
     const links = queries.map((query) => `- [${path}?${query}](${path}?${query})`);
-    item.get.description = `${item.get.description ?? ""}\n\n${links.join("\n")}\n`;
+    item.get.description = `${item.get.description ?? ''}\n\n${links.join('\n')}\n`;
   }
   return contract;
 }
@@ -37,40 +38,40 @@ function withLinks(contract) {
 function keepInView(above) {
   const observer = new ResizeObserver(showProblem);
   observer.observe(above);
-  for (const act of ["wheel", "pointerdown", "keydown", "touchstart"]) {
+  for (const act of ['wheel', 'pointerdown', 'keydown', 'touchstart']) {
     addEventListener(act, () => observer.disconnect(), { once: true, passive: true });
   }
-  addEventListener("hashchange", showProblem);
+  addEventListener('hashchange', showProblem);
 }
 
 function showProblem() {
   // The viewer, which keeps its own place in the hash, puts a slash before what it does not know.
-  const id = location.hash.replace(/^#\/?/, "");
-  if (!id.startsWith("problem")) return;
-  document.querySelector(".target")?.classList.remove("target");
+  const id = location.hash.replace(/^#\/?/, '');
+  if (!id.startsWith('problem')) return;
+  document.querySelector('.target')?.classList.remove('target');
   const target = document.getElementById(id);
-  target?.classList.add("target");
+  target?.classList.add('target');
   target?.scrollIntoView();
 }
 
 async function show() {
-  const state = document.getElementById("state");
+  const state = document.getElementById('state');
   try {
-    const answer = await fetch("openapi.json");
+    const answer = await fetch('openapi.json');
     if (!answer.ok) throw new Error(`/openapi.json answered ${answer.status}`);
     const contract = withLinks(withoutPrefill(await answer.json()));
     SwaggerUIBundle({
       spec: contract,
-      domNode: document.getElementById("contract"),
+      domNode: document.getElementById('contract'),
       validatorUrl: null,
       deepLinking: true,
       defaultModelsExpandDepth: 0,
       displayRequestDuration: true,
       showExtensions: true,
-      syntaxHighlight: { activated: true, theme: "agate" },
-      supportedSubmitMethods: ["get", "head", "post"],
+      syntaxHighlight: { activated: true, theme: 'agate' },
+      supportedSubmitMethods: ['get', 'head', 'post'],
     });
-    keepInView(document.getElementById("contract"));
+    keepInView(document.getElementById('contract'));
   } catch (error) {
     state.textContent = `The contract could not be read: ${error.message}`;
   }

@@ -17,7 +17,11 @@ export function h(tag, attributes = {}, ...children) {
     else if (value === true) element.setAttribute(name, '');
     else if (value != null && value !== false) element.setAttribute(name, String(value));
   }
-  element.append(...children.filter((child) => child != null && child !== false).map((child) => /** @type {Node | string} */ (child)));
+  element.append(
+    ...children
+      .filter((child) => child != null && child !== false)
+      .map((child) => /** @type {Node | string} */ (child)),
+  );
   return element;
 }
 
@@ -41,17 +45,30 @@ export function byId(id, kind) {
 export function symbol(text) {
   const [base, low] = text.split('_');
   const star = base.endsWith('*');
-  return h('i', { class: 'symbol' }, star ? base.slice(0, -1) : base, star && h('sup', {}, '*'), low && h('sub', {}, low));
+  return h(
+    'i',
+    { class: 'symbol' },
+    star ? base.slice(0, -1) : base,
+    star && h('sup', {}, '*'),
+    low && h('sub', {}, low),
+  );
 }
 
 /**
  * The server's sentences: symbols and minus signs set as such, names of fields in words.
  * @param {string} text
  */
-export const marked = (text) => text.replaceAll('`', '').replace(/(?<=[a-z])_(?=[a-z])/g, ' ').replace(/(?<![\w.])-(?=\d)/g, '\u2212').split(/((?:κ|σ)_[A-Za-z]+(?:,max)?|y\*)/).map((part, index) => (index % 2 ? symbol(part) : part));
+export const marked = (text) =>
+  text
+    .replaceAll('`', '')
+    .replace(/(?<=[a-z])_(?=[a-z])/g, ' ')
+    .replace(/(?<![\w.])-(?=\d)/g, '\u2212')
+    .split(/((?:κ|σ)_[A-Za-z]+(?:,max)?|y\*)/)
+    .map((part, index) => (index % 2 ? symbol(part) : part));
 
 /** The same with numbers no longer than one reads. @param {string} text */
-export const prose = (text) => marked(text.replace(/-?\b\d+\.\d{6,}(?:e-?\d+)?/g, (digits) => number(Number(digits), 6)));
+export const prose = (text) =>
+  marked(text.replace(/-?\b\d+\.\d{6,}(?:e-?\d+)?/g, (digits) => number(Number(digits), 6)));
 
 /**
  * Text to the clipboard, and the button says so for a moment.
@@ -59,7 +76,7 @@ export const prose = (text) => marked(text.replace(/-?\b\d+\.\d{6,}(?:e-?\d+)?/g
  * @param {string} text
  */
 export async function copy(button, text) {
-  const label = button.dataset.label ??= button.textContent ?? '';
+  const label = (button.dataset.label ??= button.textContent ?? '');
   try {
     if (navigator.clipboard) await navigator.clipboard.writeText(text);
     else copyOverHttp(text);
@@ -67,7 +84,9 @@ export async function copy(button, text) {
   } catch {
     button.textContent = 'Not allowed to copy';
   }
-  setTimeout(() => { button.textContent = label; }, 1600);
+  setTimeout(() => {
+    button.textContent = label;
+  }, 1600);
 }
 
 /** A lab's machine is often reached by plain HTTP, where browsers have no clipboard but the old one. @param {string} text */
@@ -90,16 +109,25 @@ export function steady(slider, hold) {
   /** @type {(() => void) | null} */
   let putBack = null;
   let scrolled = false;
-  slider.addEventListener('pointerdown', () => { scrolled = false; putBack = hold(); });
-  slider.addEventListener('pointercancel', () => { scrolled = true; putBack?.(); });
-  slider.addEventListener('keydown', () => { scrolled = false; });
-  // The browser tells the cancelled move all the same.
-  for (const event of ['input', 'change']) slider.addEventListener(event, (told) => {
-    if (!scrolled) return;
-    told.stopImmediatePropagation();
-    putBack?.();
-    if (event === 'change') scrolled = false;
+  slider.addEventListener('pointerdown', () => {
+    scrolled = false;
+    putBack = hold();
   });
+  slider.addEventListener('pointercancel', () => {
+    scrolled = true;
+    putBack?.();
+  });
+  slider.addEventListener('keydown', () => {
+    scrolled = false;
+  });
+  // The browser tells the cancelled move all the same.
+  for (const event of ['input', 'change'])
+    slider.addEventListener(event, (told) => {
+      if (!scrolled) return;
+      told.stopImmediatePropagation();
+      putBack?.();
+      if (event === 'change') scrolled = false;
+    });
 }
 
 /**

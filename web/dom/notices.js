@@ -14,7 +14,10 @@ const shown = new Map();
 export function notice(kind, content, { dismissible = true, caution = false } = {}) {
   const element = shown.get(kind) ?? h('div', { class: 'notice' });
   element.classList.toggle('caution', caution);
-  element.replaceChildren(h('div', { class: 'notice-words' }, ...content), dismissible ? h('button', { type: 'button', click: () => clearNotice(kind) }, 'Dismiss') : '');
+  element.replaceChildren(
+    h('div', { class: 'notice-words' }, ...content),
+    dismissible ? h('button', { type: 'button', click: () => clearNotice(kind) }, 'Dismiss') : '',
+  );
   if (!shown.has(kind)) byId('notices').append(element);
   shown.set(kind, element);
 }
@@ -38,6 +41,14 @@ export function connectionNotice(seconds, retry) {
     existing.textContent = words;
     return;
   }
-  notice('connection', ['Connection lost. The run goes on at the server and is caught up with. ', h('span', { class: 'countdown', 'aria-hidden': 'true' }, words), ' ',
-    h('button', { type: 'button', click: retry }, 'Try now')], { dismissible: false, caution: true });
+  notice(
+    'connection',
+    [
+      'Connection lost. The run goes on at the server and is caught up with. ',
+      h('span', { class: 'countdown', 'aria-hidden': 'true' }, words),
+      ' ',
+      h('button', { type: 'button', click: retry }, 'Try now'),
+    ],
+    { dismissible: false, caution: true },
+  );
 }

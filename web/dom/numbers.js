@@ -17,7 +17,10 @@ export function number(value, digits = 4) {
   const size = Math.abs(value);
   if (size >= 1e6 || size < 1e-4) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
-    const power = exponent.replace('+', '').replace('-', '⁻').replace(/\d/g, (d) => SUPERSCRIPT[Number(d)]);
+    const power = exponent
+      .replace('+', '')
+      .replace('-', '⁻')
+      .replace(/\d/g, (d) => SUPERSCRIPT[Number(d)]);
     return `${typeset(String(Number(mantissa)))}${NARROW}×${NARROW}10${power}`;
   }
   return grouped(String(Number(value.toPrecision(digits))));
@@ -51,7 +54,11 @@ export const unitAfter = (unit) => (unit === null || unit === '1' || unit === ''
 export const quantity = (value, unit, digits = 4) => number(value, digits) + (value == null ? '' : unitAfter(unit));
 
 /** A readout that breaks between its quantities only, which three spaces part; a sentence is none. @param {string} text */
-export const unbroken = (text) => text.split('   ').map((part) => (part.length > 48 ? part : part.replaceAll(' ', '\u00a0'))).join('   ');
+export const unbroken = (text) =>
+  text
+    .split('   ')
+    .map((part) => (part.length > 48 ? part : part.replaceAll(' ', '\u00a0')))
+    .join('   ');
 
 /**
  * What somebody typed, as a number: decimal comma, typographic minus, `45°` and `pi/4` included; null when it is none.
@@ -59,9 +66,13 @@ export const unbroken = (text) => text.split('   ').map((part) => (part.length >
  * @param {string | null} unit
  */
 export function parse(text, unit) {
-  const plain = text.trim().replaceAll(MINUS, '-').replace(/[\s\u202f\u2009]/g, '').replace(/^(-?\d*),(\d+)$/, '$1.$2');
+  const plain = text
+    .trim()
+    .replaceAll(MINUS, '-')
+    .replace(/[\s\u202f\u2009]/g, '')
+    .replace(/^(-?\d*),(\d+)$/, '$1.$2');
   const turn = /^(-?)(\d*\.?\d*)\*?(?:π|pi)(?:\/(\d+\.?\d*))?$/i.exec(plain);
-  if (turn) return (turn[1] ? -1 : 1) * (turn[2] ? Number(turn[2]) : 1) * Math.PI / (turn[3] ? Number(turn[3]) : 1);
+  if (turn) return ((turn[1] ? -1 : 1) * (turn[2] ? Number(turn[2]) : 1) * Math.PI) / (turn[3] ? Number(turn[3]) : 1);
   const degrees = unit?.startsWith('rad') && /^(.+)°$/.exec(plain);
   if (degrees) return scaled(degrees[1], Math.PI / 180);
   return scaled(plain, 1);

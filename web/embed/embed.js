@@ -19,7 +19,10 @@ const id = location.pathname.split('/').at(-1) ?? '';
 const main = byId('main');
 
 /** @param {string[]} what */
-const dropped = (what) => { if (what.length > 0) notice('link', ['This address was not whole. Dropped: ', what.join('; '), '.'], { caution: true }); };
+const dropped = (what) => {
+  if (what.length > 0)
+    notice('link', ['This address was not whole. Dropped: ', what.join('; '), '.'], { caution: true });
+};
 
 /** What runs, with one of its views. @param {Run} run */
 const VIEWS = {
@@ -27,11 +30,19 @@ const VIEWS = {
     const box = h('div', { class: 'scene-frame' });
     const readout = h('output', { class: 'readout', 'aria-live': 'off' });
     const view = new SceneView(box, readout, run);
-    return { element: h('section', { class: 'card scene', 'aria-label': 'Scene' }, box, readout), view, clear: () => view.reset() };
+    return {
+      element: h('section', { class: 'card scene', 'aria-label': 'Scene' }, box, readout),
+      view,
+      clear: () => view.reset(),
+    };
   },
   'plane-angle': (/** @type {Run} */ run) => plot(anglePlane(run.impacts), run),
   'plane-velocity': (/** @type {Run} */ run) => plot(velocityPlane(run.impacts), run),
-  energy: (/** @type {Run} */ run) => plot(energyPlot(run.impacts, () => run.scene), run),
+  energy: (/** @type {Run} */ run) =>
+    plot(
+      energyPlot(run.impacts, () => run.scene),
+      run,
+    ),
 };
 
 /** @param {import('../charts/impacts/impact-plot.js').ImpactPlot} view @param {Run} run */
@@ -42,7 +53,17 @@ function plot(view, { impacts }) {
   view.figure.element.append(spoken);
   // Nothing is released here, and no click offers to.
   delete view.meaning.start;
-  listen(view, { impacts, selection, typed: () => null, fields: [], launch: () => {}, point: (place) => view.point(place), say: (words) => { spoken.textContent = words; } });
+  listen(view, {
+    impacts,
+    selection,
+    typed: () => null,
+    fields: [],
+    launch: () => {},
+    point: (place) => view.point(place),
+    say: (words) => {
+      spoken.textContent = words;
+    },
+  });
   selection.restore(new URLSearchParams(location.search));
   return { element: view.figure.element, view, clear: () => view.clear() };
 }
@@ -57,10 +78,15 @@ function watch(name, query) {
       if (state.textContent !== run.words) state.textContent = run.words;
       shown?.view.redraw();
     },
-    struck: () => { if (shown) invalidate(shown.view); },
+    struck: () => {
+      if (shown) invalidate(shown.view);
+    },
     cleared: () => shown?.clear(),
     lost: (seconds) => connectionNotice(seconds, () => run.retry()),
-    refused: (problem) => { clearNotice('connection'); notice('run', [problem.message], { dismissible: false, caution: true }); },
+    refused: (problem) => {
+      clearNotice('connection');
+      notice('run', [problem.message], { dismissible: false, caution: true });
+    },
     problem: () => {},
   });
   shown = VIEWS[name](run);
@@ -93,24 +119,54 @@ async function begin() {
   }
   if (id === 'circle') return eigenvalues(query);
   if (!own) {
-    return main.append(h('p', { class: 'card' }, `There is no panel “${id.slice(0, 40)}”. There are: ${[...Object.keys(VIEWS), 'circle', ...PANELS.map((one) => one.id)].join(', ')}.`));
+    return main.append(
+      h(
+        'p',
+        { class: 'card' },
+        `There is no panel “${id.slice(0, 40)}”. There are: ${[...Object.keys(VIEWS), 'circle', ...PANELS.map((one) => one.id)].join(', ')}.`,
+      ),
+    );
   }
   // To run another scene, the whole page opens beside the dashboard.
-  const play = (/** @type {import('../api/api.js').Scene} */ other) => void open(`./?${sceneQuery(other, null, fields)}`, '_blank', 'noopener');
-  const page = { fields, query: () => new URLSearchParams(query), scene: () => scene, chosen: () => chosen ?? null, played: () => new URLSearchParams(query), play, changed: () => {},
-    launch: (/** @type {Record<string, number>} */ values) => { const other = new URLSearchParams(query); for (const [path, value] of Object.entries(values)) other.set(`scene.${path}`, String(value)); void open(`./?${other}`, '_blank', 'noopener'); } };
-  const { element, bring } = card(own, page, () => link.panels, async (panel) => {
-    dropped(panel.restore?.(link.panels) ?? []);
-    // A dashboard has nobody to press a button.
-    panel.ask?.();
-    if (panel.judged) panel.judged({ answer: await get(`v1/stability?${query}`), scene: query });
-  });
+  const play = (/** @type {import('../api/api.js').Scene} */ other) =>
+    void open(`./?${sceneQuery(other, null, fields)}`, '_blank', 'noopener');
+  const page = {
+    fields,
+    query: () => new URLSearchParams(query),
+    scene: () => scene,
+    chosen: () => chosen ?? null,
+    played: () => new URLSearchParams(query),
+    play,
+    changed: () => {},
+    launch: (/** @type {Record<string, number>} */ values) => {
+      const other = new URLSearchParams(query);
+      for (const [path, value] of Object.entries(values)) other.set(`scene.${path}`, String(value));
+      void open(`./?${other}`, '_blank', 'noopener');
+    },
+  };
+  const { element, bring } = card(
+    own,
+    page,
+    () => link.panels,
+    async (panel) => {
+      dropped(panel.restore?.(link.panels) ?? []);
+      // A dashboard has nobody to press a button.
+      panel.ask?.();
+      if (panel.judged) panel.judged({ answer: await get(`v1/stability?${query}`), scene: query });
+    },
+  );
   main.append(element);
   await bring();
 }
 
 begin().catch((error) => {
-  const words = error instanceof Problem ? error.errors.map(({ detail }) => detail).join(' ') || error.message : 'The server does not answer.';
-  notice('server', [words, ' ', h('button', { type: 'button', click: () => location.reload() }, 'Try again')], { dismissible: false, caution: true });
+  const words =
+    error instanceof Problem
+      ? error.errors.map(({ detail }) => detail).join(' ') || error.message
+      : 'The server does not answer.';
+  notice('server', [words, ' ', h('button', { type: 'button', click: () => location.reload() }, 'Try again')], {
+    dismissible: false,
+    caution: true,
+  });
 });
 document.title = `${id} · equipoise`;

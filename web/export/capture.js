@@ -11,12 +11,16 @@ export function svgOf(view, title) {
   const { layers } = view;
   const kept = layers.map(({ context }) => context);
   const recorders = kept.map((context) => new Recorder(context));
-  layers.forEach((layer, index) => { layer.context = /** @type {any} */ (recorders[index]); });
+  layers.forEach((layer, index) => {
+    layer.context = /** @type {any} */ (recorders[index]);
+  });
   try {
     view.redraw();
     view.draw(performance.now());
   } finally {
-    layers.forEach((layer, index) => { layer.context = kept[index]; });
+    layers.forEach((layer, index) => {
+      layer.context = kept[index];
+    });
     view.redraw();
   }
   const [width, height] = [layers[0].width, layers[0].height].map((length) => Math.round(length * 100) / 100);
@@ -26,13 +30,19 @@ export function svgOf(view, title) {
 
 /** @param {Layered} view @returns {Promise<Blob>} */
 export function pngOf({ layers }) {
-  const [{ canvas: { width, height } }] = layers;
+  const [
+    {
+      canvas: { width, height },
+    },
+  ] = layers;
   const sheet = h('canvas', { width, height });
   const context = /** @type {CanvasRenderingContext2D} */ (sheet.getContext('2d'));
   context.fillStyle = theme().surface;
   context.fillRect(0, 0, width, height);
   for (const { canvas } of layers) context.drawImage(canvas, 0, 0);
-  return new Promise((resolve, reject) => sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('no picture'))), 'image/png'));
+  return new Promise((resolve, reject) =>
+    sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('no picture'))), 'image/png'),
+  );
 }
 
 /** @param {Blob} blob @param {string} name */

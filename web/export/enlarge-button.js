@@ -10,7 +10,17 @@ import { h } from '../dom/dom.js';
  * @param {() => Saves} [saves] where the card itself has no row of them
  */
 export function enlarger(card, title, saves) {
-  const button = h('button', { type: 'button', class: 'enlarge', 'aria-haspopup': 'dialog', 'aria-label': `${saves ? 'Open large, save or embed' : 'Open large'}: ${title}`, title: saves ? 'Large, save, embed' : 'Large' }, '⤢');
+  const button = h(
+    'button',
+    {
+      type: 'button',
+      class: 'enlarge',
+      'aria-haspopup': 'dialog',
+      'aria-label': `${saves ? 'Open large, save or embed' : 'Open large'}: ${title}`,
+      title: saves ? 'Large, save, embed' : 'Large',
+    },
+    '⤢',
+  );
   button.addEventListener('click', async () => {
     const { enlarge } = await import('./enlarge.js');
     enlarge(card, title, saves?.() ?? null);

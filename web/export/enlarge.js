@@ -14,8 +14,16 @@ export function enlarge(card, title, saves) {
   const { height } = card.getBoundingClientRect();
   const room = h('div', { class: card.className });
   room.style.height = `${height}px`;
-  const dialog = h('dialog', { class: 'large', 'aria-label': title },
-    h('form', { method: 'dialog', class: 'large-head' }, ...(saves ? [h('p', { class: 'actions' }, ...actions(saves))] : []), h('button', { autofocus: true }, 'Close')));
+  const dialog = h(
+    'dialog',
+    { class: 'large', 'aria-label': title },
+    h(
+      'form',
+      { method: 'dialog', class: 'large-head' },
+      ...(saves ? [h('p', { class: 'actions' }, ...actions(saves))] : []),
+      h('button', { autofocus: true }, 'Close'),
+    ),
+  );
   card.before(room);
   dialog.append(card);
   document.body.append(dialog);

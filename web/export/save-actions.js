@@ -22,23 +22,59 @@ const absolute = (path) => new URL(path, document.baseURI).href;
 export const curl = (path) => `curl ${quoted(absolute(path))}`;
 
 /** @param {string} name @param {() => string} text @param {string} title */
-const copier = (name, text, title) => h('button', { type: 'button', 'aria-label': `${name}: ${title}`, click: (/** @type {Event} */ event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), text()) }, name);
+const copier = (name, text, title) =>
+  h(
+    'button',
+    {
+      type: 'button',
+      'aria-label': `${name}: ${title}`,
+      click: (/** @type {Event} */ event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), text()),
+    },
+    name,
+  );
 
 /** Text for an attribute. @param {string} text */
 const attribute = (text) => text.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');
 
 /** The panel alone in a frame, with the scene and the run of this page. @param {string} id @param {string} title */
-const frame = (id, title) => `<iframe src="${attribute(absolute(`embed/${id}${location.search}`))}" title="${attribute(`equipoise: ${title}`)}" width="640" height="480"></iframe>`;
+const frame = (id, title) =>
+  `<iframe src="${attribute(absolute(`embed/${id}${location.search}`))}" title="${attribute(`equipoise: ${title}`)}" width="640" height="480"></iframe>`;
 
 /** @param {Saves} saves */
 export function actions({ id, title, path, formats, view }) {
   const stem = `equipoise-${id}`;
-  const drawn = view ? /** @type {const} */ (['svg', 'png']).map((format) => h('button', {
-    type: 'button', 'aria-label': `Save as ${format.toUpperCase()}: ${title}`, click: async () => { const { svgOf, pngOf, download } = await import('./capture.js'); download(format === 'svg' ? svgOf(view, title) : await pngOf(view), `${stem}.${format}`); },
-  }, format.toUpperCase())) : [];
-  const asked = path === null ? [] : [
-    ...formats.map((format) => h('a', { href: `${path}&format=${format}`, download: `${stem}.${format}`, 'aria-label': `Save as ${format.toUpperCase()}: ${title}` }, format.toUpperCase())),
-    copier('Copy curl', () => curl(path), title),
-  ];
+  const drawn = view
+    ? /** @type {const} */ (['svg', 'png']).map((format) =>
+        h(
+          'button',
+          {
+            type: 'button',
+            'aria-label': `Save as ${format.toUpperCase()}: ${title}`,
+            click: async () => {
+              const { svgOf, pngOf, download } = await import('./capture.js');
+              download(format === 'svg' ? svgOf(view, title) : await pngOf(view), `${stem}.${format}`);
+            },
+          },
+          format.toUpperCase(),
+        ),
+      )
+    : [];
+  const asked =
+    path === null
+      ? []
+      : [
+          ...formats.map((format) =>
+            h(
+              'a',
+              {
+                href: `${path}&format=${format}`,
+                download: `${stem}.${format}`,
+                'aria-label': `Save as ${format.toUpperCase()}: ${title}`,
+              },
+              format.toUpperCase(),
+            ),
+          ),
+          copier('Copy curl', () => curl(path), title),
+        ];
   return [...drawn, ...asked, copier('Copy embed', () => frame(id, title), title)];
 }

@@ -65,16 +65,37 @@ export class Recorder {
 
   /** The elements, with names of their own. @param {string} name */
   content(name) {
-    const clips = this.#clips.map((path, index) => `<clipPath id="${name}-${index + 1}"><path d="${path}"/></clipPath>\n`).join('');
-    return clips + this.#drawn.map(({ attributes, body, clip }) => {
-      const element = attributes.startsWith('<') ? attributes : `<path d="${body}"${attributes}/>`;
-      return clip ? `<g clip-path="url(#${name}-${clip})">${element}</g>` : element;
-    }).join('\n');
+    const clips = this.#clips
+      .map((path, index) => `<clipPath id="${name}-${index + 1}"><path d="${path}"/></clipPath>\n`)
+      .join('');
+    return (
+      clips +
+      this.#drawn
+        .map(({ attributes, body, clip }) => {
+          const element = attributes.startsWith('<') ? attributes : `<path d="${body}"${attributes}/>`;
+          return clip ? `<g clip-path="url(#${name}-${clip})">${element}</g>` : element;
+        })
+        .join('\n')
+    );
   }
 
   save() {
     const { fillStyle, strokeStyle, lineWidth, lineCap, globalAlpha, font, textAlign, textBaseline } = this;
-    this.#kept.push({ fillStyle, strokeStyle, lineWidth, lineCap, globalAlpha, font, textAlign, textBaseline, dashes: this.#dashes, turn: this.#turn, x: this.#x, y: this.#y, clip: this.#clip });
+    this.#kept.push({
+      fillStyle,
+      strokeStyle,
+      lineWidth,
+      lineCap,
+      globalAlpha,
+      font,
+      textAlign,
+      textBaseline,
+      dashes: this.#dashes,
+      turn: this.#turn,
+      x: this.#x,
+      y: this.#y,
+      clip: this.#clip,
+    });
   }
 
   restore() {
@@ -149,7 +170,7 @@ export class Recorder {
       this.#path += `${start}A${r} ${r} 0 1 1 ${on(from + Math.PI)}A${r} ${r} 0 1 1 ${on(from)}`;
       return;
     }
-    const turn = ((back ? from - to : to - from) % (2 * Math.PI) + 2 * Math.PI) % (2 * Math.PI);
+    const turn = (((back ? from - to : to - from) % (2 * Math.PI)) + 2 * Math.PI) % (2 * Math.PI);
     this.#path += `${start}A${r} ${r} 0 ${turn > Math.PI ? 1 : 0} ${back ? 0 : 1} ${on(to)}`;
   }
 
@@ -165,7 +186,9 @@ export class Recorder {
     else this.#drawn.push({ attributes, body, clip: this.#clip });
   }
 
-  get #opacity() { return this.globalAlpha === 1 ? '' : ` opacity="${short(this.globalAlpha)}"`; }
+  get #opacity() {
+    return this.globalAlpha === 1 ? '' : ` opacity="${short(this.globalAlpha)}"`;
+  }
 
   fill() {
     if (this.#path) this.#add(` fill="${this.fillStyle}"${this.#opacity}`, this.#path);
@@ -174,7 +197,11 @@ export class Recorder {
   stroke() {
     const dashes = this.#dashes.length > 0 ? ` stroke-dasharray="${this.#dashes.join(' ')}"` : '';
     const cap = this.lineCap === 'butt' ? '' : ` stroke-linecap="${this.lineCap}"`;
-    if (this.#path) this.#add(` fill="none" stroke="${this.strokeStyle}" stroke-width="${short(this.lineWidth)}"${dashes}${cap}${this.#opacity}`, this.#path);
+    if (this.#path)
+      this.#add(
+        ` fill="none" stroke="${this.strokeStyle}" stroke-width="${short(this.lineWidth)}"${dashes}${cap}${this.#opacity}`,
+        this.#path,
+      );
   }
 
   /** @param {() => void} draw what is no part of the path under way */
@@ -187,12 +214,18 @@ export class Recorder {
 
   /** @param {number} x @param {number} y @param {number} width @param {number} height */
   fillRect(x, y, width, height) {
-    this.#apart(() => { this.rect(x, y, width, height); this.fill(); });
+    this.#apart(() => {
+      this.rect(x, y, width, height);
+      this.fill();
+    });
   }
 
   /** @param {number} x @param {number} y @param {number} width @param {number} height */
   strokeRect(x, y, width, height) {
-    this.#apart(() => { this.rect(x, y, width, height); this.stroke(); });
+    this.#apart(() => {
+      this.rect(x, y, width, height);
+      this.stroke();
+    });
   }
 
   /** A layer is cleared as a whole. */
@@ -213,15 +246,27 @@ export class Recorder {
     const size = Number(points);
     const font = ` font-family="${escaped(family)}" font-size="${size}"${slant ? ' font-style="italic"' : ''}`;
     const shift = (SHIFTS[this.textBaseline] ?? 0) * size;
-    const squeezed = widest !== undefined && this.measureText(text).width > widest ? ` textLength="${short(widest)}" lengthAdjust="spacingAndGlyphs"` : '';
-    const turned = this.#turn === 0 ? '' : ` transform="rotate(${short(this.#turn * 180 / Math.PI)} ${this.#at(x, y)})"`;
+    const squeezed =
+      widest !== undefined && this.measureText(text).width > widest
+        ? ` textLength="${short(widest)}" lengthAdjust="spacingAndGlyphs"`
+        : '';
+    const turned =
+      this.#turn === 0 ? '' : ` transform="rotate(${short((this.#turn * 180) / Math.PI)} ${this.#at(x, y)})"`;
     const [px, py] = this.#place(x, y);
-    this.#drawn.push({ clip: this.#clip, body: '', attributes: `<text x="${short(px)}" y="${short(py + shift)}" fill="${this.fillStyle}" text-anchor="${ANCHORS[this.textAlign]}"${font}${squeezed}${turned}${this.#opacity}>${escaped(text)}</text>` });
+    this.#drawn.push({
+      clip: this.#clip,
+      body: '',
+      attributes: `<text x="${short(px)}" y="${short(py + shift)}" fill="${this.fillStyle}" text-anchor="${ANCHORS[this.textAlign]}"${font}${squeezed}${turned}${this.#opacity}>${escaped(text)}</text>`,
+    });
   }
 
   /** @param {HTMLCanvasElement} image @param {number} x @param {number} y @param {number} [width] @param {number} [height] */
   drawImage(image, x, y, width = image.width, height = image.height) {
     const [px, py] = this.#place(x, y);
-    this.#drawn.push({ clip: this.#clip, body: '', attributes: `<image x="${short(px)}" y="${short(py)}" width="${short(width)}" height="${short(height)}" href="${image.toDataURL()}"${this.imageSmoothingEnabled ? '' : ' image-rendering="pixelated"'}/>` });
+    this.#drawn.push({
+      clip: this.#clip,
+      body: '',
+      attributes: `<image x="${short(px)}" y="${short(py)}" width="${short(width)}" height="${short(height)}" href="${image.toDataURL()}"${this.imageSmoothingEnabled ? '' : ' image-rendering="pixelated"'}/>`,
+    });
   }
 }

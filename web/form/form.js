@@ -30,20 +30,47 @@ function groupOf({ path, group }) {
 // Where a slider moves at first: the ranges of the fields are a lab's, far too wide to aim in. A typed value widens it.
 /** @type {Record<string, [number, number]>} */
 const COMFORTABLE = {
-  'table.tilt_gain': [0.8, 2], 'table.energy_gain': [0, 1], 'table.target_height': [0.14, 0.5],
-  'body.contact_distance': [0.02, 0.4], 'body.radius_of_gyration': [0.02, 0.4],
-  'release.height': [0.1, 0.6], 'release.theta': [-0.6, 0.6], 'release.theta_dot': [-3, 3],
-  'release.x': [-1, 1], 'release.x_dot': [-1, 1], 'release.y_dot': [-2, 2], gravity: [1, 20], incline: [0.1, 1.5708],
-  'contact.friction': [0, 1], 'noise.timing_sd': [0, 0.05], 'noise.angle_sd': [0, 0.1],
-  'table.feedback.x': [-1, 1], 'table.feedback.theta': [-2, 2], 'table.feedback.x_dot': [-1, 1], 'table.feedback.theta_dot': [-1, 1],
-  'table.limits.tilt': [0, 1.57], 'table.limits.tilt_rate': [0, 20], 'table.limits.speed': [0, 2], 'table.limits.stroke': [0, 0.5],
+  'table.tilt_gain': [0.8, 2],
+  'table.energy_gain': [0, 1],
+  'table.target_height': [0.14, 0.5],
+  'body.contact_distance': [0.02, 0.4],
+  'body.radius_of_gyration': [0.02, 0.4],
+  'release.height': [0.1, 0.6],
+  'release.theta': [-0.6, 0.6],
+  'release.theta_dot': [-3, 3],
+  'release.x': [-1, 1],
+  'release.x_dot': [-1, 1],
+  'release.y_dot': [-2, 2],
+  gravity: [1, 20],
+  incline: [0.1, 1.5708],
+  'contact.friction': [0, 1],
+  'noise.timing_sd': [0, 0.05],
+  'noise.angle_sd': [0, 0.1],
+  'table.feedback.x': [-1, 1],
+  'table.feedback.theta': [-2, 2],
+  'table.feedback.x_dot': [-1, 1],
+  'table.feedback.theta_dot': [-1, 1],
+  'table.limits.tilt': [0, 1.57],
+  'table.limits.tilt_rate': [0, 20],
+  'table.limits.speed': [0, 2],
+  'table.limits.stroke': [0, 0.5],
 };
 
 /** Vertices from lines of two numbers. @param {string} text @returns {{value: unknown, problem: string | null}} */
 function places(text) {
-  const lines = text.trim().split('\n').map((line) => line.trim().split(/[\s,;]+/).map((part) => parse(part, 'm')));
+  const lines = text
+    .trim()
+    .split('\n')
+    .map((line) =>
+      line
+        .trim()
+        .split(/[\s,;]+/)
+        .map((part) => parse(part, 'm')),
+    );
   const wrong = lines.findIndex((place) => place.length !== 2 || place.includes(null));
-  return wrong < 0 ? { value: lines, problem: null } : { value: undefined, problem: `Line ${wrong + 1} is not x and y, as in “0.1, 0.2”.` };
+  return wrong < 0
+    ? { value: lines, problem: null }
+    : { value: undefined, problem: `Line ${wrong + 1} is not x and y, as in “0.1, 0.2”.` };
 }
 
 /** A step of 1, 2 or 5 that parts the span into some two hundred. @param {number} span */
@@ -65,7 +92,10 @@ export function sliderRange(field, value) {
   const [from, to] = COMFORTABLE[field.path] ?? [low >= 0 ? 0 : -2 * size, field.maximum === 1 ? 1 : 2 * size];
   if (value == null || (value >= from && value <= to)) return [Math.max(low, from), Math.min(high, to)];
   const round = step((Math.max(to, value) - Math.min(from, value)) * 20);
-  return [Math.max(low, value < from ? Math.floor(value / round - 1) * round : from), Math.min(high, value > to ? Math.ceil(value / round + 1) * round : to)];
+  return [
+    Math.max(low, value < from ? Math.floor(value / round - 1) * round : from),
+    Math.min(high, value > to ? Math.ceil(value / round + 1) * round : to),
+  ];
 }
 
 /**
@@ -116,21 +146,47 @@ export class Form {
     /** @type {HTMLInputElement | null} */
     let slider = null;
     if (field.kind === 'choice') {
-      input = h('select', { id, 'aria-describedby': described, change: () => this.#edited(field.path, true) },
-        field.default == null && h('option', { value: '' }, 'not set'), ...(field.choices ?? []).map((choice) => h('option', { value: choice }, choice)));
+      input = h(
+        'select',
+        { id, 'aria-describedby': described, change: () => this.#edited(field.path, true) },
+        field.default == null && h('option', { value: '' }, 'not set'),
+        ...(field.choices ?? []).map((choice) => h('option', { value: choice }, choice)),
+      );
     } else if (field.kind === 'vertices') {
-      input = h('textarea', { id, rows: 3, spellcheck: 'false', 'aria-describedby': described, placeholder: 'not set', input: () => this.#edited(field.path, false), change: () => this.#edited(field.path, true) });
+      input = h('textarea', {
+        id,
+        rows: 3,
+        spellcheck: 'false',
+        'aria-describedby': described,
+        placeholder: 'not set',
+        input: () => this.#edited(field.path, false),
+        change: () => this.#edited(field.path, true),
+      });
     } else if (field.kind === 'boolean') {
-      input = h('input', { id, type: 'checkbox', 'aria-describedby': described, change: () => this.#edited(field.path, true) });
+      input = h('input', {
+        id,
+        type: 'checkbox',
+        'aria-describedby': described,
+        change: () => this.#edited(field.path, true),
+      });
     } else {
       const typed = h('input', {
-        id, type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false', 'aria-describedby': described,
+        id,
+        type: 'text',
+        inputmode: 'decimal',
+        autocomplete: 'off',
+        spellcheck: 'false',
+        'aria-describedby': described,
         placeholder: field.default == null ? 'not set' : number(Number(field.default)),
-        input: () => this.#edited(field.path, false), change: () => this.#edited(field.path, true),
+        input: () => this.#edited(field.path, false),
+        change: () => this.#edited(field.path, true),
       });
       input = typed;
       // Nobody finds one number among trillions with a slider.
-      const moved = field.kind === 'integer' && (field.maximum ?? Infinity) > 1e6 ? null : h('input', { type: 'range', 'aria-label': `${field.title}, slider`, tabindex: 0 });
+      const moved =
+        field.kind === 'integer' && (field.maximum ?? Infinity) > 1e6
+          ? null
+          : h('input', { type: 'range', 'aria-label': `${field.title}, slider`, tabindex: 0 });
       if (moved) {
         steady(moved, () => {
           const row = /** @type {Row} */ (this.#rows.get(field.path));
@@ -143,18 +199,36 @@ export class Form {
           };
         });
       }
-      for (const [event, final] of /** @type {const} */ ([['input', false], ['change', true]])) {
-        moved?.addEventListener(event, () => { typed.value = moved.value; this.#edited(field.path, final, true); });
+      for (const [event, final] of /** @type {const} */ ([
+        ['input', false],
+        ['change', true],
+      ])) {
+        moved?.addEventListener(event, () => {
+          typed.value = moved.value;
+          this.#edited(field.path, final, true);
+        });
       }
       slider = moved;
     }
     const unit = unitAfter(field.unit).trim();
-    const range = field.minimum != null && field.maximum != null
-      ? h('span', { class: 'range' }, `${number(field.minimum)} to ${quantity(field.maximum, field.unit)}`) : null;
-    const element = h('div', { class: `field ${field.kind}` },
+    const range =
+      field.minimum != null && field.maximum != null
+        ? h('span', { class: 'range' }, `${number(field.minimum)} to ${quantity(field.maximum, field.unit)}`)
+        : null;
+    const element = h(
+      'div',
+      { class: `field ${field.kind}` },
       h('div', { class: 'field-head' }, name, field.live && h('span', { class: 'live-tag' }, 'live')),
-      h('div', { class: 'field-row' }, slider ?? h('span'), input, field.kind !== 'choice' && field.kind !== 'boolean' && h('span', { class: 'unit' }, unit)),
-      h('p', { class: 'field-foot' }, about, field.about && range ? ' · ' : '', range), error);
+      h(
+        'div',
+        { class: 'field-row' },
+        slider ?? h('span'),
+        input,
+        field.kind !== 'choice' && field.kind !== 'boolean' && h('span', { class: 'unit' }, unit),
+      ),
+      h('p', { class: 'field-foot' }, about, field.about && range ? ' · ' : '', range),
+      error,
+    );
     this.#rows.set(field.path, { field, element, input, slider, error, exact: null });
     return element;
   }
@@ -193,22 +267,29 @@ export class Form {
 
   /** Whether a law of its own tilts the table, which then needs no tilt gain. */
   #feedback() {
-    return [...this.#rows.values()].some(({ field, input }) => field.path.startsWith('table.feedback.') && input.value.trim() !== '');
+    return [...this.#rows.values()].some(
+      ({ field, input }) => field.path.startsWith('table.feedback.') && input.value.trim() !== '',
+    );
   }
 
   /** @param {Row} row @returns {{value: unknown, problem: string | null}} */
   #read({ field, input, exact }) {
     if (input.disabled) return { value: undefined, problem: null };
-    if (field.kind === 'boolean') return { value: /** @type {HTMLInputElement} */ (input).checked || undefined, problem: null };
-    if (field.kind === 'choice') return { value: input.value === (field.default ?? '') ? undefined : input.value, problem: null };
+    if (field.kind === 'boolean')
+      return { value: /** @type {HTMLInputElement} */ (input).checked || undefined, problem: null };
+    if (field.kind === 'choice')
+      return { value: input.value === (field.default ?? '') ? undefined : input.value, problem: null };
     if (input.value.trim() === '') {
-      if (field.required && !field.path.startsWith('body.') && !(field.path === 'table.tilt_gain' && this.#feedback())) return { value: undefined, problem: `${field.title} is needed.` };
+      if (field.required && !field.path.startsWith('body.') && !(field.path === 'table.tilt_gain' && this.#feedback()))
+        return { value: undefined, problem: `${field.title} is needed.` };
       return { value: undefined, problem: null };
     }
     if (field.kind === 'vertices') return places(input.value);
     if (input.value === exact?.text) return { value: exact.value, problem: null };
     const value = parse(input.value, field.unit);
-    return value === null ? { value: undefined, problem: `“${input.value.trim()}” is not a number.` } : { value, problem: null };
+    return value === null
+      ? { value: undefined, problem: `“${input.value.trim()}” is not a number.` }
+      : { value, problem: null };
   }
 
   /**
@@ -295,7 +376,11 @@ export class Form {
     const homeless = [];
     for (const { pointer, detail } of errors) {
       const path = pathOf(pointer);
-      const row = this.#rows.get(path) ?? [...this.#rows.values()].find(({ field }) => field.path.startsWith(`${path}.`) || path.startsWith(`${field.path}.`));
+      const row =
+        this.#rows.get(path) ??
+        [...this.#rows.values()].find(
+          ({ field }) => field.path.startsWith(`${path}.`) || path.startsWith(`${field.path}.`),
+        );
       if (row && path !== '') this.#say(row, detail);
       else homeless.push(detail);
     }

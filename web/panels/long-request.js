@@ -32,7 +32,11 @@ export class Asking {
     this.#doing = doing;
     this.#units = units;
     this.#start = start;
-    this.#cancel = h('button', { type: 'button', id: `${name}-cancel`, disabled: true, click: () => this.stop('Cancelled.') }, 'Cancel');
+    this.#cancel = h(
+      'button',
+      { type: 'button', id: `${name}-cancel`, disabled: true, click: () => this.stop('Cancelled.') },
+      'Cancel',
+    );
     this.#bar.setAttribute('aria-label', doing);
     this.buttons = h('p', { class: 'buttons' }, this.#start, this.#cancel);
     this.told = h('div', { class: `${name}-told`, id: `${name}-told` }, this.#words, ' ', this.#count, this.#bar);

@@ -46,21 +46,70 @@ import { h } from '../dom/dom.js';
 
 /** @type {Entry[]} */
 export const PANELS = [
-  { id: 'map', title: 'Stability map', about: 'Which scenes keep their balance, beside this one: a run in every cell.', load: () => import('./map/panel.js') },
-  { id: 'survival', title: 'Survival under noise', about: 'How long runs of this scene last when the table errs.', load: () => import('./survival/panel.js') },
-  { id: 'ladder', title: 'Which model does it need', about: 'The same scene by every simpler model, and what each leaves out.', load: () => import('./ladder/panel.js') },
-  { id: 'design', title: 'Design a controller', about: 'A law that brings this scene to rest in place.', load: () => import('./design/panel.js') },
-  { id: 'branch', title: 'Orbits of period 2', about: 'What the boundary of stability gives birth to.', load: () => import('./branch/panel.js') },
-  { id: 'precision', title: 'Speed against accuracy', about: 'What this scene costs by each method, and how far it ends from the truth.', load: () => import('./precision/panel.js') },
-  { id: 'paper', title: 'Printed and computed', about: 'The numbers of the paper beside those of the server.', half: true, load: () => import('./paper/panel.js') },
-  { id: 'calls', title: 'The same from the API', about: 'What this page shows, as commands.', half: true, load: () => import('./calls/panel.js') },
-  { id: 'gallery', title: 'Where usual methods fail', about: 'Scenes on which they are wrong, with what is true.', load: () => import('./gallery/panel.js') },
+  {
+    id: 'map',
+    title: 'Stability map',
+    about: 'Which scenes keep their balance, beside this one: a run in every cell.',
+    load: () => import('./map/panel.js'),
+  },
+  {
+    id: 'survival',
+    title: 'Survival under noise',
+    about: 'How long runs of this scene last when the table errs.',
+    load: () => import('./survival/panel.js'),
+  },
+  {
+    id: 'ladder',
+    title: 'Which model does it need',
+    about: 'The same scene by every simpler model, and what each leaves out.',
+    load: () => import('./ladder/panel.js'),
+  },
+  {
+    id: 'design',
+    title: 'Design a controller',
+    about: 'A law that brings this scene to rest in place.',
+    load: () => import('./design/panel.js'),
+  },
+  {
+    id: 'branch',
+    title: 'Orbits of period 2',
+    about: 'What the boundary of stability gives birth to.',
+    load: () => import('./branch/panel.js'),
+  },
+  {
+    id: 'precision',
+    title: 'Speed against accuracy',
+    about: 'What this scene costs by each method, and how far it ends from the truth.',
+    load: () => import('./precision/panel.js'),
+  },
+  {
+    id: 'paper',
+    title: 'Printed and computed',
+    about: 'The numbers of the paper beside those of the server.',
+    half: true,
+    load: () => import('./paper/panel.js'),
+  },
+  {
+    id: 'calls',
+    title: 'The same from the API',
+    about: 'What this page shows, as commands.',
+    half: true,
+    load: () => import('./calls/panel.js'),
+  },
+  {
+    id: 'gallery',
+    title: 'Where usual methods fail',
+    about: 'Scenes on which they are wrong, with what is true.',
+    load: () => import('./gallery/panel.js'),
+  },
 ];
 
 /** @param {string} path @returns {Promise<void>} */
 export function styles(path) {
   return new Promise((resolve, reject) => {
-    document.head.append(h('link', { rel: 'stylesheet', href: path, load: () => resolve(), error: () => reject(new Error(path)) }));
+    document.head.append(
+      h('link', { rel: 'stylesheet', href: path, load: () => resolve(), error: () => reject(new Error(path)) }),
+    );
   });
 }
 
@@ -73,8 +122,12 @@ export function styles(path) {
  */
 export function card({ id, title, about, half, load }, page, link, mounted) {
   const body = h('div', { id: `${id}-body`, class: 'lazy-body' });
-  const element = h('section', { class: `card lazy${half ? ' half' : ''}`, id, 'aria-labelledby': `${id}-title` },
-    h('div', { class: 'card-head' }, h('h2', { id: `${id}-title` }, title), h('p', { class: 'muted' }, about)), body);
+  const element = h(
+    'section',
+    { class: `card lazy${half ? ' half' : ''}`, id, 'aria-labelledby': `${id}-title` },
+    h('div', { class: 'card-head' }, h('h2', { id: `${id}-title` }, title), h('p', { class: 'muted' }, about)),
+    body,
+  );
   element.firstElementChild?.append(enlarger(element, title));
   const bring = async () => {
     try {
@@ -82,7 +135,10 @@ export function card({ id, title, about, half, load }, page, link, mounted) {
       body.replaceChildren();
       mounted(module.mount(body, page, link()));
     } catch {
-      body.replaceChildren(h('p', { class: 'muted' }, 'This part did not load.'), h('button', { type: 'button', click: bring }, 'Try again'));
+      body.replaceChildren(
+        h('p', { class: 'muted' }, 'This part did not load.'),
+        h('button', { type: 'button', click: bring }, 'Try again'),
+      );
     }
   };
   return { element, body, bring };
@@ -107,18 +163,26 @@ export class Panels {
     /** @type {HTMLElement | null} */
     let row = null;
     for (const entry of PANELS) {
-      const { element, body, bring } = card(entry, page, () => this.#link, (panel) => {
-        this.#mounted.set(entry.id, panel);
-        this.#restore(entry.id, panel);
-        if (this.#judged) panel.judged?.(this.#judged);
-      });
+      const { element, body, bring } = card(
+        entry,
+        page,
+        () => this.#link,
+        (panel) => {
+          this.#mounted.set(entry.id, panel);
+          this.#restore(entry.id, panel);
+          if (this.#judged) panel.judged?.(this.#judged);
+        },
+      );
       if (entry.half) (row ??= main.appendChild(h('div', { class: 'notes' }))).append(element);
       else main.append(element);
-      new IntersectionObserver((entries, observer) => {
-        if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
-        observer.disconnect();
-        void bring();
-      }, { rootMargin: '100px 0px' }).observe(body);
+      new IntersectionObserver(
+        (entries, observer) => {
+          if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+          observer.disconnect();
+          void bring();
+        },
+        { rootMargin: '100px 0px' },
+      ).observe(body);
     }
   }
 
@@ -142,7 +206,8 @@ export class Panels {
   query() {
     const query = new URLSearchParams();
     for (const [key, value] of this.#link) if (!this.#mounted.get(key.split('.')[0])?.query) query.append(key, value);
-    for (const panel of this.#mounted.values()) for (const [key, value] of panel.query?.() ?? []) query.append(key, value);
+    for (const panel of this.#mounted.values())
+      for (const [key, value] of panel.query?.() ?? []) query.append(key, value);
     return query;
   }
 

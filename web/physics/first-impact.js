@@ -59,23 +59,41 @@ export function velocityStart(scene, x_dot, y_dot) {
 function reached(scene, T, values) {
   const gravity = effectiveGravity(scene);
   const l = contactDistance(scene);
-  const { height = 0, y_dot = 0, theta = 0, theta_dot = 0 } = { ...scene.release, ...Object.fromEntries(Object.entries(values).map(([path, value]) => [path.slice('release.'.length), value])) };
-  const h = (/** @type {number} */ t) => height + y_dot * t - gravity * t * t / 2 - l * Math.cos(theta + theta_dot * t);
+  const {
+    height = 0,
+    y_dot = 0,
+    theta = 0,
+    theta_dot = 0,
+  } = {
+    ...scene.release,
+    ...Object.fromEntries(Object.entries(values).map(([path, value]) => [path.slice('release.'.length), value])),
+  };
+  const h = (/** @type {number} */ t) =>
+    height + y_dot * t - (gravity * t * t) / 2 - l * Math.cos(theta + theta_dot * t);
   if (h(0) < 0) return refused('out of reach: it would start below the table');
-  if (y_dot - gravity * T + l * theta_dot * Math.sin(theta + theta_dot * T) >= 0) return refused('out of reach: the contact point would rise');
+  if (y_dot - gravity * T + l * theta_dot * Math.sin(theta + theta_dot * T) >= 0)
+    return refused('out of reach: the contact point would rise');
   // It falls no faster than this, so that no step of h over it passes a contact.
   const fastest = Math.abs(y_dot) + gravity * T + l * Math.abs(theta_dot);
   let t = h(0) < TOUCHING_M ? T * 1e-6 : 0;
   for (let step = 0; step < STEPS && h(t) >= TOUCHING_M; step += 1) t += h(t) / fastest;
   if (T - t > T * 1e-3) return refused('out of reach: it would strike before');
   const aside = scene.noise?.timing_sd > 0 ? ', noise aside' : '';
-  return { values, words: Object.entries(values).map(([path, value]) => NAMES[path](value)).join(', ') + aside };
+  return {
+    values,
+    words:
+      Object.entries(values)
+        .map(([path, value]) => NAMES[path](value))
+        .join(', ') + aside,
+  };
 }
 
 /** @type {Record<string, (value: number) => string>} */
 const NAMES = {
-  'release.theta': (value) => `θ₀ ${quantity(value, 'rad')}`, 'release.theta_dot': (value) => `θ̇₀ ${quantity(value, 'rad/s')}`,
-  'release.x_dot': (value) => `ẋ₀ ${quantity(value, 'm/s')}`, 'release.height': (value) => `y₀ ${quantity(value, 'm')}`,
+  'release.theta': (value) => `θ₀ ${quantity(value, 'rad')}`,
+  'release.theta_dot': (value) => `θ̇₀ ${quantity(value, 'rad/s')}`,
+  'release.x_dot': (value) => `ẋ₀ ${quantity(value, 'm/s')}`,
+  'release.height': (value) => `y₀ ${quantity(value, 'm')}`,
 };
 
 /**
@@ -89,7 +107,9 @@ export function within(start, fields) {
     const field = fields.find((one) => one.path === path);
     const { minimum, maximum } = field ?? {};
     if (field && ((minimum != null && value < minimum) || (maximum != null && value > maximum))) {
-      return refused(`out of range: ${NAMES[path](value)}, limit ${quantity(value > 0 ? maximum : minimum, field.unit)}`);
+      return refused(
+        `out of range: ${NAMES[path](value)}, limit ${quantity(value > 0 ? maximum : minimum, field.unit)}`,
+      );
     }
   }
   return start;

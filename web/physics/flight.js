@@ -30,7 +30,8 @@
 export const effectiveGravity = (scene) => (scene.gravity ?? 9.81) * Math.sin(scene.incline ?? Math.PI / 2);
 
 /** Centre of gravity to contact point; a point mass is its own contact point. @param {Scene} scene @returns {number} */
-export const contactDistance = (scene) => scene.body?.contact_distance ?? Math.abs(corners(scene)?.[contactVertex(scene)][1] ?? 0);
+export const contactDistance = (scene) =>
+  scene.body?.contact_distance ?? Math.abs(corners(scene)?.[contactVertex(scene)][1] ?? 0);
 
 /** The vertex that bounces: the lowest, where none is named. @param {Scene} scene @returns {number} */
 function contactVertex({ body }) {
@@ -74,9 +75,14 @@ export function arcAfter(impact, scene) {
   const still = Number.isNaN(impact.y_dot_after);
   const point = contactDistance(scene) === 0;
   return {
-    t: impact.t, x: impact.x, theta: point ? 0 : impact.theta, y: contactDistance(scene) * Math.cos(point ? 0 : impact.theta) + (impact.clearance || 0),
-    x_dot: still ? 0 : impact.x_dot_after, y_dot: still ? 0 : impact.y_dot_after,
-    theta_dot: still || point ? 0 : impact.theta_dot_after, duration: still || Number.isNaN(impact.flight_time) ? 0 : impact.flight_time,
+    t: impact.t,
+    x: impact.x,
+    theta: point ? 0 : impact.theta,
+    y: contactDistance(scene) * Math.cos(point ? 0 : impact.theta) + (impact.clearance || 0),
+    x_dot: still ? 0 : impact.x_dot_after,
+    y_dot: still ? 0 : impact.y_dot_after,
+    theta_dot: still || point ? 0 : impact.theta_dot_after,
+    duration: still || Number.isNaN(impact.flight_time) ? 0 : impact.flight_time,
   };
 }
 
@@ -89,7 +95,11 @@ export function arcAfter(impact, scene) {
  */
 export function poseOn(arc, t, scene) {
   const s = Math.min(Math.max(0, t - arc.t), arc.duration);
-  return { x: arc.x + arc.x_dot * s, y: arc.y + arc.y_dot * s - effectiveGravity(scene) * s * s / 2, theta: arc.theta + arc.theta_dot * s };
+  return {
+    x: arc.x + arc.x_dot * s,
+    y: arc.y + arc.y_dot * s - (effectiveGravity(scene) * s * s) / 2,
+    theta: arc.theta + arc.theta_dot * s,
+  };
 }
 
 /**
@@ -101,7 +111,12 @@ export function poseOn(arc, t, scene) {
 function tilt(scene, state) {
   const { tilt_gain = 0, feedback } = scene.table ?? {};
   if (feedback) {
-    return -((feedback.x ?? 0) * state.x + (feedback.theta ?? 0) * state.theta + (feedback.x_dot ?? 0) * state.x_dot + (feedback.theta_dot ?? 0) * state.theta_dot);
+    return -(
+      (feedback.x ?? 0) * state.x +
+      (feedback.theta ?? 0) * state.theta +
+      (feedback.x_dot ?? 0) * state.x_dot +
+      (feedback.theta_dot ?? 0) * state.theta_dot
+    );
   }
   const angle = contactDistance(scene) === 0 ? Math.atan2(state.x_dot, -state.y_dot) : state.theta;
   return tilt_gain * angle;
@@ -116,18 +131,35 @@ function tilt(scene, state) {
 export function strikeAfter(arc, scene) {
   const gravity = effectiveGravity(scene);
   const end = poseOn(arc, arc.t + arc.duration, scene);
-  const state = { x: end.x, theta: end.theta, x_dot: arc.x_dot, y_dot: arc.y_dot - gravity * arc.duration, theta_dot: arc.theta_dot };
+  const state = {
+    x: end.x,
+    theta: end.theta,
+    x_dot: arc.x_dot,
+    y_dot: arc.y_dot - gravity * arc.duration,
+    theta_dot: arc.theta_dot,
+  };
   const alpha = tilt(scene, state);
   const l = contactDistance(scene);
   let speed = 0;
   if (scene.table?.strike !== 'still') {
     // The table makes up the loss, and a little more or less for the wanted height: eq. (25), (28).
     const e = scene.table?.assumed_restitution ?? scene.contact?.restitution ?? 1;
-    const normal = -Math.sin(alpha) * state.x_dot + Math.cos(alpha) * state.y_dot + l * state.theta_dot * Math.sin(end.theta - alpha);
-    const lack = (scene.table?.energy_gain ?? 0) * (gravity * (scene.table?.target_height ?? 0) - gravity * l * Math.cos(end.theta) - state.y_dot ** 2 / 2);
+    const normal =
+      -Math.sin(alpha) * state.x_dot +
+      Math.cos(alpha) * state.y_dot +
+      l * state.theta_dot * Math.sin(end.theta - alpha);
+    const lack =
+      (scene.table?.energy_gain ?? 0) *
+      (gravity * (scene.table?.target_height ?? 0) - gravity * l * Math.cos(end.theta) - state.y_dot ** 2 / 2);
     speed = -((1 - e) / (1 + e) + lack) * normal;
   }
-  return { t: arc.t + arc.duration, x: end.x + l * Math.sin(end.theta), y: end.y - l * Math.cos(end.theta), alpha, speed };
+  return {
+    t: arc.t + arc.duration,
+    x: end.x + l * Math.sin(end.theta),
+    y: end.y - l * Math.cos(end.theta),
+    alpha,
+    speed,
+  };
 }
 
 /**
@@ -143,7 +175,10 @@ export function tableBetween(from, to, t) {
   const ease = u * u * (3 - 2 * u);
   return {
     x: from.x + (to.x - from.x) * ease,
-    y: from.y + (to.y - from.y) * ease + span * (u * (1 - u) ** 2 * from.speed * Math.cos(from.alpha) - u * u * (1 - u) * to.speed * Math.cos(to.alpha)),
+    y:
+      from.y +
+      (to.y - from.y) * ease +
+      span * (u * (1 - u) ** 2 * from.speed * Math.cos(from.alpha) - u * u * (1 - u) * to.speed * Math.cos(to.alpha)),
     alpha: from.alpha + (to.alpha - from.alpha) * ease,
   };
 }

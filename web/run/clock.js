@@ -23,14 +23,18 @@ export class Clock {
     this.#anchor = { now: reading.now, run_time: reading.run_time, speed: reading.speed, paused: reading.paused };
   }
 
-  get speed() { return this.#anchor.speed; }
+  get speed() {
+    return this.#anchor.speed;
+  }
 
-  get paused() { return this.#anchor.paused; }
+  get paused() {
+    return this.#anchor.paused;
+  }
 
   /** Seconds since the release, in the run's own time. */
   runTime() {
     const { now, run_time, speed, paused } = this.#anchor;
     if (paused || this.#offset_ms === -Infinity) return run_time;
-    return run_time + Math.max(0, Clock.#local() + this.#offset_ms - now) / 1000 * speed;
+    return run_time + (Math.max(0, Clock.#local() + this.#offset_ms - now) / 1000) * speed;
   }
 }

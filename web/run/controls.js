@@ -28,7 +28,7 @@ const span = Math.log(FASTEST) - slow;
 
 /** @param {number} place */
 function speedAt(place) {
-  const speed = Math.exp(slow + span * place / SLIDER_STEPS);
+  const speed = Math.exp(slow + (span * place) / SLIDER_STEPS);
   return Math.abs(Math.log(speed)) < span / SLIDER_STEPS ? 1 : Number(speed.toPrecision(2));
 }
 
@@ -42,8 +42,18 @@ export class Controls {
   #gainShown = h('output', { class: 'value', for: 'gain' });
   #gainBox;
   #kick = h('button', { type: 'button', id: 'kick' }, 'Kick');
-  #kickWhat = h('select', { 'aria-label': 'What the kick changes' }, ...KICKS.map(({ name, label }) => h('option', { value: name }, label)));
-  #kickBy = h('input', { type: 'text', inputmode: 'decimal', autocomplete: 'off', 'aria-label': 'By how much the kick changes it', value: KICKS[0].usual });
+  #kickWhat = h(
+    'select',
+    { 'aria-label': 'What the kick changes' },
+    ...KICKS.map(({ name, label }) => h('option', { value: name }, label)),
+  );
+  #kickBy = h('input', {
+    type: 'text',
+    inputmode: 'decimal',
+    autocomplete: 'off',
+    'aria-label': 'By how much the kick changes it',
+    value: KICKS[0].usual,
+  });
   #kickUnit = h('span', { class: 'unit' }, KICKS[0].unit);
   #kickError = h('p', { class: 'error', id: 'kick-error' });
   #asked;
@@ -62,7 +72,10 @@ export class Controls {
     this.#run.addEventListener('click', asked.toggle);
     this.#step.addEventListener('click', asked.step);
     this.#restart.addEventListener('click', asked.restart);
-    steady(this.#speed, () => { const speed = this.#speedSet; return () => this.setSpeed(speed); });
+    steady(this.#speed, () => {
+      const speed = this.#speedSet;
+      return () => this.setSpeed(speed);
+    });
     steady(this.#gain, () => {
       const gain = this.#gainSet;
       return () => {
@@ -82,7 +95,13 @@ export class Controls {
       this.#kickUnit.textContent = chosen.unit;
       this.#kickError.textContent = '';
     });
-    this.#gainBox = h('div', { class: 'control wide' }, h('label', { for: 'gain' }, 'Tilt gain ', symbol('κ')), this.#gain, this.#gainShown);
+    this.#gainBox = h(
+      'div',
+      { class: 'control wide' },
+      h('label', { for: 'gain' }, 'Tilt gain ', symbol('κ')),
+      this.#gain,
+      this.#gainShown,
+    );
     root.append(
       h('div', { class: 'buttons' }, this.#run, this.#step, this.#restart),
       this.#gainBox,
@@ -108,7 +127,7 @@ export class Controls {
   /** @param {number | null} gain */
   setGain(gain) {
     this.#gainSet = gain;
-    if (!this.#gainField || document.activeElement === this.#gain && gain === this.#gain.valueAsNumber) return;
+    if (!this.#gainField || (document.activeElement === this.#gain && gain === this.#gain.valueAsNumber)) return;
     aim(this.#gain, this.#gainField, gain);
     this.#gainShown.textContent = fixed(gain, 3);
   }
@@ -116,7 +135,7 @@ export class Controls {
   /** @param {number} speed */
   setSpeed(speed) {
     this.#speedSet = speed;
-    this.#speed.value = String(Math.round((Math.log(speed) - slow) / span * SLIDER_STEPS));
+    this.#speed.value = String(Math.round(((Math.log(speed) - slow) / span) * SLIDER_STEPS));
     this.#showSpeed(speed);
   }
 
@@ -135,7 +154,9 @@ export class Controls {
   }
 
   /** @param {string} words */
-  blameKick(words) { this.#kickError.textContent = words; }
+  blameKick(words) {
+    this.#kickError.textContent = words;
+  }
 
   /**
    * @param {import('./run.js').Phase} phase
@@ -144,7 +165,16 @@ export class Controls {
    */
   show(phase, waiting, ready) {
     const live = phase === 'running' || phase === 'paused';
-    this.#run.textContent = phase === 'running' ? 'Pause' : phase === 'paused' ? 'Resume' : phase === 'ended' ? 'Run again' : phase === 'idle' ? 'Run' : 'Connecting…';
+    this.#run.textContent =
+      phase === 'running'
+        ? 'Pause'
+        : phase === 'paused'
+          ? 'Resume'
+          : phase === 'ended'
+            ? 'Run again'
+            : phase === 'idle'
+              ? 'Run'
+              : 'Connecting…';
     this.#run.disabled = !ready || phase === 'connecting' || phase === 'lost';
     this.#step.disabled = !live;
     this.#restart.disabled = phase === 'idle' || !ready;

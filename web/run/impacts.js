@@ -1,13 +1,41 @@
 // The impacts of a run in columns, the newest of them kept. Not for drawing or for the connection.
 
-export const COLUMNS = /** @type {const} */ (['n', 't', 'x', 'theta', 'x_dot', 'y_dot', 'theta_dot', 'x_dot_after', 'y_dot_after',
-  'theta_dot_after', 'alpha', 'flight_time', 'energy', 'contact_speed', 'table_speed', 'mode', 'clearance', 'series']);
+export const COLUMNS = /** @type {const} */ ([
+  'n',
+  't',
+  'x',
+  'theta',
+  'x_dot',
+  'y_dot',
+  'theta_dot',
+  'x_dot_after',
+  'y_dot_after',
+  'theta_dot_after',
+  'alpha',
+  'flight_time',
+  'energy',
+  'contact_speed',
+  'table_speed',
+  'mode',
+  'clearance',
+  'series',
+]);
 
 /** @typedef {(typeof COLUMNS)[number]} Column */
 /** @typedef {Record<Column, number>} Impact states just before the impact, `…_after` just after; what does not exist is NaN */
 
 /** What charts show, kept for long. */
-export const LASTING = /** @type {const} */ (['n', 't', 'x', 'theta', 'x_dot', 'y_dot', 'theta_dot', 'energy', 'series']);
+export const LASTING = /** @type {const} */ ([
+  'n',
+  't',
+  'x',
+  'theta',
+  'x_dot',
+  'y_dot',
+  'theta_dot',
+  'energy',
+  'series',
+]);
 
 /** @typedef {(typeof LASTING)[number]} Lasting */
 
@@ -16,7 +44,13 @@ const KEPT = 1 << 16;
 const NEWEST = 1 << 10;
 
 /** @param {readonly string[]} names @param {number} room */
-const allocate = (names, room) => Object.fromEntries(names.map((name) => [name, name === 'n' ? new Uint32Array(room) : name === 'series' ? new Uint8Array(room) : new Float64Array(room)]));
+const allocate = (names, room) =>
+  Object.fromEntries(
+    names.map((name) => [
+      name,
+      name === 'n' ? new Uint32Array(room) : name === 'series' ? new Uint8Array(room) : new Float64Array(room),
+    ]),
+  );
 
 export class Impacts {
   /** Counts every impact taken in, forgotten ones included: the place of the next one. */
@@ -27,7 +61,10 @@ export class Impacts {
   #room = 256;
   /** @type {Record<string, Float64Array | Uint32Array | Uint8Array>} */
   #lasting = allocate(LASTING, this.#room);
-  #newest = allocate(COLUMNS.filter((name) => !LASTING.some((one) => one === name)), NEWEST);
+  #newest = allocate(
+    COLUMNS.filter((name) => !LASTING.some((one) => one === name)),
+    NEWEST,
+  );
 
   /** @param {number} [kept] a power of 4, at least 256 */
   constructor(kept = KEPT) {
@@ -35,7 +72,9 @@ export class Impacts {
   }
 
   /** The first place still in memory. */
-  get begin() { return Math.max(0, this.end - this.#kept); }
+  get begin() {
+    return Math.max(0, this.end - this.#kept);
+  }
 
   /**
    * NaN where there is none, or none any more.
@@ -49,7 +88,9 @@ export class Impacts {
   }
 
   /** All that is kept of a column, for those who read much of it: a place is its index, less whole lengths. @param {Lasting} column */
-  column(column) { return this.#lasting[column]; }
+  column(column) {
+    return this.#lasting[column];
+  }
 
   /** @param {number} place @returns {Impact} */
   row(place) {
@@ -57,7 +98,9 @@ export class Impacts {
   }
 
   /** @returns {Impact | null} */
-  get last() { return this.end ? this.row(this.end - 1) : null; }
+  get last() {
+    return this.end ? this.row(this.end - 1) : null;
+  }
 
   /** @param {Impact} impact */
   append(impact) {
@@ -93,11 +136,24 @@ const real = (value) => (typeof value === 'number' ? value : NaN);
 export function fromMessage(message) {
   const { before, after, table_velocity: table, alpha } = message;
   return {
-    n: message.n, t: message.t, x: real(before.x), theta: real(before.theta), x_dot: real(before.x_dot), y_dot: real(before.y_dot),
-    theta_dot: real(before.theta_dot), x_dot_after: real(after?.x_dot), y_dot_after: real(after?.y_dot), theta_dot_after: real(after?.theta_dot),
-    alpha: real(alpha), flight_time: real(message.flight_time), energy: real(message.energy), contact_speed: real(message.contact_speed),
-    table_speed: table ? table.y * Math.cos(alpha) - table.x * Math.sin(alpha) : NaN, mode: MODES.includes(message.contact_mode) ? MODES.indexOf(message.contact_mode) : NaN,
-    clearance: real(message.clearance), series: 0,
+    n: message.n,
+    t: message.t,
+    x: real(before.x),
+    theta: real(before.theta),
+    x_dot: real(before.x_dot),
+    y_dot: real(before.y_dot),
+    theta_dot: real(before.theta_dot),
+    x_dot_after: real(after?.x_dot),
+    y_dot_after: real(after?.y_dot),
+    theta_dot_after: real(after?.theta_dot),
+    alpha: real(alpha),
+    flight_time: real(message.flight_time),
+    energy: real(message.energy),
+    contact_speed: real(message.contact_speed),
+    table_speed: table ? table.y * Math.cos(alpha) - table.x * Math.sin(alpha) : NaN,
+    mode: MODES.includes(message.contact_mode) ? MODES.indexOf(message.contact_mode) : NaN,
+    clearance: real(message.clearance),
+    series: 0,
   };
 }
 
@@ -106,6 +162,10 @@ export function fromMessage(message) {
  * @returns {Impact[]}
  */
 export function fromColumns(columns) {
-  return columns.n.map((_, row) =>
-    /** @type {Impact} */ (Object.fromEntries(COLUMNS.map((name) => [name, name === 'series' ? 0 : real(columns[name]?.[row])]))));
+  return columns.n.map(
+    (_, row) =>
+      /** @type {Impact} */ (
+        Object.fromEntries(COLUMNS.map((name) => [name, name === 'series' ? 0 : real(columns[name]?.[row])]))
+      ),
+  );
 }

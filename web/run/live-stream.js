@@ -84,7 +84,13 @@ export class Live {
       if (error.status !== UPGRADE_REQUIRED) return error;
       // Once or twice says little: the server may have come back between the two requests.
       this.#barred += 1;
-      if (this.#barred > 2) return new Problem('No live connection', 'The server answers, but no WebSocket gets through to it; a proxy on the way may not pass one on.', [], error.status);
+      if (this.#barred > 2)
+        return new Problem(
+          'No live connection',
+          'The server answers, but no WebSocket gets through to it; a proxy on the way may not pass one on.',
+          [],
+          error.status,
+        );
     }
     return null;
   }

@@ -73,7 +73,10 @@ export class Run {
     this.#become('connecting');
     this.#live = new Live(`v1/live?${first}`, () => this.#resumption(), {
       message: (message) => this.#hear(message),
-      lost: (seconds) => { this.#become('lost'); this.#watcher.lost(seconds); },
+      lost: (seconds) => {
+        this.#become('lost');
+        this.#watcher.lost(seconds);
+      },
       refused: (problem) => {
         // Its whole past may be too much for the server to tell, where its present is not.
         if (joins) return this.start(query, false);
@@ -102,7 +105,9 @@ export class Run {
     this.#clear();
   }
 
-  retry() { this.#live?.retry(); }
+  retry() {
+    this.#live?.retry();
+  }
 
   #clear() {
     this.impacts.clear();
@@ -123,13 +128,24 @@ export class Run {
 
   /** How it is going, in words; nothing where there is none. */
   get words() {
-    return { idle: '', connecting: 'Connecting…', running: 'Running', paused: 'Paused', lost: 'Connection lost', ended: `Ended: ${this.outcome?.kind.replaceAll('_', ' ')}` }[this.phase];
+    return {
+      idle: '',
+      connecting: 'Connecting…',
+      running: 'Running',
+      paused: 'Paused',
+      lost: 'Connection lost',
+      ended: `Ended: ${this.outcome?.kind.replaceAll('_', ' ')}`,
+    }[this.phase];
   }
 
   /** True while there is a run to act on. */
-  get active() { return this.phase === 'running' || this.phase === 'paused'; }
+  get active() {
+    return this.phase === 'running' || this.phase === 'paused';
+  }
 
-  toggle() { return this.#live?.send({ type: this.clock.paused ? 'resume' : 'pause' }) ?? false; }
+  toggle() {
+    return this.#live?.send({ type: this.clock.paused ? 'resume' : 'pause' }) ?? false;
+  }
 
   /** A step is a step of a run that stands still. */
   step() {
@@ -138,15 +154,23 @@ export class Run {
   }
 
   /** @param {number} value */
-  setSpeed(value) { return this.#live?.send({ type: 'speed', value }) ?? false; }
+  setSpeed(value) {
+    return this.#live?.send({ type: 'speed', value }) ?? false;
+  }
 
   /** @param {Record<string, unknown>} values by field path */
-  set(values) { return this.#live?.send({ type: 'set', ...values }) ?? false; }
+  set(values) {
+    return this.#live?.send({ type: 'set', ...values }) ?? false;
+  }
 
   /** @param {Record<string, number>} velocities */
-  kick(velocities) { return this.#live?.send({ type: 'kick', ...velocities }) ?? false; }
+  kick(velocities) {
+    return this.#live?.send({ type: 'kick', ...velocities }) ?? false;
+  }
 
-  restart() { return this.#live?.send({ type: 'restart' }) ?? false; }
+  restart() {
+    return this.#live?.send({ type: 'restart' }) ?? false;
+  }
 
   /** @param {any} message */
   #hear(message) {
@@ -156,7 +180,12 @@ export class Run {
         this.#epoch = message.epoch;
         this.released = message.scene;
         this.build = message.build ?? '';
-        this.#fall = { ...message.release, theta_dot: message.release.theta_dot ?? 0, theta: message.release.theta ?? 0, duration: message.flight_time ?? 0 };
+        this.#fall = {
+          ...message.release,
+          theta_dot: message.release.theta_dot ?? 0,
+          theta: message.release.theta ?? 0,
+          duration: message.flight_time ?? 0,
+        };
         this.clock.forget();
         this.#read(message);
         this.#watcher.lost(NaN);
@@ -212,14 +241,18 @@ export class Run {
   }
 
   /** The scene with all that was set, waiting for its impact or not. */
-  get asked() { return this.#sceneAt(Infinity); }
+  get asked() {
+    return this.#sceneAt(Infinity);
+  }
 
   /** @param {Impact[]} fresh */
   #take(fresh) {
     const known = this.impacts.last?.n ?? 0;
     for (const impact of fresh) {
       if (impact.n <= known) continue;
-      impact.series = this.interventions.filter((one) => one.impact <= impact.n && Object.keys(one.set).length > 0).length;
+      impact.series = this.interventions.filter(
+        (one) => one.impact <= impact.n && Object.keys(one.set).length > 0,
+      ).length;
       this.impacts.append(impact);
     }
     if (this.interventions.length > 0) this.#rebuild();
@@ -232,7 +265,12 @@ export class Run {
     if (this.phase !== 'running') return;
     const arc = this.arcAt(Infinity);
     const wait_s = arc ? Math.max(0, arc.t + arc.duration - this.clock.runTime()) / this.clock.speed : 0;
-    this.#overdue = setTimeout(() => { if (this.phase === 'running') this.#live?.drop(); }, (wait_s + OVERDUE_S) * 1000);
+    this.#overdue = setTimeout(
+      () => {
+        if (this.phase === 'running') this.#live?.drop();
+      },
+      (wait_s + OVERDUE_S) * 1000,
+    );
   }
 
   /** The place of the last impact not after `t`, or null before the first. @param {number} t */

@@ -18,7 +18,9 @@ export class Selection {
     this.#impacts = impacts;
   }
 
-  get active() { return this.ranges.length > 0; }
+  get active() {
+    return this.ranges.length > 0;
+  }
 
   /** @param {Limits[]} ranges */
   set(ranges) {
@@ -49,13 +51,19 @@ export class Selection {
     if (!this.active) return;
     if (end < this.#judged) this.forget();
     if (this.places[0] < begin) this.places = this.places.filter((place) => place >= begin);
-    for (let place = Math.max(begin, this.#judged); place < end; place += 1) if (this.has(place)) this.places.push(place);
+    for (let place = Math.max(begin, this.#judged); place < end; place += 1)
+      if (this.has(place)) this.places.push(place);
     this.#judged = end;
   }
 
   /** Its part of the page's address. */
   query() {
-    return new URLSearchParams(this.ranges.flatMap(([column, { low, high }]) => [[`brush.${column}.from`, String(low)], [`brush.${column}.to`, String(high)]]));
+    return new URLSearchParams(
+      this.ranges.flatMap(([column, { low, high }]) => [
+        [`brush.${column}.from`, String(low)],
+        [`brush.${column}.to`, String(high)],
+      ]),
+    );
   }
 
   /**
@@ -66,7 +74,9 @@ export class Selection {
     const dropped = [];
     /** @type {Limits[]} */
     const ranges = [];
-    for (const name of new Set([...params.keys()].filter((key) => key.startsWith('brush.')).map((key) => key.split('.')[1]))) {
+    for (const name of new Set(
+      [...params.keys()].filter((key) => key.startsWith('brush.')).map((key) => key.split('.')[1]),
+    )) {
       const column = LASTING.find((one) => one === name);
       const [low, high] = ['from', 'to'].map((end) => Number(params.get(`brush.${name}.${end}`)?.trim() || NaN));
       if (column && low <= high) ranges.push([column, { low, high }]);

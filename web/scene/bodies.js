@@ -166,10 +166,14 @@ export function drawStrike(context, scale, impact, strike, strength) {
     // Beside the rod, so that the arrow is seen along its whole length, and not where friction points.
     const offset = (rubs ? friction : dx) > 0 ? -16 : 16;
     // A small one still shows which way it goes; its number is beside it.
-    const along = Math.sign(friction) * Math.min(Math.max(LEAST_PX, FRICTION_S * Math.abs(friction) * scale.metre), 0.3 * scale.right);
+    const along =
+      Math.sign(friction) *
+      Math.min(Math.max(LEAST_PX, FRICTION_S * Math.abs(friction) * scale.metre), 0.3 * scale.right);
     const [fx, fy] = [x + nx * RAISED_PX, y + ny * RAISED_PX];
-    if (rubs) arrow(context, fx, fy, fx + Math.cos(strike.alpha) * along, fy - Math.sin(strike.alpha) * along, colours.good);
-    if (length > 9) arrow(context, x + offset, y, x + offset + dx / impulse * length, y - dy / impulse * length, colours.strike);
+    if (rubs)
+      arrow(context, fx, fy, fx + Math.cos(strike.alpha) * along, fy - Math.sin(strike.alpha) * along, colours.good);
+    if (length > 9)
+      arrow(context, x + offset, y, x + offset + (dx / impulse) * length, y - (dy / impulse) * length, colours.strike);
     context.font = `11px ${SANS}`;
     context.fillStyle = colours.strike;
     const words = [`impulse ${fixed(impulse, 2)}\u202fm/s`, `α ${fixed(strike.alpha, 3)}\u202frad`];

@@ -53,10 +53,24 @@ export class SceneView {
     this.layers = surfaces(box, 1, () => this.redraw());
     [this.#surface] = this.layers;
     onThemeChange(() => this.redraw());
-    new IntersectionObserver(([entry]) => { this.#seen = entry.isIntersecting; this.redraw(); }).observe(box);
-    const motion = h('input', { type: 'checkbox', change: () => { this.#moving = motion.checked; this.redraw(); } });
+    new IntersectionObserver(([entry]) => {
+      this.#seen = entry.isIntersecting;
+      this.redraw();
+    }).observe(box);
+    const motion = h('input', {
+      type: 'checkbox',
+      change: () => {
+        this.#moving = motion.checked;
+        this.redraw();
+      },
+    });
     motion.checked = this.#moving;
-    const offer = h('label', { class: 'motion check', hidden: !stillness.matches }, motion, 'Draw the flights, not only the strikes');
+    const offer = h(
+      'label',
+      { class: 'motion check', hidden: !stillness.matches },
+      motion,
+      'Draw the flights, not only the strikes',
+    );
     box.after(offer);
     stillness.addEventListener('change', () => {
       offer.hidden = !stillness.matches;
@@ -79,7 +93,9 @@ export class SceneView {
     this.redraw();
   }
 
-  redraw() { invalidate(this); }
+  redraw() {
+    invalidate(this);
+  }
 
   /** @param {number} now_ms */
   draw(now_ms) {
@@ -103,11 +119,20 @@ export class SceneView {
     this.#ground();
     const scale = this.#scale();
     this.#wanted(scale, scene);
-    drawTable(this.#surface.context, scale, { x: x + l * Math.sin(theta), y: 0, alpha: 0 }, this.#plate(scene), this.#floor());
+    drawTable(
+      this.#surface.context,
+      scale,
+      { x: x + l * Math.sin(theta), y: 0, alpha: 0 },
+      this.#plate(scene),
+      this.#floor(),
+    );
     drawRod(this.#surface.context, scale, scene, { x, y, theta });
     this.#rulers();
     this.#readout.textContent = `Released at ${fixed(height, 3)} m, θ ${fixed(theta, 3)} rad`;
-    this.#box.setAttribute('aria-label', `The scene before release: the centre of gravity ${number(height)} m high, tilted by ${number(theta)} rad`);
+    this.#box.setAttribute(
+      'aria-label',
+      `The scene before release: the centre of gravity ${number(height)} m high, tilted by ${number(theta)} rad`,
+    );
   }
 
   /**
@@ -117,7 +142,7 @@ export class SceneView {
   #drawRun(now_ms, since_s) {
     const run = this.#run;
     const scene = /** @type {Scene} */ (run.scene);
-    const now = run.phase === 'ended' ? run.outcome?.t ?? Infinity : run.clock.runTime();
+    const now = run.phase === 'ended' ? (run.outcome?.t ?? Infinity) : run.clock.runTime();
     const place = run.placeAt(now);
     const impact = place === null ? null : run.impacts.row(place);
     const arc = run.arcAt(now);
@@ -125,7 +150,7 @@ export class SceneView {
     // Where flights are not wanted, the pose of the last strike stands still until the next one.
     const t = this.#moving || !impact ? now : arc.t;
     const pose = poseOn(arc, t, scene);
-    this.#frame(scene, arc.y + arc.y_dot ** 2 * Math.sign(Math.max(0, arc.y_dot)) / (2 * effectiveGravity(scene)));
+    this.#frame(scene, arc.y + (arc.y_dot ** 2 * Math.sign(Math.max(0, arc.y_dot))) / (2 * effectiveGravity(scene)));
     this.#follow(pose.x, since_s);
     const { context } = this.#surface;
     this.#ground();
@@ -133,12 +158,23 @@ export class SceneView {
     this.#wanted(scale, scene);
     this.under?.(this.#surface, scale, scene);
     this.#trail(scale, scene, place, t);
-    const last = strikeOf(impact, scene) ?? { t: 0, x: arc.x + contactDistance(scene) * Math.sin(arc.theta), y: 0, alpha: 0, speed: 0 };
+    const last = strikeOf(impact, scene) ?? {
+      t: 0,
+      x: arc.x + contactDistance(scene) * Math.sin(arc.theta),
+      y: 0,
+      alpha: 0,
+      speed: 0,
+    };
     const next = arc.duration > 0 ? strikeAfter(arc, scene) : last;
     drawTable(context, scale, tableBetween(last, next, t), this.#plate(scene), this.#floor());
     drawRod(context, scale, scene, pose);
     if (impact) {
-      const age_s = run.phase === 'running' && this.#moving ? (now - impact.t) / Math.max(run.clock.speed, 1e-6) : now - impact.t < 1e-6 || !this.#moving ? 0 : GLOW_S / 2;
+      const age_s =
+        run.phase === 'running' && this.#moving
+          ? (now - impact.t) / Math.max(run.clock.speed, 1e-6)
+          : now - impact.t < 1e-6 || !this.#moving
+            ? 0
+            : GLOW_S / 2;
       // Slower runs keep the strike as long as it can be seen; one that stands still keeps it.
       const strength = run.phase === 'ended' ? 1 : Math.max(0, 1 - age_s / GLOW_S);
       if (strength > 0) drawStrike(context, scale, impact, last, strength);
@@ -153,16 +189,26 @@ export class SceneView {
     if (moving && now_ms - this.#read_ms < 100) return;
     // What stands still can be read to the last digit that matters.
     const [seconds, rest] = moving ? [2, 3] : [4, 5];
-    this.#readout.textContent = unbroken(`t ${fixed(t, seconds)} s   impact ${impact?.n ?? 0}   θ ${fixed(pose.theta, rest)} rad   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m${contactWords(impact, rest)}`);
+    this.#readout.textContent = unbroken(
+      `t ${fixed(t, seconds)} s   impact ${impact?.n ?? 0}   θ ${fixed(pose.theta, rest)} rad   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m${contactWords(impact, rest)}`,
+    );
     if (!moving || now_ms - this.#read_ms > 2000 || this.#read_ms === -Infinity) {
-      this.#box.setAttribute('aria-label', `The rod and the table after impact ${impact?.n ?? 0}: tilted by ${fixed(pose.theta, 2)} rad at x = ${fixed(pose.x, 2)} m${contactWords(impact, 3).replace(/ {3}/g, ', ')}`);
+      this.#box.setAttribute(
+        'aria-label',
+        `The rod and the table after impact ${impact?.n ?? 0}: tilted by ${fixed(pose.theta, 2)} rad at x = ${fixed(pose.x, 2)} m${contactWords(impact, 3).replace(/ {3}/g, ', ')}`,
+      );
     }
     this.#read_ms = now_ms;
   }
 
   /** Room for the highest point of the rod on this flight; it grows when it must and never shrinks in a run. @param {Scene} scene @param {number} apex */
   #frame(scene, apex) {
-    const above = scene.body?.point ? 0.03 : Math.max(contactDistance(scene), scene.body?.radius_of_gyration ?? Math.max(0, ...(corners(scene) ?? []).map(([x, y]) => Math.hypot(x, y))));
+    const above = scene.body?.point
+      ? 0.03
+      : Math.max(
+          contactDistance(scene),
+          scene.body?.radius_of_gyration ?? Math.max(0, ...(corners(scene) ?? []).map(([x, y]) => Math.hypot(x, y))),
+        );
     const wanted = (Math.max(apex, scene.table?.target_height ?? 0) + above) * 1.08;
     if (wanted > this.#top && Number.isFinite(wanted)) this.#top = wanted;
   }
@@ -172,25 +218,35 @@ export class SceneView {
     const free = this.#surface.width / this.#scale().metre / 6;
     const excess = x - this.#camera - Math.max(-free, Math.min(free, x - this.#camera));
     const { phase } = this.#run;
-    this.#camera += phase === 'running' && this.#moving && Math.abs(excess) < free * 6 ? excess * Math.min(1, since_s * 6) : excess;
+    this.#camera +=
+      phase === 'running' && this.#moving && Math.abs(excess) < free * 6 ? excess * Math.min(1, since_s * 6) : excess;
   }
 
   /** The height that fills the picture; a scene not yet typed has none of its own. */
-  get #shown() { return this.#top > 0 ? this.#top : 0.3; }
+  get #shown() {
+    return this.#top > 0 ? this.#top : 0.3;
+  }
 
-  #floor() { return this.#surface.height - RULER; }
+  #floor() {
+    return this.#surface.height - RULER;
+  }
 
   #scale() {
     const { width, height } = this.#surface;
     // Below the height of the contacts there is room for a tilted table and its foot.
     const depth = Math.max(58, (height - RULER) * 0.2);
     const metre = Math.max(1e-9, (height - RULER - depth - 6) / this.#shown);
-    return { x: (/** @type {number} */ x) => width / 2 + (x - this.#camera) * metre, y: (/** @type {number} */ y) => height - RULER - depth - y * metre, metre, right: width };
+    return {
+      x: (/** @type {number} */ x) => width / 2 + (x - this.#camera) * metre,
+      y: (/** @type {number} */ y) => height - RULER - depth - y * metre,
+      metre,
+      right: width,
+    };
   }
 
   /** Half the table's width, m. @param {Scene} scene */
   #plate(scene) {
-    return Math.min(0.7 * (contactDistance(scene) || 0.12), this.#surface.width * 0.3 / this.#scale().metre);
+    return Math.min(0.7 * (contactDistance(scene) || 0.12), (this.#surface.width * 0.3) / this.#scale().metre);
   }
 
   #ground() {
@@ -201,9 +257,25 @@ export class SceneView {
     const step = roundStep(width / scale.metre, 8);
     const first = Math.ceil((this.#camera - width / 2 / scale.metre) / step);
     context.lineWidth = 1;
-    for (let k = first; scale.x(k * step) < width; k += 1) line(context, colours.faint, Math.round(scale.x(k * step)) + 0.5, 0, Math.round(scale.x(k * step)) + 0.5, this.#floor());
+    for (let k = first; scale.x(k * step) < width; k += 1)
+      line(
+        context,
+        colours.faint,
+        Math.round(scale.x(k * step)) + 0.5,
+        0,
+        Math.round(scale.x(k * step)) + 0.5,
+        this.#floor(),
+      );
     const rung = roundStep(this.#shown, 4);
-    for (let k = 0; scale.y(k * rung) > 0; k += 1) line(context, k === 0 ? colours.line : colours.faint, 0, Math.round(scale.y(k * rung)) + 0.5, width, Math.round(scale.y(k * rung)) + 0.5);
+    for (let k = 0; scale.y(k * rung) > 0; k += 1)
+      line(
+        context,
+        k === 0 ? colours.line : colours.faint,
+        0,
+        Math.round(scale.y(k * rung)) + 0.5,
+        width,
+        Math.round(scale.y(k * rung)) + 0.5,
+      );
   }
 
   /** The rulers lie over everything: x moves with the ground, y is the height of the centre of gravity, and a bar gives the scale. */
@@ -231,7 +303,8 @@ export class SceneView {
     context.fillText('x / m', 6, floor + 7);
     context.textBaseline = 'bottom';
     const rung = roundStep(this.#shown, 4);
-    for (let k = 0; scale.y(k * rung) > 14; k += 1) context.fillText(k === 0 ? '0\u202fm' : number(k * rung), 6, scale.y(k * rung) - 2);
+    for (let k = 0; scale.y(k * rung) > 14; k += 1)
+      context.fillText(k === 0 ? '0\u202fm' : number(k * rung), 6, scale.y(k * rung) - 2);
     this.#scaleBar(scale.metre);
   }
 
@@ -246,7 +319,11 @@ export class SceneView {
     context.fillStyle = colours.muted;
     const incline = scene.incline ?? Math.PI / 2;
     const tilted = Math.abs(incline - Math.PI / 2) > 1e-9;
-    context.fillText(`${tilted ? `plane at ${number(incline * 180 / Math.PI)}°, ` : ''}G = ${number(effectiveGravity(scene))}\u202fm/s²`, 44, 10);
+    context.fillText(
+      `${tilted ? `plane at ${number((incline * 180) / Math.PI)}°, ` : ''}G = ${number(effectiveGravity(scene))}\u202fm/s²`,
+      44,
+      10,
+    );
     if (!gain || !height) return;
     const y = Math.round(scale.y(height)) + 0.5;
     context.setLineDash([5, 4]);
@@ -274,7 +351,11 @@ export class SceneView {
     context.fillStyle = colours.ink;
     context.textAlign = 'center';
     context.textBaseline = 'top';
-    context.fillText(length < 0.1 ? `${number(length * 100)}\u202fcm` : `${number(length)}\u202fm`, (left + right) / 2, 26);
+    context.fillText(
+      length < 0.1 ? `${number(length * 100)}\u202fcm` : `${number(length)}\u202fm`,
+      (left + right) / 2,
+      26,
+    );
   }
 
   /** The way of the centre of gravity on the last flights. @param {import('./bodies.js').Scale} scale @param {Scene} scene @param {number | null} place @param {number} t */
@@ -292,7 +373,7 @@ export class SceneView {
       context.globalAlpha = 0.5 * (1 - back / (TRAIL_FLIGHTS + 1));
       context.beginPath();
       for (let k = 0; k <= 24; k += 1) {
-        const pose = poseOn(arc, arc.t + (end - arc.t) * k / 24, scene);
+        const pose = poseOn(arc, arc.t + ((end - arc.t) * k) / 24, scene);
         if (k === 0) context.moveTo(scale.x(pose.x), scale.y(pose.y));
         else context.lineTo(scale.x(pose.x), scale.y(pose.y));
       }
@@ -307,18 +388,36 @@ export class SceneView {
 const arcAfterPlace = (run, place, scene) => run.arcAt(run.impacts.at('t', place)) ?? poseless(scene);
 
 /** @param {Scene} scene @returns {Arc} */
-const poseless = (scene) => ({ t: 0, x: 0, y: contactDistance(scene), theta: 0, x_dot: 0, y_dot: 0, theta_dot: 0, duration: 0 });
+const poseless = (scene) => ({
+  t: 0,
+  x: 0,
+  y: contactDistance(scene),
+  theta: 0,
+  x_dot: 0,
+  y_dot: 0,
+  theta_dot: 0,
+  duration: 0,
+});
 
 /** @param {import('../run/impacts.js').Impact | null} impact @param {Scene} scene @returns {Strike | null} */
 function strikeOf(impact, scene) {
   if (!impact) return null;
   const theta = contactDistance(scene) === 0 ? 0 : impact.theta;
-  return { t: impact.t, x: impact.x + contactDistance(scene) * Math.sin(theta), y: impact.clearance || 0, alpha: impact.alpha, speed: Number.isNaN(impact.table_speed) ? 0 : impact.table_speed };
+  return {
+    t: impact.t,
+    x: impact.x + contactDistance(scene) * Math.sin(theta),
+    y: impact.clearance || 0,
+    alpha: impact.alpha,
+    speed: Number.isNaN(impact.table_speed) ? 0 : impact.table_speed,
+  };
 }
 
 /** What the newest contact was like, where there is more to it than a strike at y = 0. @param {import('../run/impacts.js').Impact | null} impact @param {number} decimals */
 function contactWords(impact, decimals) {
   if (!impact) return '';
   const mode = MODES[impact.mode] ?? 'frictionless';
-  return (mode === 'frictionless' ? '' : `   contact: ${mode.replace('_', ' ')}`) + (impact.clearance ? `   struck at ${fixed(impact.clearance, decimals)} m` : '');
+  return (
+    (mode === 'frictionless' ? '' : `   contact: ${mode.replace('_', ' ')}`) +
+    (impact.clearance ? `   struck at ${fixed(impact.clearance, decimals)} m` : '')
+  );
 }

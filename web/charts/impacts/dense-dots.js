@@ -22,7 +22,9 @@ const SERIES = 4;
 function stampOf(series, look, ratio, width) {
   const reach = Math.ceil(REACH * ratio);
   const side = 2 * reach + 1;
-  const context = /** @type {CanvasRenderingContext2D} */ (h('canvas', { width: side, height: side }).getContext('2d', { willReadFrequently: true }));
+  const context = /** @type {CanvasRenderingContext2D} */ (
+    h('canvas', { width: side, height: side }).getContext('2d', { willReadFrequently: true })
+  );
   context.setTransform(ratio, 0, 0, ratio, reach + 0.5, reach + 0.5);
   drawDot(context, series, 0, 0, look, true);
   const { data } = context.getImageData(0, 0, side, side);
@@ -32,7 +34,11 @@ function stampOf(series, look, ratio, width) {
   const set = [...alphas.keys()].filter((index) => alphas[index] > strongest / 2);
   for (const index of set) data[4 * index + 3] = strongest;
   const inks = new Uint32Array(data.buffer);
-  return { reach, steps: Int32Array.from(set, (index) => (Math.floor(index / side) - reach) * width + index % side - reach), inks: Uint32Array.from(set, (index) => inks[index]) };
+  return {
+    reach,
+    steps: Int32Array.from(set, (index) => (Math.floor(index / side) - reach) * width + (index % side) - reach),
+    inks: Uint32Array.from(set, (index) => inks[index]),
+  };
 }
 
 /** Stamps last as long as the colours of a scheme do. @type {WeakMap<object, Map<string, Stamp[]>>} */
@@ -59,11 +65,15 @@ export function drawPixels({ context, canvas, width, height }, { frame, meaning 
   const ratio = canvas.width / width;
   const image = new ImageData(canvas.width, canvas.height);
   const pixels = new Uint32Array(image.data.buffer);
-  const [across, upwards, series] = [impacts.column(meaning.x.column), impacts.column(meaning.y.column), impacts.column('series')];
+  const [across, upwards, series] = [
+    impacts.column(meaning.x.column),
+    impacts.column(meaning.y.column),
+    impacts.column('series'),
+  ];
   // A power of two.
   const kept = across.length;
-  const scaleX = frame.width / (frame.x.high - frame.x.low) * ratio;
-  const scaleY = frame.height / (frame.y.high - frame.y.low) * ratio;
+  const scaleX = (frame.width / (frame.x.high - frame.x.low)) * ratio;
+  const scaleY = (frame.height / (frame.y.high - frame.y.low)) * ratio;
   const left = frame.left * ratio;
   const bottom = (frame.top + frame.height) * ratio;
   const [across_px, up_px] = [canvas.width, canvas.height];
@@ -71,7 +81,7 @@ export function drawPixels({ context, canvas, width, height }, { frame, meaning 
   const put = (looks, count, placeAt) => {
     const { reach } = looks[0];
     for (let index = 0; index < count; index += 1) {
-      const slot = placeAt(index) & kept - 1;
+      const slot = placeAt(index) & (kept - 1);
       const x = Math.floor(left + (across[slot] - frame.x.low) * scaleX);
       const y = Math.floor(bottom - (upwards[slot] - frame.y.low) * scaleY);
       // What does not exist is NaN, which no comparison holds for.

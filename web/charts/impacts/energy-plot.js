@@ -19,14 +19,26 @@ export function energyPlot(impacts, scene) {
       return [{ value, name: `target G y* = ${number(value)} m²/s²` }];
     }
     const first = impacts.end > 0 ? impacts.at('energy', impacts.begin) : NaN;
-    return Number.isFinite(first) && now.table?.strike !== 'still' ? [{ value: first, name: `released with ${number(first)} m²/s²` }] : [];
+    return Number.isFinite(first) && now.table?.strike !== 'still'
+      ? [{ value: first, name: `released with ${number(first)} m²/s²` }]
+      : [];
   };
   return new ImpactPlot(impacts, {
-    id: 'energy', title: 'Energy', about: 'Per unit mass just before each impact, with its target.', hint: 'One dot per impact, with its target',
-    spoken: 'Energy per unit mass at each impact', levels,
-    x: { column: 'n', name: 'impact', from: 0, span: 16 }, y: { column: 'energy', name: 'E / m² s⁻²', span: 0.4 },
+    id: 'energy',
+    title: 'Energy',
+    about: 'Per unit mass just before each impact, with its target.',
+    hint: 'One dot per impact, with its target',
+    spoken: 'Energy per unit mass at each impact',
+    levels,
+    x: { column: 'n', name: 'impact', from: 0, span: 16 },
+    y: { column: 'energy', name: 'E / m² s⁻²', span: 0.4 },
     head: ['impact', 't / s', 'energy / m² s⁻²', 'flight time / s'],
-    cells: (all, place) => [String(all.at('n', place)), fixed(all.at('t', place), 4), fixed(all.at('energy', place), 6), fixed(all.at('flight_time', place), 6)],
+    cells: (all, place) => [
+      String(all.at('n', place)),
+      fixed(all.at('t', place), 4),
+      fixed(all.at('energy', place), 6),
+      fixed(all.at('flight_time', place), 6),
+    ],
     readout: (all, place) => `n ${all.at('n', place)}   E ${fixed(all.at('energy', place), 4)} m²/s²`,
   });
 }

@@ -73,14 +73,18 @@ export class ImpactPlot {
   constructor(impacts, meaning) {
     this.#impacts = impacts;
     this.meaning = meaning;
-    this.figure = new Figure(meaning.id, meaning.title, meaning.about, { head: meaning.head, rows: () => this.#rows() });
+    this.figure = new Figure(meaning.id, meaning.title, meaning.about, {
+      head: meaning.head,
+      rows: () => this.#rows(),
+    });
     this.layers = surfaces(this.figure.box, 2, () => this.redraw());
     onThemeChange(() => this.redraw());
   }
 
   #rows() {
     const rows = [];
-    for (let place = this.#impacts.end - 1; place >= this.#impacts.begin && rows.length < 50; place -= 1) rows.push(this.meaning.cells(this.#impacts, place));
+    for (let place = this.#impacts.end - 1; place >= this.#impacts.begin && rows.length < 50; place -= 1)
+      rows.push(this.meaning.cells(this.#impacts, place));
     return rows;
   }
 
@@ -146,7 +150,11 @@ export class ImpactPlot {
     this.#dots(Math.max(begin, this.#drawn), end);
     this.#drawn = end;
     this.#highlight();
-    this.figure.name(now_ms, () => (end === 0 ? `${this.meaning.spoken}: nothing yet` : `${this.meaning.spoken}. ${end} impacts; the last: ${this.meaning.readout(this.#impacts, end - 1)}`));
+    this.figure.name(now_ms, () =>
+      end === 0
+        ? `${this.meaning.spoken}: nothing yet`
+        : `${this.meaning.spoken}. ${end} impacts; the last: ${this.meaning.readout(this.#impacts, end - 1)}`,
+    );
     this.figure.list(now_ms);
     return false;
   }
@@ -157,12 +165,25 @@ export class ImpactPlot {
     const { selection } = this;
     if (to - from > MANY) {
       if (this.#pixels) return this.#pixels(surface, this, this.#impacts, selection);
-      void import('./dense-dots.js').then(({ drawPixels }) => { this.#pixels = drawPixels; this.redraw(); }, () => {});
+      void import('./dense-dots.js').then(
+        ({ drawPixels }) => {
+          this.#pixels = drawPixels;
+          this.redraw();
+        },
+        () => {},
+      );
     }
     for (let place = from; place < to; place += 1) {
       const [x, y] = this.at(place);
       if (Number.isNaN(x) || Number.isNaN(y)) continue;
-      drawDot(surface.context, this.#impacts.at('series', place), x, y, !selection?.active ? 'plain' : selection.has(place) ? 'selected' : 'receded', this.#many);
+      drawDot(
+        surface.context,
+        this.#impacts.at('series', place),
+        x,
+        y,
+        !selection?.active ? 'plain' : selection.has(place) ? 'selected' : 'receded',
+        this.#many,
+      );
     }
   }
 
@@ -180,9 +201,18 @@ export class ImpactPlot {
     }
     const empty = !(extent.x.high >= extent.x.low) || !(extent.y.high >= extent.y.low);
     this.frame = {
-      left: MARGIN.left, top: MARGIN.top, width: Math.max(1, width - MARGIN.left - MARGIN.right), height: Math.max(1, height - MARGIN.top - MARGIN.bottom),
-      x: extent.x.high >= extent.x.low ? roundRange(extent.x, x) : roundRange({ low: 0, high: 0 }, { ...x, span: x.span || 1 }),
-      y: extent.y.high >= extent.y.low ? roundRange(extent.y, y) : roundRange({ low: 0, high: 0 }, { ...y, span: y.span || 1 }),
+      left: MARGIN.left,
+      top: MARGIN.top,
+      width: Math.max(1, width - MARGIN.left - MARGIN.right),
+      height: Math.max(1, height - MARGIN.top - MARGIN.bottom),
+      x:
+        extent.x.high >= extent.x.low
+          ? roundRange(extent.x, x)
+          : roundRange({ low: 0, high: 0 }, { ...x, span: x.span || 1 }),
+      y:
+        extent.y.high >= extent.y.low
+          ? roundRange(extent.y, y)
+          : roundRange({ low: 0, high: 0 }, { ...y, span: y.span || 1 }),
     };
     context.clearRect(0, 0, width, height);
     drawAxes(context, this.frame, x.name, y.name);
@@ -204,7 +234,12 @@ export class ImpactPlot {
       context.fillStyle = colours.muted;
       context.textAlign = 'center';
       context.textBaseline = 'middle';
-      context.fillText(this.#impacts.end > 0 && lacking ? lacking : hint, this.frame.left + this.frame.width / 2, this.frame.top + this.frame.height / 2 - 14, this.frame.width - 16);
+      context.fillText(
+        this.#impacts.end > 0 && lacking ? lacking : hint,
+        this.frame.left + this.frame.width / 2,
+        this.frame.top + this.frame.height / 2 - 14,
+        this.frame.width - 16,
+      );
     }
     context.lineWidth = 1.5;
     context.strokeStyle = colours.measured;

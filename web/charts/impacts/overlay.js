@@ -15,10 +15,13 @@ import { line, toX, toY } from '../axes.js';
  * @param {Selection} selection
  */
 export function drawBrush(context, { frame, meaning }, selection) {
-  const [across, up] = [meaning.x, meaning.y].map(({ column }) => selection.ranges.find(([name]) => name === column)?.[1]);
+  const [across, up] = [meaning.x, meaning.y].map(
+    ({ column }) => selection.ranges.find(([name]) => name === column)?.[1],
+  );
   if (!across && !up) return;
   const { left, top, width, height } = frame;
-  const within = (/** @type {number} */ value, /** @type {number} */ low, /** @type {number} */ size) => Math.min(low + size, Math.max(low, value));
+  const within = (/** @type {number} */ value, /** @type {number} */ low, /** @type {number} */ size) =>
+    Math.min(low + size, Math.max(low, value));
   const x0 = across ? within(toX(frame, across.low), left, width) : left;
   const x1 = across ? within(toX(frame, across.high), left, width) : left + width;
   const y0 = up ? within(toY(frame, up.high), top, height) : top;

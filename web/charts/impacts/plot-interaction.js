@@ -20,19 +20,34 @@ import { styles } from '../../panels/panels.js';
  */
 
 const BY_POINTER = 'Drag over a plot to select impacts; click in a plane to say where a run first lands.';
-const BY_KEYS = 'Left and right go from impact to impact, with Shift they select; Enter starts a run whose first impact is that one; Escape clears the selection.';
+const BY_KEYS =
+  'Left and right go from impact to impact, with Shift they select; Enter starts a run whose first impact is that one; Escape clears the selection.';
 
 export class Acts {
   #bar;
   #page;
   #selection;
   #told = h('span', { id: 'brush-told' }, BY_POINTER);
-  #clear = h('button', { type: 'button', id: 'brush-clear', hidden: true, click: () => this.#selection.set([]) }, 'Clear');
-  #load = h('button', { type: 'button', id: 'measured-load', click: () => this.#file.click() }, 'Load measured impacts…');
-  #file = h('input', { type: 'file', id: 'measured-file', accept: '.csv,.tsv,.txt,text/csv,text/tab-separated-values', hidden: true, change: () => {
-    void this.#take(this.#file.files?.[0]);
-    this.#file.value = '';
-  } });
+  #clear = h(
+    'button',
+    { type: 'button', id: 'brush-clear', hidden: true, click: () => this.#selection.set([]) },
+    'Clear',
+  );
+  #load = h(
+    'button',
+    { type: 'button', id: 'measured-load', click: () => this.#file.click() },
+    'Load measured impacts…',
+  );
+  #file = h('input', {
+    type: 'file',
+    id: 'measured-file',
+    accept: '.csv,.tsv,.txt,text/csv,text/tab-separated-values',
+    hidden: true,
+    change: () => {
+      void this.#take(this.#file.files?.[0]);
+      this.#file.value = '';
+    },
+  });
   #hint = h('p', { class: 'unseen', id: 'impacts-hint' }, BY_KEYS);
   // Spoken when keys move or a selection is made; a pointer's way over a chart is not.
   #spoken = h('p', { class: 'unseen', role: 'status', id: 'impacts-spoken' });
@@ -43,19 +58,37 @@ export class Acts {
 
   /** @param {HTMLElement} bar over the plots @param {Page} page */
   constructor(bar, page) {
-    const { run: { impacts }, view, plots } = page;
+    const {
+      run: { impacts },
+      view,
+      plots,
+    } = page;
     this.#bar = bar;
     this.#page = page;
-    const selection = this.#selection = new Selection(impacts);
+    const selection = (this.#selection = new Selection(impacts));
     selection.changed = () => this.#selected();
     bar.append(this.#told, this.#clear, this.#load, this.#file, this.#hint, this.#spoken);
     view.under = (surface, scale, scene) => drawContacts(surface, scale, scene, impacts, selection);
     for (const plot of plots) {
-      listen(plot, { ...page, impacts, selection, point: (place) => { for (const one of plots) one.point(place); }, say: (words) => { this.#spoken.textContent = words; } });
+      listen(plot, {
+        ...page,
+        impacts,
+        selection,
+        point: (place) => {
+          for (const one of plots) one.point(place);
+        },
+        say: (words) => {
+          this.#spoken.textContent = words;
+        },
+      });
       const { box } = plot.figure;
       box.setAttribute('aria-describedby', this.#hint.id);
       // A pointer does not give the focus.
-      for (const event of ['focus', 'blur']) box.addEventListener(event, () => { this.#keyed = event === 'focus'; invalidate(this); });
+      for (const event of ['focus', 'blur'])
+        box.addEventListener(event, () => {
+          this.#keyed = event === 'focus';
+          invalidate(this);
+        });
     }
     const root = /** @type {HTMLElement} */ (bar.parentElement);
     // Wherever on the page: a file beside the charts is meant for them, not for the browser.
@@ -65,7 +98,9 @@ export class Acts {
       event.preventDefault();
       root.classList.add('awaited');
     });
-    addEventListener('dragleave', (event) => { if (!event.relatedTarget) root.classList.remove('awaited'); });
+    addEventListener('dragleave', (event) => {
+      if (!event.relatedTarget) root.classList.remove('awaited');
+    });
     addEventListener('drop', (event) => {
       root.classList.remove('awaited');
       if (!over(event)) return;
@@ -74,10 +109,14 @@ export class Acts {
     });
   }
 
-  query() { return this.#selection.query(); }
+  query() {
+    return this.#selection.query();
+  }
 
   /** @param {URLSearchParams} link */
-  restore(link) { return this.#selection.restore(link); }
+  restore(link) {
+    return this.#selection.restore(link);
+  }
 
   /** The selection is another one. */
   #selected() {
@@ -106,7 +145,10 @@ export class Acts {
   async #take(file) {
     if (!file) return;
     try {
-      const [{ MeasuredPanel }] = await Promise.all([import('../../panels/measured/panel.js'), this.#measured ?? styles('panels/measured/measured.css')]);
+      const [{ MeasuredPanel }] = await Promise.all([
+        import('../../panels/measured/panel.js'),
+        this.#measured ?? styles('panels/measured/measured.css'),
+      ]);
       this.#measured ??= new MeasuredPanel(this.#bar, this.#page);
     } catch {
       return notice('measured', ['What reads measured impacts did not load.'], { caution: true });

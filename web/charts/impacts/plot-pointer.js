@@ -47,7 +47,8 @@ export function listen(plot, page) {
     drawBrush(context, plot, selection);
     if (offered) drawOffer(context, plot, offered);
   };
-  for (const [name, value] of Object.entries({ role: 'application', 'aria-roledescription': 'chart', tabindex: '0' })) box.setAttribute(name, value);
+  for (const [name, value] of Object.entries({ role: 'application', 'aria-roledescription': 'chart', tabindex: '0' }))
+    box.setAttribute(name, value);
 
   /** @param {PointerEvent} event @returns {Place} */
   const placeOf = (event) => {
@@ -67,7 +68,10 @@ export function listen(plot, page) {
     for (let one = impacts.begin; one < impacts.end; one += 1) {
       const [x, y] = plot.at(one);
       const d = (x - place.x) ** 2 + (y - place.y) ** 2;
-      if (d <= distance) { distance = d; best = one; }
+      if (d <= distance) {
+        distance = d;
+        best = one;
+      }
     }
     return best;
   };
@@ -75,20 +79,29 @@ export function listen(plot, page) {
   /** The values at a place. @param {Place} place */
   const valuesAt = ({ x, y }) => {
     const { left, top, width, height, x: across, y: up } = plot.frame;
-    return { x: across.low + (x - left) / width * (across.high - across.low), y: up.low + (top + height - y) / height * (up.high - up.low) };
+    return {
+      x: across.low + ((x - left) / width) * (across.high - across.low),
+      y: up.low + ((top + height - y) / height) * (up.high - up.low),
+    };
   };
 
   /** @param {number} x @param {number} y values of a first impact */
   const startAt = (x, y) => {
     const scene = page.typed();
-    return scene && within(plot.meaning.start === 'angle' ? angleStart(scene, x, y) : velocityStart(scene, x, y), page.fields);
+    return (
+      scene &&
+      within(plot.meaning.start === 'angle' ? angleStart(scene, x, y) : velocityStart(scene, x, y), page.fields)
+    );
   };
 
   /** Says what a click would do. @param {Place | null} place */
   const offer = (place, verb = 'click') => {
     const values = plot.meaning.start && place && inside(place) ? valuesAt(place) : null;
     const start = values && startAt(values.x, values.y);
-    offered = place && start ? { ...place, words: start.values ? `${verb}: ${start.words}` : start.words, possible: start.values !== null } : null;
+    offered =
+      place && start
+        ? { ...place, words: start.values ? `${verb}: ${start.words}` : start.words, possible: start.values !== null }
+        : null;
     invalidate(plot);
   };
 
@@ -111,7 +124,10 @@ export function listen(plot, page) {
       const decimals = Math.min(20, Math.max(0, Math.ceil(-Math.log10(pixel))));
       return { low: Number(Math.min(a, b).toFixed(decimals)), high: Number(Math.max(a, b).toFixed(decimals)) };
     };
-    selection.set([[plot.meaning.x.column, range(one.x, other.x, (x.high - x.low) / width)], [plot.meaning.y.column, range(one.y, other.y, (y.high - y.low) / height)]]);
+    selection.set([
+      [plot.meaning.x.column, range(one.x, other.x, (x.high - x.low) / width)],
+      [plot.meaning.y.column, range(one.y, other.y, (y.high - y.low) / height)],
+    ]);
   };
   const count = () => `${selection.places.length} of ${impacts.end - impacts.begin} impacts selected`;
 
@@ -143,7 +159,10 @@ export function listen(plot, page) {
     if (!dragging) offer(null);
     dragging = true;
     const { left, top, width, height } = plot.frame;
-    brush(pressed, { x: Math.min(left + width, Math.max(left, place.x)), y: Math.min(top + height, Math.max(top, place.y)) });
+    brush(pressed, {
+      x: Math.min(left + width, Math.max(left, place.x)),
+      y: Math.min(top + height, Math.max(top, place.y)),
+    });
   });
   box.addEventListener('pointerup', (event) => {
     if (!pressed) return;
@@ -180,8 +199,10 @@ export function listen(plot, page) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { begin, end } = impacts;
     if (event.key === 'Escape' && pressed) cancel();
-    else if (end > begin && move(event)) { /* done */ }
-    else if (event.key === 'Enter' && cursor !== null && cursor >= begin && cursor < end) start(impacts.at(plot.meaning.x.column, cursor), impacts.at(plot.meaning.y.column, cursor));
+    else if (end > begin && move(event)) {
+      /* done */
+    } else if (event.key === 'Enter' && cursor !== null && cursor >= begin && cursor < end)
+      start(impacts.at(plot.meaning.x.column, cursor), impacts.at(plot.meaning.y.column, cursor));
     else return;
     event.preventDefault();
     event.stopPropagation();
@@ -190,11 +211,21 @@ export function listen(plot, page) {
   /** @param {KeyboardEvent} event @returns {boolean} whether it was for moving */
   function move({ key, shiftKey }) {
     const { begin, end } = impacts;
-    const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: LEAP, PageDown: -LEAP, Home: -Infinity, End: Infinity }[key];
+    const step = {
+      ArrowRight: 1,
+      ArrowUp: 1,
+      ArrowLeft: -1,
+      ArrowDown: -1,
+      PageUp: LEAP,
+      PageDown: -LEAP,
+      Home: -Infinity,
+      End: Infinity,
+    }[key];
     if (step === undefined) return false;
     const from = cursor !== null && cursor >= begin && cursor < end ? cursor : null;
     // The first key shows where one is.
-    cursor = from === null && Number.isFinite(step) ? end - 1 : Math.min(end - 1, Math.max(begin, (from ?? end - 1) + step));
+    cursor =
+      from === null && Number.isFinite(step) ? end - 1 : Math.min(end - 1, Math.max(begin, (from ?? end - 1) + step));
     page.point(cursor);
     const words = plot.meaning.readout(impacts, cursor);
     if (shiftKey) {

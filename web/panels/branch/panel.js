@@ -29,10 +29,13 @@ class Branch {
   /** @param {HTMLElement} root */
   constructor(root) {
     this.#root = root;
-    new IntersectionObserver((entries) => {
-      this.#near = entries.some(({ isIntersecting }) => isIntersecting);
-      if (this.#near) void this.#refresh();
-    }, { rootMargin: '100px 0px' }).observe(root);
+    new IntersectionObserver(
+      (entries) => {
+        this.#near = entries.some(({ isIntersecting }) => isIntersecting);
+        if (this.#near) void this.#refresh();
+      },
+      { rootMargin: '100px 0px' },
+    ).observe(root);
   }
 
   /** @param {{answer: Stability, scene: URLSearchParams}} judged */
@@ -41,7 +44,9 @@ class Branch {
     this.#soon();
   }
 
-  #soon = settled(300, () => { if (this.#near) void this.#refresh(); });
+  #soon = settled(300, () => {
+    if (this.#near) void this.#refresh();
+  });
 
   async #refresh() {
     if (!this.#wanted) return;
@@ -50,23 +55,48 @@ class Branch {
     const point = answer.scene.body?.point;
     if (point || gain?.critical == null || gain.lower == null) {
       this.#shown = '';
-      return this.#say(point ? 'A point mass has no angle to swing by.' : 'This scene has no critical gain, so nothing branches off there.');
+      return this.#say(
+        point
+          ? 'A point mass has no angle to swing by.'
+          : 'This scene has no critical gain, so nothing branches off there.',
+      );
     }
     const query = new URLSearchParams(scene);
     const span = SHOWN * (gain.critical - gain.lower);
     const [from, to] = [gain.critical - span, gain.critical + span].map((end) => Number(end.toPrecision(4)));
-    for (const [key, value] of Object.entries({ family: 'symmetric', theta: BEGIN, 'sweep.parameter': GAIN, 'sweep.from': from, 'sweep.to': to })) query.set(key, String(value));
+    for (const [key, value] of Object.entries({
+      family: 'symmetric',
+      theta: BEGIN,
+      'sweep.parameter': GAIN,
+      'sweep.from': from,
+      'sweep.to': to,
+    }))
+      query.set(key, String(value));
     const path = `v1/periodic-orbits?${query}`;
     if (path === this.#shown) return;
     this.#shown = path;
     this.#asking?.abort();
-    const { signal } = this.#asking = new AbortController();
+    const { signal } = (this.#asking = new AbortController());
     try {
       const orbits = await get(path, signal);
       this.#draw(path, orbits.changes, answer, gain.critical);
     } catch (error) {
       if (signal.aborted) return;
-      const again = h('p', {}, h('button', { type: 'button', click: () => { this.#shown = ''; void this.#refresh(); } }, 'Try again'));
+      const again = h(
+        'p',
+        {},
+        h(
+          'button',
+          {
+            type: 'button',
+            click: () => {
+              this.#shown = '';
+              void this.#refresh();
+            },
+          },
+          'Try again',
+        ),
+      );
       if (error instanceof Problem && error.status < 500) this.#say(`There is no branch to show: ${error.message}.`);
       else this.#say(error instanceof Problem ? error.message : 'The server does not answer.', again);
     }
@@ -86,17 +116,63 @@ class Branch {
    */
   #draw(path, changes, { boundary }, critical) {
     const picture = `${path}&format=svg`;
-    const words = { soft: 'They branch off beyond it and hold what falls: a soft boundary', hard: 'They lie below it and are unstable, so what leaves upright is thrown out: a hard boundary' }[boundary?.kind ?? ''];
-    const image = h('img', { src: picture, width: 720, height: 582, alt: `Branch diagram: largest angle of the orbits of period 2 against the tilt gain, about the critical gain ${number(critical)}. Its points of change are in the table.` });
-    this.#root.replaceChildren(h('a', { class: 'picture', href: picture }, image),
-      h('div', {}, h('p', {}, 'At ', symbol('κ_c'), ` = ${number(critical, 5)} the upright bounce gives birth to orbits that swing from side to side. `,
-        words ? `${words} (C = ${number(boundary?.coefficient, 3)}).` : ''),
-      h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Where the branch changes' }, h('table', { class: 'changes' },
-        h('thead', {}, h('tr', {}, ...['Change', 'κ', 'θ / rad', 'R'].map((name) => h('th', { scope: 'col' }, name)))),
-        h('tbody', {}, ...changes.map(({ kind, parameter, theta, residue, detail }) => h('tr', {},
-          h('th', { scope: 'row' }, kind.replaceAll('_', ' '), h('span', { class: 'muted' }, ...prose(detail))),
-          ...[number(parameter, 5), quantity(tiny(theta), '1'), number(tiny(residue), 3)].map((text) => h('td', {}, text))))))),
-      h('p', { class: 'actions' }, ...actions({ id: 'branch', title: 'Orbits of period 2', path, formats: ['svg', 'png', 'csv', 'json'] }))));
+    const words = {
+      soft: 'They branch off beyond it and hold what falls: a soft boundary',
+      hard: 'They lie below it and are unstable, so what leaves upright is thrown out: a hard boundary',
+    }[boundary?.kind ?? ''];
+    const image = h('img', {
+      src: picture,
+      width: 720,
+      height: 582,
+      alt: `Branch diagram: largest angle of the orbits of period 2 against the tilt gain, about the critical gain ${number(critical)}. Its points of change are in the table.`,
+    });
+    this.#root.replaceChildren(
+      h('a', { class: 'picture', href: picture }, image),
+      h(
+        'div',
+        {},
+        h(
+          'p',
+          {},
+          'At ',
+          symbol('κ_c'),
+          ` = ${number(critical, 5)} the upright bounce gives birth to orbits that swing from side to side. `,
+          words ? `${words} (C = ${number(boundary?.coefficient, 3)}).` : '',
+        ),
+        h(
+          'div',
+          { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Where the branch changes' },
+          h(
+            'table',
+            { class: 'changes' },
+            h(
+              'thead',
+              {},
+              h('tr', {}, ...['Change', 'κ', 'θ / rad', 'R'].map((name) => h('th', { scope: 'col' }, name))),
+            ),
+            h(
+              'tbody',
+              {},
+              ...changes.map(({ kind, parameter, theta, residue, detail }) =>
+                h(
+                  'tr',
+                  {},
+                  h('th', { scope: 'row' }, kind.replaceAll('_', ' '), h('span', { class: 'muted' }, ...prose(detail))),
+                  ...[number(parameter, 5), quantity(tiny(theta), '1'), number(tiny(residue), 3)].map((text) =>
+                    h('td', {}, text),
+                  ),
+                ),
+              ),
+            ),
+          ),
+        ),
+        h(
+          'p',
+          { class: 'actions' },
+          ...actions({ id: 'branch', title: 'Orbits of period 2', path, formats: ['svg', 'png', 'csv', 'json'] }),
+        ),
+      ),
+    );
   }
 }
 

@@ -14,12 +14,32 @@ export function mount(root, { query, played }) {
       { title: 'The same as CSV', path: `v1/trajectories?${run}&impacts=1000&format=csv` },
       { title: 'Jacobian at the fixed point', path: `v1/jacobians?${scene}` },
     ];
-    root.replaceChildren(...calls.map(({ title, path }) => {
-      const line = curl(path);
-      return h('div', { class: 'call' }, h('p', {}, title), h('code', { tabindex: 0 }, line),
-        h('p', { class: 'actions' }, h('button', { type: 'button', 'aria-label': `Copy curl: ${title}`, click: (/** @type {Event} */ event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), line) }, 'Copy curl'),
-          h('a', { href: path, 'aria-label': `Open: ${title}` }, 'Open')));
-    }));
+    root.replaceChildren(
+      ...calls.map(({ title, path }) => {
+        const line = curl(path);
+        return h(
+          'div',
+          { class: 'call' },
+          h('p', {}, title),
+          h('code', { tabindex: 0 }, line),
+          h(
+            'p',
+            { class: 'actions' },
+            h(
+              'button',
+              {
+                type: 'button',
+                'aria-label': `Copy curl: ${title}`,
+                click: (/** @type {Event} */ event) =>
+                  void copy(/** @type {HTMLElement} */ (event.currentTarget), line),
+              },
+              'Copy curl',
+            ),
+            h('a', { href: path, 'aria-label': `Open: ${title}` }, 'Open'),
+          ),
+        );
+      }),
+    );
   };
   show();
   return { sceneChanged: show, played: show };

@@ -24,7 +24,12 @@ import { number, parse, quantity } from '../../dom/numbers.js';
  */
 
 /** @type {[string, string, string, string][]} name, sign, weight at first, unit of the gain */
-const STATES = [['x', 'x', '1', 'rad/m'], ['theta', 'θ', '10', '1'], ['x_dot', 'ẋ', '0.1', 'rad·s/m'], ['theta_dot', 'θ̇', '0.1', 's']];
+const STATES = [
+  ['x', 'x', '1', 'rad/m'],
+  ['theta', 'θ', '10', '1'],
+  ['x_dot', 'ẋ', '0.1', 'rad·s/m'],
+  ['theta_dot', 'θ̇', '0.1', 's'],
+];
 const INPUT = '10';
 const CONTACTS = { '': 'As the scene’s', frictionless: 'Frictionless', stick: 'Sticks' };
 
@@ -32,7 +37,8 @@ const CONTACTS = { '': 'As the scene’s', frictionless: 'Frictionless', stick: 
 const here = (path) => path.replace(/^\//, '');
 
 /** @param {Eigenvalue} eigenvalue */
-const complex = ({ re, im }) => (im === 0 ? number(re) : `${number(re)} ${im < 0 ? '\u2212' : '+'} ${number(Math.abs(im))} i`);
+const complex = ({ re, im }) =>
+  im === 0 ? number(re) : `${number(re)} ${im < 0 ? '\u2212' : '+'} ${number(Math.abs(im))} i`;
 
 /** @type {import('../panels.js').Module['mount']} */
 export const mount = (root, page) => new DesignPanel(root, page);
@@ -42,7 +48,11 @@ class DesignPanel {
   /** @type {Map<string, HTMLInputElement>} */
   #weights = new Map();
   #error = h('p', { class: 'error', id: 'design-error' });
-  #contact = h('select', { id: 'design-contact', change: () => this.#page.changed() }, ...Object.entries(CONTACTS).map(([value, words]) => h('option', { value }, words)));
+  #contact = h(
+    'select',
+    { id: 'design-contact', change: () => this.#page.changed() },
+    ...Object.entries(CONTACTS).map(([value, words]) => h('option', { value }, words)),
+  );
   #told = h('div', { class: 'design-told', id: 'design-told', role: 'status' });
   #sheet = h('div', { class: 'design-sheet', id: 'design-sheet', hidden: true });
   /** @type {AbortController | null} */
@@ -55,20 +65,54 @@ class DesignPanel {
   constructor(root, page) {
     this.#page = page;
     const row = (/** @type {string} */ name, /** @type {string} */ sign, /** @type {string} */ value) => {
-      const input = h('input', { id: `design-${name}`, type: 'text', inputmode: 'decimal', autocomplete: 'off', value, 'aria-describedby': 'design-error', change: () => page.changed() });
+      const input = h('input', {
+        id: `design-${name}`,
+        type: 'text',
+        inputmode: 'decimal',
+        autocomplete: 'off',
+        value,
+        'aria-describedby': 'design-error',
+        change: () => page.changed(),
+      });
       this.#weights.set(name, input);
       return h('p', { class: 'design-row' }, h('label', { for: `design-${name}` }, 'of ', symbol(sign)), input);
     };
-    root.append(h('form', { novalidate: true, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.ask(); } },
-      h('fieldset', {}, h('legend', {}, 'Weights, squared deviations'), ...STATES.map(([name, sign, value]) => row(name, sign, value)), row('input', 'α', INPUT)),
-      this.#error, h('p', { class: 'design-row' }, h('label', { for: 'design-contact' }, 'Contact'), this.#contact),
-      h('p', { class: 'buttons' }, h('button', { type: 'submit', id: 'design-start' }, 'Design')), this.#told), this.#sheet);
-    this.#told.append('A tilt in proportion to the angle leaves the rod circling and drifting. A law that feeds back the whole state brings it to rest in place.');
+    root.append(
+      h(
+        'form',
+        {
+          novalidate: true,
+          submit: (/** @type {Event} */ event) => {
+            event.preventDefault();
+            void this.ask();
+          },
+        },
+        h(
+          'fieldset',
+          {},
+          h('legend', {}, 'Weights, squared deviations'),
+          ...STATES.map(([name, sign, value]) => row(name, sign, value)),
+          row('input', 'α', INPUT),
+        ),
+        this.#error,
+        h('p', { class: 'design-row' }, h('label', { for: 'design-contact' }, 'Contact'), this.#contact),
+        h('p', { class: 'buttons' }, h('button', { type: 'submit', id: 'design-start' }, 'Design')),
+        this.#told,
+      ),
+      this.#sheet,
+    );
+    this.#told.append(
+      'A tilt in proportion to the angle leaves the rod circling and drifting. A law that feeds back the whole state brings it to rest in place.',
+    );
   }
 
   /** Its part of the page’s address. */
   query() {
-    const query = new URLSearchParams([...this.#weights].filter(([, input]) => input.value.trim() !== input.defaultValue).map(([name, input]) => [`design.weights.${name}`, input.value.trim()]));
+    const query = new URLSearchParams(
+      [...this.#weights]
+        .filter(([, input]) => input.value.trim() !== input.defaultValue)
+        .map(([name, input]) => [`design.weights.${name}`, input.value.trim()]),
+    );
     if (this.#contact.value) query.set('design.contact', this.#contact.value);
     return query;
   }
@@ -120,7 +164,7 @@ class DesignPanel {
     const request = this.#request();
     if (!request) return;
     this.#asking?.abort();
-    const { signal } = this.#asking = new AbortController();
+    const { signal } = (this.#asking = new AbortController());
     const path = `v1/controllers?${request}`;
     try {
       const answer = await get(path, signal);
@@ -128,34 +172,133 @@ class DesignPanel {
     } catch (error) {
       if (signal.aborted) return;
       this.#sheet.hidden = true;
-      this.#told.replaceChildren(...marked(error instanceof Problem ? error.errors.map(({ detail }) => detail).join(' ') || error.message : 'The server does not answer.'));
+      this.#told.replaceChildren(
+        ...marked(
+          error instanceof Problem
+            ? error.errors.map(({ detail }) => detail).join(' ') || error.message
+            : 'The server does not answer.',
+        ),
+      );
     }
   }
 
   /** @param {Controller} answer @param {string} path */
   #show(answer, path) {
-    const { scene, gain, stable, eigenvalues, open_loop: open, spectral_radius: radius, bounces_per_decade: decade, gain_margin: margin, regions, notes, contact } = answer;
-    this.#told.replaceChildren(stable ? 'Every small deviation that is fed back dies out.' : 'This law does not hold: a small deviation grows.');
+    const {
+      scene,
+      gain,
+      stable,
+      eigenvalues,
+      open_loop: open,
+      spectral_radius: radius,
+      bounces_per_decade: decade,
+      gain_margin: margin,
+      regions,
+      notes,
+      contact,
+    } = answer;
+    this.#told.replaceChildren(
+      stable ? 'Every small deviation that is fed back dies out.' : 'This law does not hold: a small deviation grows.',
+    );
     /** @type {[string | Node, string, string][]} */
-    const rows = [...STATES.filter(([name]) => name in gain).map(([name, sign, , unit]) => /** @type {[Node, string, string]} */ ([symbol(`K_${sign}`), quantity(gain[name], unit, 5), `gain of ${sign}`])),
+    const rows = [
+      ...STATES.filter(([name]) => name in gain).map(
+        ([name, sign, , unit]) =>
+          /** @type {[Node, string, string]} */ ([
+            symbol(`K_${sign}`),
+            quantity(gain[name], unit, 5),
+            `gain of ${sign}`,
+          ]),
+      ),
       ['max |λ|', number(radius, 5), 'spectral radius of the closed loop'],
       ['decade', decade === null ? '–' : number(decade), 'bounces to a tenth'],
-      ['margin', margin ? `${number(margin.lower)} to ${number(margin.upper)}` : '–', 'factors on the whole gain that still hold'],
+      [
+        'margin',
+        margin ? `${number(margin.lower)} to ${number(margin.upper)}` : '–',
+        'factors on the whole gain that still hold',
+      ],
       ['contact', contact, 'that the law is for'],
-      ['residual', number(answer.residual, 2), 'of the Riccati equation']];
-    const region = (/** @type {string} */ name, /** @type {string | null | undefined} */ address) => address && h('a', { href: `${here(address)}&format=svg` }, name);
+      ['residual', number(answer.residual, 2), 'of the Riccati equation'],
+    ];
+    const region = (/** @type {string} */ name, /** @type {string | null | undefined} */ address) =>
+      address && h('a', { href: `${here(address)}&format=svg` }, name);
     const picture = `${path}&format=svg`;
     this.#sheet.replaceChildren(
-      h('a', { class: 'picture', href: picture }, h('img', { src: picture, alt: `Eigenvalues of the closed loop on the unit circle, the largest ${number(radius)}; they are in the table. Below, the largest as the gain is scaled.` })),
-      h('div', {}, h('dl', { class: 'numbers', id: 'design-gains' }, ...rows.map(([name, value, meaning]) => h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning)))),
-        h('p', { class: 'buttons' }, h('button', { type: 'button', id: 'design-run', class: 'primary', click: () => this.#page.play(scene) }, 'Put it into the scene and run')),
-        h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Eigenvalues' }, h('table', { class: 'eigenvalues' },
-          h('thead', {}, h('tr', {}, ...['λ of the closed loop', '|λ|', 'λ without a law', '|λ|'].map((name) => h('th', { scope: 'col' }, name)))),
-          h('tbody', {}, ...Array.from({ length: Math.max(eigenvalues.length, open.length) }, (_, index) => h('tr', {},
-            ...[eigenvalues[index], open[index]].flatMap((one) => (one ? [complex(one), number(one.modulus)] : ['–', '–'])).map((text, column) => (column === 0 ? h('th', { scope: 'row' }, text) : h('td', {}, text)))))))),
+      h(
+        'a',
+        { class: 'picture', href: picture },
+        h('img', {
+          src: picture,
+          alt: `Eigenvalues of the closed loop on the unit circle, the largest ${number(radius)}; they are in the table. Below, the largest as the gain is scaled.`,
+        }),
+      ),
+      h(
+        'div',
+        {},
+        h(
+          'dl',
+          { class: 'numbers', id: 'design-gains' },
+          ...rows.map(([name, value, meaning]) =>
+            h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning)),
+          ),
+        ),
+        h(
+          'p',
+          { class: 'buttons' },
+          h(
+            'button',
+            { type: 'button', id: 'design-run', class: 'primary', click: () => this.#page.play(scene) },
+            'Put it into the scene and run',
+          ),
+        ),
+        h(
+          'div',
+          { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Eigenvalues' },
+          h(
+            'table',
+            { class: 'eigenvalues' },
+            h(
+              'thead',
+              {},
+              h(
+                'tr',
+                {},
+                ...['λ of the closed loop', '|λ|', 'λ without a law', '|λ|'].map((name) =>
+                  h('th', { scope: 'col' }, name),
+                ),
+              ),
+            ),
+            h(
+              'tbody',
+              {},
+              ...Array.from({ length: Math.max(eigenvalues.length, open.length) }, (_, index) =>
+                h(
+                  'tr',
+                  {},
+                  ...[eigenvalues[index], open[index]]
+                    .flatMap((one) => (one ? [complex(one), number(one.modulus)] : ['–', '–']))
+                    .map((text, column) => (column === 0 ? h('th', { scope: 'row' }, text) : h('td', {}, text))),
+                ),
+              ),
+            ),
+          ),
+        ),
         ...notes.map((note) => h('p', { class: 'muted small' }, ...prose(note[0].toUpperCase() + note.slice(1)), '.')),
-        (regions?.designed || regions?.proportional) && h('p', { class: 'actions', id: 'design-regions' }, 'What it survives: ', region('with the law', regions.designed), region('with the tilt gain', regions.proportional)),
-        h('p', { class: 'actions', id: 'design-links' }, ...actions({ id: 'design', title: 'Design a controller', path, formats: ['svg', 'png', 'csv', 'json'] }))));
+        (regions?.designed || regions?.proportional) &&
+          h(
+            'p',
+            { class: 'actions', id: 'design-regions' },
+            'What it survives: ',
+            region('with the law', regions.designed),
+            region('with the tilt gain', regions.proportional),
+          ),
+        h(
+          'p',
+          { class: 'actions', id: 'design-links' },
+          ...actions({ id: 'design', title: 'Design a controller', path, formats: ['svg', 'png', 'csv', 'json'] }),
+        ),
+      ),
+    );
     this.#sheet.hidden = false;
   }
 }

@@ -33,30 +33,69 @@ const here = (path) => path.replace(/^\//, '');
 const nearOne = (value) => value !== 1 && Math.abs(value - 1) < 1e-6;
 
 /** @param {number} value @param {string | null} unit */
-const rested = (value, unit) => (nearOne(value) && unit === null ? `1 ${value > 1 ? '+' : '\u2212'} ${number(Math.abs(value - 1), 3)}` : quantity(value, unit));
+const rested = (value, unit) =>
+  nearOne(value) && unit === null
+    ? `1 ${value > 1 ? '+' : '\u2212'} ${number(Math.abs(value - 1), 3)}`
+    : quantity(value, unit);
 
 /** @param {Says} says */
 function row({ method, verdict, value, unit, right, detail }) {
-  return h('li', { class: right ? 'right' : 'wrong' },
+  return h(
+    'li',
+    { class: right ? 'right' : 'wrong' },
     h('span', { class: 'sign', 'aria-hidden': 'true' }, right ? '✓' : '✗'),
-    h('div', {}, h('p', { class: 'claim' }, h('span', {}, ...marked(begun(method)), ': '),
-      h('strong', {}, ...marked(verdict)), value === null ? '' : ` (${rested(value, unit)})`, ' ', h('span', { class: 'chip' }, right ? 'right' : 'wrong')),
-    h('p', { class: 'muted' }, ...sentence(detail))));
+    h(
+      'div',
+      {},
+      h(
+        'p',
+        { class: 'claim' },
+        h('span', {}, ...marked(begun(method)), ': '),
+        h('strong', {}, ...marked(verdict)),
+        value === null ? '' : ` (${rested(value, unit)})`,
+        ' ',
+        h('span', { class: 'chip' }, right ? 'right' : 'wrong'),
+      ),
+      h('p', { class: 'muted' }, ...sentence(detail)),
+    ),
+  );
 }
 
 /** @param {Failure} failure @param {(failure: Failure) => void} play */
 function card(failure, play) {
   const { name, title, method, why, says, truth, ask, picture } = failure;
   const heading = `failure-${name}`;
-  return h('article', { class: 'failure', 'aria-labelledby': heading },
+  return h(
+    'article',
+    { class: 'failure', 'aria-labelledby': heading },
     h('h3', { id: heading }, ...marked(title)),
     h('p', { class: 'muted' }, 'The usual method: ', ...marked(method), '.'),
     h('ul', { class: 'says', 'aria-label': 'What each method says' }, ...says.map(row)),
-    h('p', { class: 'truth' }, h('strong', {}, 'In truth: ', ...marked(truth.verdict), '. '), ...sentence(truth.detail)),
+    h(
+      'p',
+      { class: 'truth' },
+      h('strong', {}, 'In truth: ', ...marked(truth.verdict), '. '),
+      ...sentence(truth.detail),
+    ),
     h('p', {}, ...marked(why)),
-    h('a', { class: 'picture', href: `${here(picture)}`, tabindex: 0 }, h('img', { src: here(picture), loading: 'lazy', width: 720, height: 542, alt: `Picture: ${title}. It opens by itself.` })),
-    h('p', { class: 'actions' }, h('button', { type: 'button', 'aria-describedby': heading, click: () => play(failure) }, 'Load and run'),
-      h('a', { href: here(ask), 'aria-label': `Ask the server: ${title}` }, 'Ask the server')));
+    h(
+      'a',
+      { class: 'picture', href: `${here(picture)}`, tabindex: 0 },
+      h('img', {
+        src: here(picture),
+        loading: 'lazy',
+        width: 720,
+        height: 542,
+        alt: `Picture: ${title}. It opens by itself.`,
+      }),
+    ),
+    h(
+      'p',
+      { class: 'actions' },
+      h('button', { type: 'button', 'aria-describedby': heading, click: () => play(failure) }, 'Load and run'),
+      h('a', { href: here(ask), 'aria-label': `Ask the server: ${title}` }, 'Ask the server'),
+    ),
+  );
 }
 
 /** @type {import('../panels.js').Module['mount']} */
@@ -71,8 +110,14 @@ async function show(root, play) {
   root.replaceChildren(told);
   try {
     const { failures } = await get('v1/failures');
-    root.replaceChildren(h('div', { class: 'failures' }, ...failures.map((/** @type {Failure} */ failure) => card(failure, play))),
-      h('p', { class: 'actions' }, ...actions({ id: 'gallery', title: 'Where usual methods fail', path: 'v1/failures?', formats: ['json'] })));
+    root.replaceChildren(
+      h('div', { class: 'failures' }, ...failures.map((/** @type {Failure} */ failure) => card(failure, play))),
+      h(
+        'p',
+        { class: 'actions' },
+        ...actions({ id: 'gallery', title: 'Where usual methods fail', path: 'v1/failures?', formats: ['json'] }),
+      ),
+    );
   } catch (error) {
     told.textContent = error instanceof Problem ? error.message : 'The server does not answer.';
     root.append(h('button', { type: 'button', click: () => void show(root, play) }, 'Try again'));

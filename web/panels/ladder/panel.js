@@ -18,7 +18,14 @@ import { number, parse, quantity } from '../../dom/numbers.js';
  */
 /** @typedef {{impacts: number, tolerance: number, rung: string, enough: string, reason: string, rungs: Rung[]}} LadderAnswer */
 
-const CHANGES = /** @type {const} */ ([['t', 's'], ['x', 'm'], ['theta', 'rad'], ['x_dot', 'm/s'], ['y_dot', 'm/s'], ['theta_dot', 'rad/s']]);
+const CHANGES = /** @type {const} */ ([
+  ['t', 's'],
+  ['x', 'm'],
+  ['theta', 'rad'],
+  ['x_dot', 'm/s'],
+  ['y_dot', 'm/s'],
+  ['theta_dot', 'rad/s'],
+]);
 const SYMBOLS = { t: 't', x: 'x', theta: 'θ', x_dot: 'ẋ', y_dot: 'ẏ', theta_dot: 'θ̇' };
 /** m/s */
 const MOST_DIFFERENCE = 10;
@@ -34,8 +41,24 @@ const USUAL = { impacts: '100', tolerance: '0.001' };
 
 class Ladder {
   #page;
-  #impacts = h('input', { id: 'ladder-impacts', type: 'text', inputmode: 'numeric', autocomplete: 'off', value: USUAL.impacts, 'aria-describedby': 'ladder-error', change: () => this.#changed() });
-  #tolerance = h('input', { id: 'ladder-tolerance', type: 'text', inputmode: 'decimal', autocomplete: 'off', value: USUAL.tolerance, 'aria-describedby': 'ladder-error', change: () => this.#changed() });
+  #impacts = h('input', {
+    id: 'ladder-impacts',
+    type: 'text',
+    inputmode: 'numeric',
+    autocomplete: 'off',
+    value: USUAL.impacts,
+    'aria-describedby': 'ladder-error',
+    change: () => this.#changed(),
+  });
+  #tolerance = h('input', {
+    id: 'ladder-tolerance',
+    type: 'text',
+    inputmode: 'decimal',
+    autocomplete: 'off',
+    value: USUAL.tolerance,
+    'aria-describedby': 'ladder-error',
+    change: () => this.#changed(),
+  });
   #error = h('p', { class: 'error', id: 'ladder-error' });
   #told = h('p', { id: 'ladder-told', role: 'status' });
   #body = h('tbody');
@@ -52,16 +75,61 @@ class Ladder {
    */
   constructor(root, page) {
     this.#page = page;
-    const head = ['Model', 'asked for by', 'ns/impact', 'it ends', 'against the one below', 'most in the state', 'needed'];
-    this.#sheet = h('div', { class: 'ladder-sheet', hidden: true }, h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Models, from the simplest up' },
-      h('table', { class: 'rungs' }, h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))), this.#body)), this.#links);
-    root.append(h('form', { class: 'ladder-form', novalidate: true, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.#refresh(); } },
-      h('p', {}, h('label', { for: 'ladder-impacts' }, 'Impacts'), this.#impacts),
-      h('p', {}, h('label', { for: 'ladder-tolerance' }, 'Difference that matters'), this.#tolerance, h('span', { class: 'unit' }, 'm/s')), this.#error), this.#told, this.#sheet);
-    new IntersectionObserver((entries) => {
-      this.#near = entries.some(({ isIntersecting }) => isIntersecting);
-      if (this.#near) void this.#refresh();
-    }, { rootMargin: '100px 0px' }).observe(root);
+    const head = [
+      'Model',
+      'asked for by',
+      'ns/impact',
+      'it ends',
+      'against the one below',
+      'most in the state',
+      'needed',
+    ];
+    this.#sheet = h(
+      'div',
+      { class: 'ladder-sheet', hidden: true },
+      h(
+        'div',
+        { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Models, from the simplest up' },
+        h(
+          'table',
+          { class: 'rungs' },
+          h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))),
+          this.#body,
+        ),
+      ),
+      this.#links,
+    );
+    root.append(
+      h(
+        'form',
+        {
+          class: 'ladder-form',
+          novalidate: true,
+          submit: (/** @type {Event} */ event) => {
+            event.preventDefault();
+            void this.#refresh();
+          },
+        },
+        h('p', {}, h('label', { for: 'ladder-impacts' }, 'Impacts'), this.#impacts),
+        h(
+          'p',
+          {},
+          h('label', { for: 'ladder-tolerance' }, 'Difference that matters'),
+          this.#tolerance,
+          h('span', { class: 'unit' }, 'm/s'),
+        ),
+        this.#error,
+      ),
+      this.#told,
+      this.#sheet,
+    );
+    new IntersectionObserver(
+      (entries) => {
+        this.#near = entries.some(({ isIntersecting }) => isIntersecting);
+        if (this.#near) void this.#refresh();
+      },
+      { rootMargin: '100px 0px' },
+    ).observe(root);
   }
 
   #changed() {
@@ -72,7 +140,11 @@ class Ladder {
   /** Its part of the page’s address. */
   query() {
     const typed = { impacts: this.#impacts.value.trim(), tolerance: this.#tolerance.value.trim() };
-    return new URLSearchParams(/** @type {const} */ (['impacts', 'tolerance']).filter((name) => typed[name] !== USUAL[name]).map((name) => [`ladder.${name}`, typed[name]]));
+    return new URLSearchParams(
+      /** @type {const} */ (['impacts', 'tolerance'])
+        .filter((name) => typed[name] !== USUAL[name])
+        .map((name) => [`ladder.${name}`, typed[name]]),
+    );
   }
 
   /** What is wrong in it is said beside it. @param {URLSearchParams} link */
@@ -85,14 +157,23 @@ class Ladder {
   }
 
   /** The scene of the page is another one. */
-  sceneChanged = settled(300, () => { if (this.#near) void this.#refresh(); });
+  sceneChanged = settled(300, () => {
+    if (this.#near) void this.#refresh();
+  });
 
   /** What is typed here; null where it is wrong, which is said. */
   #request() {
     const impacts = parse(this.#impacts.value, '1');
     const tolerance = parse(this.#tolerance.value, 'm/s');
-    const [counted, measured] = [impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS, tolerance !== null && tolerance > 0 && tolerance <= MOST_DIFFERENCE];
-    this.#error.textContent = !counted ? `Impacts must be a whole number from 1 to ${number(MOST_IMPACTS, 6)}.` : !measured ? `The difference must be a number above 0 and up to ${MOST_DIFFERENCE} m/s.` : '';
+    const [counted, measured] = [
+      impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS,
+      tolerance !== null && tolerance > 0 && tolerance <= MOST_DIFFERENCE,
+    ];
+    this.#error.textContent = !counted
+      ? `Impacts must be a whole number from 1 to ${number(MOST_IMPACTS, 6)}.`
+      : !measured
+        ? `The difference must be a number above 0 and up to ${MOST_DIFFERENCE} m/s.`
+        : '';
     this.#impacts.setAttribute('aria-invalid', String(!counted));
     this.#tolerance.setAttribute('aria-invalid', String(!measured));
     if (!counted || !measured) return null;
@@ -109,41 +190,105 @@ class Ladder {
     if (path === this.#shown) return;
     this.#shown = path;
     this.#asking?.abort();
-    const { signal } = this.#asking = new AbortController();
+    const { signal } = (this.#asking = new AbortController());
     try {
       this.#show(await get(path, signal), path);
     } catch (error) {
       if (signal.aborted) return;
       this.#sheet.hidden = true;
-      const told = error instanceof Problem ? error.errors.map(({ detail }) => detail).join(' ') || error.message : 'The server does not answer.';
-      this.#told.replaceChildren(...marked(told), ' ', h('button', { type: 'button', click: () => { this.#shown = ''; void this.#refresh(); } }, 'Try again'));
+      const told =
+        error instanceof Problem
+          ? error.errors.map(({ detail }) => detail).join(' ') || error.message
+          : 'The server does not answer.';
+      this.#told.replaceChildren(
+        ...marked(told),
+        ' ',
+        h(
+          'button',
+          {
+            type: 'button',
+            click: () => {
+              this.#shown = '';
+              void this.#refresh();
+            },
+          },
+          'Try again',
+        ),
+      );
     }
   }
 
   /** @param {LadderAnswer} answer @param {string} path */
   #show({ rungs, enough, reason }, path) {
     this.#sheet.hidden = false;
-    this.#told.replaceChildren(h('strong', {}, `Enough: ${words(enough)}. `), ...prose(reason[0].toUpperCase() + reason.slice(1)), '.');
-    this.#body.replaceChildren(...rungs.map((rung) => {
-      const { name, forced, outcome, change, needed, cost_ns_per_impact: cost } = rung;
-      const state = change?.state;
-      return h('tr', { class: name === enough ? 'enough' : '' },
-        h('th', { scope: 'row' }, words(name), name === enough && ' ', name === enough && h('span', { class: 'chip' }, 'enough')),
-        h('td', {}, ...(forced ? [h('code', {}, forced.field), h('span', { class: 'muted' }, ...prose(forced.detail.replace(/\s+/g, ' ')))] : ['–'])),
-        h('td', {}, number(cost)),
-        h('td', {}, outcome ? `${words(outcome.kind)}, ${number(outcome.impacts)}` : '–'),
-        h('td', {}, ...(change ? this.#change(change) : [rung.reason ? h('span', { class: 'muted' }, ...prose(rung.reason)) : '–'])),
-        h('td', {}, state?.difference == null ? '–' : `${quantity(state.difference, 'm/s', 3)}${state.impact === null ? '' : ` at ${number(state.impact)}`}`),
-        h('td', {}, needed === null ? '–' : needed ? 'needed' : 'not needed'));
-    }));
-    this.#links.replaceChildren(...actions({ id: 'ladder', title: 'Which model does it need', path, formats: ['csv', 'json'] }));
+    this.#told.replaceChildren(
+      h('strong', {}, `Enough: ${words(enough)}. `),
+      ...prose(reason[0].toUpperCase() + reason.slice(1)),
+      '.',
+    );
+    this.#body.replaceChildren(
+      ...rungs.map((rung) => {
+        const { name, forced, outcome, change, needed, cost_ns_per_impact: cost } = rung;
+        const state = change?.state;
+        return h(
+          'tr',
+          { class: name === enough ? 'enough' : '' },
+          h(
+            'th',
+            { scope: 'row' },
+            words(name),
+            name === enough && ' ',
+            name === enough && h('span', { class: 'chip' }, 'enough'),
+          ),
+          h(
+            'td',
+            {},
+            ...(forced
+              ? [
+                  h('code', {}, forced.field),
+                  h('span', { class: 'muted' }, ...prose(forced.detail.replace(/\s+/g, ' '))),
+                ]
+              : ['–']),
+          ),
+          h('td', {}, number(cost)),
+          h('td', {}, outcome ? `${words(outcome.kind)}, ${number(outcome.impacts)}` : '–'),
+          h(
+            'td',
+            {},
+            ...(change
+              ? this.#change(change)
+              : [rung.reason ? h('span', { class: 'muted' }, ...prose(rung.reason)) : '–']),
+          ),
+          h(
+            'td',
+            {},
+            state?.difference == null
+              ? '–'
+              : `${quantity(state.difference, 'm/s', 3)}${state.impact === null ? '' : ` at ${number(state.impact)}`}`,
+          ),
+          h('td', {}, needed === null ? '–' : needed ? 'needed' : 'not needed'),
+        );
+      }),
+    );
+    this.#links.replaceChildren(
+      ...actions({ id: 'ladder', title: 'Which model does it need', path, formats: ['csv', 'json'] }),
+    );
   }
 
   /** @param {NonNullable<Rung['change']>} change */
   #change(change) {
-    const most = CHANGES.map(([name, unit]) => ({ name, unit, value: change[name].difference })).filter(({ value }) => value !== null && value > 0);
+    const most = CHANGES.map(([name, unit]) => ({ name, unit, value: change[name].difference })).filter(
+      ({ value }) => value !== null && value > 0,
+    );
     const ends = change.same_outcome ? '' : 'ends otherwise';
     if (most.length === 0) return [ends || 'the same in every number'];
-    return [ends, h('span', { class: 'muted' }, most.map(({ name, unit, value }) => `Δ${SYMBOLS[name]} ${quantity(value, unit, 2)}`).join(', '))];
+    return [
+      ends,
+      h(
+        'span',
+        { class: 'muted' },
+        most.map(({ name, unit, value }) => `Δ${SYMBOLS[name]} ${quantity(value, unit, 2)}`).join(', '),
+      ),
+    ];
   }
 }

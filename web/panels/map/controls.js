@@ -33,7 +33,11 @@ export class Controls {
   #impactsError = h('p', { class: 'error', id: 'map-impacts-error' });
   #columns;
   #compute = h('button', { type: 'button', id: 'map-compute', click: () => this.#acts.compute() }, 'Compute');
-  #cancel = h('button', { type: 'button', id: 'map-cancel', disabled: true, click: () => this.#acts.cancel() }, 'Cancel');
+  #cancel = h(
+    'button',
+    { type: 'button', id: 'map-cancel', disabled: true, click: () => this.#acts.cancel() },
+    'Cancel',
+  );
   #back = h('button', { type: 'button', id: 'map-back', disabled: true, click: () => this.#acts.back() }, 'Back');
   #progress = h('progress', { id: 'map-progress', 'aria-label': 'Rows of the map', max: 1, value: 0 });
   #count = h('span', { class: 'muted' });
@@ -49,17 +53,53 @@ export class Controls {
     this.#fields = sidesOf(fields);
     this.#settings = settings;
     this.#sides = { x: this.#side('x', 'Across'), y: this.#side('y', 'Upwards') };
-    this.#quantity = h('select', { id: 'map-quantity', change: () => this.#read() }, ...Object.entries(QUANTITIES).map(([value, { title }]) => h('option', { value }, title)));
-    this.#impacts = h('input', { id: 'map-impacts', type: 'text', inputmode: 'numeric', autocomplete: 'off', 'aria-describedby': 'map-impacts-error', change: () => this.#read() });
-    this.#columns = h('select', { id: 'map-columns', change: () => this.#read() }, ...COLUMNS.map((value) => h('option', { value }, times(value))));
-    this.element = h('form', { class: 'map-controls', novalidate: true, submit: (event) => { event.preventDefault(); this.#acts.compute(); } },
-      this.#sides.x.element, this.#sides.y.element,
-      h('fieldset', {}, h('legend', {}, 'Shown'),
+    this.#quantity = h(
+      'select',
+      { id: 'map-quantity', change: () => this.#read() },
+      ...Object.entries(QUANTITIES).map(([value, { title }]) => h('option', { value }, title)),
+    );
+    this.#impacts = h('input', {
+      id: 'map-impacts',
+      type: 'text',
+      inputmode: 'numeric',
+      autocomplete: 'off',
+      'aria-describedby': 'map-impacts-error',
+      change: () => this.#read(),
+    });
+    this.#columns = h(
+      'select',
+      { id: 'map-columns', change: () => this.#read() },
+      ...COLUMNS.map((value) => h('option', { value }, times(value))),
+    );
+    this.element = h(
+      'form',
+      {
+        class: 'map-controls',
+        novalidate: true,
+        submit: (event) => {
+          event.preventDefault();
+          this.#acts.compute();
+        },
+      },
+      this.#sides.x.element,
+      this.#sides.y.element,
+      h(
+        'fieldset',
+        {},
+        h('legend', {}, 'Shown'),
         h('p', { class: 'map-row' }, h('label', { for: 'map-quantity' }, 'Colour'), this.#quantity),
-        h('p', { class: 'map-row' }, h('label', { for: 'map-impacts' }, 'Contacts'), this.#impacts), this.#impactsError,
-        h('p', { class: 'map-row' }, h('label', { for: 'map-columns' }, 'Cells'), this.#columns)),
-      h('div', { class: 'map-go' }, h('p', { class: 'buttons' }, this.#compute, this.#cancel, this.#back),
-        h('p', { class: 'map-progress' }, this.#progress, this.#count), this.#told));
+        h('p', { class: 'map-row' }, h('label', { for: 'map-impacts' }, 'Contacts'), this.#impacts),
+        this.#impactsError,
+        h('p', { class: 'map-row' }, h('label', { for: 'map-columns' }, 'Cells'), this.#columns),
+      ),
+      h(
+        'div',
+        { class: 'map-go' },
+        h('p', { class: 'buttons' }, this.#compute, this.#cancel, this.#back),
+        h('p', { class: 'map-progress' }, this.#progress, this.#count),
+        this.#told,
+      ),
+    );
     this.show(settings);
   }
 
@@ -68,14 +108,58 @@ export class Controls {
     const id = `map-${name}`;
     const error = h('p', { class: 'error', id: `${id}-error` });
     const groups = [...new Set(this.#fields.map(({ group }) => group))];
-    const field = h('select', { id, 'aria-label': `Field ${title.toLowerCase()}`, 'aria-describedby': error.id, change: () => this.#turn(name) },
-      ...groups.map((group) => h('optgroup', { label: group[0].toUpperCase() + group.slice(1) },
-        ...this.#fields.filter((one) => one.group === group).map((one) => h('option', { value: one.path }, `${one.title}${one.symbol && !one.symbol.includes('_') ? ` ${one.symbol}` : ''}`)))));
+    const field = h(
+      'select',
+      {
+        id,
+        'aria-label': `Field ${title.toLowerCase()}`,
+        'aria-describedby': error.id,
+        change: () => this.#turn(name),
+      },
+      ...groups.map((group) =>
+        h(
+          'optgroup',
+          { label: group[0].toUpperCase() + group.slice(1) },
+          ...this.#fields
+            .filter((one) => one.group === group)
+            .map((one) =>
+              h(
+                'option',
+                { value: one.path },
+                `${one.title}${one.symbol && !one.symbol.includes('_') ? ` ${one.symbol}` : ''}`,
+              ),
+            ),
+        ),
+      ),
+    );
     /** @param {'from' | 'to'} end */
-    const ending = (end) => h('input', { id: `${id}-${end}`, type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false', 'aria-describedby': error.id, change: () => this.#read() });
+    const ending = (end) =>
+      h('input', {
+        id: `${id}-${end}`,
+        type: 'text',
+        inputmode: 'decimal',
+        autocomplete: 'off',
+        spellcheck: 'false',
+        'aria-describedby': error.id,
+        change: () => this.#read(),
+      });
     const [from, to, unit] = [ending('from'), ending('to'), h('span', { class: 'unit' })];
-    const element = h('fieldset', {}, h('legend', {}, title), field,
-      h('p', { class: 'map-ends' }, h('label', { for: from.id }, 'from'), from, h('label', { for: to.id }, 'to'), to, unit), error);
+    const element = h(
+      'fieldset',
+      {},
+      h('legend', {}, title),
+      field,
+      h(
+        'p',
+        { class: 'map-ends' },
+        h('label', { for: from.id }, 'from'),
+        from,
+        h('label', { for: to.id }, 'to'),
+        to,
+        unit,
+      ),
+      error,
+    );
     return { element, field, from, to, unit, error };
   }
 
@@ -111,7 +195,9 @@ export class Controls {
       field.value = settings[name].parameter;
       this.#put(from, settings[name].from);
       this.#put(to, settings[name].to);
-      unit.textContent = unitAfter(this.#fields.find(({ path }) => path === settings[name].parameter)?.unit ?? '').trim();
+      unit.textContent = unitAfter(
+        this.#fields.find(({ path }) => path === settings[name].parameter)?.unit ?? '',
+      ).trim();
     }
     this.#quantity.value = settings.quantity;
     this.#impacts.value = String(settings.impacts);
@@ -131,13 +217,16 @@ export class Controls {
       for (const end of /** @type {const} */ (['from', 'to'])) {
         const input = side[end];
         const value = input.value === input.dataset.text ? Number(input.dataset.value) : parse(input.value, unit);
-        if (value === null) errors.push({ pointer: `/${name}/${end}`, detail: `“${input.value.trim()}” is not a number.` });
+        if (value === null)
+          errors.push({ pointer: `/${name}/${end}`, detail: `“${input.value.trim()}” is not a number.` });
         else settings[name][end] = value;
       }
-      if (errors.length === 0 && settings[name].from >= settings[name].to) errors.push({ pointer: `/${name}/from`, detail: `It must be below ${number(settings[name].to, 8)}.` });
+      if (errors.length === 0 && settings[name].from >= settings[name].to)
+        errors.push({ pointer: `/${name}/from`, detail: `It must be below ${number(settings[name].to, 8)}.` });
     }
     const impacts = parse(this.#impacts.value, null);
-    if (impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS) settings.impacts = impacts;
+    if (impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS)
+      settings.impacts = impacts;
     else errors.push({ pointer: '/impacts', detail: `It must be a whole number from 1 to ${number(MOST_IMPACTS)}.` });
     settings.quantity = this.#quantity.value;
     settings.columns = Number(this.#columns.value);

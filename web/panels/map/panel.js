@@ -31,7 +31,15 @@ class MapPanel {
   #settings;
   #controls;
   #picture;
-  #box = h('div', { class: 'map-box', id: 'map-box', tabindex: 0, role: 'application', 'aria-roledescription': 'map', 'aria-label': 'Stability map', 'aria-describedby': 'map-hint' });
+  #box = h('div', {
+    class: 'map-box',
+    id: 'map-box',
+    tabindex: 0,
+    role: 'application',
+    'aria-roledescription': 'map',
+    'aria-label': 'Stability map',
+    'aria-describedby': 'map-hint',
+  });
   #readout = h('output', { class: 'readout', id: 'map-readout', 'aria-live': 'off' });
   // Spoken when keys move the cursor; a pointer’s way over the map is not.
   #spoken = h('p', { class: 'unseen', role: 'status' });
@@ -59,10 +67,29 @@ class MapPanel {
     this.#page = page;
     this.#settings = readSettings(link, page.fields).settings;
     this.#controls = new Controls(page.fields, this.#settings, {
-      changed: (settings) => this.#set(settings), compute: () => void this.#ask(), cancel: () => this.#cancel(), back: () => this.#back(),
+      changed: (settings) => this.#set(settings),
+      compute: () => void this.#ask(),
+      cancel: () => this.#cancel(),
+      back: () => this.#back(),
     });
-    root.append(this.#notice, this.#controls.element, h('div', { class: 'map-sheet' }, this.#box, this.#readout, this.#spoken, this.#legend,
-      h('p', { class: 'muted small', id: 'map-hint' }, 'Click a point to run it; drag a rectangle to look closer, Escape goes back. With keys: arrows move, Enter runs, + looks closer.'), this.#links));
+    root.append(
+      this.#notice,
+      this.#controls.element,
+      h(
+        'div',
+        { class: 'map-sheet' },
+        this.#box,
+        this.#readout,
+        this.#spoken,
+        this.#legend,
+        h(
+          'p',
+          { class: 'muted small', id: 'map-hint' },
+          'Click a point to run it; drag a rectangle to look closer, Escape goes back. With keys: arrows move, Enter runs, + looks closer.',
+        ),
+        this.#links,
+      ),
+    );
     this.#picture = new Picture(this.#box, this.#settings, this.#names(this.#settings));
     listen(this.#box, this.#picture, {
       point: (cell, byKey) => this.#read(cell, byKey),
@@ -72,12 +99,16 @@ class MapPanel {
     });
     root.addEventListener('keydown', (event) => {
       // In a list it closes the list.
-      if (event.key === 'Escape' && !event.defaultPrevented && !(event.target instanceof HTMLSelectElement)) this.#back();
+      if (event.key === 'Escape' && !event.defaultPrevented && !(event.target instanceof HTMLSelectElement))
+        this.#back();
     });
-    new IntersectionObserver((entries) => {
-      this.#near = entries.some(({ isIntersecting }) => isIntersecting);
-      if (this.#near) this.#refresh();
-    }, { rootMargin: '100px 0px' }).observe(root);
+    new IntersectionObserver(
+      (entries) => {
+        this.#near = entries.some(({ isIntersecting }) => isIntersecting);
+        if (this.#near) this.#refresh();
+      },
+      { rootMargin: '100px 0px' },
+    ).observe(root);
   }
 
   /** The map’s part of the page’s address. */
@@ -94,7 +125,8 @@ class MapPanel {
     this.#controls.canGoBack(false);
     this.#mark();
     this.#refresh();
-    this.#notice.textContent = dropped.length > 0 ? `The map of this link was not whole. Dropped: ${dropped.join('; ')}.` : '';
+    this.#notice.textContent =
+      dropped.length > 0 ? `The map of this link was not whole. Dropped: ${dropped.join('; ')}.` : '';
     return [];
   }
 
@@ -112,7 +144,8 @@ class MapPanel {
     if (!this.#near || String(request) === this.#asked) return;
     const { columns, impacts, quantity } = this.#settings;
     const bounces = QUANTITIES[quantity].runs ? columns * rowsOf(columns) * impacts : 0;
-    if (request && bounces > UNASKED_BOUNCES && this.#asked !== '') this.#controls.say(['The scene has changed since.'], 'stale');
+    if (request && bounces > UNASKED_BOUNCES && this.#asked !== '')
+      this.#controls.say(['The scene has changed since.'], 'stale');
     else void this.#ask();
   }
 
@@ -127,10 +160,11 @@ class MapPanel {
     this.#controls.busy(null);
     const request = this.#request();
     this.#asked = String(request);
-    if (!request) return this.#controls.say(['A parameter of the scene is not a number; it is marked among them.'], 'wrong');
+    if (!request)
+      return this.#controls.say(['A parameter of the scene is not a number; it is marked among them.'], 'wrong');
     const kept = this.#kept.get(this.#asked);
     if (kept) return this.#finish(kept, request);
-    const asking = this.#asking = new AbortController();
+    const asking = (this.#asking = new AbortController());
     const { signal } = asking;
     const settings = structuredClone(this.#settings);
     const rows = rowsOf(settings.columns);
@@ -158,8 +192,19 @@ class MapPanel {
       if (signal.aborted) return;
       const problem = error instanceof Problem ? error : null;
       const homeless = this.#controls.blame(problem?.errors ?? []);
-      const words = problem ? (problem.errors.length === 0 ? problem.message : homeless.join(' ')) : 'The server does not answer.';
-      this.#controls.say([arrived > 0 ? `${words} ${arrived} of ${rows} rows are there.` : words || 'There is no such map; see what is marked.'], 'wrong');
+      const words = problem
+        ? problem.errors.length === 0
+          ? problem.message
+          : homeless.join(' ')
+        : 'The server does not answer.';
+      this.#controls.say(
+        [
+          arrived > 0
+            ? `${words} ${arrived} of ${rows} rows are there.`
+            : words || 'There is no such map; see what is marked.',
+        ],
+        'wrong',
+      );
     } finally {
       if (this.#asking === asking) {
         this.#asking = null;
@@ -181,10 +226,25 @@ class MapPanel {
     this.#grid = grid;
     this.#picture.show(grid.settings, this.#names(grid.settings), grid);
     this.#mark();
-    this.#links.replaceChildren(...actions({ id: 'map', title: 'Stability map', path: `v1/regions?${request}`, formats: ['svg', 'png', 'csv', 'json'] }));
-    const swatch = (/** @type {string} */ kind, /** @type {string} */ words) => h('span', {}, h('span', { class: `swatch ${kind}`, 'aria-hidden': 'true' }), words);
+    this.#links.replaceChildren(
+      ...actions({
+        id: 'map',
+        title: 'Stability map',
+        path: `v1/regions?${request}`,
+        formats: ['svg', 'png', 'csv', 'json'],
+      }),
+    );
+    const swatch = (/** @type {string} */ kind, /** @type {string} */ words) =>
+      h('span', {}, h('span', { class: `swatch ${kind}`, 'aria-hidden': 'true' }), words);
     const has = (/** @type {number} */ residue) => grid.boundary.some((segment) => segment.residue === residue);
-    this.#legend.replaceChildren(...[swatch('scene', 'the scene'), has(1) && swatch('whole', 'linear boundary, R = 1'), has(0) && swatch('broken', 'linear boundary, R = 0'), grid.lacks && swatch('none', QUANTITIES[grid.settings.quantity].runs ? 'no such scene' : 'no fixed point')].filter((one) => one !== false));
+    this.#legend.replaceChildren(
+      ...[
+        swatch('scene', 'the scene'),
+        has(1) && swatch('whole', 'linear boundary, R = 1'),
+        has(0) && swatch('broken', 'linear boundary, R = 0'),
+        grid.lacks && swatch('none', QUANTITIES[grid.settings.quantity].runs ? 'no such scene' : 'no fixed point'),
+      ].filter((one) => one !== false),
+    );
   }
 
   /** @param {Grid} grid whole @param {URLSearchParams} request */
@@ -192,12 +252,21 @@ class MapPanel {
     this.#show(grid, request);
     const total = grid.columns * grid.rows;
     const { quantity, x, y } = grid.settings;
-    const counts = Object.entries(grid.counts ?? {}).filter(([, count]) => count > 0).sort(([, a], [, b]) => b - a)
+    const counts = Object.entries(grid.counts ?? {})
+      .filter(([, count]) => count > 0)
+      .sort(([, a], [, b]) => b - a)
       .map(([name, count]) => `${number(count, 7)} ${name === 'none' ? 'no such scene' : name.replaceAll('_', ' ')}`);
     const { low, high } = grid.scale;
     this.#controls.count({ arrived: grid.arrived, rows: grid.rows });
-    this.#controls.say([QUANTITIES[quantity].runs ? `${number(total, 7)} cells: ${counts.join(', ')}.` : `${number(total, 7)} cells, from ${number(low)} to ${number(high)}.`]);
-    this.#box.setAttribute('aria-label', `Stability map. ${QUANTITIES[quantity].title} over ${this.#title(x.parameter)} from ${number(x.from)} to ${number(x.to)} and ${this.#title(y.parameter)} from ${number(y.from)} to ${number(y.to)}.`);
+    this.#controls.say([
+      QUANTITIES[quantity].runs
+        ? `${number(total, 7)} cells: ${counts.join(', ')}.`
+        : `${number(total, 7)} cells, from ${number(low)} to ${number(high)}.`,
+    ]);
+    this.#box.setAttribute(
+      'aria-label',
+      `Stability map. ${QUANTITIES[quantity].title} over ${this.#title(x.parameter)} from ${number(x.from)} to ${number(x.to)} and ${this.#title(y.parameter)} from ${number(y.from)} to ${number(y.to)}.`,
+    );
     this.#read(this.#picture.cursor, false);
   }
 
@@ -231,7 +300,10 @@ class MapPanel {
   #mark() {
     const scene = this.#page.scene();
     const { x, y } = this.#grid?.settings ?? this.#settings;
-    const [across, upwards] = [x, y].map(({ parameter }) => { const field = this.#field(parameter); return field && playedAt(scene, field); });
+    const [across, upwards] = [x, y].map(({ parameter }) => {
+      const field = this.#field(parameter);
+      return field && playedAt(scene, field);
+    });
     this.#picture.mark(typeof across === 'number' && typeof upwards === 'number' ? { x: across, y: upwards } : null);
     if (!this.#picture.cursor) this.#read(null, false);
   }
@@ -245,7 +317,11 @@ class MapPanel {
   #read(pointed, byKey) {
     const grid = this.#grid;
     const cell = pointed ?? this.#cellOfScene();
-    const words = !grid ? '' : !cell ? 'The scene lies outside of this map' : `${pointed ? '' : 'The scene’s cell:   '}${this.#words(grid, cell)}`;
+    const words = !grid
+      ? ''
+      : !cell
+        ? 'The scene lies outside of this map'
+        : `${pointed ? '' : 'The scene’s cell:   '}${this.#words(grid, cell)}`;
     this.#readout.textContent = unbroken(words);
     if (byKey) this.#spoken.textContent = words;
   }
@@ -253,17 +329,26 @@ class MapPanel {
   /** @param {Grid} grid @param {Cell} cell */
   #words(grid, { column, row }) {
     const { x, y, quantity, impacts } = grid.settings;
-    const place = [[x, grid.x(column)], [y, grid.y(row)]].map(([side, value]) => {
-      const { parameter, from, to } = /** @type {import('./settings.js').Side} */ (side);
-      // As many digits as tell neighbours apart.
-      const digits = Math.max(4, Math.ceil(Math.log10(Math.max(Math.abs(from), Math.abs(to)) * grid.columns / (to - from))) + 1);
-      return `${this.#symbol(parameter)} ${withUnit(Number(value), this.#field(parameter)?.unit ?? '', digits)}`;
-    }).join('   ');
+    const place = [
+      [x, grid.x(column)],
+      [y, grid.y(row)],
+    ]
+      .map(([side, value]) => {
+        const { parameter, from, to } = /** @type {import('./settings.js').Side} */ (side);
+        // As many digits as tell neighbours apart.
+        const digits = Math.max(
+          4,
+          Math.ceil(Math.log10((Math.max(Math.abs(from), Math.abs(to)) * grid.columns) / (to - from))) + 1,
+        );
+        return `${this.#symbol(parameter)} ${withUnit(Number(value), this.#field(parameter)?.unit ?? '', digits)}`;
+      })
+      .join('   ');
     if (!grid.has(row)) return `${place}   not computed yet`;
     const value = grid.values[row * grid.columns + column];
     const outcome = grid.names[grid.outcomes[row * grid.columns + column]]?.replaceAll('_', ' ');
     if (Number.isNaN(value)) return `${place}   ${QUANTITIES[quantity].runs ? 'no such scene' : 'no fixed point'}`;
-    if (quantity === 'survival') return `${place}   ${number(value, 7)} of ${number(impacts, 7)} contacts survived   ${outcome}`;
+    if (quantity === 'survival')
+      return `${place}   ${number(value, 7)} of ${number(impacts, 7)} contacts survived   ${outcome}`;
     if (quantity === 'max_theta') return `${place}   largest |θ| ${withUnit(value, 'rad')}   ${outcome}`;
     return `${place}   ${quantity === 'residue' ? `R ${number(value)}` : `max |λ| ${number(value, 6)}`}`;
   }
@@ -272,14 +357,29 @@ class MapPanel {
   #launch({ column, row }) {
     const grid = this.#grid;
     if (!grid?.has(row)) return;
-    if (QUANTITIES[grid.settings.quantity].runs && Number.isNaN(grid.values[row * grid.columns + column])) return this.#controls.say(['There is no such scene to run.'], 'said');
+    if (QUANTITIES[grid.settings.quantity].runs && Number.isNaN(grid.values[row * grid.columns + column]))
+      return this.#controls.say(['There is no such scene to run.'], 'said');
     const { x, y } = grid.settings;
     this.#page.launch({ [x.parameter]: grid.x(column), [y.parameter]: grid.y(row) });
-    const [across, upwards] = [[x, grid.x(column)], [y, grid.y(row)]].map(([side, value]) => {
+    const [across, upwards] = [
+      [x, grid.x(column)],
+      [y, grid.y(row)],
+    ].map(([side, value]) => {
       const { parameter } = /** @type {import('./settings.js').Side} */ (side);
       return `${this.#title(parameter)} ${withUnit(Number(value), this.#field(parameter)?.unit ?? '')}`;
     });
-    this.#controls.say([`Released with ${across}, ${upwards}. `, h('button', { type: 'button', id: 'map-run', click: () => document.querySelector('#run-state')?.scrollIntoView({ block: 'start' }) }, 'Show the run')]);
+    this.#controls.say([
+      `Released with ${across}, ${upwards}. `,
+      h(
+        'button',
+        {
+          type: 'button',
+          id: 'map-run',
+          click: () => document.querySelector('#run-state')?.scrollIntoView({ block: 'start' }),
+        },
+        'Show the run',
+      ),
+    ]);
   }
 
   /** @param {Settings} settings by the controls */
@@ -305,7 +405,8 @@ class MapPanel {
     const { x, y } = this.#grid.settings;
     const settings = { ...this.#settings, x: this.#part(x, low.x, high.x), y: this.#part(y, low.y, high.y) };
     for (const { from, to } of [settings.x, settings.y]) {
-      if (to - from <= Math.max(Math.abs(from), Math.abs(to)) * 1e-9) return this.#controls.say(['This is as close as it goes.']);
+      if (to - from <= Math.max(Math.abs(from), Math.abs(to)) * 1e-9)
+        return this.#controls.say(['This is as close as it goes.']);
     }
     this.#views.push({ x, y });
     this.#settings = settings;
@@ -322,7 +423,9 @@ class MapPanel {
   #part({ parameter }, low, high) {
     const field = this.#field(parameter);
     const decimals = Math.min(15, Math.max(0, 3 - Math.floor(Math.log10(high - low))));
-    const [from, to] = [low, high].map((value) => Math.min(field?.maximum ?? Infinity, Math.max(field?.minimum ?? -Infinity, Number(value.toFixed(decimals)))));
+    const [from, to] = [low, high].map((value) =>
+      Math.min(field?.maximum ?? Infinity, Math.max(field?.minimum ?? -Infinity, Number(value.toFixed(decimals)))),
+    );
     return { parameter, from, to };
   }
 

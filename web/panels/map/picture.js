@@ -90,8 +90,12 @@ export class Picture {
     const { x, y } = this.#settings;
     const [dx, dy] = [(x.to - x.from) / (this.columns - 1) / 2, (y.to - y.from) / (this.rows - 1) / 2];
     return {
-      left: ROOM.left, top: ROOM.top, width: Math.max(1, width - ROOM.left - ROOM.right), height: Math.max(1, height - ROOM.top - ROOM.bottom),
-      x: { low: x.from - dx, high: x.to + dx }, y: { low: y.from - dy, high: y.to + dy },
+      left: ROOM.left,
+      top: ROOM.top,
+      width: Math.max(1, width - ROOM.left - ROOM.right),
+      height: Math.max(1, height - ROOM.top - ROOM.bottom),
+      x: { low: x.from - dx, high: x.to + dx },
+      y: { low: y.from - dy, high: y.to + dy },
     };
   }
 
@@ -104,8 +108,8 @@ export class Picture {
   cellAt(px, py) {
     const { left, top, width, height } = this.frame;
     const { columns, rows } = this;
-    const column = Math.floor((px - left) / width * columns);
-    const row = Math.floor((top + height - py) / height * rows);
+    const column = Math.floor(((px - left) / width) * columns);
+    const row = Math.floor(((top + height - py) / height) * rows);
     return column >= 0 && column < columns && row >= 0 && row < rows ? { column, row } : null;
   }
 
@@ -143,7 +147,8 @@ export class Picture {
           const value = grid.values[row * grid.columns + column];
           if (Number.isNaN(value)) continue;
           const share = high > low ? (value - low) * scale : COLOURS / 2;
-          pixels[(grid.rows - 1 - row) * grid.columns + column] = PIXELS[Math.max(0, Math.min(COLOURS - 1, Math.floor(share)))];
+          pixels[(grid.rows - 1 - row) * grid.columns + column] =
+            PIXELS[Math.max(0, Math.min(COLOURS - 1, Math.floor(share)))];
         }
       }
       this.#drawPixels(image, frame.left, frame.top, frame.width, frame.height);
@@ -196,7 +201,10 @@ export class Picture {
     context.rect(frame.left, frame.top, frame.width, frame.height);
     context.clip();
     context.lineCap = 'round';
-    for (const [colour, wide] of /** @type {const} */ ([['#101820', 4.5], ['#fff', 2]])) {
+    for (const [colour, wide] of /** @type {const} */ ([
+      ['#101820', 4.5],
+      ['#fff', 2],
+    ])) {
       context.beginPath();
       boundary.forEach(({ residue, x, y }, index) => {
         // Pieces of an even grid, so leaving out every other one breaks the line evenly.
@@ -223,7 +231,13 @@ export class Picture {
     context.textAlign = 'left';
     context.textBaseline = 'bottom';
     context.fillText(unit ? `${title} (${unit})` : title, left, from - 5);
-    this.#drawPixels(new ImageData(new Uint8ClampedArray(PIXELS.slice().buffer), COLOURS, 1), left, from, width, BAR.height);
+    this.#drawPixels(
+      new ImageData(new Uint8ClampedArray(PIXELS.slice().buffer), COLOURS, 1),
+      left,
+      from,
+      width,
+      BAR.height,
+    );
     context.strokeStyle = colours.muted;
     context.lineWidth = 1;
     context.strokeRect(left + 0.5, from + 0.5, width - 1, BAR.height - 1);
@@ -235,7 +249,7 @@ export class Picture {
     context.textAlign = 'center';
     if (!(high > low)) return context.fillText(number(low, 6), left + width / 2, from + BAR.height + 6);
     for (const value of ticks({ low, high }, Math.max(2, width / 90))) {
-      const x = left + (value - low) / (high - low) * width;
+      const x = left + ((value - low) / (high - low)) * width;
       line(context, colours.muted, x, from + BAR.height, x, from + BAR.height + 4);
       context.fillText(number(value), x, from + BAR.height + 6);
     }
@@ -271,7 +285,10 @@ export class Picture {
   /** @param {number} x @param {number} y @param {number} width @param {number} height */
   #outline(x, y, width, height) {
     const { context } = this.#overlay;
-    for (const [colour, wide] of /** @type {const} */ ([['#101820', 3.5], ['#fff', 1.5]])) {
+    for (const [colour, wide] of /** @type {const} */ ([
+      ['#101820', 3.5],
+      ['#fff', 1.5],
+    ])) {
       context.strokeStyle = colour;
       context.lineWidth = wide;
       context.strokeRect(x, y, width, height);
@@ -281,12 +298,20 @@ export class Picture {
   /** A ring with a cross through it. @param {number} x @param {number} y */
   #drawMark(x, y) {
     const { context } = this.#overlay;
-    for (const [colour, wide] of /** @type {const} */ ([['#101820', 5], ['#fff', 2.25]])) {
+    for (const [colour, wide] of /** @type {const} */ ([
+      ['#101820', 5],
+      ['#fff', 2.25],
+    ])) {
       context.strokeStyle = colour;
       context.lineWidth = wide;
       context.beginPath();
       context.arc(x, y, 7, 0, 2 * Math.PI);
-      for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+      for (const [dx, dy] of [
+        [1, 0],
+        [-1, 0],
+        [0, 1],
+        [0, -1],
+      ]) {
         context.moveTo(x + dx * 3, y + dy * 3);
         context.lineTo(x + dx * 12, y + dy * 12);
       }

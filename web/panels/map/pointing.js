@@ -63,7 +63,12 @@ export function listen(box, picture, acts) {
     if (!dragging) return;
     const { left, top, width, height } = picture.frame;
     const [x, y] = [within(at.x, left, left + width), within(at.y, top, top + height)];
-    picture.selection = { left: Math.min(x, pressed.x), right: Math.max(x, pressed.x), top: Math.min(y, pressed.y), bottom: Math.max(y, pressed.y) };
+    picture.selection = {
+      left: Math.min(x, pressed.x),
+      right: Math.max(x, pressed.x),
+      top: Math.min(y, pressed.y),
+      bottom: Math.max(y, pressed.y),
+    };
     picture.point();
   });
   box.addEventListener('pointerup', (event) => {
@@ -78,27 +83,47 @@ export function listen(box, picture, acts) {
       tapped = again ? null : cell;
       return event.pointerType === 'touch' && !again ? undefined : acts.take(cell);
     }
-    if (!selection || selection.right - selection.left < THINNEST || selection.bottom - selection.top < THINNEST) return;
+    if (!selection || selection.right - selection.left < THINNEST || selection.bottom - selection.top < THINNEST)
+      return;
     const { left, top, width, height, x, y } = picture.frame;
     /** @param {number} px */
-    const across = (px) => x.low + (px - left) / width * (x.high - x.low);
+    const across = (px) => x.low + ((px - left) / width) * (x.high - x.low);
     /** @param {number} py */
-    const upwards = (py) => y.low + (top + height - py) / height * (y.high - y.low);
-    acts.select({ x: across(selection.left), y: upwards(selection.bottom) }, { x: across(selection.right), y: upwards(selection.top) });
+    const upwards = (py) => y.low + ((top + height - py) / height) * (y.high - y.low);
+    acts.select(
+      { x: across(selection.left), y: upwards(selection.bottom) },
+      { x: across(selection.right), y: upwards(selection.top) },
+    );
     event.preventDefault();
   });
   box.addEventListener('pointercancel', release);
-  box.addEventListener('pointerleave', () => { if (!pressed) point(null, false); });
+  box.addEventListener('pointerleave', () => {
+    if (!pressed) point(null, false);
+  });
 
   box.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { columns, rows } = picture;
     const cell = picture.cursor ?? acts.begin();
     const far = event.shiftKey ? 10 : 1;
-    const [dx, dy] = { ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowUp: [0, far], ArrowDown: [0, -far], Home: [-columns, 0], End: [columns, 0], PageUp: [0, rows], PageDown: [0, -rows] }[event.key] ?? [0, 0];
+    const [dx, dy] = {
+      ArrowLeft: [-far, 0],
+      ArrowRight: [far, 0],
+      ArrowUp: [0, far],
+      ArrowDown: [0, -far],
+      Home: [-columns, 0],
+      End: [columns, 0],
+      PageUp: [0, rows],
+      PageDown: [0, -rows],
+    }[event.key] ?? [0, 0];
     if (dx !== 0 || dy !== 0) {
       // The first key shows where the cursor is.
-      point(picture.cursor ? { column: within(cell.column + dx, 0, columns - 1), row: within(cell.row + dy, 0, rows - 1) } : cell, true);
+      point(
+        picture.cursor
+          ? { column: within(cell.column + dx, 0, columns - 1), row: within(cell.row + dy, 0, rows - 1) }
+          : cell,
+        true,
+      );
     } else if (event.key === 'Enter' && picture.cursor) acts.take(cell);
     else if (event.key === '+' || event.key === '=') closer(cell);
     else if (event.key === 'Escape' && pressed) release();

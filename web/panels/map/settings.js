@@ -8,8 +8,11 @@ import { MOST_IMPACTS } from '../../api/api.js';
 
 /** @type {Settings} */
 export const DEFAULT = {
-  x: { parameter: 'table.tilt_gain', from: 1, to: 1.6 }, y: { parameter: 'release.theta', from: 0, to: 0.5 },
-  quantity: 'survival', impacts: 1000, columns: 96,
+  x: { parameter: 'table.tilt_gain', from: 1, to: 1.6 },
+  y: { parameter: 'release.theta', from: 0, to: 0.5 },
+  quantity: 'survival',
+  impacts: 1000,
+  columns: 96,
 };
 
 /** @type {Record<string, {title: string, unit: string, runs: boolean}>} */
@@ -23,7 +26,7 @@ export const QUANTITIES = {
 export const COLUMNS = [48, 96, 192, 384];
 
 /** @param {number} columns */
-export const rowsOf = (columns) => columns * 2 / 3;
+export const rowsOf = (columns) => (columns * 2) / 3;
 
 /** Fields whose values are numbers, which a map can vary. @param {Field[]} fields */
 export const sidesOf = (fields) => fields.filter(({ kind }) => kind === 'number');
@@ -39,14 +42,18 @@ export function readSettings(query, fields) {
   /** @type {string[]} */
   const dropped = [];
   /** @param {string} key */
-  const numberAt = (key) => { const text = query.get(`map.${key}`); return text === null || text.trim() === '' ? NaN : Number(text); };
+  const numberAt = (key) => {
+    const text = query.get(`map.${key}`);
+    return text === null || text.trim() === '' ? NaN : Number(text);
+  };
   for (const name of /** @type {const} */ (['x', 'y'])) {
     if (!query.has(`map.${name}.parameter`)) continue;
     const parameter = query.get(`map.${name}.parameter`) ?? '';
     const field = sidesOf(fields).find(({ path }) => path === parameter);
     const [from, to] = [numberAt(`${name}.from`), numberAt(`${name}.to`)];
     if (!field) dropped.push(`the field “${parameter.slice(0, 40)}”, which a map cannot vary`);
-    else if (!(from < to) || from < (field.minimum ?? -Infinity) || to > (field.maximum ?? Infinity)) dropped.push(`the ends of ${field.title.toLowerCase()}`);
+    else if (!(from < to) || from < (field.minimum ?? -Infinity) || to > (field.maximum ?? Infinity))
+      dropped.push(`the ends of ${field.title.toLowerCase()}`);
     else settings[name] = { parameter, from, to };
   }
   if (settings.x.parameter === settings.y.parameter) {
@@ -77,7 +84,8 @@ export function settingsQuery(settings) {
     if (own.every(([key, value]) => DEFAULT[name][/** @type {keyof Side} */ (key)] === value)) continue;
     for (const [key, value] of own) query.set(`map.${name}.${key}`, String(value));
   }
-  for (const key of /** @type {const} */ (['quantity', 'impacts', 'columns'])) if (settings[key] !== DEFAULT[key]) query.set(`map.${key}`, String(settings[key]));
+  for (const key of /** @type {const} */ (['quantity', 'impacts', 'columns']))
+    if (settings[key] !== DEFAULT[key]) query.set(`map.${key}`, String(settings[key]));
   return query;
 }
 
@@ -89,7 +97,10 @@ export function settingsQuery(settings) {
 export function requestQuery({ x, y, quantity, impacts, columns }, scene) {
   const query = new URLSearchParams(scene);
   for (const { parameter } of [x, y]) query.delete(`scene.${parameter}`);
-  for (const [name, side, count] of /** @type {const} */ ([['x', x, columns], ['y', y, rowsOf(columns)]])) {
+  for (const [name, side, count] of /** @type {const} */ ([
+    ['x', x, columns],
+    ['y', y, rowsOf(columns)],
+  ])) {
     query.set(`${name}.parameter`, side.parameter);
     query.set(`${name}.from`, String(side.from));
     query.set(`${name}.to`, String(side.to));
@@ -109,6 +120,14 @@ const NODES = 49;
  */
 export function outlineQuery(request) {
   const query = new URLSearchParams(request);
-  for (const [key, value] of Object.entries({ 'x.count': NODES, 'y.count': NODES, quantity: 'residue', impacts: 1, 'tile.index': 0, 'tile.of': NODES })) query.set(key, String(value));
+  for (const [key, value] of Object.entries({
+    'x.count': NODES,
+    'y.count': NODES,
+    quantity: 'residue',
+    impacts: 1,
+    'tile.index': 0,
+    'tile.of': NODES,
+  }))
+    query.set(key, String(value));
   return query;
 }

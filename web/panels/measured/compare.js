@@ -39,7 +39,8 @@ export function residuals(measured, impacts) {
     if (place === null) continue;
     /** @type {Residual} */
     const residual = { n: one.n, t: NaN, theta: NaN, x_dot: NaN, y_dot: NaN, theta_dot: NaN };
-    for (const quantity of COMPARED) if (quantity !== 't') residual[quantity] = one[quantity] - impacts.at(quantity, place);
+    for (const quantity of COMPARED)
+      if (quantity !== 't') residual[quantity] = one[quantity] - impacts.at(quantity, place);
     const t = impacts.at('t', place);
     if (!Number.isNaN(one.t)) {
       zero ??= [one.t, t];
@@ -56,6 +57,14 @@ export function sums(all) {
     const told = all.filter((one) => !Number.isNaN(one[quantity]));
     if (told.length === 0) return [];
     const largest = told.reduce((most, one) => (Math.abs(one[quantity]) > Math.abs(most[quantity]) ? one : most));
-    return [{ quantity, count: told.length, rms: Math.sqrt(told.reduce((sum, one) => sum + one[quantity] ** 2, 0) / told.length), largest: largest[quantity], at: largest.n }];
+    return [
+      {
+        quantity,
+        count: told.length,
+        rms: Math.sqrt(told.reduce((sum, one) => sum + one[quantity] ** 2, 0) / told.length),
+        largest: largest[quantity],
+        at: largest.n,
+      },
+    ];
   });
 }

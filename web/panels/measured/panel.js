@@ -15,7 +15,13 @@ import { svg } from '../../charts/svg.js';
 /** @typedef {import('../../charts/impacts/plot-interaction.js').Page} Page */
 
 /** @type {Record<Compared, [string, string]>} */
-const NAMES = { t: ['t', 's'], theta: ['θ', 'rad'], x_dot: ['ẋ', 'm/s'], y_dot: ['ẏ', 'm/s'], theta_dot: ['θ̇', 'rad/s'] };
+const NAMES = {
+  t: ['t', 's'],
+  theta: ['θ', 'rad'],
+  x_dot: ['ẋ', 'm/s'],
+  y_dot: ['ẏ', 'm/s'],
+  theta_dot: ['θ̇', 'rad/s'],
+};
 /** How often the comparison follows a run, ms. */
 const PACE_MS = 300;
 /** More rows than these are no reading. */
@@ -35,9 +41,21 @@ export class MeasuredPanel {
   #name = h('h3', { id: 'measured-title' }, 'Measured impacts');
   #told = h('p', { id: 'measured-told', role: 'status' });
   #remarks = h('ul', { class: 'measured-remarks', id: 'measured-remarks' });
-  #first = h('input', { type: 'text', inputmode: 'numeric', autocomplete: 'off', id: 'measured-first', 'aria-describedby': 'measured-first-error', change: () => this.#number() });
+  #first = h('input', {
+    type: 'text',
+    inputmode: 'numeric',
+    autocomplete: 'off',
+    id: 'measured-first',
+    'aria-describedby': 'measured-first-error',
+    change: () => this.#number(),
+  });
   #error = h('p', { class: 'error', id: 'measured-first-error' });
-  #offset = h('p', { class: 'measured-offset' }, h('label', { for: 'measured-first' }, 'The first measured impact is n ='), this.#first);
+  #offset = h(
+    'p',
+    { class: 'measured-offset' },
+    h('label', { for: 'measured-first' }, 'The first measured impact is n ='),
+    this.#first,
+  );
   #box = h('div', { class: 'measured-box', role: 'img', 'aria-label': 'Residuals' });
   #sums = h('tbody');
   #rows = h('tbody');
@@ -52,15 +70,52 @@ export class MeasuredPanel {
   constructor(bar, page) {
     this.#page = page;
     this.#run = page.run;
-    const table = (/** @type {string} */ name, /** @type {string[]} */ head, /** @type {HTMLElement} */ body) => h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': name },
-      h('table', {}, h('thead', {}, h('tr', {}, ...head.map((one) => h('th', { scope: 'col' }, one)))), body));
-    this.#sheet = h('div', { class: 'measured-sheet', hidden: true }, this.#box, h('div', {},
-      table('Residuals in sum', ['residual', 'RMS', 'largest', 'at n'], this.#sums),
-      this.#numbers = h('details', { toggle: () => this.#compare() }, h('summary', {}, 'Numbers'), table('Numbers: residuals', ['impact', ...COMPARED.map((quantity) => NAMES[quantity].join(' / '))], this.#rows))));
-    this.#panel = h('section', { class: 'card measured', 'aria-labelledby': 'measured-title', hidden: true }, h('div', { class: 'card-head' }, this.#name,
-      h('button', { type: 'button', id: 'measured-remove', click: () => this.#remove() }, 'Remove')),
-    h('p', { class: 'muted' }, 'Measured less simulated at the same impact; t counts from the first that both have. The file stays in this browser.'),
-    this.#told, this.#remarks, this.#offset, this.#error, this.#sheet);
+    const table = (/** @type {string} */ name, /** @type {string[]} */ head, /** @type {HTMLElement} */ body) =>
+      h(
+        'div',
+        { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': name },
+        h('table', {}, h('thead', {}, h('tr', {}, ...head.map((one) => h('th', { scope: 'col' }, one)))), body),
+      );
+    this.#sheet = h(
+      'div',
+      { class: 'measured-sheet', hidden: true },
+      this.#box,
+      h(
+        'div',
+        {},
+        table('Residuals in sum', ['residual', 'RMS', 'largest', 'at n'], this.#sums),
+        (this.#numbers = h(
+          'details',
+          { toggle: () => this.#compare() },
+          h('summary', {}, 'Numbers'),
+          table(
+            'Numbers: residuals',
+            ['impact', ...COMPARED.map((quantity) => NAMES[quantity].join(' / '))],
+            this.#rows,
+          ),
+        )),
+      ),
+    );
+    this.#panel = h(
+      'section',
+      { class: 'card measured', 'aria-labelledby': 'measured-title', hidden: true },
+      h(
+        'div',
+        { class: 'card-head' },
+        this.#name,
+        h('button', { type: 'button', id: 'measured-remove', click: () => this.#remove() }, 'Remove'),
+      ),
+      h(
+        'p',
+        { class: 'muted' },
+        'Measured less simulated at the same impact; t counts from the first that both have. The file stays in this browser.',
+      ),
+      this.#told,
+      this.#remarks,
+      this.#offset,
+      this.#error,
+      this.#sheet,
+    );
     bar.parentElement?.append(this.#panel);
     bar.querySelector('#measured-load')?.before(this.#chip);
     new ResizeObserver(() => this.struck()).observe(this.#box);
@@ -74,7 +129,10 @@ export class MeasuredPanel {
     /** @type {import('./read.js').Reading} */
     let reading;
     try {
-      if (file.size > LIMIT_BYTES) throw new Unreadable(`The file has ${number(file.size / 1e6, 3)} MB; at most ${LIMIT_BYTES / 1e6} MB are read.`);
+      if (file.size > LIMIT_BYTES)
+        throw new Unreadable(
+          `The file has ${number(file.size / 1e6, 3)} MB; at most ${LIMIT_BYTES / 1e6} MB are read.`,
+        );
       reading = read(await file.text());
     } catch (error) {
       this.#clear();
@@ -85,7 +143,14 @@ export class MeasuredPanel {
     this.#remarks.replaceChildren(...reading.remarks.map((words) => h('li', {}, words)));
     this.#read = reading.impacts;
     this.#first.value = String(reading.impacts[0].n);
-    this.#chip.replaceChildren(svg('svg', { viewBox: '0 0 12 12', width: 12, height: 12, 'aria-hidden': 'true' }, svg('path', { d: 'M6 1L11 6L6 11L1 6Z' })), ` measured (${number(reading.impacts.length, 7)})`);
+    this.#chip.replaceChildren(
+      svg(
+        'svg',
+        { viewBox: '0 0 12 12', width: 12, height: 12, 'aria-hidden': 'true' },
+        svg('path', { d: 'M6 1L11 6L6 11L1 6Z' }),
+      ),
+      ` measured (${number(reading.impacts.length, 7)})`,
+    );
     this.#chip.hidden = this.#offset.hidden = false;
     this.#number();
     this.#panel.scrollIntoView({ block: 'nearest' });
@@ -143,11 +208,18 @@ export class MeasuredPanel {
     if (key === this.#laid) return;
     this.#laid = key;
     /** @param {Measured} one */
-    const energy = (one) => (one.x_dot ** 2 + one.y_dot ** 2 + (rho && rho ** 2 * one.theta_dot ** 2)) / 2 + (l && gravity * l * Math.cos(one.theta));
+    const energy = (one) =>
+      (one.x_dot ** 2 + one.y_dot ** 2 + (rho && rho ** 2 * one.theta_dot ** 2)) / 2 +
+      (l && gravity * l * Math.cos(one.theta));
     for (const plot of this.#page.plots) {
-      const values = (/** @type {string} */ column) => this.#impacts.map((one) => (column === 'energy' ? energy(one) : one[/** @type {'t'} */ (column)]));
+      const values = (/** @type {string} */ column) =>
+        this.#impacts.map((one) => (column === 'energy' ? energy(one) : one[/** @type {'t'} */ (column)]));
       const up = values(plot.meaning.y.column);
-      plot.lay(values(plot.meaning.x.column).map((across, index) => /** @type {[number, number]} */ ([across, up[index]])).filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y)));
+      plot.lay(
+        values(plot.meaning.x.column)
+          .map((across, index) => /** @type {[number, number]} */ ([across, up[index]]))
+          .filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y)),
+      );
     }
   }
 
@@ -155,14 +227,49 @@ export class MeasuredPanel {
     const all = residuals(this.#impacts, this.#run.impacts);
     const found = sums(all);
     const [measured, both] = [this.#impacts.length, all.length];
-    this.#tell(both === 0 ? (this.#run.phase === 'idle' ? 'Nothing is simulated yet: run the scene to compare.' : 'None of them is simulated yet.')
-      : both < measured ? `${number(both, 7)} of ${number(measured, 7)} measured impacts are simulated so far.` : `All ${number(measured, 7)} measured impacts are simulated.`);
+    this.#tell(
+      both === 0
+        ? this.#run.phase === 'idle'
+          ? 'Nothing is simulated yet: run the scene to compare.'
+          : 'None of them is simulated yet.'
+        : both < measured
+          ? `${number(both, 7)} of ${number(measured, 7)} measured impacts are simulated so far.`
+          : `All ${number(measured, 7)} measured impacts are simulated.`,
+    );
     this.#sheet.hidden = found.length === 0;
     if (found.length === 0) return;
-    drawResiduals(this.#box, all, found.map(({ quantity }) => [quantity, NAMES[quantity].join(' / ')]));
-    this.#box.setAttribute('aria-label', `Residuals of ${both} impacts. ${found.map(({ quantity, rms }) => `${NAMES[quantity][0]}: RMS ${number(rms)} ${NAMES[quantity][1]}`).join('; ')}`);
-    this.#sums.replaceChildren(...found.map(({ quantity, rms, largest, at }) => h('tr', {}, h('th', { scope: 'row' }, NAMES[quantity].join(' / ')), ...[number(rms), number(largest), number(at, 7)].map((cell) => h('td', {}, cell)))));
-    if (this.#numbers.open) this.#rows.replaceChildren(...all.slice(0, LISTED).map((one) => h('tr', {}, h('th', { scope: 'row' }, number(one.n, 7)), ...COMPARED.map((quantity) => h('td', {}, number(one[quantity], 5))))));
+    drawResiduals(
+      this.#box,
+      all,
+      found.map(({ quantity }) => [quantity, NAMES[quantity].join(' / ')]),
+    );
+    this.#box.setAttribute(
+      'aria-label',
+      `Residuals of ${both} impacts. ${found.map(({ quantity, rms }) => `${NAMES[quantity][0]}: RMS ${number(rms)} ${NAMES[quantity][1]}`).join('; ')}`,
+    );
+    this.#sums.replaceChildren(
+      ...found.map(({ quantity, rms, largest, at }) =>
+        h(
+          'tr',
+          {},
+          h('th', { scope: 'row' }, NAMES[quantity].join(' / ')),
+          ...[number(rms), number(largest), number(at, 7)].map((cell) => h('td', {}, cell)),
+        ),
+      ),
+    );
+    if (this.#numbers.open)
+      this.#rows.replaceChildren(
+        ...all
+          .slice(0, LISTED)
+          .map((one) =>
+            h(
+              'tr',
+              {},
+              h('th', { scope: 'row' }, number(one.n, 7)),
+              ...COMPARED.map((quantity) => h('td', {}, number(one[quantity], 5))),
+            ),
+          ),
+      );
   }
 
   /** @param {string} words */

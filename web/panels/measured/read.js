@@ -25,9 +25,25 @@ const REMARKS = 8;
 
 /** What a column may be called, in small letters without anything between them. @type {Record<string, Quantity>} */
 const NAMES = {
-  n: 'n', no: 'n', impact: 'n', contact: 'n', bounce: 'n', number: 'n', impactnumber: 'n',
-  t: 't', time: 't', theta: 'theta', angle: 'theta',
-  xdot: 'x_dot', vx: 'x_dot', ydot: 'y_dot', vy: 'y_dot', thetadot: 'theta_dot', omega: 'theta_dot', angularvelocity: 'theta_dot', spin: 'theta_dot',
+  n: 'n',
+  no: 'n',
+  impact: 'n',
+  contact: 'n',
+  bounce: 'n',
+  number: 'n',
+  impactnumber: 'n',
+  t: 't',
+  time: 't',
+  theta: 'theta',
+  angle: 'theta',
+  xdot: 'x_dot',
+  vx: 'x_dot',
+  ydot: 'y_dot',
+  vy: 'y_dot',
+  thetadot: 'theta_dot',
+  omega: 'theta_dot',
+  angularvelocity: 'theta_dot',
+  spin: 'theta_dot',
 };
 
 const TURN = Math.PI / 180;
@@ -46,17 +62,31 @@ const MEASURE = { n: '1', t: 's', theta: 'rad', x_dot: 'm/s', y_dot: 'm/s', thet
 const shown = (text) => (text.length > 30 ? `${text.slice(0, 30)}…` : text);
 
 /** A dot over a letter in words, Greek in Latin, and nothing else but letters. @param {string} name */
-const plain = (name) => name.normalize('NFD').toLowerCase().replaceAll('\u0307', 'dot').replaceAll('θ', 'theta').replaceAll('ω', 'omega').replace(/[^a-z]/g, '');
+const plain = (name) =>
+  name
+    .normalize('NFD')
+    .toLowerCase()
+    .replaceAll('\u0307', 'dot')
+    .replaceAll('θ', 'theta')
+    .replaceAll('ω', 'omega')
+    .replace(/[^a-z]/g, '');
 
 /** @param {string} unit */
-const plainUnit = (unit) => unit.trim().replace(/_per_/g, '/').replace(/[\s·*\u202f]*s(?:⁻¹|\^?-1)$/, '/s').replace(/^(?:-|1\/1)$/, '1');
+const plainUnit = (unit) =>
+  unit
+    .trim()
+    .replace(/_per_/g, '/')
+    .replace(/[\s·*\u202f]*s(?:⁻¹|\^?-1)$/, '/s')
+    .replace(/^(?:-|1\/1)$/, '1');
 
 /**
  * @param {string} head
  * @returns {{quantity: Quantity | undefined, unit: string}} the unit '' where none is told
  */
 function columnOf(head) {
-  const told = /^(.+?)\s*(?:[([]([^)\]]*)[)\]]|\/(.+))$/.exec(head.trim()) ?? /^(.+?)_((?:k|c|m)?(?:s|rad|deg|m_per_s|rad_per_s|deg_per_s))$/.exec(head.trim());
+  const told =
+    /^(.+?)\s*(?:[([]([^)\]]*)[)\]]|\/(.+))$/.exec(head.trim()) ??
+    /^(.+?)_((?:k|c|m)?(?:s|rad|deg|m_per_s|rad_per_s|deg_per_s))$/.exec(head.trim());
   const whole = NAMES[plain(head)];
   if (!told || whole) return { quantity: whole, unit: '' };
   return { quantity: NAMES[plain(told[1])], unit: plainUnit(told[2] ?? told[3]) };
@@ -79,11 +109,17 @@ function* records(text, between) {
     if (letter === '\n') line += 1;
     if (quoted && letter !== undefined) {
       if (letter !== '"') cell += letter;
-      else if (text[at + 1] === '"') { cell += '"'; at += 1; }
-      else quoted = false;
-    } else if (letter === '"' && cell.trim() === '') { cell = ''; quoted = true; }
-    else if (letter === between) { cells.push(cell.trim()); cell = ''; }
-    else if (letter === '\n' || letter === undefined) {
+      else if (text[at + 1] === '"') {
+        cell += '"';
+        at += 1;
+      } else quoted = false;
+    } else if (letter === '"' && cell.trim() === '') {
+      cell = '';
+      quoted = true;
+    } else if (letter === between) {
+      cells.push(cell.trim());
+      cell = '';
+    } else if (letter === '\n' || letter === undefined) {
       cells.push(cell.trim());
       if (cells.some((one) => one !== '')) yield { line: first, cells };
       cells = [];
@@ -114,7 +150,10 @@ export function read(text) {
       if (comment) cells[0] = cells[0].slice(1);
       const found = header(cells, remarks);
       if (found.length > 0) columns = found;
-      else if (!comment) throw new Unreadable(`The first line names none of the columns n, t, theta, x_dot, y_dot and theta_dot. It is “${shown(cells.join(' '))}”.`);
+      else if (!comment)
+        throw new Unreadable(
+          `The first line names none of the columns n, t, theta, x_dot, y_dot and theta_dot. It is “${shown(cells.join(' '))}”.`,
+        );
       else remarks.length = 0;
       continue;
     }
@@ -127,10 +166,12 @@ export function read(text) {
       if (/^(|-|–|nan|na|null)$/i.test(cell)) continue;
       const value = parse(cell, null);
       if (value === null) wrong ||= `${head} is “${shown(cell)}”, which is not a number`;
-      else if (quantity === 'n' && !(Number.isInteger(value) && value >= 1)) wrong ||= `${head} is ${shown(cell)}, which is no number of an impact`;
+      else if (quantity === 'n' && !(Number.isInteger(value) && value >= 1))
+        wrong ||= `${head} is ${shown(cell)}, which is no number of an impact`;
       else impact[quantity] = value * factor;
     }
-    if (!wrong && QUANTITIES.every((quantity) => quantity === 'n' || Number.isNaN(impact[quantity]))) wrong = 'it has no value';
+    if (!wrong && QUANTITIES.every((quantity) => quantity === 'n' || Number.isNaN(impact[quantity])))
+      wrong = 'it has no value';
     if (!wrong && impacts.length === LIMIT_IMPACTS) {
       remarks.push(`Impacts from line ${line} on are left out: at most ${LIMIT_IMPACTS} are shown.`);
       break;
@@ -140,10 +181,14 @@ export function read(text) {
   }
   if (bad > REMARKS) remarks.push(`${bad - REMARKS} more lines are left out.`);
   if (!columns) throw new Unreadable('The file is empty.');
-  if (impacts.length === 0) throw new Unreadable(`No line after the first has an impact in it. ${remarks.join(' ')}`.trim());
-  const numbered = columns.some(({ quantity }) => quantity === 'n') && impacts.every(({ n }, index) => Number.isFinite(n) && (index === 0 || n > impacts[index - 1].n));
+  if (impacts.length === 0)
+    throw new Unreadable(`No line after the first has an impact in it. ${remarks.join(' ')}`.trim());
+  const numbered =
+    columns.some(({ quantity }) => quantity === 'n') &&
+    impacts.every(({ n }, index) => Number.isFinite(n) && (index === 0 || n > impacts[index - 1].n));
   if (!numbered) {
-    if (columns.some(({ quantity }) => quantity === 'n')) remarks.push('The impacts are numbered by their lines: the numbers in the file do not rise from line to line.');
+    if (columns.some(({ quantity }) => quantity === 'n'))
+      remarks.push('The impacts are numbered by their lines: the numbers in the file do not rise from line to line.');
     for (const [index, impact] of impacts.entries()) impact.n = index + 1;
   }
   return { impacts, columns: columns.map(({ quantity }) => quantity), remarks };
@@ -160,13 +205,19 @@ function header(heads, remarks) {
   const unknown = [];
   for (const [place, head] of heads.entries()) {
     const { quantity, unit } = columnOf(head);
-    if (!quantity) { unknown.push(head); continue; }
+    if (!quantity) {
+      unknown.push(head);
+      continue;
+    }
     const factor = unit === '' ? 1 : UNITS[MEASURE[quantity]][unit];
-    if (columns.some((column) => column.quantity === quantity)) remarks.push(`The column “${shown(head)}” is left out: there is one of ${quantity} before it.`);
-    else if (factor === undefined) remarks.push(`The column “${shown(head)}” is left out: “${shown(unit)}” is not known as a unit of ${quantity}.`);
+    if (columns.some((column) => column.quantity === quantity))
+      remarks.push(`The column “${shown(head)}” is left out: there is one of ${quantity} before it.`);
+    else if (factor === undefined)
+      remarks.push(`The column “${shown(head)}” is left out: “${shown(unit)}” is not known as a unit of ${quantity}.`);
     else columns.push({ quantity, place, factor, head: shown(head) });
   }
   const named = unknown.filter((head) => head !== '');
-  if (named.length > 0) remarks.push(`Not used: ${named.slice(0, 20).map(shown).join(', ')}${named.length > 20 ? ' and more' : ''}.`);
+  if (named.length > 0)
+    remarks.push(`Not used: ${named.slice(0, 20).map(shown).join(', ')}${named.length > 20 ? ' and more' : ''}.`);
   return columns;
 }

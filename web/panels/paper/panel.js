@@ -23,22 +23,74 @@ export function mount(root, { chosen }) {
 /** @param {HTMLElement} root @param {import('../../api/api.js').Case | null} chosen */
 function show(root, chosen) {
   if (!chosen || chosen.computed.length === 0) {
-    root.replaceChildren(h('p', { class: 'muted' }, chosen ? 'The paper prints no number for this case.' : 'Choose a case to compare it with the paper.'));
+    root.replaceChildren(
+      h(
+        'p',
+        { class: 'muted' },
+        chosen ? 'The paper prints no number for this case.' : 'Choose a case to compare it with the paper.',
+      ),
+    );
     return;
   }
   const rows = chosen.computed.flatMap((computed, index) => {
     const printed = chosen.printed[index];
     const differs = Boolean(computed.why) || !same(printed?.value ?? null, computed.value);
-    const name = h('th', { scope: 'row' }, computed.symbol ? symbol(computed.symbol) : computed.quantity, h('span', { class: 'muted name' }, ...computed.quantity.split(/(?<=[._])/).flatMap((part) => [part, h('wbr')])));
-    const row = h('tr', { class: differs ? 'differs' : '' }, name, cell(printed), cell(computed), h('td', {}, printed?.value == null ? '' : differs ? '≠' : '='));
-    return computed.why ? [row, h('tr', { class: 'why' }, h('td', { colspan: 4 }, ...prose(computed.why[0].toUpperCase() + computed.why.slice(1))))] : [row];
+    const name = h(
+      'th',
+      { scope: 'row' },
+      computed.symbol ? symbol(computed.symbol) : computed.quantity,
+      h('span', { class: 'muted name' }, ...computed.quantity.split(/(?<=[._])/).flatMap((part) => [part, h('wbr')])),
+    );
+    const row = h(
+      'tr',
+      { class: differs ? 'differs' : '' },
+      name,
+      cell(printed),
+      cell(computed),
+      h('td', {}, printed?.value == null ? '' : differs ? '≠' : '='),
+    );
+    return computed.why
+      ? [
+          row,
+          h(
+            'tr',
+            { class: 'why' },
+            h('td', { colspan: 4 }, ...prose(computed.why[0].toUpperCase() + computed.why.slice(1))),
+          ),
+        ]
+      : [row];
   });
-  root.replaceChildren(h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Printed and computed values' }, h('table', { class: 'paper' },
-    h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Quantity'), h('th', { scope: 'col' }, 'Printed'), h('th', { scope: 'col' }, 'Computed'), h('th', { scope: 'col' }, h('span', { class: 'unseen' }, 'Equal')))),
-    h('tbody', {}, ...rows))));
+  root.replaceChildren(
+    h(
+      'div',
+      { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Printed and computed values' },
+      h(
+        'table',
+        { class: 'paper' },
+        h(
+          'thead',
+          {},
+          h(
+            'tr',
+            {},
+            h('th', { scope: 'col' }, 'Quantity'),
+            h('th', { scope: 'col' }, 'Printed'),
+            h('th', { scope: 'col' }, 'Computed'),
+            h('th', { scope: 'col' }, h('span', { class: 'unseen' }, 'Equal')),
+          ),
+        ),
+        h('tbody', {}, ...rows),
+      ),
+    ),
+  );
 }
 
 /** @param {PaperValue | undefined} value */
 function cell(value) {
-  return h('td', {}, typeof value?.value === 'string' ? value.value : quantity(value?.value, value?.unit ?? '', 5), h('span', { class: 'muted where' }, value?.where ?? ''));
+  return h(
+    'td',
+    {},
+    typeof value?.value === 'string' ? value.value : quantity(value?.value, value?.unit ?? '', 5),
+    h('span', { class: 'muted where' }, value?.where ?? ''),
+  );
 }

@@ -43,8 +43,18 @@ const isRight = (impacts) => impacts !== null && Number.isInteger(impacts) && im
  * @type {Record<string, {title: string, name: string, of: (point: Point) => number | null, front: ((point: Point) => boolean) | null}>}
  */
 const AXES = {
-  time: { title: 'Clock time', name: 'time / ns per impact', of: (point) => point.cost_ns_per_impact, front: (point) => point.pareto },
-  evaluations: { title: 'Evaluations', name: 'evaluations per impact', of: (point) => each(point, point.evaluations), front: (point) => point.pareto_evaluations },
+  time: {
+    title: 'Clock time',
+    name: 'time / ns per impact',
+    of: (point) => point.cost_ns_per_impact,
+    front: (point) => point.pareto,
+  },
+  evaluations: {
+    title: 'Evaluations',
+    name: 'evaluations per impact',
+    of: (point) => each(point, point.evaluations),
+    front: (point) => point.pareto_evaluations,
+  },
   steps: { title: 'Steps', name: 'steps per impact', of: (point) => each(point, point.steps), front: null },
 };
 
@@ -59,12 +69,35 @@ export const mount = (root, page) => new PrecisionPanel(root, page);
 
 class PrecisionPanel {
   #query;
-  #impacts = h('input', { id: 'precision-impacts', type: 'text', inputmode: 'numeric', autocomplete: 'off', 'aria-describedby': 'precision-error' });
+  #impacts = h('input', {
+    id: 'precision-impacts',
+    type: 'text',
+    inputmode: 'numeric',
+    autocomplete: 'off',
+    'aria-describedby': 'precision-error',
+  });
   #error = h('p', { class: 'error', id: 'precision-error' });
-  #axis = h('select', { id: 'precision-axis', change: () => this.#draw() }, ...Object.entries(AXES).map(([value, { title }]) => h('option', { value }, title)));
-  #asking = new Asking('precision', h('button', { type: 'submit', id: 'precision-measure' }, 'Measure'), 'Measuring', 'parts');
+  #axis = h(
+    'select',
+    { id: 'precision-axis', change: () => this.#draw() },
+    ...Object.entries(AXES).map(([value, { title }]) => h('option', { value }, title)),
+  );
+  #asking = new Asking(
+    'precision',
+    h('button', { type: 'submit', id: 'precision-measure' }, 'Measure'),
+    'Measuring',
+    'parts',
+  );
   #methods = h('ul', { class: 'methods', 'aria-label': 'Methods' });
-  #box = h('div', { class: 'precision-box', id: 'precision-box', tabindex: 0, role: 'application', 'aria-roledescription': 'chart', 'aria-label': 'Speed against accuracy', 'aria-describedby': 'precision-hint' });
+  #box = h('div', {
+    class: 'precision-box',
+    id: 'precision-box',
+    tabindex: 0,
+    role: 'application',
+    'aria-roledescription': 'chart',
+    'aria-label': 'Speed against accuracy',
+    'aria-describedby': 'precision-hint',
+  });
   #readout = h('output', { class: 'readout', id: 'precision-readout', 'aria-live': 'off' });
   // Spoken when keys move; a pointer's way over the chart is not.
   #spoken = h('p', { class: 'unseen', role: 'status' });
@@ -87,17 +120,74 @@ class PrecisionPanel {
    */
   constructor(root, { query, changed }) {
     this.#query = query;
-    const head = ['Method', 'Setting', 'ns/impact', 'quartiles', 'steps', 'evaluations', 'error / m or m/s', 'best', 'outcome'];
-    this.#sheet = h('div', { class: 'precision-sheet', hidden: true }, this.#box, this.#readout, this.#spoken,
-      h('p', { class: 'muted small', id: 'precision-hint' }, this.#front, ' The dotted line is the rounding of one number. With keys: left and right go from point to point, up and down from method to method.'),
-      h('details', {}, h('summary', {}, 'Numbers'), h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: speed against accuracy' },
-        h('table', {}, h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))), this.#body))),
-      h('details', {}, h('summary', {}, 'How it was measured'), this.#notes), this.#links);
-    root.append(h('div', {}, h('form', { novalidate: true, change: changed, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.ask(); } },
-      h('p', { class: 'precision-row' }, h('label', { for: 'precision-impacts' }, 'Contacts'), this.#impacts), this.#error,
-      h('p', { class: 'precision-row' }, h('label', { for: 'precision-axis' }, 'Across'), this.#axis),
-      this.#asking.buttons, this.#asking.told), this.#methods), this.#sheet);
-    this.#asking.say('It runs the scene by eleven methods with all their settings, which takes the server some seconds.');
+    const head = [
+      'Method',
+      'Setting',
+      'ns/impact',
+      'quartiles',
+      'steps',
+      'evaluations',
+      'error / m or m/s',
+      'best',
+      'outcome',
+    ];
+    this.#sheet = h(
+      'div',
+      { class: 'precision-sheet', hidden: true },
+      this.#box,
+      this.#readout,
+      this.#spoken,
+      h(
+        'p',
+        { class: 'muted small', id: 'precision-hint' },
+        this.#front,
+        ' The dotted line is the rounding of one number. With keys: left and right go from point to point, up and down from method to method.',
+      ),
+      h(
+        'details',
+        {},
+        h('summary', {}, 'Numbers'),
+        h(
+          'div',
+          { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: speed against accuracy' },
+          h(
+            'table',
+            {},
+            h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))),
+            this.#body,
+          ),
+        ),
+      ),
+      h('details', {}, h('summary', {}, 'How it was measured'), this.#notes),
+      this.#links,
+    );
+    root.append(
+      h(
+        'div',
+        {},
+        h(
+          'form',
+          {
+            novalidate: true,
+            change: changed,
+            submit: (/** @type {Event} */ event) => {
+              event.preventDefault();
+              void this.ask();
+            },
+          },
+          h('p', { class: 'precision-row' }, h('label', { for: 'precision-impacts' }, 'Contacts'), this.#impacts),
+          this.#error,
+          h('p', { class: 'precision-row' }, h('label', { for: 'precision-axis' }, 'Across'), this.#axis),
+          this.#asking.buttons,
+          this.#asking.told,
+        ),
+        this.#methods,
+      ),
+      this.#sheet,
+    );
+    this.#asking.say(
+      'It runs the scene by eleven methods with all their settings, which takes the server some seconds.',
+    );
     this.#plot = new Plot(this.#box);
     this.#box.addEventListener('pointermove', (event) => this.#point(this.#plot.nearest(event), false));
     this.#box.addEventListener('pointerleave', () => this.#point(null, false));
@@ -123,7 +213,8 @@ class PrecisionPanel {
     this.#impacts.value = String(isRight(impacts) ? impacts : USUAL_IMPACTS);
     this.#blame('');
     const axis = link.get('precision.axis') ?? 'time';
-    if (!Object.hasOwn(AXES, axis)) dropped.push(`precision.axis “${axis.slice(0, 40)}”: it must be one of ${Object.keys(AXES).join(', ')}`);
+    if (!Object.hasOwn(AXES, axis))
+      dropped.push(`precision.axis “${axis.slice(0, 40)}”: it must be one of ${Object.keys(AXES).join(', ')}`);
     this.#axis.value = Object.hasOwn(AXES, axis) ? axis : 'time';
     this.#draw();
     return dropped;
@@ -151,7 +242,9 @@ class PrecisionPanel {
     const answer = await this.#asking.ask(`v1/precision?${request}`);
     if (!answer) return;
     this.#shown = { answer, request };
-    const { reference: { impacts: seen, outcome } } = answer;
+    const {
+      reference: { impacts: seen, outcome },
+    } = answer;
     this.#asking.say(`Measured over ${number(seen)} impacts: ${outcome.replaceAll('_', ' ')}.`);
     this.#sheet.hidden = false;
     this.#show();
@@ -159,28 +252,69 @@ class PrecisionPanel {
 
   #show() {
     if (!this.#shown) return;
-    const { answer: { methods, points, notes, reference } } = this.#shown;
+    const {
+      answer: { methods, points, notes, reference },
+    } = this.#shown;
     const title = new Map(methods.map((method) => [method.name, method.title]));
     const missing = (/** @type {string} */ name) => {
       const own = points.filter(({ method }) => method === name);
-      return own.some(({ error }) => error !== null) ? '' : name === 'extended' ? 'the reference' : `not drawn: ${own[0]?.reason ?? 'no run'}`;
+      return own.some(({ error }) => error !== null)
+        ? ''
+        : name === 'extended'
+          ? 'the reference'
+          : `not drawn: ${own[0]?.reason ?? 'no run'}`;
     };
-    this.#methods.replaceChildren(...methods.map(({ name, title: words, about }) => h('li', { title: about },
-      svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, mark(lookOf(name), 8, 8)), h('span', {}, words, missing(name) && h('span', { class: 'muted' }, ...marked(missing(name)))))));
-    this.#body.replaceChildren(...points.map((point) => {
-      const spread = point.spread_ns_per_impact;
-      const best = [point.pareto && 'time', point.pareto_evaluations && 'evaluations'].filter((word) => word).join(', ');
-      const cells = [setting(point), number(point.cost_ns_per_impact), spread ? `${number(spread[0])} to ${number(spread[1])}` : '–', number(point.steps, 7), number(point.evaluations, 9), number(point.error, 3), best];
-      return h('tr', {}, h('th', { scope: 'row' }, title.get(point.method) ?? point.method), ...cells.map((cell) => h('td', {}, cell)),
-        h('td', {}, ...marked(point.reason ?? point.outcome)));
-    }));
-    this.#notes.replaceChildren(h('p', { class: 'muted' }, `Errors are the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇| just before impact ${number(reference.impacts)}, from the run with 31 digits.`), ...notes.map((note) => h('p', { class: 'muted' }, ...marked(note))));
+    this.#methods.replaceChildren(
+      ...methods.map(({ name, title: words, about }) =>
+        h(
+          'li',
+          { title: about },
+          svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, mark(lookOf(name), 8, 8)),
+          h('span', {}, words, missing(name) && h('span', { class: 'muted' }, ...marked(missing(name)))),
+        ),
+      ),
+    );
+    this.#body.replaceChildren(
+      ...points.map((point) => {
+        const spread = point.spread_ns_per_impact;
+        const best = [point.pareto && 'time', point.pareto_evaluations && 'evaluations']
+          .filter((word) => word)
+          .join(', ');
+        const cells = [
+          setting(point),
+          number(point.cost_ns_per_impact),
+          spread ? `${number(spread[0])} to ${number(spread[1])}` : '–',
+          number(point.steps, 7),
+          number(point.evaluations, 9),
+          number(point.error, 3),
+          best,
+        ];
+        return h(
+          'tr',
+          {},
+          h('th', { scope: 'row' }, title.get(point.method) ?? point.method),
+          ...cells.map((cell) => h('td', {}, cell)),
+          h('td', {}, ...marked(point.reason ?? point.outcome)),
+        );
+      }),
+    );
+    this.#notes.replaceChildren(
+      h(
+        'p',
+        { class: 'muted' },
+        `Errors are the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇| just before impact ${number(reference.impacts)}, from the run with 31 digits.`,
+      ),
+      ...notes.map((note) => h('p', { class: 'muted' }, ...marked(note))),
+    );
     this.#draw();
   }
 
   #draw() {
     if (!this.#shown) return;
-    const { answer: { points, reference }, request } = this.#shown;
+    const {
+      answer: { points, reference },
+      request,
+    } = this.#shown;
     const axis = AXES[this.#axis.value];
     const places = [];
     this.#drawn = [];
@@ -188,15 +322,40 @@ class PrecisionPanel {
       const cost = axis.of(point);
       if (cost === null || cost <= 0 || point.error === null) continue;
       this.#drawn.push(point);
-      places.push({ index, method: lookOf(point.method), cost, spread: this.#axis.value === 'time' ? point.spread_ns_per_impact : null, error: point.error, front: axis.front?.(point) ?? false });
+      places.push({
+        index,
+        method: lookOf(point.method),
+        cost,
+        spread: this.#axis.value === 'time' ? point.spread_ns_per_impact : null,
+        error: point.error,
+        front: axis.front?.(point) ?? false,
+      });
     }
-    this.#plot.show(places, { x: axis.name, y: `error at impact ${reference.impacts} / m or m s⁻¹` }, reference.rounding, axis.front !== null);
-    this.#box.setAttribute('aria-label', `Speed against accuracy: error over ${axis.title.toLowerCase()}, ${this.#drawn.length} points`);
-    this.#front.textContent = axis.front ? 'Nothing lies below and left of the dashed front.' : 'Steps of different methods are different work, so there is no front.';
+    this.#plot.show(
+      places,
+      { x: axis.name, y: `error at impact ${reference.impacts} / m or m s⁻¹` },
+      reference.rounding,
+      axis.front !== null,
+    );
+    this.#box.setAttribute(
+      'aria-label',
+      `Speed against accuracy: error over ${axis.title.toLowerCase()}, ${this.#drawn.length} points`,
+    );
+    this.#front.textContent = axis.front
+      ? 'Nothing lies below and left of the dashed front.'
+      : 'Steps of different methods are different work, so there is no front.';
     // A picture is of a measurement of its own: no two of them are the same.
     const picture = new URLSearchParams(request);
     picture.set('axis', this.#axis.value);
-    this.#links.replaceChildren('Measured anew as ', ...actions({ id: 'precision', title: 'Speed against accuracy', path: `v1/precision?${axis.front ? picture : request}`, formats: axis.front ? ['svg', 'png', 'csv', 'json'] : ['csv', 'json'] }));
+    this.#links.replaceChildren(
+      'Measured anew as ',
+      ...actions({
+        id: 'precision',
+        title: 'Speed against accuracy',
+        path: `v1/precision?${axis.front ? picture : request}`,
+        formats: axis.front ? ['svg', 'png', 'csv', 'json'] : ['csv', 'json'],
+      }),
+    );
     this.#point(null, false);
   }
 
@@ -213,8 +372,16 @@ class PrecisionPanel {
   #words(point) {
     const title = this.#shown?.answer.methods.find(({ name }) => name === point.method)?.title ?? point.method;
     const spread = point.spread_ns_per_impact;
-    return [title, setting(point), `${number(point.cost_ns_per_impact)} ns an impact${spread ? ` (${number(spread[0])} to ${number(spread[1])})` : ''}`, `${number(each(point, point.steps))} steps`,
-      point.evaluations === null ? '' : `${number(each(point, point.evaluations))} evaluations`, `error ${number(point.error, 3)}`].filter((part) => part).join('   ');
+    return [
+      title,
+      setting(point),
+      `${number(point.cost_ns_per_impact)} ns an impact${spread ? ` (${number(spread[0])} to ${number(spread[1])})` : ''}`,
+      `${number(each(point, point.steps))} steps`,
+      point.evaluations === null ? '' : `${number(each(point, point.evaluations))} evaluations`,
+      `error ${number(point.error, 3)}`,
+    ]
+      .filter((part) => part)
+      .join('   ');
   }
 
   /** @param {KeyboardEvent} event */
@@ -222,12 +389,18 @@ class PrecisionPanel {
     const last = this.#drawn.length - 1;
     if (last < 0 || event.ctrlKey || event.altKey || event.metaKey) return;
     const at = this.#pointed;
-    const turns = [...this.#drawn.keys()].filter((index) => index === 0 || this.#drawn[index].method !== this.#drawn[index - 1].method);
+    const turns = [...this.#drawn.keys()].filter(
+      (index) => index === 0 || this.#drawn[index].method !== this.#drawn[index - 1].method,
+    );
     const own = turns.findLast((index) => index <= (at ?? 0)) ?? 0;
     const to = {
-      ArrowRight: at === null ? 0 : Math.min(last, at + 1), ArrowLeft: at === null ? last : Math.max(0, at - 1),
-      ArrowDown: at === null ? 0 : turns.find((index) => index > at) ?? at, ArrowUp: at === null ? last : turns.findLast((index) => index < own) ?? 0,
-      Home: 0, End: last, Escape: null,
+      ArrowRight: at === null ? 0 : Math.min(last, at + 1),
+      ArrowLeft: at === null ? last : Math.max(0, at - 1),
+      ArrowDown: at === null ? 0 : (turns.find((index) => index > at) ?? at),
+      ArrowUp: at === null ? last : (turns.findLast((index) => index < own) ?? 0),
+      Home: 0,
+      End: last,
+      Escape: null,
     }[event.key];
     if (to === undefined) return;
     event.preventDefault();

@@ -27,7 +27,13 @@ const QUANTILES = /** @type {const} */ (['q05', 'q25', 'q50', 'q75', 'q95']);
 /** What is typed: its name in requests, its value at first, how many of what is typed are one of it, and what it must be. */
 const TYPED = {
   runs: { key: 'runs', usual: 200, scale: 1, most: 20_000, must: `a whole number from 1 to ${number(20_000, 7)}` },
-  impacts: { key: 'impacts', usual: 400, scale: 1, most: 100_000, must: `a whole number from 1 to ${number(100_000, 7)}` },
+  impacts: {
+    key: 'impacts',
+    usual: 400,
+    scale: 1,
+    most: 100_000,
+    must: `a whole number from 1 to ${number(100_000, 7)}`,
+  },
   // What a table without noise of its own is tried with.
   timing: { key: 'timing_sd', usual: 0.01, scale: 1000, most: 1, must: 'a number above 0 and up to 1000 ms' },
 };
@@ -36,13 +42,15 @@ const NAMES = /** @type {Name[]} */ (Object.keys(TYPED));
 const READINGS = { strike: 'It strikes early or late', plan: 'It carries out the plan for a wrong time' };
 
 /** @param {Name} name @param {number | null} value */
-const isRight = (name, value) => value !== null && value > 0 && value <= TYPED[name].most && (TYPED[name].scale !== 1 || Number.isInteger(value));
+const isRight = (name, value) =>
+  value !== null && value > 0 && value <= TYPED[name].most && (TYPED[name].scale !== 1 || Number.isInteger(value));
 
 /** @param {Scene} scene */
 const hasNoise = ({ noise }) => (noise?.timing_sd ?? 0) > 0 || (noise?.angle_sd ?? 0) > 0;
 
 /** @param {string} id */
-const typed = (id) => h('input', { id, type: 'text', inputmode: 'decimal', autocomplete: 'off', 'aria-describedby': `${id}-error` });
+const typed = (id) =>
+  h('input', { id, type: 'text', inputmode: 'decimal', autocomplete: 'off', 'aria-describedby': `${id}-error` });
 
 /** @type {import('../panels.js').Module['mount']} */
 export const mount = (root, page) => new SurvivalPanel(root, page);
@@ -50,12 +58,33 @@ export const mount = (root, page) => new SurvivalPanel(root, page);
 class SurvivalPanel {
   #page;
   #inputs = { runs: typed('survival-runs'), impacts: typed('survival-impacts'), timing: typed('survival-timing') };
-  #errors = { runs: h('p', { class: 'error', id: 'survival-runs-error' }), impacts: h('p', { class: 'error', id: 'survival-impacts-error' }), timing: h('p', { class: 'error', id: 'survival-timing-error' }) };
-  #reading = h('select', { id: 'survival-reading' }, ...Object.entries(READINGS).map(([value, words]) => h('option', { value }, words)));
+  #errors = {
+    runs: h('p', { class: 'error', id: 'survival-runs-error' }),
+    impacts: h('p', { class: 'error', id: 'survival-impacts-error' }),
+    timing: h('p', { class: 'error', id: 'survival-timing-error' }),
+  };
+  #reading = h(
+    'select',
+    { id: 'survival-reading' },
+    ...Object.entries(READINGS).map(([value, words]) => h('option', { value }, words)),
+  );
   #offered;
   #own = h('p', { class: 'muted', id: 'survival-noise' });
-  #asking = new Asking('survival', h('button', { type: 'submit', id: 'survival-start' }, 'Run them all'), 'Running', 'runs');
-  #box = h('div', { class: 'survival-box', id: 'survival-box', tabindex: 0, role: 'application', 'aria-roledescription': 'chart', 'aria-label': 'Survival', 'aria-describedby': 'survival-hint' });
+  #asking = new Asking(
+    'survival',
+    h('button', { type: 'submit', id: 'survival-start' }, 'Run them all'),
+    'Running',
+    'runs',
+  );
+  #box = h('div', {
+    class: 'survival-box',
+    id: 'survival-box',
+    tabindex: 0,
+    role: 'application',
+    'aria-roledescription': 'chart',
+    'aria-label': 'Survival',
+    'aria-describedby': 'survival-hint',
+  });
   #readout = h('output', { class: 'readout', id: 'survival-readout', 'aria-live': 'off' });
   // Spoken when keys move; a pointer's way over the chart is not.
   #spoken = h('p', { class: 'unseen', role: 'status' });
@@ -76,19 +105,82 @@ class SurvivalPanel {
    */
   constructor(root, page) {
     this.#page = page;
-    const row = (/** @type {Name} */ name, /** @type {string} */ label) => [h('p', { class: 'survival-row' }, h('label', { for: `survival-${name}` }, label), this.#inputs[name]), this.#errors[name]];
-    this.#offered = h('div', { id: 'survival-offer' }, h('p', { class: 'muted' }, 'The scene has no noise; this one is tried.'), ...row('timing', 'σ_t / ms'),
-      h('p', { class: 'survival-wide' }, h('label', { for: 'survival-reading' }, 'A table that errs in time:'), this.#reading));
+    const row = (/** @type {Name} */ name, /** @type {string} */ label) => [
+      h('p', { class: 'survival-row' }, h('label', { for: `survival-${name}` }, label), this.#inputs[name]),
+      this.#errors[name],
+    ];
+    this.#offered = h(
+      'div',
+      { id: 'survival-offer' },
+      h('p', { class: 'muted' }, 'The scene has no noise; this one is tried.'),
+      ...row('timing', 'σ_t / ms'),
+      h(
+        'p',
+        { class: 'survival-wide' },
+        h('label', { for: 'survival-reading' }, 'A table that errs in time:'),
+        this.#reading,
+      ),
+    );
     this.#offered.querySelector('label')?.replaceChildren(...marked('σ_t / ms'));
-    const head = ['Contact', 'at risk', 'ended', 'going on', '95 % from', 'to', ...QUANTILES.map((name) => `|θ| ${Number(name.slice(1))} %`)];
-    this.#sheet = h('div', { class: 'survival-sheet', hidden: true }, this.#box, this.#readout, this.#spoken,
-      h('p', { class: 'muted small', id: 'survival-hint' }, 'Above: the share of runs going on after each contact, in its 95 % interval. Below: |θ| of those that go on, its median, middle half and middle 90 %. With keys: left and right go from contact to contact, page up and page down by a tenth.'),
+    const head = [
+      'Contact',
+      'at risk',
+      'ended',
+      'going on',
+      '95 % from',
+      'to',
+      ...QUANTILES.map((name) => `|θ| ${Number(name.slice(1))} %`),
+    ];
+    this.#sheet = h(
+      'div',
+      { class: 'survival-sheet', hidden: true },
+      this.#box,
+      this.#readout,
+      this.#spoken,
+      h(
+        'p',
+        { class: 'muted small', id: 'survival-hint' },
+        'Above: the share of runs going on after each contact, in its 95 % interval. Below: |θ| of those that go on, its median, middle half and middle 90 %. With keys: left and right go from contact to contact, page up and page down by a tenth.',
+      ),
       this.#numbers,
-      h('details', {}, h('summary', {}, 'Numbers'), h('div', { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: survival' },
-        h('table', {}, h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))), this.#body))),
-      h('details', {}, h('summary', {}, 'How it was counted'), this.#notes), this.#links);
-    root.append(h('form', { novalidate: true, change: page.changed, submit: (/** @type {Event} */ event) => { event.preventDefault(); void this.ask(); } },
-      ...row('runs', 'Runs'), ...row('impacts', 'Contacts'), this.#own, this.#offered, this.#asking.buttons, this.#asking.told), this.#sheet);
+      h(
+        'details',
+        {},
+        h('summary', {}, 'Numbers'),
+        h(
+          'div',
+          { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: survival' },
+          h(
+            'table',
+            {},
+            h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))),
+            this.#body,
+          ),
+        ),
+      ),
+      h('details', {}, h('summary', {}, 'How it was counted'), this.#notes),
+      this.#links,
+    );
+    root.append(
+      h(
+        'form',
+        {
+          novalidate: true,
+          change: page.changed,
+          submit: (/** @type {Event} */ event) => {
+            event.preventDefault();
+            void this.ask();
+          },
+        },
+        ...row('runs', 'Runs'),
+        ...row('impacts', 'Contacts'),
+        this.#own,
+        this.#offered,
+        this.#asking.buttons,
+        this.#asking.told,
+      ),
+      this.#sheet,
+    );
     this.#plot = new Plot(this.#box);
     this.#box.addEventListener('pointermove', (event) => this.#point(this.#plot.nearest(event), false));
     this.#box.addEventListener('pointerleave', () => this.#point(null, false));
@@ -120,7 +212,8 @@ class SurvivalPanel {
       this.#blame(name, '');
     }
     const model = link.get('survival.model') ?? 'strike';
-    if (!Object.hasOwn(READINGS, model)) dropped.push(`survival.model “${model.slice(0, 40)}”: it must be ${Object.keys(READINGS).join(' or ')}`);
+    if (!Object.hasOwn(READINGS, model))
+      dropped.push(`survival.model “${model.slice(0, 40)}”: it must be ${Object.keys(READINGS).join(' or ')}`);
     this.#reading.value = Object.hasOwn(READINGS, model) ? model : 'strike';
     return dropped;
   }
@@ -139,8 +232,15 @@ class SurvivalPanel {
     this.#offered.hidden = own;
     this.#own.hidden = !own;
     const { timing_sd: timing, angle_sd: angle, model = 'strike' } = scene.noise ?? {};
-    const parts = [timing && `σ_t = ${quantity(timing * 1000, 'ms')}`, angle && `σ_α = ${quantity(angle, 'rad')}`].filter((part) => part);
-    this.#own.replaceChildren('Noise of the scene: ', ...marked(parts.join(', ')), timing ? `. ${READINGS[/** @type {'strike'} */ (model)] ?? model}.` : '.');
+    const parts = [
+      timing && `σ_t = ${quantity(timing * 1000, 'ms')}`,
+      angle && `σ_α = ${quantity(angle, 'rad')}`,
+    ].filter((part) => part);
+    this.#own.replaceChildren(
+      'Noise of the scene: ',
+      ...marked(parts.join(', ')),
+      timing ? `. ${READINGS[/** @type {'strike'} */ (model)] ?? model}.` : '.',
+    );
   }
 
   /** What is typed, in the server's unit; null where it is no number. @param {Name} name */
@@ -191,23 +291,53 @@ class SurvivalPanel {
     const { answer, path } = this.#shown;
     const { survived, runs, impacts, counts, survival, quantiles } = answer;
     this.#asking.say(`${number(survived.runs, 6)} of ${number(runs, 6)} runs outlast ${number(impacts, 7)} contacts.`);
-    const ends = Object.entries(counts).filter(([name, count]) => name !== 'completed' && count > 0).map(([name, count]) => `${number(count, 6)} ${name.replaceAll('_', ' ')}`);
+    const ends = Object.entries(counts)
+      .filter(([name, count]) => name !== 'completed' && count > 0)
+      .map(([name, count]) => `${number(count, 6)} ${name.replaceAll('_', ' ')}`);
     /** @type {[string, string, string][]} */
-    const rows = [['share', number(survived.share), `${number(survived.lower)} to ${number(survived.upper)} with 95 %`],
-      ['median', answer.median_impacts === null ? `> ${number(impacts, 7)}` : number(answer.median_impacts, 7), 'contacts of a run'],
+    const rows = [
+      ['share', number(survived.share), `${number(survived.lower)} to ${number(survived.upper)} with 95 %`],
+      [
+        'median',
+        answer.median_impacts === null ? `> ${number(impacts, 7)}` : number(answer.median_impacts, 7),
+        'contacts of a run',
+      ],
       ['mean', `${survived.runs > 0 ? '≥ ' : ''}${number(answer.mean_impacts)}`, 'contacts of a run'],
       ['half-life', answer.half_life === null ? '–' : number(answer.half_life), 'contacts, late in the runs'],
-      ['ends', ends.join(', ') || 'none', 'of those that did not last']];
-    this.#numbers.replaceChildren(...rows.map(([name, value, meaning]) => h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning))));
-    this.#body.replaceChildren(...quantiles.n.map((contact, index) => {
-      const at = contact - 1;
-      const cells = [number(survival.at_risk[at], 6), number(survival.ended[at], 6), number(survival.survival[at]), number(survival.lower[at]), number(survival.upper[at]), ...QUANTILES.map((name) => number(quantiles[name][index]))];
-      return h('tr', {}, h('th', { scope: 'row' }, number(contact, 7)), ...cells.map((cell) => h('td', {}, cell)));
-    }));
+      ['ends', ends.join(', ') || 'none', 'of those that did not last'],
+    ];
+    this.#numbers.replaceChildren(
+      ...rows.map(([name, value, meaning]) =>
+        h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning)),
+      ),
+    );
+    this.#body.replaceChildren(
+      ...quantiles.n.map((contact, index) => {
+        const at = contact - 1;
+        const cells = [
+          number(survival.at_risk[at], 6),
+          number(survival.ended[at], 6),
+          number(survival.survival[at]),
+          number(survival.lower[at]),
+          number(survival.upper[at]),
+          ...QUANTILES.map((name) => number(quantiles[name][index])),
+        ];
+        return h('tr', {}, h('th', { scope: 'row' }, number(contact, 7)), ...cells.map((cell) => h('td', {}, cell)));
+      }),
+    );
     this.#notes.replaceChildren(...answer.notes.map((note) => h('p', { class: 'muted' }, ...prose(note))));
-    this.#box.setAttribute('aria-label', `Survival: ${number(survived.share)} of the runs outlast ${number(impacts, 7)} contacts`);
-    this.#links.replaceChildren(...actions({ id: 'survival', title: 'Survival under noise', path, formats: ['svg', 'png', 'csv', 'json'] }),
-      h('button', { type: 'button', id: 'survival-first', click: () => this.#page.play(answer.scene) }, 'Watch the first run'));
+    this.#box.setAttribute(
+      'aria-label',
+      `Survival: ${number(survived.share)} of the runs outlast ${number(impacts, 7)} contacts`,
+    );
+    this.#links.replaceChildren(
+      ...actions({ id: 'survival', title: 'Survival under noise', path, formats: ['svg', 'png', 'csv', 'json'] }),
+      h(
+        'button',
+        { type: 'button', id: 'survival-first', click: () => this.#page.play(answer.scene) },
+        'Watch the first run',
+      ),
+    );
     this.#plot.show(answer);
     this.#point(null, false);
   }
@@ -228,7 +358,15 @@ class SurvivalPanel {
     const at = this.#pointed;
     const tenth = Math.max(1, Math.round(last / 10));
     const by = (/** @type {number} */ step) => Math.max(1, Math.min(last, (at ?? (step > 0 ? 0 : last + 1)) + step));
-    const to = { ArrowRight: by(1), ArrowLeft: by(-1), PageUp: by(tenth), PageDown: by(-tenth), Home: 1, End: last, Escape: null }[event.key];
+    const to = {
+      ArrowRight: by(1),
+      ArrowLeft: by(-1),
+      PageUp: by(tenth),
+      PageDown: by(-tenth),
+      Home: 1,
+      End: last,
+      Escape: null,
+    }[event.key];
     if (to === undefined) return;
     event.preventDefault();
     this.#point(to, true);
@@ -240,6 +378,12 @@ function wordsAt({ survival, quantiles }, contact) {
   const at = contact - 1;
   const index = quantiles.n.findLastIndex((n) => n <= contact);
   const median = quantiles.n[index] === contact ? quantiles.q50[index] : null;
-  return [`contact ${number(contact, 7)}`, `going on ${number(survival.survival[at])} (${number(survival.lower[at])} to ${number(survival.upper[at])})`, `at risk ${number(survival.at_risk[at], 6)}`,
-    median === null ? '' : `median |θ| ${quantity(median, 'rad')}`].filter((part) => part).join('   ');
+  return [
+    `contact ${number(contact, 7)}`,
+    `going on ${number(survival.survival[at])} (${number(survival.lower[at])} to ${number(survival.upper[at])})`,
+    `at risk ${number(survival.at_risk[at], 6)}`,
+    median === null ? '' : `median |θ| ${quantity(median, 'rad')}`,
+  ]
+    .filter((part) => part)
+    .join('   ');
 }

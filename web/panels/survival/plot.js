@@ -47,7 +47,7 @@ export class Plot {
     if (!this.#shown || this.#across <= 0) return null;
     const x = event.clientX - this.#box.getBoundingClientRect().left - this.#left;
     if (x < -8 || x > this.#across + 8) return null;
-    return Math.max(1, Math.min(this.#shown.impacts, Math.round(x / this.#across * this.#shown.impacts)));
+    return Math.max(1, Math.min(this.#shown.impacts, Math.round((x / this.#across) * this.#shown.impacts)));
   }
 
   /** @param {number | null} contact */
@@ -55,7 +55,7 @@ export class Plot {
     this.#pointed = contact;
     this.#pointer.toggleAttribute('hidden', contact === null || !this.#shown);
     if (contact === null || !this.#shown) return;
-    const x = (this.#left + contact / this.#shown.impacts * this.#across).toFixed(1);
+    const x = (this.#left + (contact / this.#shown.impacts) * this.#across).toFixed(1);
     this.#pointer.setAttribute('d', this.#ends.map(([from, to]) => `M${x} ${from}V${to}`).join(''));
   }
 
@@ -64,14 +64,17 @@ export class Plot {
     if (!this.#shown || width < 120 || height < 200) return;
     const { survival, quantiles, runs, impacts } = this.#shown;
     const { left, top } = MARGIN;
-    const across = this.#across = width - left - MARGIN.right;
+    const across = (this.#across = width - left - MARGIN.right);
     const room = height - top - BETWEEN - BELOW;
     const middle = top + Math.round(room * UPPER);
     const from = middle + BETWEEN;
     const bottom = height - BELOW;
     const right = left + across;
-    this.#ends = [[top, middle], [from, bottom]];
-    const x = (/** @type {number} */ contact) => left + contact / impacts * across;
+    this.#ends = [
+      [top, middle],
+      [from, bottom],
+    ];
+    const x = (/** @type {number} */ contact) => left + (contact / impacts) * across;
     const share = { low: 0, high: 1 };
     const y = (/** @type {number} */ value) => middle - value * (middle - top);
     const along = ticks({ low: 0, high: impacts }, Math.max(2, Math.floor(across / APART.x))).filter(Number.isInteger);
@@ -80,31 +83,52 @@ export class Plot {
     /** @param {Range} range @param {number} above @param {number} below */
     const axes = (range, above, below) => {
       for (const contact of along) {
-        parts.push(svg('path', { class: 'grid', d: `M${x(contact).toFixed(1)} ${above}V${below}` }), svg('text', { x: x(contact), y: below + 15, 'text-anchor': 'middle' }, number(contact, 7)));
+        parts.push(
+          svg('path', { class: 'grid', d: `M${x(contact).toFixed(1)} ${above}V${below}` }),
+          svg('text', { x: x(contact), y: below + 15, 'text-anchor': 'middle' }, number(contact, 7)),
+        );
       }
       for (const value of ticks(range, Math.max(2, (below - above) / APART.y))) {
-        const at = below - (value - range.low) / (range.high - range.low) * (below - above);
-        parts.push(svg('path', { class: 'grid', d: `M${left} ${at.toFixed(1)}H${right}` }), svg('text', { x: left - 6, y: at + 4, 'text-anchor': 'end' }, number(value)));
+        const at = below - ((value - range.low) / (range.high - range.low)) * (below - above);
+        parts.push(
+          svg('path', { class: 'grid', d: `M${left} ${at.toFixed(1)}H${right}` }),
+          svg('text', { x: left - 6, y: at + 4, 'text-anchor': 'end' }, number(value)),
+        );
       }
       parts.push(svg('rect', { class: 'edge', x: left, y: above, width: across, height: below - above }));
     };
     axes(share, top, middle);
     parts.push(svg('text', { class: 'name', x: 2, y: top - 8 }, 'share of runs going on'));
-    const line = (/** @type {number[]} */ values, first = values[0]) => corners(values, first, impacts).map(([contact, value]) => `${x(contact).toFixed(1)} ${y(value).toFixed(1)}`);
-    parts.push(svg('path', { class: 'band', d: `M${[...line(survival.upper), ...line(survival.lower).reverse()].join('L')}Z` }),
-      svg('path', { class: 'curve', d: `M${line(survival.survival, 1).join('L')}` }));
+    const line = (/** @type {number[]} */ values, first = values[0]) =>
+      corners(values, first, impacts).map(([contact, value]) => `${x(contact).toFixed(1)} ${y(value).toFixed(1)}`);
+    parts.push(
+      svg('path', { class: 'band', d: `M${[...line(survival.upper), ...line(survival.lower).reverse()].join('L')}Z` }),
+      svg('path', { class: 'curve', d: `M${line(survival.survival, 1).join('L')}` }),
+    );
     // The number at risk at a contact is of those that came to it; before the first one it is all.
     parts.push(svg('text', { class: 'name', x: 2, y: middle + 34 }, 'at risk'));
     for (const contact of along) {
-      parts.push(svg('text', { class: 'risk', x: x(contact), y: middle + 50, 'text-anchor': 'middle' }, number(contact === 0 ? runs : survival.at_risk[contact - 1], 6)));
+      parts.push(
+        svg(
+          'text',
+          { class: 'risk', x: x(contact), y: middle + 50, 'text-anchor': 'middle' },
+          number(contact === 0 ? runs : survival.at_risk[contact - 1], 6),
+        ),
+      );
     }
     const largest = Math.max(0, ...quantiles.q95.map((value) => value ?? 0));
     const range = roundRange({ low: 0, high: largest || 0.1 }, { from: 0 });
     axes(range, from, bottom);
-    const down = (/** @type {number} */ value) => bottom - value / range.high * (bottom - from);
-    parts.push(svg('text', { class: 'name', x: 2, y: from - 8 }, '|θ| / rad'), svg('text', { class: 'name', x: right, y: bottom + 32, 'text-anchor': 'end' }, 'contact'));
+    const down = (/** @type {number} */ value) => bottom - (value / range.high) * (bottom - from);
+    parts.push(
+      svg('text', { class: 'name', x: 2, y: from - 8 }, '|θ| / rad'),
+      svg('text', { class: 'name', x: right, y: bottom + 32, 'text-anchor': 'end' }, 'contact'),
+    );
     const places = quantiles.n.map(x);
-    for (const [name, low, high] of /** @type {const} */ ([['wide', 'q05', 'q95'], ['inner', 'q25', 'q75']])) {
+    for (const [name, low, high] of /** @type {const} */ ([
+      ['wide', 'q05', 'q95'],
+      ['inner', 'q25', 'q75'],
+    ])) {
       parts.push(svg('path', { class: name, d: between(places, quantiles[low], quantiles[high], down) }));
     }
     parts.push(svg('path', { class: 'median', d: way(places, quantiles.q50, down) }));
@@ -135,17 +159,20 @@ function corners(values, first, last) {
 /** @param {number[]} places @param {(number | null)[]} values @param {(value: number) => number} y */
 function way(places, values, y) {
   let open = false;
-  return values.map((value, index) => {
-    const step = value === null ? '' : `${open ? 'L' : 'M'}${places[index].toFixed(1)} ${y(value).toFixed(1)}`;
-    open = value !== null;
-    return step;
-  }).join('');
+  return values
+    .map((value, index) => {
+      const step = value === null ? '' : `${open ? 'L' : 'M'}${places[index].toFixed(1)} ${y(value).toFixed(1)}`;
+      open = value !== null;
+      return step;
+    })
+    .join('');
 }
 
 /** @param {number[]} places @param {(number | null)[]} low @param {(number | null)[]} high @param {(value: number) => number} y */
 function between(places, low, high, y) {
   const there = places.map((_, index) => index).filter((index) => low[index] !== null && high[index] !== null);
-  const edge = (/** @type {number[]} */ order, /** @type {(number | null)[]} */ values) => order.map((index) => `${places[index].toFixed(1)} ${y(/** @type {number} */ (values[index])).toFixed(1)}`);
+  const edge = (/** @type {number[]} */ order, /** @type {(number | null)[]} */ values) =>
+    order.map((index) => `${places[index].toFixed(1)} ${y(/** @type {number} */ (values[index])).toFixed(1)}`);
   const round = [...edge(there, high), ...edge(there.toReversed(), low)];
   return round.length > 0 ? `M${round.join('L')}Z` : '';
 }

@@ -7,22 +7,53 @@ import { number, quantity } from '../../dom/numbers.js';
 /** @typedef {import('../../api/api.js').Stability} Stability */
 
 /** @param {number} angle */
-const inBoth = (angle) => `${quantity(angle, 'rad')} (${quantity(angle * 180 / Math.PI, '°', 3)})`;
+const inBoth = (angle) => `${quantity(angle, 'rad')} (${quantity((angle * 180) / Math.PI, '°', 3)})`;
 
 /** @param {Stability} answer @returns {(readonly [string, string])[]} name and sentence */
 function sentences({ rotation_number: rotation, chaos, predictable_impacts: predictable }) {
   const found = [];
   if (rotation) {
-    const { measured, linear, resonance: { p, q, distance } } = rotation;
-    const turns = measured === null ? `Small deviations make ${number(linear)} turns a bounce` : `The run makes ${number(measured)} turns a bounce, small deviations ${number(linear)}`;
-    found.push(/** @type {const} */ (['Rotation', `${turns}; the nearest resonance is ${p}/${q}, ${number(distance, 2)} turns away.`]));
+    const {
+      measured,
+      linear,
+      resonance: { p, q, distance },
+    } = rotation;
+    const turns =
+      measured === null
+        ? `Small deviations make ${number(linear)} turns a bounce`
+        : `The run makes ${number(measured)} turns a bounce, small deviations ${number(linear)}`;
+    found.push(
+      /** @type {const} */ ([
+        'Rotation',
+        `${turns}; the nearest resonance is ${p}/${q}, ${number(distance, 2)} turns away.`,
+      ]),
+    );
   }
   if (chaos) {
-    const part = chaos.chaotic ? 'Chaotic: nearby runs part exponentially' : 'Regular: nearby runs part no faster than evenly';
-    found.push(/** @type {const} */ (['Chaos', `${part} (MEGNO ${number(chaos.indicator, 3)} over ${number(chaos.impacts)} impacts; regular is up to 2).`]));
+    const part = chaos.chaotic
+      ? 'Chaotic: nearby runs part exponentially'
+      : 'Regular: nearby runs part no faster than evenly';
+    found.push(
+      /** @type {const} */ ([
+        'Chaos',
+        `${part} (MEGNO ${number(chaos.indicator, 3)} over ${number(chaos.impacts)} impacts; regular is up to 2).`,
+      ]),
+    );
   }
-  if (predictable !== null) found.push(/** @type {const} */ (['Predictable', `For ${number(predictable)} impacts: then rounding has grown to a thousandth of the bounce’s speed, and a single run means nothing.`]));
-  else if (chaos) found.push(/** @type {const} */ (['Predictable', `For all ${number(chaos.impacts)} impacts watched: rounding stays below a thousandth of the bounce’s speed.`]));
+  if (predictable !== null)
+    found.push(
+      /** @type {const} */ ([
+        'Predictable',
+        `For ${number(predictable)} impacts: then rounding has grown to a thousandth of the bounce’s speed, and a single run means nothing.`,
+      ]),
+    );
+  else if (chaos)
+    found.push(
+      /** @type {const} */ ([
+        'Predictable',
+        `For all ${number(chaos.impacts)} impacts watched: rounding stays below a thousandth of the bounce’s speed.`,
+      ]),
+    );
   return found;
 }
 
@@ -30,8 +61,12 @@ function sentences({ rotation_number: rotation, chaos, predictable_impacts: pred
 function basinSentence({ basin, notes }) {
   if (!basin) return notes.find((note) => note.startsWith('basin')) ?? 'It has none here.';
   const { theta, unbroken, holes, impacts, spacing } = basin;
-  if (theta === 0) return `Released at rest anywhere aside, it does not survive ${number(impacts)} impacts; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
-  const gaps = holes.length === 0 ? '' : `, and with ${holes.length === 1 ? 'a gap' : `${holes.length} gaps`} up to ${inBoth(theta)}`;
+  if (theta === 0)
+    return `Released at rest anywhere aside, it does not survive ${number(impacts)} impacts; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
+  const gaps =
+    holes.length === 0
+      ? ''
+      : `, and with ${holes.length === 1 ? 'a gap' : `${holes.length} gaps`} up to ${inBoth(theta)}`;
   return `Released at rest it survives ${number(impacts)} impacts from up to ${inBoth(unbroken)} to either side${gaps}; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
 }
 
@@ -41,8 +76,12 @@ function gist({ rotation_number: rotation, chaos, predictable_impacts: predictab
   const parts = [
     chaos && (chaos.chaotic ? 'chaotic' : 'regular'),
     rotation && `${number(rotation.measured ?? rotation.linear, 3)} turns a bounce${near ? `, near ${near[1]}` : ''}`,
-    predictable !== null ? `predictable for ${number(predictable)} impacts` : chaos && `predictable ≥ ${number(chaos.impacts)} impacts`,
-  ].filter((part) => part).join(' · ');
+    predictable !== null
+      ? `predictable for ${number(predictable)} impacts`
+      : chaos && `predictable ≥ ${number(chaos.impacts)} impacts`,
+  ]
+    .filter((part) => part)
+    .join(' · ');
   return parts ? parts[0].toUpperCase() + parts.slice(1) : 'Beyond the linear map';
 }
 
@@ -70,7 +109,16 @@ export function evidence(answer, measure) {
   if (answer.scene.body?.point || !answer.fixed_point) return '';
   /** @param {string} name @param {...(Node | string)} words */
   const row = (name, ...words) => [h('dt', {}, name), h('dd', {}, ...words)];
-  return h('details', { class: 'evidence' }, h('summary', {}, gist(answer)), h('dl', { 'aria-label': 'Beyond the linear map' },
-    ...sentences(answer).flatMap(([name, words]) => row(name, words)),
-    ...(resonance ? row('Resonance', ...prose(resonance.replace(/^resonance /, ''))) : []), ...row('Basin', basin)));
+  return h(
+    'details',
+    { class: 'evidence' },
+    h('summary', {}, gist(answer)),
+    h(
+      'dl',
+      { 'aria-label': 'Beyond the linear map' },
+      ...sentences(answer).flatMap(([name, words]) => row(name, words)),
+      ...(resonance ? row('Resonance', ...prose(resonance.replace(/^resonance /, ''))) : []),
+      ...row('Basin', basin),
+    ),
+  );
 }
