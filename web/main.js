@@ -1,6 +1,7 @@
 // The page: joins the form, the run and the panels. Not for what any of them does.
 
-import { MOST_IMPACTS, Problem, fieldsOf, get, pathOf, playedAt, same, server, setAt, valueAt } from './api/api.js';
+import { MOST_IMPACTS, Problem, get, server } from './api/client.js';
+import { fieldsOf, pathOf, playedAt, same, setAt, valueAt } from './api/scene-fields.js';
 import { Circle } from './charts/eigenvalue-circle.js';
 import { Controls } from './run/controls.js';
 import { Form } from './form/form.js';
@@ -15,9 +16,9 @@ import { enlarger } from './export/enlarge-button.js';
 import { invalidate } from './charts/surface.js';
 import { FASTEST, SLOWEST, interventionsOf, merged, readLink, sceneQuery } from './app/link.js';
 
-/** @typedef {import('./api/api.js').Field} Field */
-/** @typedef {import('./api/api.js').Case} Case */
-/** @typedef {import('./api/api.js').Scene} Scene */
+/** @typedef {import('./api/scene-fields.js').Field} Field */
+/** @typedef {import('contract').Preset} Case */
+/** @typedef {import('./api/scene-fields.js').Scene} Scene */
 
 const GAIN = 'table.tilt_gain';
 /** What `[` and `]` go through. */

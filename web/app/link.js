@@ -1,11 +1,11 @@
 // The page's address: scene and run in the words of `/v1/live`, read with care, since links grow old. Not for sending anything.
 
 import { number, quantity } from '../dom/numbers.js';
-import { playedAt, same, setAt } from '../api/api.js';
+import { playedAt, same, setAt } from '../api/scene-fields.js';
 
-/** @typedef {import('../api/api.js').Field} Field */
-/** @typedef {import('../api/api.js').Case} Case */
-/** @typedef {import('../api/api.js').Scene} Scene */
+/** @typedef {import('../api/scene-fields.js').Field} Field */
+/** @typedef {import('contract').Preset} Case */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {{impact: number, set: Record<string, number | string>, kick: Record<string, number>}} Intervention */
 
 /** What belongs to a panel, by its name. */

@@ -6,7 +6,7 @@ import { SANS, SERIF, onThemeChange, theme } from './theme.js';
 import { fixed, number } from '../dom/numbers.js';
 import { invalidate, surfaces } from './surface.js';
 
-/** @typedef {import('../api/api.js').Stability} Stability */
+/** @typedef {import('contract').Stability} Stability */
 /** @typedef {{lower: number, critical: number, at: (gain: number) => number}} Residue of every gain */
 
 /**

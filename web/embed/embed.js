@@ -2,7 +2,8 @@
 // Not for changing either: that is for the whole page, one click away.
 
 import { Circle } from '../charts/eigenvalue-circle.js';
-import { Problem, fieldsOf, get } from '../api/api.js';
+import { Problem, get } from '../api/client.js';
+import { fieldsOf } from '../api/scene-fields.js';
 import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
 import { Selection } from '../run/selection.js';
@@ -106,7 +107,7 @@ async function begin() {
   const fields = fieldsOf(table);
   const link = readLink(location.search, fields, cases);
   dropped(link.dropped);
-  const named = cases.find((/** @type {import('../api/api.js').Case} */ one) => one.name === link.preset);
+  const named = cases.find((/** @type {import('contract').Preset} */ one) => one.name === link.preset);
   const chosen = named ?? (Object.keys(link.changes).length === 0 ? cases[0] : null);
   const scene = merged(chosen?.scene ?? {}, link.changes);
   const query = sceneQuery(scene, chosen, fields);
@@ -128,7 +129,7 @@ async function begin() {
     );
   }
   // To run another scene, the whole page opens beside the dashboard.
-  const play = (/** @type {import('../api/api.js').Scene} */ other) =>
+  const play = (/** @type {import('../api/scene-fields.js').Scene} */ other) =>
     void open(`./?${sceneQuery(other, null, fields)}`, '_blank', 'noopener');
   const page = {
     fields,

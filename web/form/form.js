@@ -2,10 +2,10 @@
 
 import { h, steady, symbol } from '../dom/dom.js';
 import { number, parse, quantity, unitAfter } from '../dom/numbers.js';
-import { pathOf, setAt, valueAt } from '../api/api.js';
+import { pathOf, setAt, valueAt } from '../api/scene-fields.js';
 
-/** @typedef {import('../api/api.js').Field} Field */
-/** @typedef {import('../api/api.js').Scene} Scene */
+/** @typedef {import('../api/scene-fields.js').Field} Field */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
 /**
  * @typedef {object} Row
@@ -367,7 +367,7 @@ export class Form {
 
   /**
    * The server's errors beside their fields.
-   * @param {import('../api/api.js').FieldError[]} errors
+   * @param {import('contract').ProblemError[]} errors
    * @returns {string[]} those that belong to no field here
    */
   blame(errors) {

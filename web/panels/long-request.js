@@ -1,6 +1,6 @@
 // A question that takes the server a while: how far it is, how to stop it, and what went wrong, in words. Not for what is asked.
 
-import { Problem, problemOf } from '../api/api.js';
+import { Problem, problemOf } from '../api/client.js';
 import { h, marked } from '../dom/dom.js';
 import { lines } from '../api/ndjson.js';
 import { number } from '../dom/numbers.js';

@@ -3,9 +3,9 @@
 import { enlarger } from '../export/enlarge-button.js';
 import { h } from '../dom/dom.js';
 
-/** @typedef {import('../api/api.js').Field} Field */
-/** @typedef {import('../api/api.js').Case} Case */
-/** @typedef {import('../api/api.js').Scene} Scene */
+/** @typedef {import('../api/scene-fields.js').Field} Field */
+/** @typedef {import('contract').Preset} Case */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
 /**
  * What a panel knows of where it stands.
@@ -20,7 +20,7 @@ import { h } from '../dom/dom.js';
  * @property {() => void} changed the panel’s part of the address is another one
  */
 
-/** A verdict and the scene it is of. @typedef {{answer: import('../api/api.js').Stability, scene: URLSearchParams}} Judged */
+/** A verdict and the scene it is of. @typedef {{answer: import('contract').Stability, scene: URLSearchParams}} Judged */
 
 /**
  * What stands in its place.

@@ -3,7 +3,7 @@
 import { contactDistance, effectiveGravity } from './flight.js';
 import { number, quantity } from '../dom/numbers.js';
 
-/** @typedef {import('../api/api.js').Scene} Scene */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {{values: Record<string, number>, words: string} | {values: null, words: string}} Start what to release with, or why nothing does */
 
 /** Contact points closer to the table than this touch it, m. */
@@ -99,7 +99,7 @@ const NAMES = {
 /**
  * The start, unless it lies beyond what the server takes.
  * @param {Start} start
- * @param {import('../api/api.js').Field[]} fields
+ * @param {import('../api/scene-fields.js').Field[]} fields
  * @returns {Start}
  */
 export function within(start, fields) {

@@ -1,6 +1,6 @@
 // Where rod and table are between two impacts, in closed form. Not the physics of an impact beyond what the next strike looks like.
 
-/** @typedef {import('../api/api.js').Scene} Scene */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
 /**
  * @typedef {object} Pose

@@ -57,7 +57,7 @@ export class Controls {
   #kickUnit = h('span', { class: 'unit' }, KICKS[0].unit);
   #kickError = h('p', { class: 'error', id: 'kick-error' });
   #asked;
-  /** @type {import('../api/api.js').Field | null} */
+  /** @type {import('../api/scene-fields.js').Field | null} */
   #gainField = null;
   /** @type {number | null} */
   #gainSet = null;
@@ -118,7 +118,7 @@ export class Controls {
     this.#asked.gain(gain, final);
   }
 
-  /** @param {import('../api/api.js').Field | null} field of the tilt gain */
+  /** @param {import('../api/scene-fields.js').Field | null} field of the tilt gain */
   knowGain(field) {
     this.#gainField = field;
     this.#gainBox.hidden = !field;

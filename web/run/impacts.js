@@ -1,4 +1,4 @@
-// The impacts of a run in columns, the newest of them kept. Not for drawing or for the connection.
+// The impacts of a run in columns; the newest of them are kept.
 
 export const COLUMNS = /** @type {const} */ ([
   'n',
@@ -121,51 +121,4 @@ export class Impacts {
     this.end = 0;
     this.missing = 0;
   }
-}
-
-/** What the contact did; its column has the place here, NaN where that was not told. */
-export const MODES = ['frictionless', 'slide', 'stick', 'reverse_slide', 'slide_through'];
-
-/** @param {unknown} value */
-const real = (value) => (typeof value === 'number' ? value : NaN);
-
-/**
- * @param {any} message of type `impact`
- * @returns {Impact}
- */
-export function fromMessage(message) {
-  const { before, after, table_velocity: table, alpha } = message;
-  return {
-    n: message.n,
-    t: message.t,
-    x: real(before.x),
-    theta: real(before.theta),
-    x_dot: real(before.x_dot),
-    y_dot: real(before.y_dot),
-    theta_dot: real(before.theta_dot),
-    x_dot_after: real(after?.x_dot),
-    y_dot_after: real(after?.y_dot),
-    theta_dot_after: real(after?.theta_dot),
-    alpha: real(alpha),
-    flight_time: real(message.flight_time),
-    energy: real(message.energy),
-    contact_speed: real(message.contact_speed),
-    table_speed: table ? table.y * Math.cos(alpha) - table.x * Math.sin(alpha) : NaN,
-    mode: MODES.includes(message.contact_mode) ? MODES.indexOf(message.contact_mode) : NaN,
-    clearance: real(message.clearance),
-    series: 0,
-  };
-}
-
-/**
- * @param {Record<string, (number | null)[]>} columns of a message of type `impacts`
- * @returns {Impact[]}
- */
-export function fromColumns(columns) {
-  return columns.n.map(
-    (_, row) =>
-      /** @type {Impact} */ (
-        Object.fromEntries(COLUMNS.map((name) => [name, name === 'series' ? 0 : real(columns[name]?.[row])]))
-      ),
-  );
 }

@@ -1,6 +1,6 @@
 // One live stream over a WebSocket that comes back by itself. Knows messages and retries, not what a run or the page makes of them.
 
-import { Problem, get } from '../api/api.js';
+import { Problem, get } from '../api/client.js';
 
 /**
  * @typedef {object} Listener

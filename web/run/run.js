@@ -1,14 +1,19 @@
 // A live run as this page knows it: its impacts, its clock, what was done to it. Not for the screen.
 
 import { Clock } from './clock.js';
-import { Impacts, fromColumns, fromMessage } from './impacts.js';
+import { Impacts } from './impacts.js';
+import { fromColumns, fromMessage } from './impact-messages.js';
 import { Live } from './live-stream.js';
 import { arcAfter, strikeAfter } from '../physics/flight.js';
 import { interventionsOf } from '../app/link.js';
-import { setAt } from '../api/api.js';
+import { setAt } from '../api/scene-fields.js';
 
-/** @typedef {import('../api/api.js').Scene} Scene */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('./impacts.js').Impact} Impact */
+/**
+ * @typedef {import('contract').LiveHello | import('contract').LiveAck | import('contract').LiveImpact | import('contract').LiveImpacts
+ *   | import('contract').LiveGap | import('contract').LiveEnd | import('contract').LiveProblem} ServerMessage
+ */
 /** @typedef {'idle' | 'connecting' | 'running' | 'paused' | 'lost' | 'ended'} Phase */
 
 // How late an impact may be, in wall time, before a connection that says nothing counts as lost.
@@ -20,8 +25,8 @@ const OVERDUE_S = 5;
  * @property {() => void} struck there are new impacts
  * @property {() => void} cleared a new run: all that was drawn is void
  * @property {(seconds: number) => void} lost
- * @property {(problem: import('../api/api.js').Problem) => void} refused
- * @property {(message: {title: string, detail: string, errors: import('../api/api.js').FieldError[]}) => void} problem with one message
+ * @property {(problem: import('../api/client.js').Problem) => void} refused
+ * @property {(message: {title: string, detail: string, errors: import('contract').ProblemError[]}) => void} problem with one message
  */
 
 export class Run {
@@ -31,7 +36,7 @@ export class Run {
   phase = 'idle';
   /** What the next strike will be played with. @type {Scene | null} */
   scene = null;
-  /** @type {import('../api/api.js').Outcome | null} */
+  /** @type {import('contract').Outcome | null} */
   outcome = null;
   /** @type {import('../app/link.js').Intervention[]} */
   interventions = [];
@@ -172,7 +177,7 @@ export class Run {
     return this.#live?.send({ type: 'restart' }) ?? false;
   }
 
-  /** @param {any} message */
+  /** @param {ServerMessage} message */
   #hear(message) {
     switch (message.type) {
       case 'hello':
@@ -215,7 +220,7 @@ export class Run {
     }
   }
 
-  /** @param {any} message hello or ack */
+  /** @param {import('contract').LiveHello | import('contract').LiveAck} message */
   #read(message) {
     this.clock.read(message);
     this.query = new URLSearchParams(message.url.split('?')[1] ?? '');

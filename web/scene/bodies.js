@@ -1,7 +1,7 @@
 // The drawn things of a scene: rod, table and the signs of a strike. Where they are is said by who draws them.
 
 import { line } from '../charts/axes.js';
-import { MODES } from '../run/impacts.js';
+import { MODES } from '../run/impact-messages.js';
 import { SANS, SERIF, theme } from '../charts/theme.js';
 import { contactDistance, corners } from '../physics/flight.js';
 import { fixed } from '../dom/numbers.js';
@@ -14,7 +14,7 @@ import { fixed } from '../dom/numbers.js';
  * outline of a polygon.
  * @param {Context} context
  * @param {Scale} scale
- * @param {import('../api/api.js').Scene} scene
+ * @param {import('../api/scene-fields.js').Scene} scene
  * @param {import('../physics/flight.js').Pose} pose
  */
 export function drawRod(context, scale, scene, pose) {

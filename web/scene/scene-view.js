@@ -2,14 +2,14 @@
 
 import { h } from '../dom/dom.js';
 import { drawRod, drawStrike, drawTable } from './bodies.js';
-import { MODES } from '../run/impacts.js';
+import { MODES } from '../run/impact-messages.js';
 import { line, roundStep } from '../charts/axes.js';
 import { SANS, onThemeChange, theme } from '../charts/theme.js';
 import { contactDistance, corners, effectiveGravity, poseOn, strikeAfter, tableBetween } from '../physics/flight.js';
 import { invalidate, surfaces } from '../charts/surface.js';
 import { fixed, number, unbroken } from '../dom/numbers.js';
 
-/** @typedef {import('../api/api.js').Scene} Scene */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('../run/run.js').Run} Run */
 /** @typedef {import('../physics/flight.js').Arc} Arc */
 /** @typedef {import('../physics/flight.js').Strike} Strike */

@@ -6,7 +6,7 @@ import { effectiveGravity } from '../../physics/flight.js';
 
 /**
  * @param {import('../../run/impacts.js').Impacts} impacts
- * @param {() => import('../../api/api.js').Scene | null} scene
+ * @param {() => import('../../api/scene-fields.js').Scene | null} scene
  */
 export function energyPlot(impacts, scene) {
   /** The wanted energy G·y* with energy feedback; the first energy where a bounce keeps it. */

@@ -55,7 +55,7 @@ export function drawOffer(context, { frame }, { x, y, words, possible }) {
  * Where the selected contacts were, along the floor of the scene.
  * @param {import('../surface.js').Surface} surface
  * @param {import('../../scene/bodies.js').Scale} scale
- * @param {import('../../api/api.js').Scene} scene
+ * @param {import('../../api/scene-fields.js').Scene} scene
  * @param {import('../../run/impacts.js').Impacts} impacts
  * @param {Selection} selection
  */

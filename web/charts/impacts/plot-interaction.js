@@ -13,8 +13,8 @@ import { styles } from '../../panels/panels.js';
  * @property {import('../../run/run.js').Run} run
  * @property {import('../../scene/scene-view.js').SceneView} view
  * @property {import('./impact-plot.js').ImpactPlot[]} plots
- * @property {() => import('../../api/api.js').Scene | null} typed what a run would be released with; null while some of it is no value
- * @property {import('../../api/api.js').Field[]} fields
+ * @property {() => import('../../api/scene-fields.js').Scene | null} typed what a run would be released with; null while some of it is no value
+ * @property {import('../../api/scene-fields.js').Field[]} fields
  * @property {(values: Record<string, number>) => void} launch
  * @property {() => void} changed what the address says
  */

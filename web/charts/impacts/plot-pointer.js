@@ -12,8 +12,8 @@ import { angleStart, velocityStart, within } from '../../physics/first-impact.js
  * @typedef {object} Page
  * @property {import('../../run/impacts.js').Impacts} impacts
  * @property {import('../../run/selection.js').Selection} selection
- * @property {() => import('../../api/api.js').Scene | null} typed what a run would be released with; null while some of it is no value
- * @property {import('../../api/api.js').Field[]} fields
+ * @property {() => import('../../api/scene-fields.js').Scene | null} typed what a run would be released with; null while some of it is no value
+ * @property {import('../../api/scene-fields.js').Field[]} fields
  * @property {(values: Record<string, number>) => void} launch
  * @property {(place: number | null) => void} point at an impact, in all plots
  * @property {(words: string) => void} say aloud

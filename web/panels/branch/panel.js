@@ -1,12 +1,12 @@
 // The orbits of period 2 about the critical gain: the server’s branch diagram with what happens on it. Not for finding them.
 
-import { Problem, get } from '../../api/api.js';
+import { Problem, get } from '../../api/client.js';
 import { actions } from '../../export/save-actions.js';
 import { h, marked, prose, settled, symbol } from '../../dom/dom.js';
 import { number, quantity } from '../../dom/numbers.js';
 
-/** @typedef {import('../../api/api.js').Stability} Stability */
-/** @typedef {{kind: string, parameter: number, theta: number, residue: number, detail: string}} Change */
+/** @typedef {import('contract').Stability} Stability */
+/** @typedef {import('contract').BranchChange} Change */
 
 const GAIN = 'table.tilt_gain';
 /** The part of the stable interval that is shown to each side of its end. */
@@ -52,7 +52,7 @@ class Branch {
     if (!this.#wanted) return;
     const { answer, scene } = this.#wanted;
     const gain = answer.linear?.tilt_gain;
-    const point = answer.scene.body?.point;
+    const point = 'point' in answer.scene.body;
     if (point || gain?.critical == null || gain.lower == null) {
       this.#shown = '';
       return this.#say(
@@ -116,10 +116,12 @@ class Branch {
    */
   #draw(path, changes, { boundary }, critical) {
     const picture = `${path}&format=svg`;
-    const words = {
+    /** @type {Record<string, string>} */
+    const meanings = {
       soft: 'They branch off beyond it and hold what falls: a soft boundary',
       hard: 'They lie below it and are unstable, so what leaves upright is thrown out: a hard boundary',
-    }[boundary?.kind ?? ''];
+    };
+    const words = meanings[boundary?.kind ?? ''];
     const image = h('img', {
       src: picture,
       width: 720,

@@ -1,27 +1,13 @@
 // A law α = −K·(x, θ, ẋ, θ̇) for the page's scene by weights to choose: the server designs it, the page shows and runs it. Not for the design.
 
-import { Problem, get } from '../../api/api.js';
+import { Problem, get } from '../../api/client.js';
 import { h, marked, prose, symbol } from '../../dom/dom.js';
 import { actions } from '../../export/save-actions.js';
 import { number, parse, quantity } from '../../dom/numbers.js';
 
-/** @typedef {import('../../api/api.js').Scene} Scene */
-/** @typedef {import('../../api/api.js').Eigenvalue} Eigenvalue */
-/**
- * @typedef {object} Controller
- * @property {Scene} scene with the law in it
- * @property {'frictionless' | 'stick'} contact
- * @property {Record<string, number>} gain
- * @property {boolean} stable
- * @property {Eigenvalue[]} eigenvalues
- * @property {Eigenvalue[]} open_loop
- * @property {number} spectral_radius
- * @property {number | null} bounces_per_decade
- * @property {{lower: number | null, upper: number | null} | null} gain_margin
- * @property {number} residual
- * @property {{designed: string | null, proportional: string | null} | null} regions
- * @property {string[]} notes
- */
+/** @typedef {import('../../api/scene-fields.js').Scene} Scene */
+/** @typedef {import('contract').Eigenvalue} Eigenvalue */
+/** @typedef {import('contract').Controller} Controller */
 
 /** @type {[string, string, string, string][]} name, sign, weight at first, unit of the gain */
 const STATES = [
@@ -206,7 +192,7 @@ class DesignPanel {
         ([name, sign, , unit]) =>
           /** @type {[Node, string, string]} */ ([
             symbol(`K_${sign}`),
-            quantity(gain[name], unit, 5),
+            quantity(gain[/** @type {keyof typeof gain} */ (name)], unit, 5),
             `gain of ${sign}`,
           ]),
       ),

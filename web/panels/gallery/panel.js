@@ -1,24 +1,11 @@
 // The failure gallery: cards of scenes on which a usual method is wrong, each ready to run. Not for computing any of it.
 
-import { Problem, get } from '../../api/api.js';
+import { Problem, get } from '../../api/client.js';
 import { actions } from '../../export/save-actions.js';
 import { h, marked } from '../../dom/dom.js';
 import { number, quantity } from '../../dom/numbers.js';
 
-/**
- * @typedef {{method: string, verdict: string, value: number | null, unit: string | null, right: boolean, detail: string}} Says
- * @typedef {object} Failure
- * @property {string} name
- * @property {string} title
- * @property {string} method
- * @property {string} why
- * @property {import('../../api/api.js').Scene} scene
- * @property {number} impacts
- * @property {Says[]} says
- * @property {{verdict: string, detail: string}} truth
- * @property {string} ask
- * @property {string} picture
- */
+/** @typedef {import('contract').Failure} Failure */
 
 /** With a capital, unless it begins with a symbol, whose capital is another one. @param {string} words */
 const begun = (words) => (/^(?:[a-z]{2}|a )/.test(words) ? words[0].toUpperCase() + words.slice(1) : words);
@@ -38,7 +25,7 @@ const rested = (value, unit) =>
     ? `1 ${value > 1 ? '+' : '\u2212'} ${number(Math.abs(value - 1), 3)}`
     : quantity(value, unit);
 
-/** @param {Says} says */
+/** @param {Failure['says'][number]} says */
 function row({ method, verdict, value, unit, right, detail }) {
   return h(
     'li',

@@ -1,22 +1,11 @@
 // Which model the page's scene needs: the server's rungs, one row each, with what each changed. Not for deciding it.
 
-import { MOST_IMPACTS, Problem, get } from '../../api/api.js';
+import { MOST_IMPACTS, Problem, get } from '../../api/client.js';
 import { h, marked, prose, settled } from '../../dom/dom.js';
 import { actions } from '../../export/save-actions.js';
 import { number, parse, quantity } from '../../dom/numbers.js';
 
-/** @typedef {{difference: number | null, impact: number | null}} Difference */
-/**
- * @typedef {object} Rung
- * @property {string} name
- * @property {{rung: string, field: string, detail: string} | null} forced
- * @property {string | null} reason
- * @property {{kind: string, impacts: number, t: number, detail: string} | null} outcome
- * @property {number} cost_ns_per_impact
- * @property {({against: string, impacts: number, same_outcome: boolean} & Record<'t' | 'x' | 'theta' | 'x_dot' | 'y_dot' | 'theta_dot' | 'state', Difference>) | null} change
- * @property {boolean | null} needed
- */
-/** @typedef {{impacts: number, tolerance: number, rung: string, enough: string, reason: string, rungs: Rung[]}} LadderAnswer */
+/** @typedef {import('contract').Ladder['rungs'][number]} Rung */
 
 const CHANGES = /** @type {const} */ ([
   ['t', 's'],
@@ -218,7 +207,7 @@ class Ladder {
     }
   }
 
-  /** @param {LadderAnswer} answer @param {string} path */
+  /** @param {import('contract').Ladder} answer @param {string} path */
   #show({ rungs, enough, reason }, path) {
     this.#sheet.hidden = false;
     this.#told.replaceChildren(

@@ -1,12 +1,12 @@
 // What a map is asked for, as controls with their errors beside them, and how far its answer is. Not for asking.
 
 import { COLUMNS, QUANTITIES, rowsOf, sidesOf } from './settings.js';
-import { MOST_IMPACTS } from '../../api/api.js';
+import { MOST_IMPACTS } from '../../api/client.js';
 import { h } from '../../dom/dom.js';
 import { number, parse, unitAfter } from '../../dom/numbers.js';
 import { sliderRange } from '../../form/form.js';
 
-/** @typedef {import('../../api/api.js').Field} Field */
+/** @typedef {import('../../api/scene-fields.js').Field} Field */
 /** @typedef {import('./settings.js').Settings} Settings */
 /** @typedef {'x' | 'y'} Name */
 
@@ -209,7 +209,7 @@ export class Controls {
   /** What is typed; nothing happens while some of it is no value, but that this is said. */
   #read() {
     const settings = structuredClone(this.#settings);
-    /** @type {import('../../api/api.js').FieldError[]} */
+    /** @type {import('contract').ProblemError[]} */
     const errors = [];
     for (const name of /** @type {const} */ (['x', 'y'])) {
       const side = this.#sides[name];
@@ -239,7 +239,7 @@ export class Controls {
 
   /**
    * Errors beside what they are about.
-   * @param {import('../../api/api.js').FieldError[]} errors
+   * @param {import('contract').ProblemError[]} errors
    * @returns {string[]} those that belong to no control here
    */
   blame(errors) {

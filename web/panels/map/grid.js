@@ -2,8 +2,7 @@
 
 import { rowsOf } from './settings.js';
 
-/** @typedef {{residue: number, x: [number, number], y: [number, number]}} Segment of the linear boundary */
-/** @typedef {{row: number, values: (number | null)[], outcomes: number[]} | {end: {counts: Record<string, number>}}} Line */
+/** @typedef {import('contract').Region['boundary']} Boundary */
 
 export class Grid {
   columns;
@@ -23,12 +22,12 @@ export class Grid {
   counts = null;
   /** @type {string[]} */
   names;
-  /** @type {Segment[]} */
+  /** @type {Boundary} */
   boundary;
 
   /**
    * @param {import('./settings.js').Settings} settings
-   * @param {{outcome_names: string[], boundary: Segment[]}} outline
+   * @param {{outcome_names: string[], boundary: Boundary}} outline
    */
   constructor(settings, outline) {
     this.settings = settings;
@@ -41,7 +40,7 @@ export class Grid {
     this.boundary = outline.boundary;
   }
 
-  /** @param {Line} line */
+  /** @param {import('contract').RegionLine} line */
   take(line) {
     if ('end' in line) {
       this.counts = line.end.counts;

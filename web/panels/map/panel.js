@@ -3,7 +3,8 @@
 import { Controls } from './controls.js';
 import { Grid } from './grid.js';
 import { Picture } from './picture.js';
-import { Problem, get, playedAt, problemOf } from '../../api/api.js';
+import { Problem, get, problemOf } from '../../api/client.js';
+import { playedAt } from '../../api/scene-fields.js';
 import { actions } from '../../export/save-actions.js';
 import { QUANTITIES, outlineQuery, readSettings, requestQuery, rowsOf, settingsQuery } from './settings.js';
 import { h, settled } from '../../dom/dom.js';
@@ -11,7 +12,7 @@ import { lines } from '../../api/ndjson.js';
 import { listen } from './pointing.js';
 import { number, quantity as withUnit, unbroken } from '../../dom/numbers.js';
 
-/** @typedef {import('../../api/api.js').Field} Field */
+/** @typedef {import('../../api/scene-fields.js').Field} Field */
 /** @typedef {import('./settings.js').Settings} Settings */
 /** @typedef {import('./picture.js').Cell} Cell */
 

@@ -1,8 +1,8 @@
 // What a map is asked for: two fields with their ends, quantity, impacts, resolution; as a link and as a request. Not for asking.
 
-import { MOST_IMPACTS } from '../../api/api.js';
+import { MOST_IMPACTS } from '../../api/client.js';
 
-/** @typedef {import('../../api/api.js').Field} Field */
+/** @typedef {import('../../api/scene-fields.js').Field} Field */
 /** @typedef {{parameter: string, from: number, to: number}} Side */
 /** @typedef {{x: Side, y: Side, quantity: string, impacts: number, columns: number}} Settings */
 

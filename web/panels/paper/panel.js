@@ -3,7 +3,7 @@
 import { h, prose, symbol } from '../../dom/dom.js';
 import { quantity } from '../../dom/numbers.js';
 
-/** @typedef {import('../../api/api.js').PaperValue} PaperValue */
+/** @typedef {import('contract').Quantity} PaperValue */
 
 /** Whether the print is the computed value to its own digits. @param {PaperValue['value']} printed @param {PaperValue['value']} computed */
 function same(printed, computed) {
@@ -20,7 +20,7 @@ export function mount(root, { chosen }) {
   return { sceneChanged };
 }
 
-/** @param {HTMLElement} root @param {import('../../api/api.js').Case | null} chosen */
+/** @param {HTMLElement} root @param {import('contract').Preset | null} chosen */
 function show(root, chosen) {
   if (!chosen || chosen.computed.length === 0) {
     root.replaceChildren(

@@ -8,28 +8,8 @@ import { lookOf } from '../../charts/method-symbols.js';
 import { number, parse, quantity, unbroken } from '../../dom/numbers.js';
 import { svg } from '../../charts/svg.js';
 
-/**
- * @typedef {object} Point
- * @property {string} method
- * @property {{name: string, value: number, unit: string} | null} setting
- * @property {number | null} cost_ns_per_impact
- * @property {[number, number] | null} spread_ns_per_impact
- * @property {number} impacts
- * @property {number} steps
- * @property {number | null} evaluations
- * @property {number | null} error
- * @property {string} outcome
- * @property {string | null} reason
- * @property {boolean} pareto
- * @property {boolean} pareto_evaluations
- */
-/**
- * @typedef {object} Precision
- * @property {{outcome: string, impacts: number, t: number, rounding: number}} reference
- * @property {{name: string, title: string, about: string}[]} methods
- * @property {Point[]} points
- * @property {string[]} notes
- */
+/** @typedef {import('contract').Precision} Precision */
+/** @typedef {import('contract').PrecisionPoint} Point */
 
 const USUAL_IMPACTS = 100;
 const MOST_IMPACTS = 1000;

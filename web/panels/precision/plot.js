@@ -13,7 +13,7 @@ const APART = { x: 52, y: 26 };
  * @typedef {object} Place a point as it is drawn
  * @property {number} method its place among all methods
  * @property {number} cost
- * @property {[number, number] | null} spread
+ * @property {number[] | null} spread its lower and upper quartile
  * @property {number} error
  * @property {boolean} front
  * @property {number} index its place in the answer

@@ -6,22 +6,8 @@ import { actions } from '../../export/save-actions.js';
 import { h, marked, prose } from '../../dom/dom.js';
 import { number, parse, quantity, unbroken } from '../../dom/numbers.js';
 
-/** @typedef {import('../../api/api.js').Scene} Scene */
-/**
- * @typedef {object} Ensemble
- * @property {Scene} scene of run 0
- * @property {number} runs
- * @property {number} impacts
- * @property {number} seed
- * @property {{runs: number, share: number, lower: number, upper: number}} survived
- * @property {number} mean_impacts
- * @property {number | null} median_impacts
- * @property {number | null} half_life
- * @property {Record<string, number>} counts
- * @property {string[]} notes
- * @property {{n: number[], at_risk: number[], ended: number[], survival: number[], lower: number[], upper: number[]}} survival
- * @property {{n: number[], alive: number[], q05: (number | null)[], q25: (number | null)[], q50: (number | null)[], q75: (number | null)[], q95: (number | null)[]}} quantiles
- */
+/** @typedef {import('../../api/scene-fields.js').Scene} Scene */
+/** @typedef {import('contract').Ensemble} Ensemble */
 
 const QUANTILES = /** @type {const} */ (['q05', 'q25', 'q50', 'q75', 'q95']);
 /** What is typed: its name in requests, its value at first, how many of what is typed are one of it, and what it must be. */

@@ -4,7 +4,7 @@ import { number } from '../../dom/numbers.js';
 import { roundRange, ticks } from '../../charts/axes.js';
 import { svg } from '../../charts/svg.js';
 
-/** @typedef {import('./panel.js').Ensemble} Ensemble */
+/** @typedef {import('contract').Ensemble} Ensemble */
 /** @typedef {{low: number, high: number}} Range */
 
 const MARGIN = { left: 46, right: 14, top: 22 };

@@ -1,10 +1,10 @@
 // What stability has beyond the linear map, in sentences: rotation, chaos, predictability, basin. Not for the verdict itself.
 
-import { Problem } from '../../api/api.js';
+import { Problem } from '../../api/client.js';
 import { h, prose } from '../../dom/dom.js';
 import { number, quantity } from '../../dom/numbers.js';
 
-/** @typedef {import('../../api/api.js').Stability} Stability */
+/** @typedef {import('contract').Stability} Stability */
 
 /** @param {number} angle */
 const inBoth = (angle) => `${quantity(angle, 'rad')} (${quantity((angle * 180) / Math.PI, '°', 3)})`;
@@ -106,7 +106,7 @@ export function evidence(answer, measure) {
   });
   basin.append('How far aside may it be released? ', ask);
   // A point has no angle that could turn or be released aside.
-  if (answer.scene.body?.point || !answer.fixed_point) return '';
+  if ('point' in answer.scene.body || !answer.fixed_point) return '';
   /** @param {string} name @param {...(Node | string)} words */
   const row = (name, ...words) => [h('dt', {}, name), h('dd', {}, ...words)];
   return h(

@@ -3,7 +3,7 @@
 import { h, prose, symbol } from '../../dom/dom.js';
 import { number, quantity } from '../../dom/numbers.js';
 
-/** @typedef {import('../../api/api.js').Stability} Stability */
+/** @typedef {import('contract').Stability} Stability */
 
 /** What is beyond the linear map, once its code is there: nothing of the first look. @type {typeof import('./evidence.js').evidence | null} */
 let evidence = null;

@@ -1,0 +1,41 @@
+// Requests to the server: JSON answers, and refusals as errors. Live streams are in run/live-stream.js.
+
+/** The most impacts of one run that the server computes for a request. */
+export const MOST_IMPACTS = 100_000;
+
+/** A refusal by the server, with the fields it blames. */
+export class Problem extends Error {
+  /**
+   * @param {string} title
+   * @param {string} detail
+   * @param {import('contract').ProblemError[]} errors
+   * @param {number} status
+   */
+  constructor(title, detail, errors, status) {
+    super(detail || title);
+    this.title = title;
+    this.errors = errors;
+    this.status = status;
+  }
+}
+
+/** The build that answered last. */
+export const server = { build: '' };
+
+/**
+ * @param {string} path
+ * @param {AbortSignal} [signal]
+ * @returns {Promise<any>}
+ */
+export async function get(path, signal) {
+  const response = await fetch(path, { signal, headers: { accept: 'application/json' } });
+  server.build = response.headers.get('equipoise-build') ?? server.build;
+  if (response.ok) return response.json();
+  throw await problemOf(response);
+}
+
+/** The error of a response that is no success. @param {Response} response */
+export async function problemOf(response) {
+  const body = await response.json().catch(() => ({}));
+  return new Problem(body.title ?? response.statusText, body.detail ?? '', body.errors ?? [], response.status);
+}
