@@ -1,19 +1,17 @@
 // The page's address: scene and run in the words of `/v1/live`, read with care, since links grow old. Not for sending anything.
 
 import { number, quantity } from '../dom/numbers.js';
-import { playedAt, same, setAt } from '../api/scene-fields.js';
+import { setAt } from '../api/scene-fields.js';
+import { interventionsOf } from '../run/interventions.js';
+import { FASTEST, SLOWEST } from '../run/speed.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 /** @typedef {import('contract').Preset} Case */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {{impact: number, set: Record<string, number | string>, kick: Record<string, number>}} Intervention */
 
 /** What belongs to a panel, by its name. */
 const PANEL_KEYS =
   /^(map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input))|brush\.\w+\.(from|to))$/;
-
-export const SLOWEST = 0.05;
-export const FASTEST = 20;
 
 /**
  * @typedef {object} Link
@@ -49,8 +47,11 @@ export function readLink(search, fields, cases) {
       else dropScene(`the case “${shown(text)}”, which is not known here`);
     } else if (/^scene\.body\.vertices\.\d{1,2}\.[01]$/.test(key) && Number.isFinite(value)) {
       const [index, axis] = key.split('.').slice(3).map(Number);
-      const body = (link.changes.body ??= {});
-      ((body.vertices ??= [])[index] ??= [])[axis] = value;
+      link.changes.body ??= {};
+      const { body } = link.changes;
+      body.vertices ??= [];
+      body.vertices[index] ??= [];
+      body.vertices[index][axis] = value;
     } else if (key.startsWith('scene.')) {
       const refused = readField(key.slice(6), text, fields, link.changes);
       if (refused) dropScene(refused);
@@ -159,80 +160,4 @@ function joined(run, fields, dropped) {
       kept.set(`clock.${index}.${part}`, /** @type {string} */ (run.get(`clock.${mark}.${part}`)));
   });
   return kept;
-}
-
-/**
- * @param {URLSearchParams} query
- * @returns {Intervention[]} in their order
- */
-export function interventionsOf(query) {
-  /** @type {Map<number, Intervention>} */
-  const found = new Map();
-  for (const [key, text] of query) {
-    const match = /^interventions\.(\d+)\.(impact$|set\.|kick\.)(.*)$/.exec(key);
-    if (!match) continue;
-    const index = Number(match[1]);
-    const one = found.get(index) ?? { impact: 0, set: {}, kick: {} };
-    found.set(index, one);
-    const value = Number.isFinite(Number(text)) ? Number(text) : text;
-    if (match[2] === 'impact') one.impact = Number(text);
-    else if (match[2] === 'set.') one.set[match[3]] = value;
-    else one.kick[match[3]] = Number(text);
-  }
-  return [...found.keys()].sort((a, b) => a - b).map((index) => /** @type {Intervention} */ (found.get(index)));
-}
-
-/**
- * A preset with changes laid over it; a body of another kind replaces the preset's whole.
- * @param {Scene} preset
- * @param {Scene} changes
- * @returns {Scene}
- */
-export function merged(preset, changes) {
-  const base = structuredClone(preset);
-  const kind = (/** @type {Scene} */ { body }) => (body?.point ? 'point' : body?.vertices ? 'polygon' : 'rod');
-  if (changes.body && kind(changes) !== kind(base) && (kind(changes) !== 'rod' || kind(base) === 'point'))
-    delete base.body;
-  /** @param {Scene} into @param {Scene} from */
-  const lay = (into, from) => {
-    for (const [key, value] of Object.entries(from)) {
-      if (value === null) delete into[key];
-      else if (typeof value === 'object' && !Array.isArray(value)) lay((into[key] ??= {}), value);
-      else into[key] = value;
-    }
-    return into;
-  };
-  return lay(base, changes);
-}
-
-/**
- * A scene as the shortest query that means it: the preset and what differs, `null` where a value is taken back, or all of it where the
- * body is another one.
- * @param {Scene} scene with what was set only, defaults left out
- * @param {Case | null} preset
- * @param {Field[]} fields
- */
-export function sceneQuery(scene, preset, fields) {
-  const query = new URLSearchParams();
-  const covered =
-    preset &&
-    fields.every(
-      (field) =>
-        !field.path.startsWith('body.') ||
-        playedAt(preset.scene, field) === undefined ||
-        playedAt(scene, field) !== undefined,
-    );
-  if (covered) query.set('preset', preset.name);
-  for (const field of fields) {
-    const value = playedAt(scene, field);
-    if (value === undefined && covered && playedAt(preset.scene, field) !== undefined)
-      query.set(`scene.${field.path}`, 'null');
-    if (value === undefined || same(value, covered ? playedAt(preset.scene, field) : field.default)) continue;
-    if (field.kind === 'vertices')
-      value.forEach((/** @type {number[]} */ place, /** @type {number} */ index) =>
-        place.forEach((coordinate, axis) => query.set(`scene.${field.path}.${index}.${axis}`, String(coordinate))),
-      );
-    else query.set(`scene.${field.path}`, String(value));
-  }
-  return query;
 }

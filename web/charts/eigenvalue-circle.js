@@ -31,7 +31,7 @@ export function anglePair(residue) {
 
 const WIDEST = 6;
 
-export class Circle {
+export class EigenvalueCircle {
   figure;
   #surface;
   /** @type {Stability | null} */

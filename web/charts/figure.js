@@ -1,7 +1,7 @@
 // The frame around a chart: title, sentence, picture with a name, readout, table of its numbers. Not for the picture itself.
 
 import { enlarger } from '../export/enlarge-button.js';
-import { h } from '../dom/dom.js';
+import { h } from '../dom/elements.js';
 import { unbroken } from '../dom/numbers.js';
 
 /**

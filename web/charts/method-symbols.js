@@ -88,7 +88,7 @@ const OUTLINES = {
 const NAMES = Object.keys(OUTLINES);
 
 /** The number of a method's look; one that is new here shares the last one. @param {string} method */
-export const lookOf = (method) => (NAMES.includes(method) ? NAMES.indexOf(method) : NAMES.length - 1);
+export const symbolOf = (method) => (NAMES.includes(method) ? NAMES.indexOf(method) : NAMES.length - 1);
 
 /** @param {number} look */
 export const outline = (look) => OUTLINES[NAMES[look]];

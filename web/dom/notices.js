@@ -1,6 +1,6 @@
 // What the page has to say beside its panels: a lost connection, a link that was not whole. Not for a field's own error.
 
-import { byId, h } from './dom.js';
+import { byId, h } from './elements.js';
 
 /** @type {Map<string, HTMLElement>} */
 const shown = new Map();
@@ -51,4 +51,14 @@ export function connectionNotice(seconds, retry) {
     ],
     { dismissible: false, caution: true },
   );
+}
+
+/**
+ * Names what was dropped of a link.
+ * @param {string} kind
+ * @param {string[]} dropped
+ */
+export function brokenLinkNotice(kind, dropped) {
+  const list = h('ul', {}, ...dropped.map((what) => h('li', {}, what)));
+  notice(kind, [h('strong', {}, 'This link was not whole. '), 'Dropped: ', list], { caution: true });
 }

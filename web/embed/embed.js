@@ -1,20 +1,22 @@
 // One panel of the page alone, for a frame in somebody's dashboard: the scene, and the run if there is one, are in the address.
 // Not for changing either: that is for the whole page, one click away.
 
-import { Circle } from '../charts/eigenvalue-circle.js';
+import { EigenvalueCircle } from '../charts/eigenvalue-circle.js';
 import { Problem, get } from '../api/client.js';
 import { fieldsOf } from '../api/scene-fields.js';
 import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
 import { Selection } from '../run/selection.js';
 import { anglePlane, velocityPlane } from '../charts/impacts/phase-planes.js';
-import { byId, h } from '../dom/dom.js';
+import { byId, h } from '../dom/elements.js';
 import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
 import { energyPlot } from '../charts/impacts/energy-plot.js';
 import { invalidate } from '../charts/surface.js';
 import { listen } from '../charts/impacts/plot-pointer.js';
-import { merged, readLink, sceneQuery } from '../app/link.js';
-import { PANELS, card } from '../panels/panels.js';
+import { merged, sceneQuery } from '../api/scene-query.js';
+import { readLink } from '../app/link.js';
+import { PANELS } from '../panels/registry.js';
+import { card } from '../panels/card.js';
 
 const id = location.pathname.split('/').at(-1) ?? '';
 const main = byId('main');
@@ -97,7 +99,7 @@ function watch(name, query) {
 
 /** @param {URLSearchParams} query */
 async function eigenvalues(query) {
-  const circle = new Circle();
+  const circle = new EigenvalueCircle();
   main.append(circle.figure.element);
   circle.show(await get(`v1/stability?${query}`));
 }

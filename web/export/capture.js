@@ -1,7 +1,7 @@
 // Pictures of what the page draws on its canvases, for files: as pixels, or recorded once more as SVG. Not for drawing any of it.
 
 import { Recorder } from './svg-recorder.js';
-import { h } from '../dom/dom.js';
+import { h } from '../dom/elements.js';
 import { theme } from '../charts/theme.js';
 
 /** @typedef {import('../charts/surface.js').View & {layers: import('../charts/surface.js').Surface[], redraw: () => void}} Layered */

@@ -1,6 +1,6 @@
 // The button that opens a panel large, with what can be saved of it. Not for doing so, which is loaded with the first press.
 
-import { h } from '../dom/dom.js';
+import { h } from '../dom/elements.js';
 
 /** @typedef {import('./save-actions.js').Saves} Saves */
 

@@ -1,7 +1,7 @@
 // A panel in a dialog as large as the window: the card itself goes there and comes back. Not for what is saved of it.
 
 import { actions } from './save-actions.js';
-import { h } from '../dom/dom.js';
+import { h } from '../dom/elements.js';
 
 /**
  * @param {HTMLElement} card

@@ -1,6 +1,7 @@
 // What can be taken away from a panel: pictures, numbers, the call that gives them, the panel itself for another page. Not for drawing.
 
-import { copy, h } from '../dom/dom.js';
+import { copy } from '../dom/clipboard.js';
+import { h } from '../dom/elements.js';
 
 /** @typedef {import('./capture.js').Layered} Layered */
 /**

@@ -1,6 +1,9 @@
 // The form of a scene, made from the server's table of fields. Keeps what was typed, right or wrong; does not judge a scene: the server does.
 
-import { h, steady, symbol } from '../dom/dom.js';
+import { aim } from './slider-range.js';
+import { h } from '../dom/elements.js';
+import { steady } from './steady-slider.js';
+import { symbol } from '../dom/typeset.js';
 import { number, parse, quantity, unitAfter } from '../dom/numbers.js';
 import { pathOf, setAt, valueAt } from '../api/scene-fields.js';
 
@@ -27,35 +30,6 @@ function groupOf({ path, group }) {
   return path.includes('.') ? group[0].toUpperCase() + group.slice(1) : TOP;
 }
 
-// Where a slider moves at first: the ranges of the fields are a lab's, far too wide to aim in. A typed value widens it.
-/** @type {Record<string, [number, number]>} */
-const COMFORTABLE = {
-  'table.tilt_gain': [0.8, 2],
-  'table.energy_gain': [0, 1],
-  'table.target_height': [0.14, 0.5],
-  'body.contact_distance': [0.02, 0.4],
-  'body.radius_of_gyration': [0.02, 0.4],
-  'release.height': [0.1, 0.6],
-  'release.theta': [-0.6, 0.6],
-  'release.theta_dot': [-3, 3],
-  'release.x': [-1, 1],
-  'release.x_dot': [-1, 1],
-  'release.y_dot': [-2, 2],
-  gravity: [1, 20],
-  incline: [0.1, 1.5708],
-  'contact.friction': [0, 1],
-  'noise.timing_sd': [0, 0.05],
-  'noise.angle_sd': [0, 0.1],
-  'table.feedback.x': [-1, 1],
-  'table.feedback.theta': [-2, 2],
-  'table.feedback.x_dot': [-1, 1],
-  'table.feedback.theta_dot': [-1, 1],
-  'table.limits.tilt': [0, 1.57],
-  'table.limits.tilt_rate': [0, 20],
-  'table.limits.speed': [0, 2],
-  'table.limits.stroke': [0, 0.5],
-};
-
 /** Vertices from lines of two numbers. @param {string} text @returns {{value: unknown, problem: string | null}} */
 function places(text) {
   const lines = text
@@ -71,46 +45,6 @@ function places(text) {
   return wrong < 0
     ? { value: lines, problem: null }
     : { value: undefined, problem: `Line ${wrong + 1} is not x and y, as in “0.1, 0.2”.` };
-}
-
-/** A step of 1, 2 or 5 that parts the span into some two hundred. @param {number} span */
-function step(span) {
-  const raw = span / 200;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  return Number((power * ([1, 2, 5].find((m) => m * power >= raw * 0.999) ?? 10)).toPrecision(2));
-}
-
-/**
- * @param {Field} field
- * @param {number | null} value
- * @returns {[number, number]}
- */
-export function sliderRange(field, value) {
-  const size = Math.abs(value || Number(field.default) || 1);
-  const low = field.minimum ?? -Infinity;
-  const high = field.maximum ?? Infinity;
-  const [from, to] = COMFORTABLE[field.path] ?? [low >= 0 ? 0 : -2 * size, field.maximum === 1 ? 1 : 2 * size];
-  if (value == null || (value >= from && value <= to)) return [Math.max(low, from), Math.min(high, to)];
-  const round = step((Math.max(to, value) - Math.min(from, value)) * 20);
-  return [
-    Math.max(low, value < from ? Math.floor(value / round - 1) * round : from),
-    Math.min(high, value > to ? Math.ceil(value / round + 1) * round : to),
-  ];
-}
-
-/**
- * Sets a slider to a value, its ends moved where the value needs it.
- * @param {HTMLInputElement} slider
- * @param {Field} field
- * @param {number | null} value
- */
-export function aim(slider, field, value) {
-  const [from, to] = sliderRange(field, value);
-  slider.min = String(from);
-  slider.max = String(to);
-  slider.step = field.kind === 'integer' ? '1' : String(step(to - from));
-  slider.value = String(value ?? field.default ?? (from + to) / 2);
-  slider.setAttribute('aria-valuetext', value == null ? 'not set' : quantity(value, field.unit));
 }
 
 export class Form {

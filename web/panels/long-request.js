@@ -1,11 +1,12 @@
 // A question that takes the server a while: how far it is, how to stop it, and what went wrong, in words. Not for what is asked.
 
 import { Problem, problemOf } from '../api/client.js';
-import { h, marked } from '../dom/dom.js';
+import { h } from '../dom/elements.js';
+import { marked } from '../dom/typeset.js';
 import { lines } from '../api/ndjson.js';
 import { number } from '../dom/numbers.js';
 
-export class Asking {
+export class LongRequest {
   /** The button that asks, and the one that stops. */
   buttons;
   /** What has come of it. */

@@ -1,6 +1,7 @@
 // The release whose first impact is a wanted one, in closed form. Not for asking, and not for what the impact then does.
 
-import { contactDistance, effectiveGravity } from './flight.js';
+import { contactDistance } from './body.js';
+import { effectiveGravity } from './flight.js';
 import { number, quantity } from '../dom/numbers.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */

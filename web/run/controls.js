@@ -1,12 +1,14 @@
 // The controls beside the scene: run, step, speed, gain, kick. They say what was asked for; what follows is the page's.
 
-import { aim } from '../form/form.js';
-import { h, steady, symbol } from '../dom/dom.js';
+import { aim } from '../form/slider-range.js';
+import { h } from '../dom/elements.js';
+import { steady } from '../form/steady-slider.js';
+import { symbol } from '../dom/typeset.js';
 import { fixed, number, parse } from '../dom/numbers.js';
-import { FASTEST, SLOWEST } from '../app/link.js';
+import { FASTEST, SLOWEST } from './speed.js';
 
 /**
- * @typedef {object} Asked
+ * @typedef {object} Actions
  * @property {() => void} toggle
  * @property {() => void} step
  * @property {() => void} restart
@@ -56,7 +58,7 @@ export class Controls {
   });
   #kickUnit = h('span', { class: 'unit' }, KICKS[0].unit);
   #kickError = h('p', { class: 'error', id: 'kick-error' });
-  #asked;
+  #actions;
   /** @type {import('../api/scene-fields.js').Field | null} */
   #gainField = null;
   /** @type {number | null} */
@@ -65,13 +67,13 @@ export class Controls {
 
   /**
    * @param {HTMLElement} root
-   * @param {Asked} asked
+   * @param {Actions} actions
    */
-  constructor(root, asked) {
-    this.#asked = asked;
-    this.#run.addEventListener('click', asked.toggle);
-    this.#step.addEventListener('click', asked.step);
-    this.#restart.addEventListener('click', asked.restart);
+  constructor(root, actions) {
+    this.#actions = actions;
+    this.#run.addEventListener('click', actions.toggle);
+    this.#step.addEventListener('click', actions.step);
+    this.#restart.addEventListener('click', actions.restart);
     steady(this.#speed, () => {
       const speed = this.#speedSet;
       return () => this.setSpeed(speed);
@@ -80,11 +82,11 @@ export class Controls {
       const gain = this.#gainSet;
       return () => {
         this.setGain(gain);
-        this.#asked.gain(gain, false);
+        this.#actions.gain(gain, false);
       };
     });
     this.#speed.addEventListener('input', () => this.#showSpeed(speedAt(this.#speed.valueAsNumber)));
-    this.#speed.addEventListener('change', () => asked.speed(speedAt(this.#speed.valueAsNumber)));
+    this.#speed.addEventListener('change', () => actions.speed(speedAt(this.#speed.valueAsNumber)));
     this.#gain.addEventListener('input', () => this.#gained(false));
     this.#gain.addEventListener('change', () => this.#gained(true));
     this.#kick.addEventListener('click', () => this.kick());
@@ -115,7 +117,7 @@ export class Controls {
     const gain = this.#gain.valueAsNumber;
     this.#gainShown.textContent = fixed(gain, 3);
     this.#gain.setAttribute('aria-valuetext', number(gain));
-    this.#asked.gain(gain, final);
+    this.#actions.gain(gain, final);
   }
 
   /** @param {import('../api/scene-fields.js').Field | null} field of the tilt gain */
@@ -150,7 +152,7 @@ export class Controls {
     const by = parse(this.#kickBy.value, unit);
     this.#kickError.textContent = by === null ? `“${this.#kickBy.value}” is not a number.` : '';
     this.#kickBy.setAttribute('aria-invalid', String(by === null));
-    if (by !== null) this.#asked.kick({ [name]: by });
+    if (by !== null) this.#actions.kick({ [name]: by });
   }
 
   /** @param {string} words */

@@ -14,7 +14,7 @@ const LONGEST_WAIT_S = 15;
 const TRY_AGAIN_LATER = 1013;
 const UPGRADE_REQUIRED = 426;
 
-export class Live {
+export class LiveStream {
   /** @type {WebSocket | null} */
   #socket = null;
   #listener;

@@ -1,31 +1,21 @@
-// A live run as this page knows it: its impacts, its clock, what was done to it. Not for the screen.
+// A live run as this page knows it: its impacts, its clock, and what was done to it.
 
+import { Problem } from '../api/client.js';
+import { setAt } from '../api/scene-fields.js';
+import { arcAfter } from '../physics/flight.js';
 import { Clock } from './clock.js';
 import { Impacts } from './impacts.js';
-import { fromColumns, fromMessage } from './impact-messages.js';
-import { Live } from './live-stream.js';
-import { arcAfter, strikeAfter } from '../physics/flight.js';
-import { interventionsOf } from '../app/link.js';
-import { setAt } from '../api/scene-fields.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('./impacts.js').Impact} Impact */
-/**
- * @typedef {import('contract').LiveHello | import('contract').LiveAck | import('contract').LiveImpact | import('contract').LiveImpacts
- *   | import('contract').LiveGap | import('contract').LiveEnd | import('contract').LiveProblem} ServerMessage
- */
 /** @typedef {'idle' | 'connecting' | 'running' | 'paused' | 'lost' | 'ended'} Phase */
-
-// How late an impact may be, in wall time, before a connection that says nothing counts as lost.
-const OVERDUE_S = 5;
 
 /**
  * @typedef {object} Watcher
  * @property {() => void} changed phase, scene, speed or address
  * @property {() => void} struck there are new impacts
  * @property {() => void} cleared a new run: all that was drawn is void
- * @property {(seconds: number) => void} lost
- * @property {(problem: import('../api/client.js').Problem) => void} refused
+ * @property {(seconds: number) => void} lost seconds to the next try; NaN when the connection is back
+ * @property {(problem: Problem) => void} refused
  * @property {(message: {title: string, detail: string, errors: import('contract').ProblemError[]}) => void} problem with one message
  */
 
@@ -34,32 +24,27 @@ export class Run {
   clock = new Clock();
   /** @type {Phase} */
   phase = 'idle';
-  /** What the next strike will be played with. @type {Scene | null} */
+  /** The scene of the next strike. @type {Scene | null} */
   scene = null;
+  /** The scene at the release. @type {Scene | null} */
+  released = null;
+  /** The flight from the release to the first impact. @type {import('../physics/flight.js').Arc | null} */
+  fall = null;
   /** @type {import('contract').Outcome | null} */
   outcome = null;
-  /** @type {import('../app/link.js').Intervention[]} */
+  /** @type {import('./interventions.js').Intervention[]} */
   interventions = [];
   /** The query that replays this run. */
   query = new URLSearchParams();
-  build = '';
-
-  /** @type {Live | null} */
-  #live = null;
-  #watcher;
-  /** Whether it is shown from its first impact. */
-  #whole = true;
-  #epoch = 0;
-  /** What it was released with. @type {Scene | null} */
-  released = null;
-  /** @type {import('../physics/flight.js').Arc | null} */
-  #fall = null;
-  /** @type {number | undefined} */
-  #overdue;
+  watcher;
+  /** @type {import('./connection.js').Connection | null} */
+  #connection = null;
+  /** The start that counts: an earlier one may still be loading its code. */
+  #starts = 0;
 
   /** @param {Watcher} watcher */
   constructor(watcher) {
-    this.#watcher = watcher;
+    this.watcher = watcher;
   }
 
   /**
@@ -70,68 +55,59 @@ export class Run {
     this.stop();
     this.query = new URLSearchParams(query);
     this.query.delete('from');
-    this.#clear();
-    const first = new URLSearchParams(this.query);
-    this.#whole = whole;
-    const joins = first.has('epoch') && whole;
-    if (joins) first.set('from', '1');
-    this.#become('connecting');
-    this.#live = new Live(`v1/live?${first}`, () => this.#resumption(), {
-      message: (message) => this.#hear(message),
-      lost: (seconds) => {
-        this.#become('lost');
-        this.#watcher.lost(seconds);
+    this.clear();
+    this.become('connecting');
+    const start = this.#starts;
+    import('./connection.js').then(
+      ({ Connection }) => {
+        if (start === this.#starts) this.#connection = new Connection(this, whole);
       },
-      refused: (problem) => {
-        // Its whole past may be too much for the server to tell, where its present is not.
-        if (joins) return this.start(query, false);
-        this.stop();
-        this.#watcher.refused(problem);
+      () => {
+        if (start === this.#starts) this.refused(new Problem('Part of the page did not load.', '', [], 0));
       },
-    });
-  }
-
-  #resumption() {
-    const query = new URLSearchParams(this.query);
-    if (this.impacts.last || this.#whole) query.set('from', String((this.impacts.last?.n ?? 0) + 1));
-    return `v1/live?${query}`;
+    );
   }
 
   stop() {
-    clearTimeout(this.#overdue);
-    this.#live?.close();
-    this.#live = null;
-    this.#become('idle');
+    this.#starts += 1;
+    this.#connection?.close();
+    this.#connection = null;
+    this.become('idle');
   }
 
-  /** No run, and nothing of the one before. */
+  /** @param {Problem} problem */
+  refused(problem) {
+    this.stop();
+    this.watcher.refused(problem);
+  }
+
+  /** Ends the run and forgets it. */
   reset() {
     this.stop();
-    this.#clear();
+    this.clear();
   }
 
   retry() {
-    this.#live?.retry();
+    this.#connection?.retry();
   }
 
-  #clear() {
+  clear() {
     this.impacts.clear();
     this.outcome = null;
     this.interventions = [];
     this.scene = null;
     this.released = null;
-    this.#epoch = 0;
-    this.#fall = null;
-    this.#watcher.cleared();
+    this.fall = null;
+    this.watcher.cleared();
   }
 
   /** @param {Phase} phase */
-  #become(phase) {
+  become(phase) {
     this.phase = phase;
-    this.#watcher.changed();
+    this.watcher.changed();
   }
 
-  /** How it is going, in words; nothing where there is none. */
+  /** The phase in words; empty where there is no run. */
   get words() {
     return {
       idle: '',
@@ -149,89 +125,41 @@ export class Run {
   }
 
   toggle() {
-    return this.#live?.send({ type: this.clock.paused ? 'resume' : 'pause' }) ?? false;
+    this.#send({ type: this.clock.paused ? 'resume' : 'pause' });
   }
 
-  /** A step is a step of a run that stands still. */
+  /** Pauses the run first: only a run that stands still can step. */
   step() {
-    if (!this.clock.paused) this.#live?.send({ type: 'pause' });
-    return this.#live?.send({ type: 'step' }) ?? false;
+    if (!this.clock.paused) this.#send({ type: 'pause' });
+    this.#send({ type: 'step' });
   }
 
   /** @param {number} value */
   setSpeed(value) {
-    return this.#live?.send({ type: 'speed', value }) ?? false;
+    this.#send({ type: 'speed', value });
   }
 
   /** @param {Record<string, unknown>} values by field path */
   set(values) {
-    return this.#live?.send({ type: 'set', ...values }) ?? false;
+    this.#send({ type: 'set', ...values });
   }
 
   /** @param {Record<string, number>} velocities */
   kick(velocities) {
-    return this.#live?.send({ type: 'kick', ...velocities }) ?? false;
+    this.#send({ type: 'kick', ...velocities });
   }
 
   restart() {
-    return this.#live?.send({ type: 'restart' }) ?? false;
+    this.#send({ type: 'restart' });
   }
 
-  /** @param {ServerMessage} message */
-  #hear(message) {
-    switch (message.type) {
-      case 'hello':
-        if (this.#epoch && message.epoch !== this.#epoch) this.#clear();
-        this.#epoch = message.epoch;
-        this.released = message.scene;
-        this.build = message.build ?? '';
-        this.#fall = {
-          ...message.release,
-          theta_dot: message.release.theta_dot ?? 0,
-          theta: message.release.theta ?? 0,
-          duration: message.flight_time ?? 0,
-        };
-        this.clock.forget();
-        this.#read(message);
-        this.#watcher.lost(NaN);
-        break;
-      case 'ack':
-        this.#read(message);
-        break;
-      case 'impact':
-        this.#take([fromMessage(message)]);
-        break;
-      case 'impacts':
-        this.#take(fromColumns(message.columns));
-        break;
-      case 'gap':
-        this.impacts.missing += message.to - message.from + 1;
-        break;
-      case 'end':
-        this.outcome = message.outcome;
-        clearTimeout(this.#overdue);
-        // There is nothing more to hear.
-        this.#live?.close();
-        this.#live = null;
-        this.#become('ended');
-        break;
-      case 'problem':
-        this.#watcher.problem({ title: message.title, detail: message.detail ?? '', errors: message.errors ?? [] });
-    }
+  /** @param {Record<string, unknown>} message */
+  #send(message) {
+    this.#connection?.send(message);
   }
 
-  /** @param {import('contract').LiveHello | import('contract').LiveAck} message */
-  #read(message) {
-    this.clock.read(message);
-    this.query = new URLSearchParams(message.url.split('?')[1] ?? '');
-    this.query.delete('from');
-    this.interventions = interventionsOf(this.query);
-    this.#rebuild();
-    if (!this.outcome) this.#become(message.paused ? 'paused' : 'running');
-    this.#expect();
-  }
-
-  #rebuild() {
+  /** Brings the scene up to date with impacts and interventions. */
+  rebuild() {
     this.scene = this.#sceneAt((this.impacts.last?.n ?? 0) + 1);
   }
 
@@ -245,55 +173,24 @@ export class Run {
     return scene;
   }
 
-  /** The scene with all that was set, waiting for its impact or not. */
+  /** The scene with all interventions, also those that wait for their impact. */
   get asked() {
     return this.#sceneAt(Infinity);
-  }
-
-  /** @param {Impact[]} fresh */
-  #take(fresh) {
-    const known = this.impacts.last?.n ?? 0;
-    for (const impact of fresh) {
-      if (impact.n <= known) continue;
-      impact.series = this.interventions.filter(
-        (one) => one.impact <= impact.n && Object.keys(one.set).length > 0,
-      ).length;
-      this.impacts.append(impact);
-    }
-    if (this.interventions.length > 0) this.#rebuild();
-    this.#expect();
-    this.#watcher.struck();
-  }
-
-  #expect() {
-    clearTimeout(this.#overdue);
-    if (this.phase !== 'running') return;
-    const arc = this.arcAt(Infinity);
-    const wait_s = arc ? Math.max(0, arc.t + arc.duration - this.clock.runTime()) / this.clock.speed : 0;
-    this.#overdue = setTimeout(
-      () => {
-        if (this.phase === 'running') this.#live?.drop();
-      },
-      (wait_s + OVERDUE_S) * 1000,
-    );
   }
 
   /** The place of the last impact not after `t`, or null before the first. @param {number} t */
   placeAt(t) {
     const { impacts } = this;
-    for (let place = impacts.end - 1; place >= impacts.begin; place -= 1) if (impacts.at('t', place) <= t) return place;
+    for (let place = impacts.end - 1; place >= impacts.begin; place -= 1) {
+      if (impacts.at('t', place) <= t) return place;
+    }
     return null;
   }
 
-  /** The flight the rod is on at `t`. @param {number} t */
+  /** The flight at `t`. @param {number} t */
   arcAt(t) {
     const place = this.placeAt(t);
     if (!this.scene) return null;
-    return place === null ? this.#fall : arcAfter(this.impacts.row(place), this.scene);
-  }
-
-  /** The next strike to come, when there is one. @param {import('../physics/flight.js').Arc} arc */
-  nextStrike(arc) {
-    return this.scene && arc.duration > 0 ? strikeAfter(arc, this.scene) : null;
+    return place === null ? this.fall : arcAfter(this.impacts.row(place), this.scene);
   }
 }

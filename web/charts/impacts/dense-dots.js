@@ -1,10 +1,10 @@
 // Dots by the ten thousand, stamped pixel by pixel and put on the canvas at once. Not for axes, nor for a few dots.
 
-import { drawDot } from '../axes.js';
-import { h } from '../../dom/dom.js';
+import { drawDot } from '../marks.js';
+import { h } from '../../dom/elements.js';
 import { theme } from '../theme.js';
 
-/** @typedef {import('../axes.js').Look} Look */
+/** @typedef {import('../marks.js').Look} Look */
 /** @typedef {{reach: number, steps: Int32Array, inks: Uint32Array}} Stamp the pixels of a dot: how far on they are from its middle, and their inks */
 
 /** Farther than this no dot reaches from its middle, CSS px. */

@@ -1,7 +1,8 @@
 // A plot with one mark per impact, drawn on and on without starting over. What its axes mean is said by who makes it.
 
 import { Figure } from '../figure.js';
-import { MARGIN, drawAxes, drawDot, drawMark, line, roundRange, toX, toY } from '../axes.js';
+import { MARGIN, drawAxes, line, roundRange, toX, toY } from '../axes.js';
+import { drawDot, drawMark } from '../marks.js';
 import { SANS, theme, onThemeChange } from '../theme.js';
 import { invalidate, surfaces } from '../surface.js';
 

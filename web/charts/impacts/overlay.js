@@ -1,7 +1,7 @@
 // What a selection and a pointer draw over the charts and under the scene. Not for the dots themselves.
 
 import { SANS, theme } from '../theme.js';
-import { contactDistance } from '../../physics/flight.js';
+import { contactDistance } from '../../physics/body.js';
 import { line, toX, toY } from '../axes.js';
 
 /** @typedef {import('./impact-plot.js').ImpactPlot} ImpactPlot */
@@ -54,7 +54,7 @@ export function drawOffer(context, { frame }, { x, y, words, possible }) {
 /**
  * Where the selected contacts were, along the floor of the scene.
  * @param {import('../surface.js').Surface} surface
- * @param {import('../../scene/bodies.js').Scale} scale
+ * @param {import('../../scene/camera.js').Scale} scale
  * @param {import('../../api/scene-fields.js').Scene} scene
  * @param {import('../../run/impacts.js').Impacts} impacts
  * @param {Selection} selection

@@ -2,11 +2,11 @@
 
 import { Selection } from '../../run/selection.js';
 import { drawContacts } from './overlay.js';
-import { h } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
 import { invalidate } from '../surface.js';
 import { listen } from './plot-pointer.js';
 import { notice } from '../../dom/notices.js';
-import { styles } from '../../panels/panels.js';
+import { styles } from '../../panels/card.js';
 
 /**
  * @typedef {object} Page
@@ -23,7 +23,7 @@ const BY_POINTER = 'Drag over a plot to select impacts; click in a plane to say 
 const BY_KEYS =
   'Left and right go from impact to impact, with Shift they select; Enter starts a run whose first impact is that one; Escape clears the selection.';
 
-export class Acts {
+export class PlotInteraction {
   #bar;
   #page;
   #selection;

@@ -2,7 +2,9 @@
 
 import { Problem, get } from '../../api/client.js';
 import { actions } from '../../export/save-actions.js';
-import { h, marked, prose, settled, symbol } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
+import { marked, prose, symbol } from '../../dom/typeset.js';
+import { debounce } from '../../dom/debounce.js';
 import { number, quantity } from '../../dom/numbers.js';
 
 /** @typedef {import('contract').Stability} Stability */
@@ -14,7 +16,7 @@ const SHOWN = 0.4;
 /** The orbit from which the branch is followed, rad: small, so that it is near κ_c. */
 const BEGIN = 0.02;
 
-/** @type {import('../panels.js').Module['mount']} */
+/** @type {import('../card.js').Module['mount']} */
 export const mount = (root) => new Branch(root);
 
 class Branch {
@@ -44,7 +46,7 @@ class Branch {
     this.#soon();
   }
 
-  #soon = settled(300, () => {
+  #soon = debounce(300, () => {
     if (this.#near) void this.#refresh();
   });
 

@@ -1,9 +1,10 @@
 // What the page shows, as calls to the API that give the same. Not for making them.
 
-import { copy, h } from '../../dom/dom.js';
+import { copy } from '../../dom/clipboard.js';
+import { h } from '../../dom/elements.js';
 import { curl } from '../../export/save-actions.js';
 
-/** @type {import('../panels.js').Module['mount']} */
+/** @type {import('../card.js').Module['mount']} */
 export function mount(root, { query, played }) {
   const show = () => {
     const [scene, run] = [query(), played()];

@@ -1,7 +1,8 @@
 // A law α = −K·(x, θ, ẋ, θ̇) for the page's scene by weights to choose: the server designs it, the page shows and runs it. Not for the design.
 
 import { Problem, get } from '../../api/client.js';
-import { h, marked, prose, symbol } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
+import { marked, prose, symbol } from '../../dom/typeset.js';
 import { actions } from '../../export/save-actions.js';
 import { number, parse, quantity } from '../../dom/numbers.js';
 
@@ -26,7 +27,7 @@ const here = (path) => path.replace(/^\//, '');
 const complex = ({ re, im }) =>
   im === 0 ? number(re) : `${number(re)} ${im < 0 ? '\u2212' : '+'} ${number(Math.abs(im))} i`;
 
-/** @type {import('../panels.js').Module['mount']} */
+/** @type {import('../card.js').Module['mount']} */
 export const mount = (root, page) => new DesignPanel(root, page);
 
 class DesignPanel {
@@ -46,7 +47,7 @@ class DesignPanel {
 
   /**
    * @param {HTMLElement} root
-   * @param {import('../panels.js').Page} page
+   * @param {import('../card.js').Page} page
    */
   constructor(root, page) {
     this.#page = page;

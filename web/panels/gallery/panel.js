@@ -2,7 +2,8 @@
 
 import { Problem, get } from '../../api/client.js';
 import { actions } from '../../export/save-actions.js';
-import { h, marked } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
+import { marked } from '../../dom/typeset.js';
 import { number, quantity } from '../../dom/numbers.js';
 
 /** @typedef {import('contract').Failure} Failure */
@@ -85,7 +86,7 @@ function card(failure, play) {
   );
 }
 
-/** @type {import('../panels.js').Module['mount']} */
+/** @type {import('../card.js').Module['mount']} */
 export function mount(root, { play }) {
   void show(root, ({ scene }) => play(scene));
   return {};

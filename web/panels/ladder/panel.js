@@ -1,7 +1,9 @@
 // Which model the page's scene needs: the server's rungs, one row each, with what each changed. Not for deciding it.
 
 import { MOST_IMPACTS, Problem, get } from '../../api/client.js';
-import { h, marked, prose, settled } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
+import { marked, prose } from '../../dom/typeset.js';
+import { debounce } from '../../dom/debounce.js';
 import { actions } from '../../export/save-actions.js';
 import { number, parse, quantity } from '../../dom/numbers.js';
 
@@ -22,7 +24,7 @@ const MOST_DIFFERENCE = 10;
 /** @param {string} name */
 const words = (name) => name.replaceAll('_', ' ');
 
-/** @type {import('../panels.js').Module['mount']} */
+/** @type {import('../card.js').Module['mount']} */
 export const mount = (root, page) => new Ladder(root, page);
 
 /** What is typed at first. */
@@ -60,7 +62,7 @@ class Ladder {
 
   /**
    * @param {HTMLElement} root
-   * @param {import('../panels.js').Page} page
+   * @param {import('../card.js').Page} page
    */
   constructor(root, page) {
     this.#page = page;
@@ -146,7 +148,7 @@ class Ladder {
   }
 
   /** The scene of the page is another one. */
-  sceneChanged = settled(300, () => {
+  sceneChanged = debounce(300, () => {
     if (this.#near) void this.#refresh();
   });
 

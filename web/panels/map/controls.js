@@ -2,9 +2,9 @@
 
 import { COLUMNS, QUANTITIES, rowsOf, sidesOf } from './settings.js';
 import { MOST_IMPACTS } from '../../api/client.js';
-import { h } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
 import { number, parse, unitAfter } from '../../dom/numbers.js';
-import { sliderRange } from '../../form/form.js';
+import { sliderRange } from '../../form/slider-range.js';
 
 /** @typedef {import('../../api/scene-fields.js').Field} Field */
 /** @typedef {import('./settings.js').Settings} Settings */

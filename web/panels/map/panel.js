@@ -7,7 +7,8 @@ import { Problem, get, problemOf } from '../../api/client.js';
 import { playedAt } from '../../api/scene-fields.js';
 import { actions } from '../../export/save-actions.js';
 import { QUANTITIES, outlineQuery, readSettings, requestQuery, rowsOf, settingsQuery } from './settings.js';
-import { h, settled } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
+import { debounce } from '../../dom/debounce.js';
 import { lines } from '../../api/ndjson.js';
 import { listen } from './pointing.js';
 import { number, quantity as withUnit, unbroken } from '../../dom/numbers.js';
@@ -16,14 +17,14 @@ import { number, quantity as withUnit, unbroken } from '../../dom/numbers.js';
 /** @typedef {import('./settings.js').Settings} Settings */
 /** @typedef {import('./picture.js').Cell} Cell */
 
-/** @typedef {import('../panels.js').Page} Page */
+/** @typedef {import('../card.js').Page} Page */
 
 /** A map of more bounces than this waits until somebody asks for it: about a second of one core. */
 const UNASKED_BOUNCES = 1e8;
 /** Answers kept, to go back without asking again. */
 const KEPT = 8;
 
-/** @type {import('../panels.js').Module['mount']} */
+/** @type {import('../card.js').Module['mount']} */
 export const mount = (root, page, link) => new MapPanel(root, page, link);
 
 class MapPanel {
@@ -137,7 +138,7 @@ class MapPanel {
     this.#refreshSoon();
   }
 
-  #refreshSoon = settled(300, () => this.#refresh());
+  #refreshSoon = debounce(300, () => this.#refresh());
 
   /** Asks if what there is answers another request. */
   #refresh() {

@@ -2,9 +2,10 @@
 
 import { COMPARED, residuals, sums } from './compare.js';
 import { LIMIT_BYTES, Unreadable, read } from './read.js';
-import { contactDistance, effectiveGravity } from '../../physics/flight.js';
+import { contactDistance } from '../../physics/body.js';
+import { effectiveGravity } from '../../physics/flight.js';
 import { drawResiduals } from './plot.js';
-import { h } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
 import { invalidate } from '../../charts/surface.js';
 import { number, parse } from '../../dom/numbers.js';
 import { onThemeChange } from '../../charts/theme.js';

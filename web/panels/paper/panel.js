@@ -1,6 +1,7 @@
 // The paper's printed values beside the computed ones. Not for computing either.
 
-import { h, prose, symbol } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
+import { prose, symbol } from '../../dom/typeset.js';
 import { quantity } from '../../dom/numbers.js';
 
 /** @typedef {import('contract').Quantity} PaperValue */
@@ -13,7 +14,7 @@ function same(printed, computed) {
   return Math.abs(printed - computed) <= 0.5000001 * 10 ** -decimals;
 }
 
-/** @type {import('../panels.js').Module['mount']} */
+/** @type {import('../card.js').Module['mount']} */
 export function mount(root, { chosen }) {
   const sceneChanged = () => show(root, chosen());
   sceneChanged();

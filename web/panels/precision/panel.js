@@ -1,10 +1,11 @@
 // Speed against accuracy of every method on the scene of the page: asked for when somebody wants it, since it keeps a core busy. Not for drawing.
 
-import { Asking } from '../long-request.js';
+import { LongRequest } from '../long-request.js';
 import { Plot, mark } from './plot.js';
 import { actions } from '../../export/save-actions.js';
-import { h, marked } from '../../dom/dom.js';
-import { lookOf } from '../../charts/method-symbols.js';
+import { h } from '../../dom/elements.js';
+import { marked } from '../../dom/typeset.js';
+import { symbolOf } from '../../charts/method-symbols.js';
 import { number, parse, quantity, unbroken } from '../../dom/numbers.js';
 import { svg } from '../../charts/svg.js';
 
@@ -44,7 +45,7 @@ const each = ({ impacts }, count) => (impacts > 0 && count !== null ? count / im
 /** @param {Point} point */
 const setting = ({ setting: told }) => (told ? `${told.name} ${quantity(told.value, told.unit, 2)}` : '');
 
-/** @type {import('../panels.js').Module['mount']} */
+/** @type {import('../card.js').Module['mount']} */
 export const mount = (root, page) => new PrecisionPanel(root, page);
 
 class PrecisionPanel {
@@ -62,7 +63,7 @@ class PrecisionPanel {
     { id: 'precision-axis', change: () => this.#draw() },
     ...Object.entries(AXES).map(([value, { title }]) => h('option', { value }, title)),
   );
-  #asking = new Asking(
+  #asking = new LongRequest(
     'precision',
     h('button', { type: 'submit', id: 'precision-measure' }, 'Measure'),
     'Measuring',
@@ -96,7 +97,7 @@ class PrecisionPanel {
 
   /**
    * @param {HTMLElement} root
-   * @param {import('../panels.js').Page} page
+   * @param {import('../card.js').Page} page
    */
   constructor(root, { query, changed }) {
     this.#query = query;
@@ -249,7 +250,7 @@ class PrecisionPanel {
         h(
           'li',
           { title: about },
-          svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, mark(lookOf(name), 8, 8)),
+          svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, mark(symbolOf(name), 8, 8)),
           h('span', {}, words, missing(name) && h('span', { class: 'muted' }, ...marked(missing(name)))),
         ),
       ),
@@ -304,7 +305,7 @@ class PrecisionPanel {
       this.#drawn.push(point);
       places.push({
         index,
-        method: lookOf(point.method),
+        method: symbolOf(point.method),
         cost,
         spread: this.#axis.value === 'time' ? point.spread_ns_per_impact : null,
         error: point.error,

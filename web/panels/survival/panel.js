@@ -1,9 +1,10 @@
 // How long runs of the page's scene last when the table errs: many runs, asked for when somebody wants them. Not for drawing.
 
-import { Asking } from '../long-request.js';
+import { LongRequest } from '../long-request.js';
 import { Plot } from './plot.js';
 import { actions } from '../../export/save-actions.js';
-import { h, marked, prose } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
+import { marked, prose } from '../../dom/typeset.js';
 import { number, parse, quantity, unbroken } from '../../dom/numbers.js';
 
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
@@ -38,7 +39,7 @@ const hasNoise = ({ noise }) => (noise?.timing_sd ?? 0) > 0 || (noise?.angle_sd 
 const typed = (id) =>
   h('input', { id, type: 'text', inputmode: 'decimal', autocomplete: 'off', 'aria-describedby': `${id}-error` });
 
-/** @type {import('../panels.js').Module['mount']} */
+/** @type {import('../card.js').Module['mount']} */
 export const mount = (root, page) => new SurvivalPanel(root, page);
 
 class SurvivalPanel {
@@ -56,7 +57,7 @@ class SurvivalPanel {
   );
   #offered;
   #own = h('p', { class: 'muted', id: 'survival-noise' });
-  #asking = new Asking(
+  #asking = new LongRequest(
     'survival',
     h('button', { type: 'submit', id: 'survival-start' }, 'Run them all'),
     'Running',
@@ -87,7 +88,7 @@ class SurvivalPanel {
 
   /**
    * @param {HTMLElement} root
-   * @param {import('../panels.js').Page} page
+   * @param {import('../card.js').Page} page
    */
   constructor(root, page) {
     this.#page = page;

@@ -1,7 +1,8 @@
 // What stability has beyond the linear map, in sentences: rotation, chaos, predictability, basin. Not for the verdict itself.
 
 import { Problem } from '../../api/client.js';
-import { h, prose } from '../../dom/dom.js';
+import { h } from '../../dom/elements.js';
+import { prose } from '../../dom/typeset.js';
 import { number, quantity } from '../../dom/numbers.js';
 
 /** @typedef {import('contract').Stability} Stability */

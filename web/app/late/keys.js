@@ -1,6 +1,6 @@
 // Single keys for the run, which can be turned off for those whose tools send letters. Not for what the keys do.
 
-import { byId, h } from '../dom/dom.js';
+import { byId, h } from '../../dom/elements.js';
 
 /** @typedef {{keys: string[], label: string, name: string, act: (key: string) => void}} Key */
 

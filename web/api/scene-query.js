@@ -1,0 +1,65 @@
+// A scene as the query that means it, and a preset with changes.
+
+import { playedAt, same } from './scene-fields.js';
+
+/** @typedef {import('./scene-fields.js').Field} Field */
+/** @typedef {import('./scene-fields.js').Scene} Scene */
+/** @typedef {import('contract').Preset} Case */
+
+/**
+ * A preset with changes laid over it; a body of another kind replaces the preset's whole.
+ * @param {Scene} preset
+ * @param {Scene} changes
+ * @returns {Scene}
+ */
+export function merged(preset, changes) {
+  const base = structuredClone(preset);
+  const kind = (/** @type {Scene} */ { body }) => (body?.point ? 'point' : body?.vertices ? 'polygon' : 'rod');
+  if (changes.body && kind(changes) !== kind(base) && (kind(changes) !== 'rod' || kind(base) === 'point'))
+    delete base.body;
+  /** @param {Scene} into @param {Scene} from */
+  const lay = (into, from) => {
+    for (const [key, value] of Object.entries(from)) {
+      if (value === null) delete into[key];
+      else if (typeof value === 'object' && !Array.isArray(value)) {
+        into[key] ??= {};
+        lay(into[key], value);
+      } else into[key] = value;
+    }
+    return into;
+  };
+  return lay(base, changes);
+}
+
+/**
+ * A scene as the shortest query that means it: the preset and what differs, `null` where a value is taken back, or all of it where the
+ * body is another one.
+ * @param {Scene} scene with what was set only, defaults left out
+ * @param {Case | null} preset
+ * @param {Field[]} fields
+ */
+export function sceneQuery(scene, preset, fields) {
+  const query = new URLSearchParams();
+  const covered =
+    preset &&
+    fields.every(
+      (field) =>
+        !field.path.startsWith('body.') ||
+        playedAt(preset.scene, field) === undefined ||
+        playedAt(scene, field) !== undefined,
+    );
+  if (covered) query.set('preset', preset.name);
+  for (const field of fields) {
+    const value = playedAt(scene, field);
+    if (value === undefined && covered && playedAt(preset.scene, field) !== undefined)
+      query.set(`scene.${field.path}`, 'null');
+    if (value === undefined || same(value, covered ? playedAt(preset.scene, field) : field.default)) continue;
+    if (field.kind === 'vertices') {
+      for (const [index, place] of value.entries()) {
+        query.set(`scene.${field.path}.${index}.0`, String(place[0]));
+        query.set(`scene.${field.path}.${index}.1`, String(place[1]));
+      }
+    } else query.set(`scene.${field.path}`, String(value));
+  }
+  return query;
+}

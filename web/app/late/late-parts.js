@@ -1,0 +1,59 @@
+// The parts that load after the first plot: panels below the fold, keys, pointing at plots, saving.
+
+import { PlotInteraction } from '../../charts/impacts/plot-interaction.js';
+import { copy } from '../../dom/clipboard.js';
+import { byId } from '../../dom/elements.js';
+import { brokenLinkNotice, clearNotice } from '../../dom/notices.js';
+import { enlarger } from '../../export/enlarge-button.js';
+import { Panels } from '../../panels/panels.js';
+import { updateAddress, updateAddressSoon } from '../address-bar.js';
+import { playedQuery, typedQuery } from '../queries.js';
+import { launch, play } from '../scenes.js';
+import { bindingsOf } from './key-bindings.js';
+import { listenToKeys } from './keys.js';
+import { savesOf } from './saves.js';
+
+/** @param {import('../page.js').Page} page */
+export function bringLateParts(page) {
+  const { plots, circle, view, fields, run } = page;
+  for (const one of [...plots, circle]) {
+    one.figure.offer(() => savesOf(page, one.figure.id, one.figure.title, one));
+  }
+  const card = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
+  card.querySelector('.card-head')?.append(enlarger(card, 'Scene', () => savesOf(page, 'scene', 'Scene', view)));
+  listenToKeys(bindingsOf(page));
+  byId('share').addEventListener('click', (event) => {
+    updateAddress(page);
+    void copy(/** @type {HTMLElement} */ (event.currentTarget), location.href);
+  });
+  const actions = {
+    fields,
+    launch: (/** @type {Record<string, number>} */ values) => launch(page, values),
+    changed: () => updateAddressSoon(page),
+  };
+  page.panels = new Panels(
+    byId('main'),
+    {
+      ...actions,
+      query: () => typedQuery(page),
+      scene: () => page.typed ?? {},
+      chosen: () => page.chosen,
+      played: () => playedQuery(page),
+      play: (scene) => play(page, scene),
+    },
+    (id, dropped) => {
+      if (dropped.length > 0) brokenLinkNotice(`link-${id}`, dropped);
+      else clearNotice(`link-${id}`);
+    },
+  );
+  page.interaction = new PlotInteraction(byId('impacts-bar'), {
+    ...actions,
+    run,
+    view,
+    plots,
+    typed: () => page.complete,
+  });
+  page.panels.join('brush', page.interaction);
+  page.panels.restore(page.panelLink);
+  if (page.judged) page.panels.judged(page.judged);
+}

@@ -1,0 +1,85 @@
+// The parts of the page and the state that they share.
+
+import { EigenvalueCircle } from '../charts/eigenvalue-circle.js';
+import { energyPlot } from '../charts/impacts/energy-plot.js';
+import { anglePlane, velocityPlane } from '../charts/impacts/phase-planes.js';
+import { byId } from '../dom/elements.js';
+import { Verdict } from '../panels/verdict/verdict.js';
+import { Controls } from '../run/controls.js';
+import { Run } from '../run/run.js';
+import { SceneView } from '../scene/scene-view.js';
+
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
+
+/** The field that has a slider of its own beside the scene. */
+export const GAIN = 'table.tilt_gain';
+
+export class Page {
+  /** @type {import('../api/scene-fields.js').Field[]} */
+  fields = [];
+  /** @type {import('contract').Preset[]} */
+  cases = [];
+  /** The case that the scene began with. @type {import('contract').Preset | null} */
+  chosen = null;
+  /** @type {import('../form/form.js').Form | null} */
+  form = null;
+  speed = 1;
+  /** The typed scene when the run began. @type {Scene} */
+  releasedAs = {};
+  /** The panels' part of the address, until the panels are there. */
+  panelLink = new URLSearchParams();
+  /** The panels below the fold; they come after the first plot. @type {import('../panels/panels.js').Panels | null} */
+  panels = null;
+  /** Comes after the first plot too. @type {import('../charts/impacts/plot-interaction.js').PlotInteraction | null} */
+  interaction = null;
+  /** The newest verdict. @type {import('../panels/card.js').Judged | null} */
+  judged = null;
+  /** True while the newest scene has no verdict because the server was away. */
+  unjudged = false;
+  /** True while the run has lost the server. */
+  away = false;
+  /** The message sent last: a problem that comes back is about it. @type {'kick' | 'set' | 'other'} */
+  lastSent = 'other';
+  /** The element that names the scene's case. */
+  chooser = byId('case', HTMLSelectElement);
+  verdict = new Verdict(byId('verdict'));
+  circle = new EigenvalueCircle();
+  run;
+  view;
+  plots;
+  controls;
+
+  /**
+   * @param {(page: Page) => import('../run/run.js').Watcher} watcherOf
+   * @param {(page: Page) => import('../run/controls.js').Actions} actionsOf
+   */
+  constructor(watcherOf, actionsOf) {
+    this.run = new Run(watcherOf(this));
+    this.view = new SceneView(byId('scene-frame'), byId('scene-readout'), this.run);
+    const { impacts } = this.run;
+    this.plots = [
+      anglePlane(impacts),
+      velocityPlane(impacts),
+      energyPlot(impacts, () => this.run.scene ?? this.typed ?? null),
+    ];
+    this.controls = new Controls(byId('controls'), actionsOf(this));
+    const [angle, velocity, energy] = this.plots.map(({ figure }) => figure.element);
+    byId('impacts-bar').before(angle, velocity, this.circle.figure.element, energy);
+  }
+
+  /** The typed scene as far as it goes. @returns {Scene | undefined} */
+  get typed() {
+    return this.form?.read().scene;
+  }
+
+  /** The typed scene; null while some of it is no value. */
+  get complete() {
+    const read = this.form?.read();
+    return read?.complete ? read.scene : null;
+  }
+
+  /** The panels' part of the address. */
+  get panelQuery() {
+    return this.panels?.query() ?? this.panelLink;
+  }
+}

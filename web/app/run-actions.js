@@ -1,0 +1,80 @@
+// What the controls and the keys do to the run.
+
+import { playedAt } from '../api/scene-fields.js';
+import { debounce } from '../dom/debounce.js';
+import { clearNotice } from '../dom/notices.js';
+import { updateAddressSoon } from './address-bar.js';
+import { typedQuery, unplayed } from './queries.js';
+
+/** @typedef {import('./page.js').Page} Page */
+
+/** Releases the typed scene. @param {Page} page */
+export function start(page) {
+  const { form, run } = page;
+  const query = typedQuery(page);
+  if (!query || !form) {
+    form?.complain();
+    return form?.focusError();
+  }
+  query.set('speed', String(page.speed));
+  page.releasedAs = form.read().scene;
+  clearNotice('run');
+  page.lastSent = 'other';
+  run.start(query);
+}
+
+/** @param {Page} page */
+export function toggle(page) {
+  const { run } = page;
+  page.lastSent = 'other';
+  if (run.phase === 'idle' || run.phase === 'ended') start(page);
+  else if (run.active) run.toggle();
+}
+
+/** @param {Page} page */
+export function step(page) {
+  page.lastSent = 'other';
+  page.run.step();
+}
+
+/** From the release again, with what is typed now. @param {Page} page */
+export function restart(page) {
+  const { run } = page;
+  page.lastSent = 'other';
+  if (run.phase === 'idle') return;
+  if (!run.active || unplayed(page).length > 0) start(page);
+  else run.restart();
+}
+
+/** @param {Page} page @param {Record<string, number>} velocities */
+export function kick(page, velocities) {
+  page.lastSent = 'kick';
+  page.run.kick(velocities);
+}
+
+/** @param {Page} page @param {number} value */
+export function setSpeed(page, value) {
+  const { run } = page;
+  page.speed = value;
+  page.controls.setSpeed(value);
+  page.lastSent = 'other';
+  if (run.active) run.setSpeed(value);
+  else updateAddressSoon(page);
+}
+
+/** Sends the live parameters that the run does not play yet; some make sense only together. */
+export const sendChanges = debounce(100, (/** @type {Page} */ page) => {
+  const { run, typed } = page;
+  if (!typed || !run.active) return;
+  // Another kind of control law is no change of a value: it needs a restart.
+  const swapped = Boolean(typed.table?.feedback) !== Boolean(run.asked?.table?.feedback);
+  const changes = Object.fromEntries(
+    unplayed(page)
+      .filter(({ live, path }) => live && !(swapped && /^table\.(tilt_gain$|feedback)/.test(path)))
+      .map((field) => [field.path, playedAt(typed, field)])
+      .filter(([, value]) => value !== undefined),
+  );
+  if (Object.keys(changes).length === 0) return;
+  page.lastSent = 'set';
+  run.set(changes);
+});

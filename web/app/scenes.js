@@ -1,0 +1,94 @@
+// Brings a scene to the page: a case, that of the address, or that of a panel.
+
+import { setAt, valueAt } from '../api/scene-fields.js';
+import { merged, sceneQuery } from '../api/scene-query.js';
+import { brokenLinkNotice, clearNotice } from '../dom/notices.js';
+import { interventionsOf } from '../run/interventions.js';
+import { pushAddress, updateAddress } from './address-bar.js';
+import { readLink } from './link.js';
+import { GAIN } from './page.js';
+import { start } from './run-actions.js';
+import { caseOf, nameScene } from './scene-name.js';
+import { askVerdict } from './verdict-request.js';
+
+/** @typedef {import('./page.js').Page} Page */
+/** @typedef {import('./page.js').Scene} Scene */
+
+/** Tells all parts of the page that the typed scene is another one. @param {Page} page */
+export function sceneChanged(page) {
+  nameScene(page, () => {
+    if (page.chosen) choose(page, page.chosen);
+  });
+  page.view.draft(page.typed ?? {});
+  page.plots[2].redraw();
+  page.panels?.sceneChanged();
+  askVerdict(page);
+}
+
+/** Shows a scene without running it. @param {Page} page @param {Scene} scene */
+function present(page, scene) {
+  page.form?.fill(scene);
+  page.controls.setGain(valueAt(scene, GAIN) ?? null);
+  page.controls.setSpeed(page.speed);
+  sceneChanged(page);
+}
+
+/** Shows a case; runs it where a run was going on. @param {Page} page @param {import('contract').Preset} one */
+export function choose(page, one) {
+  const { run } = page;
+  const going = run.phase !== 'idle';
+  page.chosen = one;
+  pushAddress(page, [['preset', one.name]]);
+  run.reset();
+  present(page, one.scene);
+  if (going) start(page);
+}
+
+/** Releases the typed scene with these values in it; the way back leads to the run before. @param {Page} page @param {Record<string, number>} values */
+export function launch(page, values) {
+  updateAddress(page);
+  history.pushState(null, '', location.href);
+  for (const [path, value] of Object.entries(values)) page.form?.put(path, value);
+  page.run.reset();
+  const gain = valueAt(page.typed ?? {}, GAIN) ?? null;
+  page.controls.setGain(gain);
+  page.circle.preview(gain);
+  sceneChanged(page);
+  start(page);
+}
+
+/** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene */
+export function play(page, scene) {
+  page.chosen = caseOf(page, scene);
+  pushAddress(page, sceneQuery(scene, page.chosen, page.fields));
+  page.run.reset();
+  present(page, scene);
+  start(page);
+  page.chooser.focus({ preventScroll: true });
+  scrollTo(0, 0);
+}
+
+/** Shows the scene of an address, and joins its run. @param {Page} page @param {string} search */
+export function restore(page, search) {
+  const { fields, cases, run } = page;
+  const link = readLink(search, fields, cases);
+  const bare = link.preset === null && Object.keys(link.changes).length === 0;
+  page.chosen = cases.find((one) => one.name === (bare ? cases[0]?.name : link.preset)) ?? caseOf(page, link.changes);
+  page.speed = link.speed;
+  run.reset();
+  page.panelLink = link.panels;
+  page.panels?.restore(link.panels);
+  if (link.dropped.length > 0) brokenLinkNotice('link', link.dropped);
+  else clearNotice('link');
+  const scene = merged(page.chosen?.scene ?? {}, link.changes);
+  if (!link.run) return present(page, scene);
+  const query = sceneQuery(scene, page.chosen, fields);
+  for (const [key, value] of link.run) query.set(key, value);
+  query.set('speed', String(page.speed));
+  for (const { set } of interventionsOf(link.run)) {
+    for (const [path, value] of Object.entries(set)) setAt(scene, path, value);
+  }
+  present(page, scene);
+  page.releasedAs = page.typed ?? {};
+  run.start(query);
+}

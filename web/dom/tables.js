@@ -1,0 +1,31 @@
+// Tables of numbers that scroll in their box, and lists of named numbers.
+
+import { h } from './elements.js';
+
+/**
+ * @param {string} label for those who do not see it
+ * @param {(string | Node)[]} head
+ * @param {HTMLElement} body
+ * @param {string} [kind] its class
+ */
+export const table = (label, head, body, kind) =>
+  h(
+    'div',
+    { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': label },
+    h(
+      'table',
+      { class: kind },
+      h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))),
+      body,
+    ),
+  );
+
+/** A row of a table with its name first. @param {string | Node} name @param {(string | Node)[]} cells */
+export const row = (name, cells) =>
+  h('tr', {}, h('th', { scope: 'row' }, name), ...cells.map((cell) => h('td', {}, cell)));
+
+/** The entries of a list of numbers: name, value and meaning. @param {(readonly [string | Node, string | Node, string])[]} rows */
+export const entries = (rows) =>
+  rows.map(([name, value, meaning]) =>
+    h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning)),
+  );

@@ -1,0 +1,85 @@
+// The card of a panel: loads the panel's code and styles, and offers to try again.
+
+import { enlarger } from '../export/enlarge-button.js';
+import { h } from '../dom/elements.js';
+
+/** @typedef {import('../api/scene-fields.js').Field} Field */
+/** @typedef {import('contract').Preset} Case */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
+
+/**
+ * What a panel knows of where it stands.
+ * @typedef {object} Page
+ * @property {Field[]} fields
+ * @property {() => URLSearchParams | null} query what is typed; null while some of it is no value
+ * @property {() => Scene} scene the same, as far as it goes
+ * @property {() => Case | null} chosen the case that it began with
+ * @property {() => URLSearchParams | null} played what the plots show: the run with what was done to it, else what is typed
+ * @property {(values: Record<string, number>) => void} launch releases the scene with these values in it
+ * @property {(scene: Scene) => void} play shows another scene and runs it
+ * @property {() => void} changed the panel’s part of the address is another one
+ */
+
+/** A verdict and the scene it is of. @typedef {{answer: import('contract').Stability, scene: URLSearchParams}} Judged */
+
+/**
+ * What stands in its place.
+ * @typedef {object} Panel
+ * @property {() => void} [sceneChanged]
+ * @property {() => void} [ask] what waits for a press of a button in the page
+ * @property {(judged: Judged) => void} [judged]
+ * @property {() => void} [played] what the plots show may be another run
+ * @property {() => URLSearchParams} [query] its part of the page’s address, where it differs from the usual
+ * @property {(link: URLSearchParams) => string[]} [restore] from that part; what was dropped of it, in words
+ */
+
+/** @typedef {{mount: (root: HTMLElement, page: Page, link: URLSearchParams) => Panel}} Module */
+
+/**
+ * @typedef {object} Entry
+ * @property {string} id also its folder, its style sheet, its part of the address, and its name under `embed/`
+ * @property {string} title
+ * @property {string} about
+ * @property {boolean} [half] shares its row
+ * @property {() => Promise<Module>} load
+ */
+
+/** @param {string} path @returns {Promise<void>} */
+export function styles(path) {
+  return new Promise((resolve, reject) => {
+    document.head.append(
+      h('link', { rel: 'stylesheet', href: path, load: () => resolve(), error: () => reject(new Error(path)) }),
+    );
+  });
+}
+
+/**
+ * A card for a panel and, once its code and its styles are there, the panel. What fails to load can be asked for again.
+ * @param {Entry} entry
+ * @param {Page} page
+ * @param {() => URLSearchParams} link
+ * @param {(panel: Panel) => void} mounted
+ */
+export function card({ id, title, about, half, load }, page, link, mounted) {
+  const body = h('div', { id: `${id}-body`, class: 'lazy-body' });
+  const element = h(
+    'section',
+    { class: `card lazy${half ? ' half' : ''}`, id, 'aria-labelledby': `${id}-title` },
+    h('div', { class: 'card-head' }, h('h2', { id: `${id}-title` }, title), h('p', { class: 'muted' }, about)),
+    body,
+  );
+  element.firstElementChild?.append(enlarger(element, title));
+  const bring = async () => {
+    try {
+      const [module] = await Promise.all([load(), styles(`panels/${id}/${id}.css`)]);
+      body.replaceChildren();
+      mounted(module.mount(body, page, link()));
+    } catch {
+      body.replaceChildren(
+        h('p', { class: 'muted' }, 'This part did not load.'),
+        h('button', { type: 'button', click: bring }, 'Try again'),
+      );
+    }
+  };
+  return { element, body, bring };
+}

@@ -1,0 +1,156 @@
+// The connection of a run: what its messages change, how it is resumed after a loss, and when silence counts as one.
+
+import { fromColumns, fromMessage } from './impact-messages.js';
+import { interventionsOf } from './interventions.js';
+import { LiveStream } from './live-stream.js';
+
+/** @typedef {import('./run.js').Run} Run */
+/** @typedef {import('./impacts.js').Impact} Impact */
+/**
+ * @typedef {import('contract').LiveHello | import('contract').LiveAck | import('contract').LiveImpact
+ *   | import('contract').LiveImpacts | import('contract').LiveGap | import('contract').LiveEnd
+ *   | import('contract').LiveProblem} ServerMessage
+ */
+
+/** An impact may be this late, in wall time, before a connection that says nothing counts as lost. */
+const OVERDUE_S = 5;
+
+export class Connection {
+  #run;
+  /** True when the run is shown from its first impact. */
+  #whole;
+  #epoch = 0;
+  /** @type {LiveStream | null} */
+  #stream;
+  /** @type {number | undefined} */
+  #overdue;
+
+  /**
+   * @param {Run} run with its query
+   * @param {boolean} whole
+   */
+  constructor(run, whole) {
+    this.#run = run;
+    this.#whole = whole;
+    const first = new URLSearchParams(run.query);
+    const joins = first.has('epoch') && whole;
+    if (joins) first.set('from', '1');
+    this.#stream = new LiveStream(`v1/live?${first}`, () => this.#resumption(), {
+      message: (message) => this.#hear(message),
+      lost: (seconds) => {
+        run.become('lost');
+        run.watcher.lost(seconds);
+      },
+      refused: (problem) => {
+        // The server may refuse to tell the whole past of a run, and still tell its present.
+        if (joins) run.start(run.query, false);
+        else run.refused(problem);
+      },
+    });
+  }
+
+  #resumption() {
+    const { impacts, query: replay } = this.#run;
+    const query = new URLSearchParams(replay);
+    if (impacts.last || this.#whole) query.set('from', String((impacts.last?.n ?? 0) + 1));
+    return `v1/live?${query}`;
+  }
+
+  retry() {
+    this.#stream?.retry();
+  }
+
+  /** @param {Record<string, unknown>} message */
+  send(message) {
+    this.#stream?.send(message);
+  }
+
+  close() {
+    clearTimeout(this.#overdue);
+    this.#stream?.close();
+    this.#stream = null;
+  }
+
+  /** @param {ServerMessage} message */
+  #hear(message) {
+    const run = this.#run;
+    switch (message.type) {
+      case 'hello':
+        if (this.#epoch && message.epoch !== this.#epoch) run.clear();
+        this.#epoch = message.epoch;
+        run.released = message.scene;
+        run.fall = {
+          ...message.release,
+          theta_dot: message.release.theta_dot ?? 0,
+          theta: message.release.theta ?? 0,
+          duration: message.flight_time ?? 0,
+        };
+        run.clock.forget();
+        this.#read(message);
+        run.watcher.lost(NaN);
+        break;
+      case 'ack':
+        this.#read(message);
+        break;
+      case 'impact':
+        this.#take([fromMessage(message)]);
+        break;
+      case 'impacts':
+        this.#take(fromColumns(message.columns));
+        break;
+      case 'gap':
+        run.impacts.missing += message.to - message.from + 1;
+        break;
+      case 'end':
+        run.outcome = message.outcome;
+        this.close();
+        run.become('ended');
+        break;
+      case 'problem':
+        run.watcher.problem({ title: message.title, detail: message.detail ?? '', errors: message.errors ?? [] });
+    }
+  }
+
+  /** @param {import('contract').LiveHello | import('contract').LiveAck} message */
+  #read(message) {
+    const run = this.#run;
+    run.clock.read(message);
+    run.query = new URLSearchParams(message.url.split('?')[1] ?? '');
+    run.query.delete('from');
+    run.interventions = interventionsOf(run.query);
+    run.rebuild();
+    if (!run.outcome) run.become(message.paused ? 'paused' : 'running');
+    this.#expect();
+  }
+
+  /** @param {Impact[]} fresh */
+  #take(fresh) {
+    const run = this.#run;
+    const known = run.impacts.last?.n ?? 0;
+    for (const impact of fresh) {
+      if (impact.n <= known) continue;
+      impact.series = run.interventions.filter(
+        (one) => one.impact <= impact.n && Object.keys(one.set).length > 0,
+      ).length;
+      run.impacts.append(impact);
+    }
+    if (run.interventions.length > 0) run.rebuild();
+    this.#expect();
+    run.watcher.struck();
+  }
+
+  /** Waits for the next impact: a connection that is silent for too long after it is dropped. */
+  #expect() {
+    clearTimeout(this.#overdue);
+    const run = this.#run;
+    if (run.phase !== 'running') return;
+    const arc = run.arcAt(Infinity);
+    const wait_s = arc ? Math.max(0, arc.t + arc.duration - run.clock.runTime()) / run.clock.speed : 0;
+    this.#overdue = setTimeout(
+      () => {
+        if (run.phase === 'running') this.#stream?.drop();
+      },
+      (wait_s + OVERDUE_S) * 1000,
+    );
+  }
+}

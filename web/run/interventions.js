@@ -1,0 +1,24 @@
+// The interventions of a run in its query.
+
+/** @typedef {{impact: number, set: Record<string, number | string>, kick: Record<string, number>}} Intervention */
+
+/**
+ * @param {URLSearchParams} query
+ * @returns {Intervention[]} in their order
+ */
+export function interventionsOf(query) {
+  /** @type {Map<number, Intervention>} */
+  const found = new Map();
+  for (const [key, text] of query) {
+    const match = /^interventions\.(\d+)\.(impact$|set\.|kick\.)(.*)$/.exec(key);
+    if (!match) continue;
+    const index = Number(match[1]);
+    const one = found.get(index) ?? { impact: 0, set: {}, kick: {} };
+    found.set(index, one);
+    const value = Number.isFinite(Number(text)) ? Number(text) : text;
+    if (match[2] === 'impact') one.impact = Number(text);
+    else if (match[2] === 'set.') one.set[match[3]] = value;
+    else one.kick[match[3]] = Number(text);
+  }
+  return [...found.keys()].sort((a, b) => a - b).map((index) => /** @type {Intervention} */ (found.get(index)));
+}

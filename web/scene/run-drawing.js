@@ -1,0 +1,159 @@
+// Draws a run at a time: the body on its flight, the table on its way to the next strike, the last strike and the trail.
+
+import { theme } from '../charts/theme.js';
+import { fixed, unbroken } from '../dom/numbers.js';
+import { contactDistance } from '../physics/body.js';
+import { effectiveGravity, poseOn } from '../physics/flight.js';
+import { strikeAfter, tableBetween } from '../physics/table.js';
+import { MODES } from '../run/impact-messages.js';
+import { drawRod, drawTable } from './bodies.js';
+import { drawGrid, drawRulers, drawTarget } from './rulers.js';
+import { drawStrike } from './strike-marks.js';
+
+/** @typedef {import('./scene-view.js').Scene} Scene */
+/** @typedef {import('./scene-view.js').Parts} Parts */
+/** @typedef {import('../run/impacts.js').Impact} Impact */
+/** @typedef {import('../physics/flight.js').Arc} Arc */
+/** @typedef {import('../physics/table.js').Strike} Strike */
+
+/** How long a strike stays to be seen, in wall time. */
+const GLOW_S = 0.28;
+const TRAIL_FLIGHTS = 3;
+
+export class RunDrawing {
+  #parts;
+  #drawn_ms = 0;
+  #read_ms = -Infinity;
+
+  /** @param {Parts} parts of the view */
+  constructor(parts) {
+    this.#parts = parts;
+  }
+
+  /** @param {number} now_ms @param {boolean} moving flights are drawn, not only strikes */
+  draw(now_ms, moving) {
+    const { run, surface, camera, under } = this.#parts;
+    const { context } = surface;
+    const since_s = Math.min(0.1, (now_ms - this.#drawn_ms) / 1000);
+    this.#drawn_ms = now_ms;
+    const scene = /** @type {Scene} */ (run.scene);
+    const now = run.phase === 'ended' ? (run.outcome?.t ?? Infinity) : run.clock.runTime();
+    const place = run.placeAt(now);
+    const impact = place === null ? null : run.impacts.row(place);
+    const arc = run.arcAt(now);
+    if (!arc) return drawGrid(surface, camera);
+    // Where flights are not wanted, the pose of the last strike stands still until the next one.
+    const t = moving || !impact ? now : arc.t;
+    const pose = poseOn(arc, t, scene);
+    camera.contain(scene, arc.y + Math.max(0, arc.y_dot) ** 2 / (2 * effectiveGravity(scene)));
+    camera.follow(pose.x, run.phase === 'running' && moving ? since_s : null);
+    drawGrid(surface, camera);
+    const { scale } = camera;
+    drawTarget(surface, camera, scene);
+    under()?.(surface, scale, scene);
+    this.#drawTrail(scene, place, t);
+    const last = strikeOf(impact, scene) ?? firstTable(arc, scene);
+    const next = arc.duration > 0 ? strikeAfter(arc, scene) : last;
+    drawTable(context, scale, tableBetween(last, next, t), camera.halfTable(scene), camera.floor);
+    drawRod(context, scale, scene, pose);
+    const strength = impact ? this.#glow(now, impact.t, moving) : 0;
+    if (impact && strength > 0) drawStrike(context, scale, impact, last, strength);
+    drawRulers(surface, camera);
+    this.#say(now_ms, now, pose, impact);
+  }
+
+  /**
+   * How strongly a strike is still seen, from 0 to 1. A run that stands still keeps it.
+   * @param {number} now
+   * @param {number} struck
+   * @param {boolean} moving
+   */
+  #glow(now, struck, moving) {
+    const { run } = this.#parts;
+    if (run.phase === 'ended') return 1;
+    const still = now - struck < 1e-6 || !moving ? 0 : GLOW_S / 2;
+    // Slower runs keep the strike as long as it can be seen.
+    const age_s = run.phase === 'running' && moving ? (now - struck) / Math.max(run.clock.speed, 1e-6) : still;
+    return Math.max(0, 1 - age_s / GLOW_S);
+  }
+
+  /** Shows in numbers what is drawn, at a pace one can read. @param {number} now_ms @param {number} t @param {import('../physics/flight.js').Pose} pose @param {Impact | null} impact */
+  #say(now_ms, t, pose, impact) {
+    const { run, readout, box } = this.#parts;
+    const running = run.phase === 'running';
+    if (running && now_ms - this.#read_ms < 100) return;
+    // What stands still can be read to the last digit that matters.
+    const [seconds, rest] = running ? [2, 3] : [4, 5];
+    const n = impact?.n ?? 0;
+    readout.textContent = unbroken(
+      `t ${fixed(t, seconds)} s   impact ${n}   θ ${fixed(pose.theta, rest)} rad   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m${contactWords(impact, rest)}`,
+    );
+    if (!running || now_ms - this.#read_ms > 2000 || this.#read_ms === -Infinity) {
+      const contact = contactWords(impact, 3).replace(/ {3}/g, ', ');
+      box.setAttribute(
+        'aria-label',
+        `The rod and the table after impact ${n}: tilted by ${fixed(pose.theta, 2)} rad at x = ${fixed(pose.x, 2)} m${contact}`,
+      );
+    }
+    this.#read_ms = now_ms;
+  }
+
+  /** The way of the centre of gravity on the last flights. @param {Scene} scene @param {number | null} place @param {number} t */
+  #drawTrail(scene, place, t) {
+    const {
+      run,
+      surface: { context },
+      camera: { scale },
+    } = this.#parts;
+    const { impacts } = run;
+    context.strokeStyle = theme().accent;
+    context.lineWidth = 1.5;
+    for (let back = 0; back <= TRAIL_FLIGHTS; back += 1) {
+      const at = place === null ? -1 - back : place - back;
+      if (at < impacts.begin - 1 || at < -1) break;
+      const arc = run.arcAt(at < impacts.begin ? -1 : impacts.at('t', at));
+      if (!arc) break;
+      const end = Math.min(t, arc.t + arc.duration);
+      context.globalAlpha = 0.5 * (1 - back / (TRAIL_FLIGHTS + 1));
+      context.beginPath();
+      for (let k = 0; k <= 24; k += 1) {
+        const pose = poseOn(arc, arc.t + ((end - arc.t) * k) / 24, scene);
+        if (k === 0) context.moveTo(scale.x(pose.x), scale.y(pose.y));
+        else context.lineTo(scale.x(pose.x), scale.y(pose.y));
+      }
+      context.stroke();
+      if (at < impacts.begin) break;
+    }
+    context.globalAlpha = 1;
+  }
+}
+
+/** The table below the release, before its first strike. @param {Arc} arc @param {Scene} scene @returns {Strike} */
+const firstTable = (arc, scene) => ({
+  t: 0,
+  x: arc.x + contactDistance(scene) * Math.sin(arc.theta),
+  y: 0,
+  alpha: 0,
+  speed: 0,
+});
+
+/** @param {Impact | null} impact @param {Scene} scene @returns {Strike | null} */
+function strikeOf(impact, scene) {
+  if (!impact) return null;
+  const l = contactDistance(scene);
+  return {
+    t: impact.t,
+    x: impact.x + (l && l * Math.sin(impact.theta)),
+    y: impact.clearance || 0,
+    alpha: impact.alpha,
+    speed: Number.isNaN(impact.table_speed) ? 0 : impact.table_speed,
+  };
+}
+
+/** The newest contact in words, where there is more to it than a strike at y = 0. @param {Impact | null} impact @param {number} decimals */
+function contactWords(impact, decimals) {
+  if (!impact) return '';
+  const mode = MODES[impact.mode] ?? 'frictionless';
+  const told = mode === 'frictionless' ? '' : `   contact: ${mode.replace('_', ' ')}`;
+  return told + (impact.clearance ? `   struck at ${fixed(impact.clearance, decimals)} m` : '');
+}
