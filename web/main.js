@@ -53,7 +53,7 @@ async function begin() {
   await new Promise((resolve) => requestAnimationFrame(resolve));
   performance.mark('first plot');
   const late = await import('./app/late/late-parts.js').catch(() => null);
-  if (late) late.bringLateParts(page);
+  if (late) await late.bringLateParts(page);
   // A browser remembers a module that it did not get, so that only a fresh page gets it.
   else failed('Part of the page did not load. ', 'Load it again', () => location.reload());
 }

@@ -19,6 +19,12 @@ export class Problem extends Error {
   }
 }
 
+/** What to tell people about a failed request: the server's words, or that there is none. @param {unknown} error */
+export function wordsOf(error) {
+  if (!(error instanceof Problem)) return 'The server does not answer.';
+  return error.errors.map(({ detail }) => detail).join(' ') || error.message;
+}
+
 /** The build that answered last. */
 export const server = { build: '' };
 

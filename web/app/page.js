@@ -50,7 +50,7 @@ export class Page {
   controls;
 
   /**
-   * @param {(page: Page) => import('../run/run.js').Watcher} watcherOf
+   * @param {(page: Page) => import('../run/run-state.js').Watcher} watcherOf
    * @param {(page: Page) => import('../run/controls.js').Actions} actionsOf
    */
   constructor(watcherOf, actionsOf) {

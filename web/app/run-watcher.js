@@ -11,7 +11,7 @@ import { askVerdict } from './verdict-request.js';
 
 /** @typedef {import('./page.js').Page} Page */
 
-/** @param {Page} page @returns {import('../run/run.js').Watcher} */
+/** @param {Page} page @returns {import('../run/run-state.js').Watcher} */
 export const watcherOf = (page) => ({
   changed: () => showRun(page),
   struck: () => {

@@ -1,14 +1,14 @@
 // Asks for the verdict on the typed scene and shows the answer.
 
 import { Problem, get, server } from '../api/client.js';
+import { LatestRequest } from '../api/latest-request.js';
 import { debounce } from '../dom/debounce.js';
 import { byId } from '../dom/elements.js';
 import { typedQuery } from './queries.js';
 
 /** @typedef {import('./page.js').Page} Page */
 
-/** @type {AbortController | null} */
-let pending = null;
+const latest = new LatestRequest();
 
 /** Marks the verdict as out of date, and asks anew once typing has paused. @param {Page} page */
 export function askVerdict(page) {
@@ -18,11 +18,10 @@ export function askVerdict(page) {
 
 const askSoon = debounce(120, async (/** @type {Page} */ page) => {
   const { verdict, circle } = page;
-  pending?.abort();
+  latest.cancel();
   const scene = typedQuery(page);
   if (!scene) return verdict.fail('A parameter is not a number; it is marked below.');
-  pending = new AbortController();
-  const { signal } = pending;
+  const signal = latest.next();
   try {
     const answer = await get(`v1/stability?${scene}`, signal);
     page.unjudged = false;

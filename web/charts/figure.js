@@ -1,5 +1,6 @@
 // The frame around a chart: title, sentence, picture with a name, readout, table of its numbers. Not for the picture itself.
 
+import { table as numberTable } from '../dom/tables.js';
 import { enlarger } from '../export/enlarge-button.js';
 import { h } from '../dom/elements.js';
 import { unbroken } from '../dom/numbers.js';
@@ -41,16 +42,7 @@ export class Figure {
       'details',
       { toggle: () => this.list(Infinity) },
       h('summary', {}, 'Numbers'),
-      h(
-        'div',
-        { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': `Numbers: ${title}` },
-        h(
-          'table',
-          {},
-          h('thead', {}, h('tr', {}, ...table.head.map((name) => h('th', { scope: 'col' }, name)))),
-          this.#body,
-        ),
-      ),
+      numberTable(`Numbers: ${title}`, table.head, this.#body),
     );
     this.#head = h('div', { class: 'card-head' }, h('h3', {}, title));
     this.element = h(

@@ -27,9 +27,9 @@ const listeners = new Set();
 export function theme() {
   if (colours) return colours;
   const style = getComputedStyle(document.documentElement);
-  return (colours = /** @type {Colours} */ (
-    Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]))
-  ));
+  const found = NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]);
+  colours = /** @type {Colours} */ (Object.fromEntries(found));
+  return colours;
 }
 
 /** @param {() => void} listener */

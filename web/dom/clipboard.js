@@ -8,7 +8,8 @@ import { h } from './elements.js';
  * @param {string} text
  */
 export async function copy(button, text) {
-  const label = (button.dataset.label ??= button.textContent ?? '');
+  button.dataset.label ??= button.textContent ?? '';
+  const { label } = button.dataset;
   try {
     if (navigator.clipboard) await navigator.clipboard.writeText(text);
     else copyOverHttp(text);

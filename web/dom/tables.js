@@ -20,9 +20,9 @@ export const table = (label, head, body, kind) =>
     ),
   );
 
-/** A row of a table with its name first. @param {string | Node} name @param {(string | Node)[]} cells */
+/** A row of a table with its name first. @param {string | Node | (string | Node)[]} name @param {(string | Node)[]} cells */
 export const row = (name, cells) =>
-  h('tr', {}, h('th', { scope: 'row' }, name), ...cells.map((cell) => h('td', {}, cell)));
+  h('tr', {}, h('th', { scope: 'row' }, ...[name].flat()), ...cells.map((cell) => h('td', {}, cell)));
 
 /** The entries of a list of numbers: name, value and meaning. @param {(readonly [string | Node, string | Node, string])[]} rows */
 export const entries = (rows) =>

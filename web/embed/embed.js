@@ -2,7 +2,7 @@
 // Not for changing either: that is for the whole page, one click away.
 
 import { EigenvalueCircle } from '../charts/eigenvalue-circle.js';
-import { Problem, get } from '../api/client.js';
+import { get, wordsOf } from '../api/client.js';
 import { fieldsOf } from '../api/scene-fields.js';
 import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
@@ -163,13 +163,13 @@ async function begin() {
 }
 
 begin().catch((error) => {
-  const words =
-    error instanceof Problem
-      ? error.errors.map(({ detail }) => detail).join(' ') || error.message
-      : 'The server does not answer.';
-  notice('server', [words, ' ', h('button', { type: 'button', click: () => location.reload() }, 'Try again')], {
-    dismissible: false,
-    caution: true,
-  });
+  notice(
+    'server',
+    [wordsOf(error), ' ', h('button', { type: 'button', click: () => location.reload() }, 'Try again')],
+    {
+      dismissible: false,
+      caution: true,
+    },
+  );
 });
 document.title = `${id} · equipoise`;

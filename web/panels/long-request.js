@@ -1,6 +1,6 @@
 // A question that takes the server a while: how far it is, how to stop it, and what went wrong, in words. Not for what is asked.
 
-import { Problem, problemOf } from '../api/client.js';
+import { Problem, problemOf, wordsOf } from '../api/client.js';
 import { h } from '../dom/elements.js';
 import { marked } from '../dom/typeset.js';
 import { lines } from '../api/ndjson.js';
@@ -86,8 +86,8 @@ export class LongRequest {
     } catch (error) {
       if (signal.aborted) return null;
       const far = this.#count.textContent;
-      if (error instanceof Problem) this.#fail(error.errors.map(({ detail }) => detail).join(' ') || error.message);
-      else this.#fail(far ? `The answer broke off at ${far}.` : 'The server does not answer.');
+      const brokeOff = far && !(error instanceof Problem);
+      this.#fail(brokeOff ? `The answer broke off at ${far}.` : wordsOf(error));
       return null;
     } finally {
       if (this.#under === under) this.#busy(null);

@@ -37,8 +37,10 @@ export class Panels {
           if (this.#judged) panel.judged?.(this.#judged);
         },
       );
-      if (entry.half) (row ??= main.appendChild(h('div', { class: 'notes' }))).append(element);
-      else main.append(element);
+      if (entry.half) {
+        row ??= main.appendChild(h('div', { class: 'notes' }));
+        row.append(element);
+      } else main.append(element);
       new IntersectionObserver(
         (entries, observer) => {
           if (!entries.some(({ isIntersecting }) => isIntersecting)) return;

@@ -4,7 +4,7 @@ import { fromColumns, fromMessage } from './impact-messages.js';
 import { interventionsOf } from './interventions.js';
 import { LiveStream } from './live-stream.js';
 
-/** @typedef {import('./run.js').Run} Run */
+/** @typedef {import('./run-state.js').RunState} RunState */
 /** @typedef {import('./impacts.js').Impact} Impact */
 /**
  * @typedef {import('contract').LiveHello | import('contract').LiveAck | import('contract').LiveImpact
@@ -26,26 +26,22 @@ export class Connection {
   #overdue;
 
   /**
-   * @param {Run} run with its query
+   * @param {RunState} run with its query
    * @param {boolean} whole
+   * @param {(problem: import('../api/client.js').Problem) => void} refused for good
    */
-  constructor(run, whole) {
+  constructor(run, whole, refused) {
     this.#run = run;
     this.#whole = whole;
     const first = new URLSearchParams(run.query);
-    const joins = first.has('epoch') && whole;
-    if (joins) first.set('from', '1');
+    if (first.has('epoch') && whole) first.set('from', '1');
     this.#stream = new LiveStream(`v1/live?${first}`, () => this.#resumption(), {
       message: (message) => this.#hear(message),
       lost: (seconds) => {
         run.become('lost');
         run.watcher.lost(seconds);
       },
-      refused: (problem) => {
-        // The server may refuse to tell the whole past of a run, and still tell its present.
-        if (joins) run.start(run.query, false);
-        else run.refused(problem);
-      },
+      refused,
     });
   }
 

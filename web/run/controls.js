@@ -161,7 +161,7 @@ export class Controls {
   }
 
   /**
-   * @param {import('./run.js').Phase} phase
+   * @param {import('./run-state.js').Phase} phase
    * @param {boolean} waiting parameters were changed that need a restart
    * @param {boolean} ready there is a scene to run
    */

@@ -1,51 +1,13 @@
-// A live run as this page knows it: its impacts, its clock, and what was done to it.
+// A live run: starts it, ends it and sends it what the page wants.
 
 import { Problem } from '../api/client.js';
-import { setAt } from '../api/scene-fields.js';
-import { arcAfter } from '../physics/flight.js';
-import { Clock } from './clock.js';
-import { Impacts } from './impacts.js';
+import { RunState } from './run-state.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {'idle' | 'connecting' | 'running' | 'paused' | 'lost' | 'ended'} Phase */
-
-/**
- * @typedef {object} Watcher
- * @property {() => void} changed phase, scene, speed or address
- * @property {() => void} struck there are new impacts
- * @property {() => void} cleared a new run: all that was drawn is void
- * @property {(seconds: number) => void} lost seconds to the next try; NaN when the connection is back
- * @property {(problem: Problem) => void} refused
- * @property {(message: {title: string, detail: string, errors: import('contract').ProblemError[]}) => void} problem with one message
- */
-
-export class Run {
-  impacts = new Impacts();
-  clock = new Clock();
-  /** @type {Phase} */
-  phase = 'idle';
-  /** The scene of the next strike. @type {Scene | null} */
-  scene = null;
-  /** The scene at the release. @type {Scene | null} */
-  released = null;
-  /** The flight from the release to the first impact. @type {import('../physics/flight.js').Arc | null} */
-  fall = null;
-  /** @type {import('contract').Outcome | null} */
-  outcome = null;
-  /** @type {import('./interventions.js').Intervention[]} */
-  interventions = [];
-  /** The query that replays this run. */
-  query = new URLSearchParams();
-  watcher;
+export class Run extends RunState {
   /** @type {import('./connection.js').Connection | null} */
   #connection = null;
-  /** The start that counts: an earlier one may still be loading its code. */
+  /** Counts the starts: an earlier one may still be loading its code. */
   #starts = 0;
-
-  /** @param {Watcher} watcher */
-  constructor(watcher) {
-    this.watcher = watcher;
-  }
 
   /**
    * @param {URLSearchParams} query
@@ -58,12 +20,18 @@ export class Run {
     this.clear();
     this.become('connecting');
     const start = this.#starts;
+    const joins = whole && query.has('epoch');
+    // The server may refuse to tell the whole past of a run, and still tell its present.
+    const refused = (/** @type {Problem} */ problem) => {
+      if (joins) this.start(this.query, false);
+      else this.#refused(problem);
+    };
     import('./connection.js').then(
       ({ Connection }) => {
-        if (start === this.#starts) this.#connection = new Connection(this, whole);
+        if (start === this.#starts) this.#connection = new Connection(this, whole, refused);
       },
       () => {
-        if (start === this.#starts) this.refused(new Problem('Part of the page did not load.', '', [], 0));
+        if (start === this.#starts) this.#refused(new Problem('Part of the page did not load.', '', [], 0));
       },
     );
   }
@@ -76,7 +44,7 @@ export class Run {
   }
 
   /** @param {Problem} problem */
-  refused(problem) {
+  #refused(problem) {
     this.stop();
     this.watcher.refused(problem);
   }
@@ -89,39 +57,6 @@ export class Run {
 
   retry() {
     this.#connection?.retry();
-  }
-
-  clear() {
-    this.impacts.clear();
-    this.outcome = null;
-    this.interventions = [];
-    this.scene = null;
-    this.released = null;
-    this.fall = null;
-    this.watcher.cleared();
-  }
-
-  /** @param {Phase} phase */
-  become(phase) {
-    this.phase = phase;
-    this.watcher.changed();
-  }
-
-  /** The phase in words; empty where there is no run. */
-  get words() {
-    return {
-      idle: '',
-      connecting: 'Connecting…',
-      running: 'Running',
-      paused: 'Paused',
-      lost: 'Connection lost',
-      ended: `Ended: ${this.outcome?.kind.replaceAll('_', ' ')}`,
-    }[this.phase];
-  }
-
-  /** True while there is a run to act on. */
-  get active() {
-    return this.phase === 'running' || this.phase === 'paused';
   }
 
   toggle() {
@@ -156,41 +91,5 @@ export class Run {
   /** @param {Record<string, unknown>} message */
   #send(message) {
     this.#connection?.send(message);
-  }
-
-  /** Brings the scene up to date with impacts and interventions. */
-  rebuild() {
-    this.scene = this.#sceneAt((this.impacts.last?.n ?? 0) + 1);
-  }
-
-  /** The scene in force at an impact, or null before the server has greeted. @param {number} n */
-  #sceneAt(n) {
-    if (!this.released) return null;
-    const scene = structuredClone(this.released);
-    for (const { impact, set } of this.interventions) {
-      if (impact <= n) for (const [path, value] of Object.entries(set)) setAt(scene, path, value);
-    }
-    return scene;
-  }
-
-  /** The scene with all interventions, also those that wait for their impact. */
-  get asked() {
-    return this.#sceneAt(Infinity);
-  }
-
-  /** The place of the last impact not after `t`, or null before the first. @param {number} t */
-  placeAt(t) {
-    const { impacts } = this;
-    for (let place = impacts.end - 1; place >= impacts.begin; place -= 1) {
-      if (impacts.at('t', place) <= t) return place;
-    }
-    return null;
-  }
-
-  /** The flight at `t`. @param {number} t */
-  arcAt(t) {
-    const place = this.placeAt(t);
-    if (!this.scene) return null;
-    return place === null ? this.fall : arcAfter(this.impacts.row(place), this.scene);
   }
 }

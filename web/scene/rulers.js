@@ -74,7 +74,7 @@ function drawScaleBar(context, width, metre) {
   context.fillText(words, (left + right) / 2, 26);
 }
 
-/** The gravity of the plane, and the height that the table steers for. @param {Surface} surface @param {Camera} camera @param {import('./scene-view.js').Scene} scene */
+/** The gravity of the plane, and the height that the table steers for. @param {Surface} surface @param {Camera} camera @param {import('../api/scene-fields.js').Scene} scene */
 export function drawTarget({ context, width }, { scale }, scene) {
   const colours = theme();
   const { energy_gain: gain, target_height: height } = scene.table ?? {};

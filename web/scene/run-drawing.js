@@ -10,8 +10,10 @@ import { drawRod, drawTable } from './bodies.js';
 import { drawGrid, drawRulers, drawTarget } from './rulers.js';
 import { drawStrike } from './strike-marks.js';
 
-/** @typedef {import('./scene-view.js').Scene} Scene */
-/** @typedef {import('./scene-view.js').Parts} Parts */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
+/** @typedef {import('../charts/surface.js').Surface} Surface */
+/** @typedef {(surface: Surface, scale: import('./camera.js').Scale, scene: Scene) => void} Under draws marks on the floor */
+/** @typedef {{run: import('../run/run.js').Run, box: HTMLElement, readout: HTMLElement, surface: Surface, camera: import('./camera.js').Camera, under: () => Under | null}} Parts */
 /** @typedef {import('../run/impacts.js').Impact} Impact */
 /** @typedef {import('../physics/flight.js').Arc} Arc */
 /** @typedef {import('../physics/table.js').Strike} Strike */

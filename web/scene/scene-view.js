@@ -11,16 +11,14 @@ import { drawGrid, drawRulers, drawTarget } from './rulers.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('../run/run.js').Run} Run */
-/** @typedef {import('../charts/surface.js').Surface} Surface */
-/** @typedef {(surface: Surface, scale: import('./camera.js').Scale, scene: Scene) => void} Under draws marks on the floor */
-/** @typedef {{run: Run, box: HTMLElement, readout: HTMLElement, surface: Surface, camera: Camera, under: () => Under | null}} Parts */
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
 export class SceneView {
   layers;
-  /** @type {Under | null} */
+  /** @type {import('./run-drawing.js').Under | null} */
   under = null;
+  /** @type {import('./run-drawing.js').Parts} */
   #parts;
   /** The scene to draw while there is no run. @type {Scene | null} */
   #draft = null;

@@ -5,6 +5,7 @@ import { copy } from '../../dom/clipboard.js';
 import { byId } from '../../dom/elements.js';
 import { brokenLinkNotice, clearNotice } from '../../dom/notices.js';
 import { enlarger } from '../../export/enlarge-button.js';
+import { styles } from '../../panels/card.js';
 import { Panels } from '../../panels/panels.js';
 import { updateAddress, updateAddressSoon } from '../address-bar.js';
 import { playedQuery, typedQuery } from '../queries.js';
@@ -14,7 +15,9 @@ import { listenToKeys } from './keys.js';
 import { savesOf } from './saves.js';
 
 /** @param {import('../page.js').Page} page */
-export function bringLateParts(page) {
+export async function bringLateParts(page) {
+  // Buttons that save and enlarge come with their styles, or without them where those do not load.
+  await styles('export/export.css').catch(() => {});
   const { plots, circle, view, fields, run } = page;
   for (const one of [...plots, circle]) {
     one.figure.offer(() => savesOf(page, one.figure.id, one.figure.title, one));

@@ -56,7 +56,7 @@ function stampsOf(look, ratio, width) {
 
 /**
  * @param {import('../surface.js').Surface} surface
- * @param {import('./impact-plot.js').ImpactPlot} plot
+ * @param {{frame: import('../axes.js').Frame, meaning: Record<'x' | 'y', {column: import('../../run/impacts.js').Lasting}>}} plot
  * @param {import('../../run/impacts.js').Impacts} impacts
  * @param {import('../../run/selection.js').Selection | null} selection
  */

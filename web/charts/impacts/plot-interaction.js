@@ -65,7 +65,8 @@ export class PlotInteraction {
     } = page;
     this.#bar = bar;
     this.#page = page;
-    const selection = (this.#selection = new Selection(impacts));
+    const selection = new Selection(impacts);
+    this.#selection = selection;
     selection.changed = () => this.#selected();
     bar.append(this.#told, this.#clear, this.#load, this.#file, this.#hint, this.#spoken);
     view.under = (surface, scale, scene) => drawContacts(surface, scale, scene, impacts, selection);

@@ -1,6 +1,8 @@
 // The orbits of period 2 about the critical gain: the server’s branch diagram with what happens on it. Not for finding them.
 
-import { Problem, get } from '../../api/client.js';
+import { row, table } from '../../dom/tables.js';
+import { LatestRequest } from '../../api/latest-request.js';
+import { Problem, get, wordsOf } from '../../api/client.js';
 import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked, prose, symbol } from '../../dom/typeset.js';
@@ -25,8 +27,7 @@ class Branch {
   /** @type {{answer: Stability, scene: URLSearchParams} | null} */
   #wanted = null;
   #shown = '';
-  /** @type {AbortController | null} */
-  #asking = null;
+  #latest = new LatestRequest();
 
   /** @param {HTMLElement} root */
   constructor(root) {
@@ -77,8 +78,7 @@ class Branch {
     const path = `v1/periodic-orbits?${query}`;
     if (path === this.#shown) return;
     this.#shown = path;
-    this.#asking?.abort();
-    const { signal } = (this.#asking = new AbortController());
+    const signal = this.#latest.next();
     try {
       const orbits = await get(path, signal);
       this.#draw(path, orbits.changes, answer, gain.critical);
@@ -100,13 +100,13 @@ class Branch {
         ),
       );
       if (error instanceof Problem && error.status < 500) this.#say(`There is no branch to show: ${error.message}.`);
-      else this.#say(error instanceof Problem ? error.message : 'The server does not answer.', again);
+      else this.#say(wordsOf(error), again);
     }
   }
 
   /** @param {string} words @param {...Node} more */
   #say(words, ...more) {
-    this.#asking?.abort();
+    this.#latest.cancel();
     this.#root.replaceChildren(h('p', { class: 'muted', role: 'status' }, ...marked(words)), ...more);
   }
 
@@ -143,32 +143,11 @@ class Branch {
           ` = ${number(critical, 5)} the upright bounce gives birth to orbits that swing from side to side. `,
           words ? `${words} (C = ${number(boundary?.coefficient, 3)}).` : '',
         ),
-        h(
-          'div',
-          { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Where the branch changes' },
-          h(
-            'table',
-            { class: 'changes' },
-            h(
-              'thead',
-              {},
-              h('tr', {}, ...['Change', 'κ', 'θ / rad', 'R'].map((name) => h('th', { scope: 'col' }, name))),
-            ),
-            h(
-              'tbody',
-              {},
-              ...changes.map(({ kind, parameter, theta, residue, detail }) =>
-                h(
-                  'tr',
-                  {},
-                  h('th', { scope: 'row' }, kind.replaceAll('_', ' '), h('span', { class: 'muted' }, ...prose(detail))),
-                  ...[number(parameter, 5), quantity(tiny(theta), '1'), number(tiny(residue), 3)].map((text) =>
-                    h('td', {}, text),
-                  ),
-                ),
-              ),
-            ),
-          ),
+        table(
+          'Where the branch changes',
+          ['Change', 'κ', 'θ / rad', 'R'],
+          h('tbody', {}, ...changes.map(rowOf)),
+          'changes',
         ),
         h(
           'p',
@@ -180,5 +159,12 @@ class Branch {
   }
 }
 
-/** Rounding, where zero is meant. @param {number} value */
+/** @param {Change} change */
+const rowOf = ({ kind, parameter, theta, residue, detail }) =>
+  row(
+    [kind.replaceAll('_', ' '), h('span', { class: 'muted' }, ...prose(detail))],
+    [number(parameter, 5), quantity(tiny(theta), '1'), number(tiny(residue), 3)],
+  );
+
+/** Zero for a value that is rounding. @param {number} value */
 const tiny = (value) => (Math.abs(value) < 1e-9 ? 0 : value);

@@ -1,6 +1,8 @@
 // A law α = −K·(x, θ, ẋ, θ̇) for the page's scene by weights to choose: the server designs it, the page shows and runs it. Not for the design.
 
-import { Problem, get } from '../../api/client.js';
+import { entries, row, table } from '../../dom/tables.js';
+import { LatestRequest } from '../../api/latest-request.js';
+import { get, wordsOf } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
 import { marked, prose, symbol } from '../../dom/typeset.js';
 import { actions } from '../../export/save-actions.js';
@@ -27,6 +29,16 @@ const here = (path) => path.replace(/^\//, '');
 const complex = ({ re, im }) =>
   im === 0 ? number(re) : `${number(re)} ${im < 0 ? '\u2212' : '+'} ${number(Math.abs(im))} i`;
 
+/** The eigenvalues of the closed loop beside those without a law. @param {Eigenvalue[]} closed @param {Eigenvalue[]} open */
+function eigenvalueRows(closed, open) {
+  const cells = (/** @type {Eigenvalue | undefined} */ one) => (one ? [complex(one), number(one.modulus)] : ['–', '–']);
+  const rows = Array.from({ length: Math.max(closed.length, open.length) }, (_, index) => {
+    const [first, ...rest] = [...cells(closed[index]), ...cells(open[index])];
+    return row(first, rest);
+  });
+  return h('tbody', {}, ...rows);
+}
+
 /** @type {import('../card.js').Module['mount']} */
 export const mount = (root, page) => new DesignPanel(root, page);
 
@@ -42,8 +54,7 @@ class DesignPanel {
   );
   #told = h('div', { class: 'design-told', id: 'design-told', role: 'status' });
   #sheet = h('div', { class: 'design-sheet', id: 'design-sheet', hidden: true });
-  /** @type {AbortController | null} */
-  #asking = null;
+  #latest = new LatestRequest();
 
   /**
    * @param {HTMLElement} root
@@ -121,7 +132,7 @@ class DesignPanel {
 
   /** The scene of the page is another one. */
   sceneChanged() {
-    this.#asking?.abort();
+    this.#latest.cancel();
     if (!this.#sheet.hidden) this.#told.replaceChildren('The scene has changed since; design anew for it.');
   }
 
@@ -150,8 +161,7 @@ class DesignPanel {
   async ask() {
     const request = this.#request();
     if (!request) return;
-    this.#asking?.abort();
-    const { signal } = (this.#asking = new AbortController());
+    const signal = this.#latest.next();
     const path = `v1/controllers?${request}`;
     try {
       const answer = await get(path, signal);
@@ -159,13 +169,7 @@ class DesignPanel {
     } catch (error) {
       if (signal.aborted) return;
       this.#sheet.hidden = true;
-      this.#told.replaceChildren(
-        ...marked(
-          error instanceof Problem
-            ? error.errors.map(({ detail }) => detail).join(' ') || error.message
-            : 'The server does not answer.',
-        ),
-      );
+      this.#told.replaceChildren(...marked(wordsOf(error)));
     }
   }
 
@@ -222,13 +226,7 @@ class DesignPanel {
       h(
         'div',
         {},
-        h(
-          'dl',
-          { class: 'numbers', id: 'design-gains' },
-          ...rows.map(([name, value, meaning]) =>
-            h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning)),
-          ),
-        ),
+        h('dl', { class: 'numbers', id: 'design-gains' }, ...entries(rows)),
         h(
           'p',
           { class: 'buttons' },
@@ -238,37 +236,11 @@ class DesignPanel {
             'Put it into the scene and run',
           ),
         ),
-        h(
-          'div',
-          { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Eigenvalues' },
-          h(
-            'table',
-            { class: 'eigenvalues' },
-            h(
-              'thead',
-              {},
-              h(
-                'tr',
-                {},
-                ...['λ of the closed loop', '|λ|', 'λ without a law', '|λ|'].map((name) =>
-                  h('th', { scope: 'col' }, name),
-                ),
-              ),
-            ),
-            h(
-              'tbody',
-              {},
-              ...Array.from({ length: Math.max(eigenvalues.length, open.length) }, (_, index) =>
-                h(
-                  'tr',
-                  {},
-                  ...[eigenvalues[index], open[index]]
-                    .flatMap((one) => (one ? [complex(one), number(one.modulus)] : ['–', '–']))
-                    .map((text, column) => (column === 0 ? h('th', { scope: 'row' }, text) : h('td', {}, text))),
-                ),
-              ),
-            ),
-          ),
+        table(
+          'Eigenvalues',
+          ['λ of the closed loop', '|λ|', 'λ without a law', '|λ|'],
+          eigenvalueRows(eigenvalues, open),
+          'eigenvalues',
         ),
         ...notes.map((note) => h('p', { class: 'muted small' }, ...prose(note[0].toUpperCase() + note.slice(1)), '.')),
         (regions?.designed || regions?.proportional) &&

@@ -1,6 +1,6 @@
 // The failure gallery: cards of scenes on which a usual method is wrong, each ready to run. Not for computing any of it.
 
-import { Problem, get } from '../../api/client.js';
+import { get, wordsOf } from '../../api/client.js';
 import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked } from '../../dom/typeset.js';
@@ -107,7 +107,7 @@ async function show(root, play) {
       ),
     );
   } catch (error) {
-    told.textContent = error instanceof Problem ? error.message : 'The server does not answer.';
+    told.textContent = wordsOf(error);
     root.append(h('button', { type: 'button', click: () => void show(root, play) }, 'Try again'));
   }
 }

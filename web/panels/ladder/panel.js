@@ -1,6 +1,8 @@
 // Which model the page's scene needs: the server's rungs, one row each, with what each changed. Not for deciding it.
 
-import { MOST_IMPACTS, Problem, get } from '../../api/client.js';
+import { table } from '../../dom/tables.js';
+import { LatestRequest } from '../../api/latest-request.js';
+import { MOST_IMPACTS, get, wordsOf } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
 import { marked, prose } from '../../dom/typeset.js';
 import { debounce } from '../../dom/debounce.js';
@@ -57,8 +59,7 @@ class Ladder {
   #sheet;
   #near = false;
   #shown = '';
-  /** @type {AbortController | null} */
-  #asking = null;
+  #latest = new LatestRequest();
 
   /**
    * @param {HTMLElement} root
@@ -78,16 +79,7 @@ class Ladder {
     this.#sheet = h(
       'div',
       { class: 'ladder-sheet', hidden: true },
-      h(
-        'div',
-        { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Models, from the simplest up' },
-        h(
-          'table',
-          { class: 'rungs' },
-          h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))),
-          this.#body,
-        ),
-      ),
+      table('Models, from the simplest up', head, this.#body, 'rungs'),
       this.#links,
     );
     root.append(
@@ -180,19 +172,14 @@ class Ladder {
     const path = `v1/ladder?${request}`;
     if (path === this.#shown) return;
     this.#shown = path;
-    this.#asking?.abort();
-    const { signal } = (this.#asking = new AbortController());
+    const signal = this.#latest.next();
     try {
       this.#show(await get(path, signal), path);
     } catch (error) {
       if (signal.aborted) return;
       this.#sheet.hidden = true;
-      const told =
-        error instanceof Problem
-          ? error.errors.map(({ detail }) => detail).join(' ') || error.message
-          : 'The server does not answer.';
       this.#told.replaceChildren(
-        ...marked(told),
+        ...marked(wordsOf(error)),
         ' ',
         h(
           'button',

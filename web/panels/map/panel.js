@@ -166,7 +166,8 @@ class MapPanel {
       return this.#controls.say(['A parameter of the scene is not a number; it is marked among them.'], 'wrong');
     const kept = this.#kept.get(this.#asked);
     if (kept) return this.#finish(kept, request);
-    const asking = (this.#asking = new AbortController());
+    const asking = new AbortController();
+    this.#asking = asking;
     const { signal } = asking;
     const settings = structuredClone(this.#settings);
     const rows = rowsOf(settings.columns);

@@ -1,5 +1,6 @@
 // A lab's own impacts over the simulated ones, and how far the two are apart. What is loaded stays in this page.
 
+import { row, table } from '../../dom/tables.js';
 import { COMPARED, residuals, sums } from './compare.js';
 import { LIMIT_BYTES, Unreadable, read } from './read.js';
 import { contactDistance } from '../../physics/body.js';
@@ -13,7 +14,8 @@ import { svg } from '../../charts/svg.js';
 
 /** @typedef {import('./read.js').Measured} Measured */
 /** @typedef {import('./compare.js').Compared} Compared */
-/** @typedef {import('../../charts/impacts/plot-interaction.js').Page} Page */
+/** @typedef {import('../../api/scene-fields.js').Scene} Scene */
+/** @typedef {{run: import('../../run/run.js').Run, plots: import('../../charts/impacts/impact-plot.js').ImpactPlot[], typed: () => Scene | null}} Page */
 
 /** @type {Record<Compared, [string, string]>} */
 const NAMES = {
@@ -71,31 +73,17 @@ export class MeasuredPanel {
   constructor(bar, page) {
     this.#page = page;
     this.#run = page.run;
-    const table = (/** @type {string} */ name, /** @type {string[]} */ head, /** @type {HTMLElement} */ body) =>
-      h(
-        'div',
-        { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': name },
-        h('table', {}, h('thead', {}, h('tr', {}, ...head.map((one) => h('th', { scope: 'col' }, one)))), body),
-      );
+    this.#numbers = h(
+      'details',
+      { toggle: () => this.#compare() },
+      h('summary', {}, 'Numbers'),
+      table('Numbers: residuals', ['impact', ...COMPARED.map((quantity) => NAMES[quantity].join(' / '))], this.#rows),
+    );
     this.#sheet = h(
       'div',
       { class: 'measured-sheet', hidden: true },
       this.#box,
-      h(
-        'div',
-        {},
-        table('Residuals in sum', ['residual', 'RMS', 'largest', 'at n'], this.#sums),
-        (this.#numbers = h(
-          'details',
-          { toggle: () => this.#compare() },
-          h('summary', {}, 'Numbers'),
-          table(
-            'Numbers: residuals',
-            ['impact', ...COMPARED.map((quantity) => NAMES[quantity].join(' / '))],
-            this.#rows,
-          ),
-        )),
-      ),
+      h('div', {}, table('Residuals in sum', ['residual', 'RMS', 'largest', 'at n'], this.#sums), this.#numbers),
     );
     this.#panel = h(
       'section',
@@ -250,26 +238,17 @@ export class MeasuredPanel {
     );
     this.#sums.replaceChildren(
       ...found.map(({ quantity, rms, largest, at }) =>
-        h(
-          'tr',
-          {},
-          h('th', { scope: 'row' }, NAMES[quantity].join(' / ')),
-          ...[number(rms), number(largest), number(at, 7)].map((cell) => h('td', {}, cell)),
-        ),
+        row(NAMES[quantity].join(' / '), [number(rms), number(largest), number(at, 7)]),
       ),
     );
     if (this.#numbers.open)
       this.#rows.replaceChildren(
-        ...all
-          .slice(0, LISTED)
-          .map((one) =>
-            h(
-              'tr',
-              {},
-              h('th', { scope: 'row' }, number(one.n, 7)),
-              ...COMPARED.map((quantity) => h('td', {}, number(one[quantity], 5))),
-            ),
+        ...all.slice(0, LISTED).map((one) =>
+          row(
+            number(one.n, 7),
+            COMPARED.map((quantity) => number(one[quantity], 5)),
           ),
+        ),
       );
   }
 

@@ -177,7 +177,10 @@ export function read(text) {
       break;
     }
     if (!wrong) impacts.push(impact);
-    else if ((bad += 1) <= REMARKS) remarks.push(`Line ${line} is left out: ${wrong}.`);
+    else {
+      bad += 1;
+      if (bad <= REMARKS) remarks.push(`Line ${line} is left out: ${wrong}.`);
+    }
   }
   if (bad > REMARKS) remarks.push(`${bad - REMARKS} more lines are left out.`);
   if (!columns) throw new Unreadable('The file is empty.');

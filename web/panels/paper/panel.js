@@ -1,5 +1,6 @@
 // The paper's printed values beside the computed ones. Not for computing either.
 
+import { table } from '../../dom/tables.js';
 import { h } from '../../dom/elements.js';
 import { prose, symbol } from '../../dom/typeset.js';
 import { quantity } from '../../dom/numbers.js';
@@ -62,26 +63,11 @@ function show(root, chosen) {
       : [row];
   });
   root.replaceChildren(
-    h(
-      'div',
-      { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Printed and computed values' },
-      h(
-        'table',
-        { class: 'paper' },
-        h(
-          'thead',
-          {},
-          h(
-            'tr',
-            {},
-            h('th', { scope: 'col' }, 'Quantity'),
-            h('th', { scope: 'col' }, 'Printed'),
-            h('th', { scope: 'col' }, 'Computed'),
-            h('th', { scope: 'col' }, h('span', { class: 'unseen' }, 'Equal')),
-          ),
-        ),
-        h('tbody', {}, ...rows),
-      ),
+    table(
+      'Printed and computed values',
+      ['Quantity', 'Printed', 'Computed', h('span', { class: 'unseen' }, 'Equal')],
+      h('tbody', {}, ...rows),
+      'paper',
     ),
   );
 }

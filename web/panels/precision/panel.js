@@ -1,5 +1,6 @@
 // Speed against accuracy of every method on the scene of the page: asked for when somebody wants it, since it keeps a core busy. Not for drawing.
 
+import { row, table } from '../../dom/tables.js';
 import { LongRequest } from '../long-request.js';
 import { Plot, mark } from './plot.js';
 import { actions } from '../../export/save-actions.js';
@@ -124,21 +125,7 @@ class PrecisionPanel {
         this.#front,
         ' The dotted line is the rounding of one number. With keys: left and right go from point to point, up and down from method to method.',
       ),
-      h(
-        'details',
-        {},
-        h('summary', {}, 'Numbers'),
-        h(
-          'div',
-          { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: speed against accuracy' },
-          h(
-            'table',
-            {},
-            h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))),
-            this.#body,
-          ),
-        ),
-      ),
+      h('details', {}, h('summary', {}, 'Numbers'), table('Numbers: speed against accuracy', head, this.#body)),
       h('details', {}, h('summary', {}, 'How it was measured'), this.#notes),
       this.#links,
     );
@@ -270,13 +257,9 @@ class PrecisionPanel {
           number(point.error, 3),
           best,
         ];
-        return h(
-          'tr',
-          {},
-          h('th', { scope: 'row' }, title.get(point.method) ?? point.method),
-          ...cells.map((cell) => h('td', {}, cell)),
-          h('td', {}, ...marked(point.reason ?? point.outcome)),
-        );
+        const line = row(title.get(point.method) ?? point.method, cells);
+        line.append(h('td', {}, ...marked(point.reason ?? point.outcome)));
+        return line;
       }),
     );
     this.#notes.replaceChildren(

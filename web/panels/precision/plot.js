@@ -24,10 +24,9 @@ const APART = { x: 52, y: 26 };
 export const mark = (method, x, y, size = SIZE) =>
   svg('path', {
     class: `mark look-${method}`,
-    d:
-      outline(method)
-        .map(([right, down], n) => `${n ? 'L' : 'M'}${(x + size * right).toFixed(1)} ${(y + size * down).toFixed(1)}`)
-        .join('') + 'Z',
+    d: `M${outline(method)
+      .map(([right, down]) => `${(x + size * right).toFixed(1)} ${(y + size * down).toFixed(1)}`)
+      .join('L')}Z`,
   });
 
 /** @param {number} power */

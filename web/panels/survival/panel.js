@@ -1,5 +1,6 @@
 // How long runs of the page's scene last when the table errs: many runs, asked for when somebody wants them. Not for drawing.
 
+import { row, table } from '../../dom/tables.js';
 import { LongRequest } from '../long-request.js';
 import { Plot } from './plot.js';
 import { actions } from '../../export/save-actions.js';
@@ -130,21 +131,7 @@ class SurvivalPanel {
         'Above: the share of runs going on after each contact, in its 95 % interval. Below: |θ| of those that go on, its median, middle half and middle 90 %. With keys: left and right go from contact to contact, page up and page down by a tenth.',
       ),
       this.#numbers,
-      h(
-        'details',
-        {},
-        h('summary', {}, 'Numbers'),
-        h(
-          'div',
-          { class: 'table-box', tabindex: 0, role: 'region', 'aria-label': 'Numbers: survival' },
-          h(
-            'table',
-            {},
-            h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))),
-            this.#body,
-          ),
-        ),
-      ),
+      h('details', {}, h('summary', {}, 'Numbers'), table('Numbers: survival', head, this.#body)),
       h('details', {}, h('summary', {}, 'How it was counted'), this.#notes),
       this.#links,
     );
@@ -309,7 +296,7 @@ class SurvivalPanel {
           number(survival.upper[at]),
           ...QUANTILES.map((name) => number(quantiles[name][index])),
         ];
-        return h('tr', {}, h('th', { scope: 'row' }, number(contact, 7)), ...cells.map((cell) => h('td', {}, cell)));
+        return row(number(contact, 7), cells);
       }),
     );
     this.#notes.replaceChildren(...answer.notes.map((note) => h('p', { class: 'muted' }, ...prose(note))));

@@ -64,7 +64,8 @@ export class Plot {
     if (!this.#shown || width < 120 || height < 200) return;
     const { survival, quantiles, runs, impacts } = this.#shown;
     const { left, top } = MARGIN;
-    const across = (this.#across = width - left - MARGIN.right);
+    const across = width - left - MARGIN.right;
+    this.#across = across;
     const room = height - top - BETWEEN - BELOW;
     const middle = top + Math.round(room * UPPER);
     const from = middle + BETWEEN;

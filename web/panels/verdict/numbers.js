@@ -45,8 +45,8 @@ function cubicNumbers({ boundary, lyapunov }) {
   const rows = [];
   if (boundary) rows.push([symbol('C'), number(boundary.coefficient, 3), `boundary: ${boundary.kind}`]);
   if (lyapunov) {
-    const { coefficient, kind, escape_impacts: escape } = lyapunov;
-    const leaves = escape === null ? '' : `, leaves in about ${number(escape, 3)} impacts`;
+    const { coefficient, kind, escape_impacts: impacts } = lyapunov;
+    const leaves = impacts === null ? '' : `, leaves in about ${number(impacts, 3)} impacts`;
     rows.push([symbol('ℓ'), quantity(coefficient, '/rad²', 3), `swing: ${kind}${leaves}`]);
   }
   return rows;

@@ -1,0 +1,113 @@
+// The state of a live run as this page knows it: its impacts, its clock, its scene and what was done to it.
+
+import { setAt } from '../api/scene-fields.js';
+import { arcAfter } from '../physics/flight.js';
+import { Clock } from './clock.js';
+import { Impacts } from './impacts.js';
+
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
+/** @typedef {'idle' | 'connecting' | 'running' | 'paused' | 'lost' | 'ended'} Phase */
+
+/**
+ * @typedef {object} Watcher
+ * @property {() => void} changed phase, scene, speed or address
+ * @property {() => void} struck there are new impacts
+ * @property {() => void} cleared a new run: all that was drawn is void
+ * @property {(seconds: number) => void} lost seconds to the next try; NaN when the connection is back
+ * @property {(problem: import('../api/client.js').Problem) => void} refused
+ * @property {(message: {title: string, detail: string, errors: import('contract').ProblemError[]}) => void} problem with one message
+ */
+
+export class RunState {
+  impacts = new Impacts();
+  clock = new Clock();
+  /** @type {Phase} */
+  phase = 'idle';
+  /** The scene of the next strike. @type {Scene | null} */
+  scene = null;
+  /** The scene at the release. @type {Scene | null} */
+  released = null;
+  /** The flight from the release to the first impact. @type {import('../physics/flight.js').Arc | null} */
+  fall = null;
+  /** @type {import('contract').Outcome | null} */
+  outcome = null;
+  /** @type {import('./interventions.js').Intervention[]} */
+  interventions = [];
+  /** The query that replays this run. */
+  query = new URLSearchParams();
+  watcher;
+
+  /** @param {Watcher} watcher */
+  constructor(watcher) {
+    this.watcher = watcher;
+  }
+
+  clear() {
+    this.impacts.clear();
+    this.outcome = null;
+    this.interventions = [];
+    this.scene = null;
+    this.released = null;
+    this.fall = null;
+    this.watcher.cleared();
+  }
+
+  /** @param {Phase} phase */
+  become(phase) {
+    this.phase = phase;
+    this.watcher.changed();
+  }
+
+  /** The phase in words; empty where there is no run. */
+  get words() {
+    return {
+      idle: '',
+      connecting: 'Connecting…',
+      running: 'Running',
+      paused: 'Paused',
+      lost: 'Connection lost',
+      ended: `Ended: ${this.outcome?.kind.replaceAll('_', ' ')}`,
+    }[this.phase];
+  }
+
+  /** True while there is a run to act on. */
+  get active() {
+    return this.phase === 'running' || this.phase === 'paused';
+  }
+
+  /** Brings the scene up to date with impacts and interventions. */
+  rebuild() {
+    this.scene = this.#sceneAt((this.impacts.last?.n ?? 0) + 1);
+  }
+
+  /** The scene in force at an impact, or null before the server has greeted. @param {number} n */
+  #sceneAt(n) {
+    if (!this.released) return null;
+    const scene = structuredClone(this.released);
+    for (const { impact, set } of this.interventions) {
+      if (impact <= n) for (const [path, value] of Object.entries(set)) setAt(scene, path, value);
+    }
+    return scene;
+  }
+
+  /** The scene with all interventions, also those that wait for their impact. */
+  get asked() {
+    return this.#sceneAt(Infinity);
+  }
+
+  /** The place of the last impact not after `t`, or null before the first. @param {number} t */
+  placeAt(t) {
+    const { impacts } = this;
+    for (let place = impacts.end - 1; place >= impacts.begin; place -= 1) {
+      if (impacts.at('t', place) <= t) return place;
+    }
+    return null;
+  }
+
+  /** The flight at `t`. @param {number} t */
+  arcAt(t) {
+    const place = this.placeAt(t);
+    if (!this.scene) return null;
+    return place === null ? this.fall : arcAfter(this.impacts.row(place), this.scene);
+  }
+}
