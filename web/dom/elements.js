@@ -23,6 +23,9 @@ export function h(tag, attributes = {}, ...children) {
   return element;
 }
 
+/** @param {() => void} click */
+export const retryButton = (click) => h('button', { type: 'button', click }, 'Try again');
+
 /**
  * The element of the page with this id; its absence is a mistake in the page itself.
  * @template {typeof HTMLElement} C

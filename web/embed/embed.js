@@ -8,7 +8,7 @@ import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
 import { Selection } from '../run/selection.js';
 import { anglePlane, velocityPlane } from '../charts/impacts/phase-planes.js';
-import { byId, h } from '../dom/elements.js';
+import { byId, h, retryButton } from '../dom/elements.js';
 import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
 import { energyPlot } from '../charts/impacts/energy-plot.js';
 import { invalidate } from '../charts/surface.js';
@@ -163,13 +163,9 @@ async function begin() {
 }
 
 begin().catch((error) => {
-  notice(
-    'server',
-    [wordsOf(error), ' ', h('button', { type: 'button', click: () => location.reload() }, 'Try again')],
-    {
-      dismissible: false,
-      caution: true,
-    },
-  );
+  notice('server', [wordsOf(error), ' ', retryButton(() => location.reload())], {
+    dismissible: false,
+    caution: true,
+  });
 });
 document.title = `${id} · equipoise`;

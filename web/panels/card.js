@@ -1,7 +1,7 @@
 // The card of a panel: loads the panel's code and styles, and offers to try again.
 
 import { enlarger } from '../export/enlarge-button.js';
-import { h } from '../dom/elements.js';
+import { h, retryButton } from '../dom/elements.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 /** @typedef {import('contract').Preset} Case */
@@ -75,10 +75,7 @@ export function card({ id, title, about, half, load }, page, link, mounted) {
       body.replaceChildren();
       mounted(module.mount(body, page, link()));
     } catch {
-      body.replaceChildren(
-        h('p', { class: 'muted' }, 'This part did not load.'),
-        h('button', { type: 'button', click: bring }, 'Try again'),
-      );
+      body.replaceChildren(h('p', { class: 'muted' }, 'This part did not load.'), retryButton(bring));
     }
   };
   return { element, body, bring };

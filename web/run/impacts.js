@@ -1,30 +1,6 @@
 // The impacts of a run in columns; the newest of them are kept.
 
-export const COLUMNS = /** @type {const} */ ([
-  'n',
-  't',
-  'x',
-  'theta',
-  'x_dot',
-  'y_dot',
-  'theta_dot',
-  'x_dot_after',
-  'y_dot_after',
-  'theta_dot_after',
-  'alpha',
-  'flight_time',
-  'energy',
-  'contact_speed',
-  'table_speed',
-  'mode',
-  'clearance',
-  'series',
-]);
-
-/** @typedef {(typeof COLUMNS)[number]} Column */
-/** @typedef {Record<Column, number>} Impact states just before the impact, `…_after` just after; what does not exist is NaN */
-
-/** What charts show, kept for long. */
+/** The columns that charts show; they are kept for long. */
 export const LASTING = /** @type {const} */ ([
   'n',
   't',
@@ -36,6 +12,22 @@ export const LASTING = /** @type {const} */ ([
   'energy',
   'series',
 ]);
+
+export const COLUMNS = /** @type {const} */ ([
+  ...LASTING,
+  'x_dot_after',
+  'y_dot_after',
+  'theta_dot_after',
+  'alpha',
+  'flight_time',
+  'contact_speed',
+  'table_speed',
+  'mode',
+  'clearance',
+]);
+
+/** @typedef {(typeof COLUMNS)[number]} Column */
+/** @typedef {Record<Column, number>} Impact states just before the impact, `…_after` just after; NaN for what does not exist */
 
 /** @typedef {(typeof LASTING)[number]} Lasting */
 

@@ -4,7 +4,7 @@ import { row, table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
 import { Problem, get, wordsOf } from '../../api/client.js';
 import { actions } from '../../export/save-actions.js';
-import { h } from '../../dom/elements.js';
+import { h, retryButton } from '../../dom/elements.js';
 import { marked, prose, symbol } from '../../dom/typeset.js';
 import { debounce } from '../../dom/debounce.js';
 import { number, quantity } from '../../dom/numbers.js';
@@ -87,17 +87,10 @@ class Branch {
       const again = h(
         'p',
         {},
-        h(
-          'button',
-          {
-            type: 'button',
-            click: () => {
-              this.#shown = '';
-              void this.#refresh();
-            },
-          },
-          'Try again',
-        ),
+        retryButton(() => {
+          this.#shown = '';
+          void this.#refresh();
+        }),
       );
       if (error instanceof Problem && error.status < 500) this.#say(`There is no branch to show: ${error.message}.`);
       else this.#say(wordsOf(error), again);

@@ -2,7 +2,7 @@
 
 import { get, wordsOf } from '../../api/client.js';
 import { actions } from '../../export/save-actions.js';
-import { h } from '../../dom/elements.js';
+import { h, retryButton } from '../../dom/elements.js';
 import { marked } from '../../dom/typeset.js';
 import { number, quantity } from '../../dom/numbers.js';
 
@@ -108,6 +108,6 @@ async function show(root, play) {
     );
   } catch (error) {
     told.textContent = wordsOf(error);
-    root.append(h('button', { type: 'button', click: () => void show(root, play) }, 'Try again'));
+    root.append(retryButton(() => void show(root, play)));
   }
 }

@@ -3,7 +3,7 @@
 import { table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
 import { MOST_IMPACTS, get, wordsOf } from '../../api/client.js';
-import { h } from '../../dom/elements.js';
+import { h, retryButton } from '../../dom/elements.js';
 import { marked, prose } from '../../dom/typeset.js';
 import { debounce } from '../../dom/debounce.js';
 import { actions } from '../../export/save-actions.js';
@@ -181,17 +181,10 @@ class Ladder {
       this.#told.replaceChildren(
         ...marked(wordsOf(error)),
         ' ',
-        h(
-          'button',
-          {
-            type: 'button',
-            click: () => {
-              this.#shown = '';
-              void this.#refresh();
-            },
-          },
-          'Try again',
-        ),
+        retryButton(() => {
+          this.#shown = '';
+          void this.#refresh();
+        }),
       );
     }
   }

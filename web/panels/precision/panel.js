@@ -1,5 +1,6 @@
 // Speed against accuracy of every method on the scene of the page: asked for when somebody wants it, since it keeps a core busy. Not for drawing.
 
+import { ChartReader } from '../../charts/chart-reader.js';
 import { row, table } from '../../dom/tables.js';
 import { LongRequest } from '../long-request.js';
 import { Plot, mark } from './plot.js';
@@ -7,7 +8,7 @@ import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked } from '../../dom/typeset.js';
 import { symbolOf } from '../../charts/method-symbols.js';
-import { number, parse, quantity, unbroken } from '../../dom/numbers.js';
+import { number, parse, quantity } from '../../dom/numbers.js';
 import { svg } from '../../charts/svg.js';
 
 /** @typedef {import('contract').Precision} Precision */
@@ -71,18 +72,7 @@ class PrecisionPanel {
     'parts',
   );
   #methods = h('ul', { class: 'methods', 'aria-label': 'Methods' });
-  #box = h('div', {
-    class: 'precision-box',
-    id: 'precision-box',
-    tabindex: 0,
-    role: 'application',
-    'aria-roledescription': 'chart',
-    'aria-label': 'Speed against accuracy',
-    'aria-describedby': 'precision-hint',
-  });
-  #readout = h('output', { class: 'readout', id: 'precision-readout', 'aria-live': 'off' });
-  // Spoken when keys move; a pointer's way over the chart is not.
-  #spoken = h('p', { class: 'unseen', role: 'status' });
+  #reader = new ChartReader('precision', 'Speed against accuracy');
   #body = h('tbody');
   #links = h('p', { class: 'actions', id: 'precision-links' });
   #notes = h('div');
@@ -93,8 +83,6 @@ class PrecisionPanel {
   #shown = null;
   /** Points that the chart has. @type {Point[]} */
   #drawn = [];
-  /** @type {number | null} */
-  #pointed = null;
 
   /**
    * @param {HTMLElement} root
@@ -116,9 +104,9 @@ class PrecisionPanel {
     this.#sheet = h(
       'div',
       { class: 'precision-sheet', hidden: true },
-      this.#box,
-      this.#readout,
-      this.#spoken,
+      this.#reader.box,
+      this.#reader.readout,
+      this.#reader.spoken,
       h(
         'p',
         { class: 'muted small', id: 'precision-hint' },
@@ -156,10 +144,13 @@ class PrecisionPanel {
     this.#asking.say(
       'It runs the scene by eleven methods with all their settings, which takes the server some seconds.',
     );
-    this.#plot = new Plot(this.#box);
-    this.#box.addEventListener('pointermove', (event) => this.#point(this.#plot.nearest(event), false));
-    this.#box.addEventListener('pointerleave', () => this.#point(null, false));
-    this.#box.addEventListener('keydown', (event) => this.#key(event));
+    this.#plot = new Plot(this.#reader.box);
+    this.#reader.read({
+      nearest: (event) => this.#plot.nearest(event),
+      moved: (key, at) => this.#moved(key, at),
+      mark: (index) => this.#plot.point(index),
+      words: (index) => this.#words(this.#drawn[index]),
+    });
     this.restore(new URLSearchParams());
   }
 
@@ -301,7 +292,7 @@ class PrecisionPanel {
       reference.rounding,
       axis.front !== null,
     );
-    this.#box.setAttribute(
+    this.#reader.box.setAttribute(
       'aria-label',
       `Speed against accuracy: error over ${axis.title.toLowerCase()}, ${this.#drawn.length} points`,
     );
@@ -320,16 +311,7 @@ class PrecisionPanel {
         formats: axis.front ? ['svg', 'png', 'csv', 'json'] : ['csv', 'json'],
       }),
     );
-    this.#point(null, false);
-  }
-
-  /** @param {number | null} index @param {boolean} byKey */
-  #point(index, byKey) {
-    this.#pointed = index;
-    this.#plot.point(index);
-    const words = index === null ? '' : this.#words(this.#drawn[index]);
-    this.#readout.textContent = unbroken(words);
-    if (byKey) this.#spoken.textContent = words;
+    this.#reader.point(null, false);
   }
 
   /** @param {Point} point */
@@ -348,16 +330,15 @@ class PrecisionPanel {
       .join('   ');
   }
 
-  /** @param {KeyboardEvent} event */
-  #key(event) {
+  /** The point that a key leads to. @param {string} key @param {number | null} at @returns {number | null | undefined} */
+  #moved(key, at) {
     const last = this.#drawn.length - 1;
-    if (last < 0 || event.ctrlKey || event.altKey || event.metaKey) return;
-    const at = this.#pointed;
+    if (last < 0) return undefined;
     const turns = [...this.#drawn.keys()].filter(
       (index) => index === 0 || this.#drawn[index].method !== this.#drawn[index - 1].method,
     );
     const own = turns.findLast((index) => index <= (at ?? 0)) ?? 0;
-    const to = {
+    return {
       ArrowRight: at === null ? 0 : Math.min(last, at + 1),
       ArrowLeft: at === null ? last : Math.max(0, at - 1),
       ArrowDown: at === null ? 0 : (turns.find((index) => index > at) ?? at),
@@ -365,9 +346,6 @@ class PrecisionPanel {
       Home: 0,
       End: last,
       Escape: null,
-    }[event.key];
-    if (to === undefined) return;
-    event.preventDefault();
-    this.#point(to, true);
+    }[key];
   }
 }

@@ -1,12 +1,13 @@
 // How long runs of the page's scene last when the table errs: many runs, asked for when somebody wants them. Not for drawing.
 
-import { row, table } from '../../dom/tables.js';
+import { ChartReader } from '../../charts/chart-reader.js';
+import { entries, row, table } from '../../dom/tables.js';
 import { LongRequest } from '../long-request.js';
 import { Plot } from './plot.js';
 import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked, prose } from '../../dom/typeset.js';
-import { number, parse, quantity, unbroken } from '../../dom/numbers.js';
+import { number, parse, quantity } from '../../dom/numbers.js';
 
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('contract').Ensemble} Ensemble */
@@ -64,18 +65,7 @@ class SurvivalPanel {
     'Running',
     'runs',
   );
-  #box = h('div', {
-    class: 'survival-box',
-    id: 'survival-box',
-    tabindex: 0,
-    role: 'application',
-    'aria-roledescription': 'chart',
-    'aria-label': 'Survival',
-    'aria-describedby': 'survival-hint',
-  });
-  #readout = h('output', { class: 'readout', id: 'survival-readout', 'aria-live': 'off' });
-  // Spoken when keys move; a pointer's way over the chart is not.
-  #spoken = h('p', { class: 'unseen', role: 'status' });
+  #reader = new ChartReader('survival', 'Survival');
   #numbers = h('dl', { class: 'numbers', id: 'survival-numbers' });
   #body = h('tbody');
   #notes = h('div');
@@ -84,8 +74,6 @@ class SurvivalPanel {
   #plot;
   /** @type {{answer: Ensemble, path: string} | null} */
   #shown = null;
-  /** @type {number | null} */
-  #pointed = null;
 
   /**
    * @param {HTMLElement} root
@@ -93,7 +81,7 @@ class SurvivalPanel {
    */
   constructor(root, page) {
     this.#page = page;
-    const row = (/** @type {Name} */ name, /** @type {string} */ label) => [
+    const field = (/** @type {Name} */ name, /** @type {string} */ label) => [
       h('p', { class: 'survival-row' }, h('label', { for: `survival-${name}` }, label), this.#inputs[name]),
       this.#errors[name],
     ];
@@ -101,7 +89,7 @@ class SurvivalPanel {
       'div',
       { id: 'survival-offer' },
       h('p', { class: 'muted' }, 'The scene has no noise; this one is tried.'),
-      ...row('timing', 'σ_t / ms'),
+      ...field('timing', 'σ_t / ms'),
       h(
         'p',
         { class: 'survival-wide' },
@@ -122,9 +110,9 @@ class SurvivalPanel {
     this.#sheet = h(
       'div',
       { class: 'survival-sheet', hidden: true },
-      this.#box,
-      this.#readout,
-      this.#spoken,
+      this.#reader.box,
+      this.#reader.readout,
+      this.#reader.spoken,
       h(
         'p',
         { class: 'muted small', id: 'survival-hint' },
@@ -146,8 +134,8 @@ class SurvivalPanel {
             void this.ask();
           },
         },
-        ...row('runs', 'Runs'),
-        ...row('impacts', 'Contacts'),
+        ...field('runs', 'Runs'),
+        ...field('impacts', 'Contacts'),
         this.#own,
         this.#offered,
         this.#asking.buttons,
@@ -155,10 +143,13 @@ class SurvivalPanel {
       ),
       this.#sheet,
     );
-    this.#plot = new Plot(this.#box);
-    this.#box.addEventListener('pointermove', (event) => this.#point(this.#plot.nearest(event), false));
-    this.#box.addEventListener('pointerleave', () => this.#point(null, false));
-    this.#box.addEventListener('keydown', (event) => this.#key(event));
+    this.#plot = new Plot(this.#reader.box);
+    this.#reader.read({
+      nearest: (event) => this.#plot.nearest(event),
+      moved: (key, at) => this.#moved(key, at),
+      mark: (contact) => this.#plot.point(contact),
+      words: (contact) => (this.#shown ? wordsAt(this.#shown.answer, contact) : ''),
+    });
     this.#offer();
     this.restore(new URLSearchParams());
   }
@@ -280,11 +271,7 @@ class SurvivalPanel {
       ['half-life', answer.half_life === null ? '–' : number(answer.half_life), 'contacts, late in the runs'],
       ['ends', ends.join(', ') || 'none', 'of those that did not last'],
     ];
-    this.#numbers.replaceChildren(
-      ...rows.map(([name, value, meaning]) =>
-        h('div', {}, h('dt', {}, name), h('dd', {}, value), h('dd', { class: 'muted' }, meaning)),
-      ),
-    );
+    this.#numbers.replaceChildren(...entries(rows));
     this.#body.replaceChildren(
       ...quantiles.n.map((contact, index) => {
         const at = contact - 1;
@@ -300,7 +287,7 @@ class SurvivalPanel {
       }),
     );
     this.#notes.replaceChildren(...answer.notes.map((note) => h('p', { class: 'muted' }, ...prose(note))));
-    this.#box.setAttribute(
+    this.#reader.box.setAttribute(
       'aria-label',
       `Survival: ${number(survived.share)} of the runs outlast ${number(impacts, 7)} contacts`,
     );
@@ -313,26 +300,16 @@ class SurvivalPanel {
       ),
     );
     this.#plot.show(answer);
-    this.#point(null, false);
+    this.#reader.point(null, false);
   }
 
-  /** @param {number | null} contact @param {boolean} byKey */
-  #point(contact, byKey) {
-    this.#pointed = contact;
-    this.#plot.point(contact);
-    const words = contact === null || !this.#shown ? '' : wordsAt(this.#shown.answer, contact);
-    this.#readout.textContent = unbroken(words);
-    if (byKey) this.#spoken.textContent = words;
-  }
-
-  /** @param {KeyboardEvent} event */
-  #key(event) {
-    if (!this.#shown || event.ctrlKey || event.altKey || event.metaKey) return;
+  /** The contact that a key leads to. @param {string} key @param {number | null} at @returns {number | null | undefined} */
+  #moved(key, at) {
+    if (!this.#shown) return undefined;
     const last = this.#shown.answer.impacts;
-    const at = this.#pointed;
     const tenth = Math.max(1, Math.round(last / 10));
     const by = (/** @type {number} */ step) => Math.max(1, Math.min(last, (at ?? (step > 0 ? 0 : last + 1)) + step));
-    const to = {
+    return {
       ArrowRight: by(1),
       ArrowLeft: by(-1),
       PageUp: by(tenth),
@@ -340,10 +317,7 @@ class SurvivalPanel {
       Home: 1,
       End: last,
       Escape: null,
-    }[event.key];
-    if (to === undefined) return;
-    event.preventDefault();
-    this.#point(to, true);
+    }[key];
   }
 }
 

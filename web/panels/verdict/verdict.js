@@ -1,6 +1,6 @@
 // The card of the verdict: waiting, failed, or with the newest answer.
 
-import { h } from '../../dom/elements.js';
+import { h, retryButton } from '../../dom/elements.js';
 import { capitalized } from '../../dom/typeset.js';
 
 /** @typedef {import('contract').Stability} Stability */
@@ -33,7 +33,7 @@ export class Verdict {
     this.#root.replaceChildren(
       h('p', { class: 'verdict-words none' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, '–'), ' No verdict'),
       h('p', { class: 'muted' }, words),
-      retry ? h('button', { type: 'button', click: retry }, 'Try again') : '',
+      retry ? retryButton(retry) : '',
     );
   }
 
