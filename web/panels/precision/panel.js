@@ -1,4 +1,4 @@
-// Speed against accuracy of every method on the scene of the page: asked for when somebody wants it, since it keeps a core busy. Not for drawing.
+// The panel of speed against accuracy: every method on the page's scene. It measures on request only, since that keeps a core busy.
 
 import { ChartReader } from '../../charts/chart-reader.js';
 import { row, table } from '../../dom/tables.js';
@@ -22,7 +22,7 @@ const MUST = `a whole number from 1 to ${MOST_IMPACTS}`;
 const isRight = (impacts) => impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS;
 
 /**
- * What is along. Steps of different methods are different work, so that no point beats another by them.
+ * The axes across. Steps of different methods are different work, so that no point beats another by them.
  * @type {Record<string, {title: string, name: string, of: (point: Point) => number | null, front: ((point: Point) => boolean) | null}>}
  */
 const AXES = {
@@ -65,7 +65,7 @@ class PrecisionPanel {
     { id: 'precision-axis', change: () => this.#draw() },
     ...Object.entries(AXES).map(([value, { title }]) => h('option', { value }, title)),
   );
-  #asking = new LongRequest(
+  #task = new LongRequest(
     'precision',
     h('button', { type: 'submit', id: 'precision-measure' }, 'Measure'),
     'Measuring',
@@ -134,16 +134,14 @@ class PrecisionPanel {
           h('p', { class: 'precision-row' }, h('label', { for: 'precision-impacts' }, 'Contacts'), this.#impacts),
           this.#error,
           h('p', { class: 'precision-row' }, h('label', { for: 'precision-axis' }, 'Across'), this.#axis),
-          this.#asking.buttons,
-          this.#asking.told,
+          this.#task.buttons,
+          this.#task.told,
         ),
         this.#methods,
       ),
       this.#sheet,
     );
-    this.#asking.say(
-      'It runs the scene by eleven methods with all their settings, which takes the server some seconds.',
-    );
+    this.#task.say('It runs the scene by eleven methods with all their settings, which takes the server some seconds.');
     this.#plot = new Plot(this.#reader.box);
     this.#reader.read({
       nearest: (event) => this.#plot.nearest(event),
@@ -154,7 +152,7 @@ class PrecisionPanel {
     this.restore(new URLSearchParams());
   }
 
-  /** Its part of the page’s address. */
+  /** The panel's part of the address. */
   query() {
     const query = new URLSearchParams();
     const impacts = parse(this.#impacts.value, '1');
@@ -181,8 +179,8 @@ class PrecisionPanel {
 
   /** The scene of the page is another one. */
   sceneChanged() {
-    if (this.#asking.active) this.#asking.stop('The scene has changed; measure again.');
-    else if (this.#shown) this.#asking.say('The scene has changed since.');
+    if (this.#task.active) this.#task.stop('The scene has changed; measure again.');
+    else if (this.#shown) this.#task.say('The scene has changed since.');
   }
 
   /** @param {string} words about the number of contacts */
@@ -196,15 +194,15 @@ class PrecisionPanel {
     this.#blame(isRight(impacts) ? '' : `Contacts must be ${MUST}.`);
     if (this.#error.textContent) return this.#impacts.focus();
     const request = this.#query();
-    if (!request) return this.#asking.say('A parameter of the scene is not a number; it is marked among them.');
+    if (!request) return this.#task.say('A parameter of the scene is not a number; it is marked among them.');
     request.set('impacts', String(impacts));
-    const answer = await this.#asking.ask(`v1/precision?${request}`);
+    const answer = await this.#task.ask(`v1/precision?${request}`);
     if (!answer) return;
     this.#shown = { answer, request };
     const {
       reference: { impacts: seen, outcome },
     } = answer;
-    this.#asking.say(`Measured over ${number(seen)} impacts: ${outcome.replaceAll('_', ' ')}.`);
+    this.#task.say(`Measured over ${number(seen)} impacts: ${outcome.replaceAll('_', ' ')}.`);
     this.#sheet.hidden = false;
     this.#show();
   }

@@ -1,4 +1,4 @@
-// Error over cost, both logarithmic, as SVG, so that the style sheet colours it in both schemes. Not for what the points mean.
+// The chart of error over cost, both logarithmic, as SVG. The style sheet colours it in both schemes.
 
 import { outline } from '../../charts/method-symbols.js';
 import { svg } from '../../charts/svg.js';
@@ -23,7 +23,7 @@ const APART = { x: 52, y: 26 };
 /** A symbol about a point. @param {number} method @param {number} x @param {number} y @param {number} [size] */
 export const mark = (method, x, y, size = SIZE) =>
   svg('path', {
-    class: `mark look-${method}`,
+    class: `mark method-${method}`,
     d: `M${outline(method)
       .map(([right, down]) => `${(x + size * right).toFixed(1)} ${(y + size * down).toFixed(1)}`)
       .join('L')}Z`,
@@ -121,7 +121,7 @@ export class Plot {
     const x = around(this.#places.flatMap(({ cost, spread }) => [cost, ...(spread ?? [])]));
     const y = around([...this.#places.map(({ error }) => error), this.#rounding]);
     const toX = (/** @type {number} */ value) => left + ((Math.log10(value) - x.low) / (x.high - x.low)) * across;
-    // What has no logarithm stands on the lower edge.
+    // A value without a logarithm stands on the lower edge.
     const toY = (/** @type {number} */ value) =>
       value > 0 ? bottom - ((Math.log10(value) - y.low) / (y.high - y.low)) * tall : bottom;
     this.#at = this.#places.map(({ cost, error }) => [toX(cost), toY(error)]);
@@ -171,7 +171,7 @@ export class Plot {
         .filter(({ place }) => place.method === method);
       parts.push(
         svg('path', {
-          class: `way look-${method}`,
+          class: `way method-${method}`,
           d: own.map(({ at: [h, v] }, n) => `${n ? 'L' : 'M'}${h.toFixed(1)} ${v.toFixed(1)}`).join(''),
         }),
       );
@@ -182,7 +182,7 @@ export class Plot {
         if (spread)
           parts.push(
             svg('path', {
-              class: `spread look-${method}`,
+              class: `spread method-${method}`,
               d: `M${toX(spread[0]).toFixed(1)} ${at[1].toFixed(1)}H${toX(spread[1]).toFixed(1)}`,
             }),
           );

@@ -1,0 +1,46 @@
+// Writes the tables that the page shares with the server's pictures, from the server's sources: the colours of maps, and the symbols
+// of the methods. With --check it only says whether they are current.
+
+import { readFileSync, writeFileSync } from 'node:fs';
+import { load } from 'js-yaml';
+
+const root = new URL('../../', import.meta.url);
+const read = (path) => readFileSync(new URL(path, root), 'utf8');
+const note = (source) => `// Written by \`node tests/browser/shared-tables.js\` from ${source}; not to be edited.\n\n`;
+
+/** The part of a source that a pattern captures; a source of another form is a fault. */
+function part(path, pattern) {
+  const found = pattern.exec(read(path));
+  if (!found) throw new Error(`${path} has no ${pattern}`);
+  return found[1];
+}
+
+function cividis() {
+  const path = 'server/charts/figures/heat_map/cividis.rs';
+  const digits = part(path, /const TABLE: &str = "\\\n([^"]*)"/).replace(/[\s\\]/g, '');
+  const lines = digits.match(/.{1,96}/g).join('\n');
+  return `${note(path)}/** The colours from the darkest on, six hexadecimal digits each. */\nexport const TABLE = \`\n${lines}\n\`.replaceAll('\\n', '');\n`;
+}
+
+function outlines() {
+  const path = 'server/charts/figures/speed_accuracy.rs';
+  const looks = part(path, /const LOOKS: [^=]*= \[([\s\S]*?)\n\];/);
+  const paths = [...looks.matchAll(/&\[([^\]]*)\]/g)].map(([, corners]) =>
+    [...corners.matchAll(/\((-?[\d.]+), (-?[\d.]+)\)/g)].map(([, x, y]) => `${Number(x)} ${Number(y)}`).join(', '),
+  );
+  const names = load(read('openapi.yaml')).components.schemas.PrecisionMethod.enum;
+  if (names.length !== paths.length) throw new Error(`${names.length} methods, ${paths.length} symbols in ${path}`);
+  const rows = names.map((name, index) => `  ${name}: '${paths[index]}',\n`).join('');
+  return `${note(`${path} and openapi.yaml`)}/** The corners of each method's symbol about its middle, x and y in half widths. */\nexport const OUTLINES = {\n${rows}};\n`;
+}
+
+for (const [path, text] of [
+  ['web/charts/generated/cividis-table.js', cividis()],
+  ['web/charts/generated/method-outlines.js', outlines()],
+]) {
+  if (!process.argv.includes('--check')) writeFileSync(new URL(path, root), text);
+  else if (read(path) !== text) {
+    console.error(`${path} is not what the server draws with: run node tests/browser/shared-tables.js`);
+    process.exitCode = 1;
+  }
+}
