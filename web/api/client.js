@@ -19,7 +19,7 @@ export class Problem extends Error {
   }
 }
 
-/** What to tell people about a failed request: the server's words, or that there is none. @param {unknown} error */
+/** A failed request in words: the server's own, or that it does not answer. @param {unknown} error */
 export function wordsOf(error) {
   if (!(error instanceof Problem)) return 'The server does not answer.';
   return error.errors.map(({ detail }) => detail).join(' ') || error.message;

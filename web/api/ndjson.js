@@ -1,4 +1,4 @@
-// An answer that comes line by line. Not for what its lines say.
+// Reads an answer line by line.
 
 /**
  * The objects of an NDJSON answer, each as soon as its line is there.

@@ -1,4 +1,4 @@
-// What follows an edit of the form or of a slider beside the scene.
+// Reacts to an edit of the form or of a slider beside the scene.
 
 import { valueAt } from '../api/scene-fields.js';
 import { updateAddressSoon } from './address-bar.js';

@@ -1,4 +1,4 @@
-// The page's address: scene and run in the words of `/v1/live`, read with care, since links grow old. Not for sending anything.
+// Reads the page's address: scene and run in the words of `/v1/live`. Links grow old, so every part is checked.
 
 import { number, quantity } from '../dom/numbers.js';
 import { setAt } from '../api/scene-fields.js';
@@ -9,7 +9,7 @@ import { FASTEST, SLOWEST } from '../run/speed.js';
 /** @typedef {import('contract').Preset} Case */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
-/** What belongs to a panel, by its name. */
+/** Parts of the address that belong to a panel. */
 const PANEL_KEYS =
   /^(map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input))|brush\.\w+\.(from|to))$/;
 
@@ -82,7 +82,7 @@ export function readLink(search, fields, cases) {
   return link;
 }
 
-/** Whether an intervention sets a choice to one there is. @param {string} key @param {string} text @param {Field[]} fields */
+/** True when an intervention sets a choice to one that exists. @param {string} key @param {string} text @param {Field[]} fields */
 function isChoice(key, text, fields) {
   const path = /^interventions\.\d+\.set\.(.+)$/.exec(key)?.[1];
   return fields.some((field) => field.path === path && field.choices?.includes(text));

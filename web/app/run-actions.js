@@ -1,4 +1,4 @@
-// What the controls and the keys do to the run.
+// The actions on the run, for the controls and the keys.
 
 import { playedAt } from '../api/scene-fields.js';
 import { debounce } from '../dom/debounce.js';

@@ -1,4 +1,4 @@
-// What the page does about news of the run: impacts, a lost connection, refusals.
+// Reacts to news of the run: impacts, a lost connection, refusals.
 
 import { pathOf } from '../api/scene-fields.js';
 import { invalidate } from '../charts/surface.js';

@@ -1,4 +1,4 @@
-// Scales with round numbers, their ticks and marks for canvases. Not for what is plotted on them.
+// Scales with round numbers, their ticks and axes for canvases.
 
 import { number } from '../dom/numbers.js';
 import { SANS, SERIF, theme } from './theme.js';

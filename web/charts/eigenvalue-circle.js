@@ -1,4 +1,4 @@
-// The eigenvalues of one bounce on the unit circle, read as a dial of the tilt gain. Not for judging them.
+// The eigenvalues of one bounce on the unit circle, as a dial of the tilt gain.
 
 import { Figure } from './figure.js';
 import { MARGIN, drawAxes, line, toX, toY, ticks } from './axes.js';

@@ -1,4 +1,4 @@
-// The frame around a chart: title, sentence, picture with a name, readout, table of its numbers. Not for the picture itself.
+// The frame around a chart: title, sentence, picture with a name, readout, table of its numbers.
 
 import { table as numberTable } from '../dom/tables.js';
 import { enlarger } from '../export/enlarge-button.js';
@@ -15,7 +15,7 @@ const LISTED = 50;
 
 export class Figure {
   element;
-  /** Where the canvases go. */
+  /** The box of the canvases. */
   box;
   #head;
   #readout;
@@ -55,7 +55,7 @@ export class Figure {
     );
   }
 
-  /** What of it can be taken away. @param {() => import('../export/save-actions.js').Saves} saves */
+  /** Offers to save and to enlarge it. @param {() => import('../export/save-actions.js').Saves} saves */
   offer(saves) {
     this.#head.append(enlarger(this.element, this.title, saves));
   }
@@ -66,7 +66,7 @@ export class Figure {
   }
 
   /**
-   * What the picture shows, in words; not more often than anybody could listen.
+   * Describes the picture in words, at most once a second.
    * @param {number} now_ms
    * @param {() => string} words
    */

@@ -1,4 +1,4 @@
-// A canvas that keeps its pixels sharp while the layout moves, and one shared animation frame. Not for what is drawn.
+// A canvas that keeps its pixels sharp while the layout moves, and one shared animation frame.
 
 /** @typedef {{draw: (now_ms: number) => boolean}} View draws itself; true when it wants the next frame too */
 

@@ -1,4 +1,4 @@
-// Elements of SVG from script, coloured by the style sheet. Not for what is drawn with them.
+// Elements of SVG from script, coloured by the style sheet.
 
 const NAMESPACE = 'http://www.w3.org/2000/svg';
 

@@ -1,4 +1,4 @@
-// The style sheet's colours for canvases, read once per change of scheme. Not for elements: those have the style sheet.
+// The style sheet's colours for canvases, read once per change of scheme.
 
 const NAMES = /** @type {const} */ ([
   'ink',
@@ -41,5 +41,5 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
 });
 
 export const SANS = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", Arial, sans-serif';
-// What else a system has for serif may lose the dot of θ̇ within the letter.
+// Other serif fonts of a system may lose the dot of θ̇ within the letter.
 export const SERIF = `"STIX Two Text", "Cambria", "Georgia", "Times New Roman", "Liberation Serif", ${SANS}`;

@@ -1,4 +1,4 @@
-// What the page has to say beside its panels: a lost connection, a link that was not whole. Not for a field's own error.
+// The notices of the page beside its panels: a lost connection, a broken link. A field's own error stands beside the field.
 
 import { byId, h } from './elements.js';
 

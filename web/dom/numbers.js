@@ -1,4 +1,4 @@
-// Numbers as people read and type them: true minus, narrow spaces, units. Not for what goes to the server.
+// Numbers as people read and type them: true minus, narrow spaces, units.
 
 const MINUS = '\u2212';
 const NARROW = '\u202f';
@@ -61,7 +61,7 @@ export const unbroken = (text) =>
     .join('   ');
 
 /**
- * What somebody typed, as a number: decimal comma, typographic minus, `45°` and `pi/4` included; null when it is none.
+ * Parses a typed number: decimal comma, typographic minus, `45°` and `pi/4` included; null when it is none.
  * @param {string} text
  * @param {string | null} unit
  */

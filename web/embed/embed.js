@@ -27,7 +27,7 @@ const dropped = (what) => {
     notice('link', ['This address was not whole. Dropped: ', what.join('; '), '.'], { caution: true });
 };
 
-/** What runs, with one of its views. @param {Run} run */
+/** The views of a run. @param {Run} run */
 const VIEWS = {
   scene: (/** @type {Run} */ run) => {
     const box = h('div', { class: 'scene-frame' });

@@ -1,4 +1,4 @@
-// Pictures of what the page draws on its canvases, for files: as pixels, or recorded once more as SVG. Not for drawing any of it.
+// Pictures of the page's canvases for files: as pixels, or drawn once more as SVG.
 
 import { Recorder } from './svg-recorder.js';
 import { h } from '../dom/elements.js';

@@ -1,4 +1,4 @@
-// The button that opens a panel large, with what can be saved of it. Not for doing so, which is loaded with the first press.
+// The button that opens a panel large, with the actions that save it. The first press loads their code.
 
 import { h } from '../dom/elements.js';
 

@@ -1,4 +1,4 @@
-// A panel in a dialog as large as the window: the card itself goes there and comes back. Not for what is saved of it.
+// Shows a panel in a dialog as large as the window: the card itself goes there and comes back.
 
 import { actions } from './save-actions.js';
 import { h } from '../dom/elements.js';
@@ -10,7 +10,7 @@ import { h } from '../dom/elements.js';
  */
 export function enlarge(card, title, saves) {
   if (card.closest('dialog')) return;
-  // What it leaves keeps its size, so that nothing jumps.
+  // A placeholder keeps the card's size, so that nothing jumps.
   const { height } = card.getBoundingClientRect();
   const room = h('div', { class: card.className });
   room.style.height = `${height}px`;

@@ -1,4 +1,4 @@
-// What can be taken away from a panel: pictures, numbers, the call that gives them, the panel itself for another page. Not for drawing.
+// The actions that save a panel: pictures, numbers, the call that gives them, the panel itself for another page.
 
 import { copy } from '../dom/clipboard.js';
 import { h } from '../dom/elements.js';
@@ -13,7 +13,7 @@ import { h } from '../dom/elements.js';
  * @property {Layered} [view] where the page draws it
  */
 
-/** What a shell must not read. @param {string} text */
+/** Text in quotes that a shell does not read. @param {string} text */
 const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 
 /** @param {string} path from where the page is */

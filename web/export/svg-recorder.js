@@ -8,7 +8,7 @@ const short = (value) => String(Math.round(value * 100) / 100);
 const escaped = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('"', '&quot;');
 
 const ANCHORS = { left: 'start', start: 'start', center: 'middle', right: 'end', end: 'end' };
-/** Where a line of text stands against its baseline, em. Not every reader of SVG knows `dominant-baseline`. */
+/** Shift of text against its baseline, em. Not every reader of SVG knows `dominant-baseline`. */
 const SHIFTS = { top: 0.8, hanging: 0.8, middle: 0.33, alphabetic: 0, ideographic: 0, bottom: -0.22 };
 
 /**
@@ -181,7 +181,7 @@ export class Recorder {
   /** @param {string} attributes @param {string} body */
   #add(attributes, body) {
     const last = this.#drawn.at(-1);
-    // What is see-through adds up where it lies upon itself.
+    // Transparent marks add up where they overlap, so they stay apart.
     if (last && last.attributes === attributes && last.clip === this.#clip && this.globalAlpha === 1) last.body += body;
     else this.#drawn.push({ attributes, body, clip: this.#clip });
   }

@@ -199,7 +199,7 @@ export class Form {
     }
   }
 
-  /** Whether a law of its own tilts the table, which then needs no tilt gain. */
+  /** True when a state feedback tilts the table, which then needs no tilt gain. */
   #feedback() {
     return [...this.#rows.values()].some(
       ({ field, input }) => field.path.startsWith('table.feedback.') && input.value.trim() !== '',
@@ -278,7 +278,7 @@ export class Form {
     this.#say(row, null);
   }
 
-  /** What is typed, as a scene without defaults; `complete` when every text is a value. */
+  /** The typed scene without defaults; `complete` when every text is a value. */
   read() {
     /** @type {Scene} */
     const scene = {};

@@ -4,7 +4,7 @@ import { quantity } from '../dom/numbers.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 
-// Where a slider moves at first: the ranges of the fields are a lab's, far too wide to aim in. A typed value widens it.
+// The first range of a slider. The fields' own ranges are too wide to aim in; a typed value widens the slider.
 /** @type {Record<string, [number, number]>} */
 const COMFORTABLE = {
   'table.tilt_gain': [0.8, 2],

@@ -8,7 +8,7 @@ import { h, retryButton } from '../dom/elements.js';
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
 /**
- * What a panel knows of where it stands.
+ * The page around a panel, as far as the panel knows it.
  * @typedef {object} Page
  * @property {Field[]} fields
  * @property {() => URLSearchParams | null} query what is typed; null while some of it is no value
@@ -23,7 +23,7 @@ import { h, retryButton } from '../dom/elements.js';
 /** A verdict and the scene it is of. @typedef {{answer: import('contract').Stability, scene: URLSearchParams}} Judged */
 
 /**
- * What stands in its place.
+ * A loaded panel.
  * @typedef {object} Panel
  * @property {() => void} [sceneChanged]
  * @property {() => void} [ask] what waits for a press of a button in the page

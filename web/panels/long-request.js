@@ -1,4 +1,4 @@
-// A question that takes the server a while: how far it is, how to stop it, and what went wrong, in words. Not for what is asked.
+// A request that takes the server a while: its progress, its cancelling, and its failure in words.
 
 import { Problem, problemOf, wordsOf } from '../api/client.js';
 import { h } from '../dom/elements.js';
@@ -9,7 +9,7 @@ import { number } from '../dom/numbers.js';
 export class LongRequest {
   /** The button that asks, and the one that stops. */
   buttons;
-  /** What has come of it. */
+  /** The progress, or the result in words. */
   told;
   #start;
   #cancel;

@@ -1,4 +1,4 @@
-// The release whose first impact is a wanted one, in closed form. Not for asking, and not for what the impact then does.
+// The release that leads to a wanted first impact, in closed form.
 
 import { contactDistance } from './body.js';
 import { effectiveGravity } from './flight.js';
@@ -51,7 +51,7 @@ export function velocityStart(scene, x_dot, y_dot) {
 }
 
 /**
- * Whether the contact point comes down to the table after T, and not before.
+ * The start, if the contact point comes down to the table after T and not before.
  * @param {Scene} scene
  * @param {number} T s
  * @param {Record<string, number>} values what the release is to have

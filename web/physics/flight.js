@@ -1,4 +1,4 @@
-// Where rod and table are between two impacts, in closed form. Not the physics of an impact beyond what the next strike looks like.
+// The body on its flight between two impacts, in closed form.
 
 import { contactDistance } from './body.js';
 

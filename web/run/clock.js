@@ -1,4 +1,4 @@
-// The server's time and the run's time on this machine, whose own clock may be wrong. Not for scheduling.
+// The server's time and the run's time on this machine, whose own clock may be wrong.
 
 /** @typedef {{now: number, run_time: number, speed: number, paused: boolean}} Reading what hello and every ack carry */
 

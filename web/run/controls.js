@@ -1,4 +1,4 @@
-// The controls beside the scene: run, step, speed, gain, kick. They say what was asked for; what follows is the page's.
+// The controls beside the scene: run, step, speed, gain, kick.
 
 import { aim } from '../form/slider-range.js';
 import { h } from '../dom/elements.js';

@@ -31,7 +31,8 @@ export const COLUMNS = /** @type {const} */ ([
 
 /** @typedef {(typeof LASTING)[number]} Lasting */
 
-// How many impacts are kept so, 4 MB of them: a day's run must not grow the page. The rest of an impact lasts for the newest only.
+// Limits of memory, so that a day's run does not grow the page: 65,536 impacts with the columns of charts (4 MB), and all columns
+// of the newest 1,024.
 const KEPT = 1 << 16;
 const NEWEST = 1 << 10;
 

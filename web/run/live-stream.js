@@ -20,7 +20,7 @@ export class LiveStream {
   #listener;
   #resumeUrl;
   #failures = 0;
-  /** How often in a row the server has answered a plain request where its WebSocket had failed. */
+  /** Counts how often in a row the server has answered a plain request after its WebSocket had failed. */
   #barred = 0;
   #greeted = false;
   #closed = false;

@@ -5,7 +5,7 @@ import { LASTING } from './impacts.js';
 /** @typedef {[import('./impacts.js').Lasting, import('../charts/axes.js').Range]} Limits */
 
 export class Selection {
-  /** Where the selected impacts are kept, oldest first. @type {number[]} */
+  /** The places of the selected impacts, oldest first. @type {number[]} */
   places = [];
   /** None selects nothing. @type {Limits[]} */
   ranges = [];
@@ -56,7 +56,7 @@ export class Selection {
     this.#judged = end;
   }
 
-  /** Its part of the page's address. */
+  /** The selection's part of the address. */
   query() {
     return new URLSearchParams(
       this.ranges.flatMap(([column, { low, high }]) => [

@@ -18,7 +18,7 @@ import { drawStrike } from './strike-marks.js';
 /** @typedef {import('../physics/flight.js').Arc} Arc */
 /** @typedef {import('../physics/table.js').Strike} Strike */
 
-/** How long a strike stays to be seen, in wall time. */
+/** A strike is seen for this long, in wall time. */
 const GLOW_S = 0.28;
 const TRAIL_FLIGHTS = 3;
 
@@ -44,7 +44,7 @@ export class RunDrawing {
     const impact = place === null ? null : run.impacts.row(place);
     const arc = run.arcAt(now);
     if (!arc) return drawGrid(surface, camera);
-    // Where flights are not wanted, the pose of the last strike stands still until the next one.
+    // Without flights, the pose of the last strike stands still until the next one.
     const t = moving || !impact ? now : arc.t;
     const pose = poseOn(arc, t, scene);
     camera.contain(scene, arc.y + Math.max(0, arc.y_dot) ** 2 / (2 * effectiveGravity(scene)));
@@ -65,7 +65,7 @@ export class RunDrawing {
   }
 
   /**
-   * How strongly a strike is still seen, from 0 to 1. A run that stands still keeps it.
+   * The strength of a strike's marks, from 0 to 1: they fade as the run goes on, and stay when it stands still.
    * @param {number} now
    * @param {number} struck
    * @param {boolean} moving
@@ -84,7 +84,7 @@ export class RunDrawing {
     const { run, readout, box } = this.#parts;
     const running = run.phase === 'running';
     if (running && now_ms - this.#read_ms < 100) return;
-    // What stands still can be read to the last digit that matters.
+    // A picture that stands still can be read to the last digit that matters.
     const [seconds, rest] = running ? [2, 3] : [4, 5];
     const n = impact?.n ?? 0;
     readout.textContent = unbroken(

@@ -1,4 +1,4 @@
-// Single keys for the run, which can be turned off for those whose tools send letters. Not for what the keys do.
+// Single keys for the run. They can be turned off for people whose tools send letters.
 
 import { byId, h } from '../../dom/elements.js';
 

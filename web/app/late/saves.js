@@ -1,4 +1,4 @@
-// What can be saved of a chart of the page: its picture, and the request for its numbers.
+// The things to save of a chart of the page: its picture, and the request for its numbers.
 
 import { updateAddress } from '../address-bar.js';
 import { impactsPath, playedQuery, typedQuery } from '../queries.js';

@@ -1,4 +1,4 @@
-// Dots by the ten thousand, stamped pixel by pixel and put on the canvas at once. Not for axes, nor for a few dots.
+// Dots by the ten thousand, set pixel by pixel and put on the canvas at once.
 
 import { drawDot } from '../marks.js';
 import { h } from '../../dom/elements.js';
@@ -84,7 +84,7 @@ export function drawPixels({ context, canvas, width, height }, { frame, meaning 
       const slot = placeAt(index) & (kept - 1);
       const x = Math.floor(left + (across[slot] - frame.x.low) * scaleX);
       const y = Math.floor(bottom - (upwards[slot] - frame.y.low) * scaleY);
-      // What does not exist is NaN, which no comparison holds for.
+      // A missing value is NaN, for which no comparison holds.
       if (!(x >= reach && y >= reach && x < across_px - reach && y < up_px - reach)) continue;
       const { steps, inks } = looks[series[slot] % SERIES];
       const middle = y * across_px + x;

@@ -1,4 +1,4 @@
-// Energy at the impacts beside what the table steers for. Not for how marks get drawn.
+// The energy at the impacts, with its target.
 
 import { ImpactPlot } from './impact-plot.js';
 import { fixed, number } from '../../dom/numbers.js';

@@ -1,4 +1,4 @@
-// A plot with one mark per impact, drawn on and on without starting over. What its axes mean is said by who makes it.
+// A plot with one mark per impact, drawn on without starting over. Its maker gives the meaning of its axes.
 
 import { Figure } from '../figure.js';
 import { MARGIN, drawAxes, line, roundRange, toX, toY } from '../axes.js';
@@ -40,11 +40,11 @@ export const MANY = 20_000;
 export class ImpactPlot {
   figure;
   meaning;
-  /** Its canvases, the lowest first. @type {import('../surface.js').Surface[]} */
+  /** The canvases, the lowest first. @type {import('../surface.js').Surface[]} */
   layers;
   /** @type {Frame} */
   frame = { left: 0, top: 0, width: 0, height: 0, x: { low: 0, high: 1 }, y: { low: 0, high: 1 } };
-  /** Which impacts stand out. @type {import('../../run/selection.js').Selection | null} */
+  /** The impacts that stand out. @type {import('../../run/selection.js').Selection | null} */
   selection = null;
   /** Draws over the dots. @type {((context: CanvasRenderingContext2D) => void) | null} */
   over = null;
@@ -53,7 +53,7 @@ export class ImpactPlot {
   /** @type {number | null} */
   #pointed = null;
   #stale = true;
-  /** Whether the hint stands where impacts go. */
+  /** True while the hint stands where impacts go. */
   #hinting = false;
   /** Draws many dots at once, where that is loaded. @type {typeof import('./dense-dots.js').drawPixels | null} */
   #pixels = null;
@@ -115,7 +115,7 @@ export class ImpactPlot {
     this.redraw();
   }
 
-  /** Where an impact lies, px. @param {number} place */
+  /** The place of an impact, px. @param {number} place */
   at(place) {
     const { x, y } = this.meaning;
     return [toX(this.frame, this.#impacts.at(x.column, place)), toY(this.frame, this.#impacts.at(y.column, place))];

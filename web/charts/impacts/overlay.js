@@ -1,4 +1,4 @@
-// What a selection and a pointer draw over the charts and under the scene. Not for the dots themselves.
+// The marks of a selection and a pointer over the charts and under the scene.
 
 import { SANS, theme } from '../theme.js';
 import { contactDistance } from '../../physics/body.js';
@@ -52,7 +52,7 @@ export function drawOffer(context, { frame }, { x, y, words, possible }) {
 }
 
 /**
- * Where the selected contacts were, along the floor of the scene.
+ * The places of the selected contacts along the floor of the scene.
  * @param {import('../surface.js').Surface} surface
  * @param {import('../../scene/camera.js').Scale} scale
  * @param {import('../../api/scene-fields.js').Scene} scene

@@ -1,4 +1,4 @@
-// The two phase planes: which states they pair, with which names. Not for how marks get drawn.
+// The two phase planes: the states they pair, and their names.
 
 import { ImpactPlot } from './impact-plot.js';
 import { fixed } from '../../dom/numbers.js';

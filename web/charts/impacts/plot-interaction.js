@@ -1,4 +1,4 @@
-// What acts on all charts of the impacts: one selection, one impact pointed at, a start by a click, a lab's own impacts. Not for drawing them.
+// The interaction with all charts of the impacts: one selection, one impact pointed at, a start by a click, a lab's own impacts.
 
 import { Selection } from '../../run/selection.js';
 import { drawContacts } from './overlay.js';
@@ -53,7 +53,7 @@ export class PlotInteraction {
   #spoken = h('p', { class: 'unseen', role: 'status', id: 'impacts-spoken' });
   /** @type {import('../../panels/measured/panel.js').MeasuredPanel | null} */
   #measured = null;
-  /** Whether keys go to one of the plots. */
+  /** True while keys go to one of the plots. */
   #keyed = false;
 
   /** @param {HTMLElement} bar over the plots @param {Page} page */

@@ -1,4 +1,4 @@
-// What pointer and keys do on the charts of the impacts: point at one, select some, set where a run first lands. Not for drawing any of it.
+// Pointer and keys on one chart of the impacts: point at one, select some, set where a run first lands.
 
 import { drawBrush, drawOffer } from './overlay.js';
 import { invalidate } from '../surface.js';
@@ -23,7 +23,7 @@ import { angleStart, velocityStart, within } from '../../physics/first-impact.js
 const SLIP = 5;
 /** An impact or a place as near as this is meant, px. */
 const NEAR = 24;
-/** How far page up and page down go. */
+/** Impacts that page up and page down go. */
 const LEAP = 10;
 
 /** @param {ImpactPlot} plot @param {Page} page */
@@ -33,14 +33,14 @@ export function listen(plot, page) {
   /** @type {(Place & {id: number, before: import('../../run/selection.js').Limits[]}) | null} */
   let pressed = null;
   let dragging = false;
-  /** Where a finger has tapped last. @type {Place | null} */
+  /** The place that a finger has tapped last. @type {Place | null} */
   let tapped = null;
   /** The impact that keys stand at, and where they began to select. @type {number | null} */
   let cursor = null;
   /** @type {number | null} */
   let anchor = null;
 
-  /** What a click would do. @type {import('./overlay.js').Offer | null} */
+  /** The action that a click would take. @type {import('./overlay.js').Offer | null} */
   let offered = null;
   plot.selection = selection;
   plot.over = (context) => {
@@ -94,7 +94,7 @@ export function listen(plot, page) {
     );
   };
 
-  /** Says what a click would do. @param {Place | null} place */
+  /** Shows the action that a click would take. @param {Place | null} place */
   const offer = (place, verb = 'click') => {
     const values = plot.meaning.start && place && inside(place) ? valuesAt(place) : null;
     const start = values && startAt(values.x, values.y);

@@ -1,4 +1,4 @@
-// The orbits of period 2 about the critical gain: the server’s branch diagram with what happens on it. Not for finding them.
+// The panel of the orbits of period 2 about the critical gain: the server’s branch diagram and its changes.
 
 import { row, table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';

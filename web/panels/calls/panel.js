@@ -1,4 +1,4 @@
-// What the page shows, as calls to the API that give the same. Not for making them.
+// The panel of calls to the API that give what the page shows.
 
 import { copy } from '../../dom/clipboard.js';
 import { h } from '../../dom/elements.js';

@@ -1,4 +1,4 @@
-// A law α = −K·(x, θ, ẋ, θ̇) for the page's scene by weights to choose: the server designs it, the page shows and runs it. Not for the design.
+// The panel that designs a law α = −K·(x, θ, ẋ, θ̇) for the page's scene by chosen weights, and runs it.
 
 import { entries, row, table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
@@ -104,7 +104,7 @@ class DesignPanel {
     );
   }
 
-  /** Its part of the page’s address. */
+  /** The panel's part of the address. */
   query() {
     const query = new URLSearchParams(
       [...this.#weights]
@@ -136,7 +136,7 @@ class DesignPanel {
     if (!this.#sheet.hidden) this.#told.replaceChildren('The scene has changed since; design anew for it.');
   }
 
-  /** What is asked for; null where something typed is wrong, which is said. */
+  /** The request; null where something typed is wrong, which is marked. */
   #request() {
     const request = this.#page.query();
     /** @type {HTMLInputElement | null} */

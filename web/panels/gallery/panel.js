@@ -1,4 +1,4 @@
-// The failure gallery: cards of scenes on which a usual method is wrong, each ready to run. Not for computing any of it.
+// The failure gallery: cards of scenes on which a usual method is wrong, each ready to run.
 
 import { get, wordsOf } from '../../api/client.js';
 import { actions } from '../../export/save-actions.js';

@@ -1,4 +1,4 @@
-// Which model the page's scene needs: the server's rungs, one row each, with what each changed. Not for deciding it.
+// The panel of the model that the page's scene needs: a row for each level, with what it changes.
 
 import { table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
@@ -29,7 +29,7 @@ const words = (name) => name.replaceAll('_', ' ');
 /** @type {import('../card.js').Module['mount']} */
 export const mount = (root, page) => new Ladder(root, page);
 
-/** What is typed at first. */
+/** The values at first. */
 const USUAL = { impacts: '100', tolerance: '0.001' };
 
 class Ladder {
@@ -120,7 +120,7 @@ class Ladder {
     void this.#refresh();
   }
 
-  /** Its part of the page’s address. */
+  /** The panel's part of the address. */
   query() {
     const typed = { impacts: this.#impacts.value.trim(), tolerance: this.#tolerance.value.trim() };
     return new URLSearchParams(
@@ -130,7 +130,7 @@ class Ladder {
     );
   }
 
-  /** What is wrong in it is said beside it. @param {URLSearchParams} link */
+  /** Marks what is wrong beside it. @param {URLSearchParams} link */
   restore(link) {
     this.#impacts.value = link.get('ladder.impacts') ?? USUAL.impacts;
     this.#tolerance.value = link.get('ladder.tolerance') ?? USUAL.tolerance;
@@ -144,7 +144,7 @@ class Ladder {
     if (this.#near) void this.#refresh();
   });
 
-  /** What is typed here; null where it is wrong, which is said. */
+  /** The request; null where something typed is wrong, which is marked. */
   #request() {
     const impacts = parse(this.#impacts.value, '1');
     const tolerance = parse(this.#tolerance.value, 'm/s');

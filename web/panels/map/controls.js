@@ -1,4 +1,4 @@
-// What a map is asked for, as controls with their errors beside them, and how far its answer is. Not for asking.
+// The controls of a map with their errors beside them, and the progress of its answer.
 
 import { COLUMNS, QUANTITIES, rowsOf, sidesOf } from './settings.js';
 import { MOST_IMPACTS } from '../../api/client.js';
@@ -182,7 +182,7 @@ export class Controls {
   /** @param {HTMLInputElement} input @param {number} value */
   #put(input, value) {
     input.value = String(Number(value.toPrecision(8)));
-    // What a shortened text stands for, until it is edited.
+    // The exact value of a shortened text, until it is edited.
     input.dataset.text = input.value;
     input.dataset.value = String(value);
   }
@@ -206,7 +206,7 @@ export class Controls {
     this.blame([]);
   }
 
-  /** What is typed; nothing happens while some of it is no value, but that this is said. */
+  /** Takes the typed settings; marks values that are none, and then changes nothing. */
   #read() {
     const settings = structuredClone(this.#settings);
     /** @type {import('contract').ProblemError[]} */

@@ -1,4 +1,4 @@
-// The cells of a map as they arrive, row by row. Not for drawing them.
+// The cells of a map as they arrive, row by row.
 
 import { rowsOf } from './settings.js';
 
@@ -11,14 +11,14 @@ export class Grid {
   /** Not a number where there is none. */
   values;
   outcomes;
-  /** Which rows are there. */
+  /** 1 for each row that has arrived. */
   #arrived;
   arrived = 0;
-  /** Whether some cell that arrived has no value. */
+  /** True when some cell that arrived has no value. */
   lacks = false;
   low = Infinity;
   high = -Infinity;
-  /** Of every outcome how many; null until the answer is whole. @type {Record<string, number> | null} */
+  /** The number of cells of each outcome; null until the answer is whole. @type {Record<string, number> | null} */
   counts = null;
   /** @type {string[]} */
   names;
@@ -76,7 +76,7 @@ export class Grid {
     return valueOn(this.settings.y, row, this.rows);
   }
 
-  /** What the colours go from and to: with impacts to survive, from none to all. */
+  /** The ends of the colours: with impacts to survive, from none to all. */
   get scale() {
     if (this.settings.quantity === 'survival') return { low: 0, high: this.settings.impacts };
     return this.low <= this.high ? { low: this.low, high: this.high } : { low: 0, high: 1 };

@@ -1,4 +1,4 @@
-// The stability map: asks for it, draws it as it arrives, lets one run any point of it or look closer. Not for its controls or its picture.
+// The panel of the stability map: asks for it, draws it as it arrives, lets one run any point of it or look closer.
 
 import { Controls } from './controls.js';
 import { Grid } from './grid.js';
@@ -48,7 +48,7 @@ class MapPanel {
   #notice = h('p', { class: 'error', id: 'map-notice' });
   #legend = h('p', { class: 'map-legend' });
   #links = h('p', { class: 'actions', id: 'map-links' });
-  /** What is drawn. @type {Grid | null} */
+  /** The drawn cells. @type {Grid | null} */
   #grid = null;
   /** The request made last, whatever became of it. */
   #asked = '';
@@ -118,7 +118,7 @@ class MapPanel {
     return settingsQuery(this.#settings);
   }
 
-  /** What it drops, it says in its own place. @param {URLSearchParams} link @returns {string[]} */
+  /** Names what it drops in its own place. @param {URLSearchParams} link @returns {string[]} */
   restore(link) {
     const { settings, dropped } = readSettings(link, this.#page.fields);
     this.#settings = settings;
@@ -182,7 +182,7 @@ class MapPanel {
         if (signal.aborted) return;
         grid.take(line);
         ({ arrived } = grid);
-        // What was there stays until there is something new.
+        // The cells of before stay until there are new ones.
         if (this.#grid !== grid) this.#show(grid, request);
         this.#picture.redraw();
         this.#controls.busy({ arrived, rows });
@@ -316,7 +316,7 @@ class MapPanel {
     return this.#picture.cellOfMark();
   }
 
-  /** What a cell says, or the scene’s own where none is pointed at. @param {Cell | null} pointed @param {boolean} byKey */
+  /** Shows the values of the pointed cell, or of the scene’s own where none is pointed at. @param {Cell | null} pointed @param {boolean} byKey */
   #read(pointed, byKey) {
     const grid = this.#grid;
     const cell = pointed ?? this.#cellOfScene();
@@ -338,7 +338,7 @@ class MapPanel {
     ]
       .map(([side, value]) => {
         const { parameter, from, to } = /** @type {import('./settings.js').Side} */ (side);
-        // As many digits as tell neighbours apart.
+        // Enough digits to tell neighbours apart.
         const digits = Math.max(
           4,
           Math.ceil(Math.log10((Math.max(Math.abs(from), Math.abs(to)) * grid.columns) / (to - from))) + 1,

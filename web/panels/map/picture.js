@@ -1,4 +1,4 @@
-// A map on its canvas: cells, colour bar, linear boundary, the scene’s mark. Not for what a pointer does there.
+// A map on its canvas: cells, colour bar, linear boundary, the scene’s mark.
 
 import { COLOURS, PIXELS } from '../../charts/cividis.js';
 import { QUANTITIES, rowsOf } from './settings.js';
@@ -84,7 +84,7 @@ export class Picture {
     return rowsOf(this.#settings.columns);
   }
 
-  /** Where the cells are, each around its values, so half a cell beyond the ends. @returns {import('../../charts/axes.js').Frame} */
+  /** The frame of the cells. Each lies around its values, so the frame reaches half a cell beyond the ends. @returns {import('../../charts/axes.js').Frame} */
   get frame() {
     const { width, height } = this.#paper;
     const { x, y } = this.#settings;
@@ -177,7 +177,7 @@ export class Picture {
     context.drawImage(this.#cells, left, top, width, height);
   }
 
-  /** What shows through the cells has no value. */
+  /** The pattern of cells without a value. */
   #hatching() {
     const colours = theme();
     const tile = Object.assign(document.createElement('canvas'), { width: 8, height: 8 });

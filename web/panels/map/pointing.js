@@ -1,4 +1,4 @@
-// What pointer and keys do on a map: point at a cell, take it, select a rectangle, look closer. Not for drawing any of it.
+// Pointer and keys on a map: point at a cell, take it, select a rectangle, look closer.
 
 /** @typedef {import('./picture.js').Picture} Picture */
 /** @typedef {import('./picture.js').Cell} Cell */

@@ -1,4 +1,4 @@
-// What a map is asked for: two fields with their ends, quantity, impacts, resolution; as a link and as a request. Not for asking.
+// The settings of a stability map: two fields with their ends, quantity, impacts, resolution; as a link and as a request.
 
 import { MOST_IMPACTS } from '../../api/client.js';
 
@@ -73,7 +73,7 @@ export function readSettings(query, fields) {
 }
 
 /**
- * What differs from the map that everybody gets first.
+ * The settings that differ from the default.
  * @param {Settings} settings
  */
 export function settingsQuery(settings) {

@@ -1,4 +1,4 @@
-// Measured less simulated, impact by impact. Not for reading files or for drawing.
+// Measured less simulated, impact by impact.
 
 /** @typedef {import('../../run/impacts.js').Impacts} Impacts */
 /** @typedef {import('./read.js').Measured} Measured */
@@ -9,7 +9,7 @@ export const COMPARED = /** @type {const} */ (['t', 'theta', 'x_dot', 'y_dot', '
 /** @typedef {{quantity: Compared, count: number, rms: number, largest: number, at: number}} Sum the largest with its sign, at the impact of that number */
 
 /**
- * Where the impact of this number is kept, or null.
+ * The place of the impact of this number, or null.
  * @param {Impacts} impacts
  * @param {number} n
  */

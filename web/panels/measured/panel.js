@@ -25,7 +25,7 @@ const NAMES = {
   y_dot: ['ẏ', 'm/s'],
   theta_dot: ['θ̇', 'rad/s'],
 };
-/** How often the comparison follows a run, ms. */
+/** Time between two comparisons during a run, ms. */
 const PACE_MS = 300;
 /** More rows than these are no reading. */
 const LISTED = 500;
@@ -33,11 +33,11 @@ const LISTED = 500;
 export class MeasuredPanel {
   #page;
   #run;
-  /** As in the file. @type {Measured[]} */
+  /** The impacts as in the file. @type {Measured[]} */
   #read = [];
   /** With their numbers in the run. @type {Measured[]} */
   #impacts = [];
-  /** What the points over the plots were computed with. */
+  /** The constants that the points over the plots were computed with. */
   #laid = '';
   #compared_ms = -Infinity;
   #chip = h('span', { class: 'chip measured-chip', id: 'measured-chip', hidden: true });
@@ -159,7 +159,7 @@ export class MeasuredPanel {
     document.getElementById('measured-load')?.focus();
   }
 
-  /** Which impact of the run the first measured one is. */
+  /** Numbers the measured impacts from the typed number of the first one. */
   #number() {
     const first = parse(this.#first.value, null);
     const right = first !== null && Number.isInteger(first) && first >= 1;

@@ -1,4 +1,4 @@
-// Residuals against the number of the impact, one strip for each quantity, as SVG. Not for what they are.
+// Residuals against the number of the impact, one strip for each quantity, as SVG.
 
 import { number } from '../../dom/numbers.js';
 import { roundRange, ticks } from '../../charts/axes.js';

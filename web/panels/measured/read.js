@@ -1,4 +1,4 @@
-// A table of measured impacts as labs write them: which column is what, in which unit, and what could not be read. Not for judging the values.
+// Reads a table of measured impacts as labs write them: finds columns and units, and says what could not be read.
 
 import { parse } from '../../dom/numbers.js';
 
@@ -23,7 +23,7 @@ export const LIMIT_IMPACTS = 20_000;
 /** Remarks about single lines beyond these are counted only. */
 const REMARKS = 8;
 
-/** What a column may be called, in small letters without anything between them. @type {Record<string, Quantity>} */
+/** Names of columns, in small letters without anything between them. @type {Record<string, Quantity>} */
 const NAMES = {
   n: 'n',
   no: 'n',

@@ -1,4 +1,4 @@
-// The paper's printed values beside the computed ones. Not for computing either.
+// The panel of the paper's printed values beside the computed ones.
 
 import { table } from '../../dom/tables.js';
 import { h } from '../../dom/elements.js';
@@ -7,7 +7,7 @@ import { quantity } from '../../dom/numbers.js';
 
 /** @typedef {import('contract').Quantity} PaperValue */
 
-/** Whether the print is the computed value to its own digits. @param {PaperValue['value']} printed @param {PaperValue['value']} computed */
+/** True when the printed value is the computed one to the printed digits. @param {PaperValue['value']} printed @param {PaperValue['value']} computed */
 function same(printed, computed) {
   if (printed === null || computed === null) return true;
   if (typeof printed === 'string' || typeof computed === 'string') return printed === computed;

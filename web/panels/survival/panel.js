@@ -1,4 +1,4 @@
-// How long runs of the page's scene last when the table errs: many runs, asked for when somebody wants them. Not for drawing.
+// The panel of survival under noise: how long many runs of the page's scene last. It asks on request only.
 
 import { ChartReader } from '../../charts/chart-reader.js';
 import { entries, row, table } from '../../dom/tables.js';
@@ -13,7 +13,7 @@ import { number, parse, quantity } from '../../dom/numbers.js';
 /** @typedef {import('contract').Ensemble} Ensemble */
 
 const QUANTILES = /** @type {const} */ (['q05', 'q25', 'q50', 'q75', 'q95']);
-/** What is typed: its name in requests, its value at first, how many of what is typed are one of it, and what it must be. */
+/** The inputs: name in requests, value at first, factor from the request's unit to the typed one, limit, and the limit in words. */
 const TYPED = {
   runs: { key: 'runs', usual: 200, scale: 1, most: 20_000, must: `a whole number from 1 to ${number(20_000, 7)}` },
   impacts: {
@@ -23,7 +23,7 @@ const TYPED = {
     most: 100_000,
     must: `a whole number from 1 to ${number(100_000, 7)}`,
   },
-  // What a table without noise of its own is tried with.
+  // Noise for a scene that has none.
   timing: { key: 'timing_sd', usual: 0.01, scale: 1000, most: 1, must: 'a number above 0 and up to 1000 ms' },
 };
 /** @typedef {keyof typeof TYPED} Name */
@@ -59,7 +59,7 @@ class SurvivalPanel {
   );
   #offered;
   #own = h('p', { class: 'muted', id: 'survival-noise' });
-  #asking = new LongRequest(
+  #task = new LongRequest(
     'survival',
     h('button', { type: 'submit', id: 'survival-start' }, 'Run them all'),
     'Running',
@@ -138,8 +138,8 @@ class SurvivalPanel {
         ...field('impacts', 'Contacts'),
         this.#own,
         this.#offered,
-        this.#asking.buttons,
-        this.#asking.told,
+        this.#task.buttons,
+        this.#task.told,
       ),
       this.#sheet,
     );
@@ -154,7 +154,7 @@ class SurvivalPanel {
     this.restore(new URLSearchParams());
   }
 
-  /** Its part of the page’s address. */
+  /** The panel's part of the address. */
   query() {
     const query = new URLSearchParams();
     for (const name of NAMES) {
@@ -186,8 +186,8 @@ class SurvivalPanel {
   /** The scene of the page is another one. */
   sceneChanged() {
     this.#offer();
-    if (this.#asking.active) this.#asking.stop('The scene has changed; run them again.');
-    else if (this.#shown) this.#asking.say('The scene has changed since.');
+    if (this.#task.active) this.#task.stop('The scene has changed; run them again.');
+    else if (this.#shown) this.#task.say('The scene has changed since.');
   }
 
   /** Noise to try with, where the scene has none. */
@@ -208,7 +208,7 @@ class SurvivalPanel {
     );
   }
 
-  /** What is typed, in the server's unit; null where it is no number. @param {Name} name */
+  /** A typed value in the server's unit; null where it is no number. @param {Name} name */
   #value(name) {
     const value = parse(this.#inputs[name].value, null);
     return value === null ? null : Number((value / TYPED[name].scale).toPrecision(12));
@@ -220,7 +220,7 @@ class SurvivalPanel {
     this.#inputs[name].setAttribute('aria-invalid', String(words !== ''));
   }
 
-  /** What is asked for; null where something typed is wrong, which is said beside it. */
+  /** The request; null where something typed is wrong, which is marked. */
   #request() {
     const request = this.#page.query();
     /** @type {HTMLInputElement[]} */
@@ -236,7 +236,7 @@ class SurvivalPanel {
     if (!this.#offered.hidden) request?.set('scene.noise.model', this.#reading.value);
     wrong[0]?.focus();
     if (wrong.length > 0) return null;
-    if (!request) this.#asking.say('A parameter of the scene is not a number; it is marked among them.');
+    if (!request) this.#task.say('A parameter of the scene is not a number; it is marked among them.');
     return request;
   }
 
@@ -244,7 +244,7 @@ class SurvivalPanel {
     const request = this.#request();
     if (!request) return;
     const path = `v1/ensembles?${request}`;
-    const answer = await this.#asking.ask(path);
+    const answer = await this.#task.ask(path);
     if (!answer) return;
     this.#shown = { answer, path };
     this.#sheet.hidden = false;
@@ -255,7 +255,7 @@ class SurvivalPanel {
     if (!this.#shown) return;
     const { answer, path } = this.#shown;
     const { survived, runs, impacts, counts, survival, quantiles } = answer;
-    this.#asking.say(`${number(survived.runs, 6)} of ${number(runs, 6)} runs outlast ${number(impacts, 7)} contacts.`);
+    this.#task.say(`${number(survived.runs, 6)} of ${number(runs, 6)} runs outlast ${number(impacts, 7)} contacts.`);
     const ends = Object.entries(counts)
       .filter(([name, count]) => name !== 'completed' && count > 0)
       .map(([name, count]) => `${number(count, 6)} ${name.replaceAll('_', ' ')}`);

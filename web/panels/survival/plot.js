@@ -1,4 +1,4 @@
-// The survival curve in its band with the number at risk beneath, and the quantiles of |θ|, as SVG. Not for what the runs are.
+// The chart of survival as SVG: the curve in its band, the number at risk beneath, and the quantiles of |θ|.
 
 import { number } from '../../dom/numbers.js';
 import { roundRange, ticks } from '../../charts/axes.js';
@@ -26,7 +26,7 @@ export class Plot {
   #pointed = null;
   #left = MARGIN.left;
   #across = 0;
-  /** Where the pictures begin and end, px. @type {[number, number][]} */
+  /** The upper and lower ends of the two pictures, px. @type {[number, number][]} */
   #ends = [];
 
   /** @param {HTMLElement} box */

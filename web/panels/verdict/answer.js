@@ -17,7 +17,7 @@ const DECIDERS = {
 
 const SIGNS = { none: '–', unstable: '▲', beyond: '◆', stable: '●' };
 
-/** How sure the verdict is; its sign shows it without colour. @param {string | null} verdict */
+/** The kind of a verdict; its sign shows it without colour. @param {string | null} verdict */
 function kindOf(verdict) {
   if (verdict === null) return 'none';
   if (verdict.startsWith('unstable') || /this run ended/.test(verdict)) return 'unstable';

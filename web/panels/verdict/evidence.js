@@ -1,4 +1,4 @@
-// What stability has beyond the linear map, in sentences: rotation, chaos, predictability, basin. Not for the verdict itself.
+// The evidence on stability beyond the linear map, in sentences: rotation, chaos, predictability, basin.
 
 import { Problem } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
@@ -100,7 +100,7 @@ export function evidence(answer, measure) {
     try {
       basin.replaceChildren(...prose(basinSentence(await measure())));
     } catch (error) {
-      // Where the question has changed meanwhile, nobody sees this any more.
+      // If the scene has changed meanwhile, nobody sees this any more.
       ask.disabled = false;
       basin.replaceChildren(error instanceof Problem ? `${error.message} ` : 'The server did not answer. ', ask);
     }

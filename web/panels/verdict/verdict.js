@@ -47,7 +47,7 @@ export class Verdict {
     this.#spoken.textContent = `Verdict: ${capitalized(answer.verdict ?? 'No verdict')}`;
     const open = [...this.#root.querySelectorAll('details[open]')].map(({ className }) => className);
     this.#root.replaceChildren(...module.answerParts(answer, measureBasin));
-    // What somebody opened stays open while the numbers in it change.
+    // Details that somebody opened stay open while the numbers in it change.
     for (const details of this.#root.querySelectorAll('details')) details.open = open.includes(details.className);
   }
 }
