@@ -18,12 +18,12 @@ use crate::http::{ApiRequest, Format, Problem, Resource};
 use crate::limits;
 use crate::live::bounds::SessionBounds;
 use crate::live::close::Unreadable;
+use crate::live::run_url;
+use crate::live::run_url::PATH;
 use crate::live::session;
 use crate::live::session::SessionContext;
 use crate::live::sse;
 use crate::live::sse::EventsRequest;
-use crate::runs::run_url;
-use crate::runs::run_url::PATH;
 
 const SUBPROTOCOL: &str = "equipoise.v1";
 

@@ -9,8 +9,8 @@ use serde_json::{Map, Value};
 use crate::http::request::json;
 use crate::http::request::reader::join;
 use crate::http::{Errors, Problem, Reader, Source};
-use crate::runs::clock::SPEEDS;
-use crate::runs::run_url::{read_kick, read_set};
+use crate::live::clock::SPEEDS;
+use crate::runs::interventions::{read_kick, read_set};
 
 /// What a client can say.
 #[derive(Debug, Clone, PartialEq)]

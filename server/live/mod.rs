@@ -1,14 +1,17 @@
-//! Live runs: what a run is (a value), what is said about it, and the session that tells it as it happens.
+//! Live runs: a run on the wall clock, its URL, its messages, and the session that tells it to one client.
 //!
-//! Not here: how a connection becomes a WebSocket (`routes::live`), and the physics.
+//! The handshake of a WebSocket is in `api::live`.
 
 pub mod client_message;
 pub mod server_message;
 pub mod sse;
 
 pub mod bounds;
+pub mod catch_up;
+pub mod clock;
 pub mod close;
 pub mod outbox;
+pub mod run_url;
 pub mod session;
 
 #[cfg(test)]

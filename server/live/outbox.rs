@@ -127,15 +127,19 @@ mod tests {
     #[test]
     fn a_slow_client_is_told_what_it_misses() {
         let run = case("case-1");
-        let mut playback = Playback::new(&run);
+        let mut playback = Playback::new(&run, limits::LIVE_IMPACTS);
+        let mut next = || {
+            let (contact, _) = playback.advance(&run);
+            ImpactMessage::new(playback.body(), true, &contact)
+        };
         let mut outbox = Outbox::new(4);
-        outbox.push_impact(playback.tell(&run).0);
+        outbox.push_impact(next());
         assert_eq!(pop(&mut outbox)["n"], 1);
         assert!(outbox.waiting_since().is_none());
-        outbox.push_impact(playback.tell(&run).0);
+        outbox.push_impact(next());
         outbox.push(OutgoingFrame::Message { kind: "ack", id: None, text: "1".to_owned() });
         for _ in 3..=12 {
-            outbox.push_impact(playback.tell(&run).0);
+            outbox.push_impact(next());
         }
         assert_eq!(pop(&mut outbox), 1);
         assert_eq!(pop(&mut outbox), json!({"type": "gap", "from": 2, "to": 8}));

@@ -14,9 +14,10 @@ use crate::api::shared::demand::DemandAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::http::{FieldError, Problem};
+use crate::limits;
+use crate::live::run_url;
+use crate::live::run_url::LiveRun;
 use crate::runs::playback::Playback;
-use crate::runs::run::Run;
-use crate::runs::run_url;
 
 /// A message of the server's.
 #[derive(Debug, Serialize)]
@@ -137,20 +138,20 @@ struct Release {
 
 impl<'a> Hello<'a> {
     /// Of a run that is told from `playback` on, at the wall time `now`, unix ms. Its URL begins with `base`.
-    pub fn new(run: &'a Run, playback: &'a Playback, base: &str, now: u64) -> Self {
-        let scene = run.scene();
+    pub fn new(live: &'a LiveRun, playback: &'a Playback, base: &str, now: u64) -> Self {
+        let (scene, clock) = (live.run.scene(), &live.clock);
         let release = scene.release();
         let angle = |value| has_angle(scene).then_some(value);
         Self {
             scene: Resolved(scene),
             scene_in_force: Resolved(playback.scene()),
             model: ModelChoice::of(scene),
-            epoch: run.clock.epoch(),
-            speed: run.clock.speed(),
-            paused: run.clock.is_paused(),
+            epoch: clock.epoch(),
+            speed: clock.speed(),
+            paused: clock.is_paused(),
             now,
-            run_time: run.clock.run_time(now),
-            url: format!("{base}{}", run_url::url(run)),
+            run_time: clock.run_time(now),
+            url: format!("{base}{}", run_url::url(live)),
             release: Release {
                 t: 0.0,
                 x: release.x,
@@ -160,7 +161,7 @@ impl<'a> Hello<'a> {
                 y_dot: release.state.y_dot,
                 theta_dot: angle(release.state.theta_dot),
             },
-            flight_time: Playback::new(run).next_t(),
+            flight_time: Playback::new(&live.run, limits::LIVE_IMPACTS).next_t(),
             build: BUILD,
         }
     }

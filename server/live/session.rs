@@ -19,16 +19,17 @@ use crate::compute::{Limit, Pool, TimeSlice};
 use crate::http::{FieldError, Problem};
 use crate::limits;
 use crate::live::bounds::{SessionBounds, TokenBucket};
+use crate::live::catch_up;
+use crate::live::catch_up::CatchUpError;
 use crate::live::client_message::ClientMessage;
 use crate::live::close::{Close, Unreadable};
 use crate::live::outbox::Outbox;
+use crate::live::run_url;
+use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message;
-use crate::live::server_message::{Ack, Hello, OutgoingFrame, ServerMessage};
-use crate::runs::playback;
-use crate::runs::playback::{CatchUpError, Playback};
-use crate::runs::run::Run;
-use crate::runs::run_url;
-use crate::runs::run_url::{NO_ANGLE, RunRequest};
+use crate::live::server_message::{Ack, Hello, ImpactMessage, OutgoingFrame, ServerMessage};
+use crate::runs::interventions::NO_ANGLE;
+use crate::runs::playback::Playback;
 
 /// What a session needs of the server.
 #[derive(Debug, Clone)]
@@ -75,7 +76,7 @@ impl From<OutgoingFrame> for Message {
 /// Tells a client its run until it leaves, breaks a bound, or the server is `closing`. What there is to tell first has been
 /// found by [`caught_up`].
 pub async fn serve(
-    request: RunRequest,
+    request: LiveRequest,
     playback: Result<Playback, Problem>,
     mut incoming: impl Stream<Item = Result<Message, Unreadable>> + Unpin + Send,
     outgoing: impl Sink<OutgoingFrame> + Unpin + Send + 'static,
@@ -131,15 +132,19 @@ async fn write(mut receiver: mpsc::Receiver<OutgoingFrame>, mut outgoing: impl S
 ///
 /// # Errors
 /// Where it is too far back, or the pool is busy.
-pub async fn catch_up(request: &RunRequest, context: &SessionContext) -> Result<Playback, Problem> {
-    let until = request.run.clock.run_time(wall_now());
+pub async fn catch_up(request: &LiveRequest, context: &SessionContext) -> Result<Playback, Problem> {
+    let until = request.live.clock.run_time(wall_now());
     let limit = context.bounds.catch_up;
     let little = Limit { most: limit.most.min(limits::INLINE_BOUNCES), ..limit };
-    let playback = match context.pool.run_inline(|slice| playback::catch_up(request, until, &little, slice)).await {
+    let playback = match context
+        .pool
+        .run_inline(|slice| catch_up::catch_up(&request.live.run, request.from, until, &little, slice))
+        .await
+    {
         None | Some(Err(CatchUpError::OverBudget(_))) => {
-            let request = request.clone();
+            let (run, from) = (request.live.run.clone(), request.from);
             let work =
-                move |slice: &TimeSlice| playback::catch_up(&request, until, &limit, slice).map_err(Problem::from);
+                move |slice: &TimeSlice| catch_up::catch_up(&run, from, until, &limit, slice).map_err(Problem::from);
             context.pool.run_on_worker(work).await?
         }
         Some(other) => other?,
@@ -149,7 +154,7 @@ pub async fn catch_up(request: &RunRequest, context: &SessionContext) -> Result<
 }
 
 struct Session {
-    run: Run,
+    live: LiveRun,
     playback: Playback,
     /// The first impact that the client wants to hear of.
     first: u64,
@@ -168,11 +173,11 @@ struct Session {
 }
 
 impl Session {
-    fn new(request: RunRequest, playback: Playback, outbox: Outbox, context: SessionContext) -> Self {
+    fn new(request: LiveRequest, playback: Playback, outbox: Outbox, context: SessionContext) -> Self {
         let now = Instant::now();
         Self {
-            came_at: request.run.clock.run_time(wall_now()),
-            run: request.run,
+            came_at: request.live.clock.run_time(wall_now()),
+            live: request.live,
             playback,
             first: request.from.unwrap_or(1),
             outbox,
@@ -236,7 +241,7 @@ impl Session {
 
     /// Says which run it is.
     fn send_hello(&mut self, now: u64) {
-        let hello = Hello::new(&self.run, &self.playback, &self.context.base_path, now);
+        let hello = Hello::new(&self.live, &self.playback, &self.context.base_path, now);
         self.outbox.push(ServerMessage::Hello(Box::new(hello)).to_frame());
         if let Some(outcome) = self.playback.outcome() {
             self.outbox.push(ServerMessage::End { outcome, demand: self.playback.demand().into() }.to_frame());
@@ -246,16 +251,17 @@ impl Session {
     /// Computes what is due, but not too much at a time, and sets when to look again.
     fn compute_due(&mut self, now: u64) {
         let begin = Instant::now();
-        let run_time = self.run.clock.run_time(now);
+        let run_time = self.live.clock.run_time(now);
         let (mut told, mut spent, mut last_flight) = (0, 0, None);
         while told < limits::LIVE_BATCH
             && spent < limits::LIVE_BATCH_BOUNCES
             && self.playback.next_t().is_some_and(|t| t <= run_time)
         {
-            let (impact, price) = self.playback.tell(&self.run);
-            (told, spent, last_flight) = (told + 1, spent + price.as_bounces(), impact.flight_time());
-            if impact.n >= self.first {
-                self.outbox.push_impact(impact);
+            let (contact, price) = self.playback.advance(&self.live.run);
+            (told, spent, last_flight) = (told + 1, spent + price.as_bounces(), contact.flight_time);
+            if contact.n >= self.first {
+                let has_angle = has_angle(self.live.run.scene());
+                self.outbox.push_impact(ImpactMessage::new(self.playback.body(), has_angle, &contact));
             }
             if let Some(outcome) = self.playback.outcome() {
                 self.outbox.push(ServerMessage::End { outcome, demand: self.playback.demand().into() }.to_frame());
@@ -274,9 +280,9 @@ impl Session {
             return;
         }
         // Looked at once a second at least, since the wall clock may be set.
-        let wait_ms = self.run.clock.wall_time(t).map_or(1000.0, |wall| wall.ceil() - now as f64).clamp(1.0, 1000.0);
+        let wait_ms = self.live.clock.wall_time(t).map_or(1000.0, |wall| wall.ceil() - now as f64).clamp(1.0, 1000.0);
         let due = begin + Duration::from_millis(wait_ms as u64);
-        let is_fast = last_flight.is_some_and(|flight| flight * limits::LIVE_SINGLE_PER_S < self.run.clock.speed());
+        let is_fast = last_flight.is_some_and(|flight| flight * limits::LIVE_SINGLE_PER_S < self.live.clock.speed());
         self.next_compute = if is_fast { due.max(batch) } else { due };
     }
 
@@ -304,7 +310,7 @@ impl Session {
     }
 
     fn is_idle(&self) -> bool {
-        self.playback.next_n().is_none() || self.run.clock.is_paused()
+        self.playback.next_n().is_none() || self.live.clock.is_paused()
     }
 
     /// When to look at the time again.
@@ -353,26 +359,26 @@ impl Session {
             // What is due has happened before the order.
             self.compute_due(now);
         }
-        let mut run = self.run.clone();
+        let mut live = self.live.clone();
         let mut impact = None;
         match message {
-            ClientMessage::Pause => run.clock.pause(now),
-            ClientMessage::Resume => run.clock.resume(now),
-            ClientMessage::Speed(speed) => run.clock.set_speed(now, *speed),
+            ClientMessage::Pause => live.clock.pause(now),
+            ClientMessage::Resume => live.clock.resume(now),
+            ClientMessage::Speed(speed) => live.clock.set_speed(now, *speed),
             ClientMessage::Step => {
                 let (n, t) = self.next_impact()?;
-                if !run.clock.is_paused() {
+                if !live.clock.is_paused() {
                     return Err(Problem::invalid_at(
                         "/type",
                         "step is for a paused run, and this one is not; send pause",
                     ));
                 }
-                run.clock.step(now, t);
+                live.clock.step(now, t);
                 impact = Some(n);
             }
             ClientMessage::Set(changes) => {
                 let (n, _) = self.next_impact()?;
-                run.set(n, changes).map_err(|errors| {
+                live.run.set(n, changes).map_err(|errors| {
                     let pointer = |path: &str| if path.is_empty() { String::new() } else { format!("/{path}") };
                     Problem::invalid(
                         errors
@@ -385,37 +391,37 @@ impl Session {
             }
             ClientMessage::Kick(kick) => {
                 let (n, _) = self.next_impact()?;
-                if kick.theta_dot != 0.0 && !has_angle(run.scene()) {
+                if kick.theta_dot != 0.0 && !has_angle(live.run.scene()) {
                     return Err(Problem::invalid_at("/theta_dot", NO_ANGLE));
                 }
-                run.kick(n, *kick).map_err(|detail| Problem::invalid_at("", detail))?;
+                live.run.kick(n, *kick).map_err(|detail| Problem::invalid_at("", detail))?;
                 impact = Some(n);
             }
             ClientMessage::Restart => {
                 let reached = self.playback.next_n().or(self.playback.outcome().map(|outcome| outcome.impacts));
-                self.run = run.restarted(now, reached.unwrap_or_default());
-                self.playback = Playback::new(&self.run);
+                self.live = live.restarted(now, reached.unwrap_or_default());
+                self.playback = Playback::new(&self.live.run, limits::LIVE_IMPACTS);
                 (self.first, self.catching_up, self.next_compute) = (1, false, Instant::now());
                 self.outbox.drop_impacts();
                 self.send_hello(now);
-                run = self.run.clone();
+                live = self.live.clone();
             }
         }
-        run.clock.forget_beyond(limits::LIVE_CLOCK_ENTRIES);
-        if matches!(message, ClientMessage::Set(_) | ClientMessage::Kick(_)) && run_url::is_too_long(&run) {
+        live.clock.forget_beyond(limits::LIVE_CLOCK_ENTRIES);
+        if matches!(message, ClientMessage::Set(_) | ClientMessage::Kick(_)) && run_url::is_too_long(&live) {
             let most = limits::URL_BYTES;
             let detail = format!("the run's URL would be over the limit of {most} bytes; restart keeps what was set");
             return Err(Problem::invalid_at("", detail));
         }
-        self.run = run;
+        self.live = live;
         self.next_compute = Instant::now();
         let ack = Ack {
             of: message.name(),
-            url: &format!("{}{}", self.context.base_path, run_url::url(&self.run)),
-            run_time: self.run.clock.run_time(now),
+            url: &format!("{}{}", self.context.base_path, run_url::url(&self.live)),
+            run_time: self.live.clock.run_time(now),
             now,
-            speed: self.run.clock.speed(),
-            paused: self.run.clock.is_paused(),
+            speed: self.live.clock.speed(),
+            paused: self.live.clock.is_paused(),
             impact,
         };
         self.outbox.push(ServerMessage::Ack(ack).to_frame());

@@ -10,13 +10,12 @@ use tokio::time::{sleep, timeout};
 
 use crate::limits::Limits;
 use crate::live::bounds::SessionBounds;
+use crate::live::clock::Clock;
 use crate::live::close::Unreadable;
+use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message::OutgoingFrame;
 use crate::live::session::{SessionContext, catch_up, serve, wall_now};
-use crate::runs::clock::Clock;
-use crate::runs::run::Run;
 use crate::runs::run::tests::case;
-use crate::runs::run_url::RunRequest;
 
 /// The client's ends of a connection that takes one message at a time.
 struct Client {
@@ -24,7 +23,7 @@ struct Client {
     hears: Receiver<Message>,
 }
 
-fn open(request: RunRequest, bounds: SessionBounds) -> Client {
+fn open(request: LiveRequest, bounds: SessionBounds) -> Client {
     let (says, incoming) = channel(1);
     let (outgoing, hears) = channel(1);
     let incoming = stream::unfold(incoming, async |mut from| from.recv().await.map(|message| (message, from)));
@@ -44,8 +43,8 @@ fn bounds() -> SessionBounds {
 }
 
 /// A run of a preset that is released now.
-fn now(preset: &str, speed: f64) -> RunRequest {
-    RunRequest { run: Run::new(*case(preset).scene(), Clock::new(wall_now(), speed)), from: None }
+fn now(preset: &str, speed: f64) -> LiveRequest {
+    LiveRequest { live: LiveRun { run: case(preset), clock: Clock::new(wall_now(), speed) }, from: None }
 }
 
 impl Client {
@@ -107,7 +106,7 @@ async fn a_client_that_stays_behind_is_closed_with_1013() {
 #[tokio::test]
 async fn a_catch_up_waits_for_its_client() {
     let mut request = now("case-1", 1.0);
-    request.run.clock = Clock::new(wall_now() - 600_000, 1.0);
+    request.live.clock = Clock::new(wall_now() - 600_000, 1.0);
     request.from = Some(1);
     let bounds = SessionBounds { queue: 256, ..bounds() };
     let mut client = open(request, bounds);

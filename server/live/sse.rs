@@ -15,12 +15,12 @@ use crate::http::Reader;
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
 use crate::limits;
+use crate::live::run_url;
+use crate::live::run_url::LiveRequest;
 use crate::live::server_message::{EventId, OutgoingFrame};
 use crate::live::session;
 use crate::live::session::SessionContext;
 use crate::runs::playback::Playback;
-use crate::runs::run_url;
-use crate::runs::run_url::RunRequest;
 
 /// The id of a run's last event.
 const END: &str = "end";
@@ -29,7 +29,7 @@ const END: &str = "end";
 #[derive(Debug)]
 pub enum EventsRequest {
     /// A run.
-    Run(Box<RunRequest>),
+    Run(Box<LiveRequest>),
     /// Nothing: it has heard the end already.
     AlreadyEnded,
 }
@@ -65,7 +65,7 @@ pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Optio
 /// Tells a run. The session ends when the events are dropped, as they are when the client has gone, or when `closing` does; with it
 /// goes what is `held` for it.
 pub fn events(
-    request: RunRequest,
+    request: LiveRequest,
     playback: Playback,
     context: SessionContext,
     closing: impl Future<Output = ()> + Send + 'static,
@@ -120,14 +120,14 @@ mod tests {
     use crate::compute::GaugeGuard;
     use crate::limits::Limits;
     use crate::live::bounds::SessionBounds;
-    use crate::runs::clock::Clock;
-    use crate::runs::run::Run;
+    use crate::live::clock::Clock;
+    use crate::live::run_url::LiveRun;
     use crate::runs::run::tests::case;
 
     /// All that a client hears which begins to read late.
     async fn heard(preset: &str, bounds: SessionBounds) -> String {
-        let run = Run::new(*case(preset).scene(), Clock::new(session::wall_now(), 20.0));
-        let request = RunRequest { run, from: None };
+        let live = LiveRun { run: case(preset), clock: Clock::new(session::wall_now(), 20.0) };
+        let request = LiveRequest { live, from: None };
         let context = SessionContext::for_test(bounds);
         let playback = session::catch_up(&request, &context).await.unwrap();
         let sessions = Gauge::default();

@@ -1,8 +1,7 @@
-//! A run as a value: its scene, clock and interventions, the URL that says them, and its playback.
+//! A run as a value: its scene and its interventions, as a request gives them, and its contacts one after another.
 //!
-//! Trajectories and live runs both stand on it.
+//! Trajectories and live runs both use it. The wall clock of a live run is in `live`.
 
-pub mod clock;
+pub mod interventions;
 pub mod playback;
 pub mod run;
-pub mod run_url;

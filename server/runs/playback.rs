@@ -1,47 +1,34 @@
-//! A run computed impact after impact, with what was done to it, and how one that is under way is caught up with.
-//!
-//! Not here: when an impact is told.
+//! Computes a run contact by contact, with its interventions.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, Orbit};
-use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
+use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker};
 
-use crate::api::scene::has_angle;
 use crate::api::shared::outcome::Outcome;
-use crate::compute::{Cancelled, Limit, OverBudget, Price, TimeSlice};
-use crate::http::Problem;
+use crate::compute::Price;
 use crate::limits;
-use crate::live::server_message::ImpactMessage;
 use crate::runs::run::Run;
-use crate::runs::run_url::RunRequest;
 
-/// Where a run is: before its coming impact, or at its end. Cheap to clone.
+/// Position in a run: before the next impact, or at the end. Cheap to clone.
 #[derive(Debug, Clone)]
 pub struct Playback {
     orbit: Orbit<Model>,
     /// The scene in force.
     scene: Arc<Scene>,
-    has_angle: bool,
     outcome: Option<Arc<Outcome>>,
     meter: LoadTracker,
-    /// The impact after which it has completed.
+    /// Number of the impact after which the run is completed.
     last: u64,
 }
 
 impl Playback {
-    /// A run at its release; at its end, where there is not even a first contact.
-    pub fn new(run: &Run) -> Self {
-        Self::up_to(run, limits::LIVE_IMPACTS)
-    }
-
-    /// The same, completed after so many impacts.
-    pub fn up_to(run: &Run, last: u64) -> Self {
+    /// A run at its release, completed after impact number `last`. A run without any contact has ended.
+    pub fn new(run: &Run, last: u64) -> Self {
         let scene = *run.scene();
         let (orbit, outcome) = match scene.orbit() {
             Ok(orbit) => (orbit, None),
@@ -50,34 +37,32 @@ impl Playback {
                 (nowhere, Some(Arc::new(Outcome::new(none.ending(0.0, 0.0), 0, 0.0))))
             }
         };
-        Self {
-            orbit,
-            scene: Arc::new(scene),
-            has_angle: has_angle(&scene),
-            outcome,
-            meter: LoadTracker::default(),
-            last,
-        }
+        Self { orbit, scene: Arc::new(scene), outcome, meter: LoadTracker::default(), last }
     }
 
-    /// When the coming impact is, s; none after the end.
+    /// Time of the next impact, s; None after the end.
     pub fn next_t(&self) -> Option<f64> {
         self.outcome.is_none().then(|| self.orbit.t())
     }
 
-    /// The number of the coming impact; none after the end.
+    /// Number of the next impact; None after the end.
     pub fn next_n(&self) -> Option<u64> {
         self.outcome.is_none().then(|| self.orbit.contacts() + 1)
     }
 
-    /// How the run ended, if it did.
+    /// The end of the run, if it has ended.
     pub fn outcome(&self) -> Option<&Outcome> {
         self.outcome.as_deref()
     }
 
-    /// The most that the run has asked of the table so far.
+    /// Largest demands on the table so far.
     pub fn demand(&self) -> ActuatorLoad {
         self.meter.most
+    }
+
+    /// The body with the fields in force.
+    pub fn body(&self) -> &Model {
+        &self.orbit.body
     }
 
     /// The scene in force.
@@ -85,7 +70,7 @@ impl Playback {
         &self.scene
     }
 
-    /// The coming impact and what it cost, of a run that has not ended.
+    /// Computes the next impact of a run that has not ended. Returns its price with it.
     pub fn advance(&mut self, run: &Run) -> (Contact, Price) {
         let n = self.orbit.contacts() + 1;
         let intervention = run.at(n);
@@ -110,19 +95,11 @@ impl Playback {
         (contact, price(&contact))
     }
 
-    /// [`Playback::advance`], as it is told.
-    pub fn tell(&mut self, run: &Run) -> (ImpactMessage, Price) {
-        let (contact, price) = self.advance(run);
-        (ImpactMessage::new(&self.orbit.body, self.has_angle, &contact), price)
-    }
-
-    fn replace(
-        &mut self,
-        set: impl Iterator<Item = (equipoise_physics::scene::Name, equipoise_physics::scene::Value)>,
-    ) {
+    /// Puts these fields in force.
+    fn replace(&mut self, set: impl Iterator<Item = (Name, Value)>) {
         let mut draft = self.scene.draft();
         for (name, value) in set {
-            // The run has admitted it; what it did not admit is not in it.
+            // A run holds only fields that can be set, so this does not fail.
             let _ = draft.set(name, Some(value));
         }
         if let Ok(scene) = draft.build() {
@@ -132,59 +109,12 @@ impl Playback {
     }
 }
 
-/// A bounce, and one more for each turn of the flight after it, whose contact is looked for turn by turn: in a few of them, however
-/// many there are.
+/// One bounce, and one more for each turn of the body in the flight after it, up to a limit: the next contact is searched for turn by
+/// turn, but in a few turns only.
 fn price(contact: &Contact) -> Price {
     let spin = contact.strike.map_or(0.0, |strike| strike.after.theta_dot.abs());
     let turns = spin * contact.flight_time.unwrap_or_default() / (2.0 * PI);
     Price::bounces(1 + (turns as u64).min(limits::SPINNING_PRICE))
-}
-
-/// Why there is nothing to catch up with.
-#[derive(Debug)]
-pub enum CatchUpError {
-    /// It would cost too much.
-    OverBudget(OverBudget),
-    /// Nobody waits for it.
-    Cancelled,
-}
-
-/// The run where the telling begins: before the impact that was asked for or, if none was, the last one so far. It is
-/// computed up to the run time `until`, so that the price of everything up to then is known.
-///
-/// # Errors
-/// Where that costs more than `limit`.
-pub fn catch_up(request: &RunRequest, until: f64, limit: &Limit, slice: &TimeSlice) -> Result<Playback, CatchUpError> {
-    let RunRequest { run, from } = request;
-    let mut playback = Playback::new(run);
-    let mut begin = None;
-    let (mut spent, mut looked) = (Price::bounces(0), 0);
-    while let (Some(t), Some(n)) = (playback.next_t(), playback.next_n())
-        && t <= until
-    {
-        if from.is_none_or(|from| n == from) {
-            begin = Some(playback.clone());
-        }
-        if from.is_some_and(|from| n >= from) {
-            spent = spent.and(Price::bounces(limits::LIVE_IMPACT_PRICE));
-        }
-        let (_, price) = playback.advance(run);
-        spent = spent.and(price).within(limit).map_err(CatchUpError::OverBudget)?;
-        if spent.as_bounces() >= looked {
-            looked = spent.as_bounces() + CHECK_INTERVAL;
-            slice.check().map_err(|Cancelled| CatchUpError::Cancelled)?;
-        }
-    }
-    Ok(begin.unwrap_or(playback))
-}
-
-impl From<CatchUpError> for Problem {
-    fn from(error: CatchUpError) -> Self {
-        match error {
-            CatchUpError::OverBudget(over) => over.into(),
-            CatchUpError::Cancelled => Cancelled.into(),
-        }
-    }
 }
 
 #[cfg(test)]
@@ -192,12 +122,9 @@ mod tests {
     use super::*;
     use crate::runs::run::tests::case;
     use equipoise_physics::body::Kick;
-    use equipoise_physics::scene::{Name, Value};
-
-    const PLENTY: Limit = Limit { name: "work", most: 1_000_000, unit: "bounces" };
 
     fn contacts(run: &Run, count: usize) -> Vec<Contact> {
-        let mut playback = Playback::new(run);
+        let mut playback = Playback::new(run, 1_000_000);
         std::iter::from_fn(|| playback.next_n().map(|_| playback.advance(run).0)).take(count).collect()
     }
 
@@ -247,42 +174,5 @@ mod tests {
         let last = contacts(&run, 100).pop().unwrap();
         let settled = matches!(last.ending, Some(Ending::Settled { settle_time, .. }) if settle_time == last.t);
         assert!(settled && last.n == 3, "{last:?}");
-    }
-
-    #[test]
-    fn catching_up_begins_where_it_was_asked_to() {
-        let run = case("case-1");
-        let all = contacts(&run, 30);
-        let until = all[19].t;
-        let begin = |from| {
-            catch_up(&RunRequest { run: run.clone(), from }, until, &PLENTY, &TimeSlice::unbounded()).unwrap().next_n()
-        };
-        assert_eq!(
-            [begin(None), begin(Some(7)), begin(Some(20)), begin(Some(21)), begin(Some(25))].map(Option::unwrap),
-            [20, 7, 20, 21, 21]
-        );
-        let early = RunRequest { run: run.clone(), from: None };
-        assert_eq!(catch_up(&early, -5.0, &PLENTY, &TimeSlice::unbounded()).unwrap().next_n(), Some(1));
-    }
-
-    #[test]
-    fn catching_up_has_a_price_and_telling_a_higher_one() {
-        let limit = Limit { most: 100, ..PLENTY };
-        let ask = |from| RunRequest { run: case("case-1"), from };
-        let until = contacts(&case("case-1"), 200)[49].t;
-        assert!(catch_up(&ask(None), until, &limit, &TimeSlice::unbounded()).is_ok());
-        let over = catch_up(&ask(Some(1)), until, &limit, &TimeSlice::unbounded()).unwrap_err();
-        assert!(matches!(over, CatchUpError::OverBudget(_)));
-        assert!(catch_up(&ask(None), 1e6, &limit, &TimeSlice::unbounded()).is_err());
-    }
-
-    #[test]
-    fn a_run_that_has_ended_is_told_from_its_last_impact() {
-        let run = case("case-3");
-        let playback =
-            catch_up(&RunRequest { run: run.clone(), from: None }, 1e6, &PLENTY, &TimeSlice::unbounded()).unwrap();
-        assert_eq!(playback.next_n(), Some(49));
-        let playback = catch_up(&RunRequest { run, from: Some(60) }, 1e6, &PLENTY, &TimeSlice::unbounded()).unwrap();
-        assert_eq!(playback.outcome().unwrap().kind, "sinking");
     }
 }

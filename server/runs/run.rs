@@ -1,66 +1,64 @@
-//! A run as a value: scene, clock and interventions. Whoever has it has the run, on any server.
+//! A run as a value: a scene and its interventions determine every contact.
 //!
-//! Not here: how it is written in a URL (`run_url`) and how its impacts are computed (`playback`).
+//! `interventions` reads and writes it, `playback` computes it.
 
 use equipoise_physics::body::Kick;
-use equipoise_physics::scene::{Field, FieldError, Name, Scene, Value};
+use equipoise_physics::scene::{FieldError, Name, Scene, Value};
 
 use crate::limits;
-use crate::runs::clock::Clock;
 
-/// Largest kicks: of a velocity, m/s, and of the angular velocity, rad/s. Those of a release.
+/// Largest component of a kick in each direction, m/s; the same as of a release.
 pub const KICK_SPEED: f64 = 100.0;
-/// See [`KICK_SPEED`].
+
+/// Largest kick of the angular velocity, rad/s; the same as of a release.
 pub const KICK_SPIN: f64 = 200.0;
 
-/// What somebody did to a run at one impact.
+/// A change of a run at one impact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Intervention {
     /// Number of the impact.
     pub impact: u64,
-    /// Fields that are in force from its strike on, each once, in the order of the table of fields.
+    /// Fields in force from the strike of this impact on, each once, in the order of the table of fields.
     pub set: Vec<(Name, Value)>,
-    /// Added to the velocities just after it.
+    /// Velocities added just after this impact.
     pub kick: Option<Kick>,
 }
 
-/// A run. Two that are equal give the same impacts at the same times.
+/// A run. Equal runs have equal impacts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     scene: Scene,
-    /// When it goes how fast.
-    pub clock: Clock,
     interventions: Vec<Intervention>,
-    /// The scene with everything that was set.
+    /// The scene with all interventions in force.
     last: Scene,
 }
 
 impl Run {
-    /// A run that nobody has intervened in.
-    pub fn new(scene: Scene, clock: Clock) -> Self {
-        Self { scene, clock, interventions: Vec::new(), last: scene }
+    /// A run without interventions.
+    pub fn new(scene: Scene) -> Self {
+        Self { scene, interventions: Vec::new(), last: scene }
     }
 
-    /// What it was released with.
+    /// The scene at the release.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// What was done to it, one entry for an impact, in the order of impacts.
+    /// At most one entry for each impact, in the order of impacts.
     pub fn interventions(&self) -> &[Intervention] {
         &self.interventions
     }
 
-    /// What was done at this impact.
+    /// The intervention at this impact, if there is one.
     pub fn at(&self, impact: u64) -> Option<&Intervention> {
         let found = self.interventions.binary_search_by_key(&impact, |intervention| intervention.impact).ok()?;
         Some(&self.interventions[found])
     }
 
-    /// Sets fields from an impact on; what was set for the same impact before stays unless it is the same field.
+    /// Sets fields from an impact on. Other fields set at the same impact stay.
     ///
     /// # Errors
-    /// What cannot be set, with the path of the field. The run is then as it was.
+    /// The fields that cannot be set, by path. The run is then unchanged.
     pub fn set(&mut self, impact: u64, changes: &[(Name, Value)]) -> Result<(), Vec<FieldError>> {
         let is_last = self.interventions.last().is_none_or(|last| last.impact <= impact);
         let mut changed = self.clone();
@@ -75,7 +73,7 @@ impl Run {
         Ok(())
     }
 
-    /// The scene in force from an impact on, as long as nothing else is set.
+    /// The scene in force from an impact on, until the next intervention.
     fn scene_at(&self, impact: u64) -> Result<Scene, Vec<FieldError>> {
         let before = self.interventions.iter().take_while(|intervention| intervention.impact <= impact);
         before
@@ -83,10 +81,10 @@ impl Run {
             .try_fold(self.scene, |scene, intervention| with(&scene, &intervention.set))
     }
 
-    /// Kicks the body just after an impact; kicks at the same impact add up.
+    /// Kicks the body just after an impact. Kicks at one impact add up.
     ///
     /// # Errors
-    /// A sentence, where the sum is too large or there are too many interventions. The run is then as it was.
+    /// The sum is too large, or there are too many interventions. The run is then unchanged.
     pub fn kick(&mut self, impact: u64, kick: Kick) -> Result<(), String> {
         let before = self.at(impact).and_then(|intervention| intervention.kick).unwrap_or_default();
         let sum = Kick {
@@ -109,12 +107,10 @@ impl Run {
         Ok(())
     }
 
-    /// The same run released anew, with what is set up to impact `reached` in force from the start and nothing else
-    /// done to it.
-    pub fn restarted(&self, epoch: u64, reached: u64) -> Self {
-        // Every scene on the way has been built before.
-        let scene = self.scene_at(reached).unwrap_or(self.last);
-        Self::new(scene, Clock::new(epoch, self.clock.speed()))
+    /// The run released again: fields set up to impact `reached` are in force from the start; no other intervention is kept.
+    pub fn restarted(&self, reached: u64) -> Self {
+        // `set` has built each of these scenes before, so this does not fail.
+        Self::new(self.scene_at(reached).unwrap_or(self.last))
     }
 
     fn entry(&mut self, impact: u64) -> Result<&mut Intervention, String> {
@@ -134,16 +130,11 @@ impl Run {
     }
 }
 
-/// A scene with some fields changed.
+/// The scene with some fields changed.
 fn with(scene: &Scene, changes: &[(Name, Value)]) -> Result<Scene, Vec<FieldError>> {
     let mut draft = scene.draft();
     let errors: Vec<_> = changes.iter().filter_map(|(name, value)| draft.set(*name, Some(*value)).err()).collect();
     if errors.is_empty() { draft.build() } else { Err(errors) }
-}
-
-/// Why a field cannot be set in a live run, if it cannot.
-pub fn refusal(row: &Field) -> Option<String> {
-    (!row.live).then(|| format!("{} cannot be changed while a run is live; start another run with it", row.path))
 }
 
 #[cfg(test)]
@@ -152,7 +143,7 @@ pub(crate) mod tests {
     use crate::api::scene::presets;
 
     pub(crate) fn case(name: &str) -> Run {
-        Run::new(presets::find(name).unwrap().draft().build().unwrap(), Clock::new(1_000_000, 1.0))
+        Run::new(presets::find(name).unwrap().draft().build().unwrap())
     }
 
     #[test]
@@ -178,7 +169,7 @@ pub(crate) mod tests {
         let errors = run.set(2, &[(Name::Strike, Value::Choice("still"))]).unwrap_err();
         assert_eq!(errors[0].path, "table.energy_gain");
         run.set(2, &[(Name::TiltGain, Value::Number(1.2))]).unwrap();
-        assert_eq!(run.restarted(5, 9).scene().value(Name::TiltGain), Some(Value::Number(1.2)));
+        assert_eq!(run.restarted(9).scene().value(Name::TiltGain), Some(Value::Number(1.2)));
     }
 
     #[test]
@@ -199,10 +190,10 @@ pub(crate) mod tests {
         }
         let over = limits::LIVE_INTERVENTIONS as u64 + 1;
         assert!(run.kick(over, Kick::default()).unwrap_err().contains("which is the limit"));
-        let early = run.restarted(5, 10);
+        let early = run.restarted(10);
         assert_eq!(early.scene().value(Name::TiltGain), Some(Value::Number(1.01)));
-        let again = run.restarted(5, u64::MAX);
-        assert_eq!((again.interventions().len(), again.clock.epoch()), (0, 5));
+        let again = run.restarted(u64::MAX);
+        assert_eq!(again.interventions().len(), 0);
         assert_eq!(again.scene().value(Name::TiltGain), Some(Value::Number(1.1)));
     }
 }

@@ -28,7 +28,7 @@ impl ComputedResource for Trajectories {
         canonical: TrajectoryRequest::canonical,
         compute: |request, format, slice, bounces| {
             let run = &request.run;
-            let mut playback = Playback::up_to(run, request.impacts);
+            let mut playback = Playback::new(run, request.impacts);
             let mut contacts = std::iter::from_fn(|| playback.next_n().map(|_| playback.advance(run).0));
             // Without interventions, and where the body never meets the table, it is the scene's own run.
             let changed = (!run.interventions().is_empty() && run.scene().orbit().is_ok())

@@ -7,8 +7,8 @@ use crate::api::shared::write;
 use crate::http::Reader;
 use crate::http::request::scalar::LARGEST_EXACT;
 use crate::limits;
+use crate::runs::interventions::{intervention_parameters, read_run};
 use crate::runs::run::Run;
-use crate::runs::run_url;
 
 /// A request for a run.
 #[derive(Debug, Clone)]
@@ -57,7 +57,7 @@ pub(crate) fn linear_price(scene: &Scene) -> u64 {
 impl TrajectoryRequest {
     /// Reads a request.
     pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let run = run_url::read_unclocked(reader);
+        let run = read_run(reader);
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
         let samples_per_flight = reader.integer("samples_per_flight", 0..=limits::SAMPLES_PER_FLIGHT).unwrap_or(0);
         let [linear, map, extended] = RunMethod::ALL.map(|method| (method.name(), Some(method)));
@@ -71,7 +71,7 @@ impl TrajectoryRequest {
     pub fn canonical(&self) -> Vec<u8> {
         let Self { run, impacts, samples_per_flight, method, tolerance, epoch } = self;
         let rest = (impacts, samples_per_flight, method.map(RunMethod::name), tolerance, epoch);
-        write::canonical(run.scene(), &(rest, run_url::url(run)))
+        write::canonical(run.scene(), &(rest, intervention_parameters(run)))
     }
 
     /// Number of numbers in the answer.

@@ -4,9 +4,8 @@ use equipoise::api::scene::{has_angle, value_to_json};
 use equipoise::http::{Errors, Problem, Reader, Source};
 use equipoise::limits;
 use equipoise::live::client_message::ClientMessage;
-use equipoise::runs::run::Run;
-use equipoise::runs::run_url;
-use equipoise::runs::run_url::RunRequest;
+use equipoise::live::run_url;
+use equipoise::live::run_url::{LiveRequest, LiveRun};
 use serde_json::{Map, Value, json};
 
 use super::{problem, query};
@@ -49,7 +48,7 @@ pub(crate) fn check(data: &[u8]) {
 }
 
 /// The run of a query; the run of a preset if the query is not valid.
-fn begin(text: &str) -> Option<Run> {
+fn begin(text: &str) -> Option<LiveRun> {
     let fields = match query::tree(text) {
         Ok(fields) => fields,
         Err(refused) => {
@@ -58,7 +57,7 @@ fn begin(text: &str) -> Option<Run> {
         }
     };
     match read(&fields, NOW) {
-        Ok(RunRequest { run, from }) => {
+        Ok(LiveRequest { live: run, from }) => {
             reads_back(&run, from, NOW);
             Some(run)
         }
@@ -69,7 +68,7 @@ fn begin(text: &str) -> Option<Run> {
     }
 }
 
-fn read(fields: &Map<String, Value>, now: u64) -> Result<RunRequest, Problem> {
+fn read(fields: &Map<String, Value>, now: u64) -> Result<LiveRequest, Problem> {
     let mut errors = Errors::default();
     let mut reader = Reader::new(fields, String::new(), Source::Query, &mut errors);
     let asked = run_url::read(&mut reader, now);
@@ -79,14 +78,14 @@ fn read(fields: &Map<String, Value>, now: u64) -> Result<RunRequest, Problem> {
 }
 
 /// Panics unless the run's URL reads back as the run.
-fn reads_back(run: &Run, from: Option<u64>, now: u64) {
+fn reads_back(run: &LiveRun, from: Option<u64>, now: u64) {
     let url = run_url::url(run);
     let query = url.split_once('?').expect("a query").1;
     let query = from.map_or_else(|| query.to_owned(), |from| format!("{query}&from={from}"));
     let asked = query::tree(&query).and_then(|fields| read(&fields, now));
     let asked = asked.unwrap_or_else(|refused| panic!("{url} was refused: {refused:?}"));
-    assert_eq!(asked, RunRequest { run: run.clone(), from }, "{url}");
-    assert_eq!(run_url::url(&asked.run), url);
+    assert_eq!(asked, LiveRequest { live: run.clone(), from }, "{url}");
+    assert_eq!(run_url::url(&asked.live), url);
 }
 
 /// The JSON text of a message.
@@ -110,7 +109,7 @@ fn written(order: &ClientMessage) -> String {
 }
 
 /// The run after a message, as in a session; unchanged if the run refuses the message.
-fn carried_out(run: &Run, order: &ClientMessage, n: u64) -> Run {
+fn carried_out(run: &LiveRun, order: &ClientMessage, n: u64) -> LiveRun {
     let (now, impact) = (now(n), PACE.1 * n);
     let mut changed = run.clone();
     match order {
@@ -124,15 +123,15 @@ fn carried_out(run: &Run, order: &ClientMessage, n: u64) -> Run {
             }
         }
         ClientMessage::Set(changes) => {
-            if let Err(errors) = changed.set(impact, changes) {
+            if let Err(errors) = changed.run.set(impact, changes) {
                 assert!(!errors.is_empty());
                 assert_eq!(changed, *run, "what is refused leaves the run as it was");
             }
         }
         ClientMessage::Kick(kick) => {
-            if kick.theta_dot == 0.0 || has_angle(run.scene()) {
+            if kick.theta_dot == 0.0 || has_angle(run.run.scene()) {
                 // Too many kicks, or a sum of kicks that is too large.
-                let _ = changed.kick(impact, *kick);
+                let _ = changed.run.kick(impact, *kick);
             }
         }
         ClientMessage::Restart => changed = run.restarted(now, impact),

@@ -1,0 +1,293 @@
+//! A live run as a value: a run with a clock, and the URL that says both.
+//!
+//! The URL is read from a request with everything that is wrong, and written so that it reads back as the same run.
+
+use form_urlencoded::Serializer;
+
+use crate::api::scene::{read_scene, scene_to_query};
+use crate::http::Reader;
+use crate::http::request::scalar;
+use crate::http::request::scalar::LARGEST_EXACT;
+use crate::limits;
+use crate::live::clock::{Clock, ClockEntry, SPEEDS};
+use crate::runs::interventions::{apply_interventions, intervention_parameters, number_text, read_interventions};
+use crate::runs::run::Run;
+
+/// Path of live runs.
+pub const PATH: &str = "/v1/live";
+
+/// Run times that a clock may show, s: all that it comes to between the earliest and the latest time, at the highest speed. An
+/// epoch in s instead of ms is 57 years ago, and its run can be paused as well.
+const RUN_TIMES: std::ops::RangeInclusive<f64> = -2e14..=2e14;
+
+/// How far the clocks of two servers may be apart, ms.
+const CLOCK_SKEW_MS: u64 = 60_000;
+
+/// Bytes kept free in a URL for the clock's entries and for a `from`, so that pausing never fails.
+const CLOCK_ROOM: usize = limits::LIVE_CLOCK_ENTRIES * 100 + 40;
+
+/// A run on the wall clock. Two that are equal give the same impacts at the same times.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LiveRun {
+    /// Scene and interventions.
+    pub run: Run,
+    /// Run time at each wall time.
+    pub clock: Clock,
+}
+
+impl LiveRun {
+    /// Releases the run again at `epoch`, unix ms, at the present speed. Fields set up to impact `reached` are in force from the
+    /// start; no other intervention is kept.
+    pub fn restarted(&self, epoch: u64, reached: u64) -> Self {
+        Self { run: self.run.restarted(reached), clock: Clock::new(epoch, self.clock.speed()) }
+    }
+}
+
+/// A request for a live run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LiveRequest {
+    /// The run.
+    pub live: LiveRun,
+    /// First impact to send; None is the last one so far.
+    pub from: Option<u64>,
+}
+
+/// Reads a run, released now, unix ms, unless it says when. None if something is wrong; then it is in the errors.
+pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
+    let scene = read_scene(reader);
+    let speed = reader.number("speed", SPEEDS, "").unwrap_or(1.0);
+    let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
+    // Of a run that begins with this request, nothing is missed.
+    let from = reader.integer("from", 1..=limits::LIVE_IMPACTS).or(epoch.is_none().then_some(1));
+    let interventions = read_interventions(reader);
+    let mut entries = Vec::new();
+    reader.objects("clock", limits::LIVE_CLOCK_ENTRIES, |_, item| entries.push(read_clock_entry(item)));
+    let (mut run, mut clock) = (Run::new(scene?), Clock::new(epoch.unwrap_or(now), speed));
+    apply_interventions(&mut run, interventions, reader);
+    for (index, entry) in entries.into_iter().enumerate() {
+        let Some(entry) = entry else { continue };
+        // What is done to a run before its release is noted at the release.
+        let latest = now.saturating_add(CLOCK_SKEW_MS).max(clock.epoch());
+        let pushed = if entry.wall > latest {
+            Err(format!("wall is {} ms, which is still to come: it is {now} ms", entry.wall))
+        } else {
+            clock.push(entry)
+        };
+        if let Err(detail) = pushed {
+            let pointer = format!("{}/{index}", reader.pointer_to("clock"));
+            reader.errors().push(pointer, detail);
+        }
+    }
+    Some(LiveRequest { live: LiveRun { run, clock }, from })
+}
+
+fn read_clock_entry(item: &mut Reader<'_, '_>) -> Option<ClockEntry> {
+    item.require(&["wall", "run", "speed"]);
+    let wall = item.integer("wall", 0..=LARGEST_EXACT);
+    let run = item.number("run", RUN_TIMES, "s");
+    let speed = item.number("speed", 0.0..=*SPEEDS.end(), "")?;
+    if speed != 0.0 && speed < *SPEEDS.start() {
+        let range = scalar::describe_range(&SPEEDS, "");
+        item.refuse("speed", format!("speed is {speed}; it must be {range}, or 0 for a pause"));
+        return None;
+    }
+    Some(ClockEntry { wall: wall?, run: run?, speed })
+}
+
+/// The URL of a live run: path and query, without `from`.
+pub fn url(live: &LiveRun) -> String {
+    let LiveRun { run, clock } = live;
+    let start = format!("{PATH}?");
+    let length = start.len();
+    let mut query = Serializer::for_suffix(start, length);
+    query.extend_pairs(scene_to_query(run.scene()));
+    query.append_pair("speed", &number_text(clock.first_speed()));
+    query.append_pair("epoch", &clock.epoch().to_string());
+    query.extend_pairs(intervention_parameters(run));
+    for (index, entry) in clock.entries().iter().enumerate() {
+        let prefix = format!("clock.{index}");
+        query.append_pair(&format!("{prefix}.wall"), &entry.wall.to_string());
+        query.append_pair(&format!("{prefix}.run"), &number_text(entry.run));
+        query.append_pair(&format!("{prefix}.speed"), &number_text(entry.speed));
+    }
+    query.finish()
+}
+
+/// Tells whether the URL of a live run is too long to be asked for once its clock is full.
+pub fn is_too_long(live: &LiveRun) -> bool {
+    let clock = Clock::new(live.clock.epoch(), live.clock.first_speed());
+    url(&LiveRun { run: live.run.clone(), clock }).len() + CLOCK_ROOM > limits::URL_BYTES
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::api::scene::has_angle;
+    use crate::http::Errors;
+    use crate::http::request::query;
+    use crate::http::request::scalar::Source;
+    use crate::runs::run::tests::case;
+    use equipoise_physics::body::Kick;
+    use equipoise_physics::scene::{Name, Value as FieldValue};
+    use proptest::prelude::*;
+
+    const NOW: u64 = LARGEST_EXACT;
+
+    fn read_url(url: &str) -> Result<LiveRequest, Vec<(String, String)>> {
+        read_url_at(url, NOW)
+    }
+
+    fn read_url_at(url: &str, now: u64) -> Result<LiveRequest, Vec<(String, String)>> {
+        let query = url.strip_prefix("/v1/live?").unwrap();
+        let fields = query::unfold(query::parameters(query).unwrap()).unwrap();
+        let mut errors = Errors::default();
+        let mut reader = Reader::new(&fields, String::new(), Source::Query, &mut errors);
+        let request = read(&mut reader, now);
+        reader.finish();
+        match errors.into_result() {
+            Ok(()) => Ok(request.unwrap()),
+            Err(problem) => Err(problem.into_errors().into_iter().map(|error| (error.pointer, error.detail)).collect()),
+        }
+    }
+
+    #[derive(Debug, Clone)]
+    enum Did {
+        Set(Name, f64),
+        Kick(f64, f64, f64),
+        Pause,
+        Resume,
+        Speed(f64),
+        Step,
+    }
+
+    fn did() -> impl Strategy<Value = Did> {
+        prop_oneof![
+            (-100.0..=100.0).prop_map(|value| Did::Set(Name::TiltGain, value)),
+            (0.0..=1.0).prop_map(|value| Did::Set(Name::Restitution, value)),
+            (0.01..=3.0).prop_map(|value| Did::Set(Name::ToppleAngle, value)),
+            (-1.0..=1.0, -1.0..=1.0, -2.0..=2.0).prop_map(|(x, y, theta)| Did::Kick(x, y, theta)),
+            Just(Did::Kick(0.0, -0.0, 0.0)),
+            Just(Did::Pause),
+            Just(Did::Resume),
+            Just(Did::Step),
+            (0.05..=20.0).prop_map(Did::Speed),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn a_url_reads_back_as_the_same_run(
+            preset in 0..crate::api::scene::presets::all().len(), speed in 0.05..=20.0, epoch in 0..LARGEST_EXACT / 2,
+            from in proptest::option::of(1_u64..1000),
+            all in proptest::collection::vec((0_u64..3, 0_u64..100_000, did()), 0..40),
+        ) {
+            let scene = crate::api::scene::presets::all()[preset].draft().build().unwrap();
+            let mut live = LiveRun { run: Run::new(scene), clock: Clock::new(epoch, speed) };
+            let (mut impact, mut wall) = (1, epoch);
+            for (impacts, time, did) in all {
+                (impact, wall) = (impact + impacts, wall + time);
+                match did {
+                    Did::Set(name, value) => drop(live.run.set(impact, &[(name, FieldValue::Number(value))])),
+                    Did::Kick(x_dot, y_dot, theta_dot) => {
+                        let theta_dot = if has_angle(&scene) { theta_dot } else { 0.0 };
+                        live.run.kick(impact, Kick { x_dot, y_dot, theta_dot }).unwrap();
+                    }
+                    Did::Pause => live.clock.pause(wall),
+                    Did::Resume => live.clock.resume(wall),
+                    Did::Speed(speed) => live.clock.set_speed(wall, speed),
+                    Did::Step => {
+                        live.clock.pause(wall);
+                        live.clock.step(wall, live.clock.run_time(wall) + 0.1);
+                    }
+                }
+                live.clock.forget_beyond(limits::LIVE_CLOCK_ENTRIES);
+            }
+            let mut text = url(&live);
+            if let Some(from) = from {
+                text += &format!("&from={from}");
+            }
+            prop_assert_eq!(read_url(&text).unwrap(), LiveRequest { live, from });
+        }
+    }
+
+    #[test]
+    fn a_run_paused_before_its_release_reads_back() {
+        let (now, released) = (1_000_000, 5_000_000);
+        let mut live = LiveRun { run: case("case-1"), clock: Clock::new(released, 1.0) };
+        live.clock.pause(now);
+        assert_eq!(read_url_at(&url(&live), now).unwrap().live, live);
+        live.clock.resume(released + 2);
+        assert_eq!(read_url_at(&url(&live), now).unwrap_err()[0].0, "/clock/1");
+    }
+
+    #[test]
+    fn a_run_of_long_ago_or_far_ahead_reads_back_when_it_is_paused() {
+        for (now, released) in [(1_800_000_000_000, 18_001), (LARGEST_EXACT, 0), (0, LARGEST_EXACT)] {
+            let mut live = LiveRun { run: case("case-2"), clock: Clock::new(released, *SPEEDS.end()) };
+            live.clock.set_speed(now, 1.0);
+            live.clock.pause(now);
+            assert_eq!(read_url_at(&url(&live), now).unwrap().live, live, "released at {released}");
+        }
+    }
+
+    #[test]
+    fn the_defaults_are_now_at_normal_speed() {
+        let request = read_url("/v1/live?preset=case-1").unwrap();
+        assert_eq!((request.live.clock, request.from), (Clock::new(NOW, 1.0), Some(1)));
+    }
+
+    #[test]
+    fn everything_wrong_is_told_at_once() {
+        let errors = read_url(
+            "/v1/live?preset=case-1&speed=100&epoch=-1&from=0&interventions.0.impact=2&interventions.0.set.gravity=1&\
+             interventions.1.impact=x&interventions.1.kick.theta_dot=900&interventions.2.kick.spin=1&\
+             interventions.3.impact=1&clock.0.wall=1&clock.0.run=0&clock.0.speed=0.01&colour=red",
+        )
+        .unwrap_err();
+        let pointers: Vec<_> = errors.iter().map(|(pointer, _)| pointer.as_str()).collect();
+        let expected = [
+            "/speed",
+            "/epoch",
+            "/from",
+            "/interventions/0/set/gravity",
+            "/interventions/1/impact",
+            "/interventions/1/kick/theta_dot",
+            "/interventions/2/impact",
+            "/interventions/2/kick",
+            "/interventions/2/kick/spin",
+            "/interventions/3",
+            "/clock/0/speed",
+            "/colour",
+        ];
+        assert_eq!(pointers, expected, "{errors:?}");
+        assert!(errors[3].1.starts_with("gravity cannot be changed while a run is live"));
+    }
+
+    #[test]
+    fn what_a_change_contradicts_is_told_at_its_intervention() {
+        let errors = read_url(
+            "/v1/live?preset=case-1&interventions.0.impact=2&interventions.0.set.table.energy_gain=1&\
+             interventions.1.impact=1&interventions.1.kick.x_dot=1",
+        )
+        .unwrap_err();
+        assert_eq!(errors[0].0, "/interventions/0/set/table/target_height");
+        let point = "/v1/live?preset=point-mass&interventions.0.impact=2&interventions.0.kick.theta_dot=1";
+        assert_eq!(read_url(point).unwrap_err()[0].0, "/interventions/0/kick/theta_dot");
+    }
+
+    #[test]
+    fn a_full_run_still_fits_a_url() {
+        let mut live = LiveRun { run: case("case-2"), clock: Clock::new(1_000_000, 1.0) };
+        let mut impact = 0;
+        while !is_too_long(&live) && impact < limits::LIVE_INTERVENTIONS as u64 {
+            impact += 1;
+            let _ = live.run.kick(impact, Kick { x_dot: 0.123_456_789_012_345_6, ..Kick::default() });
+        }
+        assert!(impact > 50, "{impact}");
+        for change in 1..100_u64 {
+            live.clock.set_speed(1_763_675_170_123 + change * 1000, 0.123_456_789_012_345_6 + change as f64 / 100.0);
+        }
+        live.clock.forget_beyond(limits::LIVE_CLOCK_ENTRIES);
+        assert!(url(&live).len() <= limits::URL_BYTES + 200, "{}", url(&live).len());
+    }
+}
