@@ -20,11 +20,16 @@ use crate::api::shared::nearest_vertex::NearestVertex;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::Table;
-use crate::api::trajectories::columns::{Contacts, Flights};
+use crate::api::trajectories::columns::{ExtendedRow, ImpactRow, date};
+use crate::api::trajectories::flights::{Flight, Flights};
+use crate::api::trajectories::impacts::Impacts;
 use crate::api::trajectories::request::TrajectoryRequest;
 
 /// The tolerance, m/s, up to which impacts count as predictable where none is asked for.
 const PREDICTABLE: f64 = 1e-3;
+
+/// Highest number of impacts for which memory is reserved before a run.
+const ROOM: usize = 1 << 16;
 
 /// Why there are no bounds beside interventions.
 const NO_BOUND: &str = "no bound is derived for a run that is changed under way";
@@ -132,23 +137,32 @@ impl<'a> TrajectoryAnswer<'a> {
         let was_changed = changed.is_some();
         let (method, choice) = MethodAnswer::of(scene, request, &mut go_on)?;
         let TrajectoryRequest { impacts, samples_per_flight: samples, tolerance, epoch, .. } = *request;
-        let mut contacts = Contacts::new(scene, epoch, usize::try_from(impacts).unwrap_or(usize::MAX));
-        let mut flights = (samples > 0).then(|| Flights::new(epoch));
-        let body = scene.model();
+        let room = usize::try_from(impacts).unwrap_or(usize::MAX).min(ROOM);
+        let mut rows = Impacts::with_capacity(room, epoch.is_some(), method == RunMethod::Extended);
+        let mut flights = (samples > 0).then(|| Flights::new(scene, samples, epoch));
+        let (body, has_angle) = (scene.model(), has_angle(scene));
         let (mut last, mut unknown, mut predictable) = (None, 0, None);
         let mut meter = LoadTracker::default();
         let mut nearest_vertex = None;
         let mut visit = |impact: &ComputedImpact<'_>| {
             let ComputedImpact { contact, error_estimate, .. } = impact;
-            contacts.push(impact);
+            let row = ImpactRow {
+                time: epoch.map(|epoch| date(epoch, contact.t)),
+                error_estimate: Some(*error_estimate).filter(|bound| bound.is_finite()),
+                ..ImpactRow::new(&body, has_angle, *contact)
+            };
+            let extended = impact.extended.map(|(orbit, contact)| ExtendedRow { orbit, contact, has_angle });
+            rows.push(&row, extended.as_ref());
             if let Some(flights) = &mut flights {
                 if contact.n == 1 {
                     let release = scene.release();
-                    flights.push(scene, 0, 0.0, release.x, release.height, &release.state, contact.t, samples);
+                    let (x, y, start) = (release.x, release.height, release.state);
+                    flights.push(&Flight { impact: 0, t: 0.0, x, y, start, length: contact.t });
                 }
                 if let (Some(strike), Some(length)) = (contact.strike, contact.flight_time) {
                     let y = body.contact_height(&contact.state) + contact.clearance;
-                    flights.push(scene, contact.n, contact.t, contact.x, y, &strike.after, length, samples);
+                    let (impact, t, x, start) = (contact.n, contact.t, contact.x, strike.after);
+                    flights.push(&Flight { impact, t, x, y, start, length });
                 }
             }
             if let Some(strike) = &contact.strike {
@@ -196,7 +210,7 @@ impl<'a> TrajectoryAnswer<'a> {
                  run, no bound is known"
             ));
         }
-        if !has_angle(scene) {
+        if !has_angle {
             notes.push(
                 "theta is the angle of the velocity from straight down, and theta_dot is null: a point mass has no \
                  angle of its own"
@@ -208,7 +222,7 @@ impl<'a> TrajectoryAnswer<'a> {
             model: ModelChoice::by_method(scene, method),
             method: choice,
             outcome: Outcome::new(ending, contacts_made, t),
-            impacts: contacts.into_table(),
+            impacts: rows.into_table(),
             predictable_impacts: predictable,
             flights: flights.map(Flights::into_table),
             notes,

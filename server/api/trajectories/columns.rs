@@ -1,276 +1,286 @@
-//! The contacts of a run and samples of its flights, gathered one by one into tables.
-//!
-//! Not here: how the run is computed, and how it ended ([`crate::api::trajectories::answer`]).
+//! The columns of impacts, each described once: trajectories and live runs take theirs from this table.
 
 use equipoise_physics::body::Body;
-use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::extended;
-use equipoise_physics::run::method::ComputedImpact;
-use equipoise_physics::scene::Scene;
+use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::model::Model;
 
-use crate::api::scene::has_angle;
-use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::shared::table::gather::Read;
 
-/// Dates, unix ms, of times since the release; none where nobody said when that was.
-#[derive(Debug, Default)]
-struct Dates(Option<(u64, Vec<u64>)>);
-
-impl Dates {
-    fn since(epoch: Option<u64>) -> Self {
-        Self(epoch.map(|epoch| (epoch, Vec::new())))
-    }
-
-    fn push(&mut self, t: f64) {
-        if let Some((epoch, dates)) = &mut self.0 {
-            dates.push((*epoch as f64 + 1e3 * t).round() as u64);
-        }
-    }
-
-    fn into_column(self) -> Option<Column> {
-        self.0.map(|(_, dates)| Column { name: "time", unit: "", cells: Cells::Counts(dates) })
-    }
+/// An impact in doubles: the state just before it, the strike, and the velocities just after it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImpactRow {
+    /// The contact.
+    pub contact: Contact,
+    /// False for a point mass, which has no angle of its own.
+    pub has_angle: bool,
+    /// Energy per unit mass just before, m²/s².
+    pub energy: f64,
+    /// Vertical velocity of the contact point just before, m/s.
+    pub contact_speed: f64,
+    /// Wall time, unix ms, where that of the release is known.
+    pub time: Option<u64>,
+    /// Bound on the error of the state, m/s, where there is one.
+    pub error_estimate: Option<f64>,
 }
 
-/// The contacts of a run, gathered one by one.
-#[derive(Debug)]
-pub(crate) struct Contacts {
-    body: Model,
-    gravity: f64,
-    has_angle: bool,
-    n: Vec<u64>,
-    dates: Dates,
-    numbers: [Vec<f64>; 8],
-    theta_dot: Vec<Option<f64>>,
-    strikes: [Vec<Option<f64>>; 4],
-    contact_mode: Vec<Option<&'static str>>,
-    clearance: Vec<f64>,
-    flight_time: Vec<Option<f64>>,
-    error_estimate: Vec<Option<f64>>,
-    /// Of the columns that are not counts, words or bounds, where the method has more digits than doubles.
-    digits: Option<Digits>,
-}
-
-impl Contacts {
-    /// None yet, with room for some. With an `epoch`, unix ms, they have their dates too.
-    pub(crate) fn new(scene: &Scene, epoch: Option<u64>, expected: usize) -> Self {
-        let room = expected.min(1 << 16);
-        Self {
-            body: scene.model(),
-            gravity: scene.gravity(),
-            has_angle: has_angle(scene),
-            n: Vec::with_capacity(room),
-            dates: Dates::since(epoch),
-            numbers: std::array::from_fn(|_| Vec::with_capacity(room)),
-            theta_dot: Vec::with_capacity(room),
-            strikes: std::array::from_fn(|_| Vec::with_capacity(room)),
-            contact_mode: Vec::with_capacity(room),
-            clearance: Vec::with_capacity(room),
-            flight_time: Vec::with_capacity(room),
-            error_estimate: Vec::with_capacity(room),
-            digits: None,
-        }
+impl ImpactRow {
+    /// The impact of a body at a contact.
+    pub fn new(body: &Model, has_angle: bool, contact: Contact) -> Self {
+        let energy = body.energy(&contact.state) + body.rod().gravity * contact.clearance;
+        let contact_speed = body.contact_speed(&contact.state);
+        Self { contact, has_angle, energy, contact_speed, time: None, error_estimate: None }
     }
 
-    /// Adds one.
-    pub(crate) fn push(&mut self, impact: &ComputedImpact<'_>) {
-        let contact = &impact.contact;
-        let State { theta, x_dot, y_dot, theta_dot } = contact.state;
+    /// A number of the strike. It does not exist without one, nor in a run that has diverged beyond doubles.
+    fn struck(&self, read: impl FnOnce(&Strike) -> f64) -> Option<f64> {
         // + 0.0: a table at rest moves by 0, not by −0.
-        let struck = |value: &dyn Fn(&Strike) -> f64| {
-            contact.strike.map(|strike| value(&strike) + 0.0).filter(|value| value.is_finite())
-        };
-        let numbers = [
-            contact.t,
-            contact.x,
-            theta,
-            x_dot,
-            y_dot,
-            contact.alpha,
-            self.body.energy(&contact.state) + self.gravity * contact.clearance,
-            self.body.contact_speed(&contact.state),
-        ];
-        self.n.push(contact.n);
-        self.dates.push(contact.t);
-        for (column, value) in self.numbers.iter_mut().zip(numbers) {
-            column.push(value);
-        }
-        self.theta_dot.push(self.has_angle.then_some(theta_dot));
-        let values: [&dyn Fn(&Strike) -> f64; 4] = [
-            &|strike| strike.table_velocity.0,
-            &|strike| strike.table_velocity.1,
-            &|strike| strike.impulse_normal,
-            &|strike| strike.impulse_tangential,
-        ];
-        for (column, value) in self.strikes.iter_mut().zip(values) {
-            column.push(struck(value));
-        }
-        self.contact_mode.push(contact.strike.map(|strike| strike.mode.name()));
-        self.clearance.push(contact.clearance);
-        self.flight_time.push(contact.flight_time);
-        self.error_estimate.push(Some(impact.error_estimate).filter(|bound| bound.is_finite()));
-        if let Some((orbit, contact)) = impact.extended {
-            self.digits.get_or_insert_default().push(orbit, contact, self.has_angle);
-        }
+        self.contact.strike.map(|strike| read(&strike) + 0.0).filter(|value| value.is_finite())
     }
 
-    /// All of them, in the order of the contract.
-    pub(crate) fn into_table(self) -> Table {
-        let [t, x, theta, x_dot, y_dot, alpha, energy, contact_speed] = self.numbers.map(Cells::Numbers);
-        let [table_x, table_y, normal, tangential] = self.strikes.map(Cells::Sparse);
-        let columns = [
-            ("n", "", Cells::Counts(self.n)),
-            ("t", "s", t),
-            ("x", "m", x),
-            ("theta", "rad", theta),
-            ("x_dot", "m_per_s", x_dot),
-            ("y_dot", "m_per_s", y_dot),
-            ("theta_dot", "rad_per_s", Cells::Sparse(self.theta_dot)),
-            ("alpha", "rad", alpha),
-            ("table_velocity_x", "m_per_s", table_x),
-            ("table_velocity_y", "m_per_s", table_y),
-            ("impulse_normal", "m_per_s", normal),
-            ("impulse_tangential", "m_per_s", tangential),
-            ("contact_mode", "", Cells::Words(self.contact_mode)),
-            ("energy", "m2_per_s2", energy),
-            ("flight_time", "s", Cells::Sparse(self.flight_time)),
-            ("contact_speed", "m_per_s", contact_speed),
-            ("clearance", "m", Cells::Numbers(self.clearance)),
-            ("error_estimate", "m_per_s", Cells::Sparse(self.error_estimate)),
-        ];
-        let mut digits = self.digits;
-        let column = |(name, unit, cells)| {
-            let cells = digits.as_mut().and_then(|digits| digits.take(name)).map_or(cells, Cells::Decimals);
-            Column { name, unit, cells }
-        };
-        let mut columns: Vec<Column> = columns.into_iter().map(column).collect();
-        columns.splice(1..1, self.dates.into_column());
-        Table(columns)
+    fn angle(&self, value: f64) -> Option<f64> {
+        self.has_angle.then_some(value)
     }
 }
 
-/// Columns of decimals, by the names of the contract.
-#[derive(Debug)]
-struct Digits([(&'static str, Vec<Option<DoubleDouble>>); 13]);
+/// An impact with 31 digits.
+#[derive(Debug, Clone, Copy)]
+pub struct ExtendedRow<'a> {
+    /// The run.
+    pub orbit: &'a extended::ExtendedOrbit,
+    /// The contact.
+    pub contact: &'a extended::ExtendedContact,
+    /// False for a point mass.
+    pub has_angle: bool,
+}
 
-impl Default for Digits {
-    fn default() -> Self {
-        let names = [
+impl ExtendedRow<'_> {
+    fn struck(&self, read: impl FnOnce(&Strike<DoubleDouble>) -> DoubleDouble) -> Option<DoubleDouble> {
+        self.contact.strike.map(|strike| read(&strike))
+    }
+}
+
+/// The answers that have a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Told {
+    /// Trajectories and live runs.
+    Everywhere,
+    /// Trajectories alone.
+    Trajectories,
+    /// Trajectories whose time of release is given.
+    DatedTrajectories,
+    /// Live runs alone.
+    Live,
+}
+
+/// A column of impacts.
+#[derive(Debug, Clone, Copy)]
+pub struct ImpactColumn {
+    /// Name in JSON.
+    pub name: &'static str,
+    /// Unit; empty for none.
+    pub unit: &'static str,
+    /// Meaning, as the contract says it.
+    pub about: &'static str,
+    /// The answers that have it.
+    pub told: Told,
+    /// Reads the value in doubles.
+    pub read: Read<ImpactRow>,
+    /// Reads the value with 31 digits, where the method `extended` has it.
+    pub digits: Option<fn(&ExtendedRow<'_>) -> Option<DoubleDouble>>,
+}
+
+const fn column(name: &'static str, unit: &'static str, about: &'static str, read: Read<ImpactRow>) -> ImpactColumn {
+    ImpactColumn { name, unit, about, told: Told::Everywhere, read, digits: None }
+}
+
+impl ImpactColumn {
+    const fn told(self, told: Told) -> Self {
+        Self { told, ..self }
+    }
+
+    const fn digits(self, digits: fn(&ExtendedRow<'_>) -> Option<DoubleDouble>) -> Self {
+        Self { digits: Some(digits), ..self }
+    }
+}
+
+/// All columns, in their order.
+pub static COLUMNS: [ImpactColumn; 19] = [
+        column(
+            "n",
+            "",
+            "Number of the impact, counted from 1.",
+            Read::Count(|row| row.contact.n),
+        ),
+        column(
+            "time",
+            "",
+            "Wall time, in milliseconds since 1970 (UTC). Only with `epoch`.",
+            Read::SparseCount(|row| row.time),
+        )
+        .told(Told::DatedTrajectories),
+        column(
             "t",
+            "s",
+            "Time since the release, in seconds.",
+            Read::Number(|row| row.contact.t),
+        )
+        .digits(|row| Some(row.contact.t)),
+        column(
             "x",
+            "m",
+            "Horizontal position of the centre of gravity, in metres.",
+            Read::Number(|row| row.contact.x),
+        )
+        .digits(|row| Some(row.contact.x)),
+        column(
             "theta",
+            "rad",
+            "Angle, in radians. Of a point mass: of its velocity from straight down.",
+            Read::Number(|row| row.contact.state.theta),
+        )
+        .digits(|row| Some(row.contact.state.theta)),
+        column(
             "x_dot",
+            "m/s",
+            "Horizontal velocity, in metres per second.",
+            Read::Number(|row| row.contact.state.x_dot),
+        )
+        .digits(|row| Some(row.contact.state.x_dot)),
+        column(
             "y_dot",
+            "m/s",
+            "Vertical velocity, in metres per second.",
+            Read::Number(|row| row.contact.state.y_dot),
+        )
+        .digits(|row| Some(row.contact.state.y_dot)),
+        column(
             "theta_dot",
+            "rad/s",
+            "Angular velocity, in radians per second. Null for a point mass.",
+            Read::Sparse(|row| row.angle(row.contact.state.theta_dot)),
+        )
+        .digits(|row| row.has_angle.then_some(row.contact.state.theta_dot)),
+        column(
             "alpha",
-            "energy",
-            "contact_speed",
-            "flight_time",
+            "rad",
+            "Angle of the table, in radians.",
+            Read::Number(|row| row.contact.alpha),
+        )
+        .digits(|row| Some(row.orbit.rod().tilt_gain * row.contact.state.theta)),
+        column(
             "table_velocity_x",
+            "m/s",
+            "Horizontal velocity of the table, in metres per second.",
+            Read::Sparse(|row| row.struck(|strike| strike.table_velocity.0)),
+        )
+        .digits(|row| row.struck(|strike| strike.table_velocity.0)),
+        column(
             "table_velocity_y",
+            "m/s",
+            "Vertical velocity of the table, in metres per second.",
+            Read::Sparse(|row| row.struck(|strike| strike.table_velocity.1)),
+        )
+        .digits(|row| row.struck(|strike| strike.table_velocity.1)),
+        column(
             "impulse_normal",
-        ];
-        Self(names.map(|name| (name, Vec::new())))
-    }
+            "m/s",
+            "Impulse along the normal of the table per unit mass, in metres per second.",
+            Read::Sparse(|row| row.struck(|strike| strike.impulse_normal)),
+        )
+        .digits(|row| row.struck(|strike| strike.impulse_normal)),
+        column(
+            "impulse_tangential",
+            "m/s",
+            "Impulse along the table per unit mass, in metres per second.",
+            Read::Sparse(|row| row.struck(|strike| strike.impulse_tangential)),
+        ),
+        column(
+            "contact_mode",
+            "",
+            "What the contact did along the table: it slid one way throughout (`slide`); was or came to rest and stayed (`stick`); \
+             came to rest and slid the other way (`reverse_slide`); or was at rest and friction could not hold it (`slide_through`). \
+             Null where there was no impact.",
+            Read::Word(|row| row.contact.strike.map(|strike| strike.mode.name())),
+        ),
+        column(
+            "energy",
+            "m²/s²",
+            "Kinetic and potential energy per unit mass just before the impact, in metres squared per second squared.",
+            Read::Number(|row| row.energy),
+        )
+        .digits(|row| Some(row.orbit.energy(&row.contact.state))),
+        column(
+            "flight_time",
+            "s",
+            "Time to the next impact, in seconds. Null for the last.",
+            Read::Sparse(|row| row.contact.flight_time),
+        )
+        .digits(|row| row.contact.flight_time),
+        column(
+            "contact_speed",
+            "m/s",
+            "Vertical velocity of the contact point, in metres per second.",
+            Read::Number(|row| row.contact_speed),
+        )
+        .digits(|row| Some(row.orbit.contact_speed(&row.contact.state))),
+        column(
+            "clearance",
+            "m",
+            "Height of the contact point at the strike, in metres: 0 unless the table strikes early or late (`noise`).",
+            Read::Number(|row| row.contact.clearance),
+        ),
+        column(
+            "error_estimate",
+            "m/s",
+            "Bound on the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇|, in metres (per second); of a point mass on that of |δẋ| and |δẏ|. \
+             Null where no bound is known: with state feedback, noise or interventions, past a graze, and once rounding has grown to \
+             the size of the run.",
+            Read::Sparse(|row| row.error_estimate),
+        )
+        .told(Told::Trajectories),
+];
+
+/// The columns of a trajectory. With a known time of release they include its dates.
+pub fn of_trajectories(dated: bool) -> impl Iterator<Item = &'static ImpactColumn> {
+    COLUMNS.iter().filter(move |column| match column.told {
+        Told::Everywhere | Told::Trajectories => true,
+        Told::DatedTrajectories => dated,
+        Told::Live => false,
+    })
 }
 
-impl Digits {
-    fn push(&mut self, orbit: &extended::ExtendedOrbit, contact: &extended::ExtendedContact, has_angle: bool) {
-        let State { theta, x_dot, y_dot, theta_dot } = contact.state;
-        let strike = contact.strike;
-        let values = [
-            Some(contact.t),
-            Some(contact.x),
-            Some(theta),
-            Some(x_dot),
-            Some(y_dot),
-            has_angle.then_some(theta_dot),
-            Some(orbit.rod().tilt_gain * theta),
-            Some(orbit.energy(&contact.state)),
-            Some(orbit.contact_speed(&contact.state)),
-            contact.flight_time,
-            strike.map(|strike| strike.table_velocity.0),
-            strike.map(|strike| strike.table_velocity.1),
-            strike.map(|strike| strike.impulse_normal),
-        ];
-        for ((_, column), value) in self.0.iter_mut().zip(values) {
-            column.push(value);
-        }
-    }
-
-    fn take(&mut self, name: &str) -> Option<Vec<Option<DoubleDouble>>> {
-        self.0.iter_mut().find(|(known, _)| *known == name).map(|(_, column)| std::mem::take(column))
-    }
+/// Wall time, unix ms, of a time since the release at `epoch`.
+pub fn date(epoch: u64, t: f64) -> u64 {
+    (epoch as f64 + 1e3 * t).round() as u64
 }
 
-/// Samples of the flights between contacts, evenly in time, each flight from its start.
-#[derive(Debug, Default)]
-pub(crate) struct Flights {
-    impact: Vec<u64>,
-    dates: Dates,
-    numbers: [Vec<f64>; 5],
-    theta: Vec<Option<f64>>,
-    theta_dot: Vec<Option<f64>>,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::Value;
 
-impl Flights {
-    /// None yet; `epoch` as for contacts.
-    pub(crate) fn new(epoch: Option<u64>) -> Self {
-        Self { dates: Dates::since(epoch), ..Self::default() }
-    }
-
-    /// Adds `samples` of the flight that follows contact `impact` (0: the fall from the release) at time `t`, place `x`
-    /// and height `y` of the centre of gravity.
-    #[expect(clippy::too_many_arguments, reason = "a flight is that many numbers")]
-    pub(crate) fn push(
-        &mut self,
-        scene: &Scene,
-        impact: u64,
-        t: f64,
-        x: f64,
-        y: f64,
-        start: &State,
-        length: f64,
-        samples: u64,
-    ) {
-        let gravity = scene.gravity();
-        for sample in 0..samples {
-            let since = length * sample as f64 / samples as f64;
-            let numbers = [
-                t + since,
-                x + start.x_dot * since,
-                y + since * (start.y_dot - 0.5 * gravity * since),
-                start.x_dot,
-                start.y_dot - gravity * since,
-            ];
-            self.impact.push(impact);
-            self.dates.push(t + since);
-            for (column, value) in self.numbers.iter_mut().zip(numbers) {
-                column.push(value);
+    #[test]
+    fn the_contract_describes_every_column() {
+        let document: Value =
+            serde_json::from_slice(include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json"))).unwrap();
+        let schema = &document["components"]["schemas"]["Impacts"];
+        let named: Vec<&str> =
+            schema["required"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+        let own: Vec<&str> = of_trajectories(false).map(|column| column.name).collect();
+        assert_eq!(own, named);
+        for column in of_trajectories(true) {
+            let mut property = &schema["properties"][column.name];
+            if property["description"].is_null() {
+                let reference = property["$ref"].as_str().unwrap_or_else(|| panic!("{}: no description", column.name));
+                property = document.pointer(&reference[1..]).unwrap();
             }
-            let has_angle = has_angle(scene);
-            self.theta.push(has_angle.then_some(start.theta + start.theta_dot * since));
-            self.theta_dot.push(has_angle.then_some(start.theta_dot));
+            assert_eq!(property["description"], column.about, "{}", column.name);
+            if column.name != "time" {
+                assert_eq!(property["x-unit"].as_str().unwrap_or_default(), column.unit, "{}", column.name);
+            }
         }
-    }
-
-    /// All of them, in the order of the contract.
-    pub(crate) fn into_table(self) -> Table {
-        let [t, x, y, x_dot, y_dot] = self.numbers.map(Cells::Numbers);
-        let columns = [
-            ("impact", "", Cells::Counts(self.impact)),
-            ("t", "s", t),
-            ("x", "m", x),
-            ("y", "m", y),
-            ("theta", "rad", Cells::Sparse(self.theta)),
-            ("x_dot", "m_per_s", x_dot),
-            ("y_dot", "m_per_s", y_dot),
-            ("theta_dot", "rad_per_s", Cells::Sparse(self.theta_dot)),
-        ];
-        let mut columns = columns.map(|(name, unit, cells)| Column { name, unit, cells }).to_vec();
-        columns.splice(1..1, self.dates.into_column());
-        Table(columns)
     }
 }

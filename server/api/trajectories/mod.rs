@@ -2,6 +2,8 @@
 
 pub mod answer;
 pub mod columns;
+pub mod flights;
+pub mod impacts;
 pub mod picture;
 pub mod request;
 

@@ -4,6 +4,7 @@ use equipoise_physics::run::method::{RunMethod, deviations_circle};
 use equipoise_physics::scene::{Name, Scene};
 
 use crate::api::shared::write;
+use crate::api::trajectories::{columns, flights};
 use crate::http::Reader;
 use crate::http::request::scalar::LARGEST_EXACT;
 use crate::limits;
@@ -29,10 +30,6 @@ pub struct TrajectoryRequest {
 
 /// Tolerances, m/s. Below, no method has the digits; above, no bound says anything.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-30..=1.0;
-
-/// Numbers in a row of contacts, and in one of flight samples.
-const CONTACT_NUMBERS: u64 = 18;
-const SAMPLE_NUMBERS: u64 = 8;
 
 /// Price of an impact with its error estimate by each method, in bounces, and of the linear solution once.
 const LINEAR_ONCE: u64 = 2500;
@@ -76,8 +73,9 @@ impl TrajectoryRequest {
 
     /// Number of numbers in the answer.
     pub fn numbers(&self) -> u64 {
-        let time = u64::from(self.epoch.is_some());
-        self.impacts.saturating_mul(CONTACT_NUMBERS + time + self.samples_per_flight * (SAMPLE_NUMBERS + time))
+        let dated = self.epoch.is_some();
+        let (impact, sample) = (columns::of_trajectories(dated).count(), flights::columns(dated).count());
+        self.impacts.saturating_mul(impact as u64 + self.samples_per_flight * sample as u64)
     }
 
     /// Price of the work, in bounces.

@@ -1,5 +1,7 @@
 //! A table of results, defined once and written as JSON columns, CSV with units in its header, or NDJSON rows.
 
+pub mod gather;
+
 use std::io::{self, Write};
 
 use equipoise_physics::numbers::double_double::DoubleDouble;

@@ -1,0 +1,76 @@
+//! Gathers rows one by one into a column, which is described once: its name, its unit, and how it is read from a row.
+
+use crate::api::shared::table::Cells;
+
+/// Reads the value of a column from a row.
+#[derive(Debug)]
+pub enum Read<Row> {
+    /// A whole number.
+    Count(fn(&Row) -> u64),
+    /// A whole number that need not exist.
+    SparseCount(fn(&Row) -> Option<u64>),
+    /// A finite number.
+    Number(fn(&Row) -> f64),
+    /// A number that need not exist.
+    Sparse(fn(&Row) -> Option<f64>),
+    /// A word that need not exist.
+    Word(fn(&Row) -> Option<&'static str>),
+}
+
+impl<Row> Clone for Read<Row> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Row> Copy for Read<Row> {}
+
+/// The values of a column so far.
+#[derive(Debug)]
+pub enum Gathered<Row> {
+    /// Of [`Read::Count`].
+    Counts(fn(&Row) -> u64, Vec<u64>),
+    /// Of [`Read::SparseCount`].
+    SparseCounts(fn(&Row) -> Option<u64>, Vec<Option<u64>>),
+    /// Of [`Read::Number`].
+    Numbers(fn(&Row) -> f64, Vec<f64>),
+    /// Of [`Read::Sparse`].
+    Sparse(fn(&Row) -> Option<f64>, Vec<Option<f64>>),
+    /// Of [`Read::Word`].
+    Words(fn(&Row) -> Option<&'static str>, Vec<Option<&'static str>>),
+}
+
+impl<Row> Gathered<Row> {
+    /// No values yet, with room for some.
+    pub fn with_capacity(read: Read<Row>, room: usize) -> Self {
+        match read {
+            Read::Count(read) => Self::Counts(read, Vec::with_capacity(room)),
+            Read::SparseCount(read) => Self::SparseCounts(read, Vec::with_capacity(room)),
+            Read::Number(read) => Self::Numbers(read, Vec::with_capacity(room)),
+            Read::Sparse(read) => Self::Sparse(read, Vec::with_capacity(room)),
+            Read::Word(read) => Self::Words(read, Vec::with_capacity(room)),
+        }
+    }
+
+    /// Adds the value of a row.
+    pub fn push(&mut self, row: &Row) {
+        match self {
+            Self::Counts(read, cells) => cells.push(read(row)),
+            Self::SparseCounts(read, cells) => cells.push(read(row)),
+            Self::Numbers(read, cells) => cells.push(read(row)),
+            Self::Sparse(read, cells) => cells.push(read(row)),
+            Self::Words(read, cells) => cells.push(read(row)),
+        }
+    }
+
+    /// All values.
+    pub fn into_cells(self) -> Cells {
+        match self {
+            Self::Counts(_, cells) => Cells::Counts(cells),
+            Self::SparseCounts(_, cells) => Cells::SparseCounts(cells),
+            Self::Numbers(_, cells) => Cells::Numbers(cells),
+            Self::Sparse(_, cells) => Cells::Sparse(cells),
+            Self::Words(_, cells) => Cells::Words(cells),
+        }
+    }
+}
