@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::periodic_orbits::branch::{Branch, Point, Start, Sweep, follow};
+use equipoise_physics::periodic_orbits::branch::{Branch, Kind, Point, Start, Sweep, follow};
 use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::boundary::period_two_angle;
@@ -220,8 +220,8 @@ fn columns(branch: &Branch) -> Table {
     let all = || branch.points.iter();
     let first = || all().map(|point| point.orbit.states[0]);
     let flags = |cells: Vec<Option<bool>>| Cells::Flags(cells);
-    let kinds: Vec<_> = all().map(|point| point.change.map(|kind| kind.name())).collect();
-    let folds = kinds.iter().map(|kind| Some(*kind == Some("fold"))).collect();
+    let kinds = all().map(|point| point.change.map(Kind::name)).collect();
+    let folds = all().map(|point| Some(point.change == Some(Kind::Fold))).collect();
     Table(vec![
         number("parameter", "", all().map(|point| point.parameter)),
         number("theta", "rad", all().map(|point| point.orbit.max_theta())),
@@ -240,18 +240,18 @@ fn columns(branch: &Branch) -> Table {
 }
 
 fn changes(branch: &Branch) -> Vec<Change> {
-    let detail = |point: &Point, kind: &str| match kind {
-        "period_doubling" if point.springs => "the branch springs here from an orbit of half its period",
-        "period_doubling" => "an eigenvalue passes −1",
-        "fold" => "the branch turns back",
-        "pitchfork" => "an eigenvalue passes 1, and the branch goes on",
-        _ => "a pair of eigenvalues leaves the unit circle",
+    let detail = |point: &Point, kind: Kind| match kind {
+        Kind::PeriodDoubling if point.springs => "the branch springs here from an orbit of half its period",
+        Kind::PeriodDoubling => "an eigenvalue passes −1",
+        Kind::Fold => "the branch turns back",
+        Kind::Pitchfork => "an eigenvalue passes 1, and the branch goes on",
+        Kind::NeimarkSacker => "a pair of eigenvalues leaves the unit circle",
     };
     let change = |point: &Point| {
-        let kind = point.change?.name();
+        let kind = point.change?;
         let residue = point.orbit.multipliers.residue;
         let theta = point.orbit.max_theta();
-        Some(Change { kind, parameter: point.parameter, theta, residue, detail: detail(point, kind) })
+        Some(Change { kind: kind.name(), parameter: point.parameter, theta, residue, detail: detail(point, kind) })
     };
     branch.points.iter().filter_map(change).collect()
 }

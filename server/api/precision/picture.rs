@@ -3,9 +3,11 @@
 use crate::api::formats::Pictured;
 use crate::api::precision::answer::{PrecisionAnswer, ReferenceAnswer};
 use crate::api::precision::request::CostAxis;
-use crate::charts::{Series, SpeedAccuracy, speed_accuracy};
+use crate::charts::{SYMBOLS, Series, SpeedAccuracy, speed_accuracy};
 use crate::comparison::{METHODS, Point};
 use crate::http::Problem;
+
+const _: () = assert!(SYMBOLS.len() == METHODS.len(), "each method has a symbol of its own");
 
 impl Pictured for PrecisionAnswer<'_> {
     fn to_picture(&self) -> Result<String, Problem> {
@@ -25,10 +27,10 @@ impl Pictured for PrecisionAnswer<'_> {
         let place = |point: &Point| cost(point).zip(point.error);
         let series: Vec<Series<'_>> = METHODS
             .iter()
-            .enumerate()
-            .map(|(number, method)| {
+            .zip(SYMBOLS)
+            .map(|(method, symbol)| {
                 let own = points.iter().filter(|point| point.method == *method);
-                Series { number, label: method.title, points: own.filter_map(place).collect() }
+                Series { symbol, label: method.title, points: own.filter_map(place).collect() }
             })
             .filter(|series| !series.points.is_empty())
             .collect();

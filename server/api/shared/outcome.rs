@@ -99,10 +99,7 @@ impl Outcome {
                 Some(("speed", speed, SPEED_LIMIT, "m/s")),
             ),
         };
-        let settle_time = match ending {
-            Ending::Settled { settle_time, .. } => Some(settle_time),
-            _ => None,
-        };
+        let settle_time = if let Ending::Settled { settle_time, .. } = ending { Some(settle_time) } else { None };
         Self {
             kind: ending.name(),
             impacts,

@@ -29,7 +29,9 @@ impl Sample {
         match self {
             Self::Line { .. } | Self::Cased { .. } => 26.0,
             Self::Hatched | Self::Area(_) => 18.0,
-            _ => 12.0,
+            Self::Dot { .. } | Self::Disc(_) | Self::Ring(_) | Self::Hollow(_) | Self::Square(_) | Self::Arrow(_) => {
+                12.0
+            }
         }
     }
 

@@ -60,39 +60,58 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
 }
 
-/// How a curve is drawn; colour and kind of line tell the same.
+/// The look of a curve. Colour and kind of line carry the same information.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
-    /// What holds: a full line.
+    /// The truth: a full line.
     Truth,
-    /// What holds, as dots.
+    /// The truth, as dots.
     TruthDots,
-    /// What was said wrongly: a dashed line.
+    /// A wrong result: a dashed line.
     Wrong,
-    /// What was said wrongly, as rings.
+    /// A wrong result, as rings.
     WrongRings,
-    /// Something else that was said wrongly: a line in short dashes.
+    /// Another wrong result: a line in short dashes.
     Second,
-    /// Something to compare with: a thin full line.
+    /// A comparison: a thin full line.
     Beside,
-    /// Something to compare with, as dots.
+    /// A comparison, as dots.
     BesideDots,
     /// A limit: a thin dotted line.
     Limit,
 }
 
-impl Look {
+/// The marks of a curve.
+#[derive(Clone, Copy, Debug)]
+enum Mark {
+    Line { colour: &'static str, dashes: Option<&'static str> },
+    Dots { radius: f64, colour: &'static str },
+    Rings(&'static str),
+}
+
+impl Mark {
+    /// The mark in a legend.
     fn sample(self) -> Sample {
-        let full = |colour| Sample::Line { colour, dashes: None };
-        let dashed = |colour, dashes| Sample::Line { colour, dashes: Some(dashes) };
+        match self {
+            Self::Line { colour, dashes } => Sample::Line { colour, dashes },
+            Self::Dots { radius, colour } => Sample::Dot { radius, colour },
+            Self::Rings(colour) => Sample::Ring(colour),
+        }
+    }
+}
+
+impl Look {
+    fn mark(self) -> Mark {
+        let full = |colour| Mark::Line { colour, dashes: None };
+        let dashed = |colour, dashes| Mark::Line { colour, dashes: Some(dashes) };
         match self {
             Self::Truth => full(BLUE),
-            Self::TruthDots => Sample::Dot { radius: 2.6, colour: BLUE },
+            Self::TruthDots => Mark::Dots { radius: 2.6, colour: BLUE },
             Self::Wrong => dashed(VERMILION, "7 4"),
-            Self::WrongRings => Sample::Ring(VERMILION),
+            Self::WrongRings => Mark::Rings(VERMILION),
             Self::Second => dashed(ORANGE, "3 3"),
             Self::Beside => full(GREEN),
-            Self::BesideDots => Sample::Dot { radius: 2.2, colour: GREEN },
+            Self::BesideDots => Mark::Dots { radius: 2.2, colour: GREEN },
             Self::Limit => dashed(SOFT_INK, "1 3"),
         }
     }
@@ -155,16 +174,14 @@ pub fn chart(drawn: &Chart) -> String {
                 .map(|place| panel.at(place.0, place.1))
                 .collect();
             let thickness = if matches!(curve.look, Look::Beside | Look::Limit) { 1.6 } else { 2.4 };
-            match curve.look.sample() {
-                Sample::Line { colour, dashes } if !drawn.is_empty() => {
-                    line(&mut svg, &drawn, colour, thickness, dashes);
-                }
-                Sample::Dot { radius, colour } => dots(&mut svg, drawn.into_iter(), radius, colour),
-                Sample::Ring(colour) => drawn.into_iter().for_each(|point| ring(&mut svg, point, 4.5, colour)),
-                _ => {}
+            match curve.look.mark() {
+                Mark::Line { .. } if drawn.is_empty() => {}
+                Mark::Line { colour, dashes } => line(&mut svg, &drawn, colour, thickness, dashes),
+                Mark::Dots { radius, colour } => dots(&mut svg, drawn.into_iter(), radius, colour),
+                Mark::Rings(colour) => drawn.into_iter().for_each(|point| ring(&mut svg, point, 4.5, colour)),
             }
             if !curve.label.is_empty() {
-                entries.push((curve.look.sample(), curve.label));
+                entries.push((curve.look.mark().sample(), curve.label));
             }
         }
         panel.edge(&mut svg);

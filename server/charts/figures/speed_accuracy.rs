@@ -22,7 +22,7 @@ pub struct SpeedAccuracy<'a> {
     pub cost: (&'a str, &'a str),
     /// What the error is.
     pub error: &'a str,
-    /// The methods; their number tells symbol and colour.
+    /// The methods.
     pub series: &'a [Series<'a>],
     /// Cost and error of the points that none beats.
     pub front: &'a [(f64, f64)],
@@ -33,24 +33,38 @@ pub struct SpeedAccuracy<'a> {
 /// One method.
 #[derive(Clone, Debug)]
 pub struct Series<'a> {
-    /// Its place among all methods.
-    pub number: usize,
-    /// What it is called.
+    /// Symbol and colour.
+    pub symbol: Symbol,
+    /// Name.
     pub label: &'a str,
     /// Quartile, median, quartile of the cost, and the error.
     pub points: Vec<([f64; 3], f64)>,
 }
 
-/// Colours and outlines; both tell the same.
-const LOOKS: [(&str, Outline); 11] = [
-    (BLUE, &[(-0.9, -0.4), (-0.4, -0.9), (0.4, -0.9), (0.9, -0.4), (0.9, 0.4), (0.4, 0.9), (-0.4, 0.9), (-0.9, 0.4)]),
-    (SKY, &[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)]),
-    (GREEN, &[(0.0, -1.1), (1.1, 0.9), (-1.1, 0.9)]),
-    (INK, &[(-1.0, -0.3), (1.0, -0.3), (1.0, 0.3), (-1.0, 0.3)]),
-    (VERMILION, &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
-    (PURPLE, &[(0.0, 1.1), (1.1, -0.9), (-1.1, -0.9)]),
-    (PURPLE, &[(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)]),
-    (
+/// The mark of a method: a colour and an outline, each of which tells methods apart.
+#[derive(Clone, Copy, Debug)]
+pub struct Symbol {
+    colour: &'static str,
+    outline: &'static [Point],
+}
+
+const fn symbol(colour: &'static str, outline: &'static [Point]) -> Symbol {
+    Symbol { colour, outline }
+}
+
+/// The symbols, one for each method.
+pub const SYMBOLS: [Symbol; 11] = [
+    symbol(
+        BLUE,
+        &[(-0.9, -0.4), (-0.4, -0.9), (0.4, -0.9), (0.9, -0.4), (0.9, 0.4), (0.4, 0.9), (-0.4, 0.9), (-0.9, 0.4)],
+    ),
+    symbol(SKY, &[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)]),
+    symbol(GREEN, &[(0.0, -1.1), (1.1, 0.9), (-1.1, 0.9)]),
+    symbol(INK, &[(-1.0, -0.3), (1.0, -0.3), (1.0, 0.3), (-1.0, 0.3)]),
+    symbol(VERMILION, &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
+    symbol(PURPLE, &[(0.0, 1.1), (1.1, -0.9), (-1.1, -0.9)]),
+    symbol(PURPLE, &[(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)]),
+    symbol(
         PURPLE,
         &[
             (0.0, -0.4),
@@ -67,7 +81,7 @@ const LOOKS: [(&str, Outline); 11] = [
             (-0.7, -1.1),
         ],
     ),
-    (
+    symbol(
         ORANGE,
         &[
             (-0.35, -1.2),
@@ -84,11 +98,9 @@ const LOOKS: [(&str, Outline); 11] = [
             (-0.35, -0.35),
         ],
     ),
-    (SOFT_INK, &[(-1.1, 0.0), (0.9, -1.1), (0.9, 1.1)]),
-    (SOFT_INK, &[(1.1, 0.0), (-0.9, -1.1), (-0.9, 1.1)]),
+    symbol(SOFT_INK, &[(-1.1, 0.0), (0.9, -1.1), (0.9, 1.1)]),
+    symbol(SOFT_INK, &[(1.1, 0.0), (-0.9, -1.1), (-0.9, 1.1)]),
 ];
-
-type Outline = &'static [Point];
 
 /// Size of a symbol, px.
 const SIZE: f64 = 5.0;
@@ -96,8 +108,7 @@ const SIZE: f64 = 5.0;
 /// Space between lines of the legend, px.
 const LEADING: f64 = 23.0;
 
-fn symbol(svg: &mut Svg, (x, y): Point, number: usize) {
-    let (colour, outline) = LOOKS[number % LOOKS.len()];
+fn draw_symbol(svg: &mut Svg, (x, y): Point, Symbol { colour, outline }: Symbol) {
     let corner = |(index, (right, down)): (usize, &Point)| {
         let kind = if index == 0 { "M" } else { "L" };
         format!("{kind}{} {}", fixed(x + SIZE * right), fixed(y + SIZE * down))
@@ -144,14 +155,14 @@ pub fn speed_accuracy(drawn: &SpeedAccuracy<'_>) -> String {
         line(&mut svg, &stairs, INK, 1.6, None);
     }
     for series in drawn.series {
-        let colour = LOOKS[series.number % LOOKS.len()].0;
+        let colour = series.symbol.colour;
         let middles: Vec<Point> = series.points.iter().map(|(cost, error)| at(cost[1], *error)).collect();
         if middles.len() > 1 {
             line(&mut svg, &middles, colour, 1.2, None);
         }
         for ((cost, error), middle) in series.points.iter().zip(middles) {
             line(&mut svg, &[at(cost[0], *error), at(cost[2], *error)], colour, 2.4, None);
-            symbol(&mut svg, middle, series.number);
+            draw_symbol(&mut svg, middle, series.symbol);
         }
     }
     panel.edge(&mut svg);
@@ -164,7 +175,7 @@ pub fn speed_accuracy(drawn: &SpeedAccuracy<'_>) -> String {
         y += LEADING;
     };
     for series in drawn.series {
-        label(&mut svg, series.label, &|svg, y| symbol(svg, (left + 8.0, y), series.number));
+        label(&mut svg, series.label, &|svg, y| draw_symbol(svg, (left + 8.0, y), series.symbol));
     }
     label(&mut svg, "Pareto front", &|svg, y| line(svg, &[(left, y), (left + 18.0, y)], INK, 1.6, None));
     label(&mut svg, "rounding of doubles", &|svg, y| {
