@@ -123,12 +123,9 @@ fn no_numbers_break_eigenvalues() {
 fn no_numbers_break_speed_against_accuracy() {
     for a in AWKWARD {
         for b in AWKWARD {
-            let series: Vec<_> = (0..12)
-                .map(|number| Series {
-                    symbol: SYMBOLS[number],
-                    label: "<one>",
-                    points: vec![([a, b, a], b), ([1.0; 3], a)],
-                })
+            let series: Vec<_> = SYMBOLS
+                .into_iter()
+                .map(|symbol| Series { symbol, label: "<one>", points: vec![([a, b, a], b), ([1.0; 3], a)] })
                 .collect();
             let picture = speed_accuracy(&SpeedAccuracy {
                 title: "Cost",
