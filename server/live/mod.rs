@@ -10,6 +10,7 @@ pub mod bounds;
 pub mod catch_up;
 pub mod clock;
 pub mod close;
+pub mod impact_message;
 pub mod outbox;
 pub mod run_url;
 pub mod session;

@@ -5,7 +5,8 @@ use std::collections::VecDeque;
 use std::time::Instant;
 
 use crate::limits;
-use crate::live::server_message::{ImpactColumns, ImpactMessage, OutgoingFrame, ServerMessage};
+use crate::live::impact_message::{ImpactColumns, ImpactMessage};
+use crate::live::server_message::{OutgoingFrame, ServerMessage};
 
 #[derive(Debug)]
 enum QueuedItem {
@@ -58,7 +59,7 @@ impl Outbox {
             && let Some(QueuedItem::Impact(impact)) = self.items.remove(oldest)
         {
             self.impacts -= 1;
-            self.gap = Some((self.gap.map_or(impact.n, |(from, _)| from), impact.n));
+            self.gap = Some((self.gap.map_or(impact.n(), |(from, _)| from), impact.n()));
         }
     }
 
@@ -115,6 +116,7 @@ impl Outbox {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::api::trajectories::columns::ImpactRow;
     use crate::runs::playback::Playback;
     use crate::runs::run::tests::case;
     use serde_json::{Value, json};
@@ -130,7 +132,7 @@ mod tests {
         let mut playback = Playback::new(&run, limits::LIVE_IMPACTS);
         let mut next = || {
             let (contact, _) = playback.advance(&run);
-            ImpactMessage::new(playback.body(), true, &contact)
+            ImpactMessage(ImpactRow::new(playback.body(), true, contact))
         };
         let mut outbox = Outbox::new(4);
         outbox.push_impact(next());

@@ -2,11 +2,7 @@
 //!
 //! Not here: when it is said, and what a client says (`client_message`).
 
-use equipoise_physics::body::Body;
-use equipoise_physics::bounce::state::State;
-use equipoise_physics::run::orbit::Contact;
-use equipoise_physics::scene::model::Model;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::BUILD;
 use crate::api::scene::{Resolved, has_angle};
@@ -15,6 +11,7 @@ use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::http::{FieldError, Problem};
 use crate::limits;
+use crate::live::impact_message::{ImpactColumns, ImpactMessage};
 use crate::live::run_url;
 use crate::live::run_url::LiveRun;
 use crate::runs::playback::Playback;
@@ -91,8 +88,10 @@ impl ServerMessage<'_> {
     pub fn to_frame(&self) -> OutgoingFrame {
         let (kind, id) = match self {
             ServerMessage::Hello(_) => ("hello", None),
-            ServerMessage::Impact(impact) => ("impact", Some(EventId::Impact(impact.n))),
-            ServerMessage::Impacts { columns } => ("impacts", columns.0.last().map(|impact| EventId::Impact(impact.n))),
+            ServerMessage::Impact(impact) => ("impact", Some(EventId::Impact(impact.n()))),
+            ServerMessage::Impacts { columns } => {
+                ("impacts", columns.0.last().map(|impact| EventId::Impact(impact.n())))
+            }
             ServerMessage::Gap { .. } => ("gap", None),
             ServerMessage::End { .. } => ("end", Some(EventId::End)),
             ServerMessage::Problem { .. } => ("problem", None),
@@ -184,136 +183,6 @@ pub struct Ack<'a> {
     pub paused: bool,
     /// The impact at which it acts, for `set`, `kick` and `step`.
     pub impact: Option<u64>,
-}
-
-/// An impact as it is told.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ImpactMessage {
-    /// Its number, from 1.
-    pub n: u64,
-    /// When, s after release.
-    pub t: f64,
-    before: Before,
-    after: Option<After>,
-    alpha: f64,
-    table_velocity: Option<Velocity>,
-    flight_time: Option<f64>,
-    energy: f64,
-    contact_speed: f64,
-    impulse_normal: Option<f64>,
-    impulse_tangential: Option<f64>,
-    contact_mode: Option<&'static str>,
-    clearance: f64,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-struct Before {
-    x: f64,
-    theta: f64,
-    x_dot: f64,
-    y_dot: f64,
-    theta_dot: Option<f64>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-struct After {
-    x_dot: f64,
-    y_dot: f64,
-    theta_dot: Option<f64>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-struct Velocity {
-    x: f64,
-    y: f64,
-}
-
-impl ImpactMessage {
-    /// Of a contact of this body; a point mass has no angle of its own.
-    pub fn new(body: &Model, has_angle: bool, contact: &Contact) -> Self {
-        let State { theta, x_dot, y_dot, theta_dot } = contact.state;
-        let angle = |value| has_angle.then_some(value);
-        // What a run that diverged has overflown to does not exist.
-        let struck = contact.strike.filter(|strike| {
-            let State { x_dot, y_dot, theta_dot, .. } = strike.after;
-            [x_dot, y_dot, theta_dot, strike.impulse_normal, strike.table_velocity.0, strike.table_velocity.1]
-                .iter()
-                .all(|value| value.is_finite())
-        });
-        Self {
-            n: contact.n,
-            t: contact.t,
-            before: Before { x: contact.x, theta, x_dot, y_dot, theta_dot: angle(theta_dot) },
-            after: struck.map(|strike| After {
-                x_dot: strike.after.x_dot,
-                y_dot: strike.after.y_dot,
-                theta_dot: angle(strike.after.theta_dot),
-            }),
-            alpha: contact.alpha,
-            table_velocity: struck.map(|strike| Velocity { x: strike.table_velocity.0, y: strike.table_velocity.1 }),
-            flight_time: contact.flight_time,
-            energy: body.energy(&contact.state) + body.rod().gravity * contact.clearance,
-            contact_speed: body.contact_speed(&contact.state),
-            impulse_normal: struck.map(|strike| strike.impulse_normal),
-            impulse_tangential: struck.map(|strike| strike.impulse_tangential),
-            contact_mode: contact.strike.map(|strike| strike.mode.name()),
-            clearance: contact.clearance,
-        }
-    }
-
-    /// Time to the next one, s of run time.
-    pub fn flight_time(&self) -> Option<f64> {
-        self.flight_time
-    }
-}
-
-/// Impacts column by column.
-#[derive(Debug)]
-pub struct ImpactColumns(pub Vec<ImpactMessage>);
-
-impl Serialize for ImpactColumns {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        fn column<T: Serialize>(impacts: &[ImpactMessage], of: impl Fn(&ImpactMessage) -> T) -> Vec<T> {
-            impacts.iter().map(of).collect()
-        }
-        #[derive(Serialize)]
-        struct Named {
-            n: Vec<u64>,
-            t: Vec<f64>,
-            x: Vec<f64>,
-            theta: Vec<f64>,
-            x_dot: Vec<f64>,
-            y_dot: Vec<f64>,
-            theta_dot: Vec<Option<f64>>,
-            x_dot_after: Vec<Option<f64>>,
-            y_dot_after: Vec<Option<f64>>,
-            theta_dot_after: Vec<Option<f64>>,
-            alpha: Vec<f64>,
-            flight_time: Vec<Option<f64>>,
-            energy: Vec<f64>,
-            contact_speed: Vec<f64>,
-            clearance: Vec<f64>,
-        }
-        let all = &self.0;
-        let named = Named {
-            n: column(all, |impact| impact.n),
-            t: column(all, |impact| impact.t),
-            x: column(all, |impact| impact.before.x),
-            theta: column(all, |impact| impact.before.theta),
-            x_dot: column(all, |impact| impact.before.x_dot),
-            y_dot: column(all, |impact| impact.before.y_dot),
-            theta_dot: column(all, |impact| impact.before.theta_dot),
-            x_dot_after: column(all, |impact| impact.after.map(|after| after.x_dot)),
-            y_dot_after: column(all, |impact| impact.after.map(|after| after.y_dot)),
-            theta_dot_after: column(all, |impact| impact.after.and_then(|after| after.theta_dot)),
-            alpha: column(all, |impact| impact.alpha),
-            flight_time: column(all, |impact| impact.flight_time),
-            energy: column(all, |impact| impact.energy),
-            contact_speed: column(all, |impact| impact.contact_speed),
-            clearance: column(all, |impact| impact.clearance),
-        };
-        named.serialize(serializer)
-    }
 }
 
 #[cfg(test)]

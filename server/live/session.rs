@@ -15,6 +15,7 @@ use tokio::sync::mpsc;
 use tokio::time::{sleep_until, timeout};
 
 use crate::api::scene::has_angle;
+use crate::api::trajectories::columns::ImpactRow;
 use crate::compute::{Limit, Pool, TimeSlice};
 use crate::http::{FieldError, Problem};
 use crate::limits;
@@ -23,11 +24,12 @@ use crate::live::catch_up;
 use crate::live::catch_up::CatchUpError;
 use crate::live::client_message::ClientMessage;
 use crate::live::close::{Close, Unreadable};
+use crate::live::impact_message::ImpactMessage;
 use crate::live::outbox::Outbox;
 use crate::live::run_url;
 use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message;
-use crate::live::server_message::{Ack, Hello, ImpactMessage, OutgoingFrame, ServerMessage};
+use crate::live::server_message::{Ack, Hello, OutgoingFrame, ServerMessage};
 use crate::runs::interventions::NO_ANGLE;
 use crate::runs::playback::Playback;
 
@@ -261,7 +263,7 @@ impl Session {
             (told, spent, last_flight) = (told + 1, spent + price.as_bounces(), contact.flight_time);
             if contact.n >= self.first {
                 let has_angle = has_angle(self.live.run.scene());
-                self.outbox.push_impact(ImpactMessage::new(self.playback.body(), has_angle, &contact));
+                self.outbox.push_impact(ImpactMessage(ImpactRow::new(self.playback.body(), has_angle, contact)));
             }
             if let Some(outcome) = self.playback.outcome() {
                 self.outbox.push(ServerMessage::End { outcome, demand: self.playback.demand().into() }.to_frame());

@@ -1,11 +1,13 @@
 //! The columns of impacts, each described once: trajectories and live runs take theirs from this table.
 
 use equipoise_physics::body::Body;
+use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::model::Model;
+use serde::Serialize;
 
 use crate::api::shared::table::gather::Read;
 
@@ -40,9 +42,53 @@ impl ImpactRow {
         self.contact.strike.map(|strike| read(&strike) + 0.0).filter(|value| value.is_finite())
     }
 
-    fn angle(&self, value: f64) -> Option<f64> {
+    /// An angular velocity. A point mass has none.
+    pub fn angle(&self, value: f64) -> Option<f64> {
         self.has_angle.then_some(value)
     }
+
+    /// The velocities just after.
+    pub fn after(&self) -> Option<After> {
+        let State { x_dot, y_dot, theta_dot, .. } = self.contact.strike?.after;
+        let exist = [x_dot, y_dot, theta_dot].iter().all(|value| value.is_finite());
+        exist.then(|| After { x_dot, y_dot, theta_dot: self.angle(theta_dot) })
+    }
+
+    /// Horizontal velocity of the table, m/s.
+    pub fn table_velocity_x(&self) -> Option<f64> {
+        self.struck(|strike| strike.table_velocity.0)
+    }
+
+    /// Vertical velocity of the table, m/s.
+    pub fn table_velocity_y(&self) -> Option<f64> {
+        self.struck(|strike| strike.table_velocity.1)
+    }
+
+    /// Impulse along the normal of the table per unit mass, m/s.
+    pub fn impulse_normal(&self) -> Option<f64> {
+        self.struck(|strike| strike.impulse_normal)
+    }
+
+    /// Impulse along the table per unit mass, m/s.
+    pub fn impulse_tangential(&self) -> Option<f64> {
+        self.struck(|strike| strike.impulse_tangential)
+    }
+
+    /// Name of the contact mode.
+    pub fn contact_mode(&self) -> Option<&'static str> {
+        self.contact.strike.map(|strike| strike.mode.name())
+    }
+}
+
+/// Velocities just after an impact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct After {
+    /// Horizontal velocity, m/s.
+    pub x_dot: f64,
+    /// Vertical velocity, m/s.
+    pub y_dot: f64,
+    /// Angular velocity, rad/s. A point mass has none.
+    pub theta_dot: Option<f64>,
 }
 
 /// An impact with 31 digits.
@@ -107,7 +153,7 @@ impl ImpactColumn {
 }
 
 /// All columns, in their order.
-pub static COLUMNS: [ImpactColumn; 19] = [
+pub static COLUMNS: [ImpactColumn; 22] = [
         column(
             "n",
             "",
@@ -164,6 +210,27 @@ pub static COLUMNS: [ImpactColumn; 19] = [
         )
         .digits(|row| row.has_angle.then_some(row.contact.state.theta_dot)),
         column(
+        "x_dot_after",
+        "m/s",
+        "Horizontal velocity just after the impact, in metres per second.",
+        Read::Sparse(|row| row.after().map(|after| after.x_dot)),
+    )
+    .told(Told::Live),
+    column(
+        "y_dot_after",
+        "m/s",
+        "Vertical velocity just after the impact, in metres per second.",
+        Read::Sparse(|row| row.after().map(|after| after.y_dot)),
+    )
+    .told(Told::Live),
+    column(
+        "theta_dot_after",
+        "rad/s",
+        "Angular velocity just after the impact, in radians per second. Null for a point mass.",
+        Read::Sparse(|row| row.after()?.theta_dot),
+    )
+    .told(Told::Live),
+    column(
             "alpha",
             "rad",
             "Angle of the table, in radians.",
@@ -174,28 +241,28 @@ pub static COLUMNS: [ImpactColumn; 19] = [
             "table_velocity_x",
             "m/s",
             "Horizontal velocity of the table, in metres per second.",
-            Read::Sparse(|row| row.struck(|strike| strike.table_velocity.0)),
+            Read::Sparse(ImpactRow::table_velocity_x),
         )
         .digits(|row| row.struck(|strike| strike.table_velocity.0)),
         column(
             "table_velocity_y",
             "m/s",
             "Vertical velocity of the table, in metres per second.",
-            Read::Sparse(|row| row.struck(|strike| strike.table_velocity.1)),
+            Read::Sparse(ImpactRow::table_velocity_y),
         )
         .digits(|row| row.struck(|strike| strike.table_velocity.1)),
         column(
             "impulse_normal",
             "m/s",
             "Impulse along the normal of the table per unit mass, in metres per second.",
-            Read::Sparse(|row| row.struck(|strike| strike.impulse_normal)),
+            Read::Sparse(ImpactRow::impulse_normal),
         )
         .digits(|row| row.struck(|strike| strike.impulse_normal)),
         column(
             "impulse_tangential",
             "m/s",
             "Impulse along the table per unit mass, in metres per second.",
-            Read::Sparse(|row| row.struck(|strike| strike.impulse_tangential)),
+            Read::Sparse(ImpactRow::impulse_tangential),
         ),
         column(
             "contact_mode",
@@ -203,7 +270,7 @@ pub static COLUMNS: [ImpactColumn; 19] = [
             "What the contact did along the table: it slid one way throughout (`slide`); was or came to rest and stayed (`stick`); \
              came to rest and slid the other way (`reverse_slide`); or was at rest and friction could not hold it (`slide_through`). \
              Null where there was no impact.",
-            Read::Word(|row| row.contact.strike.map(|strike| strike.mode.name())),
+            Read::Word(ImpactRow::contact_mode),
         ),
         column(
             "energy",
@@ -252,6 +319,14 @@ pub fn of_trajectories(dated: bool) -> impl Iterator<Item = &'static ImpactColum
     })
 }
 
+/// The columns of live impacts.
+pub fn of_live_runs() -> impl Iterator<Item = &'static ImpactColumn> {
+    COLUMNS.iter().filter(|column| match column.told {
+        Told::Everywhere | Told::Live => true,
+        Told::Trajectories | Told::DatedTrajectories => false,
+    })
+}
+
 /// Wall time, unix ms, of a time since the release at `epoch`.
 pub fn date(epoch: u64, t: f64) -> u64 {
     (epoch as f64 + 1e3 * t).round() as u64
@@ -281,6 +356,21 @@ mod tests {
             if column.name != "time" {
                 assert_eq!(property["x-unit"].as_str().unwrap_or_default(), column.unit, "{}", column.name);
             }
+        }
+    }
+
+    #[test]
+    fn the_contract_lists_the_columns_of_live_impacts() {
+        let document: Value =
+            serde_json::from_slice(include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json"))).unwrap();
+        let schema = &document["components"]["schemas"]["live.impacts"]["properties"]["columns"];
+        let named: Vec<&str> =
+            schema["required"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+        let own: Vec<&str> = of_live_runs().map(|column| column.name).collect();
+        assert_eq!(own, named);
+        for column in of_live_runs() {
+            let unit = schema["properties"][column.name]["x-unit"].as_str().unwrap_or_default();
+            assert_eq!(unit, column.unit, "{}", column.name);
         }
     }
 }
