@@ -12,22 +12,22 @@ use crate::compute::stopwatch;
 use crate::compute::stopwatch::{TimedWork, Timing, TimingBudget};
 use crate::compute::{CancelFlag, Cancelled, TimeSlice};
 use crate::limits;
-use runs::{Done, Subject};
+use runs::{MethodRun, Subject};
 
 /// A method of the chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Method {
+pub struct ComparedMethod {
     /// Its name in requests and answers.
     pub name: &'static str,
     /// The same in words.
     pub title: &'static str,
     /// What it is, in a sentence.
     pub about: &'static str,
-    kind: Kind,
+    kind: MethodKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum MethodKind {
     Map,
     MapFree,
     Linear,
@@ -42,73 +42,73 @@ enum Kind {
 }
 
 /// All of them, in the order of answers.
-pub const METHODS: [Method; 11] = {
-    const fn method(kind: Kind, name: &'static str, title: &'static str, about: &'static str) -> Method {
-        Method { name, title, about, kind }
+pub const METHODS: [ComparedMethod; 11] = {
+    const fn method(kind: MethodKind, name: &'static str, title: &'static str, about: &'static str) -> ComparedMethod {
+        ComparedMethod { name, title, about, kind }
     }
     [
         method(
-            Kind::Map,
+            MethodKind::Map,
             "map",
             "map",
             "The map from contact to contact in closed form, which keeps rounding off the energy.",
         ),
         method(
-            Kind::MapFree,
+            MethodKind::MapFree,
             "map_free",
             "map, energy left free",
             "The same map without the correction of its energy.",
         ),
         method(
-            Kind::Linear,
+            MethodKind::Linear,
             "linear",
             "linear solution",
             "Eq. (13) and (20) to (23) in closed form, any impact at the same cost.",
         ),
         method(
-            Kind::Extended,
+            MethodKind::Extended,
             "extended",
             "map with 31 digits",
             "The map in double-double numbers: the reference of all errors.",
         ),
         method(
-            Kind::Adaptive,
+            MethodKind::Adaptive,
             "adaptive",
             "Dormand-Prince 5(4), events",
             "A library's adaptive Runge-Kutta; contacts located by halving on its dense output.",
         ),
         method(
-            Kind::Bisection,
+            MethodKind::Bisection,
             "runge_kutta_bisection",
             "RK4, contact bisected",
             "Runge-Kutta of order 4 with a fixed step; contacts located to the last digit.",
         ),
         method(
-            Kind::Secant,
+            MethodKind::Secant,
             "runge_kutta_secant",
             "RK4, contact on a chord",
             "The same; contacts where the chord of the gap over the step is zero.",
         ),
         method(
-            Kind::StepEnd,
+            MethodKind::StepEnd,
             "runge_kutta_step_end",
             "RK4, contact at step end",
             "The same; contacts at the end of the step in which they happen.",
         ),
         method(
-            Kind::Sampling,
+            MethodKind::Sampling,
             "sampling",
             "sampled flight",
             "The exact parabola looked at on a grid of times; contacts halved between two looks.",
         ),
         method(
-            Kind::TimeStepping,
+            MethodKind::TimeStepping,
             "time_stepping",
             "Moreau-Jean time stepping",
             "Velocities and impulses of whole steps, as engines of many contacts do it.",
         ),
         method(
-            Kind::Penalty,
+            MethodKind::Penalty,
             "penalty",
             "spring-damper contact",
             "A stiff spring and a damper for the contact, moved by Runge-Kutta.",
@@ -118,7 +118,7 @@ pub const METHODS: [Method; 11] = {
 
 /// What a method can be told.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setting {
+pub struct MethodSetting {
     /// `step` or `tolerance`.
     pub name: &'static str,
     /// Its value.
@@ -129,11 +129,11 @@ pub struct Setting {
 
 /// One method with one setting.
 #[derive(Clone, Debug)]
-pub struct Point {
+pub struct WorkPrecisionPoint {
     /// The method.
-    pub method: Method,
+    pub method: ComparedMethod,
     /// Its setting, if it has one.
-    pub setting: Option<Setting>,
+    pub setting: Option<MethodSetting>,
     /// Clock time of the whole run; none where there was no run.
     pub timing: Option<Timing>,
     /// Contacts that it saw.
@@ -154,7 +154,7 @@ pub struct Point {
     pub pareto_evaluations: bool,
 }
 
-impl Point {
+impl WorkPrecisionPoint {
     /// Quartile, median, quartile of the time of a contact, ns.
     pub fn cost_ns(&self) -> Option<[f64; 3]> {
         let timing = self.timing.filter(|_| self.impacts > 0)?;
@@ -169,7 +169,7 @@ impl Point {
 
 /// How the reference ran.
 #[derive(Clone, Copy, Debug)]
-pub struct Reference {
+pub struct ReferenceRun {
     /// How it ended.
     pub outcome: &'static str,
     /// Contacts, the last included.
@@ -182,25 +182,25 @@ pub struct Reference {
 
 /// The chart of a scene.
 #[derive(Clone, Debug)]
-pub struct Chart {
+pub struct WorkPrecisionChart {
     /// What errors are from.
-    pub reference: Reference,
+    pub reference: ReferenceRun,
     /// All points, method by method.
-    pub points: Vec<Point>,
+    pub points: Vec<WorkPrecisionPoint>,
     /// What was left out.
     pub notes: Vec<String>,
 }
 
 /// How many points the methods have at most.
-pub fn most_points(methods: &[Method]) -> u64 {
+pub fn most_points(methods: &[ComparedMethod]) -> u64 {
     methods.iter().map(|method| method.kind.settings(1.0).len() as u64).sum()
 }
 
-impl Kind {
+impl MethodKind {
     /// Settings from the coarsest, `scale` being the power of ten below the mean flight, s.
-    fn settings(self, scale: f64) -> Vec<Option<Setting>> {
+    fn settings(self, scale: f64) -> Vec<Option<MethodSetting>> {
         let of = |name, unit, values: &[f64]| {
-            values.iter().map(|&value| Some(Setting { name, value, unit })).collect::<Vec<_>>()
+            values.iter().map(|&value| Some(MethodSetting { name, value, unit })).collect::<Vec<_>>()
         };
         match self {
             Self::Map | Self::MapFree | Self::Linear | Self::Extended => vec![None],
@@ -227,10 +227,10 @@ fn power_of_ten(time: f64) -> f64 {
 pub fn chart(
     scene: &Scene,
     impacts: u64,
-    methods: &[Method],
+    methods: &[ComparedMethod],
     progress: &mut dyn FnMut(u64, u64),
     slice: &TimeSlice,
-) -> Result<Chart, Cancelled> {
+) -> Result<WorkPrecisionChart, Cancelled> {
     let subject = Subject::new(scene, impacts, slice)?;
     let reference = subject.reference();
     let scale = power_of_ten(reference.t / reference.impacts.max(1) as f64);
@@ -239,7 +239,7 @@ pub fn chart(
     let mut left_out = Vec::new();
     for &method in methods {
         for setting in method.kind.settings(scale) {
-            if let Some(Setting { name: "step", value, .. }) = setting
+            if let Some(MethodSetting { name: "step", value, .. }) = setting
                 && reference.t / value > 0.9 * limits::PRECISION_STEPS as f64
             {
                 left_out.push(value);
@@ -270,13 +270,18 @@ pub fn chart(
     }
     measure(&subject, &mut points, progress, slice)?;
     mark(&mut points, |point| point.cost_ns().map(|cost| cost[1]), |point| &mut point.pareto);
-    mark(&mut points, Point::evaluations_per_impact, |point| &mut point.pareto_evaluations);
-    Ok(Chart { reference, points, notes })
+    mark(&mut points, WorkPrecisionPoint::evaluations_per_impact, |point| &mut point.pareto_evaluations);
+    Ok(WorkPrecisionChart { reference, points, notes })
 }
 
-fn point(subject: &Subject<'_>, method: Method, setting: Option<Setting>, done: Result<Done, String>) -> Point {
+fn point(
+    subject: &Subject<'_>,
+    method: ComparedMethod,
+    setting: Option<MethodSetting>,
+    done: Result<MethodRun, String>,
+) -> WorkPrecisionPoint {
     let reference = subject.reference();
-    let mut point = Point {
+    let mut point = WorkPrecisionPoint {
         method,
         setting,
         timing: None,
@@ -291,11 +296,11 @@ fn point(subject: &Subject<'_>, method: Method, setting: Option<Setting>, done: 
     };
     let done = match done {
         Ok(done) => done,
-        Err(reason) => return Point { reason: Some(reason), ..point },
+        Err(reason) => return WorkPrecisionPoint { reason: Some(reason), ..point },
     };
     (point.impacts, point.steps, point.evaluations) = (done.impacts, done.steps, done.evaluations);
     point.outcome = done.outcome;
-    if method.kind == Kind::Extended {
+    if method.kind == MethodKind::Extended {
         point.reason = Some("it is the reference that errors are measured from".to_owned());
     } else if (done.outcome, done.impacts) != (reference.outcome, reference.impacts) {
         let (outcome, impacts) = (reference.outcome, reference.impacts);
@@ -316,12 +321,13 @@ fn point(subject: &Subject<'_>, method: Method, setting: Option<Setting>, done: 
 /// Times all runs there were, in turns.
 fn measure(
     subject: &Subject<'_>,
-    points: &mut [Point],
+    points: &mut [WorkPrecisionPoint],
     progress: &mut dyn FnMut(u64, u64),
     slice: &TimeSlice,
 ) -> Result<(), Cancelled> {
     let of = 2 * points.len() as u64;
-    let mut ran: Vec<&mut Point> = points.iter_mut().filter(|point| point.outcome != "unavailable").collect();
+    let mut ran: Vec<&mut WorkPrecisionPoint> =
+        points.iter_mut().filter(|point| point.outcome != "unavailable").collect();
     let mut works: Vec<TimedWork<'_>> = ran
         .iter()
         .map(|point| {
@@ -347,7 +353,11 @@ fn measure(
 }
 
 /// Marks the points that none beats: at most as dear and as far off as they are, and less in one of the two.
-fn mark(points: &mut [Point], cost: impl Fn(&Point) -> Option<f64>, flag: impl Fn(&mut Point) -> &mut bool) {
+fn mark(
+    points: &mut [WorkPrecisionPoint],
+    cost: impl Fn(&WorkPrecisionPoint) -> Option<f64>,
+    flag: impl Fn(&mut WorkPrecisionPoint) -> &mut bool,
+) {
     let places: Vec<Option<(f64, f64)>> = points.iter().map(|point| cost(point).zip(point.error)).collect();
     for (point, place) in points.iter_mut().zip(&places) {
         let beats = |own: (f64, f64), other: (f64, f64)| other.0 <= own.0 && other.1 <= own.1 && other != own;

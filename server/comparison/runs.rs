@@ -16,7 +16,7 @@ use equipoise_physics::run::{extended, orbit};
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
 
-use crate::comparison::{Kind, Reference, Setting};
+use crate::comparison::{MethodKind, MethodSetting, ReferenceRun};
 use crate::compute::{CancelFlag, Cancelled, TimeSlice};
 use crate::integrators;
 use crate::integrators::{Location, simulate};
@@ -24,7 +24,7 @@ use crate::limits;
 
 /// What a run came to.
 #[derive(Clone, Debug)]
-pub(crate) struct Done {
+pub(crate) struct MethodRun {
     pub(crate) outcome: &'static str,
     /// Contacts, the last included, and the state just before that.
     pub(crate) impacts: u64,
@@ -39,7 +39,7 @@ pub(crate) struct Subject<'a> {
     impacts: u64,
     model: Model,
     linear: Result<LinearSolution, String>,
-    reference: Reference,
+    reference: ReferenceRun,
     state: State<DoubleDouble>,
 }
 
@@ -47,7 +47,7 @@ impl<'a> Subject<'a> {
     pub(crate) fn new(scene: &'a Scene, impacts: u64, slice: &TimeSlice) -> Result<Self, Cancelled> {
         let zero = DoubleDouble::from_f64(0.0);
         let mut state = State { theta: zero, x_dot: zero, y_dot: zero, theta_dot: zero };
-        let mut reference = Reference { outcome: Ending::Completed.name(), impacts: 0, t: 0.0, rounding: 0.0 };
+        let mut reference = ReferenceRun { outcome: Ending::Completed.name(), impacts: 0, t: 0.0, rounding: 0.0 };
         let ending = run_extended(scene, impacts, |contact| {
             state = contact.state;
             (reference.impacts, reference.t) = (contact.n, contact.t.to_f64());
@@ -62,7 +62,7 @@ impl<'a> Subject<'a> {
         Ok(subject)
     }
 
-    pub(crate) fn reference(&self) -> Reference {
+    pub(crate) fn reference(&self) -> ReferenceRun {
         self.reference
     }
 
@@ -93,22 +93,22 @@ impl<'a> Subject<'a> {
     /// One run for its result; a reason where there is none.
     pub(crate) fn run(
         &self,
-        kind: Kind,
-        setting: Option<Setting>,
+        kind: MethodKind,
+        setting: Option<MethodSetting>,
         slice: &TimeSlice,
-    ) -> Result<Result<Done, String>, Cancelled> {
+    ) -> Result<Result<MethodRun, String>, Cancelled> {
         slice.check()?;
         Ok(match kind {
-            Kind::Map => self.map(self.rules()),
-            Kind::MapFree => self.map(self.free()),
-            Kind::Extended => Ok(Done {
+            MethodKind::Map => self.map(self.rules()),
+            MethodKind::MapFree => self.map(self.free()),
+            MethodKind::Extended => Ok(MethodRun {
                 outcome: self.reference.outcome,
                 impacts: self.reference.impacts,
                 state: State { theta: 0.0, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 },
                 steps: self.reference.impacts,
                 evaluations: None,
             }),
-            Kind::Linear => self.linear.clone().map(|solution| Done {
+            MethodKind::Linear => self.linear.clone().map(|solution| MethodRun {
                 outcome: Ending::Completed.name(),
                 impacts: self.impacts,
                 state: solution.impact(self.impacts).state,
@@ -123,16 +123,16 @@ impl<'a> Subject<'a> {
     }
 
     /// The same for the clock: nothing is made ready, counted or kept that is not the run itself.
-    pub(crate) fn race(&self, kind: Kind, setting: Option<Setting>, cancel: &CancelFlag) {
+    pub(crate) fn race(&self, kind: MethodKind, setting: Option<MethodSetting>, cancel: &CancelFlag) {
         match kind {
-            Kind::Map => _ = black_box(self.bounce(self.rules(), |_| ())),
-            Kind::MapFree => _ = black_box(self.bounce(self.free(), |_| ())),
-            Kind::Extended => {
+            MethodKind::Map => _ = black_box(self.bounce(self.rules(), |_| ())),
+            MethodKind::MapFree => _ = black_box(self.bounce(self.free(), |_| ())),
+            MethodKind::Extended => {
                 _ = black_box(run_extended(self.scene, self.impacts, |contact| {
                     black_box(contact.n) > 0 && !cancel.is_set()
                 }))
             }
-            Kind::Linear => {
+            MethodKind::Linear => {
                 if let Ok(solution) = &self.linear {
                     (1..=self.impacts).for_each(|n| _ = black_box(solution.impact(n)));
                 }
@@ -154,7 +154,7 @@ impl<'a> Subject<'a> {
         Rules { holds_energy: false, ..self.rules() }
     }
 
-    fn map(&self, rules: Rules) -> Result<Done, String> {
+    fn map(&self, rules: Rules) -> Result<MethodRun, String> {
         let parameters = self.model.rod();
         let mut evaluations = 0;
         let last = self.bounce(rules, |contact| {
@@ -162,7 +162,7 @@ impl<'a> Subject<'a> {
             evaluations += flight.map_or(0, |strike| contact_time::evaluations(&parameters.flight(&strike)));
         });
         let (impacts, state, outcome) = last.ok_or("the first contact is not found")?;
-        Ok(Done { outcome, impacts, state, steps: impacts, evaluations: Some(evaluations) })
+        Ok(MethodRun { outcome, impacts, state, steps: impacts, evaluations: Some(evaluations) })
     }
 
     /// The map from the release on: number and state of the last contact, and how it ended.
@@ -178,7 +178,11 @@ impl<'a> Subject<'a> {
         Some((n, state, ending.name()))
     }
 
-    fn general(&self, kind: Kind, setting: Option<Setting>) -> Result<(integrators::Integrator, Rod), String> {
+    fn general(
+        &self,
+        kind: MethodKind,
+        setting: Option<MethodSetting>,
+    ) -> Result<(integrators::Integrator, Rod), String> {
         use integrators::Integrator;
         let Model::Rod(rod) = self.model else {
             return Err("general methods move a body with an angle of its own, and a point mass has none".to_owned());
@@ -186,14 +190,14 @@ impl<'a> Subject<'a> {
         let value = setting.map_or(f64::NAN, |setting| setting.value);
         let runge_kutta = |location| Integrator::RungeKutta { step: value, location };
         let method = match kind {
-            Kind::Adaptive => Integrator::Adaptive { tolerance: value },
-            Kind::StepEnd => runge_kutta(Location::StepEnd),
-            Kind::Secant => runge_kutta(Location::Secant),
-            Kind::Bisection => runge_kutta(Location::Bisection),
-            Kind::TimeStepping => Integrator::TimeStepping { step: value },
-            Kind::Penalty => Integrator::Penalty { step: value },
-            Kind::Sampling => Integrator::Sampling { step: value },
-            Kind::Map | Kind::MapFree | Kind::Linear | Kind::Extended => {
+            MethodKind::Adaptive => Integrator::Adaptive { tolerance: value },
+            MethodKind::StepEnd => runge_kutta(Location::StepEnd),
+            MethodKind::Secant => runge_kutta(Location::Secant),
+            MethodKind::Bisection => runge_kutta(Location::Bisection),
+            MethodKind::TimeStepping => Integrator::TimeStepping { step: value },
+            MethodKind::Penalty => Integrator::Penalty { step: value },
+            MethodKind::Sampling => Integrator::Sampling { step: value },
+            MethodKind::Map | MethodKind::MapFree | MethodKind::Linear | MethodKind::Extended => {
                 return Err("it is no general method".to_owned());
             }
         };
@@ -211,11 +215,11 @@ impl<'a> Subject<'a> {
         simulate(method, (rod, &rules, release), self.impacts, most, go_on)
     }
 
-    fn simulated(&self, method: integrators::Integrator, rod: &Rod, slice: &TimeSlice) -> Result<Done, Cancelled> {
+    fn simulated(&self, method: integrators::Integrator, rod: &Rod, slice: &TimeSlice) -> Result<MethodRun, Cancelled> {
         let simulation = self.simulate(method, rod, &mut || slice.should_continue()).ok_or(Cancelled)?;
         let last = simulation.impacts.last();
         let work = simulation.work;
-        Ok(Done {
+        Ok(MethodRun {
             outcome: simulation.ending.name(),
             impacts: last.map_or(0, |impact| impact.n),
             state: last.map_or(self.scene.release().state, |impact| impact.state),

@@ -1,14 +1,14 @@
 //! Where the linear analysis is right about nothing but its neighbourhood: a drift of the angle, a wide start, and a resonance.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
-use crate::failure_cases::course::{Course, eigenvalue, upright};
-use crate::failure_cases::{Case, Says, Seen, built, rod, with};
+use crate::failure_cases::course::{AngleHistory, eigenvalue, upright};
+use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, with};
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 
 /// κ = 1: the table follows the rod, and nothing turns it back.
-pub(crate) const DRIFT: Case = Case {
+pub(crate) const DRIFT: FailureCase = FailureCase {
     name: "parallel-drift",
     title: "|λ| = 1 at κ = 1, and the angle drifts off",
     method: "spectral radius of the Jacobian",
@@ -22,7 +22,7 @@ pub(crate) const DRIFT: Case = Case {
     scene: || built(rod(&[(Name::TiltGain, 1.0), (Name::ThetaDot, 0.01)])),
     look: |scene, impacts| {
         let fixed_point = upright(scene);
-        let course = Course::of(scene, impacts);
+        let course = AngleHistory::of(scene, impacts);
         let says = vec![
             eigenvalue("spectral radius of the computed Jacobian", scene, &fixed_point),
             course.says("run of the scene"),
@@ -33,7 +33,7 @@ pub(crate) const DRIFT: Case = Case {
             "the angle is {spin} rad/s times the time, within {off:.1e} rad at every contact; the run: {}",
             says[1].detail
         );
-        Seen { truth: "falls", detail, says }
+        Findings { truth: "falls", detail, says }
     },
     picture: |scene, impacts| {
         let over_time = |scene: &Scene| states(scene, impacts).iter().map(|(t, theta, _)| (*t, *theta)).collect();
@@ -47,7 +47,7 @@ pub(crate) const DRIFT: Case = Case {
             ),
             caption: format!(
                 "The run: {}. At a tilt gain of 1.02 the same release circles about upright.",
-                Course::of(scene, impacts).says("").detail
+                AngleHistory::of(scene, impacts).says("").detail
             ),
             plots: vec![Plot {
                 x: Side::new("time", "t", "s"),
@@ -63,7 +63,7 @@ pub(crate) const DRIFT: Case = Case {
 };
 
 /// A start outside of the basin.
-pub(crate) const WIDE: Case = Case {
+pub(crate) const WIDE: FailureCase = FailureCase {
     name: "wide-start",
     title: "Linearly stable, released too wide",
     method: "residue and margins of the linear analysis",
@@ -79,10 +79,10 @@ pub(crate) const WIDE: Case = Case {
         let narrow = built(with(scene.draft(), &[(Name::Theta, 0.1)]));
         let says = vec![
             residue(scene),
-            Course::of(&narrow, impacts).says("run from 0.1 rad"),
-            Course::of(scene, impacts).says("run of the scene"),
+            AngleHistory::of(&narrow, impacts).says("run from 0.1 rad"),
+            AngleHistory::of(scene, impacts).says("run of the scene"),
         ];
-        Seen { truth: "falls", detail: format!("the run: {}", says[2].detail), says }
+        Findings { truth: "falls", detail: format!("the run: {}", says[2].detail), says }
     },
     picture: |scene, _| {
         let narrow = |theta: f64| built(with(scene.draft(), &[(Name::Theta, theta)]));
@@ -94,14 +94,14 @@ pub(crate) const WIDE: Case = Case {
         Chart {
             title: WIDE.title,
             subtitle: "states just before the contacts; the linear analysis is that of the smallest loop".to_owned(),
-            caption: format!("The run: {}.", Course::of(scene, 400).says("").detail),
+            caption: format!("The run: {}.", AngleHistory::of(scene, 400).says("").detail),
             plots: vec![Plot { x: THETA, y: SPIN, curves }],
         }
     },
 };
 
 /// Resonance of order 3, which a drift lets in.
-pub(crate) const RESONANCE: Case = Case {
+pub(crate) const RESONANCE: FailureCase = FailureCase {
     name: "order-three",
     title: "Linearly stable, undone by a resonance of order 3",
     method: "residue and margins of the linear analysis",
@@ -116,12 +116,12 @@ pub(crate) const RESONANCE: Case = Case {
     // κ = 1 + 3/4 Gρ²/(V²l).
     scene: || built(rod(&[(Name::TiltGain, 1.375), (Name::Theta, 0.001), (Name::XDot, 0.4)])),
     look: |scene, impacts| {
-        let run = |numbers: &[(Name, f64)]| Course::of(&built(with(scene.draft(), numbers)), impacts);
+        let run = |numbers: &[(Name, f64)]| AngleHistory::of(&built(with(scene.draft(), numbers)), impacts);
         let says = vec![
             residue(scene),
             run(&[(Name::XDot, 0.0)]).says("run without the drift"),
             run(&[(Name::XDot, 0.0), (Name::Theta, 0.2)]).says("run without the drift from 0.2 rad"),
-            Course::of(scene, impacts).says("run of the scene"),
+            AngleHistory::of(scene, impacts).says("run of the scene"),
         ];
         let halved = run(&[(Name::Theta, 0.5 * scene.start().theta)]).says("").detail;
         let beside = run(&[(Name::TiltGain, OFF_RESONANCE)]).says("").detail;
@@ -129,7 +129,7 @@ pub(crate) const RESONANCE: Case = Case {
             "the run: {}. From half the angle: {halved}. From the same angle at tilt gain {OFF_RESONANCE}: {beside}",
             says[3].detail
         );
-        Seen { truth: "falls", detail, says }
+        Findings { truth: "falls", detail, says }
     },
     picture: |scene, _| {
         let side = |kappa: f64, starts: &[f64], look: Look, label: &'static str| {
@@ -180,7 +180,7 @@ fn plane(label: &'static str, look: Look, scene: &Scene, impacts: u64) -> Curve 
     Curve { label, look, points }
 }
 
-fn residue(scene: &Scene) -> Says {
+fn residue(scene: &Scene) -> MethodClaim {
     let linear = linear_verdict(scene, &upright(scene));
     let verdict = if linear.says_bounded() { "bounded" } else { "falls" };
     let detail = format!(
@@ -189,5 +189,5 @@ fn residue(scene: &Scene) -> Says {
         linear.lower_tilt_gain,
         linear.critical_tilt_gain
     );
-    Says { method: "residue", verdict, value: linear.residue, unit: None, detail }
+    MethodClaim { method: "residue", verdict, value: linear.residue, unit: None, detail }
 }

@@ -1,14 +1,14 @@
 //! At κ_c and beyond it, where the eigenvalues are silent or cry wolf, and the next order of the normal form decides.
 
 use crate::charts::{Chart, Curve, Look, Plot, significant};
-use crate::failure_cases::course::{ANGLE, CONTACT, Course, eigenvalue, upright};
-use crate::failure_cases::{Case, Says, Seen, built, rod, with};
+use crate::failure_cases::course::{ANGLE, AngleHistory, CONTACT, eigenvalue, upright};
+use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, with};
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::boundary::{boundary_coefficient, period_two_angle};
 use equipoise_physics::stability::fixed_point::FixedPoint;
 
 /// The paper's rod exactly at κ_c: soft.
-pub(crate) const SOFT: Case = Case {
+pub(crate) const SOFT: FailureCase = FailureCase {
     name: "double-eigenvalue-soft",
     title: "A double eigenvalue at κ_c, and nothing falls",
     method: "spectral radius of a computed Jacobian",
@@ -24,20 +24,20 @@ pub(crate) const SOFT: Case = Case {
     look: |scene, impacts| {
         let fixed_point = upright(scene);
         let steeper = built(with(scene.draft(), &[(Name::TiltGain, 1.5_f64.next_up())]));
-        let linear = Course::linear(scene, &fixed_point, impacts);
+        let linear = AngleHistory::linear(scene, &fixed_point, impacts);
         let mut says = vec![
             eigenvalue("spectral radius of the computed Jacobian", scene, &fixed_point),
             eigenvalue("the same with tilt_gain one unit in its last place more", &steeper, &fixed_point),
             linear.says("linear map, iterated"),
         ];
         let detail = decided(scene, &fixed_point, impacts, &mut says);
-        Seen { truth: "bounded", detail, says }
+        Findings { truth: "bounded", detail, says }
     },
     picture: |scene, impacts| outlines(SOFT.title, scene, impacts, "what the linear map says"),
 };
 
 /// The true triangle exactly at its κ_c: hard.
-pub(crate) const HARD: Case = Case {
+pub(crate) const HARD: FailureCase = FailureCase {
     name: "double-eigenvalue-hard",
     title: "A double eigenvalue at κ_c, and it falls",
     method: "spectral radius of a computed Jacobian",
@@ -57,13 +57,13 @@ pub(crate) const HARD: Case = Case {
         let fixed_point = upright(scene);
         let mut says = vec![eigenvalue("spectral radius of the computed Jacobian", scene, &fixed_point)];
         let detail = decided(scene, &fixed_point, impacts, &mut says);
-        Seen { truth: "falls", detail, says }
+        Findings { truth: "falls", detail, says }
     },
     picture: |scene, impacts| outlines(HARD.title, scene, impacts, "what the linear map says"),
 };
 
 /// The paper's fourth case at κ_c: feedback of the energy makes the boundary hard.
-pub(crate) const HARD_WITH_FEEDBACK: Case = Case {
+pub(crate) const HARD_WITH_FEEDBACK: FailureCase = FailureCase {
     name: "hard-by-feedback",
     title: "Feedback of the energy turns a soft boundary hard",
     method: "boundary coefficient of the rod without feedback",
@@ -88,13 +88,13 @@ pub(crate) const HARD_WITH_FEEDBACK: Case = Case {
             coefficient("boundary coefficient of the rod without feedback", &without, &fixed_point),
         ];
         let detail = decided(scene, &fixed_point, impacts, &mut says);
-        Seen { truth: "falls", detail, says }
+        Findings { truth: "falls", detail, says }
     },
     picture: |scene, impacts| outlines(HARD_WITH_FEEDBACK.title, scene, impacts, "what the linear map says"),
 };
 
 /// The paper's rod a little beyond κ_c.
-pub(crate) const BEYOND: Case = Case {
+pub(crate) const BEYOND: FailureCase = FailureCase {
     name: "beyond-critical",
     title: "An eigenvalue beyond the circle, and it stays up",
     method: "spectral radius of the Jacobian",
@@ -110,27 +110,27 @@ pub(crate) const BEYOND: Case = Case {
         let fixed_point = upright(scene);
         let mut says = vec![
             eigenvalue("spectral radius of the computed Jacobian", scene, &fixed_point),
-            Course::linear(scene, &fixed_point, impacts).says("linear map, iterated"),
+            AngleHistory::linear(scene, &fixed_point, impacts).says("linear map, iterated"),
         ];
         let mut detail = decided(scene, &fixed_point, impacts, &mut says);
         if let Some(theta) = period_two_angle(&scene.model(), scene.rules().topple_angle, &fixed_point) {
             detail += &format!("; the orbit of period 2 that holds it has an angle of {theta:.4} rad");
         }
-        Seen { truth: "bounded", detail, says }
+        Findings { truth: "bounded", detail, says }
     },
     picture: |scene, impacts| outlines(BEYOND.title, scene, impacts, "what the linear map says"),
 };
 
-fn coefficient(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> Says {
+fn coefficient(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> MethodClaim {
     let value = boundary_coefficient(&scene.model(), fixed_point).map(|boundary| boundary.coefficient);
     let verdict = if value.is_some_and(|value| value > 0.0) { "bounded" } else { "falls" };
     let detail = "the sign of C in κ − κ_c ≈ a C θ², on which the orbits of period 2 branch off at κ_c".to_owned();
-    Says { method, verdict, value, unit: None, detail }
+    MethodClaim { method, verdict, value, unit: None, detail }
 }
 
 /// The methods that are right: the boundary coefficient and the run. How the truth is known.
-fn decided(scene: &Scene, fixed_point: &FixedPoint, impacts: u64, says: &mut Vec<Says>) -> String {
-    let course = Course::of(scene, impacts);
+fn decided(scene: &Scene, fixed_point: &FixedPoint, impacts: u64, says: &mut Vec<MethodClaim>) -> String {
+    let course = AngleHistory::of(scene, impacts);
     let coefficient = coefficient("boundary coefficient", scene, fixed_point);
     let value = coefficient.value.unwrap_or_default();
     let run = course.says("run of the scene");
@@ -140,9 +140,9 @@ fn decided(scene: &Scene, fixed_point: &FixedPoint, impacts: u64, says: &mut Vec
 }
 
 fn outlines(title: &'static str, scene: &Scene, impacts: u64, label: &'static str) -> Chart {
-    let course = Course::of(scene, impacts);
+    let course = AngleHistory::of(scene, impacts);
     let fixed_point = upright(scene);
-    let mut linear = Course::linear(scene, &fixed_point, impacts);
+    let mut linear = AngleHistory::linear(scene, &fixed_point, impacts);
     linear.angles.truncate(4 * course.angles.len());
     let limit = scene.rules().topple_angle;
     let length = course.angles.len().max(linear.angles.len()) as f64;

@@ -1,12 +1,12 @@
 //! The root that is always there: a contact ends at t = 0 of its own flight, and the search for the next one finds it again.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
-use crate::failure_cases::{Case, Says, Seen, built, rod, rod_of};
+use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, rod_of};
 use equipoise_physics::bounce::flight::Flight;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 /// A rod that chatters as it topples over a table that stands still.
-pub(crate) const TRIVIAL_ROOT: Case = Case {
+pub(crate) const TRIVIAL_ROOT: FailureCase = FailureCase {
     name: "trivial-root",
     title: "The contact just left is found again",
     method: "Newton's iteration on the gap, or a search that starts a little later",
@@ -33,8 +33,13 @@ pub(crate) const TRIVIAL_ROOT: Case = Case {
             Some(t) if t <= 1e-3 * flight_time => "contact just left",
             Some(_) => "a later contact",
         };
-        let says =
-            |method, t: Option<f64>, detail| Says { method, verdict: verdict(t), value: t, unit: Some("s"), detail };
+        let says = |method, t: Option<f64>, detail| MethodClaim {
+            method,
+            verdict: verdict(t),
+            value: t,
+            unit: Some("s"),
+            detail,
+        };
         let below = flight.gap(NUDGE).value;
         let says = vec![
             says(
@@ -62,7 +67,7 @@ pub(crate) const TRIVIAL_ROOT: Case = Case {
              it the gap would be negative",
             flight.gap(0.5 * flight_time).value
         );
-        Seen { truth: "next contact", detail, says }
+        Findings { truth: "next contact", detail, says }
     },
     picture: |scene, impacts| {
         let Short { contact, flight, flight_time, .. } = short(scene, impacts);

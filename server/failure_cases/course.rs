@@ -1,7 +1,7 @@
 //! The angle along a run, as the map gives it and as the linear map would.
 
 use crate::charts::{Curve, Look, Side};
-use crate::failure_cases::Says;
+use crate::failure_cases::MethodClaim;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Scene;
@@ -11,13 +11,13 @@ use equipoise_physics::stability::jacobian::modulus;
 use equipoise_physics::stability::linear_verdict::{PARABOLIC, linear_verdict};
 
 /// θ at the contacts of a run and how it ended.
-pub(crate) struct Course {
+pub(crate) struct AngleHistory {
     /// θ at contact 1 and on, rad.
     pub(crate) angles: Vec<f64>,
     pub(crate) ending: Ending,
 }
 
-impl Course {
+impl AngleHistory {
     /// That of a scene, up to a number of contacts.
     pub(crate) fn of(scene: &Scene, impacts: u64) -> Self {
         let mut angles = Vec::new();
@@ -57,14 +57,14 @@ impl Course {
     }
 
     /// What it says of the angle: a run shows what it shows, and no more.
-    pub(crate) fn says(&self, method: &'static str) -> Says {
+    pub(crate) fn says(&self, method: &'static str) -> MethodClaim {
         let (verdict, end) = if self.survived() {
             ("bounded", format!("{} contacts survived", self.angles.len()))
         } else {
             ("falls", format!("ends as `{}` at contact {}", self.ending.name(), self.angles.len()))
         };
         let detail = format!("{end}; the largest angle at a contact is {:.4} rad", self.max());
-        Says { method, verdict, value: Some(self.max()), unit: Some("rad"), detail }
+        MethodClaim { method, verdict, value: Some(self.max()), unit: Some("rad"), detail }
     }
 
     /// |θ| against the number of the contact: the largest of each of some hundred stretches, each a few percent longer than
@@ -109,7 +109,7 @@ pub(crate) fn upright(scene: &Scene) -> FixedPoint {
 }
 
 /// What the eigenvalues of a computed Jacobian say.
-pub(crate) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> Says {
+pub(crate) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> MethodClaim {
     let (verdict, radius, (re, im)) = spectral_radius(scene, fixed_point);
     let exact = linear_verdict(scene, fixed_point).spectral_radius();
     let imaginary = if im == 0.0 { String::new() } else { format!(" ± {:.2e}i", im.abs()) };
@@ -120,5 +120,5 @@ pub(crate) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &Fixe
     let detail = format!(
         "the largest modulus comes out as 1{excess} (exactly: {exact:.6}), the angle's eigenvalue as {re:.9}{imaginary}"
     );
-    Says { method, verdict, value: Some(radius), unit: None, detail }
+    MethodClaim { method, verdict, value: Some(radius), unit: None, detail }
 }

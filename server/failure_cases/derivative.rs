@@ -1,7 +1,7 @@
 //! Derivatives of the map by differences: the step that is neither too long nor too short, and the graze that has none.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
-use crate::failure_cases::{Case, Says, Seen, built, rod, with};
+use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, with};
 use equipoise_physics::body::Body;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::run::orbit::Orbit;
@@ -11,7 +11,7 @@ use equipoise_physics::stability::jacobian::{finite_difference, jacobian};
 use nalgebra::DMatrix;
 
 /// A derivative over a long time.
-pub(crate) const DIFFERENCES: Case = Case {
+pub(crate) const DIFFERENCES: FailureCase = FailureCase {
     name: "finite-differences",
     title: "No step is right for finite differences",
     method: "central finite differences",
@@ -35,7 +35,7 @@ pub(crate) const DIFFERENCES: Case = Case {
                 Some(matrix) => format!("step {step:.0e}; its determinant is off by {:.1e}", off(matrix)),
                 None => format!("step {step:.0e}; a run that starts so far aside ends before"),
             };
-            Says { method, verdict: verdict(error.unwrap_or(1.0)), value: error, unit: None, detail }
+            MethodClaim { method, verdict: verdict(error.unwrap_or(1.0)), value: error, unit: None, detail }
         };
         let best = curve(scene, impacts).into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(1e-8, |best| best.0);
         let says = vec![
@@ -43,7 +43,7 @@ pub(crate) const DIFFERENCES: Case = Case {
             difference("central differences, long step", 1e-4),
             difference("central differences, short step", 1e-12),
             difference("central differences, the best of all steps", best),
-            Says {
+            MethodClaim {
                 method: "derivative of the formulas",
                 verdict: verdict(off(&exact)),
                 value: Some(off(&exact)),
@@ -56,7 +56,7 @@ pub(crate) const DIFFERENCES: Case = Case {
              along the run, {determinant}, which the derivative of the formulas meets within {:.1e}",
             off(&exact)
         );
-        Seen { truth: "exact but for rounding", detail, says }
+        Findings { truth: "exact but for rounding", detail, says }
     },
     picture: |scene, impacts| {
         let (_, exact, determinant) = reference(scene, impacts);
@@ -82,7 +82,7 @@ pub(crate) const DIFFERENCES: Case = Case {
 };
 
 /// A contact that is hardly one.
-pub(crate) const GRAZE: Case = Case {
+pub(crate) const GRAZE: FailureCase = FailureCase {
     name: "grazing",
     title: "A derivative without bound at a graze",
     method: "central finite differences",
@@ -125,7 +125,7 @@ pub(crate) const GRAZE: Case = Case {
             };
             let detail =
                 format!("the largest entry is {here:.3e} here and {there:.3e} a hundred times nearer to the graze");
-            Says { method, verdict, value: Some(here), unit: None, detail }
+            MethodClaim { method, verdict, value: Some(here), unit: None, detail }
         };
         let [misses, touches] = [edge + 1e-9, edge - 1e-9].map(|height| flight(&at_height(scene, height)).0);
         let detail = format!(
@@ -138,7 +138,7 @@ pub(crate) const GRAZE: Case = Case {
             says("central differences, step 1e-8", 1e-8),
             says("derivative of the formulas", 0.0),
         ];
-        Seen { truth: "grows without bound", detail, says }
+        Findings { truth: "grows without bound", detail, says }
     },
     picture: |scene, _| {
         let edge = edge(scene);

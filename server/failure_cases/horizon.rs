@@ -1,8 +1,8 @@
 //! A chaotic run beyond its horizon: what single runs say there, and what many of them say together.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
-use crate::failure_cases::course::{Course, upright};
-use crate::failure_cases::{Case, Says, Seen, built, rod, rod_of, with};
+use crate::failure_cases::course::{AngleHistory, upright};
+use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, rod_of, with};
 use equipoise_physics::batch::batch_run::{RunStart, run_all};
 use equipoise_physics::body::Release;
 use equipoise_physics::run::ending::Ending;
@@ -17,15 +17,15 @@ const RUNS: usize = 256;
 const SPACING: f64 = 1e-13;
 
 /// The paper's rod beyond κ_c, where runs about the orbits of period 2 are chaotic.
-pub(crate) const CHAOS: Case = Case {
+pub(crate) const CHAOS: FailureCase = FailureCase {
     name: "chaos",
     title: "A single run beyond its horizon",
     method: "one simulation, however accurate",
     why: "Neighbouring runs part by a constant factor a bounce here, so that a difference in the last digit of a double has grown \
-          to the size of the motion after some hundred and fifty contacts. Beyond that horizon every computed run is a run of \
-          the rod, but not of this start: another compiler, another order of the same sums or 1e-15 rad at release give another \
-          end. No smaller step and no higher order moves the horizon by more than a few bounces for each digit. What stays is the \
-          distribution, and an ensemble measures it.",
+to the size of the motion after some hundred and fifty contacts. Beyond that horizon every computed run is a run of \
+the rod, but not of this start: another compiler, another order of the same sums or 1e-15 rad at release give another \
+end. No smaller step and no higher order moves the horizon by more than a few bounces for each digit. What stays is the \
+distribution, and an ensemble measures it.",
     impacts: 3_000,
     ask: ("stability", "impacts=3000"),
     price: 2 * RUNS as u64 * 3_000 / 6 + 15_000,
@@ -37,7 +37,7 @@ pub(crate) const CHAOS: Case = Case {
         let horizon = horizon(scene);
         let ends = |numbers| ends(scene, impacts, numbers);
         let medians = [median(&ends(0..RUNS)), median(&ends(RUNS..2 * RUNS))];
-        let contact = |method, verdict, value: usize, detail| Says {
+        let contact = |method, verdict, value: usize, detail| MethodClaim {
             method,
             verdict,
             value: Some(value as f64),
@@ -53,7 +53,7 @@ pub(crate) const CHAOS: Case = Case {
                 third,
                 ending(&runs[2]),
             ),
-            Says {
+            MethodClaim {
                 method: "growth of the Jacobian product",
                 verdict: if horizon.is_some() { "unpredictable" } else { "predictable" },
                 value: horizon.map(|horizon| horizon as f64),
@@ -75,7 +75,7 @@ pub(crate) const CHAOS: Case = Case {
             "runs from 1e-15 rad aside of each other are {TOLERANCE} rad apart at contact {}, and end at contacts {one} and {other}",
             apart.map_or(one, |index| index + 1)
         );
-        Seen { truth: "unpredictable", detail, says }
+        Findings { truth: "unpredictable", detail, says }
     },
     picture: |scene, impacts| {
         let [one, other] = [plainly(scene, impacts), aside(scene, impacts)];
@@ -89,7 +89,7 @@ pub(crate) const CHAOS: Case = Case {
             subtitle: "two runs whose starts differ by 1e-15 rad (left), and ensembles of such runs (right)".to_owned(),
             caption: format!(
                 "Left: their difference reaches the size of the motion at the horizon, contact {horizon}. Right: the two runs end at \
-                 contacts {} and {}; two ensembles of {RUNS} runs, {SPACING:.0e} rad apart, agree.",
+contacts {} and {}; two ensembles of {RUNS} runs, {SPACING:.0e} rad apart, agree.",
                 one.angles.len(),
                 other.angles.len()
             ),
@@ -118,16 +118,16 @@ pub(crate) const CHAOS: Case = Case {
     },
 };
 
-fn plainly(scene: &Scene, impacts: u64) -> Course {
-    Course::of(scene, impacts)
+fn plainly(scene: &Scene, impacts: u64) -> AngleHistory {
+    AngleHistory::of(scene, impacts)
 }
 
-fn aside(scene: &Scene, impacts: u64) -> Course {
-    Course::of(&built(with(scene.draft(), &[(Name::Theta, scene.start().theta + 1e-15)])), impacts)
+fn aside(scene: &Scene, impacts: u64) -> AngleHistory {
+    AngleHistory::of(&built(with(scene.draft(), &[(Name::Theta, scene.start().theta + 1e-15)])), impacts)
 }
 
 /// The map with its rounding errors as they come.
-fn uncorrected(scene: &Scene, impacts: u64) -> Course {
+fn uncorrected(scene: &Scene, impacts: u64) -> AngleHistory {
     let rules = Rules { holds_energy: false, ..scene.rules() };
     let mut angles = Vec::new();
     let ending = Orbit::new(scene.model(), rules, scene.release()).ok().and_then(|mut orbit| {
@@ -136,10 +136,10 @@ fn uncorrected(scene: &Scene, impacts: u64) -> Course {
             true
         })
     });
-    Course { angles, ending: ending.unwrap_or(Ending::Completed) }
+    AngleHistory { angles, ending: ending.unwrap_or(Ending::Completed) }
 }
 
-fn ending(course: &Course) -> String {
+fn ending(course: &AngleHistory) -> String {
     format!("ends as `{}` at contact {}", course.ending.name(), course.angles.len())
 }
 

@@ -18,7 +18,7 @@ use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 /// A scene on which a common method is wrong.
 #[derive(Clone, Copy, Debug)]
-pub struct Case {
+pub struct FailureCase {
     /// Its name in requests.
     pub name: &'static str,
     /// Its title.
@@ -34,18 +34,18 @@ pub struct Case {
     /// What it costs to look, or to draw, in bounces of the plain rod.
     pub price: u64,
     scene: fn() -> Scene,
-    look: fn(&Scene, u64) -> Seen,
+    look: fn(&Scene, u64) -> Findings,
     picture: fn(&Scene, u64) -> Chart,
 }
 
-impl Case {
+impl FailureCase {
     /// Its scene.
     pub fn scene(&self) -> Scene {
         (self.scene)()
     }
 
     /// What each method says of it.
-    pub fn look(&self) -> Seen {
+    pub fn look(&self) -> Findings {
         (self.look)(&self.scene(), self.impacts)
     }
 
@@ -57,9 +57,9 @@ impl Case {
 
 /// What was found on a scene.
 #[derive(Clone, Debug)]
-pub struct Seen {
+pub struct Findings {
     /// By each method, the usual one first.
-    pub says: Vec<Says>,
+    pub says: Vec<MethodClaim>,
     /// What is true, in the words of the verdicts.
     pub truth: &'static str,
     /// How that is known, with numbers.
@@ -68,7 +68,7 @@ pub struct Seen {
 
 /// What a method says. It is right where its verdict is the truth.
 #[derive(Clone, Debug)]
-pub struct Says {
+pub struct MethodClaim {
     /// Its name.
     pub method: &'static str,
     /// In a word or two.
@@ -82,7 +82,7 @@ pub struct Says {
 }
 
 /// All cases, in the order in which they are shown.
-pub const CASES: [Case; 15] = [
+pub const CASES: [FailureCase; 15] = [
     boundary::SOFT,
     boundary::HARD,
     boundary::HARD_WITH_FEEDBACK,
@@ -101,7 +101,7 @@ pub const CASES: [Case; 15] = [
 ];
 
 /// The case of this name.
-pub fn find(name: &str) -> Option<&'static Case> {
+pub fn find(name: &str) -> Option<&'static FailureCase> {
     const { &CASES }.iter().find(|case| case.name == name)
 }
 

@@ -1,22 +1,22 @@
 //! Methods that go in steps: they invent stability and destroy it, miss contacts, and never come to rest.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
-use crate::failure_cases::course::Course;
-use crate::failure_cases::{Case, Says, Seen, built, rod, rod_of};
+use crate::failure_cases::course::AngleHistory;
+use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, rod_of};
 use crate::integrators::{Integrator, Location, Simulation, SimulationEnding, simulate};
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 /// A run that falls and is kept up by the steps.
-pub(crate) const INVENTED: Case = Case {
+pub(crate) const INVENTED: FailureCase = FailureCase {
     name: "invented-stability",
     title: "A step that keeps the rod up",
     method: "Runge-Kutta of order 4, contacts by one secant step",
     why: "A flight is a parabola, which Runge-Kutta follows without error: everything that is off comes from the contacts. One secant \
-          step puts each of them a little off its place, and the strike there changes energy and angle by as little. The start \
-          is just outside of the basin, where a little decides: the true run falls, the computed one is pushed inside and \
-          circles on as if the rod were stable. The result looks smoother than the truth, and nothing in it gives it away; \
-          only smaller steps do.",
+step puts each of them a little off its place, and the strike there changes energy and angle by as little. The start \
+is just outside of the basin, where a little decides: the true run falls, the computed one is pushed inside and \
+circles on as if the rod were stable. The result looks smoother than the truth, and nothing in it gives it away; \
+only smaller steps do.",
     impacts: 400,
     ask: ("trajectories", "impacts=400"),
     price: 130_000,
@@ -29,9 +29,9 @@ pub(crate) const INVENTED: Case = Case {
         let says = vec![
             stepped("Runge-Kutta with one secant step, 10 ms", scene, secant(1e-2), impacts),
             stepped("the same with steps of 1 ms", scene, secant(1e-3), impacts),
-            Course::of(scene, impacts).says("the map"),
+            AngleHistory::of(scene, impacts).says("the map"),
         ];
-        Seen { truth: "falls", detail: format!("the run of the map: {}", says[2].detail), says }
+        Findings { truth: "falls", detail: format!("the run of the map: {}", says[2].detail), says }
     },
     picture: |scene, impacts| {
         let method = Integrator::RungeKutta { step: 1e-2, location: Location::Secant };
@@ -40,15 +40,15 @@ pub(crate) const INVENTED: Case = Case {
 };
 
 /// The paper's first case, thrown down by a contact that takes time.
-pub(crate) const DESTROYED: Case = Case {
+pub(crate) const DESTROYED: FailureCase = FailureCase {
     name: "destroyed-stability",
     title: "A contact model that throws the rod down",
     method: "penalty contact, steps of 1 ms",
     why: "The paper's first case circles for ever as far as anyone has looked. A spring and a damper in place of the strike hold the \
-          rod for some sixteen steps, a fifteenth of a flight, in which the rod turns on, gravity works on, and the table pushes \
-          where the rod no longer is. What it adds to each bounce is small and always \
-          on the same side, so it adds up, and the rod falls within a few contacts. A stiffer spring needs smaller steps, and \
-          only delays it.",
+rod for some sixteen steps, a fifteenth of a flight, in which the rod turns on, gravity works on, and the table pushes \
+where the rod no longer is. What it adds to each bounce is small and always \
+on the same side, so it adds up, and the rod falls within a few contacts. A stiffer spring needs smaller steps, and \
+only delays it.",
     impacts: 400,
     ask: ("stability", "impacts=20000"),
     price: 220_000,
@@ -57,9 +57,9 @@ pub(crate) const DESTROYED: Case = Case {
         let says = vec![
             stepped("penalty contact, steps of 1 ms", scene, Integrator::Penalty { step: 1e-3 }, impacts),
             stepped("the same with steps of 0.1 ms", scene, Integrator::Penalty { step: 1e-4 }, impacts),
-            Course::of(scene, 20_000).says("the map"),
+            AngleHistory::of(scene, 20_000).says("the map"),
         ];
-        Seen { truth: "bounded", detail: format!("the run of the map: {}", says[2].detail), says }
+        Findings { truth: "bounded", detail: format!("the run of the map: {}", says[2].detail), says }
     },
     picture: |scene, impacts| {
         beside(DESTROYED.title, "penalty contact, steps of 1 ms", scene, Integrator::Penalty { step: 1e-3 }, impacts)
@@ -67,14 +67,14 @@ pub(crate) const DESTROYED: Case = Case {
 };
 
 /// A contact between two looks.
-pub(crate) const MISSED: Case = Case {
+pub(crate) const MISSED: FailureCase = FailureCase {
     name: "missed-contact",
     title: "A contact between two looks",
     method: "event detection by the sign of the gap",
     why: "The rod spins through upright, and for a moment its tip would be below the table. A method that looks for a change of \
-          sign at the ends of its steps sees the gap open before and open after, and flies on. The steps of an adaptive \
-          integrator are worst: the flight is a parabola, which costs it nothing, so it takes steps as long as the flight, \
-          whatever its tolerance. No tolerance and no step excludes such a contact; convex and concave pieces of the gap do.",
+sign at the ends of its steps sees the gap open before and open after, and flies on. The steps of an adaptive \
+integrator are worst: the flight is a parabola, which costs it nothing, so it takes steps as long as the flight, \
+whatever its tolerance. No tolerance and no step excludes such a contact; convex and concave pieces of the gap do.",
     impacts: 10,
     ask: ("trajectories", "impacts=10"),
     price: 3_000,
@@ -89,7 +89,7 @@ pub(crate) const MISSED: Case = Case {
             let found = value.is_some_and(|t| (t - second).abs() < 1e-6);
             let verdict = if found { "found" } else { "missed" };
             let detail = value.map_or("no second contact".to_owned(), |t| format!("its second contact is at {t:.6} s"));
-            Says { method, verdict, value, unit: Some("s"), detail }
+            MethodClaim { method, verdict, value, unit: Some("s"), detail }
         };
         let stepped = |method| simulated(scene, method, impacts).impacts.iter().map(|impact| impact.t).collect();
         let says = vec![
@@ -99,7 +99,7 @@ pub(crate) const MISSED: Case = Case {
             says("the map", truth.iter().map(|contact| contact.0).collect()),
         ];
         let detail = format!("the tip meets the table at {second:.6} s, at {:.4} m/s", contact_speed(scene));
-        Seen { truth: "found", detail, says }
+        Findings { truth: "found", detail, says }
     },
     picture: |scene, _| {
         let mut orbit = scene.orbit().expect("a test builds every case");
@@ -114,7 +114,7 @@ pub(crate) const MISSED: Case = Case {
             subtitle: "the gap between tip and table after the first contact".to_owned(),
             caption: format!(
                 "The tip meets the table {:.3} ms after the first contact and would be above it again by the next look. Looks every \
-                 10 ms, from the first contact on.",
+10 ms, from the first contact on.",
                 1e3 * flight_time
             ),
             plots: vec![
@@ -142,15 +142,15 @@ pub(crate) const MISSED: Case = Case {
 };
 
 /// Bounces without number in a finite time.
-pub(crate) const ZENO: Case = Case {
+pub(crate) const ZENO: FailureCase = FailureCase {
     name: "zeno",
     title: "Infinitely many bounces in a third of a second",
     method: "fixed or adaptive steps with event detection",
     why: "On a table that stands still, every flight is half as long as the one before: there are infinitely many, and together they \
-          take a finite time, after which the rod is at rest. A method that goes from event to event or from step to step has no \
-          way past that time that is not wrong: fixed steps go on bouncing at the size of a step for ever, and exact event \
-          location makes more and more of ever shorter flights, until it counts rounding errors as bounces. The map sees the \
-          flights shrink in proportion and gives the limit of their sum.",
+take a finite time, after which the rod is at rest. A method that goes from event to event or from step to step has no \
+way past that time that is not wrong: fixed steps go on bouncing at the size of a step for ever, and exact event \
+location makes more and more of ever shorter flights, until it counts rounding errors as bounces. The map sees the \
+flights shrink in proportion and gives the limit of their sum.",
     impacts: 100,
     ask: ("trajectories", "impacts=100"),
     price: 12_000,
@@ -173,7 +173,7 @@ pub(crate) const ZENO: Case = Case {
             };
             let past = last.map_or(0.0, |last| last - limit);
             let detail = format!("its contact {} is {past:.3e} s past the limit", simulation.impacts.len());
-            Says { method, verdict, value: last, unit: Some("s"), detail }
+            MethodClaim { method, verdict, value: last, unit: Some("s"), detail }
         };
         let fixed = Integrator::RungeKutta { step: 1e-3, location: Location::StepEnd };
         let mut says = vec![
@@ -188,7 +188,7 @@ pub(crate) const ZENO: Case = Case {
             ),
         ];
         let (ending, settle_time) = settled(scene, impacts);
-        says.push(Says {
+        says.push(MethodClaim {
             method: "the map",
             verdict: if settle_time.is_some() { "settles" } else { "goes on" },
             value: settle_time,
@@ -196,7 +196,7 @@ pub(crate) const ZENO: Case = Case {
             detail: format!("ends as `{ending}`, at the limit of the sum of its flights"),
         });
         let detail = format!("at rest after t₀(1 + e)/(1 − e) = {limit} s, t₀ = √(2(y₀ − l)/G) being the fall");
-        Seen { truth: "settles", detail, says }
+        Findings { truth: "settles", detail, says }
     },
     picture: |scene, impacts| {
         let exact = contacts(scene, impacts);
@@ -238,7 +238,7 @@ fn simulated(scene: &Scene, method: Integrator, impacts: u64) -> Simulation {
     simulate(method, run, impacts, MOST_STEPS, &mut || true).expect("nobody stops it")
 }
 
-fn course(simulation: &Simulation) -> Course {
+fn course(simulation: &Simulation) -> AngleHistory {
     let angles = simulation.impacts.iter().map(|impact| impact.state.theta).collect();
     let ending = match simulation.ending {
         SimulationEnding::Run(ending) => ending,
@@ -246,10 +246,10 @@ fn course(simulation: &Simulation) -> Course {
             equipoise_physics::run::ending::Ending::Diverged { speed: f64::NAN }
         }
     };
-    Course { angles, ending }
+    AngleHistory { angles, ending }
 }
 
-fn stepped(name: &'static str, scene: &Scene, method: Integrator, impacts: u64) -> Says {
+fn stepped(name: &'static str, scene: &Scene, method: Integrator, impacts: u64) -> MethodClaim {
     let simulation = simulated(scene, method, impacts);
     let mut says = course(&simulation).says(name);
     says.detail += &format!("; {} steps", simulation.work.steps);
@@ -258,8 +258,9 @@ fn stepped(name: &'static str, scene: &Scene, method: Integrator, impacts: u64) 
 
 /// The angles of a method and of the map.
 fn beside(title: &'static str, name: &'static str, scene: &Scene, method: Integrator, impacts: u64) -> Chart {
-    let (exact, stepped) = (Course::of(scene, impacts), course(&simulated(scene, method, impacts)));
-    let dots = |course: &Course| course.angles.iter().enumerate().map(|(n, theta)| (n as f64 + 1.0, *theta)).collect();
+    let (exact, stepped) = (AngleHistory::of(scene, impacts), course(&simulated(scene, method, impacts)));
+    let dots =
+        |course: &AngleHistory| course.angles.iter().enumerate().map(|(n, theta)| (n as f64 + 1.0, *theta)).collect();
     let curve = |label, look, points| Curve { label, look, points };
     Chart {
         title,

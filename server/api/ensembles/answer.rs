@@ -3,9 +3,11 @@
 use std::borrow::Cow;
 
 use equipoise_physics::run::ending::EndingKind;
-use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::surveys::ensemble::{Ensemble, Runs, SHARES, Survival, late_half_life, median_impacts};
+use equipoise_physics::surveys::ensemble::{
+    Ensemble, EnsembleRuns, SHARES, SurvivalPoint, late_half_life, median_impacts,
+};
 use serde::{Serialize, Serializer};
 
 use crate::api::ensembles::request::EnsembleRequest;
@@ -40,7 +42,7 @@ pub struct EnsembleAnswer<'a> {
     quantiles: Table,
     angles: Option<Vec<Vec<f64>>>,
     #[serde(skip)]
-    pub(super) curve: Vec<Survival>,
+    pub(super) curve: Vec<SurvivalPoint>,
     #[serde(skip)]
     pub(super) marks: Vec<AnglesAt>,
 }
@@ -74,7 +76,7 @@ impl<'a> EnsembleAnswer<'a> {
     /// From all runs of a tile, and the angles and their quantiles at the contacts it watched; the runs have none any more.
     pub fn new(
         request: &'a EnsembleRequest,
-        runs: &Runs,
+        runs: &EnsembleRuns,
         angles: Vec<Vec<f64>>,
         quantiles: &[Option<[f64; SHARES.len()]>],
     ) -> Self {
@@ -128,27 +130,27 @@ impl Tabular for EnsembleAnswer<'_> {
 
 /// Tells whether a scene has noise.
 pub(super) fn is_noisy(scene: &Scene) -> bool {
-    scene.forced().iter().any(|forced| forced.rung == Rung::Noise)
+    scene.requirements().iter().any(|requirement| requirement.level == ModelLevel::Noise)
 }
 
 impl Summary {
-    fn new(request: &EnsembleRequest, runs: &Runs, curve: &[Survival]) -> Self {
+    fn new(request: &EnsembleRequest, runs: &EnsembleRuns, curve: &[SurvivalPoint]) -> Self {
         let EnsembleRequest { ensemble, tile, .. } = request;
         let impacts = ensemble.impacts;
         let survived = runs.count(EndingKind::Completed);
         let (share, (lower, upper)) = curve.last().map_or((1.0, (0.0, 1.0)), |last| (last.share, last.interval));
         let (median, half_life) = (median_impacts(curve), late_half_life(curve));
         let mut notes = vec![
-            "intervals are those of Wilson, 95 % at each contact by itself; quantiles of |θ| are over the runs that went on"
-                .to_owned(),
-        ];
+"intervals are those of Wilson, 95 % at each contact by itself; quantiles of |θ| are over the runs that went on"
+.to_owned(),
+];
         if tile.of > 1 {
             let (numbers, all) = (request.numbers(), ensemble.runs);
             notes.push(format!(
-                "all of this is about runs {} to {} of {all}: counts of tiles add up to those of all, quantiles do not, their angles do",
-                numbers.start,
-                numbers.end - 1,
-            ));
+"all of this is about runs {} to {} of {all}: counts of tiles add up to those of all, quantiles do not, their angles do",
+numbers.start,
+numbers.end - 1,
+));
         }
         if !is_noisy(&ensemble.scene) {
             let detail = "the scene has no noise, so all runs are alike: give noise.timing_sd or noise.angle_sd";
@@ -191,9 +193,9 @@ impl Summary {
 const QUANTILES: [(&str, &str); SHARES.len()] =
     [("q05", "theta_q05"), ("q25", "theta_q25"), ("q50", "theta_q50"), ("q75", "theta_q75"), ("q95", "theta_q95")];
 
-fn survival_table(curve: &[Survival]) -> Table {
-    let counts = |count: &dyn Fn(&Survival) -> u64| Cells::Counts(curve.iter().map(count).collect());
-    let numbers = |number: &dyn Fn(&Survival) -> f64| Cells::Numbers(curve.iter().map(number).collect());
+fn survival_table(curve: &[SurvivalPoint]) -> Table {
+    let counts = |count: &dyn Fn(&SurvivalPoint) -> u64| Cells::Counts(curve.iter().map(count).collect());
+    let numbers = |number: &dyn Fn(&SurvivalPoint) -> f64| Cells::Numbers(curve.iter().map(number).collect());
     let columns = [
         ("n", Cells::Counts((1..=curve.len() as u64).collect())),
         ("at_risk", counts(&|at| at.at_risk)),

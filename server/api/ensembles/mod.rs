@@ -4,7 +4,7 @@ pub mod answer;
 pub mod picture;
 pub mod request;
 
-use equipoise_physics::surveys::ensemble::{Runs, quantiles};
+use equipoise_physics::surveys::ensemble::{EnsembleRuns, quantiles};
 use prometheus_client::metrics::counter::Counter;
 
 use crate::api::ensembles::answer::EnsembleAnswer;
@@ -55,7 +55,7 @@ fn compute(
         bounces.inc_by(runs.ends.iter().map(|end| end.impacts).sum());
         Some(runs)
     };
-    let (mut runs, mut lines) = (Runs::default(), Progress::default());
+    let (mut runs, mut lines) = (EnsembleRuns::default(), Progress::default());
     let mut tell = |ended| {
         if format == ProgressFormat::Progress {
             out.send(lines.line(ended, all));

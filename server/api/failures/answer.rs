@@ -1,6 +1,6 @@
 //! The answer of `failures`: a case of the gallery.
 
-use crate::failure_cases::{Case, Says};
+use crate::failure_cases::{FailureCase, MethodClaim};
 use equipoise_physics::scene::{FIELDS, Scene};
 use serde::Serialize;
 
@@ -39,9 +39,9 @@ struct TruthAnswer {
 
 impl FailureAnswer {
     /// Computes the verdicts of a case.
-    pub fn compute(case: &Case) -> Self {
+    pub fn compute(case: &FailureCase) -> Self {
         let (scene, seen) = (case.scene(), case.look());
-        let said = |Says { method, verdict, value, unit, detail }| {
+        let said = |MethodClaim { method, verdict, value, unit, detail }| {
             let value = value.filter(|value| value.is_finite());
             VerdictAnswer { method, verdict, value, unit, right: verdict == seen.truth, detail }
         };

@@ -10,7 +10,7 @@ use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian;
 use equipoise_physics::stability::jacobian::{Linearization, MOST_SIDES, TIED};
-use equipoise_physics::stability::linear_verdict::{Class, linear_verdict};
+use equipoise_physics::stability::linear_verdict::{AngleClass, linear_verdict};
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
@@ -118,7 +118,7 @@ impl<'a> JacobianAnswer<'a> {
             let values = linear.eigenvalues.iter().map(|&value| power(value, period)).collect::<Vec<_>>();
             // Greene's residue of the angle's block over the whole period; 1 − 2R = cos σ at period 1.
             let residue = linear.residue.and_then(|one| if period == 1 { Some(one) } else { block_residue(&matrix) });
-            (values, residue, Some(linear.class == Class::Parabolic))
+            (values, residue, Some(linear.class == AngleClass::Parabolic))
         } else {
             let whose = if fed_back { "a table without state feedback" } else { "a fixed point" };
             notes.push(format!("residue and defective are null: they belong to {whose}"));

@@ -2,7 +2,7 @@
 
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::fixed_point::JUDGED;
+use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::stability::jacobian;
 use serde::{Serialize, Serializer};
 
@@ -80,7 +80,7 @@ pub struct JacobianRequest {
 impl JacobianRequest {
     /// Reads a request.
     pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene_within(reader, &JUDGED);
+        let scene = read_scene_within(reader, &LINEARLY_JUDGED);
         let at = At::read(reader);
         let period = reader.integer("period", 1..=limits::PERIOD).unwrap_or(1);
         let method = reader

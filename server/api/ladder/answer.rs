@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::scene::model::Rung;
-use equipoise_physics::scene::model_hierarchy::{Change, Largest, Run, Step, run_hierarchy};
+use equipoise_physics::scene::model::ModelLevel;
+use equipoise_physics::scene::model_hierarchy::{LargestDifference, LevelChange, LevelResult, LevelRun, run_hierarchy};
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
@@ -64,15 +64,15 @@ struct LargestAnswer {
     impact: Option<u64>,
 }
 
-impl From<Largest> for LargestAnswer {
-    fn from(Largest { value, impact }: Largest) -> Self {
+impl From<LargestDifference> for LargestAnswer {
+    fn from(LargestDifference { value, impact }: LargestDifference) -> Self {
         Self { difference: value, impact: (impact > 0).then_some(impact) }
     }
 }
 
 impl ChangeAnswer {
-    fn new(change: &Change, against: &'static str) -> Self {
-        let Change { impacts, t, x, theta, x_dot, y_dot, theta_dot, state, same_outcome } = *change;
+    fn new(change: &LevelChange, against: &'static str) -> Self {
+        let LevelChange { impacts, t, x, theta, x_dot, y_dot, theta_dot, state, same_outcome } = *change;
         Self {
             against,
             impacts,
@@ -95,12 +95,12 @@ impl<'a> LadderAnswer<'a> {
         let (impacts, tolerance) = (*impacts, *tolerance);
         let steps = run_hierarchy(scene, impacts, go_on)?;
         let (mut rungs, mut bounces) = (Vec::new(), 0);
-        let (mut below, mut enough) = (None::<Rung>, None::<Rung>);
-        for Step { rung, scene, forced, run } in steps {
+        let (mut below, mut enough) = (None::<ModelLevel>, None::<ModelLevel>);
+        for LevelResult { level: rung, scene, requirement: forced, run } in steps {
             let (mut reason, mut outcome, mut demand, mut change, mut needed) = (None, None, None, None, None);
             match run {
                 Err(why) => reason = Some(why),
-                Ok(Run { ending, impacts, t, demand: found_demand, change: found }) => {
+                Ok(LevelRun { ending, impacts, t, demand: found_demand, change: found }) => {
                     demand = Some(found_demand.into());
                     bounces += impacts;
                     outcome = Some(Outcome::new(ending, impacts, t));
@@ -125,7 +125,7 @@ impl<'a> LadderAnswer<'a> {
                 needed,
             });
         }
-        let (rung, enough) = (scene.rung(), enough.unwrap_or(scene.rung()));
+        let (rung, enough) = (scene.model_level(), enough.unwrap_or(scene.model_level()));
         let reason = if enough == rung {
             format!(
                 "the scene needs its rung, {}: on the one below it ends otherwise or differs by more than {tolerance} m/s",

@@ -1,7 +1,7 @@
 //! The request for `ladder`: a scene, the contacts on each level and the difference that counts.
 
 use equipoise_physics::scene::Scene;
-use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::at_level;
 
 use crate::api::scene::read_scene;
@@ -42,7 +42,7 @@ impl LadderRequest {
 
     /// Price of the work, in bounces.
     pub fn price(&self) -> u64 {
-        ONCE_PRICE + self.impacts * (RUNGS * RUNG_PRICE + linear_price(&at_level(&self.scene, Rung::Linear)))
+        ONCE_PRICE + self.impacts * (RUNGS * RUNG_PRICE + linear_price(&at_level(&self.scene, ModelLevel::Linear)))
     }
 
     /// Everything that determines the answer.

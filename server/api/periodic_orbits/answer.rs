@@ -2,8 +2,10 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::periodic_orbits::branch::{Branch, Kind, Point, Start, Sweep, follow};
-use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
+use equipoise_physics::periodic_orbits::branch::{
+    Bifurcation, Branch, BranchPoint, BranchStart, ParameterRange, follow,
+};
+use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::boundary::period_two_angle;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
@@ -57,7 +59,7 @@ pub struct PeriodicOrbitAnswer<'a> {
     changes: Option<Vec<Change>>,
     notes: Vec<String>,
     #[serde(skip)]
-    pub(super) points: Vec<Point>,
+    pub(super) points: Vec<BranchPoint>,
     #[serde(skip)]
     pub(super) critical: Option<f64>,
 }
@@ -69,16 +71,16 @@ impl<'a> PeriodicOrbitAnswer<'a> {
     /// The reason why there is no orbit.
     pub fn compute(request: &'a PeriodicOrbitRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
         let scene = &request.scene;
-        let refuse = |failure: Failure| match failure {
-            Failure::Cancelled => Refusal::Cancelled,
+        let refuse = |failure: OrbitFailure| match failure {
+            OrbitFailure::Cancelled => Refusal::Cancelled,
             failure => Refusal::At(request.pointer(), failure.to_string()),
         };
         let period = request.period as usize;
         let mut notes = Vec::new();
-        let setting = Setting::of(scene).map_err(|why| ("/scene", why))?;
+        let setting = OrbitProblem::of(scene).map_err(|why| ("/scene", why))?;
         let branch = match request.sweep {
             Some(SweptRange { parameter: name, from, to, points }) => {
-                let sweep = Sweep { scene, name, from, to };
+                let sweep = ParameterRange { scene, name, from, to };
                 Some(follow(&sweep, period, request.start, points as usize, go_on).map_err(refuse)?)
             }
             None => None,
@@ -157,23 +159,23 @@ impl Tabular for PeriodicOrbitAnswer<'_> {
 /// The orbit of the scene itself.
 fn one(
     scene: &Scene,
-    setting: &Setting,
+    setting: &OrbitProblem,
     period: usize,
-    start: Start,
+    start: BranchStart,
     notes: &mut Vec<String>,
-) -> Result<PeriodicOrbit, Failure> {
+) -> Result<PeriodicOrbit, OrbitFailure> {
     match start {
-        Start::Upright => find(setting, period, &setting.upright()),
-        Start::Near(state) => find(setting, period, &state),
-        Start::Symmetric(theta) => {
+        BranchStart::Upright => find(setting, period, &setting.upright()),
+        BranchStart::Near(state) => find(setting, period, &state),
+        BranchStart::Symmetric(theta) => {
             let state = symmetric(&setting.rod, theta).ok_or_else(|| {
                 let kappa = setting.rod.tilt_gain;
-                Failure::Scene(format!("no mirror-symmetric orbit passes theta {theta} rad at tilt_gain {kappa}"))
+                OrbitFailure::Scene(format!("no mirror-symmetric orbit passes theta {theta} rad at tilt_gain {kappa}"))
             })?;
             if setting.energy.is_none() {
                 has_target_height(scene, theta)?;
             }
-            let own = Setting { energy: setting.energy.map(|_| setting.rod.energy(&state)), ..*setting };
+            let own = OrbitProblem { energy: setting.energy.map(|_| setting.rod.energy(&state)), ..*setting };
             if setting.energy.is_some() {
                 notes.push("the energy is that of the symmetric orbit through theta, not of the release".to_owned());
             }
@@ -186,7 +188,7 @@ fn one(
 const SAME_THETA: f64 = 1e-6;
 
 /// Checks that with energy feedback the symmetric orbit through an angle is the one of the scene's target height.
-fn has_target_height(scene: &Scene, theta: f64) -> Result<(), Failure> {
+fn has_target_height(scene: &Scene, theta: f64) -> Result<(), OrbitFailure> {
     let found = find_fixed_point(scene)
         .ok()
         .and_then(|fixed_point| period_two_angle(&scene.model(), scene.rules().topple_angle, &fixed_point));
@@ -196,9 +198,9 @@ fn has_target_height(scene: &Scene, theta: f64) -> Result<(), Failure> {
     let kappa = scene.number(Name::TiltGain).unwrap_or_default();
     let there =
         found.map_or_else(|| "there is none".to_owned(), |found| format!("that is the one through theta {found} rad"));
-    Err(Failure::Scene(format!(
+    Err(OrbitFailure::Scene(format!(
         "theta is {theta} rad; with energy_gain a symmetric orbit must have the target height, and at tilt_gain {kappa} {there}: give \
-         that angle, or sweep a parameter"
+that angle, or sweep a parameter"
     )))
 }
 
@@ -220,8 +222,8 @@ fn columns(branch: &Branch) -> Table {
     let all = || branch.points.iter();
     let first = || all().map(|point| point.orbit.states[0]);
     let flags = |cells: Vec<Option<bool>>| Cells::Flags(cells);
-    let kinds = all().map(|point| point.change.map(Kind::name)).collect();
-    let folds = all().map(|point| Some(point.change == Some(Kind::Fold))).collect();
+    let kinds = all().map(|point| point.change.map(Bifurcation::name)).collect();
+    let folds = all().map(|point| Some(point.change == Some(Bifurcation::Fold))).collect();
     Table(vec![
         number("parameter", "", all().map(|point| point.parameter)),
         number("theta", "rad", all().map(|point| point.orbit.max_theta())),
@@ -240,14 +242,14 @@ fn columns(branch: &Branch) -> Table {
 }
 
 fn changes(branch: &Branch) -> Vec<Change> {
-    let detail = |point: &Point, kind: Kind| match kind {
-        Kind::PeriodDoubling if point.springs => "the branch springs here from an orbit of half its period",
-        Kind::PeriodDoubling => "an eigenvalue passes −1",
-        Kind::Fold => "the branch turns back",
-        Kind::Pitchfork => "an eigenvalue passes 1, and the branch goes on",
-        Kind::NeimarkSacker => "a pair of eigenvalues leaves the unit circle",
+    let detail = |point: &BranchPoint, kind: Bifurcation| match kind {
+        Bifurcation::PeriodDoubling if point.springs => "the branch springs here from an orbit of half its period",
+        Bifurcation::PeriodDoubling => "an eigenvalue passes −1",
+        Bifurcation::Fold => "the branch turns back",
+        Bifurcation::Pitchfork => "an eigenvalue passes 1, and the branch goes on",
+        Bifurcation::NeimarkSacker => "a pair of eigenvalues leaves the unit circle",
     };
-    let change = |point: &Point| {
+    let change = |point: &BranchPoint| {
         let kind = point.change?;
         let residue = point.orbit.multipliers.residue;
         let theta = point.orbit.max_theta();

@@ -1,6 +1,6 @@
 //! The request for `periodic-orbits`: an orbit, or a branch of orbits along a field of the scene.
 
-use equipoise_physics::periodic_orbits::branch::Start;
+use equipoise_physics::periodic_orbits::branch::BranchStart;
 use equipoise_physics::scene::{Field, Kind, Name, Scene, Value, field};
 use serde::{Serialize, Serializer};
 
@@ -36,7 +36,7 @@ pub struct PeriodicOrbitRequest {
     /// Number of contacts after which the orbit repeats.
     pub period: u64,
     /// Start of the search.
-    pub start: Start,
+    pub start: BranchStart,
     /// The field that is swept, for a branch.
     pub sweep: Option<SweptRange>,
 }
@@ -56,7 +56,9 @@ impl PeriodicOrbitRequest {
                 reader.refuse("family", "family and guess both say where to start; leave one of them out");
                 None
             }
-            (None, Some(()), Some(theta)) if theta != 0.0 && period.unwrap_or(2) == 2 => Some(Start::Symmetric(theta)),
+            (None, Some(()), Some(theta)) if theta != 0.0 && period.unwrap_or(2) == 2 => {
+                Some(BranchStart::Symmetric(theta))
+            }
             (None, Some(()), Some(_)) if period.unwrap_or(2) != 2 => {
                 reader.refuse("period", "period must be 2 for the symmetric family");
                 None
@@ -73,8 +75,8 @@ impl PeriodicOrbitRequest {
                 reader.refuse("theta", "theta goes with family; leave it out or add family \"symmetric\"");
                 None
             }
-            (Some(state), None, None) => Some(Start::Near(state)),
-            (None, None, None) if period.unwrap_or(1) == 1 => Some(Start::Upright),
+            (Some(state), None, None) => Some(BranchStart::Near(state)),
+            (None, None, None) if period.unwrap_or(1) == 1 => Some(BranchStart::Upright),
             (None, None, None) if reader.errors().len() > before => None,
             (None, None, None) => {
                 reader.refuse_whole("give a guess, or family \"symmetric\" with theta; only period 1 needs neither");
@@ -85,16 +87,16 @@ impl PeriodicOrbitRequest {
             return None;
         }
         let start = start?;
-        let default = if start == Start::Upright { 1 } else { 2 };
+        let default = if start == BranchStart::Upright { 1 } else { 2 };
         Some(Self { scene: scene?, period: period.unwrap_or(default), start, sweep })
     }
 
     /// Everything that determines the answer.
     pub fn canonical(&self) -> Vec<u8> {
         let start = match self.start {
-            Start::Upright => ("upright", [0.0; 4]),
-            Start::Near(state) => ("guess", [state.theta, state.x_dot, state.y_dot, state.theta_dot]),
-            Start::Symmetric(theta) => ("symmetric", [theta, 0.0, 0.0, 0.0]),
+            BranchStart::Upright => ("upright", [0.0; 4]),
+            BranchStart::Near(state) => ("guess", [state.theta, state.x_dot, state.y_dot, state.theta_dot]),
+            BranchStart::Symmetric(theta) => ("symmetric", [theta, 0.0, 0.0, 0.0]),
         };
         write::canonical(&self.scene, &(self.period, start, self.sweep))
     }
@@ -107,10 +109,10 @@ impl PeriodicOrbitRequest {
     /// JSON pointer to the field that an error of the start is about.
     pub(super) fn pointer(&self) -> &'static str {
         match (self.start, self.sweep) {
-            (Start::Symmetric(_), _) => "/theta",
-            (Start::Near(_), _) => "/guess",
-            (Start::Upright, Some(_)) => "/sweep/from",
-            (Start::Upright, None) => "/period",
+            (BranchStart::Symmetric(_), _) => "/theta",
+            (BranchStart::Near(_), _) => "/guess",
+            (BranchStart::Upright, Some(_)) => "/sweep/from",
+            (BranchStart::Upright, None) => "/period",
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::api::precision::request::{CostAxis, PrecisionRequest};
 use crate::api::scene::Resolved;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::table::{Cells, Column, Table};
-use crate::comparison::{Chart, Method, Point, Reference, Setting, chart};
+use crate::comparison::{ComparedMethod, MethodSetting, ReferenceRun, WorkPrecisionChart, WorkPrecisionPoint, chart};
 use crate::compute::{Cancelled, TimeSlice};
 
 #[derive(Debug, Serialize)]
@@ -65,7 +65,7 @@ pub struct PrecisionAnswer<'a> {
     points: Vec<PointAnswer>,
     notes: Vec<String>,
     #[serde(skip)]
-    pub(super) chart: Chart,
+    pub(super) chart: WorkPrecisionChart,
     #[serde(skip)]
     pub(super) axis: CostAxis,
 }
@@ -79,14 +79,15 @@ impl<'a> PrecisionAnswer<'a> {
     ) -> Result<Self, Cancelled> {
         let scene = &request.scene;
         let chart = chart(scene, request.impacts, &request.methods, progress, slice)?;
-        let named = |method: &Method| MethodAnswer { name: method.name, title: method.title, about: method.about };
+        let named =
+            |method: &ComparedMethod| MethodAnswer { name: method.name, title: method.title, about: method.about };
         let mut notes = vec![
-            "cost is measured on this machine while it serves others; steps, evaluations and errors are the same everywhere"
-                .to_owned(),
-            "the cost of linear is that of its impacts with their bounds; its solution is made once before".to_owned(),
-        ];
+"cost is measured on this machine while it serves others; steps, evaluations and errors are the same everywhere"
+.to_owned(),
+"the cost of linear is that of its impacts with their bounds; its solution is made once before".to_owned(),
+];
         notes.extend(chart.notes.iter().cloned());
-        let Reference { outcome, impacts, t, rounding } = chart.reference;
+        let ReferenceRun { outcome, impacts, t, rounding } = chart.reference;
         Ok(Self {
             scene: Resolved(scene),
             model: ModelChoice::of(scene),
@@ -144,9 +145,9 @@ impl Tabular for PrecisionAnswer<'_> {
 }
 
 impl PointAnswer {
-    fn of(point: &Point, error_at: u64) -> Self {
+    fn of(point: &WorkPrecisionPoint, error_at: u64) -> Self {
         let cost = point.cost_ns();
-        let setting = point.setting.map(|Setting { name, value, unit }| SettingAnswer { name, value, unit });
+        let setting = point.setting.map(|MethodSetting { name, value, unit }| SettingAnswer { name, value, unit });
         Self {
             method: point.method.name,
             setting,

@@ -4,7 +4,7 @@ use crate::api::formats::Pictured;
 use crate::api::precision::answer::{PrecisionAnswer, ReferenceAnswer};
 use crate::api::precision::request::CostAxis;
 use crate::charts::{SYMBOLS, Series, SpeedAccuracy, speed_accuracy};
-use crate::comparison::{METHODS, Point};
+use crate::comparison::{METHODS, WorkPrecisionPoint};
 use crate::http::Problem;
 
 const _: () = assert!(SYMBOLS.len() == METHODS.len(), "each method has a symbol of its own");
@@ -15,16 +15,16 @@ impl Pictured for PrecisionAnswer<'_> {
             CostAxis::Time => ("clock time", "ns per impact"),
             CostAxis::Evaluations => ("evaluations of motion and gap", "per impact"),
         };
-        let cost = |point: &Point| match self.axis {
+        let cost = |point: &WorkPrecisionPoint| match self.axis {
             CostAxis::Time => point.cost_ns(),
             CostAxis::Evaluations => point.evaluations_per_impact().map(|count| [count; 3]),
         };
-        let is_first = |point: &Point| match self.axis {
+        let is_first = |point: &WorkPrecisionPoint| match self.axis {
             CostAxis::Time => point.pareto,
             CostAxis::Evaluations => point.pareto_evaluations,
         };
         let points = &self.chart.points;
-        let place = |point: &Point| cost(point).zip(point.error);
+        let place = |point: &WorkPrecisionPoint| cost(point).zip(point.error);
         let series: Vec<Series<'_>> = METHODS
             .iter()
             .zip(SYMBOLS)
@@ -49,7 +49,7 @@ impl Pictured for PrecisionAnswer<'_> {
         let bars = if self.axis == CostAxis::Time { "; bars are quartiles" } else { "" };
         let mut caption = format!("Each point is a step or a tolerance{bars}. No point lies below the Pareto front.");
         if let Some([_, cost_ns, _]) =
-            points.iter().find(|point| point.method.name == "extended").and_then(Point::cost_ns)
+            points.iter().find(|point| point.method.name == "extended").and_then(WorkPrecisionPoint::cost_ns)
         {
             caption += &format!(" The reference takes {cost_ns:.0} ns per impact.");
         }

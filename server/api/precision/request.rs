@@ -3,7 +3,7 @@
 use equipoise_physics::scene::Scene;
 
 use crate::api::scene::read_frictionless_scene;
-use crate::comparison::{METHODS, Method, most_points};
+use crate::comparison::{ComparedMethod, METHODS, most_points};
 use crate::compute::Price;
 use crate::http::Reader;
 use crate::http::request::scalar;
@@ -17,7 +17,7 @@ pub struct PrecisionRequest {
     /// Number of contacts.
     pub impacts: u64,
     /// The methods.
-    pub methods: Vec<Method>,
+    pub methods: Vec<ComparedMethod>,
     /// The cost along the picture.
     pub axis: CostAxis,
 }
@@ -56,7 +56,7 @@ impl PrecisionRequest {
         if reader.errors().len() > before {
             return None;
         }
-        let wanted = |method: &Method| names.is_none() || asked.contains(method);
+        let wanted = |method: &ComparedMethod| names.is_none() || asked.contains(method);
         let methods = METHODS.into_iter().filter(wanted).collect();
         Some(Self { scene: scene?, impacts, methods, axis: axis.unwrap_or(CostAxis::Time) })
     }

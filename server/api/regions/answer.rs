@@ -2,7 +2,7 @@
 
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::surveys::stability_map;
-use equipoise_physics::surveys::stability_map::{Axis, Cell, Quantity};
+use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity};
 use serde::{Serialize, Serializer};
 
 use crate::api::regions::request::RegionRequest;
@@ -17,18 +17,18 @@ const NO_RUN: &str = "none";
 #[derive(Debug)]
 pub struct RegionAnswer {
     pub(super) request: RegionRequest,
-    pub(super) cells: Vec<Cell>,
-    pub(super) boundary: Vec<stability_map::Segment>,
+    pub(super) cells: Vec<MapCell>,
+    pub(super) boundary: Vec<stability_map::BoundarySegment>,
 }
 
 impl RegionAnswer {
     /// From the cells of the tile's rows, one row after the other; none once `go_on` said no while the boundary was looked for.
-    pub fn new(request: RegionRequest, cells: Vec<Cell>, mut go_on: impl FnMut() -> bool) -> Option<Self> {
+    pub fn new(request: RegionRequest, cells: Vec<MapCell>, mut go_on: impl FnMut() -> bool) -> Option<Self> {
         let boundary = request.region.boundary(limits::REGION_BOUNDARY_NODES, &mut go_on)?;
         Some(Self { request, cells, boundary })
     }
 
-    fn rows(&self) -> impl Iterator<Item = (usize, &[Cell])> {
+    fn rows(&self) -> impl Iterator<Item = (usize, &[MapCell])> {
         self.request.rows().zip(self.cells.chunks(self.request.region.x.count))
     }
 
@@ -44,26 +44,26 @@ pub(crate) fn written(value: f64) -> String {
 }
 
 /// Number of a cell's outcome. The number after the last outcome stands for a cell without a run.
-pub(super) fn code(cell: &Cell) -> usize {
+pub(super) fn code(cell: &MapCell) -> usize {
     cell.outcome.map_or(EndingKind::ALL.len(), |outcome| outcome as usize)
 }
 
-pub(crate) fn outcome_name(cell: &Cell) -> &'static str {
+pub(crate) fn outcome_name(cell: &MapCell) -> &'static str {
     cell.outcome.map_or(NO_RUN, EndingKind::name)
 }
 
-pub(crate) fn quantity_name(quantity: Quantity) -> &'static str {
+pub(crate) fn quantity_name(quantity: MapQuantity) -> &'static str {
     match quantity {
-        Quantity::Survival => "survival",
-        Quantity::MaxTheta => "max_theta",
-        Quantity::Residue => "residue",
-        Quantity::SpectralRadius => "spectral_radius",
+        MapQuantity::Survival => "survival",
+        MapQuantity::MaxTheta => "max_theta",
+        MapQuantity::Residue => "residue",
+        MapQuantity::SpectralRadius => "spectral_radius",
     }
 }
 
 /// A row of values; contacts are counted, and written as whole numbers.
 pub(crate) struct Values<'a> {
-    pub(crate) cells: &'a [Cell],
+    pub(crate) cells: &'a [MapCell],
     pub(crate) whole: bool,
 }
 
@@ -78,7 +78,7 @@ impl Serialize for Values<'_> {
     }
 }
 
-pub(crate) struct Outcomes<'a>(pub(crate) &'a [Cell]);
+pub(crate) struct Outcomes<'a>(pub(crate) &'a [MapCell]);
 
 impl Serialize for Outcomes<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -94,7 +94,7 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    pub(crate) fn add(&mut self, cells: &[Cell]) {
+    pub(crate) fn add(&mut self, cells: &[MapCell]) {
         for cell in cells {
             self.counts[code(cell)] += 1;
         }
@@ -145,18 +145,18 @@ impl Serialize for RegionAnswer {
             notes: Vec<String>,
         }
         let RegionRequest { region, scene, tile } = &self.request;
-        let side = |axis: Axis| {
+        let side = |axis: MapAxis| {
             let row = axis.name.row();
             Side { parameter: row.path, unit: row.unit, from: axis.from, to: axis.to, count: axis.count }
         };
         let mut notes = vec!["scene is one of the region; x and y replace its two fields".to_owned()];
         if self.cells.iter().any(|cell| cell.value.is_none()) {
             let beside = match region.quantity {
-                Quantity::Survival | Quantity::MaxTheta => "",
-                Quantity::SpectralRadius => ", has no fixed point or has noise",
-                Quantity::Residue => {
+                MapQuantity::Survival | MapQuantity::MaxTheta => "",
+                MapQuantity::SpectralRadius => ", has no fixed point or has noise",
+                MapQuantity::Residue => {
                     ", has no fixed point or has noise; and where the angle has no block of its own: of a point mass, with \
-                     state feedback, and where friction holds the contact"
+state feedback, and where friction holds the contact"
                 }
             };
             notes.push(format!("a value is null where the scene cannot be{beside}"));

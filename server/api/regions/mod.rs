@@ -5,7 +5,7 @@ pub mod picture;
 pub mod request;
 pub mod rows;
 
-use equipoise_physics::surveys::stability_map::Cell;
+use equipoise_physics::surveys::stability_map::MapCell;
 
 use crate::api::formats::{ChartFormat, FigureFormat};
 use crate::api::regions::answer::RegionAnswer;
@@ -37,7 +37,7 @@ impl ComputedResource for Regions {
                 bounces.inc_by(request.bounces_of(&computed));
                 Some(computed)
             };
-            let spread = |done: &mut (dyn FnMut(Vec<Cell>) + Send)| slices.parallel_map(blocks, compute, done);
+            let spread = |done: &mut (dyn FnMut(Vec<MapCell>) + Send)| slices.parallel_map(blocks, compute, done);
             match format {
                 ChartFormat::Csv => send_rows(Rows::new(*request, RowFormat::Csv), out, spread),
                 ChartFormat::Ndjson => send_rows(Rows::new(*request, RowFormat::Ndjson), out, spread),
@@ -62,7 +62,7 @@ impl ComputedResource for Regions {
 fn send_rows(
     mut rows: Rows,
     out: &mut BodyWriter,
-    spread: impl FnOnce(&mut (dyn FnMut(Vec<Cell>) + Send)) -> Result<(), Cancelled>,
+    spread: impl FnOnce(&mut (dyn FnMut(Vec<MapCell>) + Send)) -> Result<(), Cancelled>,
 ) -> Result<(), Problem> {
     out.send(rows.begin());
     spread(&mut |cells| out.send(rows.add(&cells)))?;
@@ -76,7 +76,7 @@ fn send_whole(
     format: FigureFormat,
     slices: &TimeSlices,
     out: &mut BodyWriter,
-    spread: impl FnOnce(&mut (dyn FnMut(Vec<Cell>) + Send)) -> Result<(), Cancelled>,
+    spread: impl FnOnce(&mut (dyn FnMut(Vec<MapCell>) + Send)) -> Result<(), Cancelled>,
 ) -> Result<(), Problem> {
     let mut all = Vec::with_capacity(request.numbers().len());
     spread(&mut |cells| all.extend(cells))?;

@@ -1,6 +1,6 @@
 //! The picture of `regions`: a heat map of the tile with the linear boundary over it.
 
-use equipoise_physics::surveys::stability_map::{Axis, Quantity};
+use equipoise_physics::surveys::stability_map::{MapAxis, MapQuantity};
 
 use crate::api::formats::Pictured;
 use crate::api::regions::answer::{RegionAnswer, code};
@@ -12,7 +12,7 @@ impl Pictured for RegionAnswer {
     fn to_picture(&self) -> Result<String, Problem> {
         let RegionRequest { region, tile, .. } = &self.request;
         let rows = self.request.rows();
-        let side = |axis: &Axis, first: usize, count: usize| {
+        let side = |axis: &MapAxis, first: usize, count: usize| {
             let row = axis.name.row();
             HeatAxis {
                 name: row.title,
@@ -24,17 +24,17 @@ impl Pictured for RegionAnswer {
             }
         };
         let (quantity, unit) = match region.quantity {
-            Quantity::Survival => ("contacts survived", "1"),
-            Quantity::MaxTheta => ("largest |θ|", "rad"),
-            Quantity::Residue => ("residue R", "1"),
-            Quantity::SpectralRadius => ("spectral radius", "1"),
+            MapQuantity::Survival => ("contacts survived", "1"),
+            MapQuantity::MaxTheta => ("largest |θ|", "rad"),
+            MapQuantity::Residue => ("residue R", "1"),
+            MapQuantity::SpectralRadius => ("spectral radius", "1"),
         };
         let values: Vec<Option<f64>> = self.cells.iter().map(|cell| cell.value).collect();
         let outcomes: Vec<u8> = self.cells.iter().map(|cell| code(cell) as u8).collect();
         let finite = || values.iter().flatten().copied().filter(|value| value.is_finite());
         let scale = match region.quantity {
-            Quantity::Survival => (0.0, region.impacts as f64),
-            Quantity::MaxTheta | Quantity::Residue | Quantity::SpectralRadius => {
+            MapQuantity::Survival => (0.0, region.impacts as f64),
+            MapQuantity::MaxTheta | MapQuantity::Residue | MapQuantity::SpectralRadius => {
                 (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max))
             }
         };

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use equipoise_physics::scene::{Kind, Scene, field};
-use equipoise_physics::stability::fixed_point::JUDGED;
-use equipoise_physics::surveys::stability_map::{Axis, Cell, Quantity, Region};
+use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
+use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
 use crate::api::scene::{build_scene, read_draft};
 use crate::api::shared::tile::Tile;
@@ -17,7 +17,7 @@ use crate::limits;
 #[derive(Debug, Clone, Copy)]
 pub struct RegionRequest {
     /// The region.
-    pub region: Region,
+    pub region: StabilityMap,
     /// A valid scene of the region, which is shown in the answer.
     pub scene: Scene,
     /// The tile: a band of whole rows.
@@ -31,12 +31,12 @@ impl RegionRequest {
         let axes = [read_axis(reader, "x"), read_axis(reader, "y")];
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(1000);
         let quantities = [
-            ("survival", Quantity::Survival),
-            ("max_theta", Quantity::MaxTheta),
-            ("residue", Quantity::Residue),
-            ("spectral_radius", Quantity::SpectralRadius),
+            ("survival", MapQuantity::Survival),
+            ("max_theta", MapQuantity::MaxTheta),
+            ("residue", MapQuantity::Residue),
+            ("spectral_radius", MapQuantity::SpectralRadius),
         ];
-        let quantity = reader.choice("quantity", &quantities).unwrap_or(Quantity::Survival);
+        let quantity = reader.choice("quantity", &quantities).unwrap_or(MapQuantity::Survival);
         let tile = Tile::read(reader, limits::REGION_SIDE);
         let ([Some(x), Some(y)], Some(draft), Some(tile)) = (axes, draft, tile) else { return None };
         if x.name == y.name {
@@ -47,7 +47,7 @@ impl RegionRequest {
             reader.refuse("tile", format!("tile has {} bands, but y has only {} rows", tile.of, y.count));
             return None;
         }
-        let region = Region { scene: draft, x, y, impacts, quantity };
+        let region = StabilityMap { scene: draft, x, y, impacts, quantity };
         let corners = [(0, 0), (x.count - 1, 0), (0, y.count - 1), (x.count - 1, y.count - 1)];
         let middle = (x.count / 2, y.count / 2);
         let possible = corners.into_iter().chain([middle]).find_map(|(column, row)| region.scene(column, row));
@@ -67,8 +67,8 @@ impl RegionRequest {
             }
             return None;
         };
-        let linear = matches!(region.quantity, Quantity::Residue | Quantity::SpectralRadius);
-        if let Some(error) = scene.beyond(&JUDGED).filter(|_| linear) {
+        let linear = matches!(region.quantity, MapQuantity::Residue | MapQuantity::SpectralRadius);
+        if let Some(error) = scene.beyond(&LINEARLY_JUDGED).filter(|_| linear) {
             let pointer = reader.pointer_to("scene");
             reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
             return None;
@@ -78,7 +78,7 @@ impl RegionRequest {
 
     /// Everything that determines the answer.
     pub fn canonical(&self) -> Vec<u8> {
-        let Region { x, y, impacts, quantity, .. } = self.region;
+        let StabilityMap { x, y, impacts, quantity, .. } = self.region;
         let sides = [x, y].map(|axis| (axis.name.row().path, axis.from, axis.to, axis.count));
         write::canonical(&self.scene, &(sides, impacts, quantity as u8, self.tile))
     }
@@ -108,13 +108,13 @@ impl RegionRequest {
     }
 
     /// Number of bounces that the runs of some cells took, as far as their values tell it.
-    pub fn bounces_of(&self, cells: &[Cell]) -> u64 {
+    pub fn bounces_of(&self, cells: &[MapCell]) -> u64 {
         cells.iter().filter_map(|cell| cell.value.filter(|_| self.is_whole())).map(|value| value as u64).sum()
     }
 
     /// Tells whether values are whole numbers.
     pub(crate) fn is_whole(&self) -> bool {
-        self.region.quantity == Quantity::Survival
+        self.region.quantity == MapQuantity::Survival
     }
 
     /// Price, in bounces of lanes.
@@ -136,15 +136,17 @@ impl RegionRequest {
     /// Highest price of one cell.
     fn cell_price(&self) -> u64 {
         let (once, bounce) = match self.region.quantity {
-            Quantity::Residue | Quantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),
-            Quantity::Survival | Quantity::MaxTheta if self.region.fits_lanes() => (limits::REGION_CELL_PRICE, 1),
-            Quantity::Survival | Quantity::MaxTheta => (limits::REGION_ALONE_CELL_PRICE, limits::REGION_ALONE_PRICE),
+            MapQuantity::Residue | MapQuantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),
+            MapQuantity::Survival | MapQuantity::MaxTheta if self.region.fits_lanes() => (limits::REGION_CELL_PRICE, 1),
+            MapQuantity::Survival | MapQuantity::MaxTheta => {
+                (limits::REGION_ALONE_CELL_PRICE, limits::REGION_ALONE_PRICE)
+            }
         };
         once + self.polygon_price() + bounce * self.region.impacts
     }
 }
 
-fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Axis> {
+fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<MapAxis> {
     if !reader.has(name) {
         reader.refuse(
             name,
@@ -169,6 +171,6 @@ fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Axis> {
         let (from, to) = (axis.number("from", ends.clone(), unit), axis.number("to", ends, unit));
         let count = axis.integer("count", 1..=limits::REGION_SIDE);
         range?;
-        Some(Axis { name: row?.name, from: from?, to: to?, count: usize::try_from(count?).ok()? })
+        Some(MapAxis { name: row?.name, from: from?, to: to?, count: usize::try_from(count?).ok()? })
     })?
 }

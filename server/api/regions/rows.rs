@@ -1,7 +1,7 @@
 //! The cells of a region as rows of CSV and NDJSON, each written as soon as it is whole.
 
 use equipoise_physics::scene::Name;
-use equipoise_physics::surveys::stability_map::{Cell, Quantity, Region};
+use equipoise_physics::surveys::stability_map::{MapCell, MapQuantity, StabilityMap};
 use serde::Serialize;
 
 use crate::api::regions::answer::{Counts, Outcomes, Values, outcome_name, quantity_name, written};
@@ -26,7 +26,7 @@ pub struct Rows {
     columns: Vec<String>,
     /// The row to come, and its cells so far.
     row: usize,
-    begun: Vec<Cell>,
+    begun: Vec<MapCell>,
     counts: Counts,
 }
 
@@ -43,17 +43,17 @@ impl Rows {
 
     /// Text before all rows: in CSV the names of the two fields, the quantity and `outcome`.
     pub fn begin(&self) -> Vec<u8> {
-        let Region { x, y, quantity, .. } = self.request.region;
+        let StabilityMap { x, y, quantity, .. } = self.request.region;
         if self.format == RowFormat::Ndjson {
             return Vec::new();
         }
         let field = |name: Name| with_unit(name.row().path, name.row().unit);
-        let value = with_unit(quantity_name(quantity), if quantity == Quantity::MaxTheta { "rad" } else { "" });
+        let value = with_unit(quantity_name(quantity), if quantity == MapQuantity::MaxTheta { "rad" } else { "" });
         format!("{},{},{value},outcome\r\n", field(x.name), field(y.name)).into_bytes()
     }
 
     /// The rows that these cells make whole.
-    pub fn add(&mut self, cells: &[Cell]) -> Vec<u8> {
+    pub fn add(&mut self, cells: &[MapCell]) -> Vec<u8> {
         self.counts.add(cells);
         self.begun.extend_from_slice(cells);
         let columns = self.request.region.x.count;
@@ -88,7 +88,7 @@ impl Rows {
         out
     }
 
-    fn write_csv(&self, cells: &[Cell], out: &mut Vec<u8>) {
+    fn write_csv(&self, cells: &[MapCell], out: &mut Vec<u8>) {
         let y = written(self.request.region.y.value(self.row));
         let whole = self.request.is_whole();
         for (cell, x) in cells.iter().zip(&self.columns) {
@@ -103,7 +103,7 @@ impl Rows {
         }
     }
 
-    fn write_line(&self, cells: &[Cell], out: &mut Vec<u8>) {
+    fn write_line(&self, cells: &[MapCell], out: &mut Vec<u8>) {
         #[derive(Serialize)]
         struct Row<'a> {
             row: usize,

@@ -1,6 +1,6 @@
 //! Prices of scenes.
 
-use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Name, Scene};
 
 /// The angle fields of a body, which a point mass does not have.
@@ -11,6 +11,7 @@ pub fn has_angle(scene: &Scene) -> bool {
 /// Price of a bounce of a scene at most, in bounces of the plain rod.
 pub fn bounce_price(scene: &Scene) -> u64 {
     let vertices = scene.vertices().map_or(0, |vertices| vertices.places().len() as u64);
-    let dearer = scene.forced().into_iter().map(|forced| if forced.rung == Rung::Noise { 2 } else { 1 });
+    let dearer =
+        scene.requirements().into_iter().map(|requirement| if requirement.level == ModelLevel::Noise { 2 } else { 1 });
     1 + u64::from(!has_angle(scene)) + vertices / 8 + dearer.sum::<u64>()
 }

@@ -1,6 +1,6 @@
 //! Reads the scene of a request: a preset, a scene, or a preset with a scene merged onto it.
 
-use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Draft, Scene};
 
 use crate::api::scene::merge::{build_scene, merge};
@@ -24,7 +24,7 @@ pub fn read_frictionless_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
 }
 
 /// [`read_scene`] for what is derived for the plain rod and some rungs above it.
-pub fn read_scene_within(reader: &mut Reader<'_, '_>, known: &[Rung]) -> Option<Scene> {
+pub fn read_scene_within(reader: &mut Reader<'_, '_>, known: &[ModelLevel]) -> Option<Scene> {
     let scene = read_scene(reader)?;
     let pointer = reader.pointer_to("scene");
     if let Some(error) = scene.beyond(known) {

@@ -2,7 +2,7 @@
 
 use equipoise_physics::run::method::RunMethod;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::scene::model::{Forced, Rung};
+use equipoise_physics::scene::model::{ModelLevel, ModelRequirement};
 use serde::Serialize;
 
 /// The model of a run, and the reason for it.
@@ -31,17 +31,17 @@ impl RequirementAnswer {
     }
 }
 
-impl From<Forced> for RequirementAnswer {
-    fn from(Forced { rung, path, detail }: Forced) -> Self {
-        Self { rung: rung.name(), field: path, detail }
+impl From<ModelRequirement> for RequirementAnswer {
+    fn from(ModelRequirement { level, path, detail }: ModelRequirement) -> Self {
+        Self { rung: level.name(), field: path, detail }
     }
 }
 
 impl ModelChoice {
     /// The model of a scene.
     pub fn of(scene: &Scene) -> Self {
-        let forced = scene.forced().into_iter().map(RequirementAnswer::from).collect();
-        Self { name: scene.rung().name(), reason: scene.rung_reason(), forced }
+        let forced = scene.requirements().into_iter().map(RequirementAnswer::from).collect();
+        Self { name: scene.model_level().name(), reason: scene.level_reason(), forced }
     }
 
     /// The model that a method needs of it.
@@ -50,6 +50,6 @@ impl ModelChoice {
             return Self::of(scene);
         }
         let reason = "the linear solution is accurate enough here, or was asked for: the angle block in closed form";
-        Self { name: Rung::Linear.name(), reason: reason.to_owned(), forced: Vec::new() }
+        Self { name: ModelLevel::Linear.name(), reason: reason.to_owned(), forced: Vec::new() }
     }
 }

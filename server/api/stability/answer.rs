@@ -6,10 +6,10 @@ use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::basin::{NoBasin, find_basin};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime, stick_cone};
-use equipoise_physics::stability::fixed_point::{JUDGED, drift_speed, find_fixed_point, height_error};
-use equipoise_physics::stability::linear_verdict::{Linear, linear_verdict};
+use equipoise_physics::stability::fixed_point::{LINEARLY_JUDGED, drift_speed, find_fixed_point, height_error};
+use equipoise_physics::stability::linear_verdict::{LinearVerdict, linear_verdict};
 use equipoise_physics::stability::nonlinear_run::{NonlinearRun, run_nonlinear};
-use equipoise_physics::stability::verdict::{HigherOrder, Judgement, Verdict, judge};
+use equipoise_physics::stability::verdict::{Assessment, HigherOrder, Verdict, assess};
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
@@ -112,7 +112,7 @@ fn words(verdict: Verdict, run: &NonlinearRun) -> String {
 }
 
 impl LinearPart {
-    fn new(scene: &Scene, linear: &Linear) -> Self {
+    fn new(scene: &Scene, linear: &LinearVerdict) -> Self {
         let kappa = scene.number(Name::TiltGain).unwrap_or_default();
         let energy_gain = scene.number(Name::EnergyGain).unwrap_or_default();
         Self {
@@ -194,7 +194,7 @@ impl<'a> StabilityAnswer<'a> {
                  tilts, so nothing drifts, the angle has no block of its own, and no tilt_gain balances"
                     .to_owned(),
             );
-        } else if let Some(error) = scene.beyond(&JUDGED) {
+        } else if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
             notes.push(format!("drift_speed is null: {}", error.detail));
         } else if answer.drift_speed.is_none() {
             notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
@@ -208,8 +208,8 @@ impl<'a> StabilityAnswer<'a> {
                 let linear = linear_verdict(scene, &fixed_point);
                 let higher = HigherOrder::of(scene, &fixed_point, &linear);
                 let evidence = Evidence::new(scene, &fixed_point, &linear, impacts);
-                let Judgement { verdict, decided_by, agree, reason } =
-                    judge(scene, &fixed_point, &linear, &higher, &run, evidence.chaos());
+                let Assessment { verdict, decided_by, agree, reason } =
+                    assess(scene, &fixed_point, &linear, &higher, &run, evidence.chaos());
                 answer.verdict = Some(words(verdict, &run));
                 answer.decided_by = Some(decided_by.name());
                 answer.agree = Some(agree);

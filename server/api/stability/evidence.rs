@@ -3,8 +3,8 @@
 
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::fixed_point::FixedPoint;
-use equipoise_physics::stability::linear_verdict::Linear;
-use equipoise_physics::stability::loss_of_stability::Settles;
+use equipoise_physics::stability::linear_verdict::LinearVerdict;
+use equipoise_physics::stability::loss_of_stability::SettledMotion;
 use equipoise_physics::stability::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED, measure_regularity};
 use equipoise_physics::stability::{basin, loss_of_stability, lyapunov, regularity};
 use serde::Serialize;
@@ -40,8 +40,8 @@ pub(crate) struct Chaos {
     impacts: u64,
 }
 
-impl From<regularity::Chaos> for Chaos {
-    fn from(chaos: regularity::Chaos) -> Self {
+impl From<regularity::ChaosIndicator> for Chaos {
+    fn from(chaos: regularity::ChaosIndicator) -> Self {
         Self { indicator: chaos.indicator, chaotic: chaos.chaotic, impacts: chaos.impacts }
     }
 }
@@ -56,9 +56,9 @@ pub(crate) struct Basin {
     spacing: f64,
 }
 
-impl From<basin::Basin> for Basin {
-    fn from(basin: basin::Basin) -> Self {
-        let basin::Basin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: _ } = basin;
+impl From<basin::ReleaseBasin> for Basin {
+    fn from(basin: basin::ReleaseBasin) -> Self {
+        let basin::ReleaseBasin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: _ } = basin;
         Self { theta, impacts, holes, unbroken, tolerance, spacing }
     }
 }
@@ -74,9 +74,9 @@ pub(crate) struct Lyapunov {
 /// Distance of the rotation from a quarter turn, in turns a bounce, within which the resonance is named.
 const NEAR_QUARTER: f64 = 0.02;
 
-impl From<&lyapunov::Lyapunov> for Lyapunov {
-    fn from(found: &lyapunov::Lyapunov) -> Self {
-        let lyapunov::Lyapunov { coefficient, kind, amplitude, from_quarter } = *found;
+impl From<&lyapunov::LyapunovCoefficient> for Lyapunov {
+    fn from(found: &lyapunov::LyapunovCoefficient) -> Self {
+        let lyapunov::LyapunovCoefficient { coefficient, kind, amplitude, from_quarter } = *found;
         let mut detail = format!(
             "the amplitude A of a swing, the largest |θ| of its linear ellipse, obeys dA/dn = ℓA³ a bounce to third order; A is {amplitude} \
              rad at the first contact of this release"
@@ -102,12 +102,12 @@ pub(crate) struct LossOfStability {
     heights: Option<[f64; 2]>,
 }
 
-impl From<&loss_of_stability::Loss> for LossOfStability {
-    fn from(loss: &loss_of_stability::Loss) -> Self {
+impl From<&loss_of_stability::StabilityLoss> for LossOfStability {
+    fn from(loss: &loss_of_stability::StabilityLoss) -> Self {
         let (swing, heights) = match loss.settles {
             None => (None, None),
-            Some(Settles::Swing(swing)) => (Some(swing), None),
-            Some(Settles::Heights { heights, .. }) => (None, Some(heights)),
+            Some(SettledMotion::Swing(swing)) => (Some(swing), None),
+            Some(SettledMotion::Heights { heights, .. }) => (None, Some(heights)),
         };
         Self {
             parameter: loss.end.name(),
@@ -126,7 +126,7 @@ impl From<&loss_of_stability::Loss> for LossOfStability {
 pub(crate) struct Evidence(Option<Regularity>);
 
 impl Evidence {
-    pub(crate) fn new(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear, impacts: u64) -> Self {
+    pub(crate) fn new(scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict, impacts: u64) -> Self {
         Self(scene.orbit().ok().and_then(|orbit| measure_regularity(orbit, fixed_point, linear, impacts)))
     }
 
@@ -138,7 +138,7 @@ impl Evidence {
         self.0.as_ref()?.rotation
     }
 
-    pub(crate) fn chaos(&self) -> Option<regularity::Chaos> {
+    pub(crate) fn chaos(&self) -> Option<regularity::ChaosIndicator> {
         self.0.as_ref()?.chaos
     }
 
@@ -147,7 +147,7 @@ impl Evidence {
     }
 
     /// Why something is null, and what a client should know of the rest.
-    pub(crate) fn explain(&self, linear: &Linear, notes: &mut Vec<String>) {
+    pub(crate) fn explain(&self, linear: &LinearVerdict, notes: &mut Vec<String>) {
         let Some(regularity) = &self.0 else {
             notes.push(
                 "rotation_number, chaos and predictable_impacts are null: they are of a body with an angle".to_owned(),

@@ -2,7 +2,7 @@
 
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::margins;
-use equipoise_physics::stability::margins::{Sample, Tolerances, margins_over_tolerances};
+use equipoise_physics::stability::margins::{SampledBody, Tolerances, margins_over_tolerances};
 use serde::Serialize;
 
 /// The margins of a scene.
@@ -37,8 +37,8 @@ struct TiltGainMargin {
     worst: BodySample,
 }
 
-impl From<margins::Span> for SpanAnswer {
-    fn from(margins::Span { least, most }: margins::Span) -> Self {
+impl From<margins::ValueRange> for SpanAnswer {
+    fn from(margins::ValueRange { least, most }: margins::ValueRange) -> Self {
         Self { least, most }
     }
 }
@@ -58,7 +58,7 @@ impl MarginsAnswer {
                 reason,
             },
             Ok(margins) => {
-                let Sample { contact_distance, radius_of_gyration, restitution } = margins.worst;
+                let SampledBody { contact_distance, radius_of_gyration, restitution } = margins.worst;
                 let critical = margins.critical_tilt_gain;
                 let reason = if margins.holds {
                     "the linear verdict is stable for every body within the tolerances"

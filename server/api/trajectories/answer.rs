@@ -8,7 +8,7 @@ use equipoise_physics::run::method;
 use equipoise_physics::run::method::{ComputedImpact, RunMethod, choose_method, run_by};
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::table::actuator_load::LoadTracker;
 use serde::Serialize;
 
@@ -73,7 +73,7 @@ impl MethodAnswer {
     ) -> Result<(RunMethod, Self), Refusal> {
         let TrajectoryRequest { impacts, method, tolerance, .. } = *request;
         if let (None, Some(tolerance)) = (method, tolerance) {
-            if let Some(error) = scene.beyond(&[Rung::Friction]) {
+            if let Some(error) = scene.beyond(&[ModelLevel::Friction]) {
                 return Err(Refusal::At("/tolerance", format!("no method bounds its error: {}", error.detail)));
             }
             let choice = choose_method(scene, impacts, tolerance, go_on)
@@ -199,21 +199,21 @@ impl<'a> TrajectoryAnswer<'a> {
         let mut notes = Vec::new();
         if was_changed {
             notes.push(format!("error_estimate is null and predictable_impacts 0: {NO_BOUND}"));
-        } else if let Some(error) = scene.beyond(&[Rung::Friction]) {
+        } else if let Some(error) = scene.beyond(&[ModelLevel::Friction]) {
             notes.push(format!(
                 "error_estimate is null and predictable_impacts 0, since no bound is derived: {}",
                 error.detail
             ));
         } else if unknown > 0 {
             notes.push(format!(
-                "error_estimate is null at {unknown} impacts: past a graze, or once rounding has grown to the size of the \
-                 run, no bound is known"
-            ));
+"error_estimate is null at {unknown} impacts: past a graze, or once rounding has grown to the size of the \
+run, no bound is known"
+));
         }
         if !has_angle {
             notes.push(
                 "theta is the angle of the velocity from straight down, and theta_dot is null: a point mass has no \
-                 angle of its own"
+angle of its own"
                     .to_owned(),
             );
         }

@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 
 /// The factors on the gain between which the closed loop stays stable, 1 among them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Margin {
+pub struct StableGainRange {
     /// The largest below 1 at which it is no longer; none where there is none.
     pub lower: Option<f64>,
     /// The smallest above 1.
@@ -16,8 +16,8 @@ pub struct Margin {
 }
 
 /// The margin of a stable closed loop, from A and A − BK of at most four states.
-pub fn margin(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> Margin {
-    let mut margin = Margin { lower: None, upper: None };
+pub fn margin(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> StableGainRange {
+    let mut margin = StableGainRange { lower: None, upper: None };
     for factor in crossings(open, closed) {
         if factor < 1.0 {
             margin.lower = Some(margin.lower.map_or(factor, |lower| lower.max(factor)));
@@ -118,7 +118,7 @@ mod tests {
     fn one_state_has_its_closed_form() {
         // z = 2 − 1.8 g is on the circle at g = 1/1.8 and 3/1.8.
         let matrix = |value| DMatrix::from_element(1, 1, value);
-        let Margin { lower, upper } = margin(&matrix(2.0), &matrix(0.2));
+        let StableGainRange { lower, upper } = margin(&matrix(2.0), &matrix(0.2));
         assert!((lower.unwrap() - 1.0 / 1.8).abs() < 1e-15 && (upper.unwrap() - 3.0 / 1.8).abs() < 1e-15);
         // Stable without any: nothing is too weak.
         assert_eq!(margin(&matrix(0.5), &matrix(0.0)).lower, Some(-1.0));

@@ -10,7 +10,7 @@ pub mod riccati;
 use crate::bounce::rod::Rod;
 use crate::stability::contact_regime::ContactRegime;
 use crate::stability::jacobian::{eigenvalues, modulus};
-use margin::{Margin, margin};
+use margin::{StableGainRange, margin};
 use nalgebra::{Complex, DMatrix, Matrix3, Matrix4, RowVector4, Vector3, Vector4};
 
 /// Names of the components of the state just before a contact, in the order of A, B and K.
@@ -33,7 +33,7 @@ pub struct BounceModel {
 
 /// A law that was designed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Design {
+pub struct LqrDesign {
     /// K, in the order of [`STATE`]; 0 for x where its weight is.
     pub gain: [f64; 4],
     /// How far the solution is off the Riccati equation, as a share of it.
@@ -44,7 +44,7 @@ pub struct Design {
 
 /// Why there is no law.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NoDesign {
+pub enum DesignFailure {
     /// The doubling did not converge.
     Diverging,
     /// It converged to what is off the equation by this share.
@@ -61,7 +61,7 @@ pub struct ClosedLoop {
     /// The largest modulus.
     pub spectral_radius: f64,
     /// Factors on K between which it stays stable; none where it is not.
-    pub margin: Option<Margin>,
+    pub margin: Option<StableGainRange>,
 }
 
 impl ClosedLoop {
@@ -121,26 +121,26 @@ impl BounceModel {
     /// Where x has no weight it is left out, and K with it: what does not matter is not to be steered.
     ///
     /// # Errors
-    /// [`NoDesign`].
-    pub fn design(&self, state: [f64; 4], input: f64) -> Result<Design, NoDesign> {
+    /// [`DesignFailure`].
+    pub fn design(&self, state: [f64; 4], input: f64) -> Result<LqrDesign, DesignFailure> {
         let (gain, residual, iterations) = if state[0] == 0.0 {
             let (a, b): (Matrix3<f64>, Vector3<f64>) =
                 (self.a.fixed_view::<3, 3>(1, 1).into(), self.b.fixed_rows::<3>(1).into());
             let found = riccati::solve(&a, &b, &Vector3::new(state[1], state[2], state[3]), input);
-            let found = found.ok_or(NoDesign::Diverging)?;
+            let found = found.ok_or(DesignFailure::Diverging)?;
             ([0.0, found.gain[0], found.gain[1], found.gain[2]], found.residual, found.iterations)
         } else {
-            let found = riccati::solve(&self.a, &self.b, &state.into(), input).ok_or(NoDesign::Diverging)?;
+            let found = riccati::solve(&self.a, &self.b, &state.into(), input).ok_or(DesignFailure::Diverging)?;
             (found.gain.into(), found.residual, found.iterations)
         };
         if residual.is_nan() || residual > RESIDUAL {
-            return Err(NoDesign::Inaccurate(residual));
+            return Err(DesignFailure::Inaccurate(residual));
         }
         let spectral_radius = self.closed_loop(gain, state[0] != 0.0).map_or(f64::NAN, |it| it.spectral_radius);
         if spectral_radius <= STABLE {
-            Ok(Design { gain, residual, iterations })
+            Ok(LqrDesign { gain, residual, iterations })
         } else {
-            Err(NoDesign::Unseen(spectral_radius))
+            Err(DesignFailure::Unseen(spectral_radius))
         }
     }
 

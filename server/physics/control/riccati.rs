@@ -11,7 +11,7 @@ pub const DOUBLINGS: u32 = 40;
 
 /// A solution, and how good it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solution<const N: usize> {
+pub struct RiccatiSolution<const N: usize> {
     /// P, symmetric.
     pub cost: SMatrix<f64, N, N>,
     /// K = (R + BᵀPB)⁻¹BᵀPA.
@@ -31,7 +31,7 @@ pub fn solve<const N: usize>(
     b: &SVector<f64, N>,
     state: &SVector<f64, N>,
     input: f64,
-) -> Option<Solution<N>>
+) -> Option<RiccatiSolution<N>>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
@@ -53,7 +53,7 @@ where
             let cost = refined(a, b, &weights, input, &cost);
             let gain = gain(a, b, input, &cost);
             let next = a.transpose() * cost * (a - b * gain) + weights;
-            return Some(Solution {
+            return Some(RiccatiSolution {
                 cost,
                 gain,
                 residual: (next - cost).norm() / cost.norm().max(f64::MIN_POSITIVE),

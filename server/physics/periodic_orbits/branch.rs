@@ -3,9 +3,9 @@
 //!
 //! Orbits and their equations are in the module above.
 
-use super::closed::{Course, Plane, Solution, correct};
+use super::closed::{ClosedOrbit, ParameterPath, SearchPlane, correct};
 use super::symmetric::on_course;
-use super::{Failure, PeriodicOrbit, Place};
+use super::{OrbitFailure, PeriodicOrbit, Place};
 use crate::bounce::state::State;
 use crate::scene::{Name, Scene};
 
@@ -25,7 +25,7 @@ const HALVED: f64 = 1e-6;
 
 /// A range of a scene's field.
 #[derive(Clone, Copy, Debug)]
-pub struct Sweep<'a> {
+pub struct ParameterRange<'a> {
     /// The scene at every other field.
     pub scene: &'a Scene,
     /// The field, which must be a number.
@@ -38,7 +38,7 @@ pub struct Sweep<'a> {
 
 /// Where a branch begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Start {
+pub enum BranchStart {
     /// Near the upright bounce, at `from`.
     Upright,
     /// Near a state, at `from`.
@@ -50,7 +50,7 @@ pub enum Start {
 
 /// How stability changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum Bifurcation {
     /// An eigenvalue passes −1 (R = 1); also where the branch itself springs from an orbit of half its period.
     PeriodDoubling,
     /// The branch turns back: an eigenvalue passes 1 (R = 0).
@@ -61,7 +61,7 @@ pub enum Kind {
     NeimarkSacker,
 }
 
-impl Kind {
+impl Bifurcation {
     /// Its name in answers.
     pub fn name(self) -> &'static str {
         match self {
@@ -75,13 +75,13 @@ impl Kind {
 
 /// An orbit on a branch.
 #[derive(Clone, Debug)]
-pub struct Point {
+pub struct BranchPoint {
     /// Value of the parameter.
     pub parameter: f64,
     /// The orbit.
     pub orbit: PeriodicOrbit,
     /// What changes here; only at points that were located for it.
-    pub change: Option<Kind>,
+    pub change: Option<Bifurcation>,
     /// Whether the branch begins or ends here at an orbit of half the period.
     pub springs: bool,
 }
@@ -90,7 +90,7 @@ pub struct Point {
 #[derive(Clone, Debug)]
 pub struct Branch {
     /// Its points.
-    pub points: Vec<Point>,
+    pub points: Vec<BranchPoint>,
     /// Index of the point it was followed from.
     pub start: usize,
     /// Why it ends where it does, at its first point (if it was followed both ways) and at its last.
@@ -100,30 +100,30 @@ pub struct Branch {
 /// Follows a branch through its range, over at most `points` points besides those located; `go_on` is asked at each.
 ///
 /// # Errors
-/// [`Failure`] where there is no orbit to start from. A branch that cannot go on is an answer, with the reason.
+/// [`OrbitFailure`] where there is no orbit to start from. A branch that cannot go on is an answer, with the reason.
 pub fn follow(
-    sweep: &Sweep<'_>,
+    sweep: &ParameterRange<'_>,
     period: usize,
-    start: Start,
+    start: BranchStart,
     points: usize,
     mut go_on: impl FnMut() -> bool,
-) -> Result<Branch, Failure> {
-    let course = Course::along(sweep.scene, sweep.name, sweep.from, sweep.to)?;
+) -> Result<Branch, OrbitFailure> {
+    let course = ParameterPath::along(sweep.scene, sweep.name, sweep.from, sweep.to)?;
     let first = match start {
-        Start::Symmetric(theta) => {
+        BranchStart::Symmetric(theta) => {
             let place = on_course(&course, theta)?;
-            correct(&course, period, place, &Plane::at_theta(place))?
+            correct(&course, period, place, &SearchPlane::at_theta(place))?
         }
-        Start::Upright | Start::Near(_) => {
-            let state = if let Start::Near(state) = start { state } else { course.setting(0.0)?.upright() };
+        BranchStart::Upright | BranchStart::Near(_) => {
+            let state = if let BranchStart::Near(state) = start { state } else { course.setting(0.0)?.upright() };
             let place = course.place(&state, 0.0);
-            correct(&course, period, place, &Plane::at_parameter(place))?
+            correct(&course, period, place, &SearchPlane::at_parameter(place))?
         }
     };
     let lead = |along: Place| first.closed.tangent(&along).ok_or_else(|| no_tangent(&first));
-    let mut trail = Trail { course: &course, period, budget: points.saturating_sub(1), changes: MOST_CHANGES };
+    let mut trail = BranchFollower { course: &course, period, budget: points.saturating_sub(1), changes: MOST_CHANGES };
     let own = trail.point(&first, None)?;
-    let Start::Symmetric(theta) = start else {
+    let BranchStart::Symmetric(theta) = start else {
         let (mut after, end) = trail.walk(&first, lead(Place::ith(4, 1.0))?, &mut go_on)?;
         after.insert(0, own);
         return Ok(Branch { points: after, start: 0, ends: vec![end] });
@@ -142,13 +142,13 @@ pub fn follow(
     Ok(Branch { points: before, start, ends: vec![inner, outer] })
 }
 
-fn no_tangent(solution: &Solution) -> Failure {
-    Failure::NoConvergence { residual: solution.closed.residual(), steps: solution.steps }
+fn no_tangent(solution: &ClosedOrbit) -> OrbitFailure {
+    OrbitFailure::NoConvergence { residual: solution.closed.residual(), steps: solution.steps }
 }
 
 /// What a walk along a branch needs to know.
-struct Trail<'a> {
-    course: &'a Course<'a>,
+struct BranchFollower<'a> {
+    course: &'a ParameterPath<'a>,
     period: usize,
     /// Points still to be had.
     budget: usize,
@@ -156,29 +156,29 @@ struct Trail<'a> {
     changes: usize,
 }
 
-impl Trail<'_> {
-    fn point(&self, solution: &Solution, change: Option<Kind>) -> Result<Point, Failure> {
+impl BranchFollower<'_> {
+    fn point(&self, solution: &ClosedOrbit, change: Option<Bifurcation>) -> Result<BranchPoint, OrbitFailure> {
         let share = solution.place[4];
         let orbit = PeriodicOrbit::new(&self.course.setting(share)?, solution)?;
-        Ok(Point { parameter: self.course.parameter(share), orbit, change, springs: false })
+        Ok(BranchPoint { parameter: self.course.parameter(share), orbit, change, springs: false })
     }
 
     /// Goes on from a solution along a direction: the points after it, and why they end.
     fn walk(
         &mut self,
-        first: &Solution,
+        first: &ClosedOrbit,
         direction: Place,
         go_on: &mut impl FnMut() -> bool,
-    ) -> Result<(Vec<Point>, String), Failure> {
+    ) -> Result<(Vec<BranchPoint>, String), OrbitFailure> {
         let mut points = Vec::new();
         let (mut here, mut tangent) = (first.clone(), direction);
         let mut orbit = self.point(&here, None)?.orbit;
         let mut step = FIRST_STEP;
         while self.budget > 0 {
             if !go_on() {
-                return Err(Failure::Cancelled);
+                return Err(OrbitFailure::Cancelled);
             }
-            let plane = Plane { normal: tangent, point: here.place + tangent * step };
+            let plane = SearchPlane { normal: tangent, point: here.place + tangent * step };
             let (next, leads) = match self.step(&here, &tangent, &plane, step) {
                 Ok(found) => found,
                 Err(_) if step > SHORTEST_STEP => {
@@ -196,7 +196,7 @@ impl Trail<'_> {
                 let part = (end - here.place[4]) / (share - here.place[4]);
                 let mut guess = here.place + (next.place - here.place) * part;
                 guess[4] = end;
-                let last = correct(self.course, self.period, guess, &Plane::at_parameter(guess))?;
+                let last = correct(self.course, self.period, guess, &SearchPlane::at_parameter(guess))?;
                 let last_tangent = last.closed.tangent(&tangent).ok_or_else(|| no_tangent(&last))?;
                 let after = self.point(&last, None)?;
                 self.locate(&mut points, (&here, &tangent, &orbit), (&last, &last_tangent, &after.orbit));
@@ -230,7 +230,13 @@ impl Trail<'_> {
     }
 
     /// One step: the solution in the plane and the direction there, if the branch does not turn too much on the way.
-    fn step(&self, here: &Solution, tangent: &Place, plane: &Plane, step: f64) -> Result<(Solution, Place), Failure> {
+    fn step(
+        &self,
+        here: &ClosedOrbit,
+        tangent: &Place,
+        plane: &SearchPlane,
+        step: f64,
+    ) -> Result<(ClosedOrbit, Place), OrbitFailure> {
         let next = correct(self.course, self.period, plane.point, plane)?;
         let leads = next.closed.tangent(tangent).ok_or_else(|| no_tangent(&next))?;
         let astray = (next.place - plane.point).norm() > 0.3 * step || tangent.dot(&leads) < LARGEST_TURN;
@@ -241,7 +247,7 @@ impl Trail<'_> {
     }
 
     /// How far the orbit is from repeating after half of its period, as a vector.
-    fn half_way(&self, solution: &Solution) -> Option<Place> {
+    fn half_way(&self, solution: &ClosedOrbit) -> Option<Place> {
         let states = &solution.closed.states;
         if !self.period.is_multiple_of(2) {
             return None;
@@ -252,19 +258,19 @@ impl Trail<'_> {
     }
 
     /// Where, between two points, the branch went through an orbit of half the period: beyond it come the same orbits again.
-    fn springs(&mut self, here: &Solution, next: &Solution) -> Option<Point> {
+    fn springs(&mut self, here: &ClosedOrbit, next: &ClosedOrbit) -> Option<BranchPoint> {
         let (one, other) = (self.half_way(here)?, self.half_way(next)?);
         if one.norm() < HALVED || other.norm() < HALVED || one.dot(&other) >= 0.0 {
             return None;
         }
         let part = one.norm() / (one.norm() + other.norm());
-        let middle = |solution: &Solution| solution.place + 0.5 * self.half_way(solution).unwrap_or_default();
+        let middle = |solution: &ClosedOrbit| solution.place + 0.5 * self.half_way(solution).unwrap_or_default();
         let guess = middle(here) + (middle(next) - middle(here)) * part;
         // The half orbit's eigenvalue −1, by the secant rule in the parameter.
         let test = |share: f64| {
             let mut guess = guess;
             guess[4] = share;
-            let half = correct(self.course, self.period / 2, guess, &Plane::at_parameter(guess)).ok()?;
+            let half = correct(self.course, self.period / 2, guess, &SearchPlane::at_parameter(guess)).ok()?;
             let orbit = PeriodicOrbit::new(&self.course.setting(share).ok()?, &half).ok()?;
             Some((orbit.multipliers.tests[1], half))
         };
@@ -273,9 +279,10 @@ impl Trail<'_> {
         for _ in 0..40 {
             let (at_b, half) = test(b)?;
             if at_b.abs() < 1e-14 || at_b == at_a || (b - a).abs() < 1e-16 {
-                let whole = correct(self.course, self.period, half.place, &Plane::at_parameter(half.place)).ok()?;
-                let point = self.point(&whole, Some(Kind::PeriodDoubling)).ok()?;
-                return Some(Point { springs: true, ..point });
+                let whole =
+                    correct(self.course, self.period, half.place, &SearchPlane::at_parameter(half.place)).ok()?;
+                let point = self.point(&whole, Some(Bifurcation::PeriodDoubling)).ok()?;
+                return Some(BranchPoint { springs: true, ..point });
             }
             let c = b - at_b * (b - a) / (at_b - at_a);
             (a, at_a, b) = (b, at_b, c);
@@ -286,12 +293,12 @@ impl Trail<'_> {
     /// Locates every change of stability between two points, and puts them behind those there are.
     fn locate(
         &mut self,
-        points: &mut Vec<Point>,
-        (here, tangent, orbit): (&Solution, &Place, &PeriodicOrbit),
-        (next, leads, after): (&Solution, &Place, &PeriodicOrbit),
+        points: &mut Vec<BranchPoint>,
+        (here, tangent, orbit): (&ClosedOrbit, &Place, &PeriodicOrbit),
+        (next, leads, after): (&ClosedOrbit, &Place, &PeriodicOrbit),
     ) {
         let length = tangent.dot(&(next.place - here.place));
-        let mut found: Vec<(f64, Point)> = Vec::new();
+        let mut found: Vec<(f64, BranchPoint)> = Vec::new();
         for test in 0..3 {
             let (low, high) = (orbit.multipliers.tests[test], after.multipliers.tests[test]);
             let noise = if test == 2 { 1e-7 } else { 1e-12 };
@@ -302,12 +309,12 @@ impl Trail<'_> {
                 continue;
             }
             let kind = match test {
-                0 if tangent[4] * leads[4] < 0.0 => Kind::Fold,
-                0 => Kind::Pitchfork,
-                1 => Kind::PeriodDoubling,
-                _ => Kind::NeimarkSacker,
+                0 if tangent[4] * leads[4] < 0.0 => Bifurcation::Fold,
+                0 => Bifurcation::Pitchfork,
+                1 => Bifurcation::PeriodDoubling,
+                _ => Bifurcation::NeimarkSacker,
             };
-            let value = |solution: &Solution| self.point(solution, Some(kind)).ok();
+            let value = |solution: &ClosedOrbit| self.point(solution, Some(kind)).ok();
             if let Some(at) = self.zero((here, tangent), (next, length), (low, high), test).and_then(|(s, solution)| {
                 let point = value(&solution)?;
                 Some((s, point))
@@ -323,11 +330,11 @@ impl Trail<'_> {
     /// Zero of a test along the branch, by the rule of false position in Illinois form, with bisection where it creeps.
     fn zero(
         &self,
-        (here, tangent): (&Solution, &Place),
-        (next, length): (&Solution, f64),
+        (here, tangent): (&ClosedOrbit, &Place),
+        (next, length): (&ClosedOrbit, f64),
         (low, high): (f64, f64),
         test: usize,
-    ) -> Option<(f64, Solution)> {
+    ) -> Option<(f64, ClosedOrbit)> {
         let (mut a, mut at_a, mut place_a) = (0.0, low, here.place);
         let (mut b, mut at_b, mut place_b) = (length, high, next.place);
         let mut best = None;
@@ -338,7 +345,7 @@ impl Trail<'_> {
             }
             let point = here.place + tangent * s;
             let guess = place_a + (place_b - place_a) * ((s - a) / (b - a));
-            let solution = correct(self.course, self.period, guess, &Plane { normal: *tangent, point }).ok()?;
+            let solution = correct(self.course, self.period, guess, &SearchPlane { normal: *tangent, point }).ok()?;
             let orbit = self.point(&solution, None).ok()?.orbit;
             let value = orbit.multipliers.tests[test];
             let place = solution.place;

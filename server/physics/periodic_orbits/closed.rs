@@ -4,7 +4,7 @@
 //! parameters move with a field of the scene is a central difference, since one field may move several of them or one of
 //! them nonlinearly; it steers the iteration, and no answer depends on it.
 
-use super::{Failure, Place, Setting, advance};
+use super::{OrbitFailure, OrbitProblem, Place, advance};
 use crate::bounce::flight::Flight;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -31,22 +31,22 @@ const MOST_HALVINGS: u32 = 6;
 type Five = Dual<5>;
 
 /// The setting along a parameter that goes through a range as its share goes from 0 to 1; or standing still.
-pub(super) struct Course<'a> {
+pub(super) struct ParameterPath<'a> {
     scene: Option<(&'a Scene, Name)>,
-    start: Setting,
+    start: OrbitProblem,
     pub(super) from: f64,
     pub(super) to: f64,
     theta_dot: f64,
 }
 
-impl<'a> Course<'a> {
-    pub(super) fn resting(setting: Setting) -> Self {
+impl<'a> ParameterPath<'a> {
+    pub(super) fn resting(setting: OrbitProblem) -> Self {
         let theta_dot = setting.speed / setting.rod.radius_of_gyration;
         Self { scene: None, start: setting, from: 0.0, to: 1.0, theta_dot }
     }
 
     /// Along a field of a scene.
-    pub(super) fn along(scene: &'a Scene, name: Name, from: f64, to: f64) -> Result<Self, Failure> {
+    pub(super) fn along(scene: &'a Scene, name: Name, from: f64, to: f64) -> Result<Self, OrbitFailure> {
         let mut course =
             Self { scene: Some((scene, name)), start: setting_at(scene, name, from)?, from, to, theta_dot: 1.0 };
         course.theta_dot = course.start.speed / course.start.rod.radius_of_gyration;
@@ -58,7 +58,7 @@ impl<'a> Course<'a> {
         if share == 1.0 { self.to } else { self.from + share * (self.to - self.from) }
     }
 
-    pub(super) fn setting(&self, share: f64) -> Result<Setting, Failure> {
+    pub(super) fn setting(&self, share: f64) -> Result<OrbitProblem, OrbitFailure> {
         match self.scene {
             None => Ok(self.start),
             Some((scene, name)) => setting_at(scene, name, self.parameter(share)),
@@ -66,8 +66,8 @@ impl<'a> Course<'a> {
     }
 
     /// How rod and energy move with the share.
-    fn rates(&self, share: f64) -> Result<(Rod, f64), Failure> {
-        let still = |setting: &Setting| (setting.rod, setting.energy.unwrap_or(0.0));
+    fn rates(&self, share: f64) -> Result<(Rod, f64), OrbitFailure> {
+        let still = |setting: &OrbitProblem| (setting.rod, setting.energy.unwrap_or(0.0));
         let Some((_, name)) = self.scene else {
             return Ok((rod_with(|part| part(&self.start.rod) * 0.0), 0.0));
         };
@@ -97,17 +97,17 @@ impl<'a> Course<'a> {
     }
 }
 
-fn setting_at(scene: &Scene, name: Name, value: f64) -> Result<Setting, Failure> {
+fn setting_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, OrbitFailure> {
     let mut draft = scene.draft();
     let value = match name.row().kind {
         Kind::Number { .. } => Value::Number(value),
-        _ => return Err(Failure::Scene(format!("{} is not a number", name.row().path))),
+        _ => return Err(OrbitFailure::Scene(format!("{} is not a number", name.row().path))),
     };
-    draft.set(name, Some(value)).map_err(|error| Failure::Scene(error.detail))?;
+    draft.set(name, Some(value)).map_err(|error| OrbitFailure::Scene(error.detail))?;
     let built = draft.build().map_err(|errors| {
-        Failure::Scene(errors.into_iter().map(|error| error.detail).collect::<Vec<_>>().join("; "))
+        OrbitFailure::Scene(errors.into_iter().map(|error| error.detail).collect::<Vec<_>>().join("; "))
     })?;
-    Setting::of(&built).map_err(Failure::Scene)
+    OrbitProblem::of(&built).map_err(OrbitFailure::Scene)
 }
 
 /// A rod made of what `each` gives for each of its parameters.
@@ -126,7 +126,7 @@ fn rod_with<N>(each: impl Fn(fn(&Rod) -> f64) -> N) -> Rod<N> {
 
 /// The equations at a place, with their derivatives by its five components.
 #[derive(Clone, Debug)]
-pub(super) struct Closed {
+pub(super) struct ClosedEquations {
     /// What is left of each: the state's return, the energy (where nothing steers it), the drift.
     remainder: DVector<f64>,
     pub(super) derivative: DMatrix<f64>,
@@ -137,8 +137,8 @@ pub(super) struct Closed {
     pub(super) flight_time: f64,
 }
 
-impl Closed {
-    fn new(course: &Course<'_>, period: usize, place: &Place) -> Result<Self, Failure> {
+impl ClosedEquations {
+    fn new(course: &ParameterPath<'_>, period: usize, place: &Place) -> Result<Self, OrbitFailure> {
         let setting = course.setting(place[4])?;
         let (rates, energy_rate) = course.rates(place[4])?;
         let rod: Rod<Five> = rod_with(|part| Dual::along(part(&setting.rod), 4, part(&rates)));
@@ -155,7 +155,7 @@ impl Closed {
         for contact in 1..=period as u64 {
             let before = values(&state);
             states.push(before);
-            let (_, root) = advance(&setting.rod, before).map_err(|ending| Failure::Ends { contact, ending })?;
+            let (_, root) = advance(&setting.rod, before).map_err(|ending| OrbitFailure::Ends { contact, ending })?;
             let flight: Flight<Five> = rod.flight(&rod.strike(&state));
             let flight_time = flight.lift_root(root);
             state = flight.end(flight_time);
@@ -181,7 +181,7 @@ impl Closed {
         let finite =
             |equation: &Five| equation.value.is_finite() && equation.partials.iter().all(|part| part.is_finite());
         if !equations.iter().all(finite) {
-            return Err(Failure::Scene("the derivative over the period is beyond double precision".to_owned()));
+            return Err(OrbitFailure::Scene("the derivative over the period is beyond double precision".to_owned()));
         }
         Ok(Self {
             remainder: DVector::from_iterator(equations.len(), equations.iter().map(|equation| equation.value)),
@@ -220,12 +220,12 @@ fn values(state: &State<Five>) -> State {
 }
 
 /// The plane in which an orbit is sought, since one parameter is one unknown too many.
-pub(super) struct Plane {
+pub(super) struct SearchPlane {
     pub(super) normal: Place,
     pub(super) point: Place,
 }
 
-impl Plane {
+impl SearchPlane {
     /// That of a fixed parameter.
     pub(super) fn at_parameter(point: Place) -> Self {
         Self { normal: Place::ith(4, 1.0), point }
@@ -239,16 +239,21 @@ impl Plane {
 
 /// An orbit as a place, with the equations there.
 #[derive(Clone, Debug)]
-pub(super) struct Solution {
+pub(super) struct ClosedOrbit {
     pub(super) place: Place,
-    pub(super) closed: Closed,
+    pub(super) closed: ClosedEquations,
     pub(super) steps: u32,
 }
 
 /// Newton's iteration (Gauss and Newton's, since there are more equations than unknowns) within a plane.
-pub(super) fn correct(course: &Course<'_>, period: usize, guess: Place, plane: &Plane) -> Result<Solution, Failure> {
+pub(super) fn correct(
+    course: &ParameterPath<'_>,
+    period: usize,
+    guess: Place,
+    plane: &SearchPlane,
+) -> Result<ClosedOrbit, OrbitFailure> {
     let mut place = guess;
-    let mut closed = Closed::new(course, period, &place)?;
+    let mut closed = ClosedEquations::new(course, period, &place)?;
     let off = |place: &Place| plane.normal.dot(&(place - plane.point));
     let mut steps = 0;
     while steps < MOST_STEPS {
@@ -264,13 +269,13 @@ pub(super) fn correct(course: &Course<'_>, period: usize, guess: Place, plane: &
         if step.amax() <= ROUNDING {
             break;
         }
-        let size = |closed: &Closed, place: &Place| closed.remainder.norm() + off(place).abs();
+        let size = |closed: &ClosedEquations, place: &Place| closed.remainder.norm() + off(place).abs();
         let now = size(&closed, &place);
         let mut share = 1.0;
         let mut better = None;
         for _ in 0..=MOST_HALVINGS {
             let next = place + step * share;
-            if let Ok(there) = Closed::new(course, period, &next)
+            if let Ok(there) = ClosedEquations::new(course, period, &next)
                 && size(&there, &next) < now
             {
                 better = Some((next, there));
@@ -286,10 +291,10 @@ pub(super) fn correct(course: &Course<'_>, period: usize, guess: Place, plane: &
     // At rest on the table all is closed, and nothing bounces.
     let speed = closed.states.iter().map(|state| state.y_dot.abs()).fold(0.0, f64::max);
     if speed <= AT_REST * course.start.speed {
-        Err(Failure::AtRest { speed })
+        Err(OrbitFailure::AtRest { speed })
     } else if residual <= SOLVED {
-        Ok(Solution { place, closed, steps })
+        Ok(ClosedOrbit { place, closed, steps })
     } else {
-        Err(Failure::NoConvergence { residual, steps })
+        Err(OrbitFailure::NoConvergence { residual, steps })
     }
 }

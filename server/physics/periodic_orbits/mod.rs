@@ -20,13 +20,13 @@ use crate::run::rules::Rules;
 use crate::scene::Scene;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::find_fixed_point;
-use closed::{Course, Plane, Solution, correct};
-use multipliers::{Known, Multipliers};
+use closed::{ClosedOrbit, ParameterPath, SearchPlane, correct};
+use multipliers::{Multipliers, TrivialMultipliers};
 use nalgebra::SVector;
 
 /// What an orbit is sought in: a rod and what closes the equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setting {
+pub struct OrbitProblem {
     /// The rod.
     pub rod: Rod,
     /// Energy per unit mass that orbits must have, ½|v|² + Gy at a contact, m²/s²; none where feedback sets it.
@@ -37,7 +37,7 @@ pub struct Setting {
     pub topple_angle: f64,
 }
 
-impl Setting {
+impl OrbitProblem {
     /// That of a scene: its energy is the release's, less what drift would keep, as for its fixed point.
     ///
     /// # Errors
@@ -67,7 +67,7 @@ impl Setting {
 
 /// Why there is no orbit to give.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Failure {
+pub enum OrbitFailure {
     /// The run from the best state so far ends before it could come back.
     Ends {
         /// At which contact, from 1.
@@ -93,7 +93,7 @@ pub enum Failure {
     Cancelled,
 }
 
-impl std::fmt::Display for Failure {
+impl std::fmt::Display for OrbitFailure {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Ends { contact, ending } => {
@@ -148,8 +148,8 @@ impl PeriodicOrbit {
         self.states.iter().map(|state| state.theta.abs()).fold(0.0, f64::max)
     }
 
-    fn new(setting: &Setting, solution: &Solution) -> Result<Self, Failure> {
-        let Solution { closed, steps, .. } = solution;
+    fn new(setting: &OrbitProblem, solution: &ClosedOrbit) -> Result<Self, OrbitFailure> {
+        let ClosedOrbit { closed, steps, .. } = solution;
         let states = closed.states.clone();
         let period = states.len();
         let rod = &setting.rod;
@@ -160,9 +160,11 @@ impl PeriodicOrbit {
         };
         let repeats = |shift: usize| (0..period).all(|n| far(&states[n], &states[(n + shift) % period]) < SAME);
         let least_period = (1..=period).find(|&n| period.is_multiple_of(n) && repeats(n)).unwrap_or(period);
-        let known = if setting.energy.is_some() { Known::EnergyAndDrift } else { Known::Drift };
-        let multipliers = Multipliers::new(&closed.product(), known)
-            .ok_or_else(|| Failure::Scene("the eigenvalues of this orbit are beyond double precision".to_owned()))?;
+        let known =
+            if setting.energy.is_some() { TrivialMultipliers::EnergyAndDrift } else { TrivialMultipliers::Drift };
+        let multipliers = Multipliers::new(&closed.product(), known).ok_or_else(|| {
+            OrbitFailure::Scene("the eigenvalues of this orbit are beyond double precision".to_owned())
+        })?;
         let orbit = Self {
             least_period,
             residual: closed.residual(),
@@ -177,7 +179,7 @@ impl PeriodicOrbit {
         let toppled = orbit.states.iter().position(|state| state.theta.abs() >= setting.topple_angle);
         match toppled {
             None => Ok(orbit),
-            Some(n) => Err(Failure::Ends {
+            Some(n) => Err(OrbitFailure::Ends {
                 contact: n as u64 + 1,
                 ending: Ending::Toppled { theta: orbit.states[n].theta, limit: setting.topple_angle },
             }),
@@ -188,10 +190,10 @@ impl PeriodicOrbit {
 /// The orbit of `period` contacts near a state, at the setting's energy and without drift.
 ///
 /// # Errors
-/// [`Failure`], with the numbers it stopped at.
-pub fn find(setting: &Setting, period: usize, guess: &State) -> Result<PeriodicOrbit, Failure> {
-    let course = Course::resting(*setting);
-    let plane = Plane::at_parameter(course.place(guess, 0.0));
+/// [`OrbitFailure`], with the numbers it stopped at.
+pub fn find(setting: &OrbitProblem, period: usize, guess: &State) -> Result<PeriodicOrbit, OrbitFailure> {
+    let course = ParameterPath::resting(*setting);
+    let plane = SearchPlane::at_parameter(course.place(guess, 0.0));
     let solution = correct(&course, period, plane.point, &plane)?;
     PeriodicOrbit::new(setting, &solution)
 }

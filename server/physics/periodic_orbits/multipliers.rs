@@ -13,7 +13,7 @@ const ONE: f64 = 1e-11;
 
 /// The eigenvalues of an orbit that are 1 for a reason known beforehand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Known {
+pub(super) enum TrivialMultipliers {
     /// One of the energy and one of the drift: nothing steers the energy.
     EnergyAndDrift,
     /// None but that of the drift, if it is 1: energy feedback.
@@ -35,14 +35,14 @@ pub struct Multipliers {
 
 impl Multipliers {
     /// Of the derivative over a period.
-    pub(super) fn new(product: &Matrix4<f64>, known: Known) -> Option<Self> {
+    pub(super) fn new(product: &Matrix4<f64>, known: TrivialMultipliers) -> Option<Self> {
         let trace = product.trace();
         let second = 0.5 * (trace * trace - (product * product).trace());
         // What rounding does to the coefficients grows with the entries.
         let slack = 1e-8 + 1e-14 * product.norm_squared();
         let found = match known {
-            Known::Drift if !has_one(product) => Self::of_all(product, slack)?,
-            Known::Drift => {
+            TrivialMultipliers::Drift if !has_one(product) => Self::of_all(product, slack)?,
+            TrivialMultipliers::Drift => {
                 // (λ − 1)(λ³ − aλ² + bλ − c)
                 let a = trace - 1.0;
                 let b = second - a;
@@ -53,7 +53,7 @@ impl Multipliers {
                 let tests = [1.0 - a + b - c, 1.0 + a + b + c, 1.0 - b + c * (a - c)];
                 Self::judge(roots.clone(), 0.25 * (2.0 - pair(&roots).re), tests, c.abs() < 1.0, slack)
             }
-            Known::EnergyAndDrift => {
+            TrivialMultipliers::EnergyAndDrift => {
                 // (λ − 1)²(λ² − aλ + b)
                 let a = trace - 2.0;
                 let b = second - 2.0 * a - 1.0;

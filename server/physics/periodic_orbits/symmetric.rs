@@ -2,8 +2,8 @@
 //!
 //! They branch off the upright bounce at κ_c; at a fixed energy as κ − κ_c ≈ a C θ².
 
-use super::closed::Course;
-use super::{Failure, Place};
+use super::closed::ParameterPath;
+use super::{OrbitFailure, Place};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::trig;
@@ -27,7 +27,7 @@ const CELLS: u32 = 512;
 
 /// The first place along a course where the symmetric orbit through an angle has the energy, or with feedback the
 /// target's, of the setting there.
-pub(super) fn on_course(course: &Course<'_>, theta: f64) -> Result<Place, Failure> {
+pub(super) fn on_course(course: &ParameterPath<'_>, theta: f64) -> Result<Place, OrbitFailure> {
     let mut last: Option<(f64, f64)> = None;
     for cell in 0..=CELLS {
         let share = f64::from(cell) / f64::from(CELLS);
@@ -55,11 +55,11 @@ pub(super) fn on_course(course: &Course<'_>, theta: f64) -> Result<Place, Failur
         "no mirror-symmetric orbit through theta {theta} rad has the scene's energy for a parameter from {} to {}",
         course.from, course.to
     );
-    Err(Failure::Scene(detail))
+    Err(OrbitFailure::Scene(detail))
 }
 
 /// How much more energy, or height at the top with feedback, the symmetric orbit has than it should.
-fn excess(course: &Course<'_>, theta: f64, share: f64) -> Option<f64> {
+fn excess(course: &ParameterPath<'_>, theta: f64, share: f64) -> Option<f64> {
     let setting = course.setting(share).ok()?;
     let state = symmetric(&setting.rod, theta)?;
     Some(match setting.energy {

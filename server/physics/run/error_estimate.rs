@@ -18,7 +18,7 @@ use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::extended;
 use crate::run::orbit::Contact;
 use crate::scene::Scene;
-use crate::scene::model::{Model, Rung};
+use crate::scene::model::{Model, ModelLevel};
 
 /// How many standard deviations a bound is. Set on 28,000 random runs, none of which passed 0.8 of its bound;
 /// `tests/error_estimate.rs` holds it on others against runs with 31 digits.
@@ -129,7 +129,7 @@ impl ErrorEstimate {
             unit,
             rounding: unit,
             // Not derived for more than friction.
-            lost: scene.beyond(&[Rung::Friction]).is_some(),
+            lost: scene.beyond(&[ModelLevel::Friction]).is_some(),
         };
         if first > 0.0 {
             let (sin, cos) = start.theta.sincos();

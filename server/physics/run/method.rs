@@ -14,9 +14,9 @@ use crate::run::linear_solution::LinearSolution;
 use crate::run::orbit::Contact;
 use crate::run::{extended, orbit};
 use crate::scene::Scene;
-use crate::scene::model::Rung;
+use crate::scene::model::ModelLevel;
 use crate::stability::fixed_point::find_fixed_point;
-use crate::stability::linear_verdict::{Class, linear_verdict};
+use crate::stability::linear_verdict::{AngleClass, linear_verdict};
 
 /// How a run is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,7 +147,7 @@ pub fn deviations_circle(scene: &Scene) -> bool {
     scene.beyond(&[]).is_none()
         && find_fixed_point(scene).is_ok_and(|fixed_point| {
             let linear = linear_verdict(scene, &fixed_point);
-            linear.class == Class::Elliptic && linear.residue.is_some()
+            linear.class == AngleClass::Elliptic && linear.residue.is_some()
         })
 }
 
@@ -190,7 +190,7 @@ pub fn run_by(
     mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Result<Option<Ending>, String> {
     if method != RunMethod::Map {
-        let known: &[Rung] = if method == RunMethod::Extended { &[Rung::Friction] } else { &[] };
+        let known: &[ModelLevel] = if method == RunMethod::Extended { &[ModelLevel::Friction] } else { &[] };
         if let Some(error) = scene.beyond(known) {
             return Err(error.detail);
         }

@@ -17,9 +17,9 @@ use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
 use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::Noise;
 
-/// The rungs of the ladder of models, from the least.
+/// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Rung {
+pub enum ModelLevel {
     /// A point mass: a ladder of its own.
     Point,
     /// The angle block of the linearized rod, in closed form.
@@ -36,7 +36,7 @@ pub enum Rung {
     Polygon,
 }
 
-impl Rung {
+impl ModelLevel {
     /// Its name in answers.
     pub fn name(self) -> &'static str {
         match self {
@@ -67,12 +67,12 @@ impl Rung {
 
 /// A step of the ladder that a scene asked for.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Forced {
-    /// The rung.
-    pub rung: Rung,
+pub struct ModelRequirement {
+    /// The level.
+    pub level: ModelLevel,
     /// The field that asked for it.
     pub path: &'static str,
-    /// Why it takes that rung, in a sentence.
+    /// Why it takes that level, in a sentence.
     pub detail: String,
 }
 
@@ -80,7 +80,7 @@ pub struct Forced {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a run has one, and it is Copy: the vertices of a polygon stand in it")]
 pub enum Model {
-    /// A rod; its strike gain says which of the rungs it stands on.
+    /// A rod; its strike gain says which of the levels it stands on.
     Rod(Rod),
     /// A point mass.
     Point(PointMass),
@@ -233,15 +233,16 @@ impl Scene {
         self.friction != 0.0 || self.slide != Slide::None
     }
 
-    /// Why what is derived for the plain rod, and for the rungs `known` above it, does not hold for this scene, with the field that
+    /// Why what is derived for the plain rod, and for the levels `known` above it, does not hold for this scene, with the field that
     /// makes it so; none where it does.
-    pub fn beyond(&self, known: &[Rung]) -> Option<FieldError> {
-        let beyond = |rung| rung != Rung::Polygon && !known.contains(&rung);
-        let Forced { rung, path, .. } = self.forced().into_iter().find(|forced| beyond(forced.rung))?;
+    pub fn beyond(&self, known: &[ModelLevel]) -> Option<FieldError> {
+        let beyond = |level| level != ModelLevel::Polygon && !known.contains(&level);
+        let ModelRequirement { level, path, .. } =
+            self.requirements().into_iter().find(|requirement| beyond(requirement.level))?;
         let shown = crate::scene::field(path).map_or_else(String::new, |row| self.shown(row.name));
-        let what = match rung {
-            Rung::Friction => "with friction",
-            Rung::Noise => "with noise",
+        let what = match level {
+            ModelLevel::Friction => "with friction",
+            ModelLevel::Noise => "with noise",
             _ => "with state feedback",
         };
         Some(FieldError { path, detail: format!("{path} is {shown}; this is not available {what} in this version") })
@@ -277,25 +278,28 @@ impl Scene {
         Orbit::new(self.model_of(noise, self.outline), self.rules(), &self.release)
     }
 
-    /// The rung of the ladder that the scene needs.
-    pub fn rung(&self) -> Rung {
+    /// The level of the ladder that the scene needs.
+    pub fn model_level(&self) -> ModelLevel {
         match self.body {
-            BodyShape::Point => Rung::Point,
-            BodyShape::Rod { .. } => self.forced().last().map_or(Rung::Rod, |forced| forced.rung),
+            BodyShape::Point => ModelLevel::Point,
+            BodyShape::Rod { .. } => {
+                self.requirements().last().map_or(ModelLevel::Rod, |requirement| requirement.level)
+            }
         }
     }
 
-    /// What of the scene asked for the rungs above the plain rod, from the least.
-    pub fn forced(&self) -> Vec<Forced> {
+    /// What of the scene asked for the levels above the plain rod, from the least.
+    pub fn requirements(&self) -> Vec<ModelRequirement> {
         let mut steps = Vec::new();
-        let mut step = |rung, name: Name, detail| steps.push(Forced { rung, path: name.row().path, detail });
+        let mut step =
+            |level, name: Name, detail| steps.push(ModelRequirement { level, path: name.row().path, detail });
         if let Steering::Feedback(gains) = self.steering {
-            let (rung, name, seen) = if gains.x == 0.0 {
-                (Rung::Rod, Name::FeedbackTheta, "angle and velocities")
+            let (level, name, seen) = if gains.x == 0.0 {
+                (ModelLevel::Rod, Name::FeedbackTheta, "angle and velocities")
             } else {
-                (Rung::RodWithX, Name::FeedbackX, "place, angle and velocities")
+                (ModelLevel::RodWithX, Name::FeedbackX, "place, angle and velocities")
             };
-            step(rung, name, format!("feedback tilts the table by {seen} (α = −K·state), in place of α = κθ"));
+            step(level, name, format!("feedback tilts the table by {seen} (α = −K·state), in place of α = κθ"));
         }
         let (friction, slide) = (self.friction, self.shown(Name::Slide));
         if friction != 0.0 {
@@ -303,10 +307,10 @@ impl Scene {
             let detail = format!(
                 "friction is {friction}, so the impulse has a part along the table (law `{law}`, slide `{slide}`)"
             );
-            step(Rung::Friction, Name::Friction, detail);
+            step(ModelLevel::Friction, Name::Friction, detail);
         } else if self.slide != Slide::None {
             let detail = format!("slide is `{slide}`, so the table moves along itself, and friction is 0");
-            step(Rung::Friction, Name::Slide, detail);
+            step(ModelLevel::Friction, Name::Slide, detail);
         }
         if let Some(Noise { timing_sd, angle_sd, seed, .. }) = self.noise {
             let name = if timing_sd == 0.0 { Name::AngleSd } else { Name::TimingSd };
@@ -314,26 +318,26 @@ impl Scene {
                 "the table errs by {timing_sd} s in time and {angle_sd} rad in angle (standard deviations; seed {seed}, model `{}`)",
                 self.shown(Name::NoiseModel)
             );
-            step(Rung::Noise, name, detail);
+            step(ModelLevel::Noise, name, detail);
         }
         if let Some(vertices) = self.vertices() {
             let detail = format!(
                 "the body is a polygon of {} vertices, and each of them is looked at in every flight and at every contact",
                 vertices.places().len()
             );
-            steps.push(Forced { rung: Rung::Polygon, path: VERTICES, detail });
+            steps.push(ModelRequirement { level: ModelLevel::Polygon, path: VERTICES, detail });
         }
         steps
     }
 
-    /// Why the scene needs its rung, in a sentence.
-    pub fn rung_reason(&self) -> String {
+    /// Why the scene needs its level, in a sentence.
+    pub fn level_reason(&self) -> String {
         let e = self.restitution;
         if self.body == BodyShape::Point {
             return "the body is a point: its table follows the angle of its velocity (eq. 3)".to_owned();
         }
-        if let Some(forced) = self.forced().pop() {
-            return forced.detail;
+        if let Some(requirement) = self.requirements().pop() {
+            return requirement.detail;
         }
         if self.energy_gain != 0.0 {
             return format!(

@@ -1,31 +1,31 @@
-//! The ladder of models: the same scene on each rung up to its own, and what each of them changed.
+//! The ladder of models: the same scene on each level up to its own, and what each of them changed.
 //!
-//! What a rung leaves out is left out of the scene itself, so each runs as it would if it had been asked for alone.
+//! What a level leaves out is left out of the scene itself, so each runs as it would if it had been asked for alone.
 
 use crate::bounce::state::State;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::method::{RunMethod, run_by};
-use crate::scene::model::{Forced, Rung};
+use crate::scene::model::{ModelLevel, ModelRequirement};
 use crate::scene::{Name, Scene, Value};
 use crate::table::actuator_load::{ActuatorLoad, LoadTracker};
 
-/// One rung.
+/// One level.
 #[derive(Clone, Debug)]
-pub struct Step {
+pub struct LevelResult {
     /// Which.
-    pub rung: Rung,
-    /// The scene with what this rung leaves out taken away.
+    pub level: ModelLevel,
+    /// The scene with what this level leaves out taken away.
     pub scene: Scene,
     /// What of the scene asked for it; nothing for the lowest.
-    pub forced: Option<Forced>,
+    pub requirement: Option<ModelRequirement>,
     /// What came of it, or why it does not apply.
-    pub run: Result<Run, String>,
+    pub run: Result<LevelRun, String>,
 }
 
-/// How a run on a rung went.
+/// How a run on a level went.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct LevelRun {
     /// How it ended.
     pub ending: Ending,
     /// Contacts until then.
@@ -34,43 +34,43 @@ pub struct Run {
     pub t: f64,
     /// The most that it asked of the table.
     pub demand: ActuatorLoad,
-    /// What this rung changed against the next lower one that applies.
-    pub change: Option<Change>,
+    /// What this level changed against the next lower one that applies.
+    pub change: Option<LevelChange>,
 }
 
 /// The largest differences between two runs of one scene, over the contacts that both have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Change {
+pub struct LevelChange {
     /// Contacts compared.
     pub impacts: u64,
     /// Of t, s.
-    pub t: Largest,
+    pub t: LargestDifference,
     /// Of x, m.
-    pub x: Largest,
+    pub x: LargestDifference,
     /// Of θ, rad.
-    pub theta: Largest,
+    pub theta: LargestDifference,
     /// Of ẋ, m/s.
-    pub x_dot: Largest,
+    pub x_dot: LargestDifference,
     /// Of ẏ, m/s.
-    pub y_dot: Largest,
+    pub y_dot: LargestDifference,
     /// Of θ̇, rad/s.
-    pub theta_dot: Largest,
+    pub theta_dot: LargestDifference,
     /// Of ρθ (m), ẋ, ẏ and ρθ̇ (m/s) together, in the measure of error estimates.
-    pub state: Largest,
+    pub state: LargestDifference,
     /// Whether both ended alike, at the same contact.
     pub same_outcome: bool,
 }
 
 /// A largest difference.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Largest {
+pub struct LargestDifference {
     /// Without sign.
     pub value: f64,
     /// The contact where it was first; 0 where there was none.
     pub impact: u64,
 }
 
-impl Largest {
+impl LargestDifference {
     fn look(&mut self, n: u64, difference: f64) {
         if difference.abs() > self.value {
             *self = Self { value: difference.abs(), impact: n };
@@ -80,27 +80,27 @@ impl Largest {
 
 /// What of a contact is compared.
 #[derive(Clone, Copy)]
-struct Here {
+struct ComparedContact {
     t: f64,
     x: f64,
     state: State,
 }
 
-/// The scene on each rung up to its own, for up to `impacts` contacts, the least first. `go_on` is asked now and then; a
+/// The scene on each level up to its own, for up to `impacts` contacts, the least first. `go_on` is asked now and then; a
 /// `false` gives none.
-pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<Vec<Step>> {
-    let mut steps: Vec<Step> = Vec::new();
-    let mut below: Option<(Vec<Here>, Ending)> = None;
-    for (rung, forced) in rungs(scene) {
-        let reduced = at_level(scene, rung);
-        let method = if rung == Rung::Linear { RunMethod::Linear } else { RunMethod::Map };
+pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<Vec<LevelResult>> {
+    let mut steps: Vec<LevelResult> = Vec::new();
+    let mut below: Option<(Vec<ComparedContact>, Ending)> = None;
+    for (level, requirement) in levels(scene) {
+        let reduced = at_level(scene, level);
+        let method = if level == ModelLevel::Linear { RunMethod::Linear } else { RunMethod::Map };
         let (mut course, mut meter) = (Vec::new(), LoadTracker::default());
         let run = run_by(&reduced, method, impacts, |impact| {
             let contact = &impact.contact;
             if let Some(strike) = &contact.strike {
                 meter.track(strike, contact.flight_time);
             }
-            course.push(Here { t: contact.t, x: contact.x, state: contact.state });
+            course.push(ComparedContact { t: contact.t, x: contact.x, state: contact.state });
             !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
         });
         let run = match run {
@@ -110,7 +110,7 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
                 let rho = scene.model().rod().radius_of_gyration;
                 let change =
                     below.as_ref().map(|below| change(&below.0, &course, rho, below.1.name() == ending.name()));
-                let run = Run {
+                let run = LevelRun {
                     ending,
                     impacts: course.len() as u64,
                     t: course.last().map_or(0.0, |here| here.t),
@@ -121,44 +121,44 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
                 Ok(run)
             }
         };
-        steps.push(Step { rung, scene: reduced, forced, run });
+        steps.push(LevelResult { level, scene: reduced, requirement, run });
     }
     Some(steps)
 }
 
-/// The rungs up to the scene's own, with what asked for each.
-fn rungs(scene: &Scene) -> Vec<(Rung, Option<Forced>)> {
-    if scene.rung() == Rung::Point {
-        return vec![(Rung::Point, None)];
+/// The levels up to the scene's own, with what asked for each.
+fn levels(scene: &Scene) -> Vec<(ModelLevel, Option<ModelRequirement>)> {
+    if scene.model_level() == ModelLevel::Point {
+        return vec![(ModelLevel::Point, None)];
     }
-    let above = scene.forced().into_iter().filter(|forced| forced.rung > Rung::Rod);
-    let least = [Rung::Linear, Rung::Rod].map(|rung| (rung, None));
-    least.into_iter().chain(above.map(|forced| (forced.rung, Some(forced)))).collect()
+    let above = scene.requirements().into_iter().filter(|requirement| requirement.level > ModelLevel::Rod);
+    let least = [ModelLevel::Linear, ModelLevel::Rod].map(|level| (level, None));
+    least.into_iter().chain(above.map(|requirement| (requirement.level, Some(requirement)))).collect()
 }
 
-/// The scene without what a rung leaves out.
-pub fn at_level(scene: &Scene, rung: Rung) -> Scene {
-    let mut draft = if rung < Rung::Polygon { scene.as_rod() } else { *scene }.draft();
-    let mut without = |least: Rung, names: &[Name]| {
-        if rung < least {
+/// The scene without what a level leaves out.
+pub fn at_level(scene: &Scene, level: ModelLevel) -> Scene {
+    let mut draft = if level < ModelLevel::Polygon { scene.as_rod() } else { *scene }.draft();
+    let mut without = |least: ModelLevel, names: &[Name]| {
+        if level < least {
             for &name in names {
                 // Taking a value back is always admitted.
                 let _ = draft.set(name, None);
             }
         }
     };
-    without(Rung::Noise, &[Name::TimingSd, Name::AngleSd, Name::NoiseModel, Name::Seed, Name::NoiseRun]);
-    without(Rung::Friction, &[Name::Friction, Name::Slide]);
-    if rung < Rung::RodWithX && scene.number(Name::FeedbackX).is_some() {
+    without(ModelLevel::Noise, &[Name::TimingSd, Name::AngleSd, Name::NoiseModel, Name::Seed, Name::NoiseRun]);
+    without(ModelLevel::Friction, &[Name::Friction, Name::Slide]);
+    if level < ModelLevel::RodWithX && scene.number(Name::FeedbackX).is_some() {
         let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));
     }
     // A scene without some of what it had is a scene.
     draft.build().unwrap_or(*scene)
 }
 
-fn change(below: &[Here], above: &[Here], rho: f64, same_ending: bool) -> Change {
+fn change(below: &[ComparedContact], above: &[ComparedContact], rho: f64, same_ending: bool) -> LevelChange {
     let same_outcome = same_ending && below.len() == above.len();
-    let mut change = Change { same_outcome, ..Change::default() };
+    let mut change = LevelChange { same_outcome, ..LevelChange::default() };
     for (one, other) in below.iter().zip(above) {
         change.impacts += 1;
         let n = change.impacts;

@@ -9,7 +9,7 @@ use crate::bounce::friction::Friction;
 use crate::bounce::state::State;
 use crate::run::ending::EndingKind;
 use crate::scene::Scene;
-use crate::scene::model::Rung;
+use crate::scene::model::ModelLevel;
 use std::cell::Cell;
 
 /// Angles of the rough scan, over all there are, and of the fine one, over those that matter.
@@ -25,7 +25,7 @@ pub const RUNS: u64 = (ROUGH + FINE + 2 * TRIED * ROUNDS) as u64;
 
 /// The release angles from which a run at rest survives, by the mirror symmetry the same on both sides.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Basin {
+pub struct ReleaseBasin {
     /// The largest angle found that survives, rad.
     pub theta: f64,
     /// The angle up to which all that were tried survive, rad; equal to `theta` where there are no holes.
@@ -56,9 +56,9 @@ pub enum NoBasin {
 ///
 /// # Errors
 /// [`NoBasin`].
-pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<Basin, NoBasin> {
+pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<ReleaseBasin, NoBasin> {
     let because = |why: String| NoBasin::Because(why);
-    if let Some(error) = scene.beyond(&[Rung::Friction]) {
+    if let Some(error) = scene.beyond(&[ModelLevel::Friction]) {
         return Err(because(error.detail));
     }
     if scene.rules().limits.is_some() {
@@ -155,5 +155,5 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
         inside = !survives;
     }
     let tolerance = (0..ROUNDS).fold(spacing, |width, _| width / (TRIED as f64 + 1.0));
-    Ok(Basin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: bounces.get() })
+    Ok(ReleaseBasin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: bounces.get() })
 }

@@ -9,12 +9,12 @@ use crate::stability::fixed_point::FixedPoint;
 
 /// The boundary coefficient C of the next order of the normal form: κ − κ_c ≈ a C θ² on the branch of period-2 orbits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Boundary {
+pub struct BoundaryCoefficient {
     /// C; positive is soft (runs stay bounded at and a little beyond κ_c), negative hard (they fall).
     pub coefficient: f64,
 }
 
-impl Boundary {
+impl BoundaryCoefficient {
     /// `soft`, `hard` or, at C = 0, `degenerate`.
     pub fn kind(&self) -> &'static str {
         if self.coefficient > 0.0 {
@@ -37,7 +37,7 @@ fn frictionless_rod(model: &Model) -> Option<&Rod> {
 /// The boundary coefficient C at κ_c, with a = κ_c − 1 and γ = Gl/V²: (1+a)²/2 + a²/6 − (1−a)γ, and with a positive
 /// energy gain, which holds η and not the energy, −(1+a)²/2 + a²/6 − γ. `None` for a point mass, with friction and with state
 /// feedback, for which it is not derived.
-pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<Boundary> {
+pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<BoundaryCoefficient> {
     let rod = frictionless_rod(model)?;
     let gamma = rod.gravity * rod.contact_distance / (fixed_point.speed * fixed_point.speed);
     let lever = rod.radius_of_gyration / rod.contact_distance;
@@ -46,7 +46,7 @@ pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<B
     let sixth = a * a / 6.0;
     let holds_height = rod.strike_gain_per_energy > 0.0;
     let coefficient = if holds_height { sixth - half_square - gamma } else { half_square + sixth - (1.0 - a) * gamma };
-    Some(Boundary { coefficient })
+    Some(BoundaryCoefficient { coefficient })
 }
 
 /// θ, rad, of the mirror-symmetric period-2 orbit at the energy of the fixed point, the one nearest to upright; `None` if there is

@@ -3,12 +3,12 @@
 //! Not here: how a small deviation from it moves ([`crate::stability::linear_verdict`]).
 
 use crate::bounce::rod::Rod;
-use crate::scene::model::Rung;
+use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, lent_by_table};
 
 /// The rungs above the plain rod that can be judged linearly.
-pub const JUDGED: [Rung; 3] = [Rung::Rod, Rung::RodWithX, Rung::Friction];
+pub const LINEARLY_JUDGED: [ModelLevel; 3] = [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::Friction];
 
 /// The upright bounce in place that a scene is to be balanced on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub struct FixedPoint {
 /// drift dies out.
 pub fn drift_speed(scene: &Scene) -> Option<f64> {
     let regime = contact_regime(&scene.model());
-    if scene.beyond(&[Rung::Friction]).is_some() || regime == ContactRegime::Sticking {
+    if scene.beyond(&[ModelLevel::Friction]).is_some() || regime == ContactRegime::Sticking {
         return None;
     }
     let BodyShape::Rod { contact_distance, radius_of_gyration } = scene.body else { return None };
@@ -48,7 +48,7 @@ pub fn drift_speed(scene: &Scene) -> Option<f64> {
 /// # Errors
 /// Why there is none, in a sentence.
 pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
-    if let Some(error) = scene.beyond(&JUDGED) {
+    if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
         return Err(error.detail);
     }
     let model = scene.model();
@@ -91,7 +91,7 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
         if available - drift * drift <= 0.0 {
             return Err(format!(
                 "the release has {available} m²/s² for bouncing upright and the drift at {drift} m/s takes {} m²/s²: no \
-                 upright bounce has that energy",
+upright bounce has that energy",
                 drift * drift
             ));
         }

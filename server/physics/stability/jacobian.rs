@@ -39,12 +39,12 @@ pub struct Linearization {
     /// What the first contact did along the table.
     pub contact_mode: ContactMode,
     /// Where the map has a kink, its derivatives on all sides of it; else none.
-    pub one_sided: Vec<Side>,
+    pub one_sided: Vec<OneSidedDerivative>,
 }
 
 /// A derivative of the map on one side of a kink.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Side {
+pub struct OneSidedDerivative {
     /// What the contact does along the table on that side.
     pub contact_mode: ContactMode,
     /// As [`Linearization::matrix`].
@@ -82,7 +82,7 @@ pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearizati
 /// # Errors
 /// As [`jacobian`].
 pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
-    let smooth = |matrix| vec![Side { contact_mode: ContactMode::Frictionless, matrix }];
+    let smooth = |matrix| vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }];
     let size = state_order(model).len();
     along(model, x, start, period, |Contact { x, state, .. }| match model {
         Model::Rod(rod) => rod_jacobian(rod, state).map(smooth),
@@ -158,11 +158,12 @@ fn along(
     x: f64,
     start: &State,
     period: u64,
-    derivatives: impl Fn(&Contact) -> Option<Vec<Side>>,
+    derivatives: impl Fn(&Contact) -> Option<Vec<OneSidedDerivative>>,
 ) -> Result<Linearization, Box<Contact>> {
     let size = state_order(model).len();
     let mut orbit = Orbit::at(*model, Rules::BARE_MAP, *start).moved(x);
-    let mut sides = vec![Side { contact_mode: ContactMode::Frictionless, matrix: DMatrix::identity(size, size) }];
+    let mut sides =
+        vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix: DMatrix::identity(size, size) }];
     let mut contact_mode = None;
     let (mut flight_time, mut contact_speed) = (0.0, f64::NEG_INFINITY);
     for _ in 0..period {
@@ -187,9 +188,9 @@ fn along(
 }
 
 /// Every derivative of a contact after every one of those before it, the main one of both first.
-fn multiply(factors: &[Side], sides: &[Side]) -> Vec<Side> {
+fn multiply(factors: &[OneSidedDerivative], sides: &[OneSidedDerivative]) -> Vec<OneSidedDerivative> {
     let pairs = factors.iter().flat_map(|factor| sides.iter().map(move |side| (factor, side)));
-    let product = |(factor, side): (&Side, &Side)| Side {
+    let product = |(factor, side): (&OneSidedDerivative, &OneSidedDerivative)| OneSidedDerivative {
         contact_mode: if factors.len() > 1 { factor.contact_mode } else { side.contact_mode },
         matrix: &factor.matrix * &side.matrix,
     };
@@ -207,7 +208,7 @@ fn rod_jacobian(rod: &Rod, state: &State) -> Option<DMatrix<f64>> {
 ///
 /// Coming to rest at once, v_t = 0, is no kink where friction holds: the impulse depends on the sliding before only by where it
 /// ends, and there in the same way from both sides.
-fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Option<Vec<Side>> {
+fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Option<Vec<OneSidedDerivative>> {
     let rod = &rig.rod;
     let lifted: Rod<Dual<K>> = rod.lift();
     let (start, leverage) = (along_all(rod, state), lifted.leverage());
@@ -217,7 +218,7 @@ fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Op
     let Some(friction) = &rig.friction else {
         let root = first_contact(&rod.flight(&rod.strike_with(state, &plain, rod.leverage()))).ok()?;
         let matrix = after_flight(&lifted, place, &lifted.strike_with(&start, &tilt, leverage), root);
-        return Some(vec![Side { contact_mode: ContactMode::Frictionless, matrix }]);
+        return Some(vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }]);
     };
     let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched);
     let strike = friction.strike(rod, state, &plain, None, rod.leverage(), |decision| {
@@ -237,7 +238,7 @@ fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Op
         FrictionBranch::Rests | FrictionBranch::Holds => true,
     });
     let root = first_contact(&rod.flight(&strike)).ok()?;
-    let mut sides: Vec<Side> = Vec::new();
+    let mut sides: Vec<OneSidedDerivative> = Vec::new();
     for flipped in 0..1_u32 << tied.len() {
         let mut rests = false;
         let strike = friction.strike(&lifted, &start, &tilt, None, leverage, |decision| {
@@ -253,7 +254,7 @@ fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Op
             ContactMode::SlideThrough => ContactMode::Slide,
             mode => mode,
         };
-        let side = Side { contact_mode, matrix: after_flight(&lifted, place, &strike, root) };
+        let side = OneSidedDerivative { contact_mode, matrix: after_flight(&lifted, place, &strike, root) };
         if !sides.contains(&side) {
             sides.push(side);
         }

@@ -18,7 +18,7 @@ pub const PARABOLIC: f64 = 1e-9;
 
 /// How the angle moves near the fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
+pub enum AngleClass {
     /// It comes back (point mass).
     Attracting,
     /// It circles, 0 < R < 1.
@@ -29,7 +29,7 @@ pub enum Class {
     Hyperbolic,
 }
 
-impl Class {
+impl AngleClass {
     /// Its name in answers.
     pub fn name(self) -> &'static str {
         match self {
@@ -43,9 +43,9 @@ impl Class {
 
 /// The linear verdict.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Linear {
+pub struct LinearVerdict {
     /// How the angle moves.
-    pub class: Class,
+    pub class: AngleClass,
     /// R = (κ − 1)V²l/(Gρ²), with ρ² + l² for ρ² where a matched contact sticks; none for a point mass, and where the contact sticks to
     /// a table that only tilts.
     pub residue: Option<f64>,
@@ -65,7 +65,7 @@ pub struct Linear {
     pub closed_loop: Option<ClosedLoop>,
 }
 
-impl Linear {
+impl LinearVerdict {
     /// Largest modulus of an eigenvalue; exactly 1 where the angle circles, whatever rounding says. With state feedback a height that
     /// nothing steers is left out, which would always be 1.
     pub fn spectral_radius(&self) -> f64 {
@@ -73,20 +73,23 @@ impl Linear {
             return closed.spectral_radius;
         }
         let angle = match self.class {
-            Class::Elliptic | Class::Parabolic => 1.0,
-            Class::Attracting | Class::Hyperbolic => self.eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max),
+            AngleClass::Elliptic | AngleClass::Parabolic => 1.0,
+            AngleClass::Attracting | AngleClass::Hyperbolic => {
+                self.eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max)
+            }
         };
         angle.max(self.energy_eigenvalue.abs())
     }
 
     /// Whether it says that a small deviation stays small.
     pub fn says_bounded(&self) -> bool {
-        matches!(self.class, Class::Attracting | Class::Elliptic) && self.energy_eigenvalue.abs() <= 1.0 + PARABOLIC
+        matches!(self.class, AngleClass::Attracting | AngleClass::Elliptic)
+            && self.energy_eigenvalue.abs() <= 1.0 + PARABOLIC
     }
 }
 
 /// The linear verdict about a fixed point, in closed form: eq. (14) with the energy term.
-pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> Linear {
+pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict {
     let speed_squared = fixed_point.speed * fixed_point.speed;
     let loop_gain = (1.0 + scene.restitution) * speed_squared;
     let energy_eigenvalue = 1.0 - scene.energy_gain * loop_gain;
@@ -94,8 +97,8 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> Linear {
     let real = |value: f64| Complex::new(value, 0.0);
     let model = scene.model();
     if let Some(closed) = closed_loop(&model, fixed_point) {
-        return Linear {
-            class: if closed.is_stable() { Class::Attracting } else { Class::Hyperbolic },
+        return LinearVerdict {
+            class: if closed.is_stable() { AngleClass::Attracting } else { AngleClass::Hyperbolic },
             residue: None,
             rotation: None,
             eigenvalues: closed.eigenvalues.clone(),
@@ -109,10 +112,10 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> Linear {
     let BodyShape::Rod { contact_distance, .. } = scene.body else {
         // Eq. (4): the angle of the velocity is multiplied by 1 − 2κ.
         let angle = 1.0 - 2.0 * scene.tilt_gain;
-        let class = if angle.abs() < 1.0 { Class::Attracting } else { Class::Hyperbolic };
+        let class = if angle.abs() < 1.0 { AngleClass::Attracting } else { AngleClass::Hyperbolic };
         let mut eigenvalues = vec![real(angle), real(energy_eigenvalue)];
         sort_eigenvalues(&mut eigenvalues);
-        return Linear {
+        return LinearVerdict {
             class,
             residue: None,
             rotation: None,
@@ -129,8 +132,8 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> Linear {
         let mut eigenvalues = sticking_eigenvalues(rod, fixed_point.speed).to_vec();
         eigenvalues.push(real(energy_eigenvalue));
         sort_eigenvalues(&mut eigenvalues);
-        return Linear {
-            class: Class::Hyperbolic,
+        return LinearVerdict {
+            class: AngleClass::Hyperbolic,
             residue: None,
             rotation: None,
             eigenvalues,
@@ -148,23 +151,24 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> Linear {
     let class = class(residue);
     let half_trace = 1.0 - 2.0 * residue;
     let pair = match class {
-        Class::Parabolic => [real(half_trace.signum()); 2],
-        Class::Elliptic => {
+        AngleClass::Parabolic => [real(half_trace.signum()); 2],
+        AngleClass::Elliptic => {
             // 1 − (1 − 2R)² without cancellation near R = 0 and R = 1.
             let imaginary = 2.0 * (residue * (1.0 - residue)).sqrt();
             [Complex::new(half_trace, imaginary), Complex::new(half_trace, -imaginary)]
         }
-        Class::Attracting | Class::Hyperbolic => {
+        AngleClass::Attracting | AngleClass::Hyperbolic => {
             let large = half_trace + half_trace.signum() * 2.0 * (residue * (residue - 1.0)).sqrt();
             [real(large), real(1.0 / large)]
         }
     };
     let mut eigenvalues = vec![pair[0], pair[1], real(1.0), real(energy_eigenvalue)];
     sort_eigenvalues(&mut eigenvalues);
-    Linear {
+    LinearVerdict {
         class,
         residue: Some(residue),
-        rotation: matches!(class, Class::Elliptic | Class::Parabolic).then(|| trig::acos(half_trace.clamp(-1.0, 1.0))),
+        rotation: matches!(class, AngleClass::Elliptic | AngleClass::Parabolic)
+            .then(|| trig::acos(half_trace.clamp(-1.0, 1.0))),
         eigenvalues,
         lower_tilt_gain: 1.0,
         critical_tilt_gain: 1.0 + width,
@@ -182,12 +186,12 @@ fn closed_loop(model: &Model, fixed_point: &FixedPoint) -> Option<ClosedLoop> {
 }
 
 /// The class of a residue.
-pub fn class(residue: f64) -> Class {
+pub fn class(residue: f64) -> AngleClass {
     if residue.abs() <= PARABOLIC || (residue - 1.0).abs() <= PARABOLIC {
-        Class::Parabolic
+        AngleClass::Parabolic
     } else if residue > 0.0 && residue < 1.0 {
-        Class::Elliptic
+        AngleClass::Elliptic
     } else {
-        Class::Hyperbolic
+        AngleClass::Hyperbolic
     }
 }

@@ -2,21 +2,21 @@
 //! end, or hard, so that every small start falls.
 //!
 //! At each end one direction of the map is on the unit circle, and its cubic coefficient decides ([`crate::stability::normal_form`]). For
-//! the tilt gain that is C of [`Boundary`]; for the energy gain the height flips; for state feedback a pair or a real eigenvalue
+//! the tilt gain that is C of [`BoundaryCoefficient`]; for the energy gain the height flips; for state feedback a pair or a real eigenvalue
 //! leaves the circle at a factor on the gains.
 
 use crate::bounce::state::State;
 use crate::control::margin::crossings;
 use crate::control::{BounceModel, STABLE};
-use crate::periodic_orbits::branch::Kind as Bifurcation;
+use crate::periodic_orbits::branch::Bifurcation;
 use crate::scene::{Name, Scene};
-use crate::stability::boundary::Boundary;
+use crate::stability::boundary::BoundaryCoefficient;
 use crate::stability::contact_regime::contact_regime;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::jacobian::{eigenvalues, jacobian, modulus};
-use crate::stability::linear_verdict::{Linear, PARABOLIC};
+use crate::stability::linear_verdict::{LinearVerdict, PARABOLIC};
 use crate::stability::lyapunov::first_contact;
-use crate::stability::normal_form::Bounce;
+use crate::stability::normal_form::UprightBounce;
 use nalgebra::{Complex, DMatrix, RowVector4};
 
 /// Modulus of an eigenvalue of the angle over two bounces of different height up to which it counts as circling.
@@ -24,7 +24,7 @@ const CIRCLING: f64 = 1.0 + 1e-7;
 
 /// An end of the linear verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum CriticalParameter {
     /// κ_c, the upper end of the tilt gain.
     TiltGain,
     /// The upper end of the energy gain.
@@ -33,7 +33,7 @@ pub enum End {
     FeedbackFactor,
 }
 
-impl End {
+impl CriticalParameter {
     /// Name in answers: the dotted name of a field of the scene, or of a factor on one.
     pub fn name(self) -> &'static str {
         match self {
@@ -46,7 +46,7 @@ impl End {
 
 /// The motion on which a scene beyond a soft end settles, by the normal form.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Settles {
+pub enum SettledMotion {
     /// On a swing of this largest |θ|, rad.
     Swing(f64),
     /// On bounces of two heights in turn.
@@ -60,9 +60,9 @@ pub enum Settles {
 
 /// How stability is lost at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Loss {
+pub struct StabilityLoss {
     /// Which end.
-    pub end: End,
+    pub end: CriticalParameter,
     /// κ, κ_E (s²/m²) or the factor at which it is.
     pub value: f64,
     /// How eigenvalues leave the unit circle there.
@@ -71,13 +71,13 @@ pub struct Loss {
     /// energy gain, per bounce and rad² for feedback.
     pub coefficient: f64,
     /// The motion on which this scene settles, if it is beyond a soft end and the normal form says.
-    pub settles: Option<Settles>,
+    pub settles: Option<SettledMotion>,
 }
 
-impl Loss {
+impl StabilityLoss {
     /// `soft`, `hard` or `degenerate`.
     pub fn kind(&self) -> &'static str {
-        Boundary { coefficient: self.coefficient }.kind()
+        BoundaryCoefficient { coefficient: self.coefficient }.kind()
     }
 
     /// Tells whether it is soft.
@@ -90,13 +90,13 @@ impl Loss {
 pub fn losses(
     scene: &Scene,
     fixed_point: &FixedPoint,
-    linear: &Linear,
-    boundary: Option<Boundary>,
-) -> (Vec<Loss>, Vec<String>) {
+    linear: &LinearVerdict,
+    boundary: Option<BoundaryCoefficient>,
+) -> (Vec<StabilityLoss>, Vec<String>) {
     let (mut found, mut notes) = (Vec::new(), Vec::new());
-    if let Some(Boundary { coefficient }) = boundary {
-        found.push(Loss {
-            end: End::TiltGain,
+    if let Some(BoundaryCoefficient { coefficient }) = boundary {
+        found.push(StabilityLoss {
+            end: CriticalParameter::TiltGain,
             value: linear.critical_tilt_gain,
             bifurcation: Bifurcation::PeriodDoubling,
             coefficient,
@@ -117,10 +117,10 @@ pub fn losses(
 
 /// The upper end of κ_E: upright bounces are u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E, which flips at KV² = 2 with the coefficient
 /// 4K = 8/V².
-fn energy_gain(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Loss {
+fn energy_gain(scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) -> StabilityLoss {
     let speed_squared = fixed_point.speed * fixed_point.speed;
-    Loss {
-        end: End::EnergyGain,
+    StabilityLoss {
+        end: CriticalParameter::EnergyGain,
         value: linear.upper_energy_gain,
         bifurcation: Bifurcation::PeriodDoubling,
         coefficient: 8.0 / speed_squared,
@@ -130,7 +130,7 @@ fn energy_gain(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Loss
 
 /// The bounces of two heights beyond the flip, where they attract. With D = 1 + ½KV² their speeds are u² = 2s/K and 2/(Ks),
 /// s + 1/s = D, and a deviation is multiplied by 9 − 2D² over both.
-fn two_heights(scene: &Scene, fixed_point: &FixedPoint, loop_gain: f64) -> Option<Settles> {
+fn two_heights(scene: &Scene, fixed_point: &FixedPoint, loop_gain: f64) -> Option<SettledMotion> {
     let sum = 1.0 + 0.5 * loop_gain;
     let multiplier = 9.0 - 2.0 * sum * sum;
     if loop_gain <= 2.0 || multiplier.abs() >= 1.0 {
@@ -148,7 +148,7 @@ fn two_heights(scene: &Scene, fixed_point: &FixedPoint, loop_gain: f64) -> Optio
         let odd = odd_part(&twice.matrix, model.feedback().is_some_and(|gain| gain[0] != 0.0));
         Some(eigenvalues(&odd)?.into_iter().all(|value| modulus(value) <= CIRCLING))
     });
-    Some(Settles::Heights { heights: [height(low), height(high)], angle_bounded: angle_bounded.unwrap_or(false) })
+    Some(SettledMotion::Heights { heights: [height(low), height(high)], angle_bounded: angle_bounded.unwrap_or(false) })
 }
 
 /// The rows and columns of a derivative that are not of ẏ; x only where it is fed back.
@@ -163,10 +163,10 @@ fn odd_part(matrix: &DMatrix<f64>, with_x: bool) -> DMatrix<f64> {
 
 /// The ends of the factors on a state feedback: both margins of a stable loop; of an unstable one the end of the stable range
 /// next to it, if there is one.
-fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<Loss>, String> {
+fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<StabilityLoss>, String> {
     let model = scene.model();
     let Some(gain) = model.feedback() else { return Ok(Vec::new()) };
-    let bounce = Bounce::of(&model, fixed_point)?;
+    let bounce = UprightBounce::of(&model, fixed_point)?;
     let start = first_contact(scene)?;
     let linear = BounceModel::new(model.rod(), fixed_point.speed, contact_regime(&model));
     let with_x = gain[0] != 0.0;
@@ -204,7 +204,12 @@ fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<Loss>, String
 }
 
 /// The loss at one factor; `own` is the eigenvalue of the scene itself that is beyond the circle, if there is one.
-fn feedback_end(bounce: &Bounce, factor: f64, own: Option<Complex<f64>>, start: [f64; 4]) -> Result<Loss, String> {
+fn feedback_end(
+    bounce: &UprightBounce,
+    factor: f64,
+    own: Option<Complex<f64>>,
+    start: [f64; 4],
+) -> Result<StabilityLoss, String> {
     let there = bounce.with_gains_times(factor);
     let away = |value: &Complex<f64>| (modulus(*value) - 1.0).abs();
     let nearest = |values: Vec<Complex<f64>>| values.into_iter().min_by(|one, other| away(one).total_cmp(&away(other)));
@@ -219,7 +224,8 @@ fn feedback_end(bounce: &Bounce, factor: f64, own: Option<Complex<f64>>, start: 
         Bifurcation::Pitchfork
     };
     // ln |λ| + ℓA² = 0.
-    let settles =
-        own.filter(|_| coefficient > 0.0).map(|own| Settles::Swing((libm::log(modulus(own)) / coefficient).sqrt()));
-    Ok(Loss { end: End::FeedbackFactor, value: factor, bifurcation, coefficient, settles })
+    let settles = own
+        .filter(|_| coefficient > 0.0)
+        .map(|own| SettledMotion::Swing((libm::log(modulus(own)) / coefficient).sqrt()));
+    Ok(StabilityLoss { end: CriticalParameter::FeedbackFactor, value: factor, bifurcation, coefficient, settles })
 }

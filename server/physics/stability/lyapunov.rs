@@ -7,13 +7,13 @@
 
 use crate::scene::Scene;
 use crate::stability::fixed_point::FixedPoint;
-use crate::stability::linear_verdict::{Class, Linear, PARABOLIC};
-use crate::stability::normal_form::{Bounce, RESONANT};
+use crate::stability::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC};
+use crate::stability::normal_form::{RESONANT, UprightBounce};
 use nalgebra::Complex;
 
 /// Fate of a swing about upright in the long run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum SwingFate {
     /// It grows, from every start but upright itself.
     Repelling,
     /// It dies out.
@@ -22,7 +22,7 @@ pub enum Kind {
     Neutral,
 }
 
-impl Kind {
+impl SwingFate {
     /// Name in answers.
     pub fn name(self) -> &'static str {
         match self {
@@ -35,23 +35,23 @@ impl Kind {
 
 /// The first Lyapunov coefficient at the fixed point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lyapunov {
+pub struct LyapunovCoefficient {
     /// ℓ of dA/dn = ℓA³, per bounce and rad²; A is the largest |θ| of the linear swing.
     pub coefficient: f64,
     /// Sign of the coefficient.
-    pub kind: Kind,
+    pub kind: SwingFate,
     /// A₀ of this release, rad.
     pub amplitude: f64,
     /// Distance of the rotation from a quarter turn a bounce, in turns: the strong resonance at which ℓ is not defined.
     pub from_quarter: f64,
 }
 
-impl Lyapunov {
+impl LyapunovCoefficient {
     /// 1/(2ℓA₀²), contacts after which a swing like this release's has left; none where it does not leave.
     pub fn escape_impacts(&self) -> Option<u64> {
         let contacts = 0.5 / (self.coefficient * self.amplitude * self.amplitude);
         // A cast keeps to the range of the type.
-        (self.kind == Kind::Repelling && contacts.is_finite()).then_some(contacts as u64)
+        (self.kind == SwingFate::Repelling && contacts.is_finite()).then_some(contacts as u64)
     }
 }
 
@@ -59,11 +59,15 @@ impl Lyapunov {
 ///
 /// # Errors
 /// Why it does not apply, in a sentence.
-pub fn lyapunov(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Result<Lyapunov, String> {
+pub fn lyapunov_coefficient(
+    scene: &Scene,
+    fixed_point: &FixedPoint,
+    linear: &LinearVerdict,
+) -> Result<LyapunovCoefficient, String> {
     if linear.closed_loop.is_some() {
         return Err("with state feedback small deviations die out or grow in first order already".to_owned());
     }
-    let bounce = Bounce::of(&scene.model(), fixed_point)?;
+    let bounce = UprightBounce::of(&scene.model(), fixed_point)?;
     let height = linear.energy_eigenvalue;
     if height == 1.0 {
         return Err(
@@ -73,7 +77,7 @@ pub fn lyapunov(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Res
     if height.abs() > 1.0 - PARABOLIC {
         return Err(format!("the bounce height does not settle (its eigenvalue is {height})"));
     }
-    let (Class::Elliptic, Some(residue)) = (linear.class, linear.residue) else {
+    let (AngleClass::Elliptic, Some(residue)) = (linear.class, linear.residue) else {
         return Err("the angle does not circle at this tilt_gain".to_owned());
     };
     let cos = 1.0 - 2.0 * residue;
@@ -86,14 +90,14 @@ pub fn lyapunov(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Res
     let cubic = bounce.cubic(eigenvalue, first_contact(scene)?)?;
     let coefficient = cubic.growth_or_zero();
     let kind = if coefficient > 0.0 {
-        Kind::Repelling
+        SwingFate::Repelling
     } else if coefficient < 0.0 {
-        Kind::Attracting
+        SwingFate::Attracting
     } else {
-        Kind::Neutral
+        SwingFate::Neutral
     };
     let turns = linear.rotation.unwrap_or_default() / std::f64::consts::TAU;
-    Ok(Lyapunov { coefficient, kind, amplitude: cubic.amplitude, from_quarter: (turns - 0.25).abs() })
+    Ok(LyapunovCoefficient { coefficient, kind, amplitude: cubic.amplitude, from_quarter: (turns - 0.25).abs() })
 }
 
 /// (ρθ, ẋ, ρθ̇, x) just before the first contact of a scene's run.

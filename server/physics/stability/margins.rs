@@ -20,7 +20,7 @@ pub struct Tolerances {
 
 /// A body in the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct SampledBody {
     /// l, m.
     pub contact_distance: f64,
     /// ρ, m.
@@ -31,7 +31,7 @@ pub struct Sample {
 
 /// The least and the most of a quantity over the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
+pub struct ValueRange {
     /// The least.
     pub least: f64,
     /// The most.
@@ -40,15 +40,15 @@ pub struct Span {
 
 /// What holds over the whole box.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Margins {
+pub struct ToleranceMargins {
     /// κ_c.
-    pub critical_tilt_gain: Span,
+    pub critical_tilt_gain: ValueRange,
     /// Where κ_c is least.
-    pub worst: Sample,
+    pub worst: SampledBody,
     /// Height of the centre of gravity at the top of the bounce in place, m.
-    pub apex_height: Span,
+    pub apex_height: ValueRange,
     /// Eigenvalue of the energy.
-    pub energy_eigenvalue: Span,
+    pub energy_eigenvalue: ValueRange,
     /// Whether the linear verdict is stable for every body in the box.
     pub holds: bool,
 }
@@ -61,7 +61,7 @@ const ROUNDS: usize = 24;
 ///
 /// # Errors
 /// Why there is none for one of them, in a sentence.
-pub fn margins_over_tolerances(scene: &Scene, tolerances: &Tolerances) -> Result<Margins, String> {
+pub fn margins_over_tolerances(scene: &Scene, tolerances: &Tolerances) -> Result<ToleranceMargins, String> {
     if scene.outline().is_some() {
         return margins_over_tolerances(&scene.as_rod(), tolerances);
     }
@@ -85,13 +85,13 @@ pub fn margins_over_tolerances(scene: &Scene, tolerances: &Tolerances) -> Result
     let (critical, worst) = extreme(|looked| looked.critical)?;
     let (most, _) = extreme(|looked| -looked.critical)?;
     let span = |of: fn(&Looked) -> f64, negative: fn(&Looked) -> f64| {
-        Ok::<_, String>(Span { least: extreme(of)?.0, most: -extreme(negative)?.0 })
+        Ok::<_, String>(ValueRange { least: extreme(of)?.0, most: -extreme(negative)?.0 })
     };
     let energy_eigenvalue = span(|looked| looked.energy, |looked| -looked.energy)?;
     let kappa = scene.tilt_gain;
-    Ok(Margins {
-        critical_tilt_gain: Span { least: critical, most: -most },
-        worst: Sample { contact_distance: worst[0], radius_of_gyration: worst[1], restitution: worst[2] },
+    Ok(ToleranceMargins {
+        critical_tilt_gain: ValueRange { least: critical, most: -most },
+        worst: SampledBody { contact_distance: worst[0], radius_of_gyration: worst[1], restitution: worst[2] },
         apex_height: span(|looked| looked.apex, |looked| -looked.apex)?,
         energy_eigenvalue,
         holds: kappa > lower && kappa < critical && energy_eigenvalue.least > -1.0 && energy_eigenvalue.most <= 1.0,

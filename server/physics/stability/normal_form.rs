@@ -37,7 +37,7 @@ const DEFECTIVE: f64 = 1e-7;
 
 /// One bounce about an upright bounce in place, in any kind of number.
 #[derive(Clone, Copy, Debug)]
-pub struct Bounce {
+pub struct UprightBounce {
     rod: Rod,
     steering: Steering,
     friction: Option<Friction>,
@@ -49,7 +49,7 @@ pub struct Bounce {
 
 /// How a swing of one direction changes in a bounce, to third order: w ↦ λw(1 + d|w|²).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cubic {
+pub struct CubicCoefficient {
     /// ℓ of dA/dn = ℓA³ per bounce and rad², A the largest |θ| of the linear swing.
     pub growth: f64,
     /// |d| in the same unit: ℓ is its real part.
@@ -58,14 +58,14 @@ pub struct Cubic {
     pub amplitude: f64,
 }
 
-impl Cubic {
+impl CubicCoefficient {
     /// ℓ, or exactly 0 where it is rounding.
     pub fn growth_or_zero(&self) -> f64 {
         if self.growth.abs() <= NEUTRAL * self.size { 0.0 } else { self.growth }
     }
 }
 
-impl Bounce {
+impl UprightBounce {
     /// The bounce of a model about its fixed point.
     ///
     /// # Errors
@@ -170,7 +170,7 @@ impl Bounce {
     ///
     /// # Errors
     /// Why there is none, in a sentence.
-    pub fn cubic(&self, eigenvalue: Complex<f64>, start: [f64; 4]) -> Result<Cubic, String> {
+    pub fn cubic(&self, eigenvalue: Complex<f64>, start: [f64; 4]) -> Result<CubicCoefficient, String> {
         let size = self.odd_size();
         let odd_derivative = self.odd_derivative();
         let vectors = eigenvectors(&odd_derivative, eigenvalue);
@@ -193,7 +193,7 @@ impl Bounce {
         let d = resonant / eigenvalue;
         // A = |w| times this.
         let scale = (if pair { 2.0 } else { 1.0 }) * modulus(right[0]) / self.rod.radius_of_gyration;
-        Ok(Cubic {
+        Ok(CubicCoefficient {
             growth: d.re / (scale * scale),
             size: modulus(d) / (scale * scale),
             amplitude: modulus(project(&|n| start[n])) * scale,

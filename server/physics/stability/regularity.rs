@@ -12,7 +12,7 @@ use crate::numbers::trig;
 use crate::run::orbit::Orbit;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::FixedPoint;
-use crate::stability::linear_verdict::Linear;
+use crate::stability::linear_verdict::LinearVerdict;
 use crate::table::control_law::Steering;
 use std::f64::consts::TAU;
 
@@ -58,7 +58,7 @@ pub struct Rotation {
 
 /// Whether deviations from a run grow without bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chaos {
+pub struct ChaosIndicator {
     /// Mean exponential growth factor of nearby orbits (P. M. Cincotta and C. Simó, 2000): 2 for regular runs.
     pub indicator: f64,
     /// Whether it is above [`CHAOTIC`].
@@ -73,7 +73,7 @@ pub struct Regularity {
     /// None where small deviations do not circle.
     pub rotation: Option<Rotation>,
     /// None where the run ended before [`WATCHED`] contacts, or stands at the fixed point.
-    pub chaos: Option<Chaos>,
+    pub chaos: Option<ChaosIndicator>,
     /// ln of the largest growth of deviations so far, for each contact that was passed.
     pub growth: Vec<f64>,
 }
@@ -97,7 +97,7 @@ impl Regularity {
 pub fn measure_regularity(
     mut orbit: Orbit<Model>,
     fixed_point: &FixedPoint,
-    linear: &Linear,
+    linear: &LinearVerdict,
     impacts: u64,
 ) -> Option<Regularity> {
     let (rod, friction) = match orbit.body {
@@ -109,7 +109,7 @@ pub fn measure_regularity(
     };
     let undisturbed = orbit.state().theta == 0.0 && orbit.state().theta_dot == 0.0;
     let mut tangents = Tangents::new(&rod, friction, fixed_point.flight_time);
-    let mut turns = Turns::new(fixed_point, linear);
+    let mut turns = RotationCounter::new(fixed_point, linear);
     let (mut advances, mut growth) = (Vec::new(), Vec::new());
     // MEGNO: Y(n) = (2/n) Σ k ln(δ_k/δ_{k−1}), and its mean over n.
     let (mut weighted, mut means, mut last, mut largest) = (0.0, 0.0, 0.0, 0.0);
@@ -137,7 +137,7 @@ pub fn measure_regularity(
     });
     let chaos = (watched == WATCHED && !undisturbed).then(|| {
         let indicator = means / watched as f64;
-        Chaos { indicator, chaotic: indicator > CHAOTIC, impacts: watched }
+        ChaosIndicator { indicator, chaotic: indicator > CHAOTIC, impacts: watched }
     });
     Some(Regularity { rotation, chaos, growth })
 }
@@ -174,7 +174,7 @@ pub fn weighted_average(values: &[f64]) -> Option<f64> {
 ///
 /// With u = τθ̇ that map is θ' = (1 − 4R)θ + u, u' = u − 4Rθ; then (sin σ · θ, u − 2Rθ) turns by σ, sin σ = 2√(R(1 − R)).
 #[derive(Clone, Copy, Debug)]
-pub struct Turns {
+pub struct RotationCounter {
     flight_time: f64,
     residue: f64,
     sine: f64,
@@ -182,9 +182,9 @@ pub struct Turns {
     angle: Option<f64>,
 }
 
-impl Turns {
+impl RotationCounter {
     /// Turns about a fixed point at which the angle circles; none elsewhere.
-    pub fn new(fixed_point: &FixedPoint, linear: &Linear) -> Option<Self> {
+    pub fn new(fixed_point: &FixedPoint, linear: &LinearVerdict) -> Option<Self> {
         let residue = linear.residue?;
         let rotation = linear.rotation?;
         let sine = 2.0 * (residue * (1.0 - residue)).max(0.0).sqrt();

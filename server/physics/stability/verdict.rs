@@ -5,14 +5,14 @@
 use crate::control::{ClosedLoop, STATE};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
-use crate::stability::boundary::{Boundary, boundary_coefficient, period_two_angle};
+use crate::stability::boundary::{BoundaryCoefficient, boundary_coefficient, period_two_angle};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one};
 use crate::stability::fixed_point::FixedPoint;
-use crate::stability::linear_verdict::{Class, Linear, PARABOLIC};
-use crate::stability::loss_of_stability::{End, Loss, Settles, losses};
-use crate::stability::lyapunov::{Kind, Lyapunov, lyapunov};
+use crate::stability::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC};
+use crate::stability::loss_of_stability::{CriticalParameter, SettledMotion, StabilityLoss, losses};
+use crate::stability::lyapunov::{LyapunovCoefficient, SwingFate, lyapunov_coefficient};
 use crate::stability::nonlinear_run::NonlinearRun;
-use crate::stability::regularity::{CHAOTIC, Chaos};
+use crate::stability::regularity::{CHAOTIC, ChaosIndicator};
 
 /// The verdict on a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +58,7 @@ impl DecidedBy {
 
 /// A verdict with what it rests on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judgement {
+pub struct Assessment {
     /// The verdict.
     pub verdict: Verdict,
     /// What decided.
@@ -73,42 +73,42 @@ pub struct Judgement {
 #[derive(Clone, Debug, PartialEq)]
 pub struct HigherOrder {
     /// Boundary coefficient at κ_c.
-    pub boundary: Option<Boundary>,
+    pub boundary: Option<BoundaryCoefficient>,
     /// First Lyapunov coefficient of a swing about the fixed point, or why there is none.
-    pub lyapunov: Result<Lyapunov, String>,
+    pub lyapunov: Result<LyapunovCoefficient, String>,
     /// Loss of stability at each end of the linear verdict for which it is derived.
-    pub losses: Vec<Loss>,
+    pub losses: Vec<StabilityLoss>,
     /// Reasons why it is not derived for others.
     pub notes: Vec<String>,
 }
 
 impl HigherOrder {
     /// Collects them for a scene.
-    pub fn of(scene: &Scene, fixed_point: &FixedPoint, linear: &Linear) -> Self {
+    pub fn of(scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Self {
         let boundary = boundary_coefficient(&scene.model(), fixed_point);
         let (losses, notes) = losses(scene, fixed_point, linear, boundary);
-        Self { boundary, lyapunov: lyapunov(scene, fixed_point, linear), losses, notes }
+        Self { boundary, lyapunov: lyapunov_coefficient(scene, fixed_point, linear), losses, notes }
     }
 
     /// The soft loss at an end, and where the scene settles beyond it.
-    pub(crate) fn settled_beyond(&self, end: End) -> Option<(&Loss, Settles)> {
+    pub(crate) fn settled_beyond(&self, end: CriticalParameter) -> Option<(&StabilityLoss, SettledMotion)> {
         let loss = self.losses.iter().find(|loss| loss.end == end && loss.is_soft() && loss.settles.is_some())?;
         Some((loss, loss.settles?))
     }
 }
 
 /// Weighs the linear verdict, the higher orders, the run and how regular it is against each other.
-pub fn judge(
+pub fn assess(
     scene: &Scene,
     fixed_point: &FixedPoint,
-    linear: &Linear,
+    linear: &LinearVerdict,
     higher: &HigherOrder,
     run: &NonlinearRun,
-    chaos: Option<Chaos>,
-) -> Judgement {
+    chaos: Option<ChaosIndicator>,
+) -> Assessment {
     let survived = run.ending == Ending::Completed;
     let agree = linear.says_bounded() == survived;
-    let judgement = |verdict, decided_by, reason| Judgement { verdict, decided_by, agree, reason };
+    let assessment = |verdict, decided_by, reason| Assessment { verdict, decided_by, agree, reason };
     let start = scene.start();
     let undisturbed = start.theta == 0.0 && start.theta_dot == 0.0;
     let kappa = scene.tilt_gain;
@@ -121,38 +121,38 @@ pub fn judge(
             "energy_gain is {} s²/m² and must be between 0 and {}: deviations of the height grow by {} a bounce",
             scene.energy_gain, linear.upper_energy_gain, linear.energy_eigenvalue
         );
-        let Some((_, Settles::Heights { heights: [low, high], angle_bounded })) =
-            higher.settled_beyond(End::EnergyGain)
+        let Some((_, SettledMotion::Heights { heights: [low, high], angle_bounded })) =
+            higher.settled_beyond(CriticalParameter::EnergyGain)
         else {
-            return judgement(Verdict::Unstable, DecidedBy::Linear, grows);
+            return assessment(Verdict::Unstable, DecidedBy::Linear, grows);
         };
         let softly = format!("{grows}, softly: bounces settle on heights of {low} m and {high} m in turn");
         return match (angle_bounded, survived) {
             (true, true) => {
                 let reason = format!("{softly}, on which the angle stays bounded, and the run survived");
-                judgement(Verdict::BoundedBeyondBoundary, DecidedBy::Boundary, reason)
+                assessment(Verdict::BoundedBeyondBoundary, DecidedBy::Boundary, reason)
             }
-            (true, false) => judgement(Verdict::Unstable, DecidedBy::Nonlinear, format!("{softly}, but {fell}")),
+            (true, false) => assessment(Verdict::Unstable, DecidedBy::Nonlinear, format!("{softly}, but {fell}")),
             (false, _) => {
                 let reason = format!("{softly}, on which the angle does not stay bounded");
-                judgement(Verdict::Unstable, DecidedBy::Linear, reason)
+                assessment(Verdict::Unstable, DecidedBy::Linear, reason)
             }
         };
     }
     if let Some(closed) = &linear.closed_loop {
-        return judge_law(closed, higher, run);
+        return assess_feedback(closed, higher, run);
     }
     if let Ok(found) = &higher.lyapunov
-        && found.kind != Kind::Neutral
+        && found.kind != SwingFate::Neutral
     {
-        return judge_swing(scene, found, run, agree);
+        return assess_swing(scene, found, run, agree);
     }
-    if !survived && linear.class != Class::Hyperbolic && linear.class != Class::Parabolic {
+    if !survived && linear.class != AngleClass::Hyperbolic && linear.class != AngleClass::Parabolic {
         let cone = stick_cone(&model).filter(|cone| start.theta.abs() > *cone).map_or_else(String::new, |cone| {
             format!(", and theta {} rad outside the stick cone, |θ| up to about {cone} rad", start.theta)
         });
         let reason = format!("{fell}, although the linear analysis is stable: the start is outside the basin{cone}");
-        return judgement(Verdict::Unstable, DecidedBy::Nonlinear, reason);
+        return assessment(Verdict::Unstable, DecidedBy::Nonlinear, reason);
     }
     if contact_regime(&model) == ContactRegime::Sticking {
         let largest = linear.eigenvalues.iter().map(|value| value.re).fold(1.0, f64::max);
@@ -164,40 +164,40 @@ pub fn judge(
             sticking_polynomial_at_one(model.rod(), fixed_point.speed),
             if survived { "this run has not left yet" } else { fell.as_str() }
         );
-        return judgement(Verdict::Unstable, DecidedBy::Linear, reason);
+        return assessment(Verdict::Unstable, DecidedBy::Linear, reason);
     }
     match linear.class {
-        Class::Attracting => {
+        AngleClass::Attracting => {
             let reason = format!("the angle of the velocity shrinks by {} a bounce (eq. 4)", 1.0 - 2.0 * kappa);
-            judgement(Verdict::StableInPlace, DecidedBy::Linear, reason)
+            assessment(Verdict::StableInPlace, DecidedBy::Linear, reason)
         }
-        Class::Elliptic => {
+        AngleClass::Elliptic => {
             let mut reason = format!(
                 "tilt_gain {kappa} is between {} and {critical}, so small deviations circle, and the run survived",
                 linear.lower_tilt_gain
             );
-            if let Some(Chaos { indicator, chaotic: true, impacts }) = chaos {
+            if let Some(ChaosIndicator { indicator, chaotic: true, impacts }) = chaos {
                 reason += &format!(
                     ", but it is chaotic (MEGNO {indicator} over {impacts} impacts, above {CHAOTIC}), so that it may still \
                      fall later"
                 );
             }
-            judgement(Verdict::Elliptic, DecidedBy::Linear, reason)
+            assessment(Verdict::Elliptic, DecidedBy::Linear, reason)
         }
-        Class::Parabolic if kappa > 0.5 * (1.0 + critical) => match boundary {
-            Some(Boundary { coefficient }) if coefficient > 0.0 && survived => judgement(
+        AngleClass::Parabolic if kappa > 0.5 * (1.0 + critical) => match boundary {
+            Some(BoundaryCoefficient { coefficient }) if coefficient > 0.0 && survived => assessment(
                 Verdict::BoundedBeyondBoundary,
                 DecidedBy::Boundary,
                 format!(
                     "tilt_gain is κ_c, where eigenvalues are silent; C = {coefficient} > 0 is soft, and the run survived"
                 ),
             ),
-            Some(Boundary { coefficient }) if coefficient > 0.0 => judgement(
+            Some(BoundaryCoefficient { coefficient }) if coefficient > 0.0 => assessment(
                 Verdict::Unstable,
                 DecidedBy::Nonlinear,
                 format!("tilt_gain is κ_c and C = {coefficient} > 0 is soft for small starts, but {fell}"),
             ),
-            None => judgement(
+            None => assessment(
                 if survived { Verdict::BoundedBeyondBoundary } else { Verdict::Unstable },
                 DecidedBy::Nonlinear,
                 format!(
@@ -205,7 +205,7 @@ pub fn judge(
                     if survived { "the run survived" } else { fell.as_str() }
                 ),
             ),
-            Some(_) => judgement(
+            Some(_) => assessment(
                 Verdict::Unstable,
                 DecidedBy::Boundary,
                 format!(
@@ -215,12 +215,12 @@ pub fn judge(
                 ),
             ),
         },
-        Class::Parabolic => judgement(
+        AngleClass::Parabolic => assessment(
             Verdict::Unstable,
             DecidedBy::Linear,
             "tilt_gain is 1, where the angle drifts off at a constant rate".to_owned(),
         ),
-        Class::Hyperbolic if survived && !undisturbed && kappa > critical => judgement(
+        AngleClass::Hyperbolic if survived && !undisturbed && kappa > critical => assessment(
             Verdict::BoundedBeyondBoundary,
             DecidedBy::Nonlinear,
             format!(
@@ -230,29 +230,29 @@ pub fn judge(
                 period_two_angle(&model, scene.topple_angle, fixed_point)
                     .map_or_else(String::new, |theta| format!(", around the period-2 orbit at θ = ±{theta} rad")),
                 match boundary {
-                    Some(Boundary { coefficient }) if coefficient <= 0.0 => format!(
+                    Some(BoundaryCoefficient { coefficient }) if coefficient <= 0.0 => format!(
                         "; C = {coefficient} is not positive, so stability is lost hard and a longer run may still fall"
                     ),
                     _ => String::new(),
                 }
             ),
         ),
-        Class::Hyperbolic => {
+        AngleClass::Hyperbolic => {
             let side = if kappa < linear.lower_tilt_gain { "below" } else { "beyond" };
             let limit = if kappa < linear.lower_tilt_gain { linear.lower_tilt_gain } else { critical };
             let shown = if survived { "this run has not left yet" } else { fell.as_str() };
             let reason = format!("tilt_gain {kappa} is {side} {limit}, so small deviations grow; {shown}");
-            judgement(Verdict::Unstable, DecidedBy::Linear, reason)
+            assessment(Verdict::Unstable, DecidedBy::Linear, reason)
         }
     }
 }
 
 /// The verdict where the swing grows or dies out in third order.
-fn judge_swing(scene: &Scene, found: &Lyapunov, run: &NonlinearRun, agree: bool) -> Judgement {
-    let Lyapunov { coefficient, amplitude, .. } = found;
+fn assess_swing(scene: &Scene, found: &LyapunovCoefficient, run: &NonlinearRun, agree: bool) -> Assessment {
+    let LyapunovCoefficient { coefficient, amplitude, .. } = found;
     let (verdict, course) = match found.escape_impacts() {
         Some(impacts) => (Verdict::WeaklyUnstable, format!("grows, and leaves upright after about {impacts} bounces")),
-        None if found.kind == Kind::Repelling => (Verdict::WeaklyUnstable, "would grow".to_owned()),
+        None if found.kind == SwingFate::Repelling => (Verdict::WeaklyUnstable, "would grow".to_owned()),
         None => (Verdict::WeaklyAttracting, "dies out".to_owned()),
     };
     let outcome = match (run.ending == Ending::Completed, verdict) {
@@ -269,11 +269,11 @@ fn judge_swing(scene: &Scene, found: &Lyapunov, run: &NonlinearRun, agree: bool)
          ℓ = {coefficient} per bounce and rad², so a swing of {amplitude} rad, as here, {course}; {outcome}",
         scene.energy_gain
     );
-    Judgement { verdict, decided_by: DecidedBy::Lyapunov, agree, reason }
+    Assessment { verdict, decided_by: DecidedBy::Lyapunov, agree, reason }
 }
 
 /// Tells whether a law with feedback is stable in place, by its closed loop, its normal form and a run.
-fn judge_law(closed: &ClosedLoop, higher: &HigherOrder, run: &NonlinearRun) -> Judgement {
+fn assess_feedback(closed: &ClosedLoop, higher: &HigherOrder, run: &NonlinearRun) -> Assessment {
     let survived = run.ending == Ending::Completed;
     let (stable, radius) = (closed.is_stable(), closed.spectral_radius);
     let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
@@ -297,8 +297,8 @@ fn judge_law(closed: &ClosedLoop, higher: &HigherOrder, run: &NonlinearRun) -> J
             let grows = format!(
                 "a small deviation does not die out: the closed loop has spectral radius {radius}, which must be below 1"
             );
-            match (higher.settled_beyond(End::FeedbackFactor), survived) {
-                (Some((loss, Settles::Swing(swing))), true) => (
+            match (higher.settled_beyond(CriticalParameter::FeedbackFactor), survived) {
+                (Some((loss, SettledMotion::Swing(swing))), true) => (
                     Verdict::BoundedBeyondBoundary,
                     DecidedBy::Boundary,
                     format!(
@@ -314,5 +314,5 @@ fn judge_law(closed: &ClosedLoop, higher: &HigherOrder, run: &NonlinearRun) -> J
             }
         }
     };
-    Judgement { verdict, decided_by, agree: stable == survived, reason }
+    Assessment { verdict, decided_by, agree: stable == survived, reason }
 }

@@ -32,7 +32,7 @@ pub struct Ensemble {
 
 /// How one run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct End {
+pub struct RunEnd {
     /// Contacts, the last included; 0 where there was not even a first one.
     pub impacts: u64,
     /// Why.
@@ -41,16 +41,16 @@ pub struct End {
 
 /// What is kept of some runs.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Runs {
+pub struct EnsembleRuns {
     /// How they ended, in their order.
-    pub ends: Vec<End>,
+    pub ends: Vec<RunEnd>,
     /// For each contact of [`Ensemble::watched`], |θ| there in rad of those that went on; in their order.
     pub angles: Vec<Vec<f64>>,
 }
 
 /// A contact of the survival curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Survival {
+pub struct SurvivalPoint {
     /// Runs that came to it, or would have come to the first one.
     pub at_risk: u64,
     /// Those of them that ended there.
@@ -69,9 +69,9 @@ impl Ensemble {
     }
 
     /// Some of the runs, counted from 0; none if `go_on` said `false`, which is asked every hundred contacts.
-    pub fn runs(&self, numbers: Range<u64>, go_on: &mut dyn FnMut() -> bool) -> Option<Runs> {
+    pub fn runs(&self, numbers: Range<u64>, go_on: &mut dyn FnMut() -> bool) -> Option<EnsembleRuns> {
         let watched = self.watched();
-        let mut found = Runs { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
+        let mut found = EnsembleRuns { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
         let mut looks = CancellationCheck::new(go_on);
         for number in numbers {
             if !looks.begin() {
@@ -80,7 +80,7 @@ impl Ensemble {
             let mut orbit = match self.scene.orbit_of(number) {
                 Ok(orbit) => orbit,
                 Err(none) => {
-                    found.ends.push(End { impacts: 0, outcome: none.ending(0.0, 0.0).into() });
+                    found.ends.push(RunEnd { impacts: 0, outcome: none.ending(0.0, 0.0).into() });
                     continue;
                 }
             };
@@ -94,13 +94,13 @@ impl Ensemble {
                 }
                 looks.contact()
             })?;
-            found.ends.push(End { impacts: orbit.contacts(), outcome: ending.into() });
+            found.ends.push(RunEnd { impacts: orbit.contacts(), outcome: ending.into() });
         }
         go_on().then_some(found)
     }
 }
 
-impl Runs {
+impl EnsembleRuns {
     /// Adds the runs that come after these.
     pub fn append(&mut self, others: Self) {
         self.ends.extend(others.ends);
@@ -111,7 +111,7 @@ impl Runs {
     }
 
     /// The survival curve, from contact 1 to the last.
-    pub fn survival(&self, impacts: u64) -> Vec<Survival> {
+    pub fn survival(&self, impacts: u64) -> Vec<SurvivalPoint> {
         let runs = self.ends.len() as u64;
         let mut ended = vec![0; usize::try_from(impacts).unwrap_or(usize::MAX)];
         for end in self.ends.iter().filter(|end| end.outcome != EndingKind::Completed) {
@@ -120,8 +120,12 @@ impl Runs {
         let mut at_risk = runs;
         let curve = ended.into_iter().map(|ended| {
             let left = at_risk - ended;
-            let point =
-                Survival { at_risk, ended, share: left as f64 / runs as f64, interval: wilson_interval(left, runs) };
+            let point = SurvivalPoint {
+                at_risk,
+                ended,
+                share: left as f64 / runs as f64,
+                interval: wilson_interval(left, runs),
+            };
             at_risk = left;
             point
         });
@@ -140,13 +144,13 @@ impl Runs {
 }
 
 /// The first contact after which no more than half of the runs go on; none where more than half outlast them all.
-pub fn median_impacts(curve: &[Survival]) -> Option<u64> {
+pub fn median_impacts(curve: &[SurvivalPoint]) -> Option<u64> {
     curve.iter().position(|point| point.share <= 0.5).map(|place| place as u64 + 1)
 }
 
 /// In how many contacts half of the runs end that have come to the second half of the curve: ln 2 over their rate there, that
 /// of a run that ends with the same probability at each contact. None where none ends there.
-pub fn late_half_life(curve: &[Survival]) -> Option<f64> {
+pub fn late_half_life(curve: &[SurvivalPoint]) -> Option<f64> {
     let late = &curve[curve.len() / 2..];
     let ended: u64 = late.iter().map(|point| point.ended).sum();
     let at_risk: u64 = late.iter().map(|point| point.at_risk).sum();
@@ -185,10 +189,10 @@ mod tests {
     use super::*;
     use crate::scene::{Draft, Name, Value};
 
-    fn ends(impacts: u64, ended: &[u64], completed: usize) -> Runs {
-        let fell = ended.iter().map(|&impacts| End { impacts, outcome: EndingKind::Toppled });
-        let stood = std::iter::repeat_n(End { impacts, outcome: EndingKind::Completed }, completed);
-        Runs { ends: fell.chain(stood).collect(), angles: Vec::new() }
+    fn ends(impacts: u64, ended: &[u64], completed: usize) -> EnsembleRuns {
+        let fell = ended.iter().map(|&impacts| RunEnd { impacts, outcome: EndingKind::Toppled });
+        let stood = std::iter::repeat_n(RunEnd { impacts, outcome: EndingKind::Completed }, completed);
+        EnsembleRuns { ends: fell.chain(stood).collect(), angles: Vec::new() }
     }
 
     #[test]
@@ -276,7 +280,7 @@ mod tests {
             assert_eq!(angles.len(), if *n < last { 3 } else { 0 }, "{n}: {last}");
         }
         assert_eq!(runs.angles[0], [0.1; 3]);
-        let mut parts = Runs::default();
+        let mut parts = EnsembleRuns::default();
         for number in 0..3 {
             parts.append(ensemble.runs(number..number + 1, &mut || true).unwrap());
         }

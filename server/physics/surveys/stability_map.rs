@@ -10,12 +10,12 @@ use crate::run::ending::EndingKind;
 use crate::run::orbit::run;
 use crate::scene::{Draft, Name, Scene, Value};
 use crate::stability::fixed_point::find_fixed_point;
-use crate::stability::linear_verdict::{Linear, linear_verdict};
+use crate::stability::linear_verdict::{LinearVerdict, linear_verdict};
 use std::ops::Range;
 
 /// One side of a region: a field and the values it takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
+pub struct MapAxis {
     /// The field, one whose values are numbers.
     pub name: Name,
     /// Its first value.
@@ -26,7 +26,7 @@ pub struct Axis {
     pub count: usize,
 }
 
-impl Axis {
+impl MapAxis {
     /// Value number `index`, evenly spaced from `from` to `to`, both exact.
     pub fn value(&self, index: usize) -> f64 {
         self.at(index as f64 / (self.count.max(2) - 1) as f64)
@@ -40,7 +40,7 @@ impl Axis {
 
 /// What a cell shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum MapQuantity {
     /// Contacts survived.
     Survival,
     /// Largest |θ| at a contact, rad.
@@ -53,22 +53,22 @@ pub enum Quantity {
 
 /// A region: a scene, two of its fields, and for how many contacts each run is watched.
 #[derive(Clone, Copy, Debug)]
-pub struct Region {
+pub struct StabilityMap {
     /// Everything but the two fields.
     pub scene: Draft,
     /// The field that grows along a row.
-    pub x: Axis,
+    pub x: MapAxis,
     /// The field that grows from row to row.
-    pub y: Axis,
+    pub y: MapAxis,
     /// Contacts.
     pub impacts: u64,
     /// What the cells show.
-    pub quantity: Quantity,
+    pub quantity: MapQuantity,
 }
 
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cell {
+pub struct MapCell {
     /// Its quantity; none where the scene cannot be, or has no fixed point to ask.
     pub value: Option<f64>,
     /// How its run ended; none where there was no run.
@@ -79,11 +79,11 @@ pub struct Cell {
 const CELLS_A_LOOK: usize = 64;
 
 /// A piece of the linear boundary: a residue, and two points (x, y) between which it is that.
-pub type Segment = (f64, [f64; 2], [f64; 2]);
+pub type BoundarySegment = (f64, [f64; 2], [f64; 2]);
 
-const NOTHING: Cell = Cell { value: None, outcome: None };
+const NOTHING: MapCell = MapCell { value: None, outcome: None };
 
-impl Region {
+impl StabilityMap {
     /// The scene of a cell, if it can be: a release may lie below the table, a target height be missing.
     pub fn scene(&self, column: usize, row: usize) -> Option<Scene> {
         self.scene_at(self.x.value(column), self.y.value(row))
@@ -104,10 +104,10 @@ impl Region {
 
     /// Some cells, counted row after row; none if `go_on` said `false`, which is asked every hundred
     /// contacts, and for lanes every few thousand.
-    pub fn cells(&self, numbers: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Cell>> {
+    pub fn cells(&self, numbers: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<MapCell>> {
         let first = numbers.start;
         let mut cells = vec![NOTHING; numbers.len()];
-        if matches!(self.quantity, Quantity::Residue | Quantity::SpectralRadius) {
+        if matches!(self.quantity, MapQuantity::Residue | MapQuantity::SpectralRadius) {
             for (index, cell) in cells.iter_mut().enumerate() {
                 if index.is_multiple_of(CELLS_A_LOOK) && !go_on() {
                     return None;
@@ -170,21 +170,21 @@ impl Region {
         Some(cells)
     }
 
-    fn cell(&self, end: &RunEnd) -> Cell {
-        let value = if self.quantity == Quantity::MaxTheta { end.max_theta } else { end.impacts as f64 };
-        Cell { value: Some(value), outcome: Some(end.outcome) }
+    fn cell(&self, end: &RunEnd) -> MapCell {
+        let value = if self.quantity == MapQuantity::MaxTheta { end.max_theta } else { end.impacts as f64 };
+        MapCell { value: Some(value), outcome: Some(end.outcome) }
     }
 
     fn linear(&self, column: usize, row: usize) -> Option<f64> {
         let linear = linear(&self.scene(column, row)?)?;
-        if self.quantity == Quantity::Residue { linear.residue } else { Some(linear.spectral_radius()) }
+        if self.quantity == MapQuantity::Residue { linear.residue } else { Some(linear.spectral_radius()) }
     }
 
     /// Where the residue is 0 or 1, the ends of the linear verdict, as line segments (residue, from, to) of points (x, y).
     ///
     /// From a grid of at most `nodes` × `nodes` over the whole region, with every crossing of an edge refined to 1e-12 of
     /// the region. None once `go_on` said `false`, which is asked after a hundred scenes or two.
-    pub fn boundary(&self, nodes: usize, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Segment>> {
+    pub fn boundary(&self, nodes: usize, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<BoundarySegment>> {
         let residue = |u: f64, v: f64| {
             let scene = self.scene_at(self.x.at(u), self.y.at(v))?;
             linear(&scene)?.residue
@@ -228,7 +228,7 @@ impl Region {
     }
 }
 
-fn linear(scene: &Scene) -> Option<Linear> {
+fn linear(scene: &Scene) -> Option<LinearVerdict> {
     Some(linear_verdict(scene, &find_fixed_point(scene).ok()?))
 }
 

@@ -4,7 +4,7 @@
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::control::{BounceModel, NoDesign, RESIDUAL, STABLE};
+use equipoise_physics::control::{BounceModel, DesignFailure, RESIDUAL, STABLE};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -226,7 +226,10 @@ fn a_mode_that_no_weight_sees_is_not_called_stable() {
     let rod = rod(1.0);
     let model = BounceModel::new(&rod, speed(&rod), ContactRegime::Frictionless);
     for state in [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0; 4]] {
-        assert!(matches!(model.design(state, 1.0), Err(NoDesign::Diverging | NoDesign::Unseen(_))), "{state:?}");
+        assert!(
+            matches!(model.design(state, 1.0), Err(DesignFailure::Diverging | DesignFailure::Unseen(_))),
+            "{state:?}"
+        );
     }
 }
 

@@ -5,7 +5,7 @@ use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::error_estimate::ErrorEstimate;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::extended::ExtendedContact;
-use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use serde_json::Value as Json;
 
@@ -59,7 +59,10 @@ fn every_reference_agrees_to_its_last_digits() {
         assert!(worst <= 20.0 * bound + 1e-24 && bound < 1e-19, "{name}: error {worst:.1e}, bound {bound:.1e}");
         let allowed = f64::max(1e-23, reference["plain_double_error"].as_f64().unwrap() * 1e-15);
         let orbit = scene.extended_orbit().unwrap();
-        if scene.rung() == Rung::Rod && scene.rules().holds_energy && scene.number(Name::EnergyGain) == Some(0.0) {
+        if scene.model_level() == ModelLevel::Rod
+            && scene.rules().holds_energy
+            && scene.number(Name::EnergyGain) == Some(0.0)
+        {
             let energies: Vec<_> = contacts.iter().map(|contact| orbit.energy(&contact.state)).collect();
             let drift = energies.iter().map(|energy| (*energy - energies[0]).to_f64().abs()).fold(0.0, f64::max);
             assert!(drift <= 1e-30, "{name}: energy drifts by {drift:.1e}");

@@ -3,7 +3,7 @@
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::run;
-use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::{find_fixed_point, height_error};
@@ -175,7 +175,7 @@ fn a_strike_beyond_the_limits_ends_the_run() {
 fn a_ladder_tells_what_was_needed() {
     let ladder = |scene: Scene| run_hierarchy(&scene, 50, || true).unwrap();
     let plain = ladder(scene(&[(Name::Theta, 1e-6)]));
-    assert_eq!(plain.iter().map(|step| step.rung).collect::<Vec<_>>(), [Rung::Linear, Rung::Rod]);
+    assert_eq!(plain.iter().map(|step| step.level).collect::<Vec<_>>(), [ModelLevel::Linear, ModelLevel::Rod]);
     let change = plain[1].run.as_ref().unwrap().change.unwrap();
     assert!(change.same_outcome && change.state.value < 1e-9 && change.impacts == 50, "{change:?}");
 
@@ -188,15 +188,16 @@ fn a_ladder_tells_what_was_needed() {
     ]);
     draft.set(Name::TiltGain, None).unwrap();
     let steps = ladder(draft.build().unwrap());
-    let rungs = [Rung::Linear, Rung::Rod, Rung::RodWithX, Rung::Friction, Rung::Noise];
-    assert_eq!(steps.iter().map(|step| step.rung).collect::<Vec<_>>(), rungs);
+    let levels = [ModelLevel::Linear, ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::Friction, ModelLevel::Noise];
+    assert_eq!(steps.iter().map(|step| step.level).collect::<Vec<_>>(), levels);
     assert!(steps[0].run.is_err(), "no linear solution of a feedback in closed form");
-    let paths: Vec<_> = steps.iter().map(|step| step.forced.as_ref().map(|forced| forced.path)).collect();
+    let paths: Vec<_> =
+        steps.iter().map(|step| step.requirement.as_ref().map(|requirement| requirement.path)).collect();
     assert_eq!(paths, [None, None, Some("table.feedback.x"), Some("contact.friction"), Some("noise.timing_sd")]);
-    // Each rung's scene is of that rung, and the last one is the scene itself.
-    assert_eq!(steps[1].scene.rung(), Rung::Rod);
+    // The scene of each level needs that level, and the last one is the scene itself.
+    assert_eq!(steps[1].scene.model_level(), ModelLevel::Rod);
     for step in &steps[2..] {
-        assert_eq!(step.scene.rung(), step.rung);
+        assert_eq!(step.scene.model_level(), step.level);
     }
     // Friction on a table that only tilts makes the rod fall.
     let friction = steps[3].run.as_ref().unwrap();

@@ -2,7 +2,7 @@
 //! of stability against what runs beyond them do.
 
 use equipoise_physics::control::BounceModel;
-use equipoise_physics::periodic_orbits::branch::Kind as Bifurcation;
+use equipoise_physics::periodic_orbits::branch::Bifurcation;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -11,9 +11,9 @@ use equipoise_physics::stability::contact_regime::contact_regime;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::jacobian_at;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::loss_of_stability::{End, Loss, Settles, losses};
-use equipoise_physics::stability::lyapunov::{Kind, Lyapunov, lyapunov};
-use equipoise_physics::stability::normal_form::Bounce;
+use equipoise_physics::stability::loss_of_stability::{CriticalParameter, SettledMotion, StabilityLoss, losses};
+use equipoise_physics::stability::lyapunov::{LyapunovCoefficient, SwingFate, lyapunov_coefficient};
+use equipoise_physics::stability::normal_form::UprightBounce;
 
 #[path = "support/random.rs"]
 mod random;
@@ -57,12 +57,12 @@ fn case_4(tilt_gain: f64, theta: f64) -> Scene {
     ])
 }
 
-fn coefficient(scene: &Scene) -> Result<Lyapunov, String> {
+fn coefficient(scene: &Scene) -> Result<LyapunovCoefficient, String> {
     let fixed_point = find_fixed_point(scene).unwrap();
-    lyapunov(scene, &fixed_point, &linear_verdict(scene, &fixed_point))
+    lyapunov_coefficient(scene, &fixed_point, &linear_verdict(scene, &fixed_point))
 }
 
-fn ends(scene: &Scene) -> Vec<Loss> {
+fn ends(scene: &Scene) -> Vec<StabilityLoss> {
     let fixed_point = find_fixed_point(scene).unwrap();
     let linear = linear_verdict(scene, &fixed_point);
     losses(scene, &fixed_point, &linear, boundary_coefficient(&scene.model(), &fixed_point)).0
@@ -111,11 +111,11 @@ fn the_coefficient_is_its_closed_form() {
         let error = (found.coefficient - expected).abs();
         assert!(error <= 1e-9 * expected.abs() + 1e-12, "R = {residue}: {} and {expected}", found.coefficient);
         match found.kind {
-            Kind::Repelling => repelling += 1,
-            Kind::Attracting => attracting += 1,
-            Kind::Neutral => {}
+            SwingFate::Repelling => repelling += 1,
+            SwingFate::Attracting => attracting += 1,
+            SwingFate::Neutral => {}
         }
-        assert_eq!(found.kind == Kind::Repelling, residue < 0.5);
+        assert_eq!(found.kind == SwingFate::Repelling, residue < 0.5);
         assert_eq!(found.escape_impacts(), None, "upright never leaves");
     }
     assert!(repelling > 100 && attracting > 100);
@@ -239,9 +239,9 @@ fn steered(body: &[(Name, f64)], factor: impl Fn(f64) -> f64) -> Option<(Scene, 
     Some((scene(&values), upper))
 }
 
-fn feedback_loss(scene: &Scene) -> Loss {
+fn feedback_loss(scene: &Scene) -> StabilityLoss {
     let ends = ends(scene);
-    let mut ends = ends.into_iter().filter(|loss| loss.end == End::FeedbackFactor);
+    let mut ends = ends.into_iter().filter(|loss| loss.end == CriticalParameter::FeedbackFactor);
     ends.next().expect("an end of the feedback")
 }
 
@@ -257,7 +257,7 @@ fn a_law_just_beyond_its_margin_settles_on_the_swing_that_it_says() {
         let (scene, _) = steered(&body, |upper| beyond * upper).unwrap();
         let loss = feedback_loss(&scene);
         assert!(loss.is_soft() && (loss.value - 1.0 / beyond).abs() < 1e-9, "{loss:?}");
-        let Some(Settles::Swing(swing)) = loss.settles else { panic!("{loss:?}") };
+        let Some(SettledMotion::Swing(swing)) = loss.settles else { panic!("{loss:?}") };
         let mut largest: f64 = 0.0;
         let ending = run(&mut scene.orbit().unwrap(), 200_000, |contact| {
             if contact.n > 190_000 {
@@ -296,7 +296,7 @@ fn soft_and_hard_laws_do_what_they_are_called() {
         })
         .unwrap();
         match loss.settles {
-            Some(Settles::Swing(swing)) if swing < 0.1 => {
+            Some(SettledMotion::Swing(swing)) if swing < 0.1 => {
                 soft += 1;
                 assert_eq!(ending, Ending::Completed, "{body:?} {loss:?}");
                 assert!((largest / swing - 1.0).abs() < 0.1, "{body:?}: {loss:?}, in a run {largest}");
@@ -319,7 +319,7 @@ fn soft_and_hard_laws_do_what_they_are_called() {
 fn the_margins_of_a_stable_law_have_both_their_ends() {
     let body = [(Name::ContactDistance, 0.2), (Name::RadiusOfGyration, 0.12), (Name::Height, 0.3), (Name::Theta, 0.01)];
     let (scene, upper) = steered(&body, |_| 1.0).unwrap();
-    let ends: Vec<_> = ends(&scene).into_iter().filter(|loss| loss.end == End::FeedbackFactor).collect();
+    let ends: Vec<_> = ends(&scene).into_iter().filter(|loss| loss.end == CriticalParameter::FeedbackFactor).collect();
     assert_eq!(ends.len(), 2);
     assert!(ends[0].value < 1.0 && (ends[1].value - upper).abs() < 1e-9 * upper);
     assert!(ends.iter().all(|loss| loss.settles.is_none()));
@@ -338,8 +338,8 @@ fn beyond_its_upper_end_the_energy_gain_flips_to_two_heights() {
         values[4].1 = upper;
         let at = scene(&values);
         let fixed_point = find_fixed_point(&at).unwrap();
-        let from_map = Bounce::of(&at.model(), &fixed_point).unwrap();
-        let loss = ends(&at).into_iter().find(|loss| loss.end == End::EnergyGain).unwrap();
+        let from_map = UprightBounce::of(&at.model(), &fixed_point).unwrap();
+        let loss = ends(&at).into_iter().find(|loss| loss.end == CriticalParameter::EnergyGain).unwrap();
         assert_eq!((loss.bifurcation, loss.kind()), (Bifurcation::PeriodDoubling, "soft"));
         assert!((from_map.height_eigenvalue() + 1.0).abs() < 1e-12);
         assert!((from_map.height_flip() / loss.coefficient - 1.0).abs() < 1e-12);
@@ -347,8 +347,8 @@ fn beyond_its_upper_end_the_energy_gain_flips_to_two_heights() {
         values[6].1 += 1e-3 * values[0].1;
         let beyond = scene(&values);
         let rod = beyond.parameters::<f64>();
-        let loss = ends(&beyond).into_iter().find(|loss| loss.end == End::EnergyGain).unwrap();
-        let Some(Settles::Heights { heights, .. }) = loss.settles else { panic!("{loss:?}") };
+        let loss = ends(&beyond).into_iter().find(|loss| loss.end == CriticalParameter::EnergyGain).unwrap();
+        let Some(SettledMotion::Heights { heights, .. }) = loss.settles else { panic!("{loss:?}") };
         let mut last = [0.0; 2];
         let ending = run(&mut beyond.orbit().unwrap(), 20_000, |contact| {
             let height = rod.contact_distance + contact.state.y_dot.powi(2) / (2.0 * rod.gravity);
@@ -374,9 +374,11 @@ fn the_angle_on_two_heights_is_judged_over_both() {
             (Name::Height, 0.21),
         ])
     };
-    let bounded = |tilt_gain: f64| match ends(&at(tilt_gain, 0.0)).into_iter().find(|loss| loss.end == End::EnergyGain)
+    let bounded = |tilt_gain: f64| match ends(&at(tilt_gain, 0.0))
+        .into_iter()
+        .find(|loss| loss.end == CriticalParameter::EnergyGain)
     {
-        Some(Loss { settles: Some(Settles::Heights { angle_bounded, .. }), .. }) => angle_bounded,
+        Some(StabilityLoss { settles: Some(SettledMotion::Heights { angle_bounded, .. }), .. }) => angle_bounded,
         other => panic!("{other:?}"),
     };
     let survives = |tilt_gain: f64| {
@@ -406,7 +408,7 @@ fn the_odd_derivative_is_that_of_the_jacobian() {
                 theta_dot: 0.0,
             };
             let whole = jacobian_at(&scene.model(), 0.0, &state, 1).unwrap().matrix;
-            let odd = Bounce::of(&scene.model(), &fixed_point).unwrap().odd_derivative();
+            let odd = UprightBounce::of(&scene.model(), &fixed_point).unwrap().odd_derivative();
             for (row, &r) in [0, 1, 3].iter().enumerate() {
                 for (column, &c) in [0, 1, 3].iter().enumerate() {
                     assert!((odd[(row, column)] - whole[(r, c)]).abs() < 1e-12 * (1.0 + whole[(r, c)].abs()));

@@ -3,8 +3,8 @@
 mod paper;
 
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::periodic_orbits::branch::{Branch, Kind, Start, Sweep, follow};
-use equipoise_physics::periodic_orbits::{Failure, PeriodicOrbit, Setting, find, symmetric};
+use equipoise_physics::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};
+use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -33,8 +33,15 @@ fn critical(scene: &Scene) -> f64 {
     linear_verdict(scene, &find_fixed_point(scene).unwrap()).critical_tilt_gain
 }
 
-fn tilt(scene: &Scene, period: usize, start: Start, from: f64, to: f64, points: usize) -> Result<Branch, Failure> {
-    follow(&Sweep { scene, name: Name::TiltGain, from, to }, period, start, points, || true)
+fn tilt(
+    scene: &Scene,
+    period: usize,
+    start: BranchStart,
+    from: f64,
+    to: f64,
+    points: usize,
+) -> Result<Branch, OrbitFailure> {
+    follow(&ParameterRange { scene, name: Name::TiltGain, from, to }, period, start, points, || true)
 }
 
 /// ρ of the true triangle, whose boundary is hard.
@@ -44,9 +51,9 @@ const TRIANGLE: f64 = 0.051_370_116_691_408_15;
 fn the_symmetric_family_is_a_solution_as_it_stands() {
     for (kappa, theta) in [(1.55, 0.1), (1.55, 0.4), (1.3, 0.2), (1.7, -0.6), (1.52, 1e-3)] {
         let scene = scene(&[(Name::TiltGain, kappa)]);
-        let setting = Setting::of(&scene).unwrap();
+        let setting = OrbitProblem::of(&scene).unwrap();
         let state = symmetric(&setting.rod, theta).unwrap();
-        let own = Setting { energy: Some(setting.rod.energy(&state)), ..setting };
+        let own = OrbitProblem { energy: Some(setting.rod.energy(&state)), ..setting };
         let orbit = find(&own, 2, &state).unwrap();
         assert!(orbit.residual < 1e-12, "{kappa} {theta}: {}", orbit.residual);
         assert_eq!(orbit.least_period, 2);
@@ -67,7 +74,7 @@ fn the_upright_bounce_has_the_residue_of_the_closed_form() {
     for values in [vec![], vec![(Name::Restitution, 0.5), (Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25)]] {
         for kappa in [0.95, 1.1, 1.3, 1.7] {
             let scene = scene(&[values.clone(), vec![(Name::TiltGain, kappa)]].concat());
-            let setting = Setting::of(&scene).unwrap();
+            let setting = OrbitProblem::of(&scene).unwrap();
             let orbit = find(&setting, 1, &setting.upright()).unwrap();
             let linear = linear_verdict(&scene, &find_fixed_point(&scene).unwrap());
             assert!((orbit.multipliers.residue - linear.residue.unwrap()).abs() < 1e-10, "{kappa}");
@@ -81,9 +88,12 @@ fn the_upright_bounce_changes_at_the_closed_forms() {
     for values in [vec![], vec![(Name::RadiusOfGyration, TRIANGLE)]] {
         let scene = scene(&values);
         let critical = critical(&scene);
-        let branch = tilt(&scene, 1, Start::Upright, 0.9, critical + 0.2, 200).unwrap();
+        let branch = tilt(&scene, 1, BranchStart::Upright, 0.9, critical + 0.2, 200).unwrap();
         let changes: Vec<_> = branch.points.iter().filter_map(|point| Some((point.change?, point.parameter))).collect();
-        assert_eq!(changes.iter().map(|change| change.0).collect::<Vec<_>>(), [Kind::Pitchfork, Kind::PeriodDoubling]);
+        assert_eq!(
+            changes.iter().map(|change| change.0).collect::<Vec<_>>(),
+            [Bifurcation::Pitchfork, Bifurcation::PeriodDoubling]
+        );
         assert!(
             (changes[0].1 - 1.0).abs() < 1e-10 && (changes[1].1 - critical).abs() < 1e-10,
             "{changes:?} {critical}"
@@ -99,9 +109,9 @@ fn the_branch_springs_from_the_critical_gain_to_its_side() {
         let critical = critical(&scene);
         let coefficient = boundary_coefficient(&scene.model(), &fixed_point).unwrap().coefficient;
         assert_eq!(coefficient > 0.0, soft);
-        let branch = tilt(&scene, 2, Start::Symmetric(0.03), critical - 0.02, critical + 0.05, 60).unwrap();
+        let branch = tilt(&scene, 2, BranchStart::Symmetric(0.03), critical - 0.02, critical + 0.05, 60).unwrap();
         let spring = &branch.points[0];
-        assert!(spring.springs && spring.change == Some(Kind::PeriodDoubling), "{:?}", branch.ends);
+        assert!(spring.springs && spring.change == Some(Bifurcation::PeriodDoubling), "{:?}", branch.ends);
         assert!((spring.parameter - critical).abs() < 1e-10, "{} {critical}", spring.parameter);
         for point in branch.points.iter().filter(|point| (1e-3..0.05).contains(&point.orbit.max_theta())) {
             let theta = point.orbit.max_theta();
@@ -121,7 +131,7 @@ fn with_energy_feedback_the_branch_is_hard() {
     let scene = scene(&values);
     let critical = critical(&scene);
     let coefficient = boundary_coefficient(&scene.model(), &find_fixed_point(&scene).unwrap()).unwrap().coefficient;
-    let branch = tilt(&scene, 2, Start::Symmetric(0.03), critical - 0.05, critical + 0.05, 60).unwrap();
+    let branch = tilt(&scene, 2, BranchStart::Symmetric(0.03), critical - 0.05, critical + 0.05, 60).unwrap();
     assert!((branch.points[0].parameter - critical).abs() < 1e-10, "{:?}", branch.ends);
     let point = &branch.points[branch.start];
     let slope = (point.parameter - critical) / (0.03 * 0.03) / (critical - 1.0);
@@ -133,10 +143,10 @@ fn with_energy_feedback_the_branch_is_hard() {
 fn a_branch_goes_round_its_fold_and_changes_are_where_the_residue_vanishes() {
     let scene = scene(&[(Name::RadiusOfGyration, TRIANGLE)]);
     let critical = critical(&scene);
-    let branch = tilt(&scene, 2, Start::Symmetric(0.03), critical - 0.05, critical + 0.5, 400).unwrap();
+    let branch = tilt(&scene, 2, BranchStart::Symmetric(0.03), critical - 0.05, critical + 0.5, 400).unwrap();
     let changes: Vec<_> = branch.points.iter().filter(|point| point.change.is_some()).collect();
     let kinds: Vec<_> = changes.iter().map(|point| point.change.unwrap()).collect();
-    assert_eq!(kinds, [Kind::PeriodDoubling, Kind::Fold, Kind::Pitchfork], "{:?}", branch.ends);
+    assert_eq!(kinds, [Bifurcation::PeriodDoubling, Bifurcation::Fold, Bifurcation::Pitchfork], "{:?}", branch.ends);
     assert!(changes.iter().all(|point| point.orbit.multipliers.residue.abs() < 1e-10));
     assert!(changes.iter().all(|point| point.orbit.multipliers.stable.is_none()));
     // The fold is the least parameter of the branch, and hard becomes soft there.
@@ -153,19 +163,19 @@ fn a_branch_goes_round_its_fold_and_changes_are_where_the_residue_vanishes() {
 #[test]
 fn what_has_no_orbit_says_why() {
     let scene = scene(&[]);
-    let setting = Setting::of(&scene).unwrap();
+    let setting = OrbitProblem::of(&scene).unwrap();
     let far = State { theta: 0.9, x_dot: 0.5, y_dot: -0.2, theta_dot: 3.0 };
-    assert!(matches!(find(&setting, 3, &far), Err(Failure::Ends { .. } | Failure::NoConvergence { .. })));
-    let beside = tilt(&scene, 2, Start::Symmetric(0.1), 1.1, 1.2, 10).unwrap_err();
+    assert!(matches!(find(&setting, 3, &far), Err(OrbitFailure::Ends { .. } | OrbitFailure::NoConvergence { .. })));
+    let beside = tilt(&scene, 2, BranchStart::Symmetric(0.1), 1.1, 1.2, 10).unwrap_err();
     assert!(beside.to_string().contains("no mirror-symmetric orbit"), "{beside}");
-    let sweep = Sweep { scene: &scene, name: Name::TiltGain, from: 1.1, to: 1.2 };
-    assert_eq!(follow(&sweep, 1, Start::Upright, 10, || false).unwrap_err(), Failure::Cancelled);
+    let sweep = ParameterRange { scene: &scene, name: Name::TiltGain, from: 1.1, to: 1.2 };
+    assert_eq!(follow(&sweep, 1, BranchStart::Upright, 10, || false).unwrap_err(), OrbitFailure::Cancelled);
 }
 
 /// From a guess to an orbit of the scene, which the run itself confirms.
 fn come_back(kappa: f64, period: usize, theta: f64, x_dot: f64) -> PeriodicOrbit {
     let scene = scene(&[(Name::TiltGain, kappa)]);
-    let setting = Setting::of(&scene).unwrap();
+    let setting = OrbitProblem::of(&scene).unwrap();
     let guess = State { theta, x_dot, y_dot: -setting.speed, theta_dot: 0.0 };
     let orbit = find(&setting, period, &guess).unwrap();
     assert_eq!(orbit.least_period, period);
@@ -227,12 +237,12 @@ fn a_body_at_rest_is_no_orbit() {
         y_dot: -0.809_501_632_179_172_8,
         theta_dot: 2.022_569_393_062_793,
     };
-    let found = find(&Setting::of(&scene).unwrap(), 2, &guess);
-    assert!(matches!(found, Err(Failure::AtRest { .. })), "{found:?}");
+    let found = find(&OrbitProblem::of(&scene).unwrap(), 2, &guess);
+    assert!(matches!(found, Err(OrbitFailure::AtRest { .. })), "{found:?}");
 }
 
 /// The largest difference between the eigenvalues of an orbit and those of the derivative over its period.
-fn off_the_jacobian(setting: &Setting, orbit: &PeriodicOrbit) -> f64 {
+fn off_the_jacobian(setting: &OrbitProblem, orbit: &PeriodicOrbit) -> f64 {
     let matrix = jacobian(&Model::Rod(setting.rod), &orbit.states[0], orbit.states.len() as u64).unwrap().matrix;
     let mut expected = eigenvalues(&matrix).unwrap();
     let mut largest: f64 = 0.0;
@@ -248,7 +258,7 @@ fn off_the_jacobian(setting: &Setting, orbit: &PeriodicOrbit) -> f64 {
 #[test]
 fn with_energy_feedback_eigenvalues_are_those_of_the_derivative() {
     let scene = scene(&[(Name::TiltGain, 1.24), (Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2)]);
-    let setting = Setting::of(&scene).unwrap();
+    let setting = OrbitProblem::of(&scene).unwrap();
     let orbit = find(&setting, 4, &State { theta: 0.2, x_dot: 0.0, y_dot: -1.1, theta_dot: 0.0 }).unwrap();
     assert!(off_the_jacobian(&setting, &orbit) < 1e-8, "{:?}", orbit.multipliers);
     // No eigenvalue is 1, which was imposed once.
@@ -256,10 +266,10 @@ fn with_energy_feedback_eigenvalues_are_those_of_the_derivative() {
     let nearest = orbit.multipliers.eigenvalues.iter().map(|value| (value - one).norm()).fold(f64::INFINITY, f64::min);
     assert!((nearest - 0.0019).abs() < 1e-4, "{:?}", orbit.multipliers);
     // Other orbits along a branch, and the upright bounce, whose drift has the eigenvalue 1.
-    let branch = tilt(&scene, 2, Start::Symmetric(0.1), 1.2, 1.6, 40).unwrap();
+    let branch = tilt(&scene, 2, BranchStart::Symmetric(0.1), 1.2, 1.6, 40).unwrap();
     assert!(branch.points.len() > 10);
     for point in branch.points.iter().filter(|point| point.change.is_none()) {
-        let setting = Setting::of(&self::scene(&[
+        let setting = OrbitProblem::of(&self::scene(&[
             (Name::TiltGain, point.parameter),
             (Name::EnergyGain, 0.2),
             (Name::TargetHeight, 0.2),

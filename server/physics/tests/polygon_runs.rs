@@ -4,7 +4,7 @@ use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::body::{Kick, Touch};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Orbit, run};
-use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
@@ -134,8 +134,8 @@ fn the_ladder_leaves_the_other_vertices_out_below_the_last_rung() {
     let (polygon, rod) = pair(&WIDE, &numbers);
     assert_eq!(polygon.as_rod(), rod);
     let steps = run_hierarchy(&polygon, 100, || true).unwrap();
-    let rungs: Vec<_> = steps.iter().map(|step| step.rung).collect();
-    assert_eq!(rungs, [Rung::Linear, Rung::Rod, Rung::Polygon]);
+    let levels: Vec<_> = steps.iter().map(|step| step.level).collect();
+    assert_eq!(levels, [ModelLevel::Linear, ModelLevel::Rod, ModelLevel::Polygon]);
     assert_eq!(steps[1].scene, rod);
     let (as_rod, own) = (steps[1].run.as_ref().unwrap(), steps[2].run.as_ref().unwrap());
     assert_eq!(as_rod.ending, Ending::Completed);

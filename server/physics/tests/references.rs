@@ -4,7 +4,7 @@
 use equipoise_physics::body::Body;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Name;
-use equipoise_physics::scene::model::Rung;
+use equipoise_physics::scene::model::ModelLevel;
 
 #[path = "support/reference.rs"]
 mod reference;
@@ -47,7 +47,10 @@ fn every_reference_agrees() {
         println!("{name}: error {worst:.2e}, plain doubles {plain:.2e}, allowed {allowed:.2e}");
         assert!(worst <= allowed, "{name}: error {worst:.2e}, allowed {allowed:.2e}");
         let energies: Vec<f64> = contacts.iter().map(|contact| orbit.body.energy(&contact.state)).collect();
-        if scene.rung() == Rung::Rod && scene.rules().holds_energy && scene.number(Name::EnergyGain) == Some(0.0) {
+        if scene.model_level() == ModelLevel::Rod
+            && scene.rules().holds_energy
+            && scene.number(Name::EnergyGain) == Some(0.0)
+        {
             let drift = energies.iter().map(|energy| (energy - energies[0]).abs()).fold(0.0, f64::max);
             assert!(drift <= allowed * 3.0, "{name}: energy drifts by {drift:.2e}");
         }

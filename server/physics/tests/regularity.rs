@@ -12,7 +12,7 @@ use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::regularity::{
-    Regularity, TOLERANCE, Turns, WATCHED, measure_regularity, nearest_resonance, weighted_average,
+    Regularity, RotationCounter, TOLERANCE, WATCHED, measure_regularity, nearest_resonance, weighted_average,
 };
 use paper::scene;
 
@@ -124,7 +124,7 @@ fn the_period_two_orbit_is_one() {
 /// the same rate; none where neither is clear.
 fn label(one: &Scene, other: &Scene) -> Option<bool> {
     let fixed_point = find_fixed_point(one).unwrap();
-    let mut turns = Turns::new(&fixed_point, &linear_verdict(one, &fixed_point))?;
+    let mut turns = RotationCounter::new(&fixed_point, &linear_verdict(one, &fixed_point))?;
     let (mut orbit, mut twin) = (one.orbit().unwrap(), other.orbit().unwrap());
     let (mut advances, mut separation) = (Vec::new(), 0.0_f64);
     for _ in 0..30_000 {

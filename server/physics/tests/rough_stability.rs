@@ -15,10 +15,10 @@ use equipoise_physics::stability::contact_regime::{
 };
 use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::stability::jacobian::{eigenvalues, jacobian};
-use equipoise_physics::stability::linear_verdict::{Class, linear_verdict};
+use equipoise_physics::stability::linear_verdict::{AngleClass, linear_verdict};
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
-use equipoise_physics::stability::verdict::{HigherOrder, Verdict, judge};
-use equipoise_physics::surveys::stability_map::{Axis, Quantity, Region};
+use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
+use equipoise_physics::surveys::stability_map::{MapAxis, MapQuantity, StabilityMap};
 
 const L: f64 = 0.4 / 3.0;
 const RHO: f64 = 0.094_280_904_158_206_35;
@@ -62,7 +62,7 @@ fn the_closed_form_has_the_eigenvalues_of_the_derivative() {
                     let critical = 1.0 + scene.gravity() * TURNING / (point.speed * point.speed * L);
                     if slide == "matched" {
                         assert!((linear.critical_tilt_gain - critical).abs() < 1e-12);
-                        assert_eq!(linear.class == Class::Elliptic, kappa > 1.0 && kappa < critical);
+                        assert_eq!(linear.class == AngleClass::Elliptic, kappa > 1.0 && kappa < critical);
                     } else {
                         assert!(linear.spectral_radius() > 1.0 && linear.residue.is_none());
                         let at_one: f64 = linear
@@ -152,9 +152,9 @@ fn a_table_that_only_tilts_falls_and_the_verdict_says_why() {
     let point = find_fixed_point(&scene).unwrap();
     let linear = linear_verdict(&scene, &point);
     let higher = HigherOrder::of(&scene, &point, &linear);
-    let judgement = judge(&scene, &point, &linear, &higher, &nonlinear, None);
-    assert_eq!(judgement.verdict, Verdict::Unstable);
-    assert!(judgement.agree && judgement.reason.contains("sticks for any friction above 0"), "{}", judgement.reason);
+    let assessment = assess(&scene, &point, &linear, &higher, &nonlinear, None);
+    assert_eq!(assessment.verdict, Verdict::Unstable);
+    assert!(assessment.agree && assessment.reason.contains("sticks for any friction above 0"), "{}", assessment.reason);
     assert!(drift_speed(&scene).is_none() && boundary_coefficient(&scene.model(), &point).is_none());
 }
 
@@ -163,12 +163,12 @@ fn a_table_that_only_tilts_falls_and_the_verdict_says_why() {
 #[test]
 fn the_stick_cone_shows_in_a_region_over_friction_and_tilt_gain() {
     let theta = 0.02;
-    let region = Region {
+    let region = StabilityMap {
         scene: scene("matched", &[(Name::Theta, theta), (Name::TiltGain, 2.0)]).draft(),
-        x: Axis { name: Name::Friction, from: 0.001, to: 0.06, count: 40 },
-        y: Axis { name: Name::TiltGain, from: 1.6, to: 2.4, count: 25 },
+        x: MapAxis { name: Name::Friction, from: 0.001, to: 0.06, count: 40 },
+        y: MapAxis { name: Name::TiltGain, from: 1.6, to: 2.4, count: 25 },
         impacts: 1000,
-        quantity: Quantity::Survival,
+        quantity: MapQuantity::Survival,
     };
     let cells = region.cells(0..40 * 25, &mut || true).unwrap();
     let (mut inside, mut outside) = (0, 0);
@@ -187,7 +187,8 @@ fn the_stick_cone_shows_in_a_region_over_friction_and_tilt_gain() {
     }
     assert!(inside > 100 && outside > 100, "{inside} {outside}");
     // The boundary of the linear verdict is that of a matched table, for any friction.
-    let residues = Region { quantity: Quantity::Residue, y: Axis { from: 2.0, to: 3.0, ..region.y }, ..region };
+    let residues =
+        StabilityMap { quantity: MapQuantity::Residue, y: MapAxis { from: 2.0, to: 3.0, ..region.y }, ..region };
     let ends = residues.boundary(9, &mut || true).unwrap();
     assert!(
         !ends.is_empty()

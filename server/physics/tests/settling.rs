@@ -7,7 +7,7 @@ use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::surveys::stability_map::{Axis, Quantity, Region};
+use equipoise_physics::surveys::stability_map::{MapAxis, MapQuantity, StabilityMap};
 
 #[path = "support/random.rs"]
 mod random;
@@ -63,13 +63,13 @@ fn end_of(ending: Option<Ending>, impacts: u64, flights: &[f64]) -> End {
 fn by_lanes(draft: &Draft, impacts: u64) -> (u64, EndingKind) {
     let Some(Value::Number(theta)) = draft.get(Name::Theta) else { panic!("it has an angle") };
     let Some(Value::Number(kappa)) = draft.get(Name::TiltGain) else { panic!("it has a tilt gain") };
-    let axis = |name, value| Axis { name, from: value, to: value, count: 2 };
-    let region = Region {
+    let axis = |name, value| MapAxis { name, from: value, to: value, count: 2 };
+    let region = StabilityMap {
         scene: *draft,
         x: axis(Name::TiltGain, kappa),
         y: axis(Name::Theta, theta),
         impacts,
-        quantity: Quantity::Survival,
+        quantity: MapQuantity::Survival,
     };
     assert!(region.fits_lanes());
     let cell = region.cells(0..1, &mut || true).unwrap()[0];

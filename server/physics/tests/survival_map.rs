@@ -5,30 +5,30 @@ use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Value};
-use equipoise_physics::surveys::stability_map::{Axis, Cell, Quantity, Region};
+use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
 const IMPACTS: u64 = 20_000;
 const COLUMNS: usize = 121;
 const ROWS: usize = 101;
 
-fn region() -> Region {
+fn region() -> StabilityMap {
     let mut scene = Draft::default();
     for (name, value) in
         [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 0.094_280_904_158_206_35), (Name::Height, 0.2)]
     {
         scene.set(name, Some(Value::Number(value))).unwrap();
     }
-    Region {
+    StabilityMap {
         scene,
-        x: Axis { name: Name::TiltGain, from: 1.0, to: 1.6, count: COLUMNS },
-        y: Axis { name: Name::Theta, from: 0.0, to: 0.5, count: ROWS },
+        x: MapAxis { name: Name::TiltGain, from: 1.0, to: 1.6, count: COLUMNS },
+        y: MapAxis { name: Name::Theta, from: 0.0, to: 0.5, count: ROWS },
         impacts: IMPACTS,
-        quantity: Quantity::Survival,
+        quantity: MapQuantity::Survival,
     }
 }
 
 /// The largest θ₀ of a column up to which all survive.
-fn outline(region: &Region, survives: impl Fn(usize, usize) -> bool, tilt_gain: f64) -> f64 {
+fn outline(region: &StabilityMap, survives: impl Fn(usize, usize) -> bool, tilt_gain: f64) -> f64 {
     let column = ((tilt_gain - 1.0) / 0.6 * (COLUMNS - 1) as f64).round() as usize;
     (0..ROWS).take_while(|&row| survives(column, row)).last().map_or(0.0, |row| region.y.value(row))
 }
@@ -36,7 +36,7 @@ fn outline(region: &Region, survives: impl Fn(usize, usize) -> bool, tilt_gain: 
 #[test]
 fn the_map_of_the_papers_body_is_true() {
     let region = region();
-    let cells: Vec<Cell> = region.cells(0..ROWS * COLUMNS, &mut || true).unwrap();
+    let cells: Vec<MapCell> = region.cells(0..ROWS * COLUMNS, &mut || true).unwrap();
     let at = |column: usize, row: usize| cells[row * COLUMNS + column];
     let survives = |column, row| at(column, row).value == Some(IMPACTS as f64);
 

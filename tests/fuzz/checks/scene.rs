@@ -49,5 +49,5 @@ pub(crate) fn hold(scene: &Scene) {
     assert_eq!(scene_to_json(&asked).to_string(), written);
     // Every valid scene has a model and a reason for it.
     let _ = scene.model();
-    assert!(!scene.rung_reason().is_empty());
+    assert!(!scene.level_reason().is_empty());
 }

@@ -7,7 +7,7 @@ use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::number::Number;
 use crate::numbers::trig;
 use crate::run::extended;
-use crate::stability::linear_verdict::Class;
+use crate::stability::linear_verdict::AngleClass;
 
 /// By how much a bound is above the sum of what each bounce leaves out: those are taken at the linear state, not the true one.
 pub const SAFETY: f64 = 1.5;
@@ -51,8 +51,8 @@ impl LinearSolution {
         let (now, before) = (self.chebyshev(m).abs(), self.chebyshev(m - 1).abs());
         // How fast U changes with the phase.
         let slope = match self.class {
-            Class::Elliptic => 0.5 / (self.residue * (1.0 - self.residue)).sqrt(),
-            Class::Parabolic => 0.0,
+            AngleClass::Elliptic => 0.5 / (self.residue * (1.0 - self.residue)).sqrt(),
+            AngleClass::Parabolic => 0.0,
             _ => now + 1.0 / libm::sinh(self.exponent),
         };
         let off = f64::EPSILON * (4.0 * now.max(before) + m as f64 * self.exponent * slope);
@@ -113,7 +113,7 @@ impl LinearSolution {
         let approach = if decay < 1.0 { (1.0 - power(decay, m)) / (1.0 - decay) } else { count };
         let sine = (self.residue * (1.0 - self.residue)).max(0.0).sqrt() * 2.0;
         let (mut theta, mut u, mut drift, mut y_dot, mut t) = (0.0, 0.0, 0.0, 0.0_f64, 0.0);
-        if self.class == Class::Elliptic {
+        if self.class == AngleClass::Elliptic {
             let [always, first] = self.circling;
             let sum = |of: fn(&LeftOut) -> f64| count * of(&always) + approach * of(&first);
             let turned = sum(|out| out.turned);
@@ -152,7 +152,7 @@ impl LinearSolution {
         (theta, u) = (theta + theta_rounding, u + u_rounding);
         let reached = (self.flight_time * state.theta_dot).abs().max(self.start_u().abs());
         // 2Vκθ a bounce, which the drift is left of, is rounded each time.
-        let widest = if self.class == Class::Elliptic {
+        let widest = if self.class == AngleClass::Elliptic {
             (self.start.theta.abs() + self.start_u().abs()) / sine
         } else {
             self.start.theta.abs().max(state.theta.abs())

@@ -5,7 +5,7 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::trig;
-use crate::stability::linear_verdict::Class;
+use crate::stability::linear_verdict::AngleClass;
 
 /// Largest exponent of a growth that is multiplied as it is: e^709 is the largest double.
 const MOST_GROWTH: f64 = 600.0;
@@ -20,7 +20,7 @@ pub struct LinearSolution {
     /// τ, s.
     pub(super) flight_time: f64,
     pub(super) residue: f64,
-    pub(super) class: Class,
+    pub(super) class: AngleClass,
     /// Rotation or growth per bounce, rad or 1.
     pub(super) exponent: f64,
     /// Eigenvalue of ẏ; none where the energy is exact.
@@ -59,15 +59,15 @@ impl LinearSolution {
     }
 
     pub(super) fn is_at_lower_end(&self) -> bool {
-        self.class == Class::Parabolic && self.residue < 0.5
+        self.class == AngleClass::Parabolic && self.residue < 0.5
     }
 
     /// sin mσ / sin σ, or what takes its place: Chebyshev's U of index m − 1 at 1 − 2R.
     pub(super) fn chebyshev(&self, m: u64) -> f64 {
         let count = m as f64;
         let size = match self.class {
-            Class::Parabolic => count,
-            Class::Elliptic => {
+            AngleClass::Parabolic => count,
+            AngleClass::Elliptic => {
                 let sine = 2.0 * (self.residue * (1.0 - self.residue)).sqrt();
                 return trig::sin_cos(count * self.exponent).0 / sine;
             }
@@ -92,7 +92,7 @@ impl LinearSolution {
 
     /// Tells whether U of index m − 1 may be beyond the range of doubles, however small what it multiplies.
     fn grows_beyond_doubles(&self, m: u64) -> bool {
-        self.class == Class::Hyperbolic && m as f64 * self.exponent > MOST_GROWTH
+        self.class == AngleClass::Hyperbolic && m as f64 * self.exponent > MOST_GROWTH
     }
 
     /// U_{m−1} `next` − U_{m−2} `start` where the U are beyond doubles: e^((m−1)s)/(2 sinh s) · (eˢ `next` ∓ `start`), the growing part

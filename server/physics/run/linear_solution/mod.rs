@@ -17,7 +17,7 @@ use crate::run::extended;
 use crate::scene::Scene;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::find_fixed_point;
-use crate::stability::linear_verdict::{Class, linear_verdict};
+use crate::stability::linear_verdict::{AngleClass, linear_verdict};
 use left_out::LeftOut;
 
 impl LinearSolution {
@@ -35,7 +35,7 @@ impl LinearSolution {
             return Err("a point mass has no angle; its eq. (5) is exact".to_owned());
         };
         // What is left out is counted against the powers that are taken, so those of R = 0 or 1 are not of a residue beside it.
-        let residue = if linear.class == Class::Parabolic { residue.round() } else { residue };
+        let residue = if linear.class == AngleClass::Parabolic { residue.round() } else { residue };
         let unknown = |_| "the first contact is not found".to_owned();
         scene.orbit().map_err(|_| unknown(()))?;
         // In 31 digits: of a release just above the table doubles lose digits of the clearance.
@@ -47,8 +47,8 @@ impl LinearSolution {
         }
         let root = |share: f64| 2.0 * libm::asin(share.sqrt());
         let exponent = match linear.class {
-            Class::Elliptic if residue <= 0.5 => root(residue),
-            Class::Elliptic => std::f64::consts::PI - root(1.0 - residue),
+            AngleClass::Elliptic if residue <= 0.5 => root(residue),
+            AngleClass::Elliptic => std::f64::consts::PI - root(1.0 - residue),
             _ if residue < 0.0 => 2.0 * libm::asinh((-residue).sqrt()),
             _ => 2.0 * libm::asinh(f64::max(residue - 1.0, 0.0).sqrt()),
         };
@@ -66,7 +66,7 @@ impl LinearSolution {
             rod,
             circling: [LeftOut::default(); 2],
         };
-        if solution.class == Class::Elliptic {
+        if solution.class == AngleClass::Elliptic {
             solution.circling = solution.on_circle(0.0);
             if feeds_back {
                 let [always, first] = solution.circling;
