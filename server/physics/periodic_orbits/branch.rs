@@ -3,10 +3,12 @@
 //!
 //! Orbits and their equations are in the module above.
 
-use super::closed::{ClosedOrbit, ParameterPath, SearchPlane, correct};
-use super::symmetric::on_course;
-use super::{OrbitFailure, PeriodicOrbit, Place};
 use crate::bounce::state::State;
+use crate::periodic_orbits::closed::{ClosedOrbit, SearchPlane, correct};
+use crate::periodic_orbits::orbit::PeriodicOrbit;
+use crate::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};
+use crate::periodic_orbits::problem::OrbitFailure;
+use crate::periodic_orbits::symmetric::symmetric_orbit_on_path;
 use crate::scene::{Name, Scene};
 
 /// Step along the branch at first, and at most; θ in rad, velocities in parts of the scene's, the parameter of its range.
@@ -108,28 +110,28 @@ pub fn follow(
     points: usize,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Branch, OrbitFailure> {
-    let course = ParameterPath::along(sweep.scene, sweep.name, sweep.from, sweep.to)?;
+    let path = ParameterPath::along(sweep.scene, sweep.name, sweep.from, sweep.to)?;
     let first = match start {
         BranchStart::Symmetric(theta) => {
-            let place = on_course(&course, theta)?;
-            correct(&course, period, place, &SearchPlane::at_theta(place))?
+            let place = symmetric_orbit_on_path(&path, theta)?;
+            correct(&path, period, place, &SearchPlane::at_theta(place))?
         }
         BranchStart::Upright | BranchStart::Near(_) => {
-            let state = if let BranchStart::Near(state) = start { state } else { course.setting(0.0)?.upright() };
-            let place = course.place(&state, 0.0);
-            correct(&course, period, place, &SearchPlane::at_parameter(place))?
+            let state = if let BranchStart::Near(state) = start { state } else { path.problem(0.0)?.upright() };
+            let place = path.place(&state, 0.0);
+            correct(&path, period, place, &SearchPlane::at_parameter(place))?
         }
     };
-    let lead = |along: Place| first.closed.tangent(&along).ok_or_else(|| no_tangent(&first));
-    let mut trail = BranchFollower { course: &course, period, budget: points.saturating_sub(1), changes: MOST_CHANGES };
+    let lead = |along: ScaledPoint| first.closed.tangent(&along).ok_or_else(|| no_tangent(&first));
+    let mut trail = BranchFollower { path: &path, period, budget: points.saturating_sub(1), changes: MOST_CHANGES };
     let own = trail.point(&first, None)?;
     let BranchStart::Symmetric(theta) = start else {
-        let (mut after, end) = trail.walk(&first, lead(Place::ith(4, 1.0))?, &mut go_on)?;
+        let (mut after, end) = trail.walk(&first, lead(ScaledPoint::ith(4, 1.0))?, &mut go_on)?;
         after.insert(0, own);
         return Ok(Branch { points: after, start: 0, ends: vec![end] });
     };
     // Inwards first, to where it springs from, with at most half of the points.
-    let outwards = lead(Place::ith(0, theta.signum()))?;
+    let outwards = lead(ScaledPoint::ith(0, theta.signum()))?;
     let all = trail.budget;
     trail.budget = all / 2;
     let (mut before, inner) = trail.walk(&first, -outwards, &mut go_on)?;
@@ -148,7 +150,7 @@ fn no_tangent(solution: &ClosedOrbit) -> OrbitFailure {
 
 /// What a walk along a branch needs to know.
 struct BranchFollower<'a> {
-    course: &'a ParameterPath<'a>,
+    path: &'a ParameterPath<'a>,
     period: usize,
     /// Points still to be had.
     budget: usize,
@@ -159,15 +161,15 @@ struct BranchFollower<'a> {
 impl BranchFollower<'_> {
     fn point(&self, solution: &ClosedOrbit, change: Option<Bifurcation>) -> Result<BranchPoint, OrbitFailure> {
         let share = solution.place[4];
-        let orbit = PeriodicOrbit::new(&self.course.setting(share)?, solution)?;
-        Ok(BranchPoint { parameter: self.course.parameter(share), orbit, change, springs: false })
+        let orbit = PeriodicOrbit::new(&self.path.problem(share)?, solution)?;
+        Ok(BranchPoint { parameter: self.path.parameter(share), orbit, change, springs: false })
     }
 
     /// Goes on from a solution along a direction: the points after it, and why they end.
     fn walk(
         &mut self,
         first: &ClosedOrbit,
-        direction: Place,
+        direction: ScaledPoint,
         go_on: &mut impl FnMut() -> bool,
     ) -> Result<(Vec<BranchPoint>, String), OrbitFailure> {
         let mut points = Vec::new();
@@ -196,7 +198,7 @@ impl BranchFollower<'_> {
                 let part = (end - here.place[4]) / (share - here.place[4]);
                 let mut guess = here.place + (next.place - here.place) * part;
                 guess[4] = end;
-                let last = correct(self.course, self.period, guess, &SearchPlane::at_parameter(guess))?;
+                let last = correct(self.path, self.period, guess, &SearchPlane::at_parameter(guess))?;
                 let last_tangent = last.closed.tangent(&tangent).ok_or_else(|| no_tangent(&last))?;
                 let after = self.point(&last, None)?;
                 self.locate(&mut points, (&here, &tangent, &orbit), (&last, &last_tangent, &after.orbit));
@@ -226,18 +228,18 @@ impl BranchFollower<'_> {
     }
 
     fn reached(&self, end: f64) -> String {
-        format!("the branch reaches the end of the range at {}", self.course.parameter(end))
+        format!("the branch reaches the end of the range at {}", self.path.parameter(end))
     }
 
     /// One step: the solution in the plane and the direction there, if the branch does not turn too much on the way.
     fn step(
         &self,
         here: &ClosedOrbit,
-        tangent: &Place,
+        tangent: &ScaledPoint,
         plane: &SearchPlane,
         step: f64,
-    ) -> Result<(ClosedOrbit, Place), OrbitFailure> {
-        let next = correct(self.course, self.period, plane.point, plane)?;
+    ) -> Result<(ClosedOrbit, ScaledPoint), OrbitFailure> {
+        let next = correct(self.path, self.period, plane.point, plane)?;
         let leads = next.closed.tangent(tangent).ok_or_else(|| no_tangent(&next))?;
         let astray = (next.place - plane.point).norm() > 0.3 * step || tangent.dot(&leads) < LARGEST_TURN;
         if astray && step > SHORTEST_STEP {
@@ -247,14 +249,14 @@ impl BranchFollower<'_> {
     }
 
     /// How far the orbit is from repeating after half of its period, as a vector.
-    fn half_way(&self, solution: &ClosedOrbit) -> Option<Place> {
+    fn half_way(&self, solution: &ClosedOrbit) -> Option<ScaledPoint> {
         let states = &solution.closed.states;
         if !self.period.is_multiple_of(2) {
             return None;
         }
         let share = solution.place[4];
-        let there = self.course.place(&states[self.period / 2], share);
-        Some(there - self.course.place(&states[0], share))
+        let there = self.path.place(&states[self.period / 2], share);
+        Some(there - self.path.place(&states[0], share))
     }
 
     /// Where, between two points, the branch went through an orbit of half the period: beyond it come the same orbits again.
@@ -270,8 +272,8 @@ impl BranchFollower<'_> {
         let test = |share: f64| {
             let mut guess = guess;
             guess[4] = share;
-            let half = correct(self.course, self.period / 2, guess, &SearchPlane::at_parameter(guess)).ok()?;
-            let orbit = PeriodicOrbit::new(&self.course.setting(share).ok()?, &half).ok()?;
+            let half = correct(self.path, self.period / 2, guess, &SearchPlane::at_parameter(guess)).ok()?;
+            let orbit = PeriodicOrbit::new(&self.path.problem(share).ok()?, &half).ok()?;
             Some((orbit.multipliers.tests[1], half))
         };
         let (mut a, mut b) = (guess[4], guess[4] + 1e-4);
@@ -279,8 +281,7 @@ impl BranchFollower<'_> {
         for _ in 0..40 {
             let (at_b, half) = test(b)?;
             if at_b.abs() < 1e-14 || at_b == at_a || (b - a).abs() < 1e-16 {
-                let whole =
-                    correct(self.course, self.period, half.place, &SearchPlane::at_parameter(half.place)).ok()?;
+                let whole = correct(self.path, self.period, half.place, &SearchPlane::at_parameter(half.place)).ok()?;
                 let point = self.point(&whole, Some(Bifurcation::PeriodDoubling)).ok()?;
                 return Some(BranchPoint { springs: true, ..point });
             }
@@ -294,8 +295,8 @@ impl BranchFollower<'_> {
     fn locate(
         &mut self,
         points: &mut Vec<BranchPoint>,
-        (here, tangent, orbit): (&ClosedOrbit, &Place, &PeriodicOrbit),
-        (next, leads, after): (&ClosedOrbit, &Place, &PeriodicOrbit),
+        (here, tangent, orbit): (&ClosedOrbit, &ScaledPoint, &PeriodicOrbit),
+        (next, leads, after): (&ClosedOrbit, &ScaledPoint, &PeriodicOrbit),
     ) {
         let length = tangent.dot(&(next.place - here.place));
         let mut found: Vec<(f64, BranchPoint)> = Vec::new();
@@ -330,7 +331,7 @@ impl BranchFollower<'_> {
     /// Zero of a test along the branch, by the rule of false position in Illinois form, with bisection where it creeps.
     fn zero(
         &self,
-        (here, tangent): (&ClosedOrbit, &Place),
+        (here, tangent): (&ClosedOrbit, &ScaledPoint),
         (next, length): (&ClosedOrbit, f64),
         (low, high): (f64, f64),
         test: usize,
@@ -345,7 +346,7 @@ impl BranchFollower<'_> {
             }
             let point = here.place + tangent * s;
             let guess = place_a + (place_b - place_a) * ((s - a) / (b - a));
-            let solution = correct(self.course, self.period, guess, &SearchPlane { normal: *tangent, point }).ok()?;
+            let solution = correct(self.path, self.period, guess, &SearchPlane { normal: *tangent, point }).ok()?;
             let orbit = self.point(&solution, None).ok()?.orbit;
             let value = orbit.multipliers.tests[test];
             let place = solution.place;

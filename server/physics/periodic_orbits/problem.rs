@@ -1,0 +1,104 @@
+//! The problem that a periodic orbit solves: a rod with the energy and the drift that close its equations; and the reasons for which
+//! there is no orbit.
+
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::run::ending::Ending;
+use crate::scene::Scene;
+use crate::scene::model::Model;
+use crate::stability::fixed_point::find_fixed_point;
+
+/// Remainder of the equations, in parts of the scene's speed, up to which they count as solved.
+pub(super) const SOLVED: f64 = 1e-11;
+
+/// What an orbit is sought in: a rod and what closes the equations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrbitProblem {
+    /// The rod.
+    pub rod: Rod,
+    /// Energy per unit mass that orbits must have, ½|v|² + Gy at a contact, m²/s²; none where feedback sets it.
+    pub energy: Option<f64>,
+    /// V of the upright bounce, m/s: the scale of velocities.
+    pub speed: f64,
+    /// |θ| at which a contact has toppled, rad.
+    pub topple_angle: f64,
+}
+
+impl OrbitProblem {
+    /// That of a scene: its energy is the release's, less what drift would keep, as for its fixed point.
+    ///
+    /// # Errors
+    /// Why the scene has no periodic orbits, in a sentence.
+    pub fn of(scene: &Scene) -> Result<Self, String> {
+        if let Some(error) = scene.beyond(&[]) {
+            return Err(error.detail);
+        }
+        let Model::Rod(rod) = scene.model() else {
+            return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
+        };
+        let speed = find_fixed_point(scene)?.speed;
+        let energy = 0.5 * speed * speed + rod.gravity * rod.contact_distance;
+        Ok(Self {
+            rod,
+            energy: (rod.strike_gain_per_energy == 0.0).then_some(energy),
+            speed,
+            topple_angle: scene.topple_angle,
+        })
+    }
+
+    /// The upright bounce, which is the orbit of period 1.
+    pub fn upright(&self) -> State {
+        State { theta: 0.0, x_dot: 0.0, y_dot: -self.speed, theta_dot: 0.0 }
+    }
+}
+
+/// Why there is no orbit to give.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OrbitFailure {
+    /// The run from the best state so far ends before it could come back.
+    Ends {
+        /// At which contact, from 1.
+        contact: u64,
+        /// How.
+        ending: Ending,
+    },
+    /// The iteration came to no orbit.
+    NoConvergence {
+        /// What was left of the equations, in parts of the scene's speed.
+        residual: f64,
+        /// Steps taken.
+        steps: u32,
+    },
+    /// The iteration came to the body at rest on the table.
+    AtRest {
+        /// Largest |ẏ| before a contact, m/s.
+        speed: f64,
+    },
+    /// The scene itself does not allow it here.
+    Scene(String),
+    /// Nobody wants it any more.
+    Cancelled,
+}
+
+impl std::fmt::Display for OrbitFailure {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Ends { contact, ending } => {
+                write!(formatter, "the run ends as `{}` at contact {contact}, before it could come back", ending.name())
+            }
+            Self::NoConvergence { residual, steps } => write!(
+                formatter,
+                "Newton's iteration found no orbit: after {steps} steps the equations are off by {residual} (no unit; \
+                 {} is taken as solved)",
+                SOLVED
+            ),
+            Self::AtRest { speed } => write!(
+                formatter,
+                "Newton's iteration came to the body at rest on the table (ẏ = {speed} m/s), which bounces no more: \
+                 give another guess"
+            ),
+            Self::Scene(why) => formatter.write_str(why),
+            Self::Cancelled => formatter.write_str("cancelled"),
+        }
+    }
+}
