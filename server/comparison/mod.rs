@@ -4,128 +4,19 @@
 //! The work and the errors are the same everywhere; the times are of this machine at this moment. Not here: HTTP, and the methods
 //! themselves.
 
+mod methods;
 mod runs;
+
+pub use methods::{ComparedMethod, METHODS, MethodSetting, most_points};
+pub use runs::ReferenceRun;
 
 use equipoise_physics::scene::Scene;
 
-use crate::compute::stopwatch;
 use crate::compute::stopwatch::{TimedWork, Timing, TimingBudget};
-use crate::compute::{CancelFlag, Cancelled, TimeSlice};
+use crate::compute::{CancelFlag, Cancelled, TimeSlice, stopwatch};
 use crate::limits;
+use methods::MethodKind;
 use runs::{MethodRun, Subject};
-
-/// A method of the chart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ComparedMethod {
-    /// Its name in requests and answers.
-    pub name: &'static str,
-    /// The same in words.
-    pub title: &'static str,
-    /// What it is, in a sentence.
-    pub about: &'static str,
-    kind: MethodKind,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum MethodKind {
-    Map,
-    MapFree,
-    Linear,
-    Extended,
-    Adaptive,
-    StepEnd,
-    Secant,
-    Bisection,
-    TimeStepping,
-    Penalty,
-    Sampling,
-}
-
-/// All of them, in the order of answers.
-pub const METHODS: [ComparedMethod; 11] = {
-    const fn method(kind: MethodKind, name: &'static str, title: &'static str, about: &'static str) -> ComparedMethod {
-        ComparedMethod { name, title, about, kind }
-    }
-    [
-        method(
-            MethodKind::Map,
-            "map",
-            "map",
-            "The map from contact to contact in closed form, which keeps rounding off the energy.",
-        ),
-        method(
-            MethodKind::MapFree,
-            "map_free",
-            "map, energy left free",
-            "The same map without the correction of its energy.",
-        ),
-        method(
-            MethodKind::Linear,
-            "linear",
-            "linear solution",
-            "Eq. (13) and (20) to (23) in closed form, any impact at the same cost.",
-        ),
-        method(
-            MethodKind::Extended,
-            "extended",
-            "map with 31 digits",
-            "The map in double-double numbers: the reference of all errors.",
-        ),
-        method(
-            MethodKind::Adaptive,
-            "adaptive",
-            "Dormand-Prince 5(4), events",
-            "A library's adaptive Runge-Kutta; contacts located by halving on its dense output.",
-        ),
-        method(
-            MethodKind::Bisection,
-            "runge_kutta_bisection",
-            "RK4, contact bisected",
-            "Runge-Kutta of order 4 with a fixed step; contacts located to the last digit.",
-        ),
-        method(
-            MethodKind::Secant,
-            "runge_kutta_secant",
-            "RK4, contact on a chord",
-            "The same; contacts where the chord of the gap over the step is zero.",
-        ),
-        method(
-            MethodKind::StepEnd,
-            "runge_kutta_step_end",
-            "RK4, contact at step end",
-            "The same; contacts at the end of the step in which they happen.",
-        ),
-        method(
-            MethodKind::Sampling,
-            "sampling",
-            "sampled flight",
-            "The exact parabola looked at on a grid of times; contacts halved between two looks.",
-        ),
-        method(
-            MethodKind::TimeStepping,
-            "time_stepping",
-            "Moreau-Jean time stepping",
-            "Velocities and impulses of whole steps, as engines of many contacts do it.",
-        ),
-        method(
-            MethodKind::Penalty,
-            "penalty",
-            "spring-damper contact",
-            "A stiff spring and a damper for the contact, moved by Runge-Kutta.",
-        ),
-    ]
-};
-
-/// What a method can be told.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MethodSetting {
-    /// `step` or `tolerance`.
-    pub name: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// Its unit; `1` for none.
-    pub unit: &'static str,
-}
 
 /// One method with one setting.
 #[derive(Clone, Debug)]
@@ -167,19 +58,6 @@ impl WorkPrecisionPoint {
     }
 }
 
-/// How the reference ran.
-#[derive(Clone, Copy, Debug)]
-pub struct ReferenceRun {
-    /// How it ended.
-    pub outcome: &'static str,
-    /// Contacts, the last included.
-    pub impacts: u64,
-    /// When the last one was, s.
-    pub t: f64,
-    /// What one unit in the last place of its last state is, m or m/s: no double is surely nearer.
-    pub rounding: f64,
-}
-
 /// The chart of a scene.
 #[derive(Clone, Debug)]
 pub struct WorkPrecisionChart {
@@ -189,30 +67,6 @@ pub struct WorkPrecisionChart {
     pub points: Vec<WorkPrecisionPoint>,
     /// What was left out.
     pub notes: Vec<String>,
-}
-
-/// How many points the methods have at most.
-pub fn most_points(methods: &[ComparedMethod]) -> u64 {
-    methods.iter().map(|method| method.kind.settings(1.0).len() as u64).sum()
-}
-
-impl MethodKind {
-    /// Settings from the coarsest, `scale` being the power of ten below the mean flight, s.
-    fn settings(self, scale: f64) -> Vec<Option<MethodSetting>> {
-        let of = |name, unit, values: &[f64]| {
-            values.iter().map(|&value| Some(MethodSetting { name, value, unit })).collect::<Vec<_>>()
-        };
-        match self {
-            Self::Map | Self::MapFree | Self::Linear | Self::Extended => vec![None],
-            Self::Adaptive => of("tolerance", "1", &[1e-4, 1e-6, 1e-8, 1e-10, 1e-12]),
-            _ => of("step", "s", &[10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4].map(|parts| one_digit(scale / parts))),
-        }
-    }
-}
-
-/// The nearest number of one digit, so that steps are what they read.
-fn one_digit(value: f64) -> f64 {
-    format!("{value:.0e}").parse().unwrap_or(value)
 }
 
 /// The power of ten below a time; 1 s for none.

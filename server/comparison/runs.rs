@@ -16,11 +16,24 @@ use equipoise_physics::run::{extended, orbit};
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::Model;
 
-use crate::comparison::{MethodKind, MethodSetting, ReferenceRun};
+use crate::comparison::methods::{IntegratorKind, MethodKind, MethodSetting};
 use crate::compute::{CancelFlag, Cancelled, TimeSlice};
 use crate::integrators;
 use crate::integrators::{Location, simulate};
 use crate::limits;
+
+/// How the reference ran.
+#[derive(Clone, Copy, Debug)]
+pub struct ReferenceRun {
+    /// How it ended.
+    pub outcome: &'static str,
+    /// Contacts, the last included.
+    pub impacts: u64,
+    /// When the last one was, s.
+    pub t: f64,
+    /// What one unit in the last place of its last state is, m or m/s: no double is surely nearer.
+    pub rounding: f64,
+}
 
 /// What a run came to.
 #[derive(Clone, Debug)]
@@ -115,8 +128,8 @@ impl<'a> Subject<'a> {
                 steps: self.impacts,
                 evaluations: Some(self.impacts),
             }),
-            _ => match self.general(kind, setting) {
-                Ok((method, rod)) => Ok(self.simulated(method, &rod, slice)?),
+            MethodKind::Integrator(integrator) => match self.rod_of_integrators() {
+                Ok(rod) => Ok(self.simulated(integrators_method(integrator, setting), &rod, slice)?),
                 Err(reason) => Err(reason),
             },
         })
@@ -137,8 +150,9 @@ impl<'a> Subject<'a> {
                     (1..=self.impacts).for_each(|n| _ = black_box(solution.impact(n)));
                 }
             }
-            _ => {
-                if let Ok((method, rod)) = self.general(kind, setting) {
+            MethodKind::Integrator(integrator) => {
+                if let Ok(rod) = self.rod_of_integrators() {
+                    let method = integrators_method(integrator, setting);
                     _ = black_box(self.simulate(method, &rod, &mut || !cancel.is_set()));
                 }
             }
@@ -178,30 +192,14 @@ impl<'a> Subject<'a> {
         Some((n, state, ending.name()))
     }
 
-    fn general(
-        &self,
-        kind: MethodKind,
-        setting: Option<MethodSetting>,
-    ) -> Result<(integrators::Integrator, Rod), String> {
-        use integrators::Integrator;
-        let Model::Rod(rod) = self.model else {
-            return Err("general methods move a body with an angle of its own, and a point mass has none".to_owned());
-        };
-        let value = setting.map_or(f64::NAN, |setting| setting.value);
-        let runge_kutta = |location| Integrator::RungeKutta { step: value, location };
-        let method = match kind {
-            MethodKind::Adaptive => Integrator::Adaptive { tolerance: value },
-            MethodKind::StepEnd => runge_kutta(Location::StepEnd),
-            MethodKind::Secant => runge_kutta(Location::Secant),
-            MethodKind::Bisection => runge_kutta(Location::Bisection),
-            MethodKind::TimeStepping => Integrator::TimeStepping { step: value },
-            MethodKind::Penalty => Integrator::Penalty { step: value },
-            MethodKind::Sampling => Integrator::Sampling { step: value },
-            MethodKind::Map | MethodKind::MapFree | MethodKind::Linear | MethodKind::Extended => {
-                return Err("it is no general method".to_owned());
+    /// The rod that integrators move.
+    fn rod_of_integrators(&self) -> Result<Rod, String> {
+        match self.model {
+            Model::Rod(rod) => Ok(rod),
+            Model::Point(_) | Model::General(_) => {
+                Err("general methods move a body with an angle of its own, and a point mass has none".to_owned())
             }
-        };
-        Ok((method, rod))
+        }
     }
 
     fn simulate(
@@ -232,4 +230,19 @@ impl<'a> Subject<'a> {
 fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::ExtendedContact) -> bool) -> Option<Ending> {
     let mut orbit = scene.extended_orbit().ok()?;
     extended::run(&mut orbit, impacts, visit)
+}
+
+fn integrators_method(integrator: IntegratorKind, setting: Option<MethodSetting>) -> integrators::Integrator {
+    use integrators::Integrator;
+    let value = setting.map_or(f64::NAN, |setting| setting.value);
+    let runge_kutta = |location| Integrator::RungeKutta { step: value, location };
+    match integrator {
+        IntegratorKind::Adaptive => Integrator::Adaptive { tolerance: value },
+        IntegratorKind::StepEnd => runge_kutta(Location::StepEnd),
+        IntegratorKind::Secant => runge_kutta(Location::Secant),
+        IntegratorKind::Bisection => runge_kutta(Location::Bisection),
+        IntegratorKind::TimeStepping => Integrator::TimeStepping { step: value },
+        IntegratorKind::Penalty => Integrator::Penalty { step: value },
+        IntegratorKind::Sampling => Integrator::Sampling { step: value },
+    }
 }

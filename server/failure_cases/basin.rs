@@ -1,8 +1,10 @@
 //! Where the linear analysis is right about nothing but its neighbourhood: a drift of the angle, a wide start, and a resonance.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
-use crate::failure_cases::course::{AngleHistory, eigenvalue, upright};
-use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, with};
+use crate::failure_cases::angle_history::AngleHistory;
+use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
+use crate::failure_cases::eigenvalue::{eigenvalue, upright};
+use crate::failure_cases::scenes::{built, rod, with};
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::linear_verdict::linear_verdict;

@@ -1,8 +1,10 @@
 //! At κ_c and beyond it, where the eigenvalues are silent or cry wolf, and the next order of the normal form decides.
 
 use crate::charts::{Chart, Curve, Look, Plot, significant};
-use crate::failure_cases::course::{ANGLE, AngleHistory, CONTACT, eigenvalue, upright};
-use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, with};
+use crate::failure_cases::angle_history::{ANGLE, AngleHistory, CONTACT};
+use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
+use crate::failure_cases::eigenvalue::{eigenvalue, upright};
+use crate::failure_cases::scenes::{built, rod, with};
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::boundary::{boundary_coefficient, period_two_angle};
 use equipoise_physics::stability::fixed_point::FixedPoint;

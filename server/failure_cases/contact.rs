@@ -1,7 +1,8 @@
 //! The root that is always there: a contact ends at t = 0 of its own flight, and the search for the next one finds it again.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
-use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, rod_of};
+use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
+use crate::failure_cases::scenes::{built, rod, rod_of};
 use equipoise_physics::bounce::flight::Flight;
 use equipoise_physics::scene::{Name, Scene, Value};
 

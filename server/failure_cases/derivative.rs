@@ -1,7 +1,8 @@
 //! Derivatives of the map by differences: the step that is neither too long nor too short, and the graze that has none.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
-use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, with};
+use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
+use crate::failure_cases::scenes::{built, rod, with};
 use equipoise_physics::body::Body;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::run::orbit::Orbit;

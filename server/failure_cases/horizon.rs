@@ -1,8 +1,10 @@
 //! A chaotic run beyond its horizon: what single runs say there, and what many of them say together.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
-use crate::failure_cases::course::{AngleHistory, upright};
-use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, rod_of, with};
+use crate::failure_cases::angle_history::AngleHistory;
+use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
+use crate::failure_cases::eigenvalue::upright;
+use crate::failure_cases::scenes::{built, rod, rod_of, with};
 use equipoise_physics::batch::batch_run::{RunStart, run_all};
 use equipoise_physics::body::Release;
 use equipoise_physics::run::ending::Ending;

@@ -1,8 +1,9 @@
 //! Methods that go in steps: they invent stability and destroy it, miss contacts, and never come to rest.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
-use crate::failure_cases::course::AngleHistory;
-use crate::failure_cases::{FailureCase, Findings, MethodClaim, built, rod, rod_of};
+use crate::failure_cases::angle_history::AngleHistory;
+use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
+use crate::failure_cases::scenes::{built, rod, rod_of};
 use crate::integrators::{Integrator, Location, Simulation, SimulationEnding, simulate};
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};

@@ -1,0 +1,45 @@
+//! The claim of the eigenvalues of a computed Jacobian at the upright bounce.
+
+use crate::failure_cases::case::MethodClaim;
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::scene::Scene;
+use equipoise_physics::stability::fixed_point::{FixedPoint, find_fixed_point};
+use equipoise_physics::stability::jacobian;
+use equipoise_physics::stability::jacobian::modulus;
+use equipoise_physics::stability::linear_verdict::{PARABOLIC, linear_verdict};
+
+/// What the largest modulus of the computed Jacobian's eigenvalues at the fixed point says, and the eigenvalue of the angle
+/// farthest from 1: (re, im).
+fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f64, (f64, f64)) {
+    let upright = State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
+    let matrix = jacobian::jacobian(&scene.model(), &upright, 1).map(|linearization| linearization.matrix);
+    let values = matrix.ok().and_then(|matrix| jacobian::eigenvalues(&matrix)).unwrap_or_default();
+    let radius = values.iter().copied().map(modulus).fold(0.0, f64::max);
+    let verdict = match radius {
+        radius if radius > 1.0 + PARABOLIC => "unstable",
+        radius if radius < 1.0 - PARABOLIC => "stable",
+        _ => "neutral",
+    };
+    let least = values.iter().min_by(|a, b| a.re.total_cmp(&b.re)).map_or((0.0, 0.0), |value| (value.re, value.im));
+    (verdict, radius, least)
+}
+
+/// The upright bounce, which every scene of this gallery has.
+pub(crate) fn upright(scene: &Scene) -> FixedPoint {
+    find_fixed_point(scene).expect("a test builds every case")
+}
+
+/// What the eigenvalues of a computed Jacobian say.
+pub(crate) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> MethodClaim {
+    let (verdict, radius, (re, im)) = spectral_radius(scene, fixed_point);
+    let exact = linear_verdict(scene, fixed_point).spectral_radius();
+    let imaginary = if im == 0.0 { String::new() } else { format!(" ± {:.2e}i", im.abs()) };
+    let excess = match radius - 1.0 {
+        0.0 => String::new(),
+        excess => format!(" {} {:.2e}", if excess < 0.0 { '−' } else { '+' }, excess.abs()),
+    };
+    let detail = format!(
+        "the largest modulus comes out as 1{excess} (exactly: {exact:.6}), the angle's eigenvalue as {re:.9}{imaginary}"
+    );
+    MethodClaim { method, verdict, value: Some(radius), unit: None, detail }
+}
