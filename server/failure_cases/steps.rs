@@ -5,6 +5,7 @@ use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, rod_of};
 use crate::integrators::{Integrator, Location, Simulation, SimulationEnding, simulate};
+use equipoise_physics::run::ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
 
@@ -306,9 +307,7 @@ fn limit(scene: &Scene) -> f64 {
 /// How the run ends, and when it is at rest.
 fn settled(scene: &Scene, impacts: u64) -> (&'static str, Option<f64>) {
     let ending = scene.orbit().ok().and_then(|mut orbit| run(&mut orbit, impacts, |_| true));
-    let settle_time = match ending {
-        Some(equipoise_physics::run::ending::Ending::Settled { settle_time, .. }) => Some(settle_time),
-        _ => None,
-    };
-    (ending.map_or("unknown", equipoise_physics::run::ending::Ending::name), settle_time)
+    let settle_time =
+        if let Some(ending::Ending::Settled { settle_time, .. }) = ending { Some(settle_time) } else { None };
+    (ending.map_or("unknown", ending::Ending::name), settle_time)
 }

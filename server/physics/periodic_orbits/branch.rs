@@ -5,6 +5,7 @@
 
 use crate::bounce::state::State;
 use crate::periodic_orbits::closed::{ClosedOrbit, SearchPlane, correct};
+use crate::periodic_orbits::multipliers::Crossing;
 use crate::periodic_orbits::orbit::PeriodicOrbit;
 use crate::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};
 use crate::periodic_orbits::problem::OrbitFailure;
@@ -274,7 +275,7 @@ impl BranchFollower<'_> {
             guess[4] = share;
             let half = correct(self.path, self.period / 2, guess, &SearchPlane::at_parameter(guess)).ok()?;
             let orbit = PeriodicOrbit::new(&self.path.problem(share).ok()?, &half).ok()?;
-            Some((orbit.multipliers.tests[1], half))
+            Some((orbit.multipliers.tests.value(Crossing::MinusOne), half))
         };
         let (mut a, mut b) = (guess[4], guess[4] + 1e-4);
         let mut at_a = test(a)?.0;
@@ -300,26 +301,29 @@ impl BranchFollower<'_> {
     ) {
         let length = tangent.dot(&(next.place - here.place));
         let mut found: Vec<(f64, BranchPoint)> = Vec::new();
-        for test in 0..3 {
-            let (low, high) = (orbit.multipliers.tests[test], after.multipliers.tests[test]);
-            let noise = if test == 2 { 1e-7 } else { 1e-12 };
+        for crossing in Crossing::ALL {
+            let (low, high) = (orbit.multipliers.tests.value(crossing), after.multipliers.tests.value(crossing));
+            let is_pair = crossing == Crossing::ComplexPair;
+            let noise = if is_pair { 1e-7 } else { 1e-12 };
             let crosses = low.abs() > noise && high.abs() > noise && (low < 0.0) != (high < 0.0);
-            // Outside of the unit circle's pair the third test says nothing.
-            let counts = test < 2 || orbit.multipliers.stable != after.multipliers.stable;
+            // The test of the pair changes sign also for two real eigenvalues λ and 1/λ, which changes no stability.
+            let counts = !is_pair || orbit.multipliers.stable != after.multipliers.stable;
             if !crosses || !counts || self.changes == 0 {
                 continue;
             }
-            let kind = match test {
-                0 if tangent[4] * leads[4] < 0.0 => Bifurcation::Fold,
-                0 => Bifurcation::Pitchfork,
-                1 => Bifurcation::PeriodDoubling,
-                _ => Bifurcation::NeimarkSacker,
+            let kind = match crossing {
+                Crossing::One if tangent[4] * leads[4] < 0.0 => Bifurcation::Fold,
+                Crossing::One => Bifurcation::Pitchfork,
+                Crossing::MinusOne => Bifurcation::PeriodDoubling,
+                Crossing::ComplexPair => Bifurcation::NeimarkSacker,
             };
             let value = |solution: &ClosedOrbit| self.point(solution, Some(kind)).ok();
-            if let Some(at) = self.zero((here, tangent), (next, length), (low, high), test).and_then(|(s, solution)| {
-                let point = value(&solution)?;
-                Some((s, point))
-            }) {
+            if let Some(at) =
+                self.zero((here, tangent), (next, length), (low, high), crossing).and_then(|(s, solution)| {
+                    let point = value(&solution)?;
+                    Some((s, point))
+                })
+            {
                 self.changes -= 1;
                 found.push(at);
             }
@@ -334,7 +338,7 @@ impl BranchFollower<'_> {
         (here, tangent): (&ClosedOrbit, &ScaledPoint),
         (next, length): (&ClosedOrbit, f64),
         (low, high): (f64, f64),
-        test: usize,
+        crossing: Crossing,
     ) -> Option<(f64, ClosedOrbit)> {
         let (mut a, mut at_a, mut place_a) = (0.0, low, here.place);
         let (mut b, mut at_b, mut place_b) = (length, high, next.place);
@@ -348,7 +352,7 @@ impl BranchFollower<'_> {
             let guess = place_a + (place_b - place_a) * ((s - a) / (b - a));
             let solution = correct(self.path, self.period, guess, &SearchPlane { normal: *tangent, point }).ok()?;
             let orbit = self.point(&solution, None).ok()?.orbit;
-            let value = orbit.multipliers.tests[test];
+            let value = orbit.multipliers.tests.value(crossing);
             let place = solution.place;
             let done = value.abs() < 1e-14 || (b - a).abs() < 1e-14;
             best = Some((s, solution));

@@ -29,8 +29,41 @@ pub struct Multipliers {
     pub residue: f64,
     /// Whether small deviations stay small; none on the boundary, where the linear analysis is silent.
     pub stable: Option<bool>,
-    /// What changes sign where an eigenvalue passes 1, where one passes −1, and where a pair leaves the unit circle.
-    pub(super) tests: [f64; 3],
+    /// The test functions of the bifurcations.
+    pub(super) tests: TestFunctions,
+}
+
+/// The places where eigenvalues cross the unit circle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Crossing {
+    /// An eigenvalue passes 1.
+    One,
+    /// An eigenvalue passes −1.
+    MinusOne,
+    /// A complex pair passes the circle.
+    ComplexPair,
+}
+
+impl Crossing {
+    pub(super) const ALL: [Self; 3] = [Self::One, Self::MinusOne, Self::ComplexPair];
+}
+
+/// A function for each crossing that changes sign there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TestFunctions {
+    at_one: f64,
+    at_minus_one: f64,
+    complex_pair: f64,
+}
+
+impl TestFunctions {
+    pub(super) fn value(&self, crossing: Crossing) -> f64 {
+        match crossing {
+            Crossing::One => self.at_one,
+            Crossing::MinusOne => self.at_minus_one,
+            Crossing::ComplexPair => self.complex_pair,
+        }
+    }
 }
 
 impl Multipliers {
@@ -50,8 +83,12 @@ impl Multipliers {
                 let companion = Matrix3::new(a, -b, c, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
                 let schur = Schur::try_new(companion, f64::EPSILON, 10_000)?;
                 let roots: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
-                let tests = [1.0 - a + b - c, 1.0 + a + b + c, 1.0 - b + c * (a - c)];
-                Self::judge(roots.clone(), 0.25 * (2.0 - pair(&roots).re), tests, c.abs() < 1.0, slack)
+                let tests = TestFunctions {
+                    at_one: 1.0 - a + b - c,
+                    at_minus_one: 1.0 + a + b + c,
+                    complex_pair: 1.0 - b + c * (a - c),
+                };
+                Self::from_tests(roots.clone(), 0.25 * (2.0 - pair(&roots).re), tests, c.abs() < 1.0, slack)
             }
             TrivialMultipliers::EnergyAndDrift => {
                 // (λ − 1)²(λ² − aλ + b)
@@ -69,7 +106,8 @@ impl Multipliers {
                 };
                 let mut all = roots;
                 all.push(Complex::new(1.0, 0.0));
-                Self::judge(all, 0.25 * (2.0 - a), [1.0 - a + b, 1.0 + a + b, 1.0 - b], true, slack)
+                let tests = TestFunctions { at_one: 1.0 - a + b, at_minus_one: 1.0 + a + b, complex_pair: 1.0 - b };
+                Self::from_tests(all, 0.25 * (2.0 - a), tests, true, slack)
             }
         };
         found.residue.is_finite().then_some(found)
@@ -85,7 +123,8 @@ impl Multipliers {
             |from: Complex<f64>| eigenvalues.iter().map(move |value| from - value).product::<Complex<f64>>();
         let circle: Complex<f64> = pairs(4).map(|(i, j)| one - eigenvalues[i] * eigenvalues[j]).product();
         // det(I + M) is the product of all −1 − λ: four signs.
-        let tests = [distances(one).re, distances(-one).re, circle.re];
+        let tests =
+            TestFunctions { at_one: distances(one).re, at_minus_one: distances(-one).re, complex_pair: circle.re };
         let inside = eigenvalues.iter().all(|value| modulus(*value) <= 1.0 + slack);
         let at = |place: f64| eigenvalues.iter().any(|value| modulus(*value - Complex::new(place, 0.0)) <= PARABOLIC);
         let stable = (!at(1.0) && !at(-1.0)).then_some(inside);
@@ -93,13 +132,13 @@ impl Multipliers {
         Some(Self { eigenvalues, residue, stable, tests })
     }
 
-    fn judge(roots: Vec<Complex<f64>>, residue: f64, tests: [f64; 3], contracts: bool, slack: f64) -> Self {
+    fn from_tests(roots: Vec<Complex<f64>>, residue: f64, tests: TestFunctions, contracts: bool, slack: f64) -> Self {
         let mut eigenvalues = roots;
         eigenvalues.push(Complex::new(1.0, 0.0));
         sort_eigenvalues(&mut eigenvalues);
-        let [at_one, at_minus_one, circle] = tests;
+        let TestFunctions { at_one, at_minus_one, complex_pair } = tests;
         let silent = at_one.abs() <= 4.0 * PARABOLIC || at_minus_one.abs() <= 4.0 * PARABOLIC;
-        let inside = at_one > 0.0 && at_minus_one > 0.0 && circle >= -slack && contracts;
+        let inside = at_one > 0.0 && at_minus_one > 0.0 && complex_pair >= -slack && contracts;
         Self { eigenvalues, residue, stable: (!silent).then_some(inside), tests }
     }
 

@@ -83,7 +83,9 @@ fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, Orb
     let mut draft = scene.draft();
     let value = match name.row().kind {
         Kind::Number { .. } => Value::Number(value),
-        _ => return Err(OrbitFailure::Scene(format!("{} is not a number", name.row().path))),
+        Kind::Integer { .. } | Kind::Choice(_) | Kind::Flag => {
+            return Err(OrbitFailure::Scene(format!("{} is not a number", name.row().path)));
+        }
     };
     draft.set(name, Some(value)).map_err(|error| OrbitFailure::Scene(error.detail))?;
     let built = draft.build().map_err(|errors| {

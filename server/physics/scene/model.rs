@@ -128,7 +128,7 @@ impl Model {
                 noise: None,
                 outline: None,
             }) => Some((rod, Some(friction))),
-            _ => None,
+            Self::Point(_) | Self::General(_) => None,
         }
     }
 }
@@ -240,12 +240,13 @@ impl Scene {
         let ModelRequirement { level, path, .. } =
             self.requirements().into_iter().find(|requirement| beyond(requirement.level))?;
         let shown = crate::scene::field(path).map_or_else(String::new, |row| self.shown(row.name));
-        let what = match level {
+        let feature = match level {
             ModelLevel::Friction => "with friction",
             ModelLevel::Noise => "with noise",
-            _ => "with state feedback",
+            ModelLevel::Rod | ModelLevel::RodWithX => "with state feedback",
+            ModelLevel::Point | ModelLevel::Linear | ModelLevel::Polygon => "for this body",
         };
-        Some(FieldError { path, detail: format!("{path} is {shown}; this is not available {what} in this version") })
+        Some(FieldError { path, detail: format!("{path} is {shown}; this is not available {feature} in this version") })
     }
 
     fn shown(&self, name: Name) -> String {

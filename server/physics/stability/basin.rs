@@ -147,10 +147,11 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
     let mut holes: Vec<(f64, f64)> = Vec::new();
     let mut inside = false;
     for (theta, survives) in fine.iter().zip(&survivors).take(end) {
-        match holes.last_mut() {
-            Some(hole) if inside && !survives => hole.1 = *theta,
-            _ if !survives => holes.push((*theta, *theta)),
-            _ => {}
+        if !survives {
+            match holes.last_mut() {
+                Some(hole) if inside => hole.1 = *theta,
+                Some(_) | None => holes.push((*theta, *theta)),
+            }
         }
         inside = !survives;
     }

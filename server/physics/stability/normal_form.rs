@@ -123,7 +123,7 @@ impl UprightBounce {
     fn odd_size(&self) -> usize {
         match self.steering {
             Steering::Feedback(gains) if gains.x != 0.0 => 4,
-            _ => 3,
+            Steering::Feedback(_) | Steering::TiltGain => 3,
         }
     }
 

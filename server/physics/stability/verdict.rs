@@ -229,12 +229,10 @@ pub fn assess(
                 run.max_theta,
                 period_two_angle(&model, scene.topple_angle, fixed_point)
                     .map_or_else(String::new, |theta| format!(", around the period-2 orbit at θ = ±{theta} rad")),
-                match boundary {
-                    Some(BoundaryCoefficient { coefficient }) if coefficient <= 0.0 => format!(
-                        "; C = {coefficient} is not positive, so stability is lost hard and a longer run may still fall"
-                    ),
-                    _ => String::new(),
-                }
+                boundary.filter(|boundary| boundary.coefficient <= 0.0).map_or_else(String::new, |boundary| format!(
+                    "; C = {} is not positive, so stability is lost hard and a longer run may still fall",
+                    boundary.coefficient
+                ))
             ),
         ),
         AngleClass::Hyperbolic => {
