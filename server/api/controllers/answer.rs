@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 
 use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::control::{BounceModel, ClosedLoop, DesignFailure, LqrDesign, STATE};
+use equipoise_physics::control::bounce_model::{BounceModel, ClosedLoop, STATE};
+use equipoise_physics::control::lqr::{DesignFailure, LqrDesign, design_lqr};
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::stability::fixed_point::{FixedPoint, bounce_in_place};
@@ -133,7 +134,7 @@ impl ControllerAnswer {
         let rod: Rod = scene.parameters();
         let model = BounceModel::new(&rod, place.speed, regime);
         let with_x = state[0] != 0.0;
-        let design = model.design(state, input).map_err(|why| ("/weights", refusal(why)))?;
+        let design = design_lqr(&model, state, input).map_err(|why| ("/weights", refusal(why)))?;
         let closed = model.closed_loop(design.gain, with_x).ok_or_else(slow)?;
         let open = model.closed_loop([0.0; 4], with_x).ok_or_else(slow)?;
         let designed = designed(&scene, design.gain)?;

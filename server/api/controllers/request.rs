@@ -1,6 +1,6 @@
 //! The request for `controllers`: a scene and the weights of its state feedback.
 
-use equipoise_physics::control::STATE;
+use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
 

@@ -1,6 +1,6 @@
 //! The picture of a state feedback: its closed loop on the unit circle.
 
-use equipoise_physics::control::BounceModel;
+use equipoise_physics::control::bounce_model::BounceModel;
 
 use crate::charts::{Loop, closed_loop, significant};
 

@@ -1,6 +1,6 @@
 //! The picture of `stability`: the eigenvalues on the unit circle, over κ or over the factor on a feedback.
 
-use equipoise_physics::control::BounceModel;
+use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::stability::contact_regime::contact_regime;
 
 use crate::api::formats::Pictured;

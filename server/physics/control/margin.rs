@@ -1,24 +1,23 @@
-//! How much a state feedback may be weaker or stronger than it is: the factors on its gain at which an eigenvalue of the
-//! closed loop reaches the unit circle.
+//! Gain margins of a state feedback: the factors on its gain at which an eigenvalue of the closed loop reaches the unit circle.
 //!
-//! Exact but for rounding, without a search over factors: with p(z) = det(zI − A) and n(z) = det(zI − A + BK) − p(z), linear in
-//! the gain, an eigenvalue is at z for the factor −p(z)/n(z), and on the circle that is real at few places.
+//! The result is exact up to rounding, without a search over factors. With p(z) = det(zI − A) and n(z) = det(zI − A + BK) − p(z),
+//! which is linear in the gain, z is an eigenvalue for the factor −p(z)/n(z). On the circle this factor is real at few points.
 
 use nalgebra::DMatrix;
 
-/// The factors on the gain between which the closed loop stays stable, 1 among them.
+/// The range of factors on the gain, about 1, for which the closed loop is stable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StableGainRange {
-    /// The largest below 1 at which it is no longer; none where there is none.
+    /// The largest factor below 1 that makes the loop unstable, if there is one.
     pub lower: Option<f64>,
-    /// The smallest above 1.
+    /// The smallest factor above 1 that makes the loop unstable, if there is one.
     pub upper: Option<f64>,
 }
 
-/// The margin of a stable closed loop, from A and A − BK of at most four states.
-pub fn margin(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> StableGainRange {
+/// The stable range of a stable closed loop, from A (`open`) and A − BK (`closed`) of at most four states.
+pub fn stable_gain_range(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> StableGainRange {
     let mut margin = StableGainRange { lower: None, upper: None };
-    for factor in crossings(open, closed) {
+    for factor in critical_factors(open, closed) {
         if factor < 1.0 {
             margin.lower = Some(margin.lower.map_or(factor, |lower| lower.max(factor)));
         } else if factor > 1.0 && factor.is_finite() {
@@ -28,8 +27,8 @@ pub fn margin(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> StableGainRange {
     margin
 }
 
-/// The factors on the gain at which some eigenvalue is on the unit circle, in no order; not all of them are finite.
-pub fn crossings(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> Vec<f64> {
+/// The factors on the gain that put an eigenvalue on the unit circle, in no order; some of them may be infinite or NaN.
+pub fn critical_factors(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> Vec<f64> {
     let p = characteristic(open);
     let n: Vec<f64> = characteristic(closed).iter().zip(&p).map(|(closed, open)| closed - open).collect();
     let mut places = imaginary_part(&n, &p);
@@ -37,7 +36,7 @@ pub fn crossings(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> Vec<f64> {
     places.into_iter().map(|cosine| -real_part(&p, &n, cosine) / real_part(&n, &n, cosine)).collect()
 }
 
-/// Coefficients of det(zI − M), the constant one first, after Faddeev and Le Verrier.
+/// Coefficients of det(zI − M), the constant one first, by the algorithm of Faddeev and Le Verrier.
 fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
     let size = matrix.nrows();
     let mut coefficients = vec![0.0; size + 1];
@@ -63,8 +62,8 @@ fn real_part(p: &[f64], n: &[f64], cosine: f64) -> f64 {
     sum
 }
 
-/// Where on the upper half of the circle Im n(z) p(z̄) is 0, as real parts of z: sin ω times a polynomial in cos ω, by
-/// Chebyshev's U.
+/// Zeros of Im n(z) p(z̄) on the upper half of the unit circle, as real parts of z. The function is sin ω times a polynomial in
+/// cos ω, by Chebyshev's U.
 fn imaginary_part(n: &[f64], p: &[f64]) -> Vec<f64> {
     let mut polynomial = vec![0.0; n.len() - 1];
     let (mut before, mut chebyshev) = (vec![0.0; n.len()], vec![0.0; n.len()]);
@@ -84,7 +83,7 @@ fn imaginary_part(n: &[f64], p: &[f64]) -> Vec<f64> {
     roots(&polynomial)
 }
 
-/// The places from −1 to 1 at which a polynomial, its constant coefficient first, changes sign. Between two of its derivative's
+/// Sign changes between −1 and 1 of a polynomial, its constant coefficient first. Between two neighbouring ones of the derivative
 /// there is at most one.
 fn roots(polynomial: &[f64]) -> Vec<f64> {
     if polynomial.len() < 2 {
@@ -118,10 +117,10 @@ mod tests {
     fn one_state_has_its_closed_form() {
         // z = 2 − 1.8 g is on the circle at g = 1/1.8 and 3/1.8.
         let matrix = |value| DMatrix::from_element(1, 1, value);
-        let StableGainRange { lower, upper } = margin(&matrix(2.0), &matrix(0.2));
+        let StableGainRange { lower, upper } = stable_gain_range(&matrix(2.0), &matrix(0.2));
         assert!((lower.unwrap() - 1.0 / 1.8).abs() < 1e-15 && (upper.unwrap() - 3.0 / 1.8).abs() < 1e-15);
-        // Stable without any: nothing is too weak.
-        assert_eq!(margin(&matrix(0.5), &matrix(0.0)).lower, Some(-1.0));
+        // Stable without feedback, so no factor between 0 and 1 is critical.
+        assert_eq!(stable_gain_range(&matrix(0.5), &matrix(0.0)).lower, Some(-1.0));
     }
 
     #[test]

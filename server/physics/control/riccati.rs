@@ -2,30 +2,30 @@
 //! belongs to it.
 //!
 //! Doubling (Chu, Fan, Lin and Wang, 2004) inverts neither A nor a symplectic pencil: the A of a sticking contact is singular.
-//! Not here: which A and B, and whether the law they give is any good.
+//! Not here: the choice of A and B, and the judgement of the law.
 
 use nalgebra::{Const, DimMin, RowSVector, SMatrix, SVector};
 
-/// Doublings before giving up: after so many the sum of costs has run over 2⁴⁰ bounces.
+/// Most doublings: then the sum of costs covers 2⁴⁰ bounces.
 pub const DOUBLINGS: u32 = 40;
 
-/// A solution, and how good it is.
+/// A solution and its accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RiccatiSolution<const N: usize> {
     /// P, symmetric.
     pub cost: SMatrix<f64, N, N>,
     /// K = (R + BᵀPB)⁻¹BᵀPA.
     pub gain: RowSVector<f64, N>,
-    /// How far P is off the equation, as a share of P; both as Frobenius norms.
+    /// Residual of the equation over P, both as Frobenius norms.
     pub residual: f64,
-    /// Doublings it took.
+    /// Doublings of the iteration.
     pub iterations: u32,
 }
 
-/// Solves it for one input with weights Q = diag(`state`) ≥ 0 and R = `input` > 0.
+/// Solves the equation for one input with weights Q = diag(`state`) ≥ 0 and R = `input` > 0.
 ///
-/// None where the doubling does not converge. Where the weights do not see a mode that grows, what it converges to does not
-/// stabilize: look at the eigenvalues of A − BK.
+/// `None` if the doubling does not converge. If the weights do not see a growing mode, the solution does not stabilize it: check the
+/// eigenvalues of A − BK.
 pub fn solve<const N: usize>(
     a: &SMatrix<f64, N, N>,
     b: &SVector<f64, N>,

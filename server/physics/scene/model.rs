@@ -106,7 +106,7 @@ impl Model {
         }
     }
 
-    /// K of its state feedback, in the order of [`crate::control::STATE`]; `None` for a table with a tilt gain.
+    /// K of its state feedback, in the order of [`crate::control::bounce_model::STATE`]; `None` for a table with a tilt gain.
     pub fn feedback(&self) -> Option<[f64; 4]> {
         match self {
             Self::Rod(_) | Self::Point(_) => None,

@@ -4,7 +4,7 @@
 //! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
 //! off by the square root of rounding.
 
-use crate::control::{BounceModel, ClosedLoop};
+use crate::control::bounce_model::{BounceModel, ClosedLoop};
 use crate::numbers::trig;
 use crate::scene::model::Model;
 use crate::scene::{BodyShape, Scene};

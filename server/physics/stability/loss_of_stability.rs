@@ -6,8 +6,8 @@
 //! leaves the circle at a factor on the gains.
 
 use crate::bounce::state::State;
-use crate::control::margin::crossings;
-use crate::control::{BounceModel, STABLE};
+use crate::control::bounce_model::{BounceModel, STABLE};
+use crate::control::margin::critical_factors;
 use crate::periodic_orbits::branch::Bifurcation;
 use crate::scene::{Name, Scene};
 use crate::stability::boundary::BoundaryCoefficient;
@@ -174,7 +174,7 @@ fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<StabilityLoss
     let part = |matrix: nalgebra::Matrix4<f64>| -> DMatrix<f64> {
         matrix.view((first, first), (4 - first, 4 - first)).clone_owned()
     };
-    let mut factors = crossings(&part(linear.a), &part(linear.a - linear.b * RowVector4::from(gain)));
+    let mut factors = critical_factors(&part(linear.a), &part(linear.a - linear.b * RowVector4::from(gain)));
     factors.retain(|factor| factor.is_finite() && *factor > 0.0);
     factors.extend([0.0, f64::INFINITY]);
     factors.sort_by(f64::total_cmp);

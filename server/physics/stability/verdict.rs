@@ -2,7 +2,7 @@
 //!
 //! Not here: how any of them comes about ([`crate::stability::linear_verdict`], [`crate::stability::lyapunov`], [`crate::stability::loss_of_stability`], [`crate::stability::regularity`]).
 
-use crate::control::{ClosedLoop, STATE};
+use crate::control::bounce_model::{ClosedLoop, STATE};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
 use crate::stability::boundary::{BoundaryCoefficient, boundary_coefficient, period_two_angle};

@@ -4,7 +4,8 @@
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::control::{BounceModel, DesignFailure, RESIDUAL, STABLE};
+use equipoise_physics::control::bounce_model::{BounceModel, STABLE};
+use equipoise_physics::control::lqr::{DesignFailure, RESIDUAL, design_lqr};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -105,7 +106,8 @@ fn the_derivative_by_duals_is_the_closed_loop() {
     for regime in REGIMES {
         let values =
             [(Name::Friction, if regime == ContactRegime::Frictionless { 0.0 } else { 0.3 }), (Name::Restitution, 0.5)];
-        let gain = BounceModel::new(&rod(0.5), speed(&rod(0.5)), regime).design(WEIGHTS.0, WEIGHTS.1).unwrap().gain;
+        let gain =
+            design_lqr(&BounceModel::new(&rod(0.5), speed(&rod(0.5)), regime), WEIGHTS.0, WEIGHTS.1).unwrap().gain;
         let scene = scene(gain, regime, "poisson", &values);
         let rod: Rod = scene.parameters();
         let v = speed(&rod);
@@ -199,7 +201,7 @@ fn doubling_finds_what_plain_iteration_finds() {
     for regime in REGIMES {
         let rod = rod(0.5);
         let model = BounceModel::new(&rod, speed(&rod), regime);
-        let design = model.design(WEIGHTS.0, WEIGHTS.1).unwrap();
+        let design = design_lqr(&model, WEIGHTS.0, WEIGHTS.1).unwrap();
         let plain = iterate(&model, WEIGHTS.0, WEIGHTS.1, 3000);
         for (value, expected) in design.gain.into_iter().zip(plain.iter()) {
             assert!((value - expected).abs() < 1e-10 * plain.norm(), "{regime:?}: {value}, not {expected}");
@@ -212,10 +214,10 @@ fn doubling_finds_what_plain_iteration_finds() {
 fn without_a_weight_on_x_there_is_no_gain_on_x() {
     let rod = rod(1.0);
     let model = BounceModel::new(&rod, speed(&rod), ContactRegime::Frictionless);
-    let design = model.design([0.0, 10.0, 0.1, 0.1], 10.0).unwrap();
+    let design = design_lqr(&model, [0.0, 10.0, 0.1, 0.1], 10.0).unwrap();
     assert_eq!(design.gain[0], 0.0);
     // It is what the law with x comes to as x matters less and less.
-    let nearly = model.design([1e-9, 10.0, 0.1, 0.1], 10.0).unwrap();
+    let nearly = design_lqr(&model, [1e-9, 10.0, 0.1, 0.1], 10.0).unwrap();
     for (left, right) in design.gain.into_iter().zip(nearly.gain) {
         assert!((left - right).abs() < 1e-3, "{design:?} {nearly:?}");
     }
@@ -227,7 +229,7 @@ fn a_mode_that_no_weight_sees_is_not_called_stable() {
     let model = BounceModel::new(&rod, speed(&rod), ContactRegime::Frictionless);
     for state in [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0; 4]] {
         assert!(
-            matches!(model.design(state, 1.0), Err(DesignFailure::Diverging | DesignFailure::Unseen(_))),
+            matches!(design_lqr(&model, state, 1.0), Err(DesignFailure::Diverging | DesignFailure::Unseen(_))),
             "{state:?}"
         );
     }
@@ -241,7 +243,7 @@ fn margins_are_where_eigenvalues_cross_the_circle() {
             let rod = rod(random.between(0.0, 1.0));
             let model = BounceModel::new(&rod, speed(&rod) * random.between(0.5, 2.0), regime);
             let state = [1.0, 1.0, 1.0, 1.0].map(|_| random.size(0.01, 100.0).abs());
-            let gain = model.design(state, random.size(0.1, 100.0).abs()).unwrap().gain;
+            let gain = design_lqr(&model, state, random.size(0.1, 100.0).abs()).unwrap().gain;
             let margin = model.closed_loop(gain, true).unwrap().margin.unwrap();
             let radius = |factor: f64| model.closed_loop(gain.map(|k| k * factor), true).unwrap().spectral_radius;
             let (lower, upper) = (margin.lower.unwrap(), margin.upper.unwrap());
@@ -273,7 +275,7 @@ fn whatever_the_rod_and_the_weights_a_law_is_good_or_there_is_none() {
             if random.between(0.0, 1.0) < 0.1 { 0.0 } else { random.size(1e-9, 1e9).abs() }
         };
         let state = [1, 2, 3, 4].map(|_| weight(&mut random));
-        if let Ok(design) = model.design(state, random.size(1e-9, 1e9).abs()) {
+        if let Ok(design) = design_lqr(&model, state, random.size(1e-9, 1e9).abs()) {
             found += 1;
             assert!(design.gain.iter().all(|gain| gain.is_finite()) && design.residual <= RESIDUAL);
             let closed = model.closed_loop(design.gain, state[0] != 0.0).unwrap();
@@ -301,7 +303,7 @@ fn settle(scene: &Scene, small: f64, contacts: u64) -> Option<u64> {
 fn it_comes_to_rest_in_place() {
     let rod = rod(1.0);
     let model = BounceModel::new(&rod, speed(&rod), ContactRegime::Frictionless);
-    let gain = model.design(WEIGHTS.0, WEIGHTS.1).unwrap().gain;
+    let gain = design_lqr(&model, WEIGHTS.0, WEIGHTS.1).unwrap().gain;
     let scene = scene(gain, ContactRegime::Frictionless, "poisson", &[(Name::Theta, 0.3), (Name::X, 0.2)]);
     let contacts = settle(&scene, 1e-9, 20_000).unwrap();
     assert!(contacts <= 100, "{contacts}");
@@ -314,7 +316,7 @@ fn a_law_for_the_sticking_contact_holds_with_friction() {
         let rod = rod(0.5);
         let gain_for = |regime| {
             let model = BounceModel::new(&rod, speed(&rod), regime);
-            model.design(WEIGHTS.0, WEIGHTS.1).unwrap().gain
+            design_lqr(&model, WEIGHTS.0, WEIGHTS.1).unwrap().gain
         };
         let contacts =
             settle(&scene(gain_for(ContactRegime::Sticking), ContactRegime::Sticking, law, &values), 1e-9, 20_000)

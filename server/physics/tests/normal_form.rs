@@ -1,7 +1,8 @@
 //! Normal forms of the bounce: the first Lyapunov coefficient against its closed form and against runs, and soft or hard ends
 //! of stability against what runs beyond them do.
 
-use equipoise_physics::control::BounceModel;
+use equipoise_physics::control::bounce_model::BounceModel;
+use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::periodic_orbits::branch::Bifurcation;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
@@ -232,7 +233,7 @@ fn steered(body: &[(Name, f64)], factor: impl Fn(f64) -> f64) -> Option<(Scene, 
     let rod = scene(&[body, &[(Name::TiltGain, 1.1)]].concat());
     let fixed_point = find_fixed_point(&rod).unwrap();
     let model = BounceModel::new(&rod.parameters(), fixed_point.speed, contact_regime(&rod.model()));
-    let design = model.design(WEIGHTS.0, WEIGHTS.1).ok()?;
+    let design = design_lqr(&model, WEIGHTS.0, WEIGHTS.1).ok()?;
     let upper = model.closed_loop(design.gain, true)?.margin?.upper?;
     let gain = design.gain.map(|gain| factor(upper) * gain);
     let values: Vec<_> = body.iter().copied().chain(FEEDBACK.into_iter().zip(gain)).collect();

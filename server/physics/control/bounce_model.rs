@@ -1,0 +1,99 @@
+//! The linear model of one bounce about the fixed point, and the closed loop of a gain on it.
+
+use crate::bounce::rod::Rod;
+use crate::control::margin::{StableGainRange, stable_gain_range};
+use crate::stability::contact_regime::ContactRegime;
+use crate::stability::jacobian::{eigenvalues, modulus};
+use nalgebra::{Complex, DMatrix, Matrix4, RowVector4, Vector4};
+
+/// Names of the components of the state just before a contact, in the order of A, B and K.
+pub const STATE: [&str; 4] = ["x", "theta", "x_dot", "theta_dot"];
+
+/// Largest spectral radius of a stable loop. Nearer to 1, rounding would decide.
+pub const STABLE: f64 = 1.0 - 1e-9;
+
+/// One bounce about the fixed point: s ↦ As + Bα, s just before a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BounceModel {
+    /// A, in units of [`STATE`].
+    pub a: Matrix4<f64>,
+    /// B, units of [`STATE`] per rad.
+    pub b: Vector4<f64>,
+}
+
+/// The closed loop of a gain on a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosedLoop {
+    /// Eigenvalues of A − BK, largest modulus first; without that of x if K does not feed x back.
+    pub eigenvalues: Vec<Complex<f64>>,
+    /// The largest modulus.
+    pub spectral_radius: f64,
+    /// Range of factors on K that keep the loop stable; `None` if it is unstable.
+    pub margin: Option<StableGainRange>,
+}
+
+impl ClosedLoop {
+    /// Tells whether every small deviation that is fed back dies out.
+    pub fn is_stable(&self) -> bool {
+        self.spectral_radius <= STABLE
+    }
+
+    /// Bounces in which a small deviation shrinks to a tenth, in the long run; `None` for an unstable loop.
+    pub fn bounces_per_decade(&self) -> Option<f64> {
+        self.is_stable().then(|| std::f64::consts::LN_10 / -libm::log(self.spectral_radius.max(f64::MIN_POSITIVE)))
+    }
+}
+
+impl BounceModel {
+    /// The model of a rod that bounces upright at `speed` V > 0 (m/s) on a table that makes up the loss.
+    ///
+    /// To first order the normal impulse is 2V for every e and every law of restitution. With friction the contact therefore ends in
+    /// sticking: the impulse P_t along the table takes the relative velocity ẋ + lθ̇ − Vα of the contact point to 0. On a table that
+    /// moves along with it ([`ContactRegime::VelocityMatched`]) this velocity is 0 already.
+    pub fn new(rod: &Rod, speed: f64, regime: ContactRegime) -> Self {
+        let (l, rho_squared) = (rod.contact_distance, rod.radius_of_gyration * rod.radius_of_gyration);
+        // A sticking contact turns the rod about the contact point.
+        let about_contact = rho_squared + l * l;
+        let (light, heavy) = (rho_squared / about_contact, l * l / about_contact);
+        let kick = 2.0 * speed;
+        // Derivatives of ẋ⁺ and θ̇⁺ by (θ, ẋ, θ̇) and by α.
+        let (x_dot, theta_dot) = match regime {
+            ContactRegime::Frictionless => {
+                let turn = kick * l / rho_squared;
+                (([0.0, 1.0, 0.0], -kick), ([turn, 0.0, 1.0], -turn))
+            }
+            ContactRegime::VelocityMatched => {
+                let turn = kick * l / about_contact;
+                (([-kick * heavy, 1.0, 0.0], -kick * light), ([turn, 0.0, 1.0], -turn))
+            }
+            ContactRegime::Sticking => {
+                let lever = l / about_contact;
+                (([-kick * heavy, heavy, -light * l], -speed * light), ([kick * lever, -lever, light], -speed * lever))
+            }
+        };
+        let flight_time = kick / rod.gravity;
+        let velocity = |([theta, x_dot, theta_dot], _): ([f64; 3], f64)| RowVector4::new(0.0, theta, x_dot, theta_dot);
+        let (x_row, theta_row) = (velocity(x_dot), velocity(theta_dot));
+        let a = Matrix4::from_rows(&[
+            RowVector4::new(1.0, 0.0, 0.0, 0.0) + x_row * flight_time,
+            RowVector4::new(0.0, 1.0, 0.0, 0.0) + theta_row * flight_time,
+            x_row,
+            theta_row,
+        ]);
+        let b = Vector4::new(flight_time * x_dot.1, flight_time * theta_dot.1, x_dot.1, theta_dot.1);
+        Self { a, b }
+    }
+
+    /// The closed loop of a gain, with or without x among the states. `None` if the eigenvalues do not converge.
+    pub fn closed_loop(&self, gain: [f64; 4], with_x: bool) -> Option<ClosedLoop> {
+        let first = usize::from(!with_x);
+        let part = |matrix: &Matrix4<f64>| -> DMatrix<f64> {
+            matrix.view((first, first), (4 - first, 4 - first)).clone_owned()
+        };
+        let (open, closed) = (part(&self.a), part(&(self.a - self.b * RowVector4::from(gain))));
+        let eigenvalues = eigenvalues(&closed)?;
+        let spectral_radius = eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max);
+        let margin = (spectral_radius <= STABLE).then(|| stable_gain_range(&open, &closed));
+        Some(ClosedLoop { eigenvalues, spectral_radius, margin })
+    }
+}

@@ -1,0 +1,58 @@
+//! The linear-quadratic regulator (LQR): the gain that is optimal for given weights on the state and on the tilt.
+
+use crate::control::bounce_model::{BounceModel, STABLE};
+use crate::control::riccati;
+use nalgebra::{Matrix3, Vector3};
+
+/// Largest residual of the Riccati equation at which its solution still has trustworthy digits.
+pub const RESIDUAL: f64 = 1e-8;
+
+/// A designed law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LqrDesign {
+    /// K, in the order of [`crate::control::bounce_model::STATE`]; 0 for x if its weight is 0.
+    pub gain: [f64; 4],
+    /// Relative residual of the Riccati equation.
+    pub residual: f64,
+    /// Doublings of the iteration.
+    pub iterations: u32,
+}
+
+/// Reason for which there is no law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DesignFailure {
+    /// The doubling did not converge.
+    Diverging,
+    /// It converged, but with this relative residual of the equation.
+    Inaccurate(f64),
+    /// It converged, but the closed loop has this spectral radius: a deviation without weight does not die out.
+    Unseen(f64),
+}
+
+/// The law α = −K·s that minimizes the sum of sᵀ diag(`state`) s + `input` α² over all bounces.
+///
+/// With a weight of 0 on x the design leaves x out, and its gain is 0.
+///
+/// # Errors
+/// [`DesignFailure`].
+pub fn design_lqr(model: &BounceModel, state: [f64; 4], input: f64) -> Result<LqrDesign, DesignFailure> {
+    let (gain, residual, iterations) = if state[0] == 0.0 {
+        let (a, b): (Matrix3<f64>, Vector3<f64>) =
+            (model.a.fixed_view::<3, 3>(1, 1).into(), model.b.fixed_rows::<3>(1).into());
+        let found = riccati::solve(&a, &b, &Vector3::new(state[1], state[2], state[3]), input);
+        let found = found.ok_or(DesignFailure::Diverging)?;
+        ([0.0, found.gain[0], found.gain[1], found.gain[2]], found.residual, found.iterations)
+    } else {
+        let found = riccati::solve(&model.a, &model.b, &state.into(), input).ok_or(DesignFailure::Diverging)?;
+        (found.gain.into(), found.residual, found.iterations)
+    };
+    if residual.is_nan() || residual > RESIDUAL {
+        return Err(DesignFailure::Inaccurate(residual));
+    }
+    let spectral_radius = model.closed_loop(gain, state[0] != 0.0).map_or(f64::NAN, |it| it.spectral_radius);
+    if spectral_radius <= STABLE {
+        Ok(LqrDesign { gain, residual, iterations })
+    } else {
+        Err(DesignFailure::Unseen(spectral_radius))
+    }
+}
