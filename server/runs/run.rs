@@ -5,6 +5,7 @@
 use equipoise_physics::body::Kick;
 use equipoise_physics::scene::{FieldError, Name, Scene, Value};
 
+use crate::api::scene::explain;
 use crate::limits;
 
 /// Largest component of a kick in each direction, m/s; the same as of a release.
@@ -62,7 +63,7 @@ impl Run {
     pub fn set(&mut self, impact: u64, changes: &[(Name, Value)]) -> Result<(), Vec<FieldError>> {
         let is_last = self.interventions.last().is_none_or(|last| last.impact <= impact);
         let mut changed = self.clone();
-        let set = &mut changed.entry(impact).map_err(|detail| vec![FieldError { path: "", detail }])?.set;
+        let set = &mut changed.entry(impact).map_err(|detail| vec![FieldError::at("", detail)])?.set;
         for (name, value) in changes {
             set.retain(|(known, _)| known != name);
             set.push((*name, *value));
@@ -134,7 +135,7 @@ impl Run {
 fn with(scene: &Scene, changes: &[(Name, Value)]) -> Result<Scene, Vec<FieldError>> {
     let mut draft = scene.draft();
     let errors: Vec<_> = changes.iter().filter_map(|(name, value)| draft.set(*name, Some(*value)).err()).collect();
-    if errors.is_empty() { draft.build() } else { Err(errors) }
+    if errors.is_empty() { draft.build().map_err(explain) } else { Err(errors) }
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use serde_json::Value as Json;
 
 use crate::api::controllers::request::{ControllerRequest, FEEDBACK, contact_name, set};
 use crate::api::formats::Tabular;
-use crate::api::scene::{scene_to_json, scene_to_query};
+use crate::api::scene::{explain, scene_to_json, scene_to_query};
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
@@ -319,7 +319,7 @@ fn proportional(scene: &Scene, tilt_gain: Option<f64>, rod: &Rod, place: &FixedP
 }
 
 fn unbuilt(errors: Vec<equipoise_physics::scene::FieldError>) -> Refusal {
-    let details: Vec<String> = errors.into_iter().map(|error| error.detail).collect();
+    let details: Vec<String> = explain(errors).into_iter().map(|error| error.detail).collect();
     Refusal::At("/scene", details.join("; "))
 }
 

@@ -2,6 +2,7 @@
 
 use crate::api::formats::Pictured;
 use crate::api::periodic_orbits::answer::PeriodicOrbitAnswer;
+use crate::api::scene::field_text;
 use crate::charts::{Branches, Change as Mark, branches};
 use crate::http::Problem;
 
@@ -9,7 +10,7 @@ impl Pictured for PeriodicOrbitAnswer<'_> {
     fn to_picture(&self) -> Result<String, Problem> {
         let no_branch = || Problem::invalid_at("/sweep", "the picture is of a branch; give a sweep");
         let sweep = self.sweep.as_ref().ok_or_else(no_branch)?;
-        let row = sweep.range.parameter.row();
+        let (row, text) = (sweep.range.parameter.row(), field_text(sweep.range.parameter));
         let points: Vec<_> = self
             .points
             .iter()
@@ -25,8 +26,8 @@ impl Pictured for PeriodicOrbitAnswer<'_> {
             .collect();
         Ok(branches(&Branches {
             title: &format!("Orbits of period {}", self.period),
-            name: row.title,
-            symbol: row.symbol,
+            name: text.title,
+            symbol: text.symbol,
             unit: if row.unit == "1" { "" } else { row.unit },
             ends: (sweep.range.from, sweep.range.to),
             points: &points,

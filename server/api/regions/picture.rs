@@ -5,6 +5,7 @@ use equipoise_physics::surveys::stability_map::{MapAxis, MapQuantity};
 use crate::api::formats::Pictured;
 use crate::api::regions::answer::{RegionAnswer, code};
 use crate::api::regions::request::RegionRequest;
+use crate::api::scene::field_text;
 use crate::charts::{HeatAxis, HeatMap, heat_map};
 use crate::http::Problem;
 
@@ -13,10 +14,10 @@ impl Pictured for RegionAnswer {
         let RegionRequest { region, tile, .. } = &self.request;
         let rows = self.request.rows();
         let side = |axis: &MapAxis, first: usize, count: usize| {
-            let row = axis.name.row();
+            let (row, text) = (axis.name.row(), field_text(axis.name));
             HeatAxis {
-                name: row.title,
-                symbol: row.symbol,
+                name: text.title,
+                symbol: text.symbol,
                 unit: row.unit,
                 from: axis.value(first),
                 to: axis.value(first + count.max(1) - 1),
@@ -40,7 +41,11 @@ impl Pictured for RegionAnswer {
         };
         let part = if tile.of > 1 { format!(", tile {} of {}", tile.index + 1, tile.of) } else { String::new() };
         Ok(heat_map(&HeatMap {
-            title: &format!("{} over {} and {}", quantity, region.x.name.row().title, region.y.name.row().title),
+            title: &format!(
+                "{quantity} over {} and {}",
+                field_text(region.x.name).title,
+                field_text(region.y.name).title
+            ),
             subtitle: &format!("runs of up to {} contacts{part}", region.impacts),
             x: side(&region.x, 0, region.x.count),
             y: side(&region.y, rows.start, rows.len()),

@@ -1,10 +1,149 @@
-//! The table of scene fields as clients see it: forms and checkers of their own can be made from it.
+//! Titles, symbols and prose of scene fields for clients, and `/v1/fields`, the table as clients see it.
+//!
+//! Paths, units, ranges and defaults are not here: they come from the physics. The compiler asks for the words of every new field.
 
-use equipoise_physics::scene::{FIELDS, Field, Kind};
+use equipoise_physics::scene::{FIELDS, Field, FieldError, FieldErrorKind, Kind, Name};
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::api::scene::write::value_to_json;
+
+/// Words about a field for forms, error messages and the contract.
+#[derive(Debug, Clone, Copy)]
+pub struct FieldText {
+    /// Title for forms.
+    pub title: &'static str,
+    /// Symbol in formulas; empty if there is none.
+    pub symbol: &'static str,
+    /// Meaning, in one sentence without a full stop.
+    pub about: &'static str,
+    /// Further sentences for the contract, without the last full stop; may be empty.
+    pub detail: &'static str,
+    /// Example of a value in a query; empty if there is none.
+    pub example: &'static str,
+}
+
+/// Words about a field.
+#[rustfmt::skip]
+pub fn field_text(name: Name) -> FieldText {
+    let text = |title, symbol, about| FieldText { title, symbol, about, detail: "", example: "" };
+    match name {
+        Name::ContactDistance => FieldText {
+            example: "0.13333333333333333",
+            ..text("Contact distance", "l", "Centre of gravity to contact point")
+        },
+        Name::RadiusOfGyration => FieldText {
+            detail: "Its square is the moment of inertia per unit mass",
+            example: "0.09428090415820635",
+            ..text("Radius of gyration", "ρ", "Radius of gyration about the centre of gravity")
+        },
+        Name::PointMass => FieldText {
+            detail: "It takes the place of the other fields of `body`",
+            ..text("Point mass", "", "A body without an angle; its table tilts by κ times the angle of its velocity")
+        },
+        Name::ContactVertex => text("Contact vertex", "", "Which vertex of a polygon bounces, counted from 0; the lowest, if it is not said"),
+        Name::Gravity => FieldText { example: "9.81", ..text("Gravity", "g", "Acceleration of gravity") },
+        Name::Incline => FieldText {
+            example: "1.2",
+            ..text("Incline", "φ", "Angle of the plane of motion from horizontal; gravity in the plane is G = g sin φ")
+        },
+        Name::Restitution => FieldText { example: "1", ..text("Restitution", "e", "Coefficient of restitution") },
+        Name::Friction => FieldText {
+            detail: "`periodic-orbits`, `precision` and the method `linear` refuse a value above 0 (422)",
+            example: "0",
+            ..text("Friction", "μ", "Coefficient of Coulomb friction")
+        },
+        Name::Law => FieldText { example: "poisson", ..text("Restitution law", "", "Law of restitution; they differ only with friction") },
+        Name::TiltGain => FieldText {
+            detail: "Required unless `table.feedback` is given",
+            example: "1.2",
+            ..text("Tilt gain", "κ", "The table tilts by α = κθ")
+        },
+        Name::EnergyGain => FieldText {
+            detail: "A gain other than 0 needs `table.target_height`",
+            example: "0",
+            ..text("Energy gain", "κ_E", "Feedback of the missing energy on the table's speed")
+        },
+        Name::TargetHeight => FieldText {
+            example: "0.25",
+            ..text("Target height", "y*", "Height of the centre of gravity at the top of the wanted bounce; needed with an energy gain")
+        },
+        Name::Strike => FieldText {
+            detail: "With `compensated` the table moves along its normal and makes up what restitution loses; with `still` it does not move at the impact",
+            example: "compensated",
+            ..text("Strike", "", "Whether the table makes up the loss of a bounce or stands still")
+        },
+        Name::Slide => FieldText {
+            detail: "With `matched` it is as fast as the contact point just before the impact. Resources that refuse `contact.friction` refuse `matched` too",
+            example: "none",
+            ..text("Slide", "", "Whether the table also moves along itself with the contact point")
+        },
+        Name::FeedbackX => text("Gain of x", "K_x", "State feedback α = −K·(x, θ, ẋ, θ̇) in place of the tilt gain"),
+        Name::FeedbackTheta => text("Gain of θ", "K_θ", "State feedback on the angle"),
+        Name::FeedbackXDot => text("Gain of ẋ", "K_ẋ", "State feedback on the horizontal velocity"),
+        Name::FeedbackThetaDot => text("Gain of θ̇", "K_θ̇", "State feedback on the angular velocity"),
+        Name::AssumedRestitution => FieldText {
+            detail: "By default the true one",
+            ..text("Assumed restitution", "ê", "What the table believes the restitution to be")
+        },
+        Name::TiltLimit => FieldText {
+            detail: "Its outcome is then `beyond_limits`",
+            example: "0.5",
+            ..text("Tilt limit", "α_max", "Largest tilt that the table can take; a strike that asks for more ends the run")
+        },
+        Name::TiltRateLimit => FieldText {
+            example: "5",
+            ..text("Tilt rate limit", "α̇_max", "Largest mean tilt rate from strike to strike")
+        },
+        Name::SpeedLimit => FieldText { example: "1", ..text("Speed limit", "v_max", "Largest speed of the table at a strike") },
+        Name::StrokeLimit => FieldText {
+            example: "0.1",
+            ..text("Stroke limit", "s_max", "Longest vertical way of the table from strike to strike, along the cubic between their velocities")
+        },
+        Name::Height => FieldText {
+            detail: "Heights count from the height at which contacts happen",
+            example: "0.2",
+            ..text("Height", "y₀", "Height of the centre of gravity at release")
+        },
+        Name::Theta => FieldText { detail: "Counter-clockwise", example: "0.3", ..text("Angle", "θ₀", "Angle from upright at release") },
+        Name::ThetaDot => FieldText { detail: "Counter-clockwise", example: "0.1", ..text("Spin", "θ̇₀", "Angular velocity at release") },
+        Name::X => FieldText { example: "0", ..text("Place", "x₀", "Horizontal place of the centre of gravity at release") },
+        Name::XDot => FieldText { example: "0.05", ..text("Horizontal velocity", "ẋ₀", "Horizontal velocity at release") },
+        Name::YDot => FieldText { example: "-0.1", ..text("Vertical velocity", "ẏ₀", "Vertical velocity at release, upwards") },
+        Name::ToppleAngle => FieldText {
+            detail: "Either way; the outcome is then `toppled`",
+            example: "1.4",
+            ..text("Topple angle", "θ_max", "A contact at this angle or more has toppled")
+        },
+        Name::TimingSd => FieldText {
+            example: "0",
+            ..text("Timing noise", "σ_t", "Standard deviation of the impact time on which the table acts")
+        },
+        Name::AngleSd => FieldText { example: "0", ..text("Angle noise", "σ_θ", "Standard deviation of the angle that the table senses") },
+        Name::NoiseModel => FieldText {
+            detail: "With `strike` the table meets the body at the wrong time; with `plan` it carries out the plan made for that time",
+            ..text("Noise model", "", "Whether the table meets the object early or late, or carries out a plan made for another time")
+        },
+        Name::Seed => text("Seed", "", "Seed of the noise"),
+        Name::NoiseRun => text("Run", "", "Which run of an ensemble with this seed"),
+    }
+}
+
+/// Adds to errors of the physics what a client needs to mend its request.
+pub fn explain(errors: Vec<FieldError>) -> Vec<FieldError> {
+    let explained = |error: FieldError| match error.kind {
+        FieldErrorKind::Missing(name) => {
+            let row = name.row();
+            let detail = format!("{} is missing: {}, {}", row.key(), field_text(name).about, row.limits());
+            FieldError { detail, ..error }
+        }
+        FieldErrorKind::TwoTiltLaws => {
+            FieldError { detail: format!("{} (null takes a preset's back)", error.detail), ..error }
+        }
+        FieldErrorKind::Other => error,
+    };
+    errors.into_iter().map(explained).collect()
+}
 
 /// `GET /v1/fields`.
 #[derive(Debug, Clone, Serialize)]
@@ -31,7 +170,7 @@ struct Row {
 }
 
 impl Fields {
-    /// All of them.
+    /// The whole table.
     pub fn all() -> Self {
         Self { fields: FIELDS.iter().map(Row::of).collect() }
     }
@@ -42,15 +181,16 @@ impl Row {
         let (kind, minimum, maximum, choices) = match row.kind {
             Kind::Number { minimum, maximum } => ("number", Some(minimum.into()), Some(maximum.into()), None),
             Kind::Integer { maximum } => ("integer", Some(0.into()), Some(maximum.into()), None),
-            Kind::Choice(words) => ("choice", None, None, Some(words)),
+            Kind::Choice(choices) => ("choice", None, None, Some(choices)),
             Kind::Flag => ("boolean", None, None, None),
         };
+        let FieldText { title, symbol, about, .. } = field_text(row.name);
         Self {
             path: row.path,
-            symbol: row.symbol,
+            symbol,
             group: row.group(),
-            title: row.title,
-            about: row.about,
+            title,
+            about,
             unit: row.unit,
             kind,
             minimum,

@@ -4,6 +4,7 @@ use equipoise_physics::body::polygon::{FARTHEST, MAX_VERTICES, Vertices};
 use equipoise_physics::scene::{Draft, FIELDS, Field, Kind, Scene, VERTICES, Value as FieldValue, field};
 use serde_json::{Map, Value};
 
+use crate::api::scene::fields::explain;
 use crate::http::Errors;
 use crate::http::problem::shortened;
 use crate::http::request::reader::join;
@@ -34,7 +35,7 @@ pub fn build_scene(draft: Draft, pointer: &str, errors: &mut Errors) -> Option<S
     match draft.build() {
         Ok(scene) => Some(scene),
         Err(found) => {
-            for error in found {
+            for error in explain(found) {
                 errors.push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
             }
             None

@@ -21,6 +21,7 @@ use crate::api::shared;
 use crate::compute::{Cancelled, Price, TimeSlice};
 use crate::http::{ApiRequest, Format, Problem, Resource};
 
+pub use fields::{explain, field_text};
 pub use merge::{build_scene, read_value};
 pub use price::{bounce_price, has_angle};
 pub use read::{read_draft, read_frictionless_scene, read_scene, read_scene_within};

@@ -15,16 +15,6 @@ pub enum NoiseModel {
     Plan,
 }
 
-impl NoiseModel {
-    /// Its name in scenes.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Strike => "strike",
-            Self::Plan => "plan",
-        }
-    }
-}
-
 /// The noise of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {

@@ -1,0 +1,372 @@
+//! Builds a scene from a draft: fills in defaults and refuses fields that are missing or contradict one another.
+
+use super::draft::{Draft, VERTICES};
+use super::error::{FieldError, FieldErrorKind};
+use super::fields::{FIELDS, Name, Value};
+use super::words::Alternative;
+use super::{BodyShape, Striking};
+use crate::body::Release;
+use crate::body::polygon::{FLUSH, Outline, PolygonError, Vertices};
+use crate::bounce::friction::{RestitutionLaw, Slide};
+use crate::bounce::state::State;
+use crate::numbers::trig;
+use crate::table::actuator_load::ActuatorLimits;
+use crate::table::control_law::{Gains, Steering};
+use crate::table::noise::{Noise, NoiseModel};
+
+/// A scene in which every value is in its range and nothing contradicts anything else. Made by [`Draft::build`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scene {
+    pub(crate) body: BodyShape,
+    /// Outline of a polygon.
+    pub(crate) outline: Option<Outline>,
+    /// G = g sin φ, m/s².
+    pub(crate) gravity: f64,
+    /// g, m/s².
+    pub(crate) full_gravity: f64,
+    /// φ, rad.
+    pub(crate) incline: f64,
+    pub(crate) restitution: f64,
+    /// μ.
+    pub(crate) friction: f64,
+    pub(crate) law: RestitutionLaw,
+    pub(crate) slide: Slide,
+    pub(crate) steering: Steering,
+    /// κ; 0 with state feedback.
+    pub(crate) tilt_gain: f64,
+    /// ê, if given.
+    pub(crate) assumed_restitution: Option<f64>,
+    pub(crate) energy_gain: f64,
+    /// Target height y*, m; only with an energy gain.
+    pub(crate) target_height: Option<f64>,
+    pub(crate) strike: Striking,
+    pub(crate) release: Release,
+    pub(crate) topple_angle: f64,
+    pub(crate) limits: Option<ActuatorLimits>,
+    pub(crate) noise: Option<Noise>,
+    draft: Draft,
+}
+
+impl Scene {
+    /// Value of a field, defaults included; None if the field does not apply.
+    pub fn value(&self, name: Name) -> Option<Value> {
+        self.draft.get(name)
+    }
+
+    /// Value of a field that is a number.
+    pub fn number(&self, name: Name) -> Option<f64> {
+        match self.value(name) {
+            Some(Value::Number(number)) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// Draft of this scene with all defaults, to change a field and build again.
+    pub fn draft(&self) -> Draft {
+        self.draft
+    }
+
+    /// Shape of the body.
+    pub fn body(&self) -> BodyShape {
+        self.body
+    }
+
+    /// Outline, if the body is a polygon.
+    pub fn outline(&self) -> Option<&Outline> {
+        self.outline.as_ref()
+    }
+
+    /// The same scene with the rod of the same l and ρ in place of a polygon.
+    pub fn as_rod(&self) -> Self {
+        let Some(outline) = self.outline else { return *self };
+        let mut draft = self.draft;
+        draft.set_vertices(None);
+        let (contact_distance, radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
+        for (name, value) in [
+            (Name::ContactVertex, None),
+            (Name::ContactDistance, Some(Value::Number(contact_distance))),
+            (Name::RadiusOfGyration, Some(Value::Number(radius_of_gyration))),
+        ] {
+            // Both are in their ranges, or the outline would not have been accepted.
+            let _ = draft.set(name, value);
+        }
+        draft.build().unwrap_or(*self)
+    }
+
+    /// Vertices of a polygon as they were given.
+    pub fn vertices(&self) -> Option<&Vertices> {
+        self.draft.vertices()
+    }
+
+    /// G = g sin φ, gravity in the plane of motion, m/s².
+    pub fn gravity(&self) -> f64 {
+        self.gravity
+    }
+
+    /// Release that starts the run.
+    pub fn release(&self) -> &Release {
+        &self.release
+    }
+
+    /// Angle and velocities at release.
+    pub fn start(&self) -> &State {
+        &self.release.state
+    }
+}
+
+/// Stands in for a body with errors until they are returned.
+const UNKNOWN: BodyShape = BodyShape::Rod { contact_distance: f64::NAN, radius_of_gyration: f64::NAN };
+
+impl Draft {
+    /// A number that has to be there. Its absence is one of the errors, and NaN stands in until they are returned.
+    fn required(&self, name: Name, errors: &mut Vec<FieldError>) -> f64 {
+        self.number(name).unwrap_or_else(|| {
+            errors.push(FieldError::missing(name));
+            f64::NAN
+        })
+    }
+
+    /// The alternative that a field names by its word. Its absence is one of the errors.
+    fn chosen<T: Alternative>(&self, name: Name, errors: &mut Vec<FieldError>) -> T {
+        let word = match self.get(name) {
+            Some(Value::Choice(word)) => T::from_word(word),
+            _ => None,
+        };
+        word.unwrap_or_else(|| {
+            errors.push(FieldError::missing(name));
+            T::FIRST
+        })
+    }
+
+    /// The scene, with defaults for fields that have no value.
+    ///
+    /// # Errors
+    /// Every field that is missing, contradicts another, or cannot be (a release below the table).
+    pub fn build(mut self) -> Result<Scene, Vec<FieldError>> {
+        let mut errors = Vec::new();
+        for row in &FIELDS {
+            let slot = &mut self.values[row.name as usize];
+            *slot = slot.or(row.default);
+        }
+        let (body, outline) = self.body(&mut errors);
+        let full_gravity = self.required(Name::Gravity, &mut errors);
+        let incline = self.required(Name::Incline, &mut errors);
+        let strike = self.chosen(Name::Strike, &mut errors);
+        let energy_gain = self.required(Name::EnergyGain, &mut errors);
+        if energy_gain != 0.0 {
+            if strike == Striking::Still {
+                let detail = "energy_gain moves the table and strike says `still`; leave one of them out".to_owned();
+                errors.push(FieldError::new(Name::EnergyGain, detail));
+            }
+            if self.get(Name::TargetHeight).is_none() {
+                let detail = format!(
+                    "target_height is missing: energy_gain {energy_gain} s²/m² needs the height it steers to; {}",
+                    Name::TargetHeight.row().limits()
+                );
+                errors.push(FieldError::new(Name::TargetHeight, detail));
+            }
+        }
+        let assumed_restitution = self.number(Name::AssumedRestitution);
+        if strike == Striking::Still && assumed_restitution.is_some() {
+            let detail =
+                "assumed_restitution moves the table and strike says `still`; leave one of them out".to_owned();
+            errors.push(FieldError::new(Name::AssumedRestitution, detail));
+        }
+        let steering = self.steering(&mut errors);
+        let friction = self.required(Name::Friction, &mut errors);
+        let slide = self.chosen(Name::Slide, &mut errors);
+        let noise = self.noise(&mut errors);
+        for (name, said) in [
+            (Name::Friction, friction != 0.0),
+            (Name::Slide, slide != Slide::None),
+            (Name::FeedbackTheta, steering != Steering::TiltGain),
+            (Name::TimingSd, noise.is_some()),
+        ] {
+            if said && body == BodyShape::Point {
+                let path = name.row().path;
+                let detail = format!("{path} is for a body with an angle; a point mass has none here");
+                errors.push(FieldError::new(name, detail));
+            }
+        }
+        let scene = Scene {
+            body,
+            outline,
+            gravity: full_gravity * trig::sin_cos(incline).0,
+            full_gravity,
+            incline,
+            restitution: self.required(Name::Restitution, &mut errors),
+            friction,
+            law: self.chosen(Name::Law, &mut errors),
+            slide,
+            steering,
+            tilt_gain: self.number(Name::TiltGain).unwrap_or(0.0),
+            assumed_restitution,
+            energy_gain,
+            target_height: if energy_gain == 0.0 { None } else { self.number(Name::TargetHeight) },
+            strike,
+            release: self.release(body, outline.as_ref(), &mut errors),
+            topple_angle: self.required(Name::ToppleAngle, &mut errors),
+            limits: self.limits(),
+            noise,
+            draft: self,
+        };
+        if errors.is_empty() { Ok(scene) } else { Err(errors) }
+    }
+
+    /// Law of the tilt: a tilt gain, or state feedback, in which gains that are not given are 0.
+    fn steering(&mut self, errors: &mut Vec<FieldError>) -> Steering {
+        let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+        let Some(said) = names.into_iter().find(|&name| self.get(name).is_some()) else {
+            self.required(Name::TiltGain, errors);
+            return Steering::TiltGain;
+        };
+        if self.get(Name::TiltGain).is_some() {
+            let feedback = said.row().path;
+            let detail = format!("tilt_gain and {feedback} both say how the table tilts; leave one of them out");
+            let kind = FieldErrorKind::TwoTiltLaws;
+            errors.push(FieldError { path: Name::TiltGain.row().path, detail, kind });
+        }
+        let [x, theta, x_dot, theta_dot] = names.map(|name| {
+            let gain = self.number(name).unwrap_or(0.0);
+            self.values[name as usize] = Some(Value::Number(gain));
+            gain
+        });
+        Steering::Feedback(Gains { x, theta, x_dot, theta_dot })
+    }
+
+    /// Noise with its defaults filled in; None if both standard deviations are 0.
+    fn noise(&mut self, errors: &mut Vec<FieldError>) -> Option<Noise> {
+        let [timing_sd, angle_sd] = [Name::TimingSd, Name::AngleSd].map(|name| self.number(name).unwrap_or(0.0));
+        if timing_sd == 0.0 && angle_sd == 0.0 {
+            return None;
+        }
+        self.values[Name::NoiseModel as usize].get_or_insert(Value::Choice(NoiseModel::Strike.word()));
+        let model = self.chosen(Name::NoiseModel, errors);
+        let [seed, run] = [Name::Seed, Name::NoiseRun].map(|name| {
+            match self.values[name as usize].get_or_insert(Value::Integer(0)) {
+                Value::Integer(number) => *number,
+                _ => 0,
+            }
+        });
+        Some(Noise { timing_sd, angle_sd, model, seed, run })
+    }
+
+    fn limits(&self) -> Option<ActuatorLimits> {
+        let names = [Name::TiltLimit, Name::TiltRateLimit, Name::SpeedLimit, Name::StrokeLimit];
+        let [tilt, tilt_rate, speed, stroke] = names.map(|name| self.number(name));
+        let most = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
+        names.iter().any(|&name| self.get(name).is_some()).then(|| ActuatorLimits {
+            tilt: most(tilt),
+            tilt_rate: most(tilt_rate),
+            speed: most(speed),
+            stroke: most(stroke),
+        })
+    }
+
+    fn body(&mut self, errors: &mut Vec<FieldError>) -> (BodyShape, Option<Outline>) {
+        let lengths = [Name::ContactDistance, Name::RadiusOfGyration];
+        let said = |name: &Name| self.get(*name).is_some();
+        if self.is_point() {
+            for name in lengths.into_iter().chain([Name::ContactVertex]).filter(said) {
+                let key = name.row().key();
+                errors.push(FieldError::new(name, format!("a point mass has no {key}; leave one of them out")));
+            }
+            if self.vertices.is_some() {
+                let detail = "a point mass has no vertices; leave one of them out".to_owned();
+                errors.push(FieldError::at(VERTICES, detail));
+            }
+            return (BodyShape::Point, None);
+        }
+        if let Some(vertices) = self.vertices {
+            for name in lengths.into_iter().filter(said) {
+                let key = name.row().key();
+                let detail = format!("{key} follows from vertices, which are given too; leave one of them out");
+                errors.push(FieldError::new(name, detail));
+            }
+            return self.polygon(&vertices, errors).map_or((UNKNOWN, None), |outline| {
+                let (contact_distance, radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
+                (BodyShape::Rod { contact_distance, radius_of_gyration }, Some(outline))
+            });
+        }
+        if said(&Name::ContactVertex) {
+            let detail =
+                "contact_vertex is one of a polygon's vertices, and there are none; give vertices, or leave it out";
+            errors.push(FieldError::new(Name::ContactVertex, detail.to_owned()));
+        }
+        if !lengths.iter().any(said) {
+            let detail =
+                "body is missing: give contact_distance and radius_of_gyration in m, vertices, or {\"point\": true}";
+            errors.push(FieldError::at("body", detail.to_owned()));
+            return (UNKNOWN, None);
+        }
+        let body = BodyShape::Rod {
+            contact_distance: self.required(Name::ContactDistance, errors),
+            radius_of_gyration: self.required(Name::RadiusOfGyration, errors),
+        };
+        (body, None)
+    }
+
+    /// Outline of a polygon; None if the vertices make no body. The default contact vertex is the lowest.
+    fn polygon(&mut self, vertices: &Vertices, errors: &mut Vec<FieldError>) -> Option<Outline> {
+        let contact_vertex = match self.get(Name::ContactVertex) {
+            Some(Value::Integer(vertex)) => Ok(vertex as usize),
+            _ => vertices.lowest(),
+        };
+        let outline = contact_vertex.and_then(|vertex| {
+            self.values[Name::ContactVertex as usize] = Some(Value::Integer(vertex as u64));
+            Outline::new(vertices, vertex)
+        });
+        let path = |error: &PolygonError| match error.is_of_contact_vertex() {
+            true => Name::ContactVertex.row().path,
+            false => VERTICES,
+        };
+        outline.map_err(|error| errors.push(FieldError::at(path(&error), error.to_string()))).ok()
+    }
+
+    fn release(&mut self, body: BodyShape, outline: Option<&Outline>, errors: &mut Vec<FieldError>) -> Release {
+        let height = self.required(Name::Height, errors);
+        let state = State {
+            theta: self.required(Name::Theta, errors),
+            x_dot: self.required(Name::XDot, errors),
+            y_dot: self.required(Name::YDot, errors),
+            theta_dot: self.required(Name::ThetaDot, errors),
+        };
+        match body {
+            BodyShape::Point => {
+                for name in [Name::Theta, Name::ThetaDot] {
+                    if self.number(name).is_some_and(|number| number != 0.0) {
+                        errors.push(FieldError::new(
+                            name,
+                            format!("a point mass has no {}; leave it out", name.row().key()),
+                        ));
+                    }
+                    self.values[name as usize] = None;
+                }
+            }
+            BodyShape::Rod { contact_distance, .. } => {
+                let contact_height = contact_distance * trig::sin_cos(state.theta).1;
+                if contact_height - height > 4.0 * f64::EPSILON * contact_height.abs().max(height) {
+                    let detail = format!(
+                        "height is {height} m, which puts the contact point {} m below the table; at theta {} rad it must be at \
+                         least {contact_height} m",
+                        contact_height - height,
+                        state.theta
+                    );
+                    errors.push(FieldError::new(Name::Height, detail));
+                } else if let Some(nearest) = outline.map(|outline| outline.nearest(trig::sin_cos(state.theta)))
+                    && height - contact_height + nearest.clearance < -FLUSH * contact_distance
+                {
+                    let detail = format!(
+                        "height is {height} m, which puts vertex {} {} m below the table; at theta {} rad it must be at least {} m",
+                        nearest.vertex,
+                        contact_height - nearest.clearance - height,
+                        state.theta,
+                        contact_height - nearest.clearance
+                    );
+                    errors.push(FieldError::new(Name::Height, detail));
+                }
+            }
+        }
+        Release { x: self.required(Name::X, errors), height, state }
+    }
+}
