@@ -1,7 +1,12 @@
 //! Contract and server agree: routes, examples, ranges of fields, and the document itself.
 //!
 //! The test frame holds every single answer to the contract, in every test of every file.
+//!
+//! The scene parts of `openapi.yaml` follow from the table of scene fields and from the presets. After a change of those,
+//! `UPDATE=1 cargo test --test contract scene_parts` rewrites them.
 
+#[path = "contract/scene.rs"]
+mod scene;
 mod support;
 
 use std::collections::BTreeSet;
@@ -257,6 +262,22 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
         }
     }
     assert!(differences.is_empty(), "{differences:#?}");
+}
+
+#[test]
+fn scene_parts_follow_from_the_table() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("openapi.yaml");
+    let contract = std::fs::read_to_string(&path).unwrap();
+    let wanted = scene::rewritten(&contract);
+    if std::env::var_os("UPDATE").is_some() {
+        return std::fs::write(&path, wanted).unwrap();
+    }
+    let differs = contract.lines().zip(wanted.lines()).position(|(written, wanted)| written != wanted);
+    assert!(
+        contract == wanted,
+        "openapi.yaml:{}: not what the table of scene fields gives; UPDATE=1 cargo test --test contract scene_parts rewrites it",
+        differs.map_or(0, |line| line + 1)
+    );
 }
 
 #[tokio::test]

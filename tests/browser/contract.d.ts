@@ -41,8 +41,8 @@ export interface components {
         "scene.noise.angle_sd": number;
         /** @enum {string} */
         "scene.noise.model": "strike" | "plan";
-        "scene.noise.run": number;
         "scene.noise.seed": number;
+        "scene.noise.run": number;
         /** @default 100 */
         "ladder.impacts": number;
         /** @default 0.001 */
@@ -1511,8 +1511,8 @@ export type SceneToppleAngle = components['schemas']['scene.topple_angle'];
 export type SceneNoiseTimingSd = components['schemas']['scene.noise.timing_sd'];
 export type SceneNoiseAngleSd = components['schemas']['scene.noise.angle_sd'];
 export type SceneNoiseModel = components['schemas']['scene.noise.model'];
-export type SceneNoiseRun = components['schemas']['scene.noise.run'];
 export type SceneNoiseSeed = components['schemas']['scene.noise.seed'];
+export type SceneNoiseRun = components['schemas']['scene.noise.run'];
 export type LadderImpacts = components['schemas']['ladder.impacts'];
 export type LadderTolerance = components['schemas']['ladder.tolerance'];
 export type TrajectoriesImpacts = components['schemas']['trajectories.impacts'];
