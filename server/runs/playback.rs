@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn without_interventions_it_is_the_trajectory() {
         for preset in crate::api::scene::presets::all() {
-            let run = case(&preset.name);
+            let run = case(preset.name);
             let mut orbit = run.scene().orbit().unwrap();
             for contact in contacts(&run, 200) {
                 assert_eq!(contact, orbit.advance());

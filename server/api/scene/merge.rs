@@ -11,26 +11,14 @@ use crate::http::request::reader::join;
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
 
-/// Merges `changes`, which stand at `pointer`, onto a draft and builds the scene. Null takes a value back.
-pub fn apply(
-    draft: &mut Draft,
-    changes: Option<&Value>,
-    pointer: &str,
-    source: Source,
-    errors: &mut Errors,
-) -> Option<Scene> {
-    let merged = changes.is_none_or(|changes| merge(draft, changes, pointer, source, errors));
-    if merged { build_scene(*draft, pointer, errors) } else { None }
-}
-
-/// Whether all of `changes` could be said.
+/// Merges `changes`, which stand at `pointer`, onto a draft; null takes a value back. Returns false if there were errors.
 pub(super) fn merge(draft: &mut Draft, changes: &Value, pointer: &str, source: Source, errors: &mut Errors) -> bool {
     let before = errors.len();
-    Walk { draft, source, errors }.object(changes, "", pointer);
+    Merger { draft, source, errors }.object(changes, "", pointer);
     errors.len() == before
 }
 
-/// The scene of a draft whose fields stand at `pointer`.
+/// Builds the scene of a draft whose fields stand at `pointer`.
 pub fn build_scene(draft: Draft, pointer: &str, errors: &mut Errors) -> Option<Scene> {
     match draft.build() {
         Ok(scene) => Some(scene),
@@ -43,14 +31,14 @@ pub fn build_scene(draft: Draft, pointer: &str, errors: &mut Errors) -> Option<S
     }
 }
 
-/// Goes down a JSON scene with the table of fields in hand.
-struct Walk<'a> {
+/// Walks down a JSON scene along the table of fields.
+struct Merger<'a> {
     draft: &'a mut Draft,
     source: Source,
     errors: &'a mut Errors,
 }
 
-impl Walk<'_> {
+impl Merger<'_> {
     fn object(&mut self, value: &Value, path: &str, pointer: &str) {
         let Some(fields) = value.as_object() else {
             let name = path.rsplit('.').next().filter(|name| !name.is_empty()).unwrap_or("scene");
@@ -144,7 +132,7 @@ impl Walk<'_> {
 
     fn forget(&mut self, group: &str) {
         for row in FIELDS.iter().filter(|row| row.path.strip_prefix(group).is_some_and(|rest| rest.starts_with('.'))) {
-            // Taking a value back is always admitted.
+            // Clearing a value cannot fail.
             let _ = self.draft.set(row.name, None);
         }
         if VERTICES.strip_prefix(group).is_some_and(|rest| rest.starts_with('.')) {
@@ -153,12 +141,11 @@ impl Walk<'_> {
     }
 }
 
-/// The value of a field as a request says it, none for null. The error continues a sentence that begins with the
-/// field's name.
+/// Reads the value of a field in a request; None for null. The error continues a sentence that begins with the name of the field.
 pub fn read_value(row: &'static Field, value: &Value, source: Source) -> Result<Option<FieldValue>, String> {
     match (row.kind, value) {
         (_, Value::Null) => Ok(None),
-        // The only way to take a value back in a query.
+        // A query has no other way to take a value back.
         (_, Value::String(text)) if source == Source::Query && text == "null" => Ok(None),
         (Kind::Number { minimum, maximum }, _) => {
             scalar::number_within(value, source, &(minimum..=maximum), row.unit).map(FieldValue::Number).map(Some)
@@ -174,7 +161,7 @@ pub fn read_value(row: &'static Field, value: &Value, source: Source) -> Result<
     }
 }
 
-/// The names that may stand where the last part of `path` stands.
+/// Names that may stand in place of the last part of `path`.
 fn known_beside(path: &str) -> Vec<&'static str> {
     let group = path.rsplit_once('.').map_or("", |(group, _)| group);
     let mut names: Vec<_> = FIELDS
@@ -187,7 +174,7 @@ fn known_beside(path: &str) -> Vec<&'static str> {
         })
         .filter_map(|rest| rest.split('.').next())
         .collect();
-    // In the order in which they come first.
+    // Keeps the first of each.
     let mut seen = Vec::new();
     names.retain(|name| {
         !seen.contains(name) && {

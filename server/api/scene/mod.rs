@@ -2,9 +2,9 @@
 
 pub mod fields;
 pub mod merge;
-pub mod paper;
 pub mod presets;
 pub mod price;
+mod quantity;
 pub mod read;
 pub mod write;
 

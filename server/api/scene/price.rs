@@ -3,12 +3,12 @@
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Name, Scene};
 
-/// The angle fields of a body, which a point mass does not have.
+/// Tells whether the body has an angle; a point mass has none.
 pub fn has_angle(scene: &Scene) -> bool {
     scene.value(Name::PointMass).is_none()
 }
 
-/// Price of a bounce of a scene at most, in bounces of the plain rod.
+/// Largest price of a bounce of a scene, in bounces of the plain rod.
 pub fn bounce_price(scene: &Scene) -> u64 {
     let vertices = scene.vertices().map_or(0, |vertices| vertices.places().len() as u64);
     let dearer =

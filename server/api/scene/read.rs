@@ -9,21 +9,21 @@ use crate::http::Reader;
 use crate::http::problem::shortened;
 use crate::http::request::scalar;
 
-/// The scene of a request: `preset`, with `scene` merged onto it (RFC 7396), or either of them alone.
+/// Reads the scene of a request: `preset` with `scene` merged onto it (RFC 7396), or either of them alone.
 ///
-/// None if something is wrong; then it is in the reader's errors.
+/// Returns None if something is wrong; the reader's errors then say what.
 pub fn read_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
     let draft = read_draft(reader)?;
     let pointer = reader.pointer_to("scene");
     build_scene(draft, &pointer, reader.errors())
 }
 
-/// [`read_scene`] for what is derived for frictionless contacts only.
+/// [`read_scene`] for resources that are derived for frictionless contacts only.
 pub fn read_frictionless_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
     read_scene_within(reader, &[])
 }
 
-/// [`read_scene`] for what is derived for the plain rod and some rungs above it.
+/// [`read_scene`] for resources that are derived for the plain rod and the levels in `known`.
 pub fn read_scene_within(reader: &mut Reader<'_, '_>, known: &[ModelLevel]) -> Option<Scene> {
     let scene = read_scene(reader)?;
     let pointer = reader.pointer_to("scene");
@@ -34,7 +34,7 @@ pub fn read_scene_within(reader: &mut Reader<'_, '_>, known: &[ModelLevel]) -> O
     Some(scene)
 }
 
-/// What a request says of its scene, not yet built: something else may still set a field of it.
+/// Reads the scene of a request without building it: the caller may still set a field.
 pub fn read_draft(reader: &mut Reader<'_, '_>) -> Option<Draft> {
     let (preset, changes) = (reader.text("preset"), reader.value("scene"));
     let (source, pointer) = (reader.source(), reader.pointer_to("scene"));

@@ -20,8 +20,13 @@ pub fn scene_to_json(scene: &Scene) -> Value {
         .vertices()
         .map(|vertices| (VERTICES, Value::from_iter(vertices.places().iter().map(|place| Value::from_iter(*place)))));
     let values = FIELDS.iter().filter_map(|row| Some((row.path, value_to_json(scene.value(row.name)?))));
+    nested(values.chain(vertices))
+}
+
+/// Values by dotted path as nested objects.
+pub(super) fn nested<'a>(values: impl Iterator<Item = (&'a str, Value)>) -> Value {
     let mut root = Map::new();
-    for (path, value) in values.chain(vertices) {
+    for (path, value) in values {
         let mut parts = path.split('.').peekable();
         let mut at = &mut root;
         while let Some(part) = parts.next() {

@@ -1,5 +1,5 @@
-//! Quantities that the paper prints, and their values as this server computes them: from the linear verdict, from the map's
-//! derivative, or from runs.
+//! Quantities that the paper prints, with their values as this server computes them: from the linear verdict, from the derivative of
+//! the return map, or from runs.
 //!
 //! Not here: the printed values, which stand with the presets.
 
@@ -12,50 +12,40 @@ use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::jacobian_at;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::{Complex, DMatrix, DVector};
-use serde::{Deserialize, Serialize};
+use serde::{Serialize, Serializer};
 
 /// A quantity with a printed and a computed value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Quantity {
-    #[serde(rename = "tilt_gain.critical")]
     CriticalTiltGain,
-    #[serde(rename = "tilt_gain.bounded")]
     BoundedTiltGain,
-    #[serde(rename = "theta.bounded")]
     BoundedAngle,
-    #[serde(rename = "theta.growth")]
     AngleGrowth,
-    #[serde(rename = "fixed_point.y_dot")]
     FixedPointSpeed,
-    #[serde(rename = "gravity.in_plane")]
     GravityInPlane,
-    #[serde(rename = "energy_gain.upper")]
     UpperEnergyGain,
-    #[serde(rename = "energy_gain.eigenvalue")]
     EnergyEigenvalue,
-    #[serde(rename = "energy.target")]
     TargetEnergy,
-    #[serde(rename = "energy.settled")]
     SettledEnergy,
-    #[serde(rename = "vertical_energy.settled")]
     SettledVerticalEnergy,
-    #[serde(rename = "friction.helped")]
     HelpedFriction,
-    #[serde(rename = "body.radius_of_gyration")]
     RadiusOfGyration,
-    #[serde(rename = "release.theta_dot")]
     ReleaseSpin,
-    #[serde(rename = "settled.theta_dot")]
     SettledSpin,
-    #[serde(rename = "angle_eigenvalue.im")]
     EigenvalueOfAngle,
-    #[serde(rename = "angle_eigenvalue.critical")]
     CriticalEigenvalue,
-    #[serde(rename = "angle_eigenvector.second")]
     SecondPower,
-    #[serde(rename = "jacobian.determinant")]
     Determinant,
 }
+
+impl Serialize for Quantity {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// Price of a value in closed form or of a short run, in bounces.
+const CHEAP: u64 = 100;
 
 /// Contacts after which a run counts as bounded.
 const BOUNDED: u64 = 10_000;
@@ -73,30 +63,47 @@ const FRICTION_THOUSANDTHS: u32 = 300;
 const ENERGY_GAINS: u32 = 8;
 
 impl Quantity {
-    pub(crate) fn symbol_and_unit(self) -> (&'static str, &'static str) {
+    /// Name in answers, symbol and unit.
+    const fn words(self) -> [&'static str; 3] {
         match self {
-            Self::CriticalTiltGain => ("κ_c", "1"),
-            Self::BoundedTiltGain => ("κ", "1"),
-            Self::BoundedAngle => ("θ₀", "rad"),
-            Self::AngleGrowth => ("growth of |θ|", "1"),
-            Self::FixedPointSpeed => ("ẏ*", "m/s"),
-            Self::GravityInPlane => ("G", "m/s²"),
-            Self::UpperEnergyGain => ("κ_E,max", "s²/m²"),
-            Self::EnergyEigenvalue => ("λ of ẏ", "1"),
-            Self::TargetEnergy | Self::SettledEnergy => ("E", "m²/s²"),
-            Self::SettledVerticalEnergy => ("η", "m²/s²"),
-            Self::HelpedFriction => ("μ", "1"),
-            Self::RadiusOfGyration => ("ρ", "m"),
-            Self::ReleaseSpin => ("θ̇₀", "rad/s"),
-            Self::SettledSpin => ("θ̇", "rad/s"),
-            Self::EigenvalueOfAngle => ("Im λ", "1"),
-            Self::CriticalEigenvalue => ("λ at κ_c", "1"),
-            Self::SecondPower => ("factor of c₄V₃", "1"),
-            Self::Determinant => ("det J", "1"),
+            Self::CriticalTiltGain => ["tilt_gain.critical", "κ_c", "1"],
+            Self::BoundedTiltGain => ["tilt_gain.bounded", "κ", "1"],
+            Self::BoundedAngle => ["theta.bounded", "θ₀", "rad"],
+            Self::AngleGrowth => ["theta.growth", "growth of |θ|", "1"],
+            Self::FixedPointSpeed => ["fixed_point.y_dot", "ẏ*", "m/s"],
+            Self::GravityInPlane => ["gravity.in_plane", "G", "m/s²"],
+            Self::UpperEnergyGain => ["energy_gain.upper", "κ_E,max", "s²/m²"],
+            Self::EnergyEigenvalue => ["energy_gain.eigenvalue", "λ of ẏ", "1"],
+            Self::TargetEnergy => ["energy.target", "E", "m²/s²"],
+            Self::SettledEnergy => ["energy.settled", "E", "m²/s²"],
+            Self::SettledVerticalEnergy => ["vertical_energy.settled", "η", "m²/s²"],
+            Self::HelpedFriction => ["friction.helped", "μ", "1"],
+            Self::RadiusOfGyration => ["body.radius_of_gyration", "ρ", "m"],
+            Self::ReleaseSpin => ["release.theta_dot", "θ̇₀", "rad/s"],
+            Self::SettledSpin => ["settled.theta_dot", "θ̇", "rad/s"],
+            Self::EigenvalueOfAngle => ["angle_eigenvalue.im", "Im λ", "1"],
+            Self::CriticalEigenvalue => ["angle_eigenvalue.critical", "λ at κ_c", "1"],
+            Self::SecondPower => ["angle_eigenvector.second", "factor of c₄V₃", "1"],
+            Self::Determinant => ["jacobian.determinant", "det J", "1"],
         }
     }
 
-    /// What it takes to compute, in bounces.
+    /// Name in answers.
+    pub(crate) const fn name(self) -> &'static str {
+        self.words()[0]
+    }
+
+    /// Symbol in formulas.
+    pub(crate) const fn symbol(self) -> &'static str {
+        self.words()[1]
+    }
+
+    /// Unit, "1" for a pure number.
+    pub(crate) const fn unit(self) -> &'static str {
+        self.words()[2]
+    }
+
+    /// Price of the computed value, in bounces.
     pub(crate) fn price(self) -> u64 {
         match self {
             Self::BoundedTiltGain => 10 * BOUNDED,
@@ -105,12 +112,23 @@ impl Quantity {
             Self::SettledEnergy | Self::SettledVerticalEnergy => SETTLED.1,
             // Runs with friction last a few contacts.
             Self::HelpedFriction => 20_000,
-            _ => 100,
+            Self::CriticalTiltGain
+            | Self::FixedPointSpeed
+            | Self::GravityInPlane
+            | Self::UpperEnergyGain
+            | Self::EnergyEigenvalue
+            | Self::TargetEnergy
+            | Self::RadiusOfGyration
+            | Self::ReleaseSpin
+            | Self::SettledSpin
+            | Self::EigenvalueOfAngle
+            | Self::CriticalEigenvalue
+            | Self::SecondPower
+            | Self::Determinant => CHEAP,
         }
     }
 
-    /// The value, and what it is computed from. None where the scene has none, and where `go_on`, which is asked now and then,
-    /// says no.
+    /// The value and its source. None if the scene has no such value, or if `go_on`, which is asked now and then, says no.
     pub(crate) fn compute(self, scene: &Scene, go_on: &dyn Fn() -> bool) -> Option<(f64, &'static str)> {
         let fixed_point = find_fixed_point(scene);
         let linear = fixed_point.as_ref().map(|fixed_point| linear_verdict(scene, fixed_point));
@@ -165,7 +183,7 @@ impl Quantity {
     }
 }
 
-/// How a run of a scene ends, and at which contact; none where it is stopped or has no contact.
+/// Ending of a run of a scene, and its contacts; None if the run is stopped or has no contact.
 fn end_of(
     scene: &Scene,
     impacts: u64,

@@ -1,0 +1,236 @@
+//! The presets: the paper's cases and those beside them, with the numbers that the paper prints.
+//!
+//! A scene is a list of fields by name, so the compiler refuses fields that do not exist. A test builds every scene.
+
+use std::f64::consts::FRAC_PI_4;
+use std::sync::OnceLock;
+
+use equipoise_physics::scene::Name::{
+    ContactDistance, ContactVertex, EnergyGain, Height, Incline, PointMass, RadiusOfGyration, Restitution, Strike,
+    TargetHeight, Theta, ThetaDot, TiltGain, TimingSd, XDot,
+};
+use equipoise_physics::scene::Value::{Choice, Flag, Integer, Number};
+use equipoise_physics::scene::{Name, Striking, Value};
+
+use super::preset::{Preset, Printed};
+use crate::api::scene::quantity::Quantity;
+
+/// l of the paper's triangle, m.
+const LENGTH: (Name, Value) = (ContactDistance, Number(0.4 / 3.0));
+
+/// ρ by the paper's formula, m.
+const RHO: (Name, Value) = (RadiusOfGyration, Number(0.09428090415820635));
+
+/// ρ of a triangle 0.1 m wide and 0.2 m high, m.
+const TRUE_RHO: (Name, Value) = (RadiusOfGyration, Number(0.05137011669140814));
+
+const PRINTED_RHO: &str = "the printed radius of gyration is not that of the triangle; the paper's tables were computed with the printed one, and so are these cases";
+
+#[rustfmt::skip]
+pub(super) static PRESETS: [Preset; 14] = [
+    Preset {
+        name: "case-1",
+        title: "Case 1: dropped at an angle",
+        shows: "Released at rest at 0.3 rad, the rod circles about upright in ⟨θ, θ̇⟩ and ⟨ẋ, ẏ⟩ and never falls (Fig. 5).",
+        scene: &[LENGTH, RHO, (TiltGain, Number(1.1)), (Height, Number(0.2)), (Theta, Number(0.3))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::CriticalTiltGain, 1.5, "Table 1"),
+            Printed::new(Quantity::RadiusOfGyration, 0.09428, "section 2.1.2")
+                .because(PRINTED_RHO),
+            Printed::new(Quantity::FixedPointSpeed, -1.1937, "eq. (10)")
+                .because("eq. (10) has l cos θ, which gives the speed of the first impact; the fixed point on the energy surface of the release has l, as Table 1 has for κ_critical, and less the energy of the drift"),
+            Printed::new(Quantity::EigenvalueOfAngle, 0.3341, "eq. (15) as printed")
+                .because("eq. (15) has 2ẏ*²l before the two roots and needs 2ẏ*√l; as printed, λ₃,₄ = 0.6 ± 0.334i have the modulus 0.687, against eq. (18)"),
+            Printed::new(Quantity::Determinant, 1.0, "Appendix B")
+                .because("the table tilts with the body, so the map does not keep volumes: det J = −ẏ_c⁺/ẏ_c⁻ of the next contact, which is 1 at the fixed point only. The map is reversible instead"),
+            Printed::new(Quantity::BoundedAngle, 0.4, "section 2.1.3")
+                .because("from 0.4 rad the run ends at its third contact, where the table would have to pull; from 0.34 rad it ends at contact 3167"),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "case-2",
+        title: "Case 2: dropped with a spin",
+        shows: "Released upright with a spin of 0.1 rad/s, the rod circles and drifts sideways for ever (Table 1; Fig. 6 shows twice the spin).",
+        scene: &[LENGTH, RHO, (TiltGain, Number(1.1)), (Height, Number(0.2)), (Theta, Number(0.0)), (ThetaDot, Number(0.1))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::CriticalTiltGain, 1.5, "Table 1")
+                .because("the energy of the drift, −0.0733 m/s, never comes back to the bounce, which lowers V and raises κ_c"),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "case-2-figure",
+        title: "Case 2 as drawn",
+        shows: "The spin of 0.2 rad/s that Fig. 6 was drawn with, twice that of Table 1.",
+        scene: &[LENGTH, RHO, (TiltGain, Number(1.1)), (Height, Number(0.2)), (Theta, Number(0.0)), (ThetaDot, Number(0.2))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::CriticalTiltGain, 1.5, "Table 1")
+                .because("the energy of the drift, −0.147 m/s, never comes back to the bounce, which lowers V and raises κ_c"),
+            Printed::new(Quantity::ReleaseSpin, 0.1, "Table 1, case 2")
+                .because("the caption of Fig. 6 has 0.2 rad/s; both are presets"),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "case-3",
+        title: "Case 3: too much tilt",
+        shows: "Beyond κ_c = 1.5 the swings grow until the rod falls at its 49th contact (Fig. 7).",
+        scene: &[LENGTH, RHO, (TiltGain, Number(1.55)), (Height, Number(0.2)), (Theta, Number(0.1))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::CriticalTiltGain, 1.5, "Table 1"),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "case-4",
+        title: "Case 4: lossy, steered to a height",
+        shows: "Restitution 0.5 on an incline of 45°: the table makes up the loss and steers the bounce to 0.25 m (Fig. 8).",
+        scene: &[LENGTH, RHO, (Incline, Number(FRAC_PI_4)), (Restitution, Number(0.5)), (TiltGain, Number(1.1)), (EnergyGain, Number(0.165)), (TargetHeight, Number(0.25)), (Height, Number(0.2)), (Theta, Number(0.3))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::CriticalTiltGain, 1.28, "Table 2, eq. (29)")
+                .because("eq. (29) makes κ_c depend on restitution; it does not: eq. (18) holds, and Table 2 is its value"),
+            Printed::new(Quantity::FixedPointSpeed, -1.27, "Table 2"),
+            Printed::new(Quantity::TargetEnergy, 1.73, "Table 2"),
+            Printed::new(Quantity::UpperEnergyGain, 1.653, "section 2.2.2")
+                .because("the energy is held up to half of the printed limit: the eigenvalue is 1 − (1 + e)κ_E ẏ*²"),
+            Printed::new(Quantity::EnergyEigenvalue, 0.9, "section 2.2.2, 1 − κ_E/κ_E,max")
+                .because("the eigenvalue is 1 − (1 + e)κ_E ẏ*²: a gain of a tenth of the printed limit takes away 40 % of a deviation at every bounce, not 10 %"),
+            Printed::without_value(Quantity::GravityInPlane, "Table 2 and Figs. 8 and 9 do not state it")
+                .because("an incline of 45° gives the ẏ*, the E and the κ_E of about 0.1 κ_E,max that the paper prints"),
+            Printed::new(Quantity::SettledEnergy, 1.73, "section 2.2.2 and Fig. 8, \"converges to the correct level\"")
+                .because("the table steers η = ½ẏ² + Gl cos θ and not the energy, and the rod goes on swinging: what the swing and the sideways motion have comes on top"),
+            Printed::new(Quantity::SettledVerticalEnergy, 1.73, "section 2.2.2"),
+            Printed::without_value(Quantity::HelpedFriction, "section 2.2.3, \"increasing κ_E also prolongs the time that the object can be kept upright\"")
+                .because("with more friction the run ends at the same contact or before it; in seconds it lasts a little longer, as the bounces are higher. The largest such μ grows with κ: it is 0.058 at κ = 1.2 and 0.08 at κ = 1.28"),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "case-5",
+        title: "Case 5: lossy, dropped with a spin",
+        shows: "As case 4, released upright with a spin of 0.1 rad/s (Fig. 9).",
+        scene: &[LENGTH, RHO, (Incline, Number(FRAC_PI_4)), (Restitution, Number(0.5)), (TiltGain, Number(1.1)), (EnergyGain, Number(0.165)), (TargetHeight, Number(0.25)), (Height, Number(0.2)), (Theta, Number(0.0)), (ThetaDot, Number(0.1))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::CriticalTiltGain, 1.28, "Table 2, eq. (29)")
+                .because("eq. (29) makes κ_c depend on restitution; it does not: eq. (18) holds, and Table 2 is its value"),
+            Printed::new(Quantity::FixedPointSpeed, -1.27, "Table 2"),
+            Printed::new(Quantity::TargetEnergy, 1.73, "Table 2"),
+            Printed::new(Quantity::UpperEnergyGain, 1.653, "section 2.2.2")
+                .because("the energy is held up to half of the printed limit: the eigenvalue is 1 − (1 + e)κ_E ẏ*²"),
+            Printed::new(Quantity::EnergyEigenvalue, 0.9, "section 2.2.2, 1 − κ_E/κ_E,max")
+                .because("the eigenvalue is 1 − (1 + e)κ_E ẏ*²: a gain of a tenth of the printed limit takes away 40 % of a deviation at every bounce, not 10 %"),
+            Printed::without_value(Quantity::GravityInPlane, "Table 2 and Figs. 8 and 9 do not state it")
+                .because("an incline of 45° gives the ẏ*, the E and the κ_E of about 0.1 κ_E,max that the paper prints"),
+            Printed::new(Quantity::AngleGrowth, 1.0, "section 2.2.2, \"then similar to the lossless case\"")
+                .because("the lossless swing keeps its size. Energy feedback makes this one grow until |θ| reaches 0.354 rad after some 23,000 contacts: see lyapunov of /v1/stability"),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "critical-soft",
+        title: "At κ_c: soft",
+        shows: "Exactly at κ_c the eigenvalues are silent. Here the boundary coefficient is 0.667: the swings stay bounded, as the paper's simulations did (Appendix C).",
+        scene: &[LENGTH, RHO, (TiltGain, Number(1.5)), (Height, Number(0.2)), (Theta, Number(0.01))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::CriticalTiltGain, 1.5, "Table 1"),
+            Printed::new(Quantity::CriticalEigenvalue, 1.0, "Appendix C")
+                .because("both eigenvalues are −1: the swings change side at every bounce"),
+            Printed::new(Quantity::BoundedAngle, 0.15, "section 2.1.3, up to and including κ_critical")
+                .because("at κ_c runs from 0.15 rad fall within 100 contacts; those from 0.1 rad are still bounded after 100,000"),
+            Printed::new(Quantity::BoundedTiltGain, 1.5, "section 2.1.3, from 0.15 rad")
+                .because("from 0.15 rad runs just below κ_c fall too, and so does one at κ = 1.27, beside the resonance of order 4")
+                .with(&[(Theta, Number(0.15))]),
+            Printed::new(Quantity::SecondPower, 2.0, "Appendix C, eq. (38) at n = 2")
+                .because("with λ = −1 the term is n(−1)^(n−1)c₄V₃: eq. (38) lacks the sign (−1)^(n−1)"),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "critical-hard",
+        title: "At κ_c: hard",
+        shows: "The triangle's own radius of gyration turns the boundary coefficient negative, −0.188: at κ_c it falls at contact 71.",
+        scene: &[LENGTH, TRUE_RHO, (TiltGain, Number(1.1484375)), (Height, Number(0.2)), (Theta, Number(0.01))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::RadiusOfGyration, 0.09428, "section 2.1.2")
+                .because(PRINTED_RHO),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "true-triangle",
+        title: "The triangle as it really is",
+        shows: "Case 1 with the radius of gyration that a triangle 0.1 m wide and 0.2 m high has: the range of stable κ shrinks from 1.5 to 1.148.",
+        scene: &[LENGTH, TRUE_RHO, (TiltGain, Number(1.07)), (Height, Number(0.2)), (Theta, Number(0.1))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::RadiusOfGyration, 0.09428, "section 2.1.2")
+                .because(PRINTED_RHO),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "triangle-polygon",
+        title: "The triangle drawn as it is",
+        shows: "Case 1 with the paper's triangle as a polygon, 0.1 m wide and 0.2 m high on its apex: l and ρ follow from it, and no other vertex comes nearer to the table than 0.19 m. Case 1 is the same triangle with ρ as printed.",
+        scene: &[(ContactVertex, Integer(0)), (TiltGain, Number(1.1)), (Height, Number(0.2)), (Theta, Number(0.3))],
+        vertices: &[[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]],
+        printed: &[
+            Printed::new(Quantity::RadiusOfGyration, 0.09428, "section 2.1.2")
+                .because("the printed radius of gyration is not that of the triangle"),
+            Printed::new(Quantity::CriticalTiltGain, 1.5, "Table 1")
+                .because("κ_c − 1 goes with ρ², and the triangle's ρ is 0.05137 m"),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "point-mass",
+        title: "A point mass",
+        shows: "The paper's opening example: the angle of the velocity shrinks by 1 − 2κ at every bounce (eq. 4).",
+        scene: &[(PointMass, Flag(true)), (TiltGain, Number(0.4)), (Height, Number(0.2)), (XDot, Number(0.5))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::CriticalTiltGain, 1.0, "section 2.1"),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "still-lossy",
+        title: "A table that stands still",
+        shows: "With restitution 0.8 and nothing to make up for it, the bounces shrink to nothing in finite time (Zeno). Only they end there: what turns goes on turning.",
+        scene: &[LENGTH, RHO, (Restitution, Number(0.8)), (TiltGain, Number(0.0)), (Strike, Choice(Striking::Still.word())), (Height, Number(0.2)), (XDot, Number(0.1))],
+        vertices: &[],
+        printed: &[
+            Printed::new(Quantity::SettledSpin, 0.0, "section 3, to settle is to have zero relative velocity")
+                .because("settled says that the bounces have died out in a finite time. The contact point stays on the table from then on, and the body goes on to turn: here, on a level table that stands still, it falls over")
+                .with(&[(Restitution, Number(0.1)), (Theta, Number(0.1)), (XDot, Number(0.0))]),
+        ],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "case-1-noise",
+        title: "Case 1 with noise",
+        shows: "Case 1 on a table that errs by 10 ms in time (standard deviation) and meets the rod wherever it then is: of many runs some 45 % survive 400 bounces; with noise.model `plan` some 8 %, and half fall within 10.",
+        scene: &[LENGTH, RHO, (TiltGain, Number(1.1)), (Height, Number(0.2)), (Theta, Number(0.3)), (TimingSd, Number(0.01))],
+        vertices: &[],
+        printed: &[],
+        shown: OnceLock::new(),
+    },
+    Preset {
+        name: "case-4-noise",
+        title: "Case 4 with noise",
+        shows: "Case 4 on a table that errs by 10 ms in time (standard deviation): some 91 % of many runs survive 400 bounces; with noise.model `plan` some 11 %.",
+        scene: &[LENGTH, RHO, (Incline, Number(FRAC_PI_4)), (Restitution, Number(0.5)), (TiltGain, Number(1.1)), (EnergyGain, Number(0.165)), (TargetHeight, Number(0.25)), (Height, Number(0.2)), (Theta, Number(0.3)), (TimingSd, Number(0.01))],
+        vertices: &[],
+        printed: &[],
+        shown: OnceLock::new(),
+    },
+];
