@@ -5,6 +5,8 @@
 //! The scene parts of `openapi.yaml` follow from the table of scene fields and from the presets. After a change of those,
 //! `UPDATE=1 cargo test --test contract scene_parts` rewrites them.
 
+#[path = "contract/docs.rs"]
+mod docs;
 #[path = "contract/scene.rs"]
 mod scene;
 mod support;
@@ -278,6 +280,11 @@ fn scene_parts_follow_from_the_table() {
         "openapi.yaml:{}: not what the table of scene fields gives; UPDATE=1 cargo test --test contract scene_parts rewrites it",
         differs.map_or(0, |line| line + 1)
     );
+}
+
+#[test]
+fn the_documentation_has_the_fields_of_the_table() {
+    assert_eq!(docs::differences(include_str!("../docs/physics.md")), Vec::<String>::new());
 }
 
 #[tokio::test]

@@ -82,7 +82,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// A number for people: multiples of π as such.
-fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     match value {
         PI => "π".to_owned(),
         FRAC_PI_2 => "π/2".to_owned(),

@@ -29,8 +29,9 @@ pub fn field_text(name: Name) -> FieldText {
     let text = |title, symbol, about| FieldText { title, symbol, about, detail: "", example: "" };
     match name {
         Name::ContactDistance => FieldText {
+            detail: "With `body.radius_of_gyration` it gives a rod",
             example: "0.13333333333333333",
-            ..text("Contact distance", "l", "Centre of gravity to contact point")
+            ..text("Contact distance", "l", "Distance from the centre of gravity to the contact point")
         },
         Name::RadiusOfGyration => FieldText {
             detail: "Its square is the moment of inertia per unit mass",
@@ -38,10 +39,13 @@ pub fn field_text(name: Name) -> FieldText {
             ..text("Radius of gyration", "ρ", "Radius of gyration about the centre of gravity")
         },
         Name::PointMass => FieldText {
-            detail: "It takes the place of the other fields of `body`",
-            ..text("Point mass", "", "A body without an angle; its table tilts by κ times the angle of its velocity")
+            detail: "Excludes the other fields of `body`. False means the same as leaving it out",
+            ..text("Point mass", "", "A body without an angle: the table tilts by κ times the angle of its velocity")
         },
-        Name::ContactVertex => text("Contact vertex", "", "Which vertex of a polygon bounces, counted from 0; the lowest, if it is not said"),
+        Name::ContactVertex => FieldText {
+            detail: "There is no default if two vertices of the polygon as drawn are equally low. The vertex has to be a corner of the convex hull: otherwise another vertex always touches a flat table before it",
+            ..text("Contact vertex", "", "Number of the vertex of a polygon that bounces, from 0; by default the lowest")
+        },
         Name::Gravity => FieldText { example: "9.81", ..text("Gravity", "g", "Acceleration of gravity") },
         Name::Incline => FieldText {
             example: "1.2",
@@ -53,7 +57,10 @@ pub fn field_text(name: Name) -> FieldText {
             example: "0",
             ..text("Friction", "μ", "Coefficient of Coulomb friction")
         },
-        Name::Law => FieldText { example: "poisson", ..text("Restitution law", "", "Law of restitution; they differ only with friction") },
+        Name::Law => FieldText {
+            example: "poisson",
+            ..text("Restitution law", "", "Law of restitution; the laws differ only with friction")
+        },
         Name::TiltGain => FieldText {
             detail: "Required unless `table.feedback` is given",
             example: "1.2",
@@ -62,34 +69,31 @@ pub fn field_text(name: Name) -> FieldText {
         Name::EnergyGain => FieldText {
             detail: "A gain other than 0 needs `table.target_height`",
             example: "0",
-            ..text("Energy gain", "κ_E", "Feedback of the missing energy on the table's speed")
+            ..text("Energy gain", "κ_E", "Gain of the feedback from missing energy to the table's speed")
         },
         Name::TargetHeight => FieldText {
             example: "0.25",
             ..text("Target height", "y*", "Height of the centre of gravity at the top of the wanted bounce; needed with an energy gain")
         },
         Name::Strike => FieldText {
-            detail: "With `compensated` the table moves along its normal and makes up what restitution loses; with `still` it does not move at the impact",
+            detail: "`compensated`: the table makes up the energy that restitution loses. `still`: it does not move",
             example: "compensated",
-            ..text("Strike", "", "Whether the table makes up the loss of a bounce or stands still")
+            ..text("Strike", "", "Motion of the table along its normal at a strike")
         },
         Name::Slide => FieldText {
-            detail: "With `matched` it is as fast as the contact point just before the impact. Resources that refuse `contact.friction` refuse `matched` too",
+            detail: "`matched`: as fast as the contact point just before the strike. Resources that refuse `contact.friction` refuse `matched` too",
             example: "none",
-            ..text("Slide", "", "Whether the table also moves along itself with the contact point")
+            ..text("Slide", "", "Motion of the table along itself at a strike")
         },
-        Name::FeedbackX => text("Gain of x", "K_x", "State feedback α = −K·(x, θ, ẋ, θ̇) in place of the tilt gain"),
-        Name::FeedbackTheta => text("Gain of θ", "K_θ", "State feedback on the angle"),
-        Name::FeedbackXDot => text("Gain of ẋ", "K_ẋ", "State feedback on the horizontal velocity"),
-        Name::FeedbackThetaDot => text("Gain of θ̇", "K_θ̇", "State feedback on the angular velocity"),
-        Name::AssumedRestitution => FieldText {
-            detail: "By default the true one",
-            ..text("Assumed restitution", "ê", "What the table believes the restitution to be")
-        },
+        Name::FeedbackX => text("Gain of x", "K_x", "Gain of the state feedback α = −K·(x, θ, ẋ, θ̇) on the position, in place of the tilt gain"),
+        Name::FeedbackTheta => text("Gain of θ", "K_θ", "Gain of the state feedback on the angle"),
+        Name::FeedbackXDot => text("Gain of ẋ", "K_ẋ", "Gain of the state feedback on the horizontal velocity"),
+        Name::FeedbackThetaDot => text("Gain of θ̇", "K_θ̇", "Gain of the state feedback on the angular velocity"),
+        Name::AssumedRestitution => text("Assumed restitution", "ê", "Restitution that the table assumes; by default the true one"),
         Name::TiltLimit => FieldText {
-            detail: "Its outcome is then `beyond_limits`",
+            detail: "The outcome is then `beyond_limits`",
             example: "0.5",
-            ..text("Tilt limit", "α_max", "Largest tilt that the table can take; a strike that asks for more ends the run")
+            ..text("Tilt limit", "α_max", "Largest tilt of the table; a strike that needs more ends the run")
         },
         Name::TiltRateLimit => FieldText {
             example: "5",
@@ -98,7 +102,7 @@ pub fn field_text(name: Name) -> FieldText {
         Name::SpeedLimit => FieldText { example: "1", ..text("Speed limit", "v_max", "Largest speed of the table at a strike") },
         Name::StrokeLimit => FieldText {
             example: "0.1",
-            ..text("Stroke limit", "s_max", "Longest vertical way of the table from strike to strike, along the cubic between their velocities")
+            ..text("Stroke limit", "s_max", "Longest vertical stroke of the table from strike to strike, along the cubic between their velocities")
         },
         Name::Height => FieldText {
             detail: "Heights count from the height at which contacts happen",
@@ -107,25 +111,28 @@ pub fn field_text(name: Name) -> FieldText {
         },
         Name::Theta => FieldText { detail: "Counter-clockwise", example: "0.3", ..text("Angle", "θ₀", "Angle from upright at release") },
         Name::ThetaDot => FieldText { detail: "Counter-clockwise", example: "0.1", ..text("Spin", "θ̇₀", "Angular velocity at release") },
-        Name::X => FieldText { example: "0", ..text("Place", "x₀", "Horizontal place of the centre of gravity at release") },
+        Name::X => FieldText { example: "0", ..text("Place", "x₀", "Horizontal position of the centre of gravity at release") },
         Name::XDot => FieldText { example: "0.05", ..text("Horizontal velocity", "ẋ₀", "Horizontal velocity at release") },
         Name::YDot => FieldText { example: "-0.1", ..text("Vertical velocity", "ẏ₀", "Vertical velocity at release, upwards") },
         Name::ToppleAngle => FieldText {
-            detail: "Either way; the outcome is then `toppled`",
+            detail: "The run then ends as `toppled`",
             example: "1.4",
-            ..text("Topple angle", "θ_max", "A contact at this angle or more has toppled")
+            ..text("Topple angle", "θ_max", "A contact at this angle or more, to either side, counts as toppled")
         },
         Name::TimingSd => FieldText {
             example: "0",
-            ..text("Timing noise", "σ_t", "Standard deviation of the impact time on which the table acts")
+            ..text("Timing noise", "σ_t", "Standard deviation of the error in the impact time on which the table acts")
         },
-        Name::AngleSd => FieldText { example: "0", ..text("Angle noise", "σ_θ", "Standard deviation of the angle that the table senses") },
+        Name::AngleSd => FieldText {
+            example: "0",
+            ..text("Angle noise", "σ_θ", "Standard deviation of the error in the angle that the table senses")
+        },
         Name::NoiseModel => FieldText {
-            detail: "With `strike` the table meets the body at the wrong time; with `plan` it carries out the plan made for that time",
-            ..text("Noise model", "", "Whether the table meets the object early or late, or carries out a plan made for another time")
+            detail: "`strike`: it meets the body. `plan`: it carries out the plan",
+            ..text("Noise model", "", "Action of the table at a wrong time: it meets the body there, or carries out the plan made for that time")
         },
         Name::Seed => text("Seed", "", "Seed of the noise"),
-        Name::NoiseRun => text("Run", "", "Which run of an ensemble with this seed"),
+        Name::NoiseRun => text("Run", "", "Number of the run, in an ensemble with this seed"),
     }
 }
 
