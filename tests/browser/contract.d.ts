@@ -1369,8 +1369,13 @@ export interface components {
                 y_dot_after: components["schemas"]["NumbersOrNull"];
                 theta_dot_after: components["schemas"]["NumbersOrNull"];
                 alpha: components["schemas"]["Numbers"];
-                flight_time: components["schemas"]["NumbersOrNull"];
+                table_velocity_x: components["schemas"]["NumbersOrNull"];
+                table_velocity_y: components["schemas"]["NumbersOrNull"];
+                impulse_normal: components["schemas"]["NumbersOrNull"];
+                impulse_tangential: components["schemas"]["NumbersOrNull"];
+                contact_mode: ("frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null)[];
                 energy: components["schemas"]["Numbers"];
+                flight_time: components["schemas"]["NumbersOrNull"];
                 contact_speed: components["schemas"]["Numbers"];
                 clearance: components["schemas"]["Numbers"];
             };
