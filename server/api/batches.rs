@@ -1,8 +1,8 @@
-//! `batches`: many requests to one resource at once, a line each, answered line by line.
+//! `/v1/batches/{resource}`: many requests to one resource at once, one on each line, answered line by line.
 //!
-//! Each line is a request of its own: it waits for its turn among those of all clients, and what is wrong with it is told
-//! in its line and nowhere else. No more of them are under way than there are permits, and none is begun before the client
-//! has taken what is done, so a batch holds no more than its few answers.
+//! Each line is a request of its own. It waits for its turn among the requests of all clients, and its errors stand in its own
+//! line. At most as many lines as there are permits are computed at a time, and the next one starts only after the client has
+//! read the answers so far, so a batch holds few answers in memory.
 
 use std::convert::Infallible;
 use std::future::ready;
@@ -39,13 +39,14 @@ fn batches(resources: &[Endpoint], app: App, name: &str, batch: NdjsonBatch) -> 
         return Err(Problem::not_found(format!("there are no batches of this name; there are {}", names.join(", "))));
     };
     let (request, context, at_once) = (batch.request.clone(), RequestContext::current(), app.config.permits());
-    let told = stream::iter(batch.into_items()).map(move |item| told(app.clone(), answer, item, context.clone()));
-    let told = told.buffered(at_once).map(Some).chain(stream::iter([None]));
-    let pieces = told.scan(End::default(), |end, told| ready(Some(end.pass(told)))).map(stream::iter).flatten();
+    let answers =
+        stream::iter(batch.into_items()).map(move |item| answer_item(app.clone(), answer, item, context.clone()));
+    let answers = answers.buffered(at_once).map(Some).chain(stream::iter([None]));
+    let pieces = answers.scan(End::default(), |end, answer| ready(Some(end.pass(answer)))).map(stream::iter).flatten();
     request.respond_stream(&RESOURCE, Body::from_stream(pieces.map(Ok::<_, Infallible>)))
 }
 
-/// How the lines of an answer came out, which its last line says.
+/// Number of lines and of problems, for the last line.
 #[derive(Debug, Default, Serialize)]
 struct End {
     lines: usize,
@@ -53,9 +54,9 @@ struct End {
 }
 
 impl End {
-    /// The pieces of a line on their way; after the last one those of the end.
-    fn pass(&mut self, told: Option<Told>) -> Vec<Bytes> {
-        let Some(Told { number, said }) = told else {
+    /// The bytes of a line, or of the last line after all others.
+    fn pass(&mut self, answer: Option<BatchAnswer>) -> Vec<Bytes> {
+        let Some(BatchAnswer { number, result }) = answer else {
             #[derive(Serialize)]
             struct Last<'a> {
                 end: &'a End,
@@ -64,26 +65,26 @@ impl End {
             return vec![format!("{last}\n").into()];
         };
         self.lines += 1;
-        let (name, json) = match said {
+        let (name, json) = match result {
             Ok(answer) => ("answer", answer),
             Err(problem) => {
                 self.problems += 1;
                 ("problem", problem)
             }
         };
-        // As it is, a large answer is not copied, and counts as the client's until it is sent.
+        // In pieces, a large answer is not copied, and its bytes count as the client's until they are sent.
         vec![format!("{{\"line\":{number},\"{name}\":").into(), json, Bytes::from_static(b"}\n")]
     }
 }
 
-/// What the resource says to a line, as JSON: its answer, or a problem.
-struct Told {
+/// The response to a line, as JSON: an answer or a problem.
+struct BatchAnswer {
     number: usize,
-    said: Result<Bytes, Bytes>,
+    result: Result<Bytes, Bytes>,
 }
 
-async fn told(app: App, answer: Answer, item: BatchItem, context: Option<RequestContext>) -> Told {
-    // Cheap work is done in this task, and others' have to have their turn in between.
+async fn answer_item(app: App, answer: Answer, item: BatchItem, context: Option<RequestContext>) -> BatchAnswer {
+    // Cheap work runs in this task, so other tasks get their turn between lines.
     yield_now().await;
     let number = item.number;
     let answered = AssertUnwindSafe(answered(app, answer, item)).catch_unwind();
@@ -91,15 +92,15 @@ async fn told(app: App, answer: Answer, item: BatchItem, context: Option<Request
         let answered = answered.await.unwrap_or_else(|_| Err(Problem::internal()));
         answered.map_err(|problem| problem.to_json().into())
     };
-    // The body is sent by another task than the one that was asked.
-    let said = match context {
+    // The body is sent by another task than the one that got the request.
+    let result = match context {
         Some(context) => context.scope(telling).await,
         None => telling.await,
     };
-    Told { number, said }
+    BatchAnswer { number, result }
 }
 
-/// The answer as JSON. Who sends a batch has come to wait, so a line waits again where a request would be told to.
+/// The answer as JSON. A batch can wait, so an overloaded server is asked again instead of telling the client to.
 async fn answered(app: App, answer: Answer, item: BatchItem) -> Result<Bytes, Problem> {
     let request = item.request()?;
     let mut waits = 0..limits::BATCH_WAITS;
@@ -114,7 +115,7 @@ async fn answered(app: App, answer: Answer, item: BatchItem) -> Result<Bytes, Pr
             answered => break answered?,
         }
     };
-    // Only work that was given up breaks off, and that is done for nobody.
+    // A body breaks off only if its work was cancelled, and then nobody reads it.
     Ok(response.into_body().collect().await.map_err(|_| Problem::internal())?.to_bytes())
 }
 
@@ -135,17 +136,17 @@ mod tests {
     #[tokio::test]
     async fn a_panic_is_told_in_its_line() {
         let app = App::new(&Config::default());
-        let told = told(app, |_, _| async { panic!("on purpose") }.boxed(), item().await, None).await;
-        let problem: serde_json::Value = serde_json::from_slice(&told.said.unwrap_err()).unwrap();
+        let answered = answer_item(app, |_, _| async { panic!("on purpose") }.boxed(), item().await, None).await;
+        let problem: serde_json::Value = serde_json::from_slice(&answered.result.unwrap_err()).unwrap();
         assert_eq!(problem["status"], 500);
     }
 
     #[tokio::test(start_paused = true)]
     async fn a_line_waits_where_there_is_too_much_to_do_but_not_for_ever() {
         let app = App::new(&Config::default());
-        let told = told(app, |_, _| async { Err(Problem::overloaded("full")) }.boxed(), item().await, None);
+        let answered = answer_item(app, |_, _| async { Err(Problem::overloaded("full")) }.boxed(), item().await, None);
         let begin = tokio::time::Instant::now();
-        let problem: serde_json::Value = serde_json::from_slice(&told.await.said.unwrap_err()).unwrap();
+        let problem: serde_json::Value = serde_json::from_slice(&answered.await.result.unwrap_err()).unwrap();
         assert_eq!((problem["status"].as_u64(), problem["detail"].as_str()), (Some(503), Some("full")));
         assert_eq!(begin.elapsed().as_secs(), u64::from(limits::BATCH_WAITS * limits::RETRY_AFTER_S));
     }

@@ -54,7 +54,7 @@ format_set! {
 }
 
 format_set! {
-    /// The same, with reports on how far the work is.
+    /// The same, with reports of progress.
     ProgressFormat { Json, Csv, Ndjson, Progress, Svg, Png }
 }
 

@@ -1,4 +1,4 @@
-//! `live`: a run told as it happens, over a WebSocket, or as Server-Sent Events to a client that only listens.
+//! `/v1/live` and `/v1/live/events`: a run as it happens, over a WebSocket or as Server-Sent Events.
 
 use std::future::ready;
 
@@ -29,14 +29,14 @@ const SUBPROTOCOL: &str = "equipoise.v1";
 
 const EVENTS: Resource = Resource { name: "live/events", formats: &[Format::Events] };
 
-/// Their paths.
+/// The routes.
 pub fn routes() -> Router<App> {
     Router::new().route(PATH, get(live)).route("/v1/live/events", get(live_events))
 }
 
 type Upgrade = Result<WebSocketUpgrade, WebSocketUpgradeRejection>;
 
-/// What is wrong with the run is told first, so that a page whose WebSocket was refused can ask why.
+/// Errors of the run come before those of the handshake, so that a page whose WebSocket was refused can ask for the reason.
 async fn live(State(app): State<App>, upgrade: Upgrade, api_request: ApiRequest) -> Result<Response, Problem> {
     let request = api_request.read(|reader| run_url::read(reader, session::wall_now()))?;
     let upgrade = match upgrade {
@@ -62,7 +62,7 @@ async fn live(State(app): State<App>, upgrade: Upgrade, api_request: ApiRequest)
     }))
 }
 
-/// What the library says of a message that it cannot read.
+/// The reason why the library cannot read a message.
 fn unreadable(error: axum::Error) -> Unreadable {
     use tungstenite::Error::{Capacity, Protocol, Utf8};
     use tungstenite::error::ProtocolError::ResetWithoutClosingHandshake;
@@ -75,8 +75,7 @@ fn unreadable(error: axum::Error) -> Unreadable {
     }
 }
 
-/// Here a run that cannot be caught up with is refused at once: a client of events sees the status, and comes back only
-/// where it is 200.
+/// Refuses a run that cannot be caught up with at once: a client of events sees the status and reconnects only after a 200.
 async fn live_events(State(app): State<App>, api_request: ApiRequest) -> Result<Response, Problem> {
     let events_request = api_request.read(|reader| sse::read(reader, &api_request.headers, session::wall_now()))?;
     api_request.accepts(&EVENTS)?;
@@ -85,7 +84,7 @@ async fn live_events(State(app): State<App>, api_request: ApiRequest) -> Result<
     let (gauge, context) = admit(&app, &api_request, SessionBounds::for_sse(&app.config.limits))?;
     let playback = session::catch_up(&request, &context).await?;
     let told = sse::events(*request, playback, context, async move { app.closing().await }, gauge);
-    // A proxy that gathers bytes before it passes them on would make the run late.
+    // A proxy that buffers would delay the run.
     Ok(([("x-accel-buffering", "no")], Sse::new(told)).into_response())
 }
 

@@ -29,7 +29,7 @@ pub trait ComputedResource: Sized + 'static {
     /// The work, from a request to the bytes of its answer.
     const WORK: Work<Self>;
 
-    /// Reads a request. Where it gives nothing it has told the reader why.
+    /// Reads a request. If it returns none, the reader has the errors.
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self::Request>;
 
     /// Prices the work of a request.

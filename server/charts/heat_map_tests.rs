@@ -1,4 +1,4 @@
-//! What holds for every heat map: as for the other pictures, and that no number of cells makes it large.
+//! Every heat map keeps the rules for pictures, and stays small with any number of cells.
 
 use crate::charts::tests::{AWKWARD, sound};
 use crate::charts::*;
@@ -22,7 +22,7 @@ fn map(values: &[Option<f64>]) -> HeatMap<'_> {
     }
 }
 
-/// Draws it and holds it to elements and attributes that any reader of SVG takes.
+/// Draws a heat map and checks that any reader of SVG takes its elements and attributes.
 fn checked(map: &HeatMap<'_>) -> String {
     let known = [
         "role",

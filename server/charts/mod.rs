@@ -1,8 +1,7 @@
-//! Pictures of answers as SVG, drawn by a small chart layer of our own: sheets, panels with axes, marks, legends.
+//! Pictures of answers as SVG, from a small chart layer: sheets, panels with axes, marks, legends.
 //!
-//! A picture is a function of its numbers: the same bytes everywhere, whatever the numbers are. It stands on its own paper,
-//! so that it reads in light and dark pages alike, and carries no style sheet and no script, so that any CSP takes it.
-//! Not here: HTTP, and computing what is drawn.
+//! A picture is a pure function of its numbers, with the same bytes everywhere. It has its own paper, so that it is readable on light
+//! and dark pages, and neither style sheet nor script, so that any CSP allows it.
 
 pub mod draw;
 pub mod figures;

@@ -1,11 +1,11 @@
-//! What holds for every picture, whatever its numbers: well-formed, safe under a strict CSP, the same bytes, bounded.
+//! Every picture, with any numbers, is well-formed, safe under a strict CSP, bounded, and has the same bytes everywhere.
 
 use super::*;
 
 pub(crate) const AWKWARD: [f64; 12] =
     [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN, 5e-324, -0.0, 0.0, 1e-12, 1.0, -3.7, 1e17];
 
-/// Checks what must hold for every picture, and gives its text.
+/// Checks the rules for every picture, and returns its text.
 pub(crate) fn sound(picture: &str) -> String {
     let document = roxmltree::Document::parse(picture).unwrap_or_else(|error| panic!("{error}:\n{picture}"));
     let root = document.root_element();
@@ -72,7 +72,7 @@ fn no_numbers_break_phase_planes() {
         }
     }
     assert!(sound(&planes(&[], Some(&[]), &[], &[])).contains("no impact"));
-    // Slices of different lengths are a mistake of the caller, not a reason to fall over.
+    // Slices of different lengths are a mistake of the caller and must not panic.
     sound(&planes(&[1.0], Some(&[]), &[1.0, 2.0], &[0.5]));
     let text = sound(&planes(&[0.0, f64::NAN], Some(&[0.0, 1.0]), &[0.0, 0.1], &[0.0, 0.1]));
     assert!(text.contains("1 that are not finite numbers are left out"), "{text}");

@@ -21,10 +21,10 @@ use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::charts::significant;
 
-/// Residue of the α = κθ that is shown beside a law where the scene has no κ: that of the paper's first case.
+/// Residue of the law α = κθ that is compared if the scene has no κ: the residue of the paper's first case.
 const PROPORTIONAL: f64 = 0.2;
 
-/// Numbers by the names of the state.
+/// A number for each component of the state.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct ByState {
     x: f64,
@@ -97,7 +97,7 @@ struct RegionLinks {
     proportional: String,
 }
 
-/// The answer.
+/// Answer of `/v1/controllers`.
 #[derive(Debug, Clone, Serialize)]
 pub struct ControllerAnswer {
     scene: Json,
@@ -264,7 +264,7 @@ impl Tabular for ControllerAnswer {
     }
 }
 
-/// Why there is no law, in a sentence.
+/// The reason why there is no law, in a sentence.
 fn refusal(why: DesignFailure) -> String {
     match why {
         DesignFailure::Diverging => {
@@ -282,7 +282,7 @@ without x, x_dot a weight above 0"
     }
 }
 
-/// The scene with a law in place of its own.
+/// The scene with another law.
 fn designed(scene: &Scene, gain: [f64; 4]) -> Result<Scene, Refusal> {
     let mut draft = scene.draft();
     set(&mut draft, Name::TiltGain, None);
@@ -299,8 +299,8 @@ fn designed(scene: &Scene, gain: [f64; 4]) -> Result<Scene, Refusal> {
     draft.build().map_err(unbuilt)
 }
 
-/// The scene with α = κθ: its own κ, or the one of residue [`PROPORTIONAL`]; on a contact that sticks to a table that only tilts,
-/// where no κ holds, that of the contact without friction.
+/// The scene with the law α = κθ: its own κ, or the κ of residue [`PROPORTIONAL`]. On a contact that sticks to a table that only
+/// tilts no κ is stable, so κ is that of the contact without friction.
 fn proportional(scene: &Scene, tilt_gain: Option<f64>, rod: &Rod, place: &FixedPoint) -> Result<Scene, Refusal> {
     let mut draft = scene.draft();
     for name in FEEDBACK {

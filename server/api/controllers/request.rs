@@ -12,7 +12,7 @@ use crate::http::Reader;
 pub(super) const FEEDBACK: [Name; 4] =
     [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
-/// Weights that keep the table's tilts small enough that laws hold from afar.
+/// Default weights of state and tilt. They keep tilts so small that laws hold for large deviations.
 const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
 
 /// A request for a control law.
@@ -45,7 +45,7 @@ impl ControllerRequest {
             Some(Value::Number(kappa)) => Some(kappa),
             _ => None,
         };
-        // A law is what is asked for, so there need not be one.
+        // The request is for a law, so the scene may have none.
         if draft.get(Name::TiltGain).is_none() && FEEDBACK.iter().all(|&name| draft.get(name).is_none()) {
             set(&mut draft, Name::TiltGain, Some(1.0));
         }
@@ -71,7 +71,7 @@ pub(super) fn set(draft: &mut Draft, name: Name, number: Option<f64>) -> bool {
     draft.set(name, number.map(Value::Number)).is_ok()
 }
 
-/// Name of a contact regime, as it is asked for and answered.
+/// Name of a contact regime in requests and answers.
 pub(super) fn contact_name(regime: ContactRegime) -> &'static str {
     if regime == ContactRegime::Frictionless { "frictionless" } else { "stick" }
 }

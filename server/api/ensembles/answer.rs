@@ -27,7 +27,7 @@ pub(super) struct EnsembleTile {
     pub(super) runs: u64,
 }
 
-/// The answer.
+/// Answer of `/v1/ensembles`.
 #[derive(Debug, Serialize)]
 pub struct EnsembleAnswer<'a> {
     pub(super) scene: Resolved<'a>,
@@ -73,7 +73,7 @@ fn by_name<S: Serializer>(counts: &[u64; EndingKind::ALL.len()], serializer: S) 
 }
 
 impl<'a> EnsembleAnswer<'a> {
-    /// From all runs of a tile, and the angles and their quantiles at the contacts it watched; the runs have none any more.
+    /// The answer for all runs of a tile, with the angles at the watched contacts and their quantiles. `runs` holds no angles.
     pub fn new(
         request: &'a EnsembleRequest,
         runs: &EnsembleRuns,
@@ -110,7 +110,7 @@ impl<'a> EnsembleAnswer<'a> {
 }
 
 impl Tabular for EnsembleAnswer<'_> {
-    /// The curve as rows of CSV or NDJSON, with the quantiles at those contacts that have them.
+    /// The curve, with the quantiles at the watched contacts.
     fn to_table(&self) -> Cow<'_, Table> {
         let Table(mut columns) = self.survival.clone();
         for (which, name) in QUANTILES.iter().enumerate() {
@@ -189,7 +189,7 @@ numbers.end - 1,
     }
 }
 
-/// The names of quantiles in JSON, and in CSV and NDJSON.
+/// Names of the quantiles: in JSON; in CSV and NDJSON.
 const QUANTILES: [(&str, &str); SHARES.len()] =
     [("q05", "theta_q05"), ("q25", "theta_q25"), ("q50", "theta_q50"), ("q75", "theta_q75"), ("q95", "theta_q95")];
 

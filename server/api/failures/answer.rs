@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::api::scene::{Resolved, value_to_json};
 
-/// A case.
+/// Answer of `/v1/failures/{name}`.
 #[derive(Debug, Serialize)]
 pub struct FailureAnswer {
     name: &'static str,
@@ -60,7 +60,7 @@ impl FailureAnswer {
     }
 }
 
-/// The path of a request of this server, with what the scene says beyond the defaults.
+/// Path and query of a request to this server, with the fields of the scene that differ from the defaults.
 fn ask(scene: &Scene, (resource, rest): (&str, &str)) -> String {
     let said = FIELDS.iter().filter_map(|row| {
         let value = scene.value(row.name).filter(|value| Some(*value) != row.default)?;

@@ -35,7 +35,7 @@ async fn failures(State(app): State<App>, api_request: ApiRequest) -> Result<Res
     let price = Price::bounces(CASES.iter().map(|case| case.price).sum());
     api_request
         .respond(&app.pool, &RESOURCE, b"", price, move |_, slice: &TimeSlice| {
-            // Every case is a few milliseconds, and between two of them somebody may have gone away.
+            // Each case takes a few milliseconds, so the check between two of them is often enough.
             let each = CASES
                 .iter()
                 .map(|case| if slice.should_continue() { Some(FailureAnswer::compute(case)) } else { None });

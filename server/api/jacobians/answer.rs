@@ -43,7 +43,7 @@ struct PlaceState {
     theta_dot: Option<f64>,
 }
 
-/// The answer.
+/// Answer of `/v1/jacobians`.
 #[derive(Debug, Clone, Serialize)]
 pub struct JacobianAnswer<'a> {
     scene: Resolved<'a>,

@@ -26,9 +26,9 @@ pub enum At {
 /// The method of differentiation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Derivation {
-    /// The formulas themselves.
+    /// Exact, by the formulas.
     Exact,
-    /// Central differences, to compare.
+    /// Central differences, for comparison.
     FiniteDifference,
 }
 

@@ -1,4 +1,4 @@
-//! The answer of `ladder`: the same scene on each rung up to its own, and what each of them changed.
+//! The answer of `ladder`: the same scene on each rung up to its own, and the change from rung to rung.
 
 use std::borrow::Cow;
 
@@ -14,7 +14,7 @@ use crate::api::shared::model_choice::RequirementAnswer;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::table::{Cells, Column, Table};
 
-/// The answer.
+/// Answer of `/v1/ladder`.
 #[derive(Debug, Serialize)]
 pub struct LadderAnswer<'a> {
     scene: Resolved<'a>,
@@ -35,7 +35,7 @@ struct RungAnswer {
     name: &'static str,
     forced: Option<RequirementAnswer>,
     scene: serde_json::Value,
-    /// Why it does not apply, where it does not.
+    /// The reason why the rung does not apply, if it does not.
     reason: Option<String>,
     outcome: Option<Outcome>,
     demand: Option<DemandAnswer>,
@@ -89,7 +89,7 @@ impl ChangeAnswer {
 }
 
 impl<'a> LadderAnswer<'a> {
-    /// Runs a scene on its rungs; none once `go_on` said no.
+    /// Runs a scene on its rungs. None if `go_on` returned false.
     pub fn compute(request: &'a LadderRequest, go_on: impl FnMut() -> bool) -> Option<Self> {
         let LadderRequest { scene, impacts, tolerance } = request;
         let (impacts, tolerance) = (*impacts, *tolerance);
@@ -151,7 +151,7 @@ impl<'a> LadderAnswer<'a> {
         })
     }
 
-    /// Bounces that it took.
+    /// Number of bounces computed.
     pub fn bounces(&self) -> u64 {
         self.bounces
     }

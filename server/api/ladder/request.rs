@@ -15,20 +15,20 @@ use crate::limits;
 pub struct LadderRequest {
     /// The scene.
     pub scene: Scene,
-    /// How many contacts at most, on each rung.
+    /// Highest number of contacts on each rung.
     pub impacts: u64,
-    /// Difference of the states, m/s, up to which a rung was not needed.
+    /// Largest difference of the states, m/s, at which a rung counts as not needed.
     pub tolerance: f64,
 }
 
 /// Tolerances, m/s.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-15..=10.0;
 
-/// Rungs of the tallest ladder, and the work of one impact on one of them but the linear one, in bounces of the plain rod.
+/// Number of rungs of the tallest ladder, and the price of one impact on a rung other than the linear one, in bounces.
 const RUNGS: u64 = 7;
 const RUNG_PRICE: u64 = 20;
 
-/// Work beside the impacts, in bounces: the linear solution before its first one, and the answer.
+/// Price of the rest of the work, in bounces: the setup of the linear solution, and the answer.
 const ONCE_PRICE: u64 = 2500;
 
 impl LadderRequest {

@@ -37,7 +37,7 @@ struct Change {
     detail: &'static str,
 }
 
-/// The answer.
+/// Answer of `/v1/periodic-orbits`.
 #[derive(Debug, Clone, Serialize)]
 pub struct PeriodicOrbitAnswer<'a> {
     scene: Resolved<'a>,
@@ -146,7 +146,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
 }
 
 impl Tabular for PeriodicOrbitAnswer<'_> {
-    /// The branch, or the states where there is none.
+    /// The branch, or the states of the orbit without a branch.
     fn to_table(&self) -> Cow<'_, Table> {
         Cow::Borrowed(self.branch.as_ref().unwrap_or(&self.states))
     }
@@ -184,7 +184,7 @@ fn one(
     }
 }
 
-/// Angle, rad, up to which a symmetric orbit is the one that was asked for.
+/// Largest difference of angles, rad, at which a symmetric orbit is the requested one.
 const SAME_THETA: f64 = 1e-6;
 
 /// Checks that with energy feedback the symmetric orbit through an angle is the one of the scene's target height.

@@ -54,7 +54,7 @@ struct PointAnswer {
     pareto_evaluations: bool,
 }
 
-/// The answer.
+/// Answer of `/v1/precision`.
 #[derive(Debug, Serialize)]
 pub struct PrecisionAnswer<'a> {
     scene: Resolved<'a>,
@@ -71,7 +71,7 @@ pub struct PrecisionAnswer<'a> {
 }
 
 impl<'a> PrecisionAnswer<'a> {
-    /// Runs and times all methods; `progress` is told how much is done, of how much.
+    /// Runs and times all methods. Calls `progress` with the work done and the whole work.
     pub fn compute(
         request: &'a PrecisionRequest,
         progress: &mut dyn FnMut(u64, u64),

@@ -10,10 +10,10 @@ use crate::api::scene::Resolved;
 use crate::api::shared::tile::Tile;
 use crate::limits;
 
-/// The name that a cell without a run has among the outcomes.
+/// Outcome of a cell without a run.
 const NO_RUN: &str = "none";
 
-/// The answer: the cells of a tile.
+/// Answer of `/v1/regions`: the cells of a tile.
 #[derive(Debug)]
 pub struct RegionAnswer {
     pub(super) request: RegionRequest,
@@ -22,7 +22,7 @@ pub struct RegionAnswer {
 }
 
 impl RegionAnswer {
-    /// From the cells of the tile's rows, one row after the other; none once `go_on` said no while the boundary was looked for.
+    /// The answer for the cells of a tile, row by row. Computes the boundary; none if `go_on` returned false meanwhile.
     pub fn new(request: RegionRequest, cells: Vec<MapCell>, mut go_on: impl FnMut() -> bool) -> Option<Self> {
         let boundary = request.region.boundary(limits::REGION_BOUNDARY_NODES, &mut go_on)?;
         Some(Self { request, cells, boundary })
@@ -61,7 +61,7 @@ pub(crate) fn quantity_name(quantity: MapQuantity) -> &'static str {
     }
 }
 
-/// A row of values; contacts are counted, and written as whole numbers.
+/// A row of values. Numbers of contacts are written as whole numbers.
 pub(crate) struct Values<'a> {
     pub(crate) cells: &'a [MapCell],
     pub(crate) whole: bool,

@@ -1,4 +1,4 @@
-//! The cells of a region as rows of CSV and NDJSON, each written as soon as it is whole.
+//! The cells of a region as rows of CSV and NDJSON. Each row is written as soon as it is complete.
 
 use equipoise_physics::scene::Name;
 use equipoise_physics::surveys::stability_map::{MapCell, MapQuantity, StabilityMap};
@@ -17,14 +17,14 @@ pub enum RowFormat {
     Ndjson,
 }
 
-/// Writes the cells of a tile as they come, one row after the other.
+/// Writes the cells of a tile row by row, as they are computed.
 #[derive(Debug)]
 pub struct Rows {
     request: RegionRequest,
     format: RowFormat,
     /// The values of x, as CSV has them.
     columns: Vec<String>,
-    /// The row to come, and its cells so far.
+    /// The next row, and its cells so far.
     row: usize,
     begun: Vec<MapCell>,
     counts: Counts,
@@ -52,7 +52,7 @@ impl Rows {
         format!("{},{},{value},outcome\r\n", field(x.name), field(y.name)).into_bytes()
     }
 
-    /// The rows that these cells make whole.
+    /// The rows that are complete with these cells.
     pub fn add(&mut self, cells: &[MapCell]) -> Vec<u8> {
         self.counts.add(cells);
         self.begun.extend_from_slice(cells);

@@ -1,4 +1,4 @@
-//! The most that a run asks of the table's actuators, as it is answered.
+//! The largest load of a run on the table's actuators, as part of answers.
 
 use equipoise_physics::table::actuator_load::ActuatorLoad;
 use serde::Serialize;

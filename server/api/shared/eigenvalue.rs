@@ -1,4 +1,4 @@
-//! An eigenvalue, as it is answered.
+//! An eigenvalue, as part of answers.
 
 use equipoise_physics::stability::jacobian;
 use nalgebra::Complex;

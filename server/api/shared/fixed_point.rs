@@ -1,4 +1,4 @@
-//! The fixed point of the return map, as it is answered.
+//! The fixed point of the return map, as part of answers.
 
 use equipoise_physics::stability::fixed_point;
 use serde::Serialize;

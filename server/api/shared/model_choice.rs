@@ -1,4 +1,4 @@
-//! The model that a scene is computed with, as it is answered.
+//! The model that a scene is computed with, as part of answers.
 
 use equipoise_physics::run::method::RunMethod;
 use equipoise_physics::scene::Scene;
@@ -25,7 +25,7 @@ pub struct RequirementAnswer {
 }
 
 impl RequirementAnswer {
-    /// The field that asked for it.
+    /// Path of the field.
     pub fn field(&self) -> &'static str {
         self.field
     }

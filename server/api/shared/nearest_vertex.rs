@@ -1,4 +1,4 @@
-//! How near the vertices of a polygon come to the table, other than the one that bounces.
+//! The smallest distance of a polygon's other vertices from the table.
 
 use equipoise_physics::body::polygon::{Outline, VertexClearance};
 use equipoise_physics::numbers::trig::sin_cos;
@@ -15,7 +15,7 @@ pub struct NearestVertex {
 }
 
 impl NearestVertex {
-    /// The nearer of the nearest so far and that at a contact.
+    /// The nearer of the nearest vertex so far and the nearest at a contact.
     pub(crate) fn or(so_far: Option<Self>, outline: &Outline, contact: &Contact) -> Self {
         let VertexClearance { vertex, clearance } = outline.nearest(sin_cos(contact.state.theta - contact.alpha));
         match so_far {

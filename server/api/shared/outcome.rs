@@ -1,6 +1,4 @@
-//! How a run ended, in words and numbers.
-//!
-//! Not here: what ends a run, which is physics.
+//! The outcome of a run in words and numbers. The physics decides when a run ends.
 
 use equipoise_physics::body::Touch;
 use equipoise_physics::run::ending::Ending;
@@ -8,31 +6,31 @@ use equipoise_physics::run::rules::SPEED_LIMIT;
 use equipoise_physics::table::actuator_load::LimitViolation;
 use serde::Serialize;
 
-/// How a run ended.
+/// The outcome of a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct Outcome {
-    /// Its kind.
+    /// Name of the ending.
     pub kind: &'static str,
-    /// Contacts, the last included.
+    /// Number of contacts, with the last.
     pub impacts: u64,
-    /// When the last one was, s, or when another vertex touched the table after it.
+    /// Time of the last contact, s, or of the touch of another vertex after it.
     pub t: f64,
     /// A sentence with the numbers.
     pub detail: String,
-    /// What passed a limit, where something did.
+    /// Quantity that passed a limit, if one did.
     pub quantity: Option<&'static str>,
-    /// Its value.
+    /// Value of the quantity.
     pub value: Option<f64>,
-    /// The limit.
+    /// Limit of the quantity.
     pub limit: Option<f64>,
     /// Unit of both.
     pub unit: Option<&'static str>,
-    /// When a settling run comes to rest, s.
+    /// Time at which a settling run comes to rest, s.
     pub settle_time: Option<f64>,
 }
 
 impl Outcome {
-    /// Of a run that ended so at contact `impacts`, at time `t`.
+    /// The outcome of a run that ended at contact `impacts`, at time `t`, s.
     pub fn new(ending: Ending, impacts: u64, t: f64) -> Self {
         let at = format!("at contact {impacts}, t = {t} s");
         let t = if let Ending::OtherVertex(touch) = ending { t + touch.t } else { t };

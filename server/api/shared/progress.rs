@@ -1,16 +1,16 @@
-//! The lines of an answer that tells how far it is: at most one for each hundredth of the work, and last of all the answer.
+//! Lines that report the progress of work: at most one for each hundredth of it, and the answer as the last line.
 //!
-//! When a line comes is a matter of the work done, not of the clock: the same request has the same lines. Not here: what work is
-//! counted in, which is the resource's to say.
+//! Lines depend on the work done and not on a clock, so the same request has the same lines. Each resource chooses the unit of
+//! its work.
 
-/// What has been told so far.
+/// Progress reported so far.
 #[derive(Debug, Default)]
 pub struct Progress {
     hundredth: Option<u64>,
 }
 
 impl Progress {
-    /// The line for so much `done`; empty within the hundredth that was told last.
+    /// The line for `done` of `of`. Empty if its hundredth has been reported.
     pub fn line(&mut self, done: u64, of: u64) -> Vec<u8> {
         let hundredth = Some(100 * done / of.max(1));
         if self.hundredth == hundredth {
@@ -21,7 +21,7 @@ impl Progress {
     }
 }
 
-/// The last line, of an answer in JSON.
+/// The last line: an answer in JSON.
 pub fn end(answer: &[u8]) -> Vec<u8> {
     [b"{\"end\":", answer, b"}\n"].concat()
 }

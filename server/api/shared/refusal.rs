@@ -3,12 +3,12 @@
 use crate::compute::Cancelled;
 use crate::http::Problem;
 
-/// Why there is no answer.
+/// The reason why there is no answer.
 #[derive(Debug)]
 pub enum Refusal {
-    /// Nobody waits for it any more.
+    /// The client has gone.
     Cancelled,
-    /// A field of the request: its JSON pointer, and a sentence.
+    /// A field of the request does not allow it: JSON pointer and sentence.
     At(&'static str, String),
 }
 

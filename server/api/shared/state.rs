@@ -1,4 +1,4 @@
-//! The state of the body just before a contact, as it is asked for.
+//! The state of the body just before a contact, as part of requests.
 
 use equipoise_physics::bounce::state::State;
 
@@ -12,7 +12,7 @@ pub(crate) fn read_state(reader: &mut Reader<'_, '_>) -> State {
     State { theta, x_dot, y_dot, theta_dot }
 }
 
-/// Components of a state with their limits and units; as wide as a run can get from the ranges of a scene.
+/// Components of a state with limits and units. The limits are as wide as the states that a valid scene can reach.
 const STATE: [(&str, f64, &str); 4] = [
     ("theta", std::f64::consts::PI, "rad"),
     ("x_dot", 1000.0, "m/s"),

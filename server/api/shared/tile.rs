@@ -1,4 +1,4 @@
-//! A tile of work that is too much for one request: an even share of its rows or runs, which come one after the other.
+//! A tile: an even share of the rows or runs of work that is too much for one request.
 
 use std::ops::Range;
 
@@ -9,17 +9,17 @@ use crate::http::Reader;
 /// Share number `index`, from 0, of `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Tile {
-    /// Which.
+    /// Number of the share, from 0.
     pub index: u64,
-    /// Of how many.
+    /// Number of shares.
     pub of: u64,
 }
 
 impl Tile {
-    /// All of it.
+    /// All of the work.
     const WHOLE: Self = Self { index: 0, of: 1 };
 
-    /// Reads `tile`, of which there may be so many; all of it where none is said.
+    /// Reads `tile`, one of at most `most`. Without it the tile is all of the work.
     pub fn read(reader: &mut Reader<'_, '_>, most: u64) -> Option<Self> {
         if !reader.has("tile") {
             return Some(Self::WHOLE);
@@ -36,7 +36,7 @@ impl Tile {
         })?
     }
 
-    /// Which of so many are its own.
+    /// The share's part of `count` rows or runs.
     pub fn share(&self, count: u64) -> Range<u64> {
         count * self.index / self.of..count * (self.index + 1) / self.of
     }

@@ -33,12 +33,12 @@ pub(crate) fn pixels(svg: &str, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
     })
 }
 
-/// A request with all defaults filled in: the scene, and the rest of what determines the answer.
+/// Canonical form of a request: the scene with all defaults, and the rest of what determines the answer.
 pub(crate) fn canonical(scene: &Scene, rest: &impl Serialize) -> Vec<u8> {
     canonical_of(&(Resolved(scene), rest))
 }
 
-/// Canonical form of a request that is not a scene and the rest.
+/// Canonical form of a request without a scene.
 pub(crate) fn canonical_of(request: &impl Serialize) -> Vec<u8> {
     // Writing to memory does not fail.
     serde_json::to_vec(request).unwrap_or_default()

@@ -68,7 +68,7 @@ struct NonlinearPart {
     detail: String,
 }
 
-/// The answer.
+/// Answer of `/v1/stability`.
 #[derive(Debug, Clone, Serialize)]
 pub struct StabilityAnswer<'a> {
     pub(super) scene: Resolved<'a>,
@@ -95,7 +95,7 @@ pub struct StabilityAnswer<'a> {
     bounces: u64,
 }
 
-/// The verdict in words; what a run showed stands in it with its length.
+/// The verdict in words, with the length of the run that it rests on.
 fn words(verdict: Verdict, run: &NonlinearRun) -> String {
     let NonlinearRun { impacts, ending, .. } = run;
     let survived = format!("{impacts} bounces survived");
@@ -139,8 +139,7 @@ impl LinearPart {
 }
 
 impl<'a> StabilityAnswer<'a> {
-    /// Judges a scene by its linear verdict and a run of up to `impacts` contacts, and looks for its basin if asked to;
-    /// `go_on` is asked now and then, and a `false` gives none.
+    /// Judges a scene by its linear verdict and a run, and looks for its basin on request. None if `go_on` returned false.
     pub fn compute(request: &'a StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
         let StabilityRequest { ref scene, impacts, basin, tolerances } = *request;
         let run = run_nonlinear(scene, impacts, &mut go_on)?;

@@ -1,5 +1,4 @@
-//! What a verdict has beyond the linear analysis, as it is written in the answer: rotation number, chaos, basin, and the words
-//! on each of them. Not for the verdict itself.
+//! Evidence beyond the linear analysis, as part of the answer: rotation number, chaos and basin, with the notes on each.
 
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::fixed_point::FixedPoint;
@@ -9,7 +8,7 @@ use equipoise_physics::stability::regularity::{FEWEST, Regularity, TOLERANCE, WA
 use equipoise_physics::stability::{basin, loss_of_stability, lyapunov, regularity};
 use serde::Serialize;
 
-/// Distance from 1/3 and 1/4, in turns a bounce, within which they are named.
+/// Distance of the rotation number from the resonances 1/3 and 1/4, in turns per bounce, within which a note names them.
 const NEAR: f64 = 0.02;
 
 #[derive(Debug, Clone, Serialize)]
@@ -71,7 +70,7 @@ pub(crate) struct Lyapunov {
     detail: String,
 }
 
-/// Distance of the rotation from a quarter turn, in turns a bounce, within which the resonance is named.
+/// Distance of the rotation from a quarter turn, in turns per bounce, within which the detail names the resonance.
 const NEAR_QUARTER: f64 = 0.02;
 
 impl From<&lyapunov::LyapunovCoefficient> for Lyapunov {
@@ -121,7 +120,7 @@ impl From<&loss_of_stability::StabilityLoss> for LossOfStability {
     }
 }
 
-/// What the watch over the first contacts says of a scene; nothing for a body without an angle.
+/// Evidence from the first contacts of a run. A body without an angle has none.
 #[derive(Debug)]
 pub(crate) struct Evidence(Option<Regularity>);
 
@@ -146,7 +145,7 @@ impl Evidence {
         self.0.as_ref()?.predictable_impacts(TOLERANCE)
     }
 
-    /// Why something is null, and what a client should know of the rest.
+    /// Adds notes: the reasons for nulls, and warnings about the rest.
     pub(crate) fn explain(&self, linear: &LinearVerdict, notes: &mut Vec<String>) {
         let Some(regularity) = &self.0 else {
             notes.push(

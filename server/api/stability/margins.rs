@@ -1,4 +1,4 @@
-//! The margins under tolerances, as they are answered.
+//! The margins under tolerances, as part of the answer.
 
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::margins;

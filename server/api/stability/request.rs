@@ -23,10 +23,10 @@ pub struct StabilityRequest {
     pub tolerances: Option<Tolerances>,
 }
 
-/// Work of the margins, in bounces: some ten thousand linear verdicts.
+/// Price of the margins, in bounces: about ten thousand linear verdicts.
 const MARGINS_PRICE: u64 = 200_000;
 
-/// Price of a run of the basin beside its bounces, in bounces.
+/// Price of a run of the basin without its bounces, in bounces.
 const BASIN_RUN_PRICE: u64 = 10;
 
 impl StabilityRequest {

@@ -25,13 +25,13 @@ use crate::api::trajectories::flights::{Flight, Flights};
 use crate::api::trajectories::impacts::Impacts;
 use crate::api::trajectories::request::TrajectoryRequest;
 
-/// The tolerance, m/s, up to which impacts count as predictable where none is asked for.
+/// Default tolerance, m/s, up to which impacts count as predictable.
 const PREDICTABLE: f64 = 1e-3;
 
 /// Highest number of impacts for which memory is reserved before a run.
 const ROOM: usize = 1 << 16;
 
-/// Why there are no bounds beside interventions.
+/// The reason why a run with interventions has no error bounds.
 const NO_BOUND: &str = "no bound is derived for a run that is changed under way";
 
 /// Refuses methods and tolerances for a run that is changed under way: only the map runs on through a change, without a bound.
@@ -43,25 +43,25 @@ fn admits_changes(request: &TrajectoryRequest) -> Result<(), Refusal> {
     }
 }
 
-/// The method of a run, why, and what it costs.
+/// The method of a run, the reason for it, and its cost.
 #[derive(Debug, Clone, Serialize)]
 pub struct MethodAnswer {
-    /// Its name.
+    /// Name of the method.
     pub name: &'static str,
     /// The reason, in a sentence.
     pub reason: String,
-    /// What it costs by the fixed table that choices are made by, µs.
+    /// Cost by the fixed table that the choice is made with, µs.
     pub cost_us: f64,
-    /// The next dearer one that would have done.
+    /// The next dearer method that would suffice.
     pub next: Option<Dearer>,
 }
 
 /// A method that was not needed.
 #[derive(Debug, Clone, Serialize)]
 pub struct Dearer {
-    /// Its name.
+    /// Name of the method.
     pub name: &'static str,
-    /// As for the one chosen, µs.
+    /// Cost by the same table, µs.
     pub cost_us: f64,
 }
 
@@ -93,38 +93,38 @@ impl MethodAnswer {
     }
 }
 
-/// The answer.
+/// Answer of `/v1/trajectories`.
 #[derive(Debug, Serialize)]
 pub struct TrajectoryAnswer<'a> {
     /// The scene, resolved.
     pub scene: Resolved<'a>,
-    /// The model and why.
+    /// The model and the reason for it.
     pub model: ModelChoice,
-    /// The method and why.
+    /// The method and the reason for it.
     pub method: MethodAnswer,
-    /// How the run ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
-    /// Its contacts.
+    /// Contacts of the run.
     pub impacts: Table,
-    /// The last contact before the error estimate passes the tolerance; none where it does not.
+    /// The last contact before the error estimate passes the tolerance, if it does.
     pub predictable_impacts: Option<u64>,
-    /// Samples of its flights.
+    /// Samples of the flights.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flights: Option<Table>,
-    /// The most that it asked of the table.
+    /// Largest load on the table.
     pub demand: DemandAnswer,
-    /// Of a polygon: how near any other vertex came to the table at a contact.
+    /// Smallest distance of a polygon's other vertices from the table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_vertex: Option<NearestVertex>,
-    /// Reasons for what is null.
+    /// Reasons for nulls.
     pub notes: Vec<String>,
 }
 
 impl<'a> TrajectoryAnswer<'a> {
-    /// Runs a scene, or takes the contacts of a run of it that was `changed` under way; `go_on` is asked now and then.
+    /// Runs a scene, or takes the contacts of a `changed` run. Asks `go_on` now and then.
     ///
     /// # Errors
-    /// [`Refusal`]: where `go_on` said no, where no method holds the tolerance, and where the method does not apply.
+    /// [`Refusal`]: if `go_on` returned false, if no method holds the tolerance, or if the method does not apply.
     pub fn compute(
         request: &'a TrajectoryRequest,
         changed: Option<&mut dyn Iterator<Item = Contact>>,

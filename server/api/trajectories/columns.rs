@@ -22,9 +22,9 @@ pub struct ImpactRow {
     pub energy: f64,
     /// Vertical velocity of the contact point just before, m/s.
     pub contact_speed: f64,
-    /// Wall time, unix ms, where that of the release is known.
+    /// Wall time, unix ms, if the time of release is known.
     pub time: Option<u64>,
-    /// Bound on the error of the state, m/s, where there is one.
+    /// Bound on the error of the state, m/s, if there is one.
     pub error_estimate: Option<f64>,
 }
 
@@ -36,9 +36,9 @@ impl ImpactRow {
         Self { contact, has_angle, energy, contact_speed, time: None, error_estimate: None }
     }
 
-    /// A number of the strike. It does not exist without one, nor in a run that has diverged beyond doubles.
+    /// A number of the strike. None without a strike, or if the run has diverged beyond doubles.
     fn struck(&self, read: impl FnOnce(&Strike) -> f64) -> Option<f64> {
-        // + 0.0: a table at rest moves by 0, not by −0.
+        // + 0.0 turns −0, the velocity of a table at rest, into 0.
         self.contact.strike.map(|strike| read(&strike) + 0.0).filter(|value| value.is_finite())
     }
 
@@ -110,7 +110,7 @@ impl ExtendedRow<'_> {
 
 /// The answers that have a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Told {
+pub enum ColumnScope {
     /// Trajectories and live runs.
     Everywhere,
     /// Trajectories alone.
@@ -131,20 +131,20 @@ pub struct ImpactColumn {
     /// Meaning, as the contract says it.
     pub about: &'static str,
     /// The answers that have it.
-    pub told: Told,
+    pub scope: ColumnScope,
     /// Reads the value in doubles.
     pub read: Read<ImpactRow>,
-    /// Reads the value with 31 digits, where the method `extended` has it.
+    /// Reads the value with 31 digits, if the method `extended` gives it.
     pub digits: Option<fn(&ExtendedRow<'_>) -> Option<DoubleDouble>>,
 }
 
 const fn column(name: &'static str, unit: &'static str, about: &'static str, read: Read<ImpactRow>) -> ImpactColumn {
-    ImpactColumn { name, unit, about, told: Told::Everywhere, read, digits: None }
+    ImpactColumn { name, unit, about, scope: ColumnScope::Everywhere, read, digits: None }
 }
 
 impl ImpactColumn {
-    const fn told(self, told: Told) -> Self {
-        Self { told, ..self }
+    const fn scope(self, scope: ColumnScope) -> Self {
+        Self { scope, ..self }
     }
 
     const fn digits(self, digits: fn(&ExtendedRow<'_>) -> Option<DoubleDouble>) -> Self {
@@ -166,7 +166,7 @@ pub static COLUMNS: [ImpactColumn; 22] = [
             "Wall time, in milliseconds since 1970 (UTC). Only with `epoch`.",
             Read::SparseCount(|row| row.time),
         )
-        .told(Told::DatedTrajectories),
+        .scope(ColumnScope::DatedTrajectories),
         column(
             "t",
             "s",
@@ -215,21 +215,21 @@ pub static COLUMNS: [ImpactColumn; 22] = [
         "Horizontal velocity just after the impact, in metres per second.",
         Read::Sparse(|row| row.after().map(|after| after.x_dot)),
     )
-    .told(Told::Live),
+    .scope(ColumnScope::Live),
     column(
         "y_dot_after",
         "m/s",
         "Vertical velocity just after the impact, in metres per second.",
         Read::Sparse(|row| row.after().map(|after| after.y_dot)),
     )
-    .told(Told::Live),
+    .scope(ColumnScope::Live),
     column(
         "theta_dot_after",
         "rad/s",
         "Angular velocity just after the impact, in radians per second. Null for a point mass.",
         Read::Sparse(|row| row.after()?.theta_dot),
     )
-    .told(Told::Live),
+    .scope(ColumnScope::Live),
     column(
             "alpha",
             "rad",
@@ -307,23 +307,23 @@ pub static COLUMNS: [ImpactColumn; 22] = [
              the size of the run.",
             Read::Sparse(|row| row.error_estimate),
         )
-        .told(Told::Trajectories),
+        .scope(ColumnScope::Trajectories),
 ];
 
 /// The columns of a trajectory. With a known time of release they include its dates.
 pub fn of_trajectories(dated: bool) -> impl Iterator<Item = &'static ImpactColumn> {
-    COLUMNS.iter().filter(move |column| match column.told {
-        Told::Everywhere | Told::Trajectories => true,
-        Told::DatedTrajectories => dated,
-        Told::Live => false,
+    COLUMNS.iter().filter(move |column| match column.scope {
+        ColumnScope::Everywhere | ColumnScope::Trajectories => true,
+        ColumnScope::DatedTrajectories => dated,
+        ColumnScope::Live => false,
     })
 }
 
 /// The columns of live impacts.
 pub fn of_live_runs() -> impl Iterator<Item = &'static ImpactColumn> {
-    COLUMNS.iter().filter(|column| match column.told {
-        Told::Everywhere | Told::Live => true,
-        Told::Trajectories | Told::DatedTrajectories => false,
+    COLUMNS.iter().filter(|column| match column.scope {
+        ColumnScope::Everywhere | ColumnScope::Live => true,
+        ColumnScope::Trajectories | ColumnScope::DatedTrajectories => false,
     })
 }
 

@@ -22,7 +22,7 @@ pub(crate) struct Sample {
     theta_dot: Option<f64>,
 }
 
-/// The columns of samples: name, unit, and how they are read. Those of dates are left out where the time of release is unknown.
+/// The columns of samples: name, unit, and the way they are read. Dates are left out if the time of release is unknown.
 const COLUMNS: [(&str, &str, Read<Sample>); 9] = [
     ("impact", "", Read::Count(|sample| sample.impact)),
     (DATES, "", Read::SparseCount(|sample| sample.time)),

@@ -19,7 +19,7 @@ enum Values {
 }
 
 impl Impacts {
-    /// No impacts yet, with room for some: with dates, and with 31 digits where there are such, if asked for.
+    /// An empty table with room for some impacts. `dated` adds dates, `extended` columns with 31 digits.
     pub(crate) fn with_capacity(room: usize, dated: bool, extended: bool) -> Self {
         let values = |column: &ImpactColumn| match column.digits.filter(|_| extended) {
             Some(digits) => Values::Digits(digits, Vec::with_capacity(room)),
@@ -38,7 +38,7 @@ impl Impacts {
         }
     }
 
-    /// All of them.
+    /// The table of all impacts.
     pub(crate) fn into_table(self) -> Table {
         let column = |(column, values): (&ImpactColumn, Values)| {
             let cells = match values {

@@ -28,7 +28,7 @@ pub struct TrajectoryRequest {
     pub epoch: Option<u64>,
 }
 
-/// Tolerances, m/s. Below, no method has the digits; above, no bound says anything.
+/// Range of tolerances, m/s. Below it no method has enough digits; above it a bound carries no information.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-30..=1.0;
 
 /// Price of an impact with its error estimate by each method, in bounces, and of the linear solution once.
@@ -36,13 +36,13 @@ const LINEAR_ONCE: u64 = 2500;
 const MAP_PRICE: u64 = 8;
 const EXTENDED_PRICE: u64 = 50;
 
-/// Price of a contact to be written down, compressed as well, in bounces; the same with 31 digits, and a sample of a flight.
+/// Price of writing and compressing a contact, in bounces; of a contact with 31 digits; and of a sample of a flight.
 const ROW_PRICE: u64 = 24;
 const LONG_ROW_PRICE: u64 = 60;
 const SAMPLE_PRICE: u64 = 10;
 
-/// Price of an impact of the linear solution with its error estimate, in bounces. Where the angle does not circle, the estimate
-/// of each looks at some of the bounces before it, with 31 digits: at 13, or at 39 where the table looks at the energy.
+/// Price of an impact of the linear solution with its error estimate, in bounces. If the angle does not circle, each estimate
+/// takes 13 earlier bounces with 31 digits, or 39 with energy feedback.
 pub(crate) fn linear_price(scene: &Scene) -> u64 {
     match scene.number(Name::EnergyGain) {
         _ if deviations_circle(scene) => 20,
@@ -71,7 +71,7 @@ impl TrajectoryRequest {
         write::canonical(run.scene(), &(rest, intervention_parameters(run)))
     }
 
-    /// Number of numbers in the answer.
+    /// Size of the answer, in numbers.
     pub fn numbers(&self) -> u64 {
         let dated = self.epoch.is_some();
         let (impact, sample) = (columns::of_trajectories(dated).count(), flights::columns(dated).count());
@@ -85,7 +85,7 @@ impl TrajectoryRequest {
             (Some(RunMethod::Linear), _) => (LINEAR_ONCE, linear_price(scene) + ROW_PRICE),
             (Some(RunMethod::Map), _) | (None, None) => (0, MAP_PRICE + ROW_PRICE),
             (Some(RunMethod::Extended), _) => (0, EXTENDED_PRICE + LONG_ROW_PRICE),
-            // Each may be tried, the linear one where the angle circles, and the dearest run again.
+            // Each method may be tried, the linear one only if the angle circles, and the dearest run twice.
             (None, Some(_)) => {
                 let linear = if deviations_circle(scene) { linear_price(scene) } else { 0 };
                 (LINEAR_ONCE, linear + MAP_PRICE + 2 * EXTENDED_PRICE + LONG_ROW_PRICE)

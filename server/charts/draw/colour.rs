@@ -1,12 +1,12 @@
 //! Colours: those of Okabe and Ito (2008), which people with any colour vision tell apart, and the greys of the paper.
 
-/// What pictures stand on, whatever the page around them.
+/// The paper of pictures, independent of the page around them.
 pub(crate) const PAPER: &str = "#ffffff";
 /// Edge of the paper.
 pub(crate) const EDGE: &str = "#d5d8dc";
-/// Text and marks that matter most; 16:1 on paper.
+/// Most important text and marks; contrast 16:1 on paper.
 pub(crate) const INK: &str = "#1b1f24";
-/// Second text; 7:1 on paper.
+/// Secondary text; contrast 7:1 on paper.
 pub(crate) const SOFT_INK: &str = "#4d5560";
 /// Frames and ticks of axes.
 pub(crate) const AXIS: &str = "#6b7480";
@@ -21,13 +21,13 @@ pub(crate) const ORANGE: &str = "#e69f00";
 pub(crate) const SKY: &str = "#56b4e9";
 pub(crate) const PURPLE: &str = "#cc79a7";
 pub(crate) const VERMILION: &str = "#d55e00";
-/// Blue so light that everything reads on it.
+/// Light blue that every mark is visible on.
 pub(crate) const PALE_BLUE: &str = "#e3f0f8";
-/// Green for an area, and one on which it still stands out.
+/// Green for an area, and a lighter green behind it.
 pub(crate) const LIGHT_GREEN: &str = "#9fd8c4";
 pub(crate) const PALE_GREEN: &str = "#dff2eb";
 
-/// Under the hatching of what has no value.
+/// Ground of the hatching for cells without a value.
 pub(crate) const PALE_GREY: &str = "#eff0f2";
 /// Hatching.
 pub(crate) const HATCH: &str = "#8f97a1";

@@ -9,7 +9,7 @@ use crate::charts::draw::text::{sentence, width};
 /// Text of a legend, px.
 const SIZE: f64 = 12.5;
 
-/// What stands before a meaning.
+/// A sample of a mark, which stands before its meaning.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Sample {
     Dot { radius: f64, colour: &'static str },

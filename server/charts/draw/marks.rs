@@ -18,7 +18,7 @@ pub(crate) fn dots(svg: &mut Svg, points: impl Iterator<Item = Point>, radius: f
     }
 }
 
-/// Straight lines through points, dashed where `dashes` says so.
+/// Straight lines through points, dashed by `dashes`.
 pub(crate) fn line(svg: &mut Svg, points: &[Point], colour: &str, thickness: f64, dashes: Option<&str>) {
     let mut path = String::new();
     for (x, y) in points {
@@ -32,7 +32,7 @@ pub(crate) fn line(svg: &mut Svg, points: &[Point], colour: &str, thickness: f64
     tag.end();
 }
 
-/// A full disc with a rim of paper, so that it stands off what is under it.
+/// A full disc with a rim of paper, which sets it off from marks below it.
 pub(crate) fn disc(svg: &mut Svg, (x, y): Point, radius: f64, colour: &str) {
     let tag = svg.tag("circle").number("cx", x).number("cy", y).number("r", radius).word("fill", colour);
     tag.word("stroke", PAPER).number("stroke-width", 1.5).end();
@@ -100,7 +100,7 @@ pub(crate) fn area(svg: &mut Svg, upper: &[Point], lower: &[Point], colour: &str
     }
 }
 
-/// A path drawn dark on a casing of paper, so that it shows on any colour; only the dark is dashed.
+/// A dark path on a casing of paper, visible on any colour. Only the dark line is dashed.
 pub(crate) fn cased(svg: &mut Svg, path: &str, dashes: Option<&str>) {
     for (stroke, width, dashes) in [(PAPER, 4.6, None), (INK, 2.0, dashes)] {
         let mut tag = svg.tag("path").word("d", path).word("fill", "none").word("stroke", stroke);

@@ -1,4 +1,4 @@
-//! A panel: a frame with two axes, their grid, ticks and titles. What is drawn inside are marks.
+//! A panel: a frame with two axes, their grid, ticks and titles. Marks are drawn inside.
 
 use crate::charts::draw::colour::{AXIS, GRID, INK, PAPER, SOFT_INK, ZERO};
 use crate::charts::draw::geometry::Frame;
@@ -14,16 +14,16 @@ pub(crate) const TICK_SIZE: f64 = 12.0;
 /// Text of axis titles, px.
 pub(crate) const TITLE_SIZE: f64 = 13.5;
 
-/// What an axis shows.
+/// An axis: its title and its range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis<'a> {
-    /// In words.
+    /// Name in words.
     pub(crate) name: &'a str,
-    /// In a formula.
+    /// Symbol in formulas.
     pub(crate) symbol: &'a str,
     /// Unit; empty for a pure number.
     pub(crate) unit: &'a str,
-    /// From where to where.
+    /// Range of values.
     pub(crate) range: Range,
 }
 
@@ -36,12 +36,12 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
-    /// Draws grid, ticks and titles, and gives the panel to draw marks in; `edge` is for after the marks.
+    /// Draws grid, ticks and titles, and returns the panel for the marks. Call `edge` after the marks.
     pub(crate) fn draw(svg: &mut Svg, frame: Frame, x: Axis<'_>, y: Axis<'_>) -> Self {
         Self::draw_scaled(svg, frame, x, y, [false; 2])
     }
 
-    /// The same where the ranges of x or y are of logarithms to base ten, and so are the values to put in.
+    /// The same for ranges of logarithms to base ten in x or y. The values of marks are then logarithms too.
     pub(crate) fn draw_scaled(svg: &mut Svg, frame: Frame, x: Axis<'_>, y: Axis<'_>, logarithmic: [bool; 2]) -> Self {
         let panel = Self {
             frame,
@@ -52,7 +52,7 @@ impl Panel {
         panel
     }
 
-    /// The place of a point, px; points outside are put on the edge.
+    /// The place of a point, px. Points outside are put on the edge.
     pub(crate) fn at(&self, x: f64, y: f64) -> (f64, f64) {
         (self.x.at(x), self.y.at(y))
     }
@@ -68,7 +68,7 @@ impl Panel {
         let choose = |way: usize, range: Range, most: u32| if logarithmic[way] { decades } else { ticks }(range, most);
         let Frame { left, top, width: across, height } = self.frame;
         let (right, bottom) = (left + across, top + height);
-        // As many labels as stand side by side with room between them.
+        // As many labels as fit side by side.
         let ticks_x = (2..=6).rev().map(|most| choose(0, x.range, most)).find(|ticks| crowding(ticks) < 0.75 * across);
         let ticks_x = ticks_x.unwrap_or_else(|| choose(0, x.range, 2));
         let ticks_y = choose(1, y.range, 6);

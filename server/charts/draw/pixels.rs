@@ -1,7 +1,7 @@
 //! The pixels of a picture: a drawing of this server, as PNG.
 //!
-//! Only the fonts in `fonts` are used, never those of the system, and no CPU's own instructions but exact ones, so that
-//! the bytes are the same everywhere. Not here: what is drawn, and SVG from elsewhere.
+//! Only the fonts in `fonts` are used, never those of the system, and only exact instructions of the CPU, so that the bytes are the
+//! same everywhere.
 
 use std::sync::{Arc, LazyLock};
 
@@ -27,12 +27,12 @@ static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
     Arc::new(database)
 });
 
-/// Why there are no pixels.
+/// The reason why there are no pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoPixels {
-    /// `go_on` said so.
+    /// `go_on` returned false.
     Cancelled,
-    /// More than `limits::PICTURE_PIXELS`, or no SVG: a mistake of this server.
+    /// More pixels than `limits::PICTURE_PIXELS`, or not SVG: an error of this server.
     Unfit,
 }
 
@@ -60,7 +60,7 @@ fn draw(group: &Group, pixels: &mut PixmapMut<'_>, check: &impl Fn() -> Result<(
             Node::Group(group) if !group.should_isolate() && group.transform().is_identity() => {
                 draw(group, pixels, check)?;
             }
-            // Drawn alone, a node is moved to the origin; this moves it back. One without a size has no pixels.
+            // A node that is drawn alone is moved to the origin; this moves it back. A node without a size has no pixels.
             _ => {
                 if let Some(place) = node.abs_layer_bounding_box() {
                     resvg::render_node(node, Transform::from_translate(place.x(), place.y()), pixels);
@@ -75,7 +75,7 @@ fn written(width: u32, height: u32, pixels: &[u8]) -> Result<Vec<u8>, png::Encod
     let mut out = Vec::new();
     let mut encoder = png::Encoder::new(&mut out, width, height);
     encoder.set_color(png::ColorType::Rgba);
-    // Fast: drawn once, sent once. Flat areas are small in any case.
+    // Fast compression: a picture is sent once, and flat areas are small in any case.
     encoder.set_compression(png::Compression::Fast);
     encoder.write_header()?.write_image_data(pixels)?;
     Ok(out)

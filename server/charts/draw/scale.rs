@@ -1,5 +1,4 @@
-//! Ranges of values, their map onto pixels, and ticks at 1, 2 and 5 times powers of ten, or at powers of ten where the values
-//! are logarithms.
+//! Ranges of values, their map onto pixels, and ticks at 1, 2 and 5 times powers of ten, or at powers of ten for logarithms.
 
 use crate::charts::draw::number::{decimal, exponent, raised, written_out};
 
@@ -20,7 +19,7 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// The interval between two values; widened where they are almost the same.
+    /// The interval between two values, widened if they are almost equal.
     pub(crate) fn new(low: f64, high: f64) -> Self {
         let low = low.clamp(-LARGEST, LARGEST);
         let high = high.clamp(-LARGEST, LARGEST);
@@ -35,7 +34,7 @@ impl Range {
         Self { low, high }
     }
 
-    /// Around all finite values, with a margin on both sides; −1 to 1 where there are none.
+    /// The interval around all finite values, with a margin on both sides; −1 to 1 without values.
     pub(crate) fn around(values: impl IntoIterator<Item = f64>) -> Self {
         let mut bounds: Option<(f64, f64)> = None;
         for value in values.into_iter().filter(|value| value.is_finite()) {
@@ -43,7 +42,7 @@ impl Range {
             bounds = Some((low.min(value), high.max(value)));
         }
         let Some((low, high)) = bounds else { return Self { low: -1.0, high: 1.0 } };
-        // One value alone gets room enough that its ticks are short numbers.
+        // A single value gets so much room that its ticks are short numbers.
         let margin = if high - low < low.abs().max(high.abs()) * NARROWEST {
             0.1 * low.abs().max(high.abs())
         } else {
@@ -67,7 +66,7 @@ impl Scale {
         Self { range, from, to }
     }
 
-    /// The pixel of a value; values outside the range are put on its nearer end.
+    /// The pixel of a value. Values outside the range are put on the nearer end.
     pub(crate) fn at(&self, value: f64) -> f64 {
         let share = (value - self.range.low) / (self.range.high - self.range.low);
         self.from + share.clamp(0.0, 1.0) * (self.to - self.from)
@@ -79,7 +78,7 @@ impl Scale {
 pub(crate) struct Ticks {
     /// Labels are in units of 10 to this power.
     pub(crate) power: i32,
-    /// Values and labels, upwards.
+    /// Values in rising order, with labels.
     pub(crate) marks: Vec<(f64, String)>,
 }
 

@@ -4,12 +4,12 @@ use crate::charts::draw::colour::{EDGE, INK, PAPER, SOFT_INK};
 use crate::charts::draw::svg::{Svg, Type};
 use crate::charts::draw::text::{sentence, wrap};
 
-/// Text, px: title, subtitle and caption.
+/// Sizes of title, subtitle and caption, px.
 const TITLE: f64 = 18.0;
 const SUBTITLE: f64 = 13.5;
 const CAPTION: f64 = 12.5;
 
-/// Lines of each at most.
+/// Highest number of lines of each.
 const LINES: usize = 4;
 
 /// Height of a line over its text.
@@ -18,28 +18,28 @@ const LEADING: f64 = 1.4;
 /// Space left and right of text, px.
 const MARGIN: f64 = 28.0;
 
-/// What is written on a sheet.
+/// The words on a sheet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Words<'a> {
     pub(crate) title: &'a str,
     pub(crate) subtitle: &'a str,
     pub(crate) caption: &'a str,
-    /// For those who do not see the picture.
+    /// Description for readers who cannot see the picture.
     pub(crate) description: &'a str,
 }
 
 /// Paper with room for panels.
 pub(crate) struct Sheet {
     pub(crate) svg: Svg,
-    /// Where the panels begin, px.
+    /// Top of the panels, px.
     pub(crate) top: f64,
 }
 
 impl Sheet {
-    /// A sheet of this width with `room` px of height for panels; its own height follows from the words.
+    /// A sheet of this width with `room` px of height for panels. The words determine its height.
     pub(crate) fn new(width: f64, room: f64, words: Words<'_>) -> Self {
         let space = width - 2.0 * MARGIN;
-        // Words that are set as code elsewhere have no other type here.
+        // Words that are code elsewhere have no type of their own here.
         let [given, subtitle, caption, description] =
             [words.title, words.subtitle, words.caption, words.description].map(|words| words.replace('`', ""));
         let title = wrap(&given, TITLE, space, LINES);

@@ -7,7 +7,7 @@ use crate::charts::draw::text::Span;
 /// Fonts that have Greek and dotted letters, the page's own first.
 const FONTS: &str = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', 'DejaVu Sans', Arial, sans-serif";
 
-/// Largest coordinate that is written, px. Beyond it renderers differ.
+/// Largest coordinate that is written, px. Renderers differ beyond it.
 const FARTHEST: f64 = 100_000.0;
 
 /// An SVG document being written.
@@ -20,7 +20,7 @@ pub(crate) struct Tag<'a> {
     svg: &'a mut Svg,
 }
 
-/// How a text stands to its point.
+/// Alignment of a text to its point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -28,14 +28,14 @@ pub(crate) enum Anchor {
     End,
 }
 
-/// A text's place and look.
+/// Type of a text: size, colour, alignment and direction.
 #[derive(Clone, Copy)]
 pub(crate) struct Type {
     pub(crate) size: f64,
     pub(crate) colour: &'static str,
     pub(crate) bold: bool,
     pub(crate) anchor: Anchor,
-    /// Turned to read upwards.
+    /// Text that reads upwards.
     pub(crate) upwards: bool,
 }
 
@@ -58,7 +58,7 @@ impl Type {
 }
 
 impl Svg {
-    /// Opens a document of this size in px; title and description are for those who do not see it.
+    /// Opens a document of this size in px. Title and description are for readers who cannot see it.
     pub(crate) fn new(width: f64, height: f64, title: &str, description: &str) -> Self {
         let mut svg = Self { out: String::with_capacity(16 * 1024) };
         svg.out.push_str("<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\"");
@@ -73,7 +73,7 @@ impl Svg {
         svg
     }
 
-    /// Starts an element without content; `Tag::end` ends it.
+    /// Starts an element without content. `Tag::end` ends it.
     pub(crate) fn tag(&mut self, name: &str) -> Tag<'_> {
         self.out.push('<');
         self.out.push_str(name);
@@ -130,7 +130,7 @@ impl Svg {
         self.out
     }
 
-    /// Writes text as XML 1.0 takes it: what it cannot hold becomes U+FFFD, line breaks become spaces.
+    /// Writes text for XML 1.0. Characters that it does not allow become U+FFFD, line breaks become spaces.
     fn escape(&mut self, text: &str) {
         for character in text.chars() {
             match character {
@@ -166,7 +166,7 @@ impl Tag<'_> {
     }
 }
 
-/// A coordinate with at most two decimals; what is not a number becomes 0.
+/// A coordinate with at most two decimals. NaN becomes 0.
 pub(crate) fn fixed(value: f64) -> String {
     let value = if value.is_nan() { 0.0 } else { value.clamp(-FARTHEST, FARTHEST) };
     let mut text = format!("{value:.2}");

@@ -1,9 +1,9 @@
-//! Lines of text: their pieces, their width by estimate (a server has no fonts to ask), and breaking them.
+//! Lines of text: their pieces, their estimated width (a server has no fonts to ask), and breaking them.
 
 /// A piece of a line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Span<'a> {
-    /// As it is.
+    /// Upright text.
     Plain(&'a str),
     /// A mathematical symbol: slanted.
     Symbol(&'a str),
@@ -27,7 +27,7 @@ pub(crate) fn sentence(text: &str) -> Vec<Span<'_>> {
     spans
 }
 
-/// Width of a character in ems; generous, so that a line fits in any of the fonts.
+/// Width of a character in ems. Generous, so that a line fits in any of the fonts.
 const CHARACTER: f64 = 0.56;
 
 /// Width of a text in px, by estimate.
@@ -51,8 +51,8 @@ fn character_width(character: char) -> f64 {
     }
 }
 
-/// Breaks a text at spaces (or inside words too long for a line) into lines at most `room` px wide; what goes beyond
-/// `most` lines ends in an ellipsis.
+/// Breaks a text at spaces, or inside words too long for a line, into at most `most` lines of at most `room` px. A longer text ends
+/// in an ellipsis.
 pub(crate) fn wrap(text: &str, size: f64, room: f64, most: usize) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = String::new();
@@ -91,7 +91,7 @@ pub(crate) fn wrap(text: &str, size: f64, room: f64, most: usize) -> Vec<String>
     lines
 }
 
-/// Bytes of the longest beginning that fits, one character at least.
+/// Number of bytes of the longest beginning that fits, at least one character.
 fn fitting(text: &str, size: f64, room: f64) -> usize {
     let mut used = 0.0;
     for (at, character) in text.char_indices() {

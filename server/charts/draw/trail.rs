@@ -1,13 +1,13 @@
-//! The way of the angle eigenvalues over the tilt gain, in closed form, as polylines. Not here: drawing it.
+//! The path of the angle's eigenvalues over the tilt gain, in closed form, as polylines.
 
 /// Points in each part of a trail.
 const SAMPLES: usize = 64;
 
-/// How far the residue is drawn beyond 0 and 1: at least, and at most where the scene lies beyond.
+/// Smallest and largest distance that the residue is drawn beyond 0 and 1.
 const BEYOND: f64 = 0.1;
 const FARTHEST: f64 = 0.6;
 
-/// What is followed.
+/// The eigenvalues that are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Law {
     /// λ² − (2 − 4R)λ + 1 = 0: the pair of a rod, R Greene's residue.
@@ -17,7 +17,7 @@ pub(crate) enum Law {
 }
 
 impl Law {
-    /// The eigenvalues (re, im) at a residue; twice the same for a single one. The outer, or upper, comes first.
+    /// The eigenvalues (re, im) at a residue, the outer or upper one first. A single eigenvalue is returned twice.
     pub(crate) fn at(self, residue: f64) -> [(f64, f64); 2] {
         let half_trace = 1.0 - 2.0 * residue;
         if self == Self::Single {
@@ -29,15 +29,15 @@ impl Law {
             return [(half_trace, imaginary), (half_trace, -imaginary)];
         }
         let outer = half_trace + (2.0 * off_circle.sqrt()).copysign(half_trace);
-        // The product is 1, which loses no digits where the difference would.
+        // Their product is 1, which keeps the digits that a difference would lose.
         [(outer, 0.0), (1.0 / outer, 0.0)]
     }
 }
 
-/// Residues and eigenvalues of one part of the way.
+/// Residues and eigenvalues of one part of the path.
 pub(crate) type Part = Vec<(f64, [(f64, f64); 2])>;
 
-/// The way below the stable interval, in it and beyond it.
+/// The path below the stable interval, in it and beyond it.
 pub(crate) struct Trail {
     pub(crate) law: Law,
     pub(crate) below: Part,
@@ -46,7 +46,7 @@ pub(crate) struct Trail {
 }
 
 impl Trail {
-    /// The trail far enough to show a scene at this residue, within bounds.
+    /// The path, long enough to show a scene at this residue, within bounds.
     pub(crate) fn around(law: Law, residue: f64) -> Self {
         let residue = if residue.is_nan() { 0.0 } else { residue };
         let low = (residue - 0.5 * BEYOND).clamp(-FARTHEST, -BEYOND);
@@ -69,13 +69,13 @@ impl Trail {
         (self.below.first().map_or(0.0, |point| point.0), self.beyond.last().map_or(1.0, |point| point.0))
     }
 
-    /// Least and greatest real part on it.
+    /// Smallest and largest real part.
     pub(crate) fn real_ends(&self) -> (f64, f64) {
         let parts = self.below.iter().chain(&self.stable).chain(&self.beyond);
         parts.fold((0.0, 0.0), |(low, high), (_, [(re, _), _])| (low.min(*re), high.max(*re)))
     }
 
-    /// Largest |λ| on it.
+    /// Largest |λ|.
     pub(crate) fn reach(&self) -> f64 {
         let parts = self.below.iter().chain(&self.stable).chain(&self.beyond);
         parts.map(|(_, [first, _])| modulus(*first)).fold(1.0, f64::max)

@@ -11,7 +11,7 @@ use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Anchor, Type};
 use crate::charts::draw::text::Span;
 
-/// Angles below this are rounding where 0 is meant, rad.
+/// Angles below this are rounding noise around 0, rad.
 const ROUNDING: f64 = 1e-12;
 
 /// A place on the branch where stability changes.
@@ -19,28 +19,28 @@ const ROUNDING: f64 = 1e-12;
 pub struct Change {
     /// Parameter and largest |θ|.
     pub at: (f64, f64),
-    /// What changes.
+    /// Kind of the change.
     pub kind: &'static str,
 }
 
 /// A branch of periodic orbits.
 #[derive(Clone, Copy, Debug)]
 pub struct Branches<'a> {
-    /// What it is, in a few words.
+    /// Title in a few words.
     pub title: &'a str,
     /// The parameter in words.
     pub name: &'a str,
-    /// Its symbol.
+    /// Symbol of the parameter.
     pub symbol: &'a str,
-    /// Its unit; empty for none.
+    /// Unit of the parameter; empty for none.
     pub unit: &'a str,
-    /// The range asked for.
+    /// Requested range of the parameter.
     pub ends: (f64, f64),
-    /// Parameter, largest |θ|, and whether it is stable; none where it changes.
+    /// Parameter, largest |θ|, and stability; none at a change.
     pub points: &'a [(f64, f64, Option<bool>)],
-    /// Where it changes.
+    /// Changes of stability.
     pub changes: &'a [Change],
-    /// κ_c, where the parameter is κ.
+    /// κ_c, if the parameter is κ.
     pub critical: Option<f64>,
 }
 
@@ -85,7 +85,7 @@ pub fn branches(drawn: &Branches<'_>) -> String {
     let mut run: Vec<Point> = Vec::new();
     let mut last: Option<bool> = None;
     for pair in drawn.points.windows(2) {
-        // A change between them is a point of its own, so one of the two knows.
+        // A change between two points is a point of its own, so one of the two has a stability.
         let stable = pair[0].2.or(pair[1].2).unwrap_or(false);
         if last.is_some_and(|last| last != stable) {
             let (colour, dashes) = dashes(!stable);

@@ -1,6 +1,4 @@
-//! A chart of curves: what holds beside what was said, in one panel or two, linear or logarithmic.
-//!
-//! Not here: which curves, and what they mean.
+//! A chart of curves: the truth beside wrong results, in one panel or two, linear or logarithmic.
 
 use crate::charts::draw::colour::{BLUE, GREEN, ORANGE, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::{Frame, Point};
@@ -13,50 +11,50 @@ use crate::charts::draw::sheet::{Sheet, Words};
 /// A picture of one panel or two.
 #[derive(Clone, Debug)]
 pub struct Chart {
-    /// What it is, in a few words.
+    /// Title in a few words.
     pub title: &'static str,
-    /// What it shows, in a sentence.
+    /// Content in a sentence.
     pub subtitle: String,
-    /// How to read it, with numbers.
+    /// Reading aid with numbers.
     pub caption: String,
-    /// The panels; all of their labels stand in one legend.
+    /// The panels. One legend has the labels of all.
     pub plots: Vec<Plot>,
 }
 
-/// A panel with its curves, the first of them undermost.
+/// A panel with its curves. Later curves are drawn over earlier ones.
 #[derive(Clone, Debug)]
 pub struct Plot {
-    /// Along.
+    /// Axis along x.
     pub x: Side,
-    /// Upwards.
+    /// Axis along y.
     pub y: Side,
-    /// What is drawn.
+    /// The curves.
     pub curves: Vec<Curve>,
 }
 
-/// What is along an axis.
+/// An axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Side {
-    /// In words.
+    /// Name in words.
     pub name: &'static str,
-    /// In a formula.
+    /// Symbol in formulas.
     pub symbol: &'static str,
     /// Unit; empty for none.
     pub unit: &'static str,
-    /// Whether it is logarithmic; values that have no logarithm are left out.
+    /// True for a logarithmic axis. Values without a logarithm are left out.
     pub logarithmic: bool,
-    /// From where to where; around all points where it is not said.
+    /// Ends of the axis. Without them it is around all points.
     pub ends: Option<(f64, f64)>,
 }
 
 /// Points with a meaning.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// Its meaning; nothing where another curve says it already.
+    /// Label in the legend. Empty if another curve has it.
     pub label: &'static str,
-    /// How it is drawn.
+    /// Look of the curve.
     pub look: Look,
-    /// x and y. Those that are no numbers, or outside of the panel, are left out.
+    /// x and y. Points that are NaN or outside the panel are left out.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -128,12 +126,12 @@ impl Side {
         Self { logarithmic: true, ..self }
     }
 
-    /// The same from one value to another.
+    /// The same between two values.
     pub const fn between(self, low: f64, high: f64) -> Self {
         Self { ends: Some((low, high)), ..self }
     }
 
-    /// Where a value is along it; not a number where it is nowhere.
+    /// Place of a value along the axis. NaN if it has none.
     fn place(self, value: f64) -> f64 {
         match self.logarithmic {
             true if value > 0.0 => libm::log10(value),

@@ -1,5 +1,5 @@
-//! The picture of a law: the eigenvalues of its loop on the unit circle with their way as the gain is scaled, and the largest
-//! |λ| against the factor, with the factors between which it is stable.
+//! The picture of a law: the eigenvalues of its loop on the unit circle with their path as the gain is scaled, and the largest |λ|
+//! over the factor, with the stable interval of factors.
 
 use crate::charts::draw::colour::{AXIS, BLUE, INK, PALE_BLUE, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::Frame;
@@ -20,19 +20,19 @@ pub struct Loop<'a> {
     pub title: &'a str,
     /// The law.
     pub subtitle: &'a str,
-    /// What to make of it.
+    /// Interpretation.
     pub caption: &'a str,
-    /// With the law as it is.
+    /// Eigenvalues with the law.
     pub closed: &'a [(f64, f64)],
-    /// Without it.
+    /// Eigenvalues without it.
     pub open: &'a [(f64, f64)],
-    /// Factors on the gain, growing, with the eigenvalues there.
+    /// Rising factors on the gain, with the eigenvalues at each.
     pub way: &'a [(f64, Vec<(f64, f64)>)],
     /// The factors between which it is stable.
     pub margin: (Option<f64>, Option<f64>),
 }
 
-/// Farthest real part that is drawn to scale; beyond it an arrow points on.
+/// Largest real part that is drawn to scale. An arrow points to eigenvalues beyond it.
 const FARTHEST: f64 = 2.6;
 
 /// Draws the two panels.
@@ -96,7 +96,7 @@ fn disc_mark(svg: &mut Svg, at: (f64, f64)) {
     disc(svg, at, 5.5, INK);
 }
 
-/// A mark, or an arrow with its value where it is farther out.
+/// A mark, or an arrow with the value of an eigenvalue farther out.
 fn draw_mark(
     svg: &mut Svg,
     panel: &Panel,

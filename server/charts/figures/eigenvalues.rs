@@ -1,4 +1,4 @@
-//! The picture of a verdict: eigenvalues on the unit circle with the way of the angle pair over κ, and |λ| against κ.
+//! The picture of a verdict: eigenvalues on the unit circle with the path of the angle's pair over κ, and |λ| over κ.
 
 use crate::charts::draw::colour::{AXIS, BLUE, INK, ORANGE, PALE_BLUE, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::{Frame, Point};
@@ -12,16 +12,16 @@ use crate::charts::draw::svg::{Anchor, Svg, Type};
 use crate::charts::draw::text::Span;
 use crate::charts::draw::trail::{Law, Trail, modulus};
 
-/// A verdict and what it rests on.
+/// A verdict and its evidence.
 #[derive(Clone, Copy, Debug)]
 pub struct Eigenvalues<'a> {
     /// The scene in a few words.
     pub title: &'a str,
-    /// The verdict; none where nothing can be judged.
+    /// The verdict, if there is one.
     pub verdict: Option<&'a str>,
-    /// Why, in a sentence.
+    /// The reason, in a sentence.
     pub reason: &'a str,
-    /// The linear analysis; none where the scene has no fixed point, and then the picture says only `reason`.
+    /// The linear analysis. Without a fixed point there is none, and the picture shows only `reason`.
     pub linear: Option<Spectrum<'a>>,
 }
 
@@ -32,20 +32,20 @@ pub struct Spectrum<'a> {
     pub eigenvalues: &'a [(f64, f64)],
     /// κ of the scene.
     pub tilt_gain: f64,
-    /// Least κ that balances.
+    /// Smallest κ that balances.
     pub lower: f64,
-    /// κ_c, greatest κ that balances.
+    /// κ_c, the largest κ that balances.
     pub critical: f64,
-    /// Greene's residue; none for a point mass.
+    /// Greene's residue. A point mass has none.
     pub residue: Option<f64>,
-    /// σ, rad per bounce, where the angle circles.
+    /// σ, rad per bounce, if the angle circles.
     pub rotation: Option<f64>,
 }
 
-/// What is outside the stable interval is dashed.
+/// Dashes of the path outside the stable interval.
 const DASHES: Option<&str> = Some("6 4");
 
-/// Draws the two panels; a small sheet with the reason where there is no linear analysis.
+/// Draws the two panels, or a small sheet with the reason if there is no linear analysis.
 pub fn eigenvalues(judged: &Eigenvalues<'_>) -> String {
     const ROOM: f64 = 464.0;
     const CIRCLE: Frame = Frame { left: 78.0, top: 30.0, width: 372.0, height: 348.0 };
@@ -101,7 +101,7 @@ fn sentence(spectrum: &Spectrum<'_>) -> String {
     text + &format!(" Largest |λ| = {}.", number(largest))
 }
 
-/// What both panels show.
+/// The values that both panels show.
 struct View<'a> {
     spectrum: Spectrum<'a>,
     /// The eigenvalues of the angle first, their count, then the others.

@@ -10,7 +10,7 @@ use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Anchor, Svg, Type};
 use crate::charts::draw::text::Span;
 
-/// Dots drawn in a plane at most. More are a blot on paper, and megabytes on the wire.
+/// Highest number of dots in a plane. More would only fill the area, at megabytes of SVG.
 const MOST_DOTS: usize = 20_000;
 
 /// States just before the impacts of a run, one entry of each slice per impact.
@@ -18,11 +18,11 @@ const MOST_DOTS: usize = 20_000;
 pub struct PhasePlanes<'a> {
     /// The scene in a few words.
     pub title: &'a str,
-    /// How the run ended.
+    /// The outcome of the run.
     pub subtitle: &'a str,
     /// θ, rad.
     pub theta: &'a [f64],
-    /// θ̇, rad/s; none for a point mass, which has no orientation, so that its first plane is left out.
+    /// θ̇, rad/s. A point mass has none, and its first plane is left out.
     pub theta_dot: Option<&'a [f64]>,
     /// ẋ, m/s.
     pub x_dot: &'a [f64],
@@ -32,8 +32,8 @@ pub struct PhasePlanes<'a> {
 
 /// Draws the two planes, or the second alone.
 ///
-/// Values that are not finite numbers are left out, and so is all but one in k of more than 20,000 impacts (the first and
-/// the last stay); the caption says either.
+/// Values that are not finite are left out. Of more than 20,000 impacts one in k is drawn, with the first and the last. The caption
+/// says so.
 pub fn phase_planes(run: &PhasePlanes<'_>) -> String {
     const ROOM: f64 = 432.0;
     const PLANE: Frame = Frame { left: 104.0, top: 6.0, width: 350.0, height: 340.0 };
@@ -97,7 +97,7 @@ pub fn phase_planes(run: &PhasePlanes<'_>) -> String {
     svg.finish()
 }
 
-/// What is along one axis.
+/// The values along one axis.
 struct Side<'a> {
     name: &'a str,
     symbol: &'a str,
@@ -149,7 +149,7 @@ impl Plane<'_> {
     }
 }
 
-/// Which of the `step` impacts of a block is drawn. Always the same one would show one island of a chain of `step`.
+/// Chooses the impact that is drawn for a block of `step`. A fixed choice would show one island of a chain of `step`.
 fn chosen(block: usize, step: usize) -> usize {
     // Knuth's multiplicative hash: the high half of the product is spread evenly.
     let spread = (block as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;

@@ -9,22 +9,22 @@ use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Svg, Type, fixed};
 use crate::charts::draw::text::Span;
 
-/// What is drawn.
+/// Speed and accuracy of methods.
 #[derive(Clone, Debug)]
 pub struct SpeedAccuracy<'a> {
-    /// What it is, in a few words.
+    /// Title in a few words.
     pub title: &'a str,
-    /// What it shows, in a sentence.
+    /// Content in a sentence.
     pub subtitle: &'a str,
-    /// How to read it, and what is not drawn.
+    /// Reading aid, and methods that are not drawn.
     pub caption: &'a str,
-    /// What cost is, and its unit.
+    /// Kind and unit of the cost.
     pub cost: (&'a str, &'a str),
-    /// What the error is.
+    /// Kind of the error.
     pub error: &'a str,
     /// The methods.
     pub series: &'a [Series<'a>],
-    /// Cost and error of the points that none beats.
+    /// Cost and error of the points on the Pareto front.
     pub front: &'a [(f64, f64)],
     /// One unit in the last place of the state.
     pub rounding: f64,
@@ -37,7 +37,7 @@ pub struct Series<'a> {
     pub symbol: Symbol,
     /// Name.
     pub label: &'a str,
-    /// Quartile, median, quartile of the cost, and the error.
+    /// Lower quartile, median and upper quartile of the cost, and the error.
     pub points: Vec<([f64; 3], f64)>,
 }
 
@@ -118,7 +118,7 @@ fn draw_symbol(svg: &mut Svg, (x, y): Point, Symbol { colour, outline }: Symbol)
     tag.word("stroke", PAPER).number("stroke-width", 0.8).end();
 }
 
-/// Draws it.
+/// Draws the chart.
 pub fn speed_accuracy(drawn: &SpeedAccuracy<'_>) -> String {
     const ROOM: f64 = 470.0;
     let description = format!("{} {} {}", drawn.title, drawn.subtitle, drawn.caption);
@@ -126,7 +126,7 @@ pub fn speed_accuracy(drawn: &SpeedAccuracy<'_>) -> String {
         Words { title: drawn.title, subtitle: drawn.subtitle, caption: drawn.caption, description: &description };
     let Sheet { mut svg, top } = Sheet::new(960.0, ROOM, words);
     let frame = Frame { left: 96.0, top: top + 6.0, width: 580.0, height: 396.0 };
-    // What has no logarithm stands on the lower edge.
+    // Values without a logarithm are drawn on the lower edge.
     let place = |value: f64| if value > 0.0 { libm::log10(value) } else { f64::NEG_INFINITY };
     let points = || drawn.series.iter().flat_map(|series| series.points.iter());
     let cost = Range::around(points().flat_map(|point| point.0).map(place));

@@ -1,5 +1,5 @@
-//! The picture of an ensemble: how many runs are still going after each contact, with how many had come so far below the axis,
-//! and how far from upright those are beneath.
+//! The picture of an ensemble: the share of runs that continue after each contact, with the number at risk below the axis, and the
+//! quantiles of their angle.
 
 use crate::charts::draw::colour::{BLUE, GREEN, INK, LIGHT_GREEN, PALE_BLUE, PALE_GREEN, SOFT_INK};
 use crate::charts::draw::geometry::{Frame, Point};
@@ -11,49 +11,49 @@ use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Anchor, Svg, Type};
 use crate::charts::draw::text::Span;
 
-/// What is drawn.
+/// Survival of many runs.
 #[derive(Clone, Copy, Debug)]
 pub struct SurvivalCurve<'a> {
-    /// What it is, in a few words.
+    /// Title in a few words.
     pub title: &'a str,
-    /// How the runs ended, in a sentence.
+    /// Outcomes of the runs, in a sentence.
     pub subtitle: &'a str,
-    /// What comes of it, with numbers.
+    /// Conclusion with numbers.
     pub caption: &'a str,
     /// The curve: one point for each contact, from 1.
     pub curve: &'a [SurvivalAt],
-    /// Where there are some: quantiles of |θ| over the runs that went on.
+    /// Quantiles of |θ| over the runs that continue, at some contacts.
     pub angles: &'a [AnglesAt],
 }
 
 /// The curve at a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct SurvivalAt {
-    /// Runs that came to it.
+    /// Number of runs that reach it.
     pub at_risk: u64,
-    /// The share of all runs that went on.
+    /// Share of all runs that continue.
     pub share: f64,
-    /// The ends of its interval.
+    /// Confidence interval of the share.
     pub interval: (f64, f64),
 }
 
 /// Quantiles at a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct AnglesAt {
-    /// Its number.
+    /// Number of the contact.
     pub n: u64,
-    /// The five quantiles, upwards, rad.
+    /// Five quantiles in rising order, rad.
     pub quantiles: [f64; 5],
 }
 
-/// Most steps of a curve: two for each pixel.
+/// Highest number of steps of a curve: two for each pixel.
 const STEPS: usize = 1200;
 
-/// The panels; the lower one stands below the row of those at risk.
+/// The panels. The lower one stands below the row of numbers at risk.
 const UPPER: Frame = Frame { left: 92.0, top: 6.0, width: 590.0, height: 226.0 };
 const LOWER: Frame = Frame { top: 326.0, height: 170.0, ..UPPER };
 
-/// Draws it.
+/// Draws the chart.
 pub fn survival_curve(drawn: &SurvivalCurve<'_>) -> String {
     const ROOM: f64 = 582.0;
     let description = format!("{}: {} {}", drawn.title, drawn.subtitle, drawn.caption);
@@ -94,7 +94,7 @@ fn draw_survival(svg: &mut Svg, frame: Frame, x: Axis<'_>, curve: &[SurvivalAt])
     svg.text(frame.left - 22.0, y, label, &[Span::Plain("at risk")]);
 }
 
-/// A curve that keeps its value from contact to contact, from 1 before the first.
+/// A step curve that keeps its value from contact to contact, and is 1 before the first.
 fn stairs(panel: &Panel, curve: &[SurvivalAt], value: &dyn Fn(&SurvivalAt) -> f64) -> Vec<Point> {
     let stride = curve.len().div_ceil(STEPS).max(1);
     let mut points = vec![panel.at(0.0, 1.0)];

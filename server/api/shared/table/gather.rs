@@ -1,4 +1,4 @@
-//! Gathers rows one by one into a column, which is described once: its name, its unit, and how it is read from a row.
+//! Gathers the values of a column row by row.
 
 use crate::api::shared::table::Cells;
 
@@ -7,13 +7,13 @@ use crate::api::shared::table::Cells;
 pub enum Read<Row> {
     /// A whole number.
     Count(fn(&Row) -> u64),
-    /// A whole number that need not exist.
+    /// A whole number, or none.
     SparseCount(fn(&Row) -> Option<u64>),
     /// A finite number.
     Number(fn(&Row) -> f64),
-    /// A number that need not exist.
+    /// A number, or none.
     Sparse(fn(&Row) -> Option<f64>),
-    /// A word that need not exist.
+    /// A word, or none.
     Word(fn(&Row) -> Option<&'static str>),
 }
 
@@ -28,15 +28,15 @@ impl<Row> Copy for Read<Row> {}
 /// The values of a column so far.
 #[derive(Debug)]
 pub enum Gathered<Row> {
-    /// Of [`Read::Count`].
+    /// Values of [`Read::Count`].
     Counts(fn(&Row) -> u64, Vec<u64>),
-    /// Of [`Read::SparseCount`].
+    /// Values of [`Read::SparseCount`].
     SparseCounts(fn(&Row) -> Option<u64>, Vec<Option<u64>>),
-    /// Of [`Read::Number`].
+    /// Values of [`Read::Number`].
     Numbers(fn(&Row) -> f64, Vec<f64>),
-    /// Of [`Read::Sparse`].
+    /// Values of [`Read::Sparse`].
     Sparse(fn(&Row) -> Option<f64>, Vec<Option<f64>>),
-    /// Of [`Read::Word`].
+    /// Values of [`Read::Word`].
     Words(fn(&Row) -> Option<&'static str>, Vec<Option<&'static str>>),
 }
 

@@ -11,15 +11,15 @@ use serde::{Serialize, Serializer};
 /// One column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
-    /// Its name in JSON.
+    /// Name in JSON.
     pub name: &'static str,
-    /// What CSV adds to the name: the unit, as in `m_per_s`; empty for none.
+    /// Unit, which CSV appends to the name: `m/s` or `m_per_s`. Empty for none.
     pub unit: &'static str,
-    /// Its values.
+    /// Values.
     pub cells: Cells,
 }
 
-/// A name and its unit as they stand in the header of CSV: `rad/s` and `rad_per_s` are `_rad_per_s`.
+/// A name with its unit for the header of CSV: `rad/s` and `rad_per_s` are written as `_rad_per_s`.
 pub fn with_unit(name: &str, unit: &str) -> String {
     match unit {
         "" | "1" => name.to_owned(),
@@ -35,17 +35,17 @@ pub enum Cells {
     Counts(Vec<u64>),
     /// Numbers, all finite.
     Numbers(Vec<f64>),
-    /// Numbers that need not exist.
+    /// Numbers, or none.
     Sparse(Vec<Option<f64>>),
-    /// Whole numbers that need not exist.
+    /// Whole numbers, or none.
     SparseCounts(Vec<Option<u64>>),
-    /// Words that need not exist.
+    /// Words, or none.
     Words(Vec<Option<&'static str>>),
-    /// Yes or no, where there is an answer.
+    /// Yes, no, or none.
     Flags(Vec<Option<bool>>),
-    /// Sentences that need not exist.
+    /// Sentences, or none.
     Texts(Vec<Option<String>>),
-    /// Numbers of 32 digits that need not exist, as text.
+    /// Numbers of 32 digits as text, or none.
     #[serde(serialize_with = "decimals")]
     Decimals(Vec<Option<DoubleDouble>>),
 }
@@ -77,7 +77,7 @@ impl Cells {
         }
     }
 
-    /// As doubles; none unless every one exists.
+    /// All values as doubles, if every one exists.
     pub fn numbers(&self) -> Option<Vec<f64>> {
         match self {
             Self::Numbers(cells) => Some(cells.clone()),
@@ -102,7 +102,7 @@ impl Cells {
         };
     }
 
-    /// Writes one value as CSV: numbers as in JSON, texts quoted where they need it, nothing for what does not exist.
+    /// Writes one value as CSV: numbers as in JSON, texts in quotes where necessary, nothing for none.
     fn write_csv(&self, row: usize, out: &mut Vec<u8>) {
         let text = match self {
             Self::Words(cells) => cells[row],
@@ -146,15 +146,15 @@ impl Serialize for Table {
 }
 
 impl Table {
-    /// How many rows it has.
+    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.0.first().map_or(0, |column| column.cells.len())
     }
 
-    /// RFC 4180, with a header; what does not exist is empty.
+    /// Writes CSV by RFC 4180, with a header. A value that does not exist is an empty cell.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// The errors of `out`.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         let header: Vec<String> = self.0.iter().map(|Column { name, unit, .. }| with_unit(name, unit)).collect();
         out.write_all(header.join(",").as_bytes())?;
@@ -174,10 +174,10 @@ impl Table {
         Ok(())
     }
 
-    /// One JSON object a row, then `{"end": …}`, so that a truncated answer shows.
+    /// Writes one JSON object for each row, then `{"end": …}`, so that a truncated answer is recognised.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// The errors of `out`.
     pub fn write_ndjson(&self, end: &impl Serialize, out: &mut impl Write) -> io::Result<()> {
         let mut line = Vec::new();
         for row in 0..self.rows() {

@@ -1,4 +1,4 @@
-//! Curves that come as loose segments: cut to a frame and joined, since dashes begin anew with every path.
+//! Curves from loose segments, which are cut to a frame and joined, since dashes begin anew with each path.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -6,13 +6,13 @@ use std::fmt::Write as _;
 use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::svg::fixed;
 
-/// Ends that round to the same place are one, places per px.
+/// Resolution at which ends count as the same, places per px.
 const FINENESS: f64 = 20.0;
 
-/// Points nearer to the last one are left out, px.
+/// Smallest distance of two points of a curve, px.
 const NEAR: f64 = 0.5;
 
-/// The path of all segments inside the frame, in px; empty where nothing is left.
+/// The path of all segments inside the frame, px. Empty if no segment is inside.
 pub(crate) fn path(segments: &[(Point, Point)], frame: Frame) -> String {
     let inside: Vec<_> = segments.iter().filter_map(|segment| cut(*segment, frame)).collect();
     let mut path = String::new();
@@ -50,7 +50,7 @@ fn cut((from, to): (Point, Point), frame: Frame) -> Option<(Point, Point)> {
         }
     }
     let at = |share: f64| (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1));
-    // What is left of a far segment by rounding, or by an overflow, is not a part of it.
+    // A remainder of a far segment by rounding or overflow is no part of it.
     let is_part = first <= last && place(at(first)) != place(at(last)) && at(first).0.is_finite();
     is_part.then(|| (at(first), at(last)))
 }
@@ -59,7 +59,7 @@ fn place((x, y): Point) -> (i64, i64) {
     ((x * FINENESS).round() as i64, (y * FINENESS).round() as i64)
 }
 
-/// Segments that share ends as curves: open ones from their ends on, then closed ones.
+/// Joins segments that share ends into curves: first open curves from their ends, then closed ones.
 fn joined(segments: &[(Point, Point)]) -> Vec<Vec<Point>> {
     let mut meeting: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
     for (n, (from, to)) in segments.iter().enumerate() {

@@ -1,7 +1,7 @@
-//! The cells of a heat map: binned to what a picture can show, and drawn as one path for each colour.
+//! The cells of a heat map: binned to the resolution of the picture, and drawn as one path for each colour.
 //!
 //! Runs of one colour in a row are one rectangle. Moves are relative and rectangles left open, which filling closes: a
-//! run takes some twelve bytes. Not here: axes, and what the colours mean.
+//! run takes about twelve bytes.
 
 use std::fmt::Write as _;
 
@@ -11,44 +11,44 @@ use crate::charts::draw::marks::hatch;
 use crate::charts::draw::svg::{Svg, fixed};
 use crate::charts::figures::heat_map::cividis::{COLOURS, colour};
 
-/// Cells drawn along a side at most: one for every pixel of the frame.
+/// Highest number of cells along a side: one for each pixel of the frame.
 pub(crate) const MOST: usize = 512;
 
-/// Between two lines of hatching along a side, px.
+/// Distance of two lines of hatching along a side, px.
 const HATCHING: f64 = 8.0;
 
 /// One side of the cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Side {
-    /// How many there are.
+    /// Number of cells.
     pub(crate) count: usize,
-    /// Whether they run from the right or from the top.
+    /// True if they run from the right or from the top.
     pub(crate) reversed: bool,
 }
 
 impl Side {
-    /// How many are drawn.
+    /// Number of cells that are drawn.
     pub(crate) fn drawn(self) -> usize {
         self.count.min(MOST)
     }
 
-    /// Where one of them is drawn.
+    /// Place of a drawn cell.
     fn bin(self, index: usize) -> usize {
         let index = if self.reversed { self.count - 1 - index } else { index };
         if self.count > MOST { index * MOST / self.count } else { index }
     }
 }
 
-/// What is drawn: rows from below, a value for each.
+/// The drawn cells: rows from below, a value for each cell.
 pub(crate) struct Cells {
     columns: usize,
     rows: usize,
     values: Vec<Option<f64>>,
-    /// How many of them hold cells of different kinds, which a mean hides.
+    /// Number of drawn cells that hide cells of different kinds behind a mean.
     pub(crate) mixed: usize,
 }
 
-/// What came into one drawn cell so far.
+/// The cells that one drawn cell stands for, so far.
 #[derive(Clone, Copy, Default)]
 struct Bin {
     sum: f64,
@@ -57,12 +57,12 @@ struct Bin {
     mixed: bool,
 }
 
-/// The outcome of a cell that has a value; none of one that has not.
+/// The outcome of a cell with a value; none without a value.
 type Kind = Option<u8>;
 
 impl Cells {
-    /// Puts row after row into bins and takes the mean of what has a value in each. Values that are not finite are none.
-    /// Outcomes are numbered as anyone likes, in the order of the values; those that are left out are all one.
+    /// Puts the cells into bins row by row and takes the mean of the finite values in each bin. `outcomes` are any numbers in the order
+    /// of the values; missing ones count as equal.
     pub(crate) fn binned(values: &[Option<f64>], outcomes: &[u8], x: Side, y: Side) -> Self {
         let (columns, rows) = (x.drawn(), y.drawn());
         let mut bins = vec![Bin::default(); columns * rows];
@@ -84,17 +84,17 @@ impl Cells {
         Self { columns, rows, values: bins.iter().map(mean).collect(), mixed }
     }
 
-    /// Whether any cell is drawn without a value.
+    /// True if any cell is drawn without a value.
     pub(crate) fn any_empty(&self) -> bool {
         self.values.iter().any(Option::is_none)
     }
 
-    /// Draws all cells over the frame; `shade` gives the colour of a value.
+    /// Draws all cells over the frame. `shade` returns the colour of a value.
     pub(crate) fn draw(&self, svg: &mut Svg, frame: Frame, shade: impl Fn(f64) -> usize) {
         if self.values.is_empty() {
             return;
         }
-        // One path more, for cells without a value.
+        // One more path for cells without a value.
         let mut paths = vec![Runs::default(); COLOURS + 1];
         for (row, values) in self.values.chunks(self.columns).enumerate() {
             let shades: Vec<usize> =
@@ -105,14 +105,14 @@ impl Cells {
                 column += run.len();
             }
         }
-        // Six decimals, so that the far side is true to a thousandth of a pixel.
+        // Six decimals place the far side to a thousandth of a pixel.
         let (wide, tall) = (frame.width / self.columns as f64, frame.height / self.rows as f64);
         let bottom = frame.top + frame.height;
         let place = format!("matrix({wide:.6} 0 0 -{tall:.6} {} {})", fixed(frame.left), fixed(bottom));
         for (index, runs) in paths.iter().enumerate().filter(|(_, runs)| !runs.path.is_empty()) {
             let fill = if index == COLOURS { PALE_GREY.to_owned() } else { colour(index) };
             let tag = svg.tag("path").word("d", &runs.path).word("fill", &fill).word("transform", &place);
-            // Smoothed edges would let the paper through between neighbours.
+            // Smoothed edges would show the paper between neighbours.
             tag.word("shape-rendering", "crispEdges").end();
         }
         let hatching = self.hatching(frame);
@@ -121,7 +121,7 @@ impl Cells {
         }
     }
 
-    /// Parallel lines through all that has no value, cut at the cells' edges.
+    /// Parallel lines through all cells without a value, cut at the cells' edges.
     fn hatching(&self, frame: Frame) -> String {
         let mut path = String::new();
         if !self.any_empty() {
@@ -160,7 +160,7 @@ impl Cells {
     }
 }
 
-/// A piece of a line of hatching; specks are left out.
+/// A piece of a line of hatching. Very short pieces are left out.
 fn stroke(path: &mut String, frame: Frame, sum: f64, from: f64, to: f64) {
     if to - from >= 1.0 {
         let (x, y, length) = (fixed(frame.left + from), fixed(frame.top + sum - from), fixed(to - from));
@@ -172,7 +172,7 @@ fn stroke(path: &mut String, frame: Frame, sum: f64, from: f64, to: f64) {
 #[derive(Clone, Default)]
 struct Runs {
     path: String,
-    /// Where the pen is.
+    /// Position of the pen.
     pen: (i64, i64),
 }
 

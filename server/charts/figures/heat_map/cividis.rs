@@ -1,14 +1,14 @@
-//! cividis: the colours of a heat map. Equal steps of the value look equally large, with normal and with deficient colour vision
-//! alike, and lightness rises all the way, so that a grey print still reads.
+//! cividis: the colours of a heat map. Equal steps of the value look equal with normal and with deficient colour vision, and lightness
+//! rises throughout, so that a grey print is readable.
 //!
 //! J. R. Nuñez, C. R. Anderton, R. S. Renslow: Optimizing colormaps with consideration for color vision deficiency to
 //! enable accurate interpretation of scientific data. PLoS ONE 13 (2018) e0199239. The table is that of matplotlib,
 //! rounded to eight bits a channel.
 
-/// How many colours there are.
+/// Number of colours.
 pub(crate) const COLOURS: usize = 256;
 
-/// All colours, from the darkest on, as six digits each.
+/// All colours from the darkest on, six hexadecimal digits each.
 const TABLE: &str = "\
     00224e00234f00245100255300255400265600275800285900285b00295d002a5f002a61002b62002c64002c66002d68\
     002e6a002e6c002f6d00306f0030700031700031710132710533710833700c34700f357012357014367016377018376f\
@@ -27,7 +27,7 @@ const TABLE: &str = "\
     dec958dfca57e0cb56e1cc55e2cd54e4ce53e5cf52e6d051e7d150e8d24fe9d34eead34cebd44bedd54aeed649efd748\
     f0d846f1d945f2da44f3db42f5dc41f6dd3ff7de3ef8df3cf9e03afbe138fce236fde334fee434fee535fee636fee838";
 
-/// A colour, 0 the darkest; the last one for every index beyond.
+/// A colour; 0 is the darkest. Indices beyond the last colour give the last one.
 pub(crate) fn colour(index: usize) -> String {
     let at = 6 * index.min(COLOURS - 1);
     format!("#{}", &TABLE[at..at + 6])

@@ -18,7 +18,7 @@ use crate::charts::draw::text::{Span, width};
 use crate::charts::figures::heat_map::cells::{Cells, MOST, Side};
 use crate::charts::figures::heat_map::cividis::{COLOURS, colour};
 
-/// Segments of the boundary drawn at most.
+/// Highest number of segments of the boundary that are drawn.
 const MOST_SEGMENTS: usize = 40_000;
 
 /// Largest end of an axis; twice as much is still finite.
@@ -29,21 +29,21 @@ const LARGEST: f64 = 1e300;
 pub struct HeatMap<'a> {
     /// The scene in a few words.
     pub title: &'a str,
-    /// What was computed.
+    /// The computation in a few words.
     pub subtitle: &'a str,
-    /// The field that goes to the right.
+    /// The field along x.
     pub x: HeatAxis<'a>,
-    /// The field that goes up.
+    /// The field along y.
     pub y: HeatAxis<'a>,
-    /// Row after row, the first at `y.from`; none where the fields make no scene.
+    /// Values row by row, the first row at `y.from`. None where the fields make no valid scene.
     pub values: &'a [Option<f64>],
-    /// How the run of each cell ended, as numbers; empty where nothing ran.
+    /// Number of the outcome of each cell's run. Empty without runs.
     pub outcomes: &'a [u8],
     /// Values at the ends of the colour bar, which may be equal.
     pub scale: (f64, f64),
-    /// What the values are, in words.
+    /// Name of the quantity.
     pub quantity: &'a str,
-    /// Their unit; empty for a pure number.
+    /// Unit of the quantity; empty for a pure number.
     pub unit: &'a str,
     /// Segments of the linear boundary: the residue there, 0 or 1, and both ends as values of the fields.
     pub boundary: &'a [(f64, [f64; 2], [f64; 2])],
@@ -52,17 +52,17 @@ pub struct HeatMap<'a> {
 /// A field along a side.
 #[derive(Clone, Copy, Debug)]
 pub struct HeatAxis<'a> {
-    /// In words.
+    /// Name in words.
     pub name: &'a str,
-    /// In a formula.
+    /// Symbol in formulas.
     pub symbol: &'a str,
     /// Unit; empty for a pure number.
     pub unit: &'a str,
-    /// Its value in the first column or row.
+    /// Value in the first column or row.
     pub from: f64,
-    /// Its value in the last one.
+    /// Value in the last column or row.
     pub to: f64,
-    /// How many columns or rows.
+    /// Number of columns or rows.
     pub count: usize,
 }
 
@@ -73,7 +73,7 @@ impl HeatAxis<'_> {
         let (low, high) = (sane(self.from.min(self.to)), sane(self.from.max(self.to)));
         let half = match self.count {
             0 => 0.0,
-            // The one cell is at `from` wherever `to` is, and takes some width.
+            // A single cell is at `from`, whatever `to` is, and gets some width.
             1 => return self.alone(sane(self.from)),
             count => 0.5 * (high - low) / (count - 1) as f64,
         };
@@ -96,8 +96,8 @@ impl HeatAxis<'_> {
 
 /// Draws the cells, the boundary, a colour bar and a legend.
 ///
-/// At most 512 × 512 cells are drawn, each the mean of those in it; the caption says so, and in how many of them that hides
-/// different outcomes, and what has no value or is beyond the colour bar.
+/// At most 512 × 512 cells are drawn, each the mean of the cells in it. The caption says so, with the number of means over different
+/// outcomes, of cells without a value, and of values beyond the colour bar.
 pub fn heat_map(map: &HeatMap<'_>) -> String {
     const WIDTH: f64 = 784.0;
     const ROOM: f64 = 598.0;
@@ -118,7 +118,7 @@ pub fn heat_map(map: &HeatMap<'_>) -> String {
     );
     let words = Words { title: map.title, subtitle: map.subtitle, caption: &caption, description: &description };
     let Sheet { mut svg, top } = Sheet::new(WIDTH, ROOM, words);
-    // On whole pixels, so that 512 cells have one each.
+    // On whole pixels, so that each of 512 cells has one.
     let frame = Frame { left: 104.0, top: top.ceil(), width: SIDE, height: SIDE };
     let (x, y) = (map.x.axis(), map.y.axis());
     let panel = Panel::draw(&mut svg, frame, x, y);
@@ -147,7 +147,7 @@ pub fn heat_map(map: &HeatMap<'_>) -> String {
     svg.finish()
 }
 
-/// Where a value is along a side, also beyond its ends.
+/// Place of a value along a side, also beyond its ends.
 fn along(value: f64, range: Range, from: f64, length: f64) -> f64 {
     from + (value - range.low) / (range.high - range.low) * length
 }
@@ -157,7 +157,7 @@ fn with_unit(value: f64, unit: &str) -> String {
     if unit.is_empty() { value } else { format!("{value} {unit}") }
 }
 
-/// What the cells are, in words.
+/// Describes the cells in words.
 fn caption(map: &HeatMap<'_>, bar: &Bar, mixed: usize) -> String {
     let (columns, rows) = (map.x.count, map.y.count);
     let all = columns.saturating_mul(rows);
@@ -201,23 +201,23 @@ fn caption(map: &HeatMap<'_>, bar: &Bar, mixed: usize) -> String {
 struct Bar {
     low: f64,
     high: f64,
-    /// What the bar shows; none where it has one value only.
+    /// Range of the bar, unless it has one value only.
     range: Option<Range>,
 }
 
 impl Bar {
-    /// From end to end of the map's scale, in either order; an end that is no number gives way to the other one.
+    /// The colours between the ends of the map's scale, in either order. An end that is NaN is replaced by the other.
     fn new(map: &HeatMap<'_>) -> Self {
         let (one, other) = map.scale;
         let sane = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-LARGEST, LARGEST) };
         let (low, high) = (sane(one.min(other)), sane(one.max(other)));
         let range = Range::new(low, high);
-        // A range that had to be widened is one value.
+        // A range that had to be widened has one value.
         let is_one = range.high - range.low > high - low;
         Self { low, high, range: (!is_one).then_some(range) }
     }
 
-    /// The index of a value's colour; the middle one where all values are one.
+    /// Index of a value's colour; the middle colour if all values are equal.
     fn shade(&self, value: f64) -> usize {
         match self.range {
             Some(range) => {
