@@ -15,6 +15,18 @@ use crate::compute::{OverBudget, Price, TimeSlice, TimeSlices};
 use crate::http::{ApiRequest, BodyWriter, Format, Problem, Reader, Resource};
 use crate::limits::Limits;
 
+/// A valid request, with all defaults filled in.
+pub trait ResourceRequest: Clone + Send + Sync + 'static {
+    /// Reads a request. If it returns none, the reader has the errors.
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self>;
+
+    /// Prices the work.
+    ///
+    /// # Errors
+    /// The limit that the work passes.
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget>;
+}
+
 /// A resource that computes an answer.
 pub trait ComputedResource: Sized + 'static {
     /// Name in the paths `/v1/<name>` and `/v1/batches/<name>`.
@@ -23,20 +35,11 @@ pub trait ComputedResource: Sized + 'static {
     /// Formats of the answer.
     type Format: FormatSet;
 
-    /// A valid request, with all defaults filled in.
-    type Request: Clone + Send + Sync + 'static;
+    /// A request.
+    type Request: ResourceRequest;
 
     /// The work, from a request to the bytes of its answer.
     const WORK: Work<Self>;
-
-    /// Reads a request. If it returns none, the reader has the errors.
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self::Request>;
-
-    /// Prices the work of a request.
-    ///
-    /// # Errors
-    /// The limit that it passes.
-    fn price(request: &Self::Request, limits: &Limits) -> Result<Price, OverBudget>;
 }
 
 /// The canonical form of a request: together with build, format and encoding it determines every byte of the answer.
@@ -113,8 +116,8 @@ impl Endpoint {
 }
 
 async fn answer<R: ComputedResource>(app: App, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
-    let request = api_request.read(R::read)?;
-    let price = R::price(&request, &app.config.limits)?;
+    let request = api_request.read(R::Request::read)?;
+    let price = request.price(&app.config.limits)?;
     let resource = Resource { name: R::NAME, formats: R::Format::FORMATS };
     let bounces = app.metrics.bounces.clone();
     match R::WORK {

@@ -8,10 +8,6 @@ use crate::api::controllers::answer::ControllerAnswer;
 use crate::api::controllers::request::ControllerRequest;
 use crate::api::formats::ChartFormat;
 use crate::api::resource::{ComputedResource, Work};
-use crate::compute::{OverBudget, Price};
-use crate::http::Reader;
-use crate::limits;
-use crate::limits::Limits;
 
 /// The resource.
 #[derive(Debug)]
@@ -25,12 +21,4 @@ impl ComputedResource for Controllers {
         canonical: ControllerRequest::canonical,
         compute: |request, format, slice, _| format.write(&ControllerAnswer::compute(request)?, slice),
     };
-
-    fn read(reader: &mut Reader<'_, '_>) -> Option<ControllerRequest> {
-        ControllerRequest::read(reader)
-    }
-
-    fn price(_: &ControllerRequest, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(limits::CONTROLLER_PRICE).within(&limits.of_work())
-    }
 }

@@ -4,9 +4,13 @@ use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
 
+use crate::api::resource::ResourceRequest;
 use crate::api::scene::{build_scene, read_draft};
 use crate::api::shared::write;
+use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
+use crate::limits;
+use crate::limits::Limits;
 
 /// The fields of the gain, in the order of the state.
 pub(super) const FEEDBACK: [Name; 4] =
@@ -30,9 +34,8 @@ pub struct ControllerRequest {
     pub input: f64,
 }
 
-impl ControllerRequest {
-    /// Reads a request.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl ResourceRequest for ControllerRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let draft = read_draft(reader);
         let sticks = reader.choice("contact", &[("frictionless", false), ("stick", true)]);
         let (mut state, mut input) = WEIGHTS;
@@ -60,6 +63,12 @@ impl ControllerRequest {
         Some(Self { scene, tilt_gain, regime, state, input })
     }
 
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        Price::bounces(limits::CONTROLLER_PRICE).within(&limits.of_work())
+    }
+}
+
+impl ControllerRequest {
     /// Everything that determines the answer.
     pub fn canonical(&self) -> Vec<u8> {
         write::canonical(&self.scene, &(contact_name(self.regime), self.state, self.input, self.tilt_gain))

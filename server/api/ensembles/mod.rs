@@ -12,10 +12,9 @@ use crate::api::ensembles::request::EnsembleRequest;
 use crate::api::formats::ProgressFormat;
 use crate::api::resource::{ComputedResource, Work};
 use crate::api::shared::progress::Progress;
-use crate::compute::{OverBudget, Price, TimeSlice, TimeSlices};
-use crate::http::{BodyWriter, Format, Problem, Reader};
+use crate::compute::{TimeSlice, TimeSlices};
+use crate::http::{BodyWriter, Format, Problem};
 use crate::limits;
-use crate::limits::Limits;
 
 /// The resource.
 #[derive(Debug)]
@@ -27,15 +26,6 @@ impl ComputedResource for Ensembles {
     type Request = EnsembleRequest;
     const WORK: Work<Self> =
         Work::InSlices { canonical: EnsembleRequest::canonical, streamed: &[Format::Progress], compute };
-
-    fn read(reader: &mut Reader<'_, '_>) -> Option<EnsembleRequest> {
-        EnsembleRequest::read(reader)
-    }
-
-    fn price(request: &EnsembleRequest, limits: &Limits) -> Result<Price, OverBudget> {
-        limits.of_answer().admit(request.angles())?;
-        Price::bounces(request.price()).within(&limits.of_ensemble_work())
-    }
 }
 
 fn compute(

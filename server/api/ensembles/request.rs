@@ -5,11 +5,14 @@ use std::ops::Range;
 use equipoise_physics::scene::{Kind, Name, Value};
 use equipoise_physics::surveys::ensemble::Ensemble;
 
+use crate::api::resource::ResourceRequest;
 use crate::api::scene::{bounce_price, build_scene, read_draft};
 use crate::api::shared::tile::Tile;
 use crate::api::shared::write;
+use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits;
+use crate::limits::Limits;
 
 /// A request for an ensemble.
 #[derive(Debug, Clone, Copy)]
@@ -22,9 +25,8 @@ pub struct EnsembleRequest {
     pub angles: bool,
 }
 
-impl EnsembleRequest {
-    /// Reads a request.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl ResourceRequest for EnsembleRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let draft = read_draft(reader);
         let said = reader.integer("runs", 1..=limits::ENSEMBLE_RUNS_IN_TILES);
         let is_known = said.is_some() || !reader.has("runs");
@@ -51,6 +53,13 @@ impl EnsembleRequest {
         Some(Self { ensemble, tile: tile?, angles })
     }
 
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        limits.of_answer().admit(self.angles())?;
+        Price::bounces(self.work()).within(&limits.of_ensemble_work())
+    }
+}
+
+impl EnsembleRequest {
     /// Everything that determines the answer.
     pub fn canonical(&self) -> Vec<u8> {
         let Ensemble { scene, runs, impacts, .. } = &self.ensemble;
@@ -69,7 +78,7 @@ impl EnsembleRequest {
     }
 
     /// Price, in bounces of the plain rod.
-    pub fn price(&self) -> u64 {
+    fn work(&self) -> u64 {
         let Ensemble { scene, impacts, angle_contacts, .. } = &self.ensemble;
         let bounces = impacts.saturating_mul(bounce_price(scene));
         let angles = limits::ENSEMBLE_ANGLE_PRICE * angle_contacts.min(impacts);

@@ -7,9 +7,6 @@ use crate::api::formats::TableFormat;
 use crate::api::jacobians::answer::JacobianAnswer;
 use crate::api::jacobians::request::JacobianRequest;
 use crate::api::resource::{ComputedResource, Work};
-use crate::compute::{OverBudget, Price};
-use crate::http::Reader;
-use crate::limits::Limits;
 
 /// The resource.
 #[derive(Debug)]
@@ -27,12 +24,4 @@ impl ComputedResource for Jacobians {
             format.write(&answer, slice)
         },
     };
-
-    fn read(reader: &mut Reader<'_, '_>) -> Option<JacobianRequest> {
-        JacobianRequest::read(reader)
-    }
-
-    fn price(request: &JacobianRequest, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(request.price()).within(&limits.of_work())
-    }
 }

@@ -6,11 +6,14 @@ use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::stability::jacobian;
 use serde::{Serialize, Serializer};
 
+use crate::api::resource::ResourceRequest;
 use crate::api::scene::{bounce_price, read_scene_within};
 use crate::api::shared::state::read_state;
 use crate::api::shared::write;
+use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits;
+use crate::limits::Limits;
 
 /// The place at which to differentiate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -77,9 +80,8 @@ pub struct JacobianRequest {
     pub method: Derivation,
 }
 
-impl JacobianRequest {
-    /// Reads a request.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl ResourceRequest for JacobianRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let scene = read_scene_within(reader, &LINEARLY_JUDGED);
         let at = At::read(reader);
         let period = reader.integer("period", 1..=limits::PERIOD).unwrap_or(1);
@@ -89,13 +91,19 @@ impl JacobianRequest {
         Some(Self { scene: scene?, at: at?, period, method })
     }
 
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        Price::bounces(self.work()).within(&limits.of_work())
+    }
+}
+
+impl JacobianRequest {
     /// Everything that determines the answer.
     pub fn canonical(&self) -> Vec<u8> {
         write::canonical(&self.scene, &(self.at, self.period, self.method))
     }
 
     /// Price of the work, in bounces of the plain rod.
-    pub fn price(&self) -> u64 {
+    fn work(&self) -> u64 {
         let Self { scene, at, period, method } = self;
         let columns = jacobian::state_order(&scene.model()).len() as u64;
         let before = match at {

@@ -7,9 +7,7 @@ use crate::api::formats::TableFormat;
 use crate::api::ladder::answer::LadderAnswer;
 use crate::api::ladder::request::LadderRequest;
 use crate::api::resource::{ComputedResource, Work};
-use crate::compute::{Cancelled, OverBudget, Price};
-use crate::http::Reader;
-use crate::limits::Limits;
+use crate::compute::Cancelled;
 
 /// The resource.
 #[derive(Debug)]
@@ -27,12 +25,4 @@ impl ComputedResource for Ladder {
             format.write(&answer, slice)
         },
     };
-
-    fn read(reader: &mut Reader<'_, '_>) -> Option<LadderRequest> {
-        LadderRequest::read(reader)
-    }
-
-    fn price(request: &LadderRequest, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(request.price()).within(&limits.of_work())
-    }
 }

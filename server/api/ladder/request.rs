@@ -4,11 +4,14 @@ use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::at_level;
 
+use crate::api::resource::ResourceRequest;
 use crate::api::scene::read_scene;
 use crate::api::shared::write;
 use crate::api::trajectories::request::linear_price;
+use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits;
+use crate::limits::Limits;
 
 /// A request for the ladder.
 #[derive(Debug, Clone, Copy)]
@@ -31,17 +34,22 @@ const RUNG_PRICE: u64 = 20;
 /// Price of the rest of the work, in bounces: the setup of the linear solution, and the answer.
 const ONCE_PRICE: u64 = 2500;
 
-impl LadderRequest {
-    /// Reads a request.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl ResourceRequest for LadderRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let scene = read_scene(reader);
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
         let tolerance = reader.number("tolerance", TOLERANCES, "m/s").unwrap_or(1e-3);
         Some(Self { scene: scene?, impacts, tolerance })
     }
 
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        Price::bounces(self.work()).within(&limits.of_work())
+    }
+}
+
+impl LadderRequest {
     /// Price of the work, in bounces.
-    pub fn price(&self) -> u64 {
+    fn work(&self) -> u64 {
         ONCE_PRICE + self.impacts * (RUNGS * RUNG_PRICE + linear_price(&at_level(&self.scene, ModelLevel::Linear)))
     }
 

@@ -8,9 +8,6 @@ use crate::api::formats::ChartFormat;
 use crate::api::periodic_orbits::answer::PeriodicOrbitAnswer;
 use crate::api::periodic_orbits::request::PeriodicOrbitRequest;
 use crate::api::resource::{ComputedResource, Work};
-use crate::compute::{OverBudget, Price};
-use crate::http::Reader;
-use crate::limits::Limits;
 
 /// The resource.
 #[derive(Debug)]
@@ -28,12 +25,4 @@ impl ComputedResource for PeriodicOrbits {
             format.write(&answer, slice)
         },
     };
-
-    fn read(reader: &mut Reader<'_, '_>) -> Option<PeriodicOrbitRequest> {
-        PeriodicOrbitRequest::read(reader)
-    }
-
-    fn price(request: &PeriodicOrbitRequest, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(request.price()).within(&limits.of_work())
-    }
 }

@@ -4,11 +4,14 @@ use equipoise_physics::periodic_orbits::branch::BranchStart;
 use equipoise_physics::scene::{Field, Kind, Name, Scene, Value, field};
 use serde::{Serialize, Serializer};
 
+use crate::api::resource::ResourceRequest;
 use crate::api::scene::read_frictionless_scene;
 use crate::api::shared::state::read_state;
 use crate::api::shared::write;
+use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits;
+use crate::limits::Limits;
 
 /// A range of a field.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -41,9 +44,8 @@ pub struct PeriodicOrbitRequest {
     pub sweep: Option<SweptRange>,
 }
 
-impl PeriodicOrbitRequest {
-    /// Reads a request.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl ResourceRequest for PeriodicOrbitRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let scene = read_frictionless_scene(reader);
         let before = reader.errors().len();
         let period = reader.integer("period", 1..=limits::ORBIT_PERIOD);
@@ -91,6 +93,12 @@ impl PeriodicOrbitRequest {
         Some(Self { scene: scene?, period: period.unwrap_or(default), start, sweep })
     }
 
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        Price::bounces(self.work()).within(&limits.of_work())
+    }
+}
+
+impl PeriodicOrbitRequest {
     /// Everything that determines the answer.
     pub fn canonical(&self) -> Vec<u8> {
         let start = match self.start {
@@ -102,7 +110,7 @@ impl PeriodicOrbitRequest {
     }
 
     /// Price of the work, in bounces of the plain rod: a bounce with derivatives costs about twelve.
-    pub fn price(&self) -> u64 {
+    fn work(&self) -> u64 {
         limits::ANSWER_PRICE + 12 * self.period * self.sweep.map_or(60, |sweep| 10 * sweep.points + 2000)
     }
 

@@ -9,9 +9,7 @@ use crate::api::precision::answer::PrecisionAnswer;
 use crate::api::precision::request::PrecisionRequest;
 use crate::api::resource::{ComputedResource, Work};
 use crate::api::shared::progress::Progress;
-use crate::compute::{OverBudget, Price};
-use crate::http::{Format, Reader};
-use crate::limits::Limits;
+use crate::http::Format;
 
 /// The resource.
 #[derive(Debug)]
@@ -35,12 +33,4 @@ impl ComputedResource for Precision {
             Ok(out.send_whole(format.write(&answer, slice)?, slice)?)
         },
     };
-
-    fn read(reader: &mut Reader<'_, '_>) -> Option<PrecisionRequest> {
-        PrecisionRequest::read(reader)
-    }
-
-    fn price(request: &PrecisionRequest, limits: &Limits) -> Result<Price, OverBudget> {
-        request.price().within(&limits.of_work())
-    }
 }

@@ -2,12 +2,14 @@
 
 use equipoise_physics::scene::Scene;
 
+use crate::api::resource::ResourceRequest;
 use crate::api::scene::read_frictionless_scene;
 use crate::comparison::{ComparedMethod, METHODS, most_points};
-use crate::compute::Price;
+use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::http::request::scalar;
 use crate::limits;
+use crate::limits::Limits;
 
 /// A request for the comparison.
 #[derive(Debug, Clone)]
@@ -31,9 +33,8 @@ pub enum CostAxis {
     Evaluations,
 }
 
-impl PrecisionRequest {
-    /// Reads a request.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl ResourceRequest for PrecisionRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let scene = read_frictionless_scene(reader);
         let before = reader.errors().len();
         let impacts = reader.integer("impacts", 1..=limits::PRECISION_IMPACTS).unwrap_or(100);
@@ -61,8 +62,9 @@ impl PrecisionRequest {
         Some(Self { scene: scene?, impacts, methods, axis: axis.unwrap_or(CostAxis::Time) })
     }
 
-    /// Price of the work: the clock runs for the same time at each point.
-    pub fn price(&self) -> Price {
-        Price::bounces(limits::PRECISION_PRICE).times(most_points(&self.methods))
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        // The clock runs for the same time at each point.
+        let price = Price::bounces(limits::PRECISION_PRICE).times(most_points(&self.methods));
+        price.within(&limits.of_work())
     }
 }

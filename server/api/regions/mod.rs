@@ -12,9 +12,8 @@ use crate::api::regions::answer::RegionAnswer;
 use crate::api::regions::request::RegionRequest;
 use crate::api::regions::rows::{RowFormat, Rows};
 use crate::api::resource::{ComputedResource, Work};
-use crate::compute::{Cancelled, OverBudget, Price, TimeSlice, TimeSlices};
-use crate::http::{BodyWriter, Format, Problem, Reader};
-use crate::limits::Limits;
+use crate::compute::{Cancelled, TimeSlice, TimeSlices};
+use crate::http::{BodyWriter, Format, Problem};
 
 /// The resource.
 #[derive(Debug)]
@@ -47,15 +46,6 @@ impl ComputedResource for Regions {
             }
         },
     };
-
-    fn read(reader: &mut Reader<'_, '_>) -> Option<RegionRequest> {
-        RegionRequest::read(reader)
-    }
-
-    fn price(request: &RegionRequest, limits: &Limits) -> Result<Price, OverBudget> {
-        limits.of_answer().admit(request.cells().saturating_mul(2))?;
-        Price::bounces(request.price()).within(&limits.of_region_work())
-    }
 }
 
 /// Sends the cells row by row, as they are computed by `spread`.

@@ -6,12 +6,15 @@ use equipoise_physics::scene::{Kind, Scene, field};
 use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
+use crate::api::resource::ResourceRequest;
 use crate::api::scene::{build_scene, read_draft};
 use crate::api::shared::tile::Tile;
 use crate::api::shared::write;
+use crate::compute::{OverBudget, Price};
 use crate::http::problem::shortened;
 use crate::http::{Errors, Reader};
 use crate::limits;
+use crate::limits::Limits;
 
 /// A request for a stability map.
 #[derive(Debug, Clone, Copy)]
@@ -24,9 +27,8 @@ pub struct RegionRequest {
     pub tile: Tile,
 }
 
-impl RegionRequest {
-    /// Reads a request.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl ResourceRequest for RegionRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let draft = read_draft(reader);
         let axes = [read_axis(reader, "x"), read_axis(reader, "y")];
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(1000);
@@ -76,6 +78,13 @@ impl RegionRequest {
         Some(Self { region, scene, tile })
     }
 
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        limits.of_answer().admit(self.cells().saturating_mul(2))?;
+        Price::bounces(self.work()).within(&limits.of_region_work())
+    }
+}
+
+impl RegionRequest {
     /// Everything that determines the answer.
     pub fn canonical(&self) -> Vec<u8> {
         let StabilityMap { x, y, impacts, quantity, .. } = self.region;
@@ -118,7 +127,7 @@ impl RegionRequest {
     }
 
     /// Price, in bounces of lanes.
-    pub fn price(&self) -> u64 {
+    fn work(&self) -> u64 {
         // Scenes of the boundary: the nodes of its grid, and some 80 for each of its crossings.
         let [columns, rows] =
             [self.region.x, self.region.y].map(|axis| axis.count.clamp(2, limits::REGION_BOUNDARY_NODES) as u64);

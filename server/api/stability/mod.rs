@@ -10,9 +10,7 @@ use crate::api::formats::ChartFormat;
 use crate::api::resource::{ComputedResource, Work};
 use crate::api::stability::answer::StabilityAnswer;
 use crate::api::stability::request::StabilityRequest;
-use crate::compute::{Cancelled, OverBudget, Price};
-use crate::http::Reader;
-use crate::limits::Limits;
+use crate::compute::Cancelled;
 
 /// The resource.
 #[derive(Debug)]
@@ -30,12 +28,4 @@ impl ComputedResource for Stability {
             format.write(&answer, slice)
         },
     };
-
-    fn read(reader: &mut Reader<'_, '_>) -> Option<StabilityRequest> {
-        StabilityRequest::read(reader)
-    }
-
-    fn price(request: &StabilityRequest, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(request.price()).within(&limits.of_work())
-    }
 }

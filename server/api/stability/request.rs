@@ -5,10 +5,13 @@ use equipoise_physics::stability::basin;
 use equipoise_physics::stability::margins::Tolerances;
 use equipoise_physics::stability::regularity::WATCHED;
 
+use crate::api::resource::ResourceRequest;
 use crate::api::scene::{bounce_price, read_scene};
 use crate::api::shared::write;
+use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits;
+use crate::limits::Limits;
 
 /// A request for a verdict.
 #[derive(Debug, Clone, Copy)]
@@ -29,9 +32,8 @@ const MARGINS_PRICE: u64 = 200_000;
 /// Price of a run of the basin without its bounces, in bounces.
 const BASIN_RUN_PRICE: u64 = 10;
 
-impl StabilityRequest {
-    /// Reads a request.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl ResourceRequest for StabilityRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let scene = read_scene(reader);
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(2000);
         let basin = reader.boolean("basin").unwrap_or(false);
@@ -39,6 +41,12 @@ impl StabilityRequest {
         Some(Self { scene: scene?, impacts, basin, tolerances })
     }
 
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        Price::bounces(self.work()).within(&limits.of_work())
+    }
+}
+
+impl StabilityRequest {
     /// Everything that determines the answer.
     pub fn canonical(&self) -> Vec<u8> {
         let off = self.tolerances.map(|off| (off.contact_distance, off.radius_of_gyration, off.restitution));
@@ -47,7 +55,7 @@ impl StabilityRequest {
 
     /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs
     /// cost a quarter in lanes.
-    pub fn price(&self) -> u64 {
+    fn work(&self) -> u64 {
         let Self { ref scene, impacts, basin, tolerances } = *self;
         let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + impacts / 4) } else { 0 };
         let run = impacts * bounce_price(scene) + 4 * impacts.min(WATCHED);

@@ -13,9 +13,6 @@ use crate::api::formats::ChartFormat;
 use crate::api::resource::{ComputedResource, Work};
 use crate::api::trajectories::answer::TrajectoryAnswer;
 use crate::api::trajectories::request::TrajectoryRequest;
-use crate::compute::{OverBudget, Price};
-use crate::http::Reader;
-use crate::limits::Limits;
 use crate::runs::playback::Playback;
 
 /// The resource.
@@ -40,13 +37,4 @@ impl ComputedResource for Trajectories {
             format.write(&answer, slice)
         },
     };
-
-    fn read(reader: &mut Reader<'_, '_>) -> Option<TrajectoryRequest> {
-        TrajectoryRequest::read(reader)
-    }
-
-    fn price(request: &TrajectoryRequest, limits: &Limits) -> Result<Price, OverBudget> {
-        limits.of_answer().admit(request.numbers())?;
-        Price::bounces(request.price()).within(&limits.of_work())
-    }
 }

@@ -3,11 +3,14 @@
 use equipoise_physics::run::method::{RunMethod, deviations_circle};
 use equipoise_physics::scene::{Name, Scene};
 
+use crate::api::resource::ResourceRequest;
 use crate::api::shared::write;
 use crate::api::trajectories::{columns, flights};
+use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::http::request::scalar::LARGEST_EXACT;
 use crate::limits;
+use crate::limits::Limits;
 use crate::runs::interventions::{intervention_parameters, read_run};
 use crate::runs::run::Run;
 
@@ -51,9 +54,8 @@ pub(crate) fn linear_price(scene: &Scene) -> u64 {
     }
 }
 
-impl TrajectoryRequest {
-    /// Reads a request.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl ResourceRequest for TrajectoryRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let run = read_run(reader);
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
         let samples_per_flight = reader.integer("samples_per_flight", 0..=limits::SAMPLES_PER_FLIGHT).unwrap_or(0);
@@ -64,6 +66,13 @@ impl TrajectoryRequest {
         Some(Self { run: run?, impacts, samples_per_flight, method, tolerance, epoch })
     }
 
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        limits.of_answer().admit(self.numbers())?;
+        Price::bounces(self.work()).within(&limits.of_work())
+    }
+}
+
+impl TrajectoryRequest {
     /// Everything that determines the answer.
     pub fn canonical(&self) -> Vec<u8> {
         let Self { run, impacts, samples_per_flight, method, tolerance, epoch } = self;
@@ -79,7 +88,7 @@ impl TrajectoryRequest {
     }
 
     /// Price of the work, in bounces.
-    pub fn price(&self) -> u64 {
+    fn work(&self) -> u64 {
         let scene = self.run.scene();
         let (once, impact) = match (self.method, self.tolerance) {
             (Some(RunMethod::Linear), _) => (LINEAR_ONCE, linear_price(scene) + ROW_PRICE),
