@@ -111,3 +111,25 @@ impl Outcome {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use equipoise_physics::run::ending::EndingKind;
+    use serde_json::Value;
+
+    #[test]
+    fn the_contract_names_and_explains_every_ending() {
+        let document: Value =
+            serde_json::from_slice(include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json"))).unwrap();
+        let schemas = &document["components"]["schemas"];
+        let names: Vec<&str> = EndingKind::ALL.into_iter().map(EndingKind::name).collect();
+        assert_eq!(schemas["OutcomeKind"]["enum"], Value::from(names.clone()));
+        assert_eq!(schemas["EnsembleCounts"]["required"], Value::from(names.clone()));
+        let with_no_run: Vec<&str> = names.iter().copied().chain(["none"]).collect();
+        assert_eq!(schemas["RegionCounts"]["required"], Value::from(with_no_run));
+        let prose = schemas["OutcomeKind"]["description"].as_str().unwrap();
+        for name in names {
+            assert!(prose.contains(&format!("`{name}`:")), "{name} is not explained");
+        }
+    }
+}
