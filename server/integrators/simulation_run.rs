@@ -8,8 +8,8 @@ use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::rules::{Rules, SPEED_LIMIT};
-use equipoise_physics::run::settling::{SETTLED_SHARE, stay, time_to_rest};
+use equipoise_physics::run::rules;
+use equipoise_physics::run::rules::{Check, Checked, FlightTimes, Rules};
 
 use crate::integrators::motion::Motion;
 use crate::integrators::simulation::{SimulatedImpact, SimulationEnding, WorkCount};
@@ -41,9 +41,8 @@ pub(crate) struct SimulationRun<'a> {
     wanted: u64,
     most_steps: u64,
     go_on: &'a mut dyn FnMut() -> bool,
-    /// The flights before the last contact, s; 0 until there are some.
-    first_flight: f64,
-    last_flight: f64,
+    /// The flights before the last contact.
+    flights: FlightTimes,
     /// How the contact point left the last contact.
     rebound: Rebound,
 }
@@ -66,8 +65,7 @@ impl<'a> SimulationRun<'a> {
             wanted,
             most_steps,
             go_on,
-            first_flight: 0.0,
-            last_flight: 0.0,
+            flights: FlightTimes::default(),
             rebound: Rebound { rise: 0.0, along_normal: 0.0, rounding: 0.0 },
         }
     }
@@ -108,43 +106,57 @@ impl<'a> SimulationRun<'a> {
         Ok(())
     }
 
-    /// A contact: records it and gives the strike. The checks are those of [`equipoise_physics::run::orbit::Orbit::advance`], in the same order; that the flight
-    /// before was too short is known only here, and ends the run at the contact before.
+    /// A contact: records it and gives the strike. The checks before a strike are made here. That the flight before was too short is
+    /// known only now, and ends the run at the contact before.
     pub(crate) fn contact(&mut self, t: f64, motion: &Motion) -> Result<Strike, Halt> {
-        self.settle(t)?;
-        let contacts = self.impacts.len() as u64;
-        if contacts >= self.wanted {
-            return Err(Ending::Completed.into());
-        }
         let state = motion.state();
+        let contacts = self.impacts.len() as u64;
+        if let Some(before) = self.impacts.last().filter(|_| self.rules.settles) {
+            let flown = AtContact { flight_time: t - before.t, t: before.t, ..self.at_contact(state) };
+            let ending = self.check(flown, |at| rules::after_flight(at));
+            go_on(ending)?;
+            self.flights.last = flown.flight_time;
+        }
+        go_on(rules::completed(contacts, self.wanted))?;
         self.impacts.push(SimulatedImpact { n: contacts + 1, t, x: motion.place[0], state });
-        if state.theta.abs() >= self.rules.topple_angle {
-            return Err(Ending::Toppled { theta: state.theta, limit: self.rules.topple_angle }.into());
-        }
         let strike = self.rod.strike(&state);
-        if strike.push >= 0.0 {
-            return Err(Ending::Separating { approach: strike.approach }.into());
-        }
+        let struck = AtContact { push: strike.push, approach: strike.approach, ..self.at_contact(state) };
+        go_on(self.check(struck, |at| rules::before_strike(at)))?;
         Ok(strike)
     }
 
-    /// After a contact: whether there can be a flight.
+    /// The end of a contact, with the state just after it: the checks between a strike and its flight.
     pub(crate) fn leave(&mut self, state: &State, rebound: Rebound) -> Result<(), Halt> {
-        let spin = self.rod.contact_distance * state.theta_dot;
-        let speed_squared = state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin;
-        if speed_squared.is_nan() || speed_squared > SPEED_LIMIT * SPEED_LIMIT {
-            return Err(Ending::Diverged { speed: speed_squared.sqrt() }.into());
-        }
-        if !rebound.rises() {
-            let t = self.impacts.last().map_or(0.0, |impact| impact.t);
-            return Err(stay(&rebound, self.rules.settles, t).into());
-        }
         self.rebound = rebound;
+        let spin = self.rod.contact_distance * state.theta_dot;
+        let speed_squared = rules::speed_squared(state.x_dot, state.y_dot, spin);
+        let t = self.impacts.last().map_or(0.0, |impact| impact.t);
+        let left = AtContact { speed_squared, t, ..self.at_contact(*state) };
+        go_on(self.check(left, |at| rules::after_strike(at)))?;
         // Where a run can settle, the flight after its last contact decides too.
-        if !self.rules.settles && self.impacts.len() as u64 >= self.wanted {
-            return Err(Ending::Completed.into());
+        if self.rules.settles { Ok(()) } else { go_on(rules::completed(self.impacts.len() as u64, self.wanted)) }
+    }
+
+    /// A contact about which nothing more is known than the state.
+    fn at_contact(&self, state: State) -> AtContact {
+        AtContact {
+            state,
+            rebound: self.rebound,
+            push: 0.0,
+            approach: 0.0,
+            speed_squared: 0.0,
+            t: 0.0,
+            flight_time: 0.0,
+            flights: self.flights,
+            rules: self.rules,
         }
-        Ok(())
+    }
+
+    /// Makes the checks of one phase, and keeps the flights that they judged by.
+    fn check(&mut self, mut at: AtContact, phase: impl FnOnce(&mut AtContact) -> Option<Ending>) -> Option<Ending> {
+        let ending = phase(&mut at);
+        self.flights = at.flights;
+        ending
     }
 
     /// A contact without duration: [`SimulationRun::contact`] and [`SimulationRun::leave`], and the velocities changed.
@@ -159,20 +171,50 @@ impl<'a> SimulationRun<'a> {
     pub(crate) fn rebound_of(&self, strike: &Strike, before: &Motion) -> Rebound {
         strike.rebound(self.rod.contact_distance, strike.rise_rounding(before.velocity[1], f64::EPSILON))
     }
+}
 
-    fn settle(&mut self, t: f64) -> Result<(), Halt> {
-        let Some(before) = self.impacts.last().filter(|_| self.rules.settles) else { return Ok(()) };
-        let flight_time = t - before.t;
-        if self.first_flight == 0.0 {
-            self.first_flight = flight_time;
+/// A simulation at a contact: each phase of the checks knows the part that it needs.
+#[derive(Clone, Copy)]
+struct AtContact {
+    /// Just before the strike or just after it.
+    state: State,
+    /// How the contact point left the last contact.
+    rebound: Rebound,
+    push: f64,
+    approach: f64,
+    speed_squared: f64,
+    /// Time of the contact at which the run would end, s.
+    t: f64,
+    flight_time: f64,
+    flights: FlightTimes,
+    rules: Rules,
+}
+
+impl Checked for AtContact {
+    fn ending_by(&mut self, check: Check) -> Option<Ending> {
+        match check {
+            // The general methods simulate a rod on a table without limits.
+            Check::OtherVertex | Check::BeyondLimits => None,
+            Check::Toppled => rules::toppled(self.state.theta, self.rules.topple_angle),
+            Check::Separating => rules::separating(self.push, self.approach),
+            Check::TooFast => rules::too_fast(self.speed_squared),
+            Check::NotRising => {
+                let Rebound { rise, rounding, .. } = self.rebound;
+                rules::not_rising(rise, rounding, self.rules.settles, self.t, || self.rebound)
+            }
+            // A method does not know that there is no contact, only that it has seen none: [`SimulationRun::step`].
+            Check::NoContact => None,
+            Check::ShortFlight => {
+                let (t, rebound) = (self.t, self.rebound);
+                self.flights.short_flight(self.flight_time, || rebound, |rest| t + rest)
+            }
         }
-        if flight_time < SETTLED_SHARE * self.first_flight && self.rebound.is_slow() {
-            let settle_time = before.t + time_to_rest(flight_time, self.last_flight);
-            return Err(Ending::Settled { flight_time, settle_time }.into());
-        }
-        self.last_flight = flight_time;
-        Ok(())
     }
+}
+
+/// Halts the run at an ending.
+fn go_on(ending: Option<Ending>) -> Result<(), Halt> {
+    ending.map_or(Ok(()), |ending| Err(ending.into()))
 }
 
 /// Halves a stretch of time until its ends are neighbours: `is_above` holds at the answer (or it is 0) and not just after it.

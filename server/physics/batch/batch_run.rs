@@ -3,7 +3,7 @@
 //! Every lane gives the bits that [`crate::run::orbit::run`] gives for its rod alone. A lane whose run has ended takes the next
 //! rod at once, so that dead cells cost nothing; a bounce that is not a common one is done alone, by the map itself.
 
-use crate::batch::lanes::{Bounced, Far, Moving, Near, Rods, Rough, Scratch, Smooth, Surface, WIDTH, bounce};
+use crate::batch::lanes::{Bounced, Far, Moving, Near, Rods, Rough, Scratch, Smooth, Surface, WIDTH, bounce_lanes};
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -263,11 +263,11 @@ impl<S: Surface> LaneRuns<S> {
             self.turn += 1;
             let mut bounced = Bounced { near: false, common: false };
             if !self.far {
-                bounced = bounce::<Near, S>(&self.surface, &self.rods, &self.moving, &mut next, &mut scratch);
+                bounced = bounce_lanes::<Near, S>(&self.surface, &self.rods, &self.moving, &mut next, &mut scratch);
                 self.far = !bounced.near;
             }
             if self.far {
-                bounced = bounce::<Far, S>(&self.surface, &self.rods, &self.moving, &mut next, &mut scratch);
+                bounced = bounce_lanes::<Far, S>(&self.surface, &self.rods, &self.moving, &mut next, &mut scratch);
                 self.far = !bounced.near;
             }
             if self.fresh != 0 {

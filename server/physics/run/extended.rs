@@ -4,10 +4,11 @@
 //! parameters, from the fields of the scene on. Which root of a flight is the next contact is decided in doubles, with the
 //! certificate of [`crate::bounce::contact_time`]; the root is then lifted by Newton's iteration.
 
-use crate::body::Release;
+use crate::body::{NoContact, Release};
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::Friction;
+use crate::bounce::rebound::Rebound;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -16,8 +17,9 @@ use crate::numbers::double_double::{DoubleDouble, ROUNDING};
 use crate::numbers::number::Number;
 use crate::numbers::trig;
 use crate::run::ending::Ending;
-use crate::run::rules::{Rules, SPEED_LIMIT};
-use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
+use crate::run::orbit::{Contact, ContactByContact, visit_contacts};
+use crate::run::rules;
+use crate::run::rules::{Check, Checked, FlightTimes, Rules};
 
 /// Most Newton steps of a lift: one does, except where the rod grazes the table.
 const MAX_STEPS: u32 = 64;
@@ -25,24 +27,8 @@ const MAX_STEPS: u32 = 64;
 /// Share of a root below which what a Newton step leaves out no longer counts.
 const NEGLIGIBLE: f64 = 1e-33;
 
-/// One contact of a run, as [`crate::run::orbit::Contact`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExtendedContact {
-    /// Its number, from 1.
-    pub n: u64,
-    /// When, s after release.
-    pub t: DoubleDouble,
-    /// Where the centre of gravity is, m.
-    pub x: DoubleDouble,
-    /// Angle and velocities just before it.
-    pub state: State<DoubleDouble>,
-    /// The strike, unless the run ended before it.
-    pub strike: Option<Strike<DoubleDouble>>,
-    /// Time to the next contact, s; none where the run ended.
-    pub flight_time: Option<DoubleDouble>,
-    /// Why the run ended here, if it did.
-    pub ending: Option<Ending>,
-}
+/// One contact of a run with 31 digits.
+pub type ExtendedContact = Contact<DoubleDouble>;
 
 /// A run that is computed contact by contact with 31 digits.
 #[derive(Clone, Copy, Debug)]
@@ -55,8 +41,7 @@ pub struct ExtendedOrbit {
     n: u64,
     t: DoubleDouble,
     x: DoubleDouble,
-    first_flight: DoubleDouble,
-    last_flight: DoubleDouble,
+    flights: FlightTimes,
     energy: Option<DoubleDouble>,
 }
 
@@ -82,8 +67,7 @@ impl ExtendedOrbit {
             n: 0,
             t: zero,
             x: release.x.into(),
-            first_flight: zero,
-            last_flight: zero,
+            flights: FlightTimes::default(),
             energy: None,
         };
         let (sin, cos) = orbit.state.theta.sincos();
@@ -143,66 +127,52 @@ impl ExtendedOrbit {
 
     /// The coming contact. After one with an ending, call it no more: the state stays that of the last contact.
     pub fn advance(&mut self) -> ExtendedContact {
-        let zero = DoubleDouble::from_f64(0.0);
         self.n += 1;
         let Self { state, rules, .. } = *self;
-        let mut contact =
-            ExtendedContact { n: self.n, t: self.t, x: self.x, state, strike: None, flight_time: None, ending: None };
-        let theta = state.theta.to_f64();
-        if theta.abs() >= rules.topple_angle {
-            contact.ending = Some(Ending::Toppled { theta, limit: rules.topple_angle });
-            return contact;
-        }
-        let mut strike = match self.friction {
+        let strike = match self.friction {
             None => self.rod.strike(&state),
             Some(friction) => friction.strike_by_tilt_gain(&self.rod, &state),
         };
-        if strike.push >= zero {
-            contact.ending = Some(Ending::Separating { approach: strike.approach.to_f64() });
+        let mut contact = ExtendedContact {
+            n: self.n,
+            t: self.t,
+            x: self.x,
+            state,
+            clearance: DoubleDouble::from_f64(0.0),
+            alpha: strike.alpha,
+            strike: None,
+            flight_time: None,
+            ending: None,
+        };
+        let mut here = Here { orbit: self, state, strike, speed_squared: 0.0, flight_time: None };
+        if let Some(ending) = rules::before_strike(&mut here) {
+            contact.ending = Some(ending);
             return contact;
         }
         if rules.holds_energy {
-            let energy = self.energy.unwrap_or(strike.energy);
-            self.energy = Some(self.rod.hold_energy(&mut strike, energy));
+            let energy = here.orbit.energy.unwrap_or(here.strike.energy);
+            here.orbit.energy = Some(here.orbit.rod.hold_energy(&mut here.strike, energy));
         }
+        let strike = here.strike;
         contact.strike = Some(strike);
-        let after = strike.after;
-        let spin = (self.rod.contact_distance * after.theta_dot).to_f64();
-        let (x_dot, y_dot) = (after.x_dot.to_f64(), after.y_dot.to_f64());
-        let speed_squared = x_dot * x_dot + y_dot * y_dot + spin * spin;
-        if speed_squared.is_nan() || speed_squared > SPEED_LIMIT * SPEED_LIMIT {
-            contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
+        let spin = (here.orbit.rod.contact_distance * strike.after.theta_dot).to_f64();
+        here.speed_squared = rules::speed_squared(strike.after.x_dot.to_f64(), strike.after.y_dot.to_f64(), spin);
+        if let Some(ending) = rules::after_strike(&mut here) {
+            contact.ending = Some(ending);
             return contact;
         }
-        let rounding = match self.friction {
-            None => strike.rise_rounding(state.y_dot, ROUNDING),
-            Some(_) => friction::rise_rounding(&self.rod, &state, &strike, ROUNDING),
-        };
-        let rebound = || strike.rebound(self.rod.contact_distance, rounding);
-        let rises = strike.contact_rise.to_f64() > rounding;
-        if !rises {
-            contact.ending = Some(stay(&rebound(), rules.settles, self.t.to_f64()));
+        let flight = here.orbit.rod.flight(&strike);
+        here.flight_time = first_contact(&flight).ok();
+        let flight_time = here.flight_time;
+        if let Some(ending) = rules::after_flight(&mut here) {
+            contact.ending = Some(ending);
             return contact;
         }
-        let flight = self.rod.flight(&strike);
-        let Ok(t) = first_contact(&flight) else {
-            contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
-            return contact;
-        };
-        if rules.settles {
-            if self.first_flight == zero {
-                self.first_flight = t;
-            } else if t < DoubleDouble::from_f64(SETTLED_SHARE) * self.first_flight && rebound().is_slow() {
-                let flight_time = t.to_f64();
-                let rest = time_to_rest(flight_time, self.last_flight.to_f64());
-                let settle_time = (self.t + DoubleDouble::from(rest)).to_f64();
-                contact.ending = Some(Ending::Settled { flight_time, settle_time });
-                return contact;
-            }
-            self.last_flight = t;
+        if let Some(t) = flight_time {
+            contact.flight_time = Some(t);
+            self.flights.last = t.to_f64();
+            self.arrive(t, flight.end(t));
         }
-        contact.flight_time = Some(t);
-        self.arrive(t, flight.end(t));
         contact
     }
 
@@ -213,21 +183,72 @@ impl ExtendedOrbit {
     }
 }
 
-/// Visits contact after contact up to number `impacts`, as [`crate::run::orbit::run`].
-pub fn run(orbit: &mut ExtendedOrbit, impacts: u64, mut visit: impl FnMut(&ExtendedContact) -> bool) -> Option<Ending> {
-    loop {
-        let mut contact = orbit.advance();
-        if contact.ending.is_none() && contact.n >= impacts {
-            contact.ending = Some(Ending::Completed);
-            contact.flight_time = None;
-        }
-        if !visit(&contact) {
-            return None;
-        }
-        if contact.ending.is_some() {
-            return contact.ending;
+/// A run with 31 digits at a contact.
+struct Here<'a> {
+    orbit: &'a mut ExtendedOrbit,
+    state: State<DoubleDouble>,
+    strike: Strike<DoubleDouble>,
+    /// As [`rules::speed_squared`], from the strike on.
+    speed_squared: f64,
+    /// Length of the flight, s, from its end on; none where it passed its work limit.
+    flight_time: Option<DoubleDouble>,
+}
+
+impl Here<'_> {
+    fn rise_rounding(&self) -> f64 {
+        match self.orbit.friction {
+            None => self.strike.rise_rounding(self.state.y_dot, ROUNDING),
+            Some(_) => friction::rise_rounding(&self.orbit.rod, &self.state, &self.strike, ROUNDING),
         }
     }
+
+    fn rebound(&self) -> Rebound {
+        self.strike.rebound(self.orbit.rod.contact_distance, self.rise_rounding())
+    }
+}
+
+impl Checked for Here<'_> {
+    #[inline(always)]
+    fn ending_by(&mut self, check: Check) -> Option<Ending> {
+        let (rules, t) = (self.orbit.rules, self.orbit.t);
+        match check {
+            // No scene with further vertices or with limits is run with 31 digits (`crate::run::method`).
+            Check::OtherVertex | Check::BeyondLimits => None,
+            Check::Toppled => rules::toppled(self.state.theta.to_f64(), rules.topple_angle),
+            Check::Separating => rules::separating(self.strike.push.to_f64(), self.strike.approach.to_f64()),
+            Check::TooFast => rules::too_fast(self.speed_squared),
+            Check::NotRising => {
+                let (rise, rounding) = (self.strike.contact_rise.to_f64(), self.rise_rounding());
+                rules::not_rising(rise, rounding, rules.settles, t.to_f64(), || self.rebound())
+            }
+            Check::NoContact => {
+                let none = NoContact::TooManyPieces;
+                let ending = none.ending(self.strike.contact_rise.to_f64(), self.speed_squared.sqrt());
+                self.flight_time.is_none().then_some(ending)
+            }
+            Check::ShortFlight => {
+                let flight_time = self.flight_time.filter(|_| rules.settles)?.to_f64();
+                let mut flights = self.orbit.flights;
+                let after = |rest: f64| (t + DoubleDouble::from(rest)).to_f64();
+                let ending = flights.short_flight(flight_time, || self.rebound(), after);
+                self.orbit.flights = flights;
+                ending
+            }
+        }
+    }
+}
+
+impl ContactByContact for ExtendedOrbit {
+    type Number = DoubleDouble;
+
+    fn next_contact(&mut self) -> ExtendedContact {
+        self.advance()
+    }
+}
+
+/// Visits contact after contact up to number `impacts`, as [`crate::run::orbit::run`].
+pub fn run(orbit: &mut ExtendedOrbit, impacts: u64, mut visit: impl FnMut(&ExtendedContact) -> bool) -> Option<Ending> {
+    visit_contacts(orbit, impacts, &mut visit)
 }
 
 /// A state in doubles.

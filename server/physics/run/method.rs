@@ -6,12 +6,15 @@
 
 use crate::body::{Body, PreImpact};
 use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
 use crate::numbers::double_double::DoubleDouble;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::error_estimate::ErrorEstimate;
 use crate::run::linear_solution::LinearSolution;
 use crate::run::orbit::Contact;
+use crate::run::rules;
+use crate::run::rules::{Check, Checked};
 use crate::run::{extended, orbit};
 use crate::scene::Scene;
 use crate::scene::model::ModelLevel;
@@ -244,6 +247,31 @@ pub fn run_by(
     }
 }
 
+/// A run of the linear solution at a contact.
+struct LinearContact {
+    state: State,
+    strike: Strike,
+    topple_angle: f64,
+}
+
+impl Checked for LinearContact {
+    fn ending_by(&mut self, check: Check) -> Option<Ending> {
+        let Self { state, strike, topple_angle } = self;
+        match check {
+            // Refused by `run_by`.
+            Check::OtherVertex | Check::BeyondLimits => None,
+            Check::Toppled => rules::toppled(state.theta, *topple_angle),
+            Check::Separating => rules::separating(strike.push, strike.approach),
+            Check::NotRising => {
+                let rises = strike.rises(state.y_dot, f64::EPSILON);
+                (!rises).then(|| Ending::Sinking { contact_rise: strike.contact_rise.min(0.0) })
+            }
+            // The closed form has a next contact after every strike, and its flights do not shrink to nothing.
+            Check::TooFast | Check::NoContact | Check::ShortFlight => None,
+        }
+    }
+}
+
 /// The linear solution knows no end of a run; those of the map are looked for at its states.
 fn run_linear(
     scene: &Scene,
@@ -258,15 +286,11 @@ fn run_linear(
         next = solution.impact(n + 1);
         let State { theta, .. } = here.state;
         let strike = body.strike(&PreImpact::at(n, here.x, here.state));
-        let ending = if theta.abs() >= scene.topple_angle {
-            Some(Ending::Toppled { theta, limit: scene.topple_angle })
-        } else if strike.push >= 0.0 {
-            Some(Ending::Separating { approach: strike.approach })
-        } else if !strike.rises(here.state.y_dot, f64::EPSILON) {
-            Some(Ending::Sinking { contact_rise: strike.contact_rise.min(0.0) })
-        } else {
-            (n >= impacts).then_some(Ending::Completed)
-        };
+        let mut at = LinearContact { state: here.state, strike, topple_angle: scene.topple_angle };
+        let ending = rules::before_strike(&mut at)
+            .or_else(|| rules::after_strike(&mut at))
+            .or_else(|| rules::after_flight(&mut at))
+            .or_else(|| rules::completed(n, impacts));
         // Too near to an end to say on which side of it the run is.
         let margin = strike.contact_rise.min(-strike.approach);
         let safe = theta.abs() < 0.5 * scene.topple_angle && 10.0 * here.error_estimate < margin;

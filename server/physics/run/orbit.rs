@@ -9,30 +9,30 @@ use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::numbers::dispatch::{Kernel, dispatch};
 use crate::run::ending::Ending;
-use crate::run::rules::{Rules, SPEED_LIMIT};
-use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
+use crate::run::rules;
+use crate::run::rules::{Check, Checked, FlightTimes, Rules};
 use crate::table::actuator_load::Pose;
 
 /// One contact of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    /// Its number, from 1.
+pub struct Contact<N = f64> {
+    /// Number of the contact, from 1.
     pub n: u64,
-    /// When, s after release.
-    pub t: f64,
-    /// Where the centre of gravity is, m.
-    pub x: f64,
+    /// Time, s after release.
+    pub t: N,
+    /// Horizontal place of the centre of gravity, m.
+    pub x: N,
     /// Angle and velocities just before it.
-    pub state: State,
+    pub state: State<N>,
     /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
-    pub clearance: f64,
+    pub clearance: N,
     /// α, table tilt, rad; of a table that does not strike too.
-    pub alpha: f64,
+    pub alpha: N,
     /// The strike, unless the run ended before it.
-    pub strike: Option<Strike>,
+    pub strike: Option<Strike<N>>,
     /// Time to the next contact, s; none where the run ended.
-    pub flight_time: Option<f64>,
-    /// Why the run ended here, if it did.
+    pub flight_time: Option<N>,
+    /// Ending of the run, if it ended here.
     pub ending: Option<Ending>,
 }
 
@@ -66,10 +66,8 @@ pub struct Orbit<B> {
     n: u64,
     t: CompensatedSum,
     x: CompensatedSum,
-    /// Of a run that can settle, s; 0 until there is one.
-    first_flight: f64,
-    /// s; 0 until there is one.
-    last_flight: f64,
+    /// The first one is kept of runs that can settle only.
+    flights: FlightTimes,
     /// Energy that the run should have at the coming contact; known from its first one.
     energy: Option<f64>,
     /// The last strike, where the table is limited.
@@ -101,8 +99,7 @@ impl<B: Body> Orbit<B> {
             n: 0,
             t: CompensatedSum::default(),
             x: CompensatedSum::default(),
-            first_flight: 0.0,
-            last_flight: 0.0,
+            flights: FlightTimes::default(),
             energy: None,
             last: None,
         }
@@ -159,7 +156,7 @@ impl<B: Body> Orbit<B> {
         (self.body, self.rules) = (body, rules);
         self.energy = None;
         if !rules.settles {
-            self.first_flight = 0.0;
+            self.flights.first = 0.0;
         }
     }
 
@@ -168,7 +165,7 @@ impl<B: Body> Orbit<B> {
         self.n += 1;
         let Self { n, state, clearance, plan, .. } = *self;
         let coming = PreImpact { n, x: self.x.value, state, clearance, plan };
-        let mut strike = self.body.strike(&coming);
+        let strike = self.body.strike(&coming);
         let mut contact = Contact {
             n,
             t: self.t.value,
@@ -180,86 +177,111 @@ impl<B: Body> Orbit<B> {
             flight_time: None,
             ending: None,
         };
-        if let Some(touch) = self.body.touches(&coming, &strike) {
-            contact.ending = Some(Ending::OtherVertex(touch));
+        let mut here =
+            Here { orbit: self, coming: &coming, strike, speed_squared: 0.0, no_contact: None, flight_time: 0.0 };
+        if let Some(ending) = rules::before_strike(&mut here) {
+            contact.ending = Some(ending);
             return contact;
         }
-        if state.theta.abs() >= self.rules.topple_angle {
-            contact.ending = Some(Ending::Toppled { theta: state.theta, limit: self.rules.topple_angle });
+        here.be_struck(disturb);
+        contact.strike = Some(here.strike);
+        if let Some(ending) = rules::after_strike(&mut here) {
+            contact.ending = Some(ending);
             return contact;
         }
-        if let Some(limits) = &self.rules.limits {
-            let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
-            let demand = pose.demand(self.last.replace(pose).map(|last| (last, self.last_flight)));
-            if let Some(excess) = limits.exceeded(&demand) {
-                contact.ending = Some(Ending::BeyondLimits(excess));
-                return contact;
-            }
+        let flight = here.orbit.body.fly(&coming, &here.strike);
+        match flight {
+            Ok(arrival) => here.flight_time = arrival.t,
+            Err(none) => here.no_contact = Some(none),
         }
-        if strike.push >= 0.0 {
-            contact.ending = Some(Ending::Separating { approach: strike.approach });
+        if let Some(ending) = rules::after_flight(&mut here) {
+            contact.ending = Some(ending);
             return contact;
         }
-        if self.rules.holds_energy {
-            self.energy = Some({
-                let energy = self.energy.unwrap_or(strike.energy);
-                self.body.hold_energy(&mut strike, energy)
-            });
+        if let Ok(arrival) = flight {
+            contact.flight_time = Some(arrival.t);
+            self.arrive(&arrival);
         }
-        disturb(self, &mut strike);
-        contact.strike = Some(strike);
-        let after = strike.after;
-        let spin = self.body.contact_distance() * after.theta_dot;
-        let speed_squared = after.x_dot * after.x_dot + after.y_dot * after.y_dot + spin * spin;
-        if speed_squared.is_nan() || speed_squared > SPEED_LIMIT * SPEED_LIMIT {
-            contact.ending = Some(Ending::Diverged { speed: speed_squared.sqrt() });
-            return contact;
-        }
-        let rises = strike.contact_rise > self.body.rise_rounding(&state, &strike);
-        if !rises {
-            contact.ending = self.rebound(&contact).map(|rebound| stay(&rebound, self.rules.settles, contact.t));
-            return contact;
-        }
-        let arrival = match self.body.fly(&coming, &strike) {
-            Ok(arrival) => arrival,
-            Err(none) => {
-                contact.ending = Some(none.ending(strike.contact_rise, speed_squared.sqrt()));
-                return contact;
-            }
-        };
-        let flight_time = arrival.t;
-        if self.rules.settles
-            && self.is_short(flight_time)
-            && self.rebound(&contact).is_some_and(|rebound| rebound.is_slow())
-        {
-            let settle_time = contact.t + time_to_rest(flight_time, self.last_flight);
-            contact.ending = Some(Ending::Settled { flight_time, settle_time });
-            return contact;
-        }
-        self.last_flight = flight_time;
-        contact.flight_time = Some(flight_time);
-        self.t.add(flight_time);
-        self.x.add(arrival.state.x_dot * flight_time);
-        (self.state, self.clearance, self.plan) = (arrival.state, arrival.clearance, arrival.plan);
         contact
     }
 
-    /// Tells whether a flight of a run that can settle is too short beside the first.
     #[inline(always)]
-    fn is_short(&mut self, flight_time: f64) -> bool {
-        if self.first_flight == 0.0 {
-            self.first_flight = flight_time;
-        }
-        flight_time < SETTLED_SHARE * self.first_flight
+    fn arrive(&mut self, arrival: &Arrival) {
+        self.flights.last = arrival.t;
+        self.t.add(arrival.t);
+        self.x.add(arrival.state.x_dot * arrival.t);
+        (self.state, self.clearance, self.plan) = (arrival.state, arrival.clearance, arrival.plan);
     }
 
-    /// How the contact point leaves a contact, if there was a strike.
+    /// The rebound of the contact point from a strike. Takes copies, so that the loop keeps its own in registers.
     #[cold]
     #[inline(never)]
-    fn rebound(&self, contact: &Contact) -> Option<Rebound> {
-        let strike = contact.strike.as_ref()?;
-        let rounding = self.body.rise_rounding(&contact.state, strike);
-        Some(strike.rebound(self.body.contact_distance(), rounding))
+    fn rebound(&self, before: State, strike: Strike) -> Rebound {
+        let rounding = self.body.rise_rounding(&before, &strike);
+        strike.rebound(self.body.contact_distance(), rounding)
+    }
+}
+
+/// An orbit at a contact.
+struct Here<'a, B> {
+    orbit: &'a mut Orbit<B>,
+    coming: &'a PreImpact,
+    strike: Strike,
+    /// As [`rules::speed_squared`], from the strike on.
+    speed_squared: f64,
+    /// Reason for which the flight meets no table, if there is one.
+    no_contact: Option<NoContact>,
+    /// Length of the flight, s, from its end on.
+    flight_time: f64,
+}
+
+impl<B: Body> Here<'_, B> {
+    /// The strike, onto the energy that the run should have, and what disturbs it.
+    #[inline(always)]
+    fn be_struck(&mut self, disturb: impl FnOnce(&mut Orbit<B>, &mut Strike)) {
+        if self.orbit.rules.holds_energy {
+            let energy = self.orbit.energy.unwrap_or(self.strike.energy);
+            self.orbit.energy = Some(self.orbit.body.hold_energy(&mut self.strike, energy));
+        }
+        disturb(self.orbit, &mut self.strike);
+        let after = self.strike.after;
+        let spin = self.orbit.body.contact_distance() * after.theta_dot;
+        self.speed_squared = rules::speed_squared(after.x_dot, after.y_dot, spin);
+    }
+}
+
+impl<B: Body> Checked for Here<'_, B> {
+    #[inline(always)]
+    fn ending_by(&mut self, check: Check) -> Option<Ending> {
+        let Self { orbit, coming, strike, .. } = self;
+        match check {
+            Check::OtherVertex => rules::other_vertex(orbit.body.touches(coming, strike)),
+            Check::Toppled => rules::toppled(coming.state.theta, orbit.rules.topple_angle),
+            Check::BeyondLimits => {
+                let limits = orbit.rules.limits.as_ref()?;
+                let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
+                let load = pose.demand(orbit.last.replace(pose).map(|last| (last, orbit.flights.last)));
+                limits.exceeded(&load).map(Ending::BeyondLimits)
+            }
+            Check::Separating => rules::separating(strike.push, strike.approach),
+            Check::TooFast => rules::too_fast(self.speed_squared),
+            Check::NotRising => {
+                let rounding = orbit.body.rise_rounding(&coming.state, strike);
+                let rebound = || orbit.rebound(coming.state, *strike);
+                rules::not_rising(strike.contact_rise, rounding, orbit.rules.settles, orbit.t.value, rebound)
+            }
+            Check::NoContact => self.no_contact.map(|none| none.ending(strike.contact_rise, self.speed_squared.sqrt())),
+            Check::ShortFlight => {
+                if !orbit.rules.settles {
+                    return None;
+                }
+                let mut flights = orbit.flights;
+                let rebound = || orbit.rebound(coming.state, *strike);
+                let ending = flights.short_flight(self.flight_time, rebound, |rest| orbit.t.value + rest);
+                orbit.flights = flights;
+                ending
+            }
+        }
     }
 }
 
@@ -270,18 +292,61 @@ pub(crate) struct LaneRunState {
     pub(crate) state: State,
     /// Energy that the run should have there, m²/s².
     pub(crate) energy: f64,
-    /// As in [`Orbit`], s.
+    /// As in [`FlightTimes`], s.
     pub(crate) first_flight: f64,
 }
 
 impl LaneRunState {
-    /// One contact and the flight after it, or why the run ends.
+    /// One contact and the flight after it, or the ending of the run.
     pub(crate) fn advance<B: Body>(self, body: B, rules: Rules) -> Result<Self, Ending> {
         let Self { state, energy, first_flight } = self;
-        let mut orbit = Orbit { energy: Some(energy), first_flight, ..Orbit::at(body, rules, state) };
+        let flights = FlightTimes { first: first_flight, last: 0.0 };
+        let mut orbit = Orbit { energy: Some(energy), flights, ..Orbit::at(body, rules, state) };
         let ending = orbit.advance().ending;
-        let Orbit { state, first_flight, .. } = orbit;
-        ending.map_or(Ok(Self { state, energy: orbit.energy.unwrap_or(energy), first_flight }), Err)
+        let Orbit { state, flights, .. } = orbit;
+        let after = Self { state, energy: orbit.energy.unwrap_or(energy), first_flight: flights.first };
+        ending.map_or(Ok(after), Err)
+    }
+}
+
+/// A run that is computed contact by contact, in some kind of number.
+pub(crate) trait ContactByContact {
+    /// The kind of number.
+    type Number;
+
+    /// The coming contact. After one with an ending, it is called no more.
+    fn next_contact(&mut self) -> Contact<Self::Number>;
+}
+
+impl<B: Body> ContactByContact for Orbit<B> {
+    type Number = f64;
+
+    #[inline(always)]
+    fn next_contact(&mut self) -> Contact {
+        self.advance()
+    }
+}
+
+/// The loop over the contacts of a run, for [`run`] and for runs in other numbers.
+#[inline(always)]
+pub(crate) fn visit_contacts<C: ContactByContact>(
+    run: &mut C,
+    impacts: u64,
+    visit: &mut impl FnMut(&Contact<C::Number>) -> bool,
+) -> Option<Ending> {
+    loop {
+        let mut contact = run.next_contact();
+        if contact.ending.is_none()
+            && let Some(ending) = rules::completed(contact.n, impacts)
+        {
+            (contact.ending, contact.flight_time) = (Some(ending), None);
+        }
+        if !visit(&contact) {
+            return None;
+        }
+        if contact.ending.is_some() {
+            return contact.ending;
+        }
     }
 }
 
@@ -302,18 +367,6 @@ impl<B: Body, V: FnMut(&Contact) -> bool> Kernel for RunLoop<'_, B, V> {
 
     #[inline(always)]
     fn call(mut self) -> Self::Output {
-        loop {
-            let mut contact = self.orbit.advance();
-            if contact.ending.is_none() && contact.n >= self.impacts {
-                contact.ending = Some(Ending::Completed);
-                contact.flight_time = None;
-            }
-            if !(self.visit)(&contact) {
-                return None;
-            }
-            if contact.ending.is_some() {
-                return contact.ending;
-            }
-        }
+        visit_contacts(self.orbit, self.impacts, &mut self.visit)
     }
 }

@@ -3,16 +3,13 @@
 //!
 //! Not here: runs that end, and bounces that are not common ([`crate::batch::batch_run`]).
 
-mod bounce;
+mod checks;
+mod contact;
 mod number;
-mod surface;
+mod state;
+mod step;
 
-pub(crate) use bounce::{Bounced, Moving, Rods, Scratch, bounce};
+pub(crate) use contact::{Rough, Smooth, Surface};
 pub(crate) use number::{Far, Near};
-pub(crate) use surface::{Rough, Smooth, Surface};
-
-/// How many rods bounce side by side: two vectors of eight, or four of four, which the CPU overlaps.
-pub(crate) const WIDTH: usize = 16;
-
-/// A number for each of them.
-pub(crate) type Lanes = [f64; WIDTH];
+pub(crate) use state::{Moving, Rods, Scratch, WIDTH};
+pub(crate) use step::{Bounced, bounce_lanes};

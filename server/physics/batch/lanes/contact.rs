@@ -1,11 +1,11 @@
 //! What the lanes strike on: a contact without friction, or with it.
 //!
 //! Each has a loop of its own over the lanes, so that the one without pays nothing for the other. Not here: where the table
-//! is then, and the flight after ([`super::bounce`]).
+//! is then, and the flight after ([`super::step`]).
 
-use super::bounce::{Moving, Rods, SURE_RISE, Scratch};
+use super::checks::SURE_RISE;
 use super::number::Lane;
-use super::{Lanes, WIDTH};
+use super::state::{Lanes, Moving, Rods, Scratch, WIDTH};
 use crate::body::general::GeneralBody;
 use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
 use crate::run::ending::Ending;

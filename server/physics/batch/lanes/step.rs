@@ -1,0 +1,157 @@
+//! One contact of all lanes and the flight after it.
+//!
+//! In several short loops: a bounce is one long chain of operations, each waiting for the last, and the CPU overlaps the
+//! chains of neighbours only where they fit into its window together.
+
+use super::checks::LaneContact;
+use super::contact::Surface;
+use super::number::{Lane, Near};
+use super::state::{Moving, Rods, Scratch, WIDTH};
+use crate::bounce::contact_time;
+use crate::bounce::contact_time::NewtonStep;
+use crate::bounce::flight::Flight;
+use crate::bounce::state::State;
+use crate::run::rules::CheckedByMask;
+
+/// Most Newton steps of a common bounce: nearly all take one, few two.
+const STEPS: u32 = 3;
+
+/// How a bounce of all lanes went.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounced {
+    /// Whether all angles were in the reach of [`Near`].
+    pub(crate) near: bool,
+    /// Whether it was a common one in all lanes; else see [`Scratch::apart`].
+    pub(crate) common: bool,
+}
+
+/// The bounce of all lanes from `moving` to `next`, but not of those that it sets apart: their run may end here, an angle may
+/// be beyond the reach of `L`, or their contact time is not a common one.
+#[inline(always)]
+pub(crate) fn bounce_lanes<L: Lane, S: Surface>(
+    surface: &S,
+    rods: &Rods,
+    moving: &Moving,
+    next: &mut Moving,
+    scratch: &mut Scratch,
+) -> Bounced {
+    let tilted_near = tilt::<L>(rods, moving, next, scratch);
+    surface.strike::<L>(rods, moving, next, scratch);
+    guess::<L>(rods, moving, next, scratch);
+    let mut fallen = fall::<L>(rods, moving, next, scratch, true);
+    for _ in 1..STEPS {
+        if fallen.all {
+            break;
+        }
+        let near = fallen.near;
+        fallen = fall::<L>(rods, moving, next, scratch, false);
+        fallen.near &= near;
+    }
+    let mut any = 0;
+    for lane in 0..WIDTH {
+        let contact = LaneContact {
+            found: scratch.found[lane] == 1,
+            flight_time: scratch.t[lane],
+            first_flight: rods.first_flight[lane],
+            ..LaneContact::GOES_ON
+        };
+        scratch.apart[lane] |= unless(contact.passes_all());
+        any |= scratch.apart[lane];
+    }
+    Bounced { near: tilted_near & fallen.near, common: any == 0 }
+}
+
+/// The sines of θ, α and θ − α: whether all were near.
+#[inline(always)]
+fn tilt<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) -> bool {
+    let mut near = true;
+    for lane in 0..WIDTH {
+        let tilt = rods.rod(lane).lift::<L>().tilt(L::from_f64(moving.theta[lane]));
+        scratch.alpha[lane] = tilt.alpha.to_f64();
+        scratch.sin_theta[lane] = tilt.sin_theta.to_f64();
+        scratch.versine_theta[lane] = tilt.versine_theta.to_f64();
+        scratch.sin_alpha[lane] = tilt.sin_alpha.to_f64();
+        scratch.cos_alpha[lane] = tilt.cos_alpha.to_f64();
+        scratch.sin_beta[lane] = tilt.sin_beta.to_f64();
+        let size = moving.theta[lane].abs();
+        next.max_theta[lane] = if size > moving.max_theta[lane] { size } else { moving.max_theta[lane] };
+        let largest = size + tilt.alpha.magnitude().to_f64();
+        near &= largest <= Near::REACH;
+        let contact = LaneContact { size, topple_angle: rods.topple_angle[lane], ..LaneContact::GOES_ON };
+        scratch.apart[lane] = unless((largest <= L::REACH) & contact.passes_all());
+    }
+    near
+}
+
+/// Where to start on the time of flight.
+#[inline(always)]
+fn guess<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &mut Scratch) {
+    for lane in 0..WIDTH {
+        let flight = flight::<L>(rods, moving, next, scratch, lane);
+        scratch.t[lane] = contact_time::guess(&flight).to_f64();
+        scratch.apart[lane] |= unless(flight.bulge().to_f64() <= rods.gravity[lane]);
+    }
+}
+
+struct Fallen {
+    near: bool,
+    /// Whether all lanes have found their time of flight or are apart.
+    all: bool,
+}
+
+/// One step towards the time of flight, of the lanes that have not found it, and the state at its end.
+#[inline(always)]
+fn fall<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch, first: bool) -> Fallen {
+    let (mut near, mut all) = (true, 1);
+    for lane in 0..WIDTH {
+        let flight = flight::<L>(rods, moving, next, scratch, lane);
+        let t = scratch.t[lane];
+        let gap = flight.gap(L::from_f64(t));
+        let step = NewtonStep::new(&flight, L::from_f64(t), &gap);
+        let turned = (next.theta_dot[lane] * t).abs();
+        near &= turned <= Near::REACH;
+        let refined = step.left_out.to_f64() <= step.negligible.to_f64();
+        let better = if refined { step.refined.to_f64() } else { t + step.newton.to_f64() };
+        // As where `contact_time::first_contact` does not start from the guess.
+        let close = !first | (gap.value.to_f64() > 0.25 * t * gap.slope.to_f64());
+        let apart = scratch.apart[lane] | unless((turned <= L::REACH) & (gap.slope.to_f64() < 0.0) & close);
+        if first {
+            scratch.t[lane] = better;
+            scratch.found[lane] = u64::from(refined);
+        } else {
+            // In the order of `contact_time::newton`.
+            let back = !refined & (step.newton.to_f64() >= 0.0);
+            scratch.t[lane] = if (scratch.found[lane] == 1) | back { t } else { better };
+            scratch.found[lane] |= u64::from(refined | back);
+        }
+        scratch.apart[lane] = apart;
+        all &= scratch.found[lane] | apart;
+        let end = flight.end(L::from_f64(scratch.t[lane]));
+        next.theta[lane] = end.theta.to_f64();
+        next.y_dot[lane] = end.y_dot.to_f64();
+    }
+    Fallen { near, all: all == 1 }
+}
+
+/// 1 unless it holds, which it does not where something is not a number.
+#[inline(always)]
+fn unless(common: bool) -> u64 {
+    u64::from(!common)
+}
+
+#[inline(always)]
+fn flight<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &Scratch, lane: usize) -> Flight<L> {
+    let number = L::from_f64;
+    Flight {
+        start: State {
+            theta: number(moving.theta[lane]),
+            x_dot: number(next.x_dot[lane]),
+            y_dot: number(scratch.y_dot[lane]),
+            theta_dot: number(next.theta_dot[lane]),
+        },
+        sin_cos_theta: (number(scratch.sin_theta[lane]), number(1.0 - scratch.versine_theta[lane])),
+        clearance: number(0.0),
+        contact_distance: number(rods.contact_distance[lane]),
+        gravity: number(rods.gravity[lane]),
+    }
+}
