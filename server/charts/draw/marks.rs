@@ -20,6 +20,18 @@ pub(crate) fn dots(svg: &mut Svg, points: impl Iterator<Item = Point>, radius: f
 
 /// Straight lines through points, dashed by `dashes`.
 pub(crate) fn line(svg: &mut Svg, points: &[Point], colour: &str, thickness: f64, dashes: Option<&str>) {
+    readable_line(svg, points, colour, thickness, dashes, &[]);
+}
+
+/// The same with data attributes, from which a page reads the values behind the points.
+pub(crate) fn readable_line(
+    svg: &mut Svg,
+    points: &[Point],
+    colour: &str,
+    thickness: f64,
+    dashes: Option<&str>,
+    data: &[(&str, &str)],
+) {
     let mut path = String::new();
     for (x, y) in points {
         let _ = write!(path, "{}{} {}", if path.is_empty() { "M" } else { "L" }, fixed(*x), fixed(*y));
@@ -29,7 +41,15 @@ pub(crate) fn line(svg: &mut Svg, points: &[Point], colour: &str, thickness: f64
     if let Some(dashes) = dashes {
         tag = tag.word("stroke-dasharray", dashes);
     }
+    for (name, value) in data {
+        tag = tag.word(name, value);
+    }
     tag.end();
+}
+
+/// Numbers for a data attribute, apart by spaces, each with all its digits.
+pub(crate) fn listed(values: impl Iterator<Item = f64>) -> String {
+    values.map(|value| value.to_string()).collect::<Vec<_>>().join(" ")
 }
 
 /// A full disc with a rim of paper, which sets it off from marks below it.

@@ -3,12 +3,12 @@
 use crate::charts::draw::colour::{BLUE, INK, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::legend::{Sample, legend};
-use crate::charts::draw::marks::{hollow, line};
+use crate::charts::draw::marks::{hollow, line, listed, readable_line};
 use crate::charts::draw::number::significant;
 use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
 use crate::charts::draw::sheet::{Sheet, Words};
-use crate::charts::draw::svg::{Anchor, Type};
+use crate::charts::draw::svg::{Anchor, Svg, Type};
 use crate::charts::draw::text::Span;
 
 /// Angles below this are rounding noise around 0, rad.
@@ -48,7 +48,7 @@ pub struct Branches<'a> {
 pub fn branches(drawn: &Branches<'_>) -> String {
     const ROOM: f64 = 464.0;
     const FRAME: Frame = Frame { left: 86.0, top: 30.0, width: 600.0, height: 348.0 };
-    let listed: Vec<String> = drawn
+    let changes: Vec<String> = drawn
         .changes
         .iter()
         .map(|change| {
@@ -57,10 +57,10 @@ pub fn branches(drawn: &Branches<'_>) -> String {
             format!("{kind} at {} (θ = {theta} rad)", significant(parameter, 6))
         })
         .collect();
-    let caption = if listed.is_empty() {
+    let caption = if changes.is_empty() {
         "Stability does not change on this branch.".to_owned()
     } else {
-        format!("Stability changes: {}.", listed.join(", "))
+        format!("Stability changes: {}.", changes.join(", "))
     };
     let subtitle = format!("largest angle of the orbit against {}", drawn.name.to_lowercase());
     let description = format!("{}: {subtitle}. {caption}", drawn.title);
@@ -81,26 +81,23 @@ pub fn branches(drawn: &Branches<'_>) -> String {
         let look = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
         svg.text(at, frame.top - 7.0, look, &[Span::Symbol("κ"), Span::Below("c"), Span::Plain(&label)]);
     }
-    let dashes = |stable: bool| if stable { (BLUE, None) } else { (VERMILION, Some("6 4")) };
-    let mut run: Vec<Point> = Vec::new();
+    let mut run: Vec<(f64, f64)> = Vec::new();
     let mut last: Option<bool> = None;
     for pair in drawn.points.windows(2) {
         // A change between two points is a point of its own, so one of the two has a stability.
         let stable = pair[0].2.or(pair[1].2).unwrap_or(false);
         if last.is_some_and(|last| last != stable) {
-            let (colour, dashes) = dashes(!stable);
-            line(&mut svg, &run, colour, 3.0, dashes);
+            draw_run(&mut svg, &panel, &run, !stable);
             run.clear();
         }
         if run.is_empty() {
-            run.push(panel.at(pair[0].0, pair[0].1));
+            run.push((pair[0].0, pair[0].1));
         }
-        run.push(panel.at(pair[1].0, pair[1].1));
+        run.push((pair[1].0, pair[1].1));
         last = Some(stable);
     }
     if let Some(stable) = last {
-        let (colour, dashes) = dashes(stable);
-        line(&mut svg, &run, colour, 3.0, dashes);
+        draw_run(&mut svg, &panel, &run, stable);
     }
     for change in drawn.changes {
         hollow(&mut svg, panel.at(change.at.0, change.at.1), 5.0, INK);
@@ -113,4 +110,19 @@ pub fn branches(drawn: &Branches<'_>) -> String {
     ];
     legend(&mut svg, 386.0, top + ROOM - 22.0, &entries);
     svg.finish()
+}
+
+/// One stable or unstable part of the branch, with its values as data attributes: `data-parameter` and `data-theta` have a number
+/// for each point of the path, and `data-stable` says which part it is.
+fn draw_run(svg: &mut Svg, panel: &Panel, run: &[(f64, f64)], stable: bool) {
+    let points: Vec<Point> = run.iter().map(|&(parameter, theta)| panel.at(parameter, theta)).collect();
+    let parameters = listed(run.iter().map(|point| point.0));
+    let thetas = listed(run.iter().map(|point| point.1));
+    let data = [
+        ("data-parameter", parameters.as_str()),
+        ("data-theta", thetas.as_str()),
+        ("data-stable", if stable { "true" } else { "false" }),
+    ];
+    let (colour, dashes) = if stable { (BLUE, None) } else { (VERMILION, Some("6 4")) };
+    readable_line(svg, &points, colour, 3.0, dashes, &data);
 }

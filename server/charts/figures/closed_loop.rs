@@ -4,7 +4,7 @@
 use crate::charts::draw::colour::{AXIS, BLUE, INK, PALE_BLUE, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::Frame;
 use crate::charts::draw::legend::{Sample, legend};
-use crate::charts::draw::marks::{arrow, band, disc, dots, hollow, line};
+use crate::charts::draw::marks::{arrow, band, disc, dots, hollow, line, listed, readable_line};
 use crate::charts::draw::number::significant;
 use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
@@ -142,9 +142,11 @@ fn draw_modulus(law: &Loop<'_>, svg: &mut Svg, frame: Frame) {
         line(svg, &[(x, frame.top), (x, bottom)], AXIS, 1.0, Some("2 3"));
         svg.text(x, frame.top - 7.0, look, &[Span::Plain(&significant(end, 4))]);
     }
-    let points: Vec<_> = sizes.iter().filter(|(_, size)| *size <= top).map(|it| panel.at(it.0, it.1)).collect();
+    let drawn = || sizes.iter().filter(|(_, size)| *size <= top);
+    let points: Vec<_> = drawn().map(|it| panel.at(it.0, it.1)).collect();
     if points.len() > 1 {
-        line(svg, &points, BLUE, 3.0, None);
+        let (factors, moduli) = (listed(drawn().map(|it| it.0)), listed(drawn().map(|it| it.1)));
+        readable_line(svg, &points, BLUE, 3.0, None, &[("data-factor", &factors), ("data-modulus", &moduli)]);
     }
     let own = largest(law.closed);
     if own <= top {
