@@ -1,8 +1,8 @@
 // Impacts of the live stream, alone or in columns, as rows of the page's table.
 
-import { COLUMNS } from './impacts.js';
-
 /** @typedef {import('./impacts.js').Impact} Impact */
+/** @typedef {import('contract').LiveImpacts['columns']} Columns */
+/** @typedef {{[name in keyof Columns]: Columns[name][number]}} FlatImpact one row of the columns */
 
 /** Modes of contact by their number in the column `mode`, which is NaN where the message names none. */
 export const MODES = ['frictionless', 'slide', 'stick', 'reverse_slide', 'slide_through'];
@@ -16,43 +16,47 @@ function modeOf(name) {
   return mode < 0 ? NaN : mode;
 }
 
-/**
- * @param {import('contract').LiveImpact} message
- * @returns {Impact}
- */
-export function fromMessage(message) {
-  const { before, after, table_velocity: table, alpha } = message;
+/** @param {FlatImpact} flat @returns {Impact} */
+function impactOf(flat) {
+  const { alpha, table_velocity_x: x, table_velocity_y: y } = flat;
   return {
-    n: message.n,
-    t: message.t,
-    x: before.x,
-    theta: real(before.theta),
-    x_dot: before.x_dot,
-    y_dot: before.y_dot,
-    theta_dot: real(before.theta_dot),
-    x_dot_after: real(after?.x_dot),
-    y_dot_after: real(after?.y_dot),
-    theta_dot_after: real(after?.theta_dot),
+    n: flat.n,
+    t: flat.t,
+    x: flat.x,
+    theta: real(flat.theta),
+    x_dot: flat.x_dot,
+    y_dot: flat.y_dot,
+    theta_dot: real(flat.theta_dot),
+    x_dot_after: real(flat.x_dot_after),
+    y_dot_after: real(flat.y_dot_after),
+    theta_dot_after: real(flat.theta_dot_after),
     alpha: real(alpha),
-    flight_time: real(message.flight_time),
-    energy: real(message.energy),
-    contact_speed: real(message.contact_speed),
-    table_speed: table ? table.y * Math.cos(alpha) - table.x * Math.sin(alpha) : NaN,
-    mode: modeOf(message.contact_mode),
-    clearance: real(message.clearance),
+    flight_time: real(flat.flight_time),
+    energy: real(flat.energy),
+    contact_speed: real(flat.contact_speed),
+    table_speed: x === null || y === null ? NaN : y * Math.cos(alpha) - x * Math.sin(alpha),
+    mode: modeOf(flat.contact_mode),
+    clearance: real(flat.clearance),
     series: 0,
   };
 }
 
-/**
- * @param {Record<string, (number | null)[]>} columns of a message of type `impacts`
- * @returns {Impact[]}
- */
-export function fromColumns(columns) {
-  return columns.n.map(
-    (_, row) =>
-      /** @type {Impact} */ (
-        Object.fromEntries(COLUMNS.map((name) => [name, name === 'series' ? 0 : real(columns[name]?.[row])]))
-      ),
-  );
+/** @param {import('contract').LiveImpact} message @returns {Impact} */
+export function fromMessage({ before, after, table_velocity: table, ...rest }) {
+  return impactOf({
+    ...rest,
+    ...before,
+    x_dot_after: after?.x_dot ?? null,
+    y_dot_after: after?.y_dot ?? null,
+    theta_dot_after: after?.theta_dot ?? null,
+    table_velocity_x: table?.x ?? null,
+    table_velocity_y: table?.y ?? null,
+  });
 }
+
+/** @param {Columns} columns of a message of type `impacts` @returns {Impact[]} */
+export const fromColumns = (columns) =>
+  columns.n.map((_, row) => {
+    const flat = Object.fromEntries(Object.entries(columns).map(([name, values]) => [name, values[row]]));
+    return impactOf(/** @type {FlatImpact} */ (/** @type {unknown} */ (flat)));
+  });
