@@ -20,9 +20,9 @@ for (const [preset, kind] of [
 ]) {
   test(`${preset}: picture and changes of a ${kind} boundary`, async () => {
     const { page, clean } = await open(`?preset=${preset}`);
-    const image = page.locator('#branch-body img');
-    await image.evaluate((element) => element.decode());
-    assert.ok(await image.evaluate((element) => element.naturalWidth > 300));
+    const figure = page.locator('#branch-body svg.figure');
+    await figure.waitFor();
+    assert.ok(await figure.evaluate((element) => element.getBoundingClientRect().width > 300));
     const { changes } = await (
       await fetch(await page.locator('#branch-body .actions a', { hasText: 'JSON' }).evaluate((link) => link.href))
     ).json();
@@ -50,12 +50,15 @@ for (const [preset, kind] of [
 
 test('it follows the scene, and a body without an angle has none', async () => {
   const { page, clean } = await open('?preset=case-1');
-  const src = () => page.locator('#branch-body img').getAttribute('src');
-  await page.locator('#branch-body img').waitFor();
+  const src = () => page.locator('#branch-body .actions a', { hasText: 'SVG' }).getAttribute('href');
+  await page.locator('#branch-body svg.figure').waitFor();
   const before = await src();
   await page.locator('#field-release-height').fill('0.25');
   await page.locator('#branch-body').scrollIntoViewIfNeeded();
-  await page.waitForFunction((old) => document.querySelector('#branch-body img')?.getAttribute('src') !== old, before);
+  await page.waitForFunction(
+    (old) => ![old, undefined].includes(document.querySelector('#branch-body .actions a')?.getAttribute('href')),
+    before,
+  );
   assert.match(await src(), /scene\.release\.height=0\.25/);
   await page.selectOption('#case', 'point-mass');
   await verdict(page);
@@ -84,5 +87,39 @@ test('without a server it says so and can be asked for again', async () => {
     globalThis.refuse = false;
   });
   await page.locator('#branch-body button').click();
-  await page.locator('#branch-body img').waitFor();
+  await page.locator('#branch-body svg.figure').waitFor();
+});
+
+test('the diagram is read by pointer and keys, and has the colours of the page', async () => {
+  const { page, clean } = await open('?preset=case-1');
+  const box = page.locator('#branch-box');
+  const readout = page.locator('#branch-readout');
+  await box.locator('svg.figure').waitFor();
+  const { branch } = await (
+    await fetch(await page.locator('#branch-body .actions a', { hasText: 'JSON' }).evaluate((link) => link.href))
+  ).json();
+  await box.focus();
+  await page.keyboard.press('Home');
+  assert.match(plain(await readout.innerText()), new RegExp(`^κ ${Number(branch.parameter[0].toPrecision(6))} `));
+  await page.keyboard.press('End');
+  const last = plain(await readout.innerText());
+  assert.match(last, new RegExp(`^κ ${Number(branch.parameter.at(-1).toPrecision(6))} `));
+  assert.match(last, / (un)?stable$/);
+  await page.keyboard.press('ArrowRight');
+  assert.equal(plain(await readout.innerText()), last, 'there is no point after the last');
+  const ring = await box.locator('.pointed').boundingBox();
+  await page.keyboard.press('Escape');
+  assert.equal(await readout.innerText(), '');
+  await page.mouse.move(ring.x + ring.width / 2, ring.y + ring.height / 2);
+  await page.waitForFunction(() => document.querySelector('#branch-readout').textContent !== '');
+  assert.equal(plain(await readout.innerText()), last);
+  const ink = () =>
+    box
+      .locator("[fill='#1b1f24']")
+      .first()
+      .evaluate((text) => getComputedStyle(text).fill);
+  const light = await ink();
+  await page.emulateMedia({ colorScheme: 'dark' });
+  assert.notEqual(await ink(), light);
+  clean();
 });

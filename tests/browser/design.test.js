@@ -45,9 +45,11 @@ test('gains, eigenvalues and picture are the server’s', async () => {
         Math.abs(loose / answer.open_loop[index].modulus - 1) < 1e-3,
     );
   }
-  const image = page.locator('#design-sheet img');
-  await image.evaluate((element) => element.decode());
-  assert.ok(await image.evaluate((element) => element.naturalWidth > 300));
+  const figure = page.locator('#design-sheet svg.figure');
+  assert.ok(await figure.evaluate((element) => element.getBoundingClientRect().width > 300));
+  await page.locator('#design-box').focus();
+  await page.keyboard.press('End');
+  assert.match(await page.locator('#design-readout').innerText(), /^gain\s×\s[\d.]+\s+max\s\|λ\|\s[\d.]+$/);
   for (const href of await page
     .locator('#design-links a, #design-regions a')
     .evaluateAll((links) => links.map((link) => link.href)))

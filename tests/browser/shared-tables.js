@@ -24,8 +24,8 @@ function cividis() {
 
 function outlines() {
   const path = 'server/charts/figures/speed_accuracy.rs';
-  const looks = part(path, /const LOOKS: [^=]*= \[([\s\S]*?)\n\];/);
-  const paths = [...looks.matchAll(/&\[([^\]]*)\]/g)].map(([, corners]) =>
+  const symbols = part(path, /const SYMBOLS: [^=]*= \[([\s\S]*?)\n\];/);
+  const paths = [...symbols.matchAll(/&\[([^\]]*)\]/g)].map(([, corners]) =>
     [...corners.matchAll(/\((-?[\d.]+), (-?[\d.]+)\)/g)].map(([, x, y]) => `${Number(x)} ${Number(y)}`).join(', '),
   );
   const names = load(read('openapi.yaml')).components.schemas.PrecisionMethod.enum;
@@ -34,9 +34,35 @@ function outlines() {
   return `${note(`${path} and openapi.yaml`)}/** The corners of each method's symbol about its middle, x and y in half widths. */\nexport const OUTLINES = {\n${rows}};\n`;
 }
 
+/** The page's colours for those of the server's pictures; a colour that is not listed stays as it is. */
+const PAGE_COLOURS = {
+  PAPER: 'surface',
+  EDGE: 'edge',
+  INK: 'ink',
+  SOFT_INK: 'muted',
+  AXIS: 'muted',
+  ZERO: 'line',
+  GRID: 'faint',
+  BLUE: 'series-0',
+  PALE_BLUE: 'chip',
+  VERMILION: 'strike',
+  GREEN: 'series-2',
+  PURPLE: 'series-3',
+};
+
+function figureColours() {
+  const path = 'server/charts/draw/colour.rs';
+  const rules = Object.entries(PAGE_COLOURS).flatMap(([name, property]) => {
+    const colour = part(path, new RegExp(`const ${name}: &str = "(#[0-9a-f]{6})"`));
+    return ['fill', 'stroke'].map((kind) => `.figure [${kind}='${colour}'] {\n  ${kind}: var(--${property});\n}\n`);
+  });
+  return `${note(path).replace('// ', '/* ').trimEnd()} */\n${rules.join('')}`;
+}
+
 for (const [path, text] of [
   ['web/charts/generated/cividis-table.js', cividis()],
   ['web/charts/generated/method-outlines.js', outlines()],
+  ['web/charts/generated/figure-colours.css', figureColours()],
 ]) {
   if (!process.argv.includes('--check')) writeFileSync(new URL(path, root), text);
   else if (read(path) !== text) {

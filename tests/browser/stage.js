@@ -247,7 +247,7 @@ export async function loadAll(page) {
   }
   await measure(page);
   await page.click('#design-start');
-  await page.locator('#design-sheet img').waitFor();
+  await page.locator('#design-sheet svg').waitFor();
   await page.fill('#survival-runs', '30');
   await page.click('#survival-start');
   await page.locator('#survival-told', { hasText: 'outlast' }).waitFor();

@@ -1,5 +1,6 @@
 // The panel of the orbits of period 2 about the critical gain: the server’s branch diagram and its changes.
 
+import { readFigure, serverFigure } from '../../charts/readable/server-figure.js';
 import { row, table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
 import { Problem, get, wordsOf } from '../../api/client.js';
@@ -80,8 +81,8 @@ class Branch {
     this.#shown = path;
     const signal = this.#latest.next();
     try {
-      const orbits = await get(path, signal);
-      this.#draw(path, orbits.changes, answer, gain.critical);
+      const [orbits, figure] = await Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);
+      this.#draw(path, figure, orbits.changes, answer, gain.critical);
     } catch (error) {
       if (signal.aborted) return;
       const again = h(
@@ -105,26 +106,20 @@ class Branch {
 
   /**
    * @param {string} path
+   * @param {SVGSVGElement} figure
    * @param {Change[]} changes
    * @param {Stability} answer
    * @param {number} critical
    */
-  #draw(path, changes, { boundary }, critical) {
-    const picture = `${path}&format=svg`;
+  #draw(path, figure, changes, { boundary }, critical) {
     /** @type {Record<string, string>} */
     const meanings = {
       soft: 'They branch off beyond it and hold what falls: a soft boundary',
       hard: 'They lie below it and are unstable, so what leaves upright is thrown out: a hard boundary',
     };
     const words = meanings[boundary?.kind ?? ''];
-    const image = h('img', {
-      src: picture,
-      width: 720,
-      height: 582,
-      alt: `Branch diagram: largest angle of the orbits of period 2 against the tilt gain, about the critical gain ${number(critical)}. Its points of change are in the table.`,
-    });
     this.#root.replaceChildren(
-      h('a', { class: 'picture', href: picture }, image),
+      readable(figure, critical),
       h(
         'div',
         {},
@@ -151,6 +146,17 @@ class Branch {
     );
   }
 }
+
+/** The diagram with its values by pointer and keys. @param {SVGSVGElement} figure @param {number} critical */
+const readable = (figure, critical) =>
+  readFigure(figure, {
+    name: 'branch',
+    label: `Branch diagram: largest angle of the orbits of period 2 against the tilt gain, about the critical gain ${number(critical)}. Its points of change are in the table.`,
+    values: ['parameter', 'theta', 'stable'],
+    words: ({ parameter, theta, stable }) =>
+      `κ ${number(Number(parameter), 6)}   largest |θ| ${quantity(tiny(Number(theta)), 'rad')}   ${stable === 'true' ? 'stable' : 'unstable'}`,
+    hint: 'With keys: left and right go along the branch, page up and page down by a tenth of it.',
+  });
 
 /** @param {Change} change */
 const rowOf = ({ kind, parameter, theta, residue, detail }) =>

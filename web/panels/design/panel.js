@@ -1,5 +1,6 @@
 // The panel that designs a law α = −K·(x, θ, ẋ, θ̇) for the page's scene by chosen weights, and runs it.
 
+import { readFigure, serverFigure } from '../../charts/readable/server-figure.js';
 import { entries, row, table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
 import { get, wordsOf } from '../../api/client.js';
@@ -164,8 +165,8 @@ class DesignPanel {
     const signal = this.#latest.next();
     const path = `v1/controllers?${request}`;
     try {
-      const answer = await get(path, signal);
-      if (!signal.aborted) this.#show(answer, path);
+      const [answer, figure] = await Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);
+      if (!signal.aborted) this.#show(answer, figure, path);
     } catch (error) {
       if (signal.aborted) return;
       this.#sheet.hidden = true;
@@ -173,8 +174,8 @@ class DesignPanel {
     }
   }
 
-  /** @param {Controller} answer @param {string} path */
-  #show(answer, path) {
+  /** @param {Controller} answer @param {SVGSVGElement} figure @param {string} path */
+  #show(answer, figure, path) {
     const {
       scene,
       gain,
@@ -213,16 +214,15 @@ class DesignPanel {
     ];
     const region = (/** @type {string} */ name, /** @type {string | null | undefined} */ address) =>
       address && h('a', { href: `${here(address)}&format=svg` }, name);
-    const picture = `${path}&format=svg`;
+    const reader = readFigure(figure, {
+      name: 'design',
+      label: `Eigenvalues of the closed loop on the unit circle, the largest ${number(radius)}; they are in the table. Beside them, the largest as the gain is scaled.`,
+      values: ['factor', 'modulus'],
+      words: ({ factor, modulus }) => `gain × ${number(Number(factor))}   max |λ| ${number(Number(modulus), 5)}`,
+      hint: 'With keys: left and right scale the gain, page up and page down by a tenth of the way.',
+    });
     this.#sheet.replaceChildren(
-      h(
-        'a',
-        { class: 'picture', href: picture },
-        h('img', {
-          src: picture,
-          alt: `Eigenvalues of the closed loop on the unit circle, the largest ${number(radius)}; they are in the table. Below, the largest as the gain is scaled.`,
-        }),
-      ),
+      reader,
       h(
         'div',
         {},

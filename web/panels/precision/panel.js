@@ -1,6 +1,6 @@
 // The panel of speed against accuracy: every method on the page's scene. It measures on request only, since that keeps a core busy.
 
-import { ChartReader } from '../../charts/chart-reader.js';
+import { ChartReader } from '../../charts/readable/chart-reader.js';
 import { row, table } from '../../dom/tables.js';
 import { LongRequest } from '../long-request.js';
 import { Plot, mark } from './plot.js';

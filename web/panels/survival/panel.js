@@ -1,6 +1,6 @@
 // The panel of survival under noise: how long many runs of the page's scene last. It asks on request only.
 
-import { ChartReader } from '../../charts/chart-reader.js';
+import { ChartReader, movedInRow } from '../../charts/readable/chart-reader.js';
 import { entries, row, table } from '../../dom/tables.js';
 import { LongRequest } from '../long-request.js';
 import { Plot } from './plot.js';
@@ -146,7 +146,7 @@ class SurvivalPanel {
     this.#plot = new Plot(this.#reader.box);
     this.#reader.read({
       nearest: (event) => this.#plot.nearest(event),
-      moved: (key, at) => this.#moved(key, at),
+      moved: (key, at) => (this.#shown ? movedInRow(key, at, 1, this.#shown.answer.impacts) : undefined),
       mark: (contact) => this.#plot.point(contact),
       words: (contact) => (this.#shown ? wordsAt(this.#shown.answer, contact) : ''),
     });
@@ -301,23 +301,6 @@ class SurvivalPanel {
     );
     this.#plot.show(answer);
     this.#reader.point(null, false);
-  }
-
-  /** The contact that a key leads to. @param {string} key @param {number | null} at @returns {number | null | undefined} */
-  #moved(key, at) {
-    if (!this.#shown) return undefined;
-    const last = this.#shown.answer.impacts;
-    const tenth = Math.max(1, Math.round(last / 10));
-    const by = (/** @type {number} */ step) => Math.max(1, Math.min(last, (at ?? (step > 0 ? 0 : last + 1)) + step));
-    return {
-      ArrowRight: by(1),
-      ArrowLeft: by(-1),
-      PageUp: by(tenth),
-      PageDown: by(-tenth),
-      Home: 1,
-      End: last,
-      Escape: null,
-    }[key];
   }
 }
 

@@ -1,7 +1,7 @@
 // Reads a chart by pointer and keys: the box of the chart, the values in words below it, and the same spoken.
 
-import { h } from '../dom/elements.js';
-import { unbroken } from '../dom/numbers.js';
+import { h } from '../../dom/elements.js';
+import { unbroken } from '../../dom/numbers.js';
 
 /**
  * @typedef {object} Readable
@@ -10,6 +10,29 @@ import { unbroken } from '../dom/numbers.js';
  * @property {(item: number | null) => void} mark
  * @property {(item: number) => string} words
  */
+
+/**
+ * The item that a key leads to among items in a row: arrows go one on, page up and page down a tenth.
+ * @param {string} key
+ * @param {number | null} at
+ * @param {number} first
+ * @param {number} last
+ * @returns {number | null | undefined}
+ */
+export function movedInRow(key, at, first, last) {
+  const tenth = Math.max(1, Math.round((last - first + 1) / 10));
+  const by = (/** @type {number} */ step) =>
+    Math.max(first, Math.min(last, (at ?? (step > 0 ? first - 1 : last + 1)) + step));
+  return {
+    ArrowRight: by(1),
+    ArrowLeft: by(-1),
+    PageUp: by(tenth),
+    PageDown: by(-tenth),
+    Home: first,
+    End: last,
+    Escape: null,
+  }[key];
+}
 
 export class ChartReader {
   box;

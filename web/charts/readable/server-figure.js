@@ -1,0 +1,101 @@
+// A picture by the server as part of the page: coloured by the style sheet, and readable by pointer and keys.
+
+import { problemOf } from '../../api/client.js';
+import { h } from '../../dom/elements.js';
+import { svg } from '../svg.js';
+import { ChartReader, movedInRow } from './chart-reader.js';
+
+/**
+ * @param {string} path of an SVG
+ * @param {AbortSignal} signal
+ * @returns {Promise<SVGSVGElement>}
+ */
+export async function serverFigure(path, signal) {
+  const response = await fetch(path, { signal });
+  if (!response.ok) throw await problemOf(response);
+  const parsed = new DOMParser().parseFromString(await response.text(), 'image/svg+xml');
+  const figure = /** @type {SVGSVGElement} */ (
+    /** @type {unknown} */ (document.importNode(parsed.documentElement, true))
+  );
+  figure.setAttribute('class', 'figure');
+  // The box around the figure names it; its title would stand in the way of the pointer.
+  for (const name of ['role', 'width', 'height']) figure.removeAttribute(name);
+  figure.setAttribute('aria-hidden', 'true');
+  for (const element of figure.querySelectorAll(':scope > :is(title, desc)')) element.remove();
+  return figure;
+}
+
+/** Points of a figure with the values in its data attributes. */
+class FigurePoints {
+  /** @type {{x: number, y: number, values: Record<string, string>}[]} */
+  points = [];
+  #figure;
+  #ring = svg('circle', { class: 'pointed', r: 9, hidden: '' });
+
+  /**
+   * @param {SVGSVGElement} figure
+   * @param {string[]} names of data attributes: with a value for each point of a path, or one for all of them
+   */
+  constructor(figure, names) {
+    this.#figure = figure;
+    for (const path of /** @type {NodeListOf<SVGPathElement>} */ (figure.querySelectorAll(`path[data-${names[0]}]`))) {
+      const columns = names.map((name) => (path.dataset[name] ?? '').split(' '));
+      const places = (path.getAttribute('d') ?? '').slice(1).split('L');
+      for (const [index, place] of places.entries()) {
+        const [x, y] = place.split(' ').map(Number);
+        const values = names.map((name, column) => [name, columns[column][index] ?? columns[column][0]]);
+        this.points.push({ x, y, values: Object.fromEntries(values) });
+      }
+    }
+    figure.append(this.#ring);
+  }
+
+  /** The point next to a place on the screen, or null far from all of them. @param {PointerEvent} event */
+  nearest({ clientX, clientY }) {
+    const place = new DOMPoint(clientX, clientY).matrixTransform(this.#figure.getScreenCTM()?.inverse());
+    let best = null;
+    let distance = 24 ** 2;
+    for (const [index, { x, y }] of this.points.entries()) {
+      const square = (x - place.x) ** 2 + (y - place.y) ** 2;
+      if (square <= distance) {
+        distance = square;
+        best = index;
+      }
+    }
+    return best;
+  }
+
+  /** @param {number | null} index */
+  mark(index) {
+    const point = index === null ? null : this.points[index];
+    this.#ring.toggleAttribute('hidden', !point);
+    if (!point) return;
+    this.#ring.setAttribute('cx', String(point.x));
+    this.#ring.setAttribute('cy', String(point.y));
+  }
+}
+
+/**
+ * A figure with the values of its curves by pointer and keys.
+ * @param {SVGSVGElement} figure
+ * @param {object} meaning
+ * @param {string} meaning.name of the chart, the beginning of its ids
+ * @param {string} meaning.label for those who do not see it
+ * @param {string[]} meaning.values names of the data attributes
+ * @param {(values: Record<string, string>) => string} meaning.words of a point
+ * @param {string} meaning.hint on the keys
+ */
+export function readFigure(figure, { name, label, values, words, hint }) {
+  const reader = new ChartReader(name, label);
+  const curves = new FigurePoints(figure, values);
+  reader.box.append(figure);
+  reader.box.classList.add('figure-box');
+  reader.read({
+    nearest: (event) => curves.nearest(event),
+    moved: (key, at) => (curves.points.length > 0 ? movedInRow(key, at, 0, curves.points.length - 1) : undefined),
+    mark: (index) => curves.mark(index),
+    words: (index) => words(curves.points[index].values),
+  });
+  const note = h('p', { class: 'muted small', id: `${name}-hint` }, hint);
+  return h('div', { class: `${name}-figure` }, reader.box, reader.readout, reader.spoken, note);
+}
