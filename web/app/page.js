@@ -5,7 +5,7 @@ import { energyPlot } from '../charts/impacts/energy-plot.js';
 import { anglePlane, velocityPlane } from '../charts/impacts/phase-planes.js';
 import { byId } from '../dom/elements.js';
 import { Verdict } from '../panels/verdict/verdict.js';
-import { Controls } from '../run/controls.js';
+import { RunControls } from '../run/controls.js';
 import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
 
@@ -62,7 +62,7 @@ export class Page {
       velocityPlane(impacts),
       energyPlot(impacts, () => this.run.scene ?? this.typed ?? null),
     ];
-    this.controls = new Controls(byId('controls'), actionsOf(this));
+    this.controls = new RunControls(byId('controls'), actionsOf(this));
     const [angle, velocity, energy] = this.plots.map(({ figure }) => figure.element);
     byId('impacts-bar').before(angle, velocity, this.circle.figure.element, energy);
   }

@@ -307,7 +307,7 @@ export class Form {
   blame(errors) {
     for (const row of this.#rows.values()) if (this.#read(row).problem === null) this.#say(row, null);
     /** @type {string[]} */
-    const homeless = [];
+    const elsewhere = [];
     for (const { pointer, detail } of errors) {
       const path = pathOf(pointer);
       const row =
@@ -316,9 +316,9 @@ export class Form {
           ({ field }) => field.path.startsWith(`${path}.`) || path.startsWith(`${field.path}.`),
         );
       if (row && path !== '') this.#say(row, detail);
-      else homeless.push(detail);
+      else elsewhere.push(detail);
     }
-    return homeless;
+    return elsewhere;
   }
 
   /** The first field with an error gets the focus. */

@@ -9,7 +9,7 @@ import { h, retryButton } from '../dom/elements.js';
 
 /**
  * The page around a panel, as far as the panel knows it.
- * @typedef {object} Page
+ * @typedef {object} PanelPage
  * @property {Field[]} fields
  * @property {() => URLSearchParams | null} query what is typed; null while some of it is no value
  * @property {() => Scene} scene the same, as far as it goes
@@ -33,7 +33,7 @@ import { h, retryButton } from '../dom/elements.js';
  * @property {(link: URLSearchParams) => string[]} [restore] from that part; what was dropped of it, in words
  */
 
-/** @typedef {{mount: (root: HTMLElement, page: Page, link: URLSearchParams) => Panel}} Module */
+/** @typedef {{mount: (root: HTMLElement, page: PanelPage, link: URLSearchParams) => Panel}} Module */
 
 /**
  * @typedef {object} Entry
@@ -56,7 +56,7 @@ export function styles(path) {
 /**
  * A card for a panel and, once its code and its styles are there, the panel. What fails to load can be asked for again.
  * @param {Entry} entry
- * @param {Page} page
+ * @param {PanelPage} page
  * @param {() => URLSearchParams} link
  * @param {(panel: Panel) => void} mounted
  */

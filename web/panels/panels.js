@@ -4,7 +4,7 @@ import { h } from '../dom/elements.js';
 import { card } from './card.js';
 import { PANELS } from './registry.js';
 
-/** @typedef {import('./card.js').Page} Page */
+/** @typedef {import('./card.js').PanelPage} PanelPage */
 /** @typedef {import('./card.js').Panel} Panel */
 /** @typedef {import('./card.js').Judged} Judged */
 
@@ -19,7 +19,7 @@ export class Panels {
 
   /**
    * @param {HTMLElement} main
-   * @param {Page} page
+   * @param {PanelPage} page
    * @param {(id: string, what: string[]) => void} dropped parts of a link that a panel could not keep
    */
   constructor(main, page, dropped) {

@@ -34,7 +34,7 @@ function speedAt(place) {
   return Math.abs(Math.log(speed)) < span / SLIDER_STEPS ? 1 : Number(speed.toPrecision(2));
 }
 
-export class Controls {
+export class RunControls {
   #run = h('button', { type: 'button', class: 'primary', id: 'run' }, 'Run');
   #step = h('button', { type: 'button', id: 'step' }, 'Step');
   #restart = h('button', { type: 'button', id: 'restart' }, 'Restart');

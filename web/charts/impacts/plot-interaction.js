@@ -9,7 +9,7 @@ import { notice } from '../../dom/notices.js';
 import { styles } from '../../panels/card.js';
 
 /**
- * @typedef {object} Page
+ * @typedef {object} InteractionParts
  * @property {import('../../run/run.js').Run} run
  * @property {import('../../scene/scene-view.js').SceneView} view
  * @property {import('./impact-plot.js').ImpactPlot[]} plots
@@ -56,7 +56,7 @@ export class PlotInteraction {
   /** True while keys go to one of the plots. */
   #keyed = false;
 
-  /** @param {HTMLElement} bar over the plots @param {Page} page */
+  /** @param {HTMLElement} bar over the plots @param {InteractionParts} page */
   constructor(bar, page) {
     const {
       run: { impacts },

@@ -9,7 +9,7 @@ import { angleStart, velocityStart, within } from '../../physics/first-impact.js
 /** @typedef {{x: number, y: number}} Place px from the corner of a plot's box */
 
 /**
- * @typedef {object} Page
+ * @typedef {object} PointerParts
  * @property {import('../../run/impacts.js').Impacts} impacts
  * @property {import('../../run/selection.js').Selection} selection
  * @property {() => import('../../api/scene-fields.js').Scene | null} typed what a run would be released with; null while some of it is no value
@@ -26,7 +26,7 @@ const NEAR = 24;
 /** Impacts that page up and page down go. */
 const LEAP = 10;
 
-/** @param {ImpactPlot} plot @param {Page} page */
+/** @param {ImpactPlot} plot @param {PointerParts} page */
 export function listen(plot, page) {
   const { box } = plot.figure;
   const { impacts, selection } = page;

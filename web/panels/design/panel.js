@@ -59,7 +59,7 @@ class DesignPanel {
 
   /**
    * @param {HTMLElement} root
-   * @param {import('../card.js').Page} page
+   * @param {import('../card.js').PanelPage} page
    */
   constructor(root, page) {
     this.#page = page;

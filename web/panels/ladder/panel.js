@@ -63,7 +63,7 @@ class Ladder {
 
   /**
    * @param {HTMLElement} root
-   * @param {import('../card.js').Page} page
+   * @param {import('../card.js').PanelPage} page
    */
   constructor(root, page) {
     this.#page = page;

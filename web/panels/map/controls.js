@@ -11,7 +11,7 @@ import { sliderRange } from '../../form/slider-range.js';
 /** @typedef {'x' | 'y'} Name */
 
 /**
- * @typedef {object} Acts
+ * @typedef {object} ControlActions
  * @property {(settings: Settings) => void} changed
  * @property {() => void} compute
  * @property {() => void} cancel
@@ -21,9 +21,9 @@ import { sliderRange } from '../../form/slider-range.js';
 /** @param {number} count */
 const times = (count) => `${count} × ${rowsOf(count)}`;
 
-export class Controls {
+export class MapControls {
   element;
-  #acts;
+  #actions;
   #fields;
   /** @type {Settings} */
   #settings;
@@ -32,13 +32,13 @@ export class Controls {
   #impacts;
   #impactsError = h('p', { class: 'error', id: 'map-impacts-error' });
   #columns;
-  #compute = h('button', { type: 'button', id: 'map-compute', click: () => this.#acts.compute() }, 'Compute');
+  #compute = h('button', { type: 'button', id: 'map-compute', click: () => this.#actions.compute() }, 'Compute');
   #cancel = h(
     'button',
-    { type: 'button', id: 'map-cancel', disabled: true, click: () => this.#acts.cancel() },
+    { type: 'button', id: 'map-cancel', disabled: true, click: () => this.#actions.cancel() },
     'Cancel',
   );
-  #back = h('button', { type: 'button', id: 'map-back', disabled: true, click: () => this.#acts.back() }, 'Back');
+  #back = h('button', { type: 'button', id: 'map-back', disabled: true, click: () => this.#actions.back() }, 'Back');
   #progress = h('progress', { id: 'map-progress', 'aria-label': 'Rows of the map', max: 1, value: 0 });
   #count = h('span', { class: 'muted' });
   #told = h('p', { class: 'map-told', id: 'map-told', role: 'status' });
@@ -46,10 +46,10 @@ export class Controls {
   /**
    * @param {Field[]} fields
    * @param {Settings} settings
-   * @param {Acts} acts
+   * @param {ControlActions} actions
    */
-  constructor(fields, settings, acts) {
-    this.#acts = acts;
+  constructor(fields, settings, actions) {
+    this.#actions = actions;
     this.#fields = sidesOf(fields);
     this.#settings = settings;
     this.#sides = { x: this.#side('x', 'Across'), y: this.#side('y', 'Upwards') };
@@ -78,7 +78,7 @@ export class Controls {
         novalidate: true,
         submit: (event) => {
           event.preventDefault();
-          this.#acts.compute();
+          this.#actions.compute();
         },
       },
       this.#sides.x.element,
@@ -176,7 +176,7 @@ export class Controls {
       settings[name] = { parameter, from, to };
     }
     this.show(settings);
-    this.#acts.changed(settings);
+    this.#actions.changed(settings);
   }
 
   /** @param {HTMLInputElement} input @param {number} value */
@@ -234,7 +234,7 @@ export class Controls {
     this.blame(errors);
     if (errors.length > 0) return;
     this.#settings = settings;
-    this.#acts.changed(settings);
+    this.#actions.changed(settings);
   }
 
   /**
@@ -250,7 +250,7 @@ export class Controls {
     this.#impacts.removeAttribute('aria-invalid');
     this.#impactsError.textContent = '';
     /** @type {string[]} */
-    const homeless = [];
+    const elsewhere = [];
     for (const { pointer, detail } of errors) {
       const [, place, end] = pointer.split('/');
       if (place === 'x' || place === 'y') {
@@ -260,9 +260,9 @@ export class Controls {
       } else if (place === 'impacts') {
         this.#impacts.setAttribute('aria-invalid', 'true');
         this.#impactsError.textContent = detail;
-      } else homeless.push(detail);
+      } else elsewhere.push(detail);
     }
-    return homeless;
+    return elsewhere;
   }
 
   /** @param {{arrived: number, rows: number} | null} progress null when nothing is under way */

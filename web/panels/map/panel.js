@@ -1,8 +1,8 @@
 // The panel of the stability map: asks for it, draws it as it arrives, lets one run any point of it or look closer.
 
-import { Controls } from './controls.js';
+import { MapControls } from './controls.js';
 import { Grid } from './grid.js';
-import { Picture } from './picture.js';
+import { MapPicture } from './picture.js';
 import { Problem, get, problemOf } from '../../api/client.js';
 import { playedAt } from '../../api/scene-fields.js';
 import { actions } from '../../export/save-actions.js';
@@ -10,14 +10,14 @@ import { QUANTITIES, outlineQuery, readSettings, requestQuery, rowsOf, settingsQ
 import { h } from '../../dom/elements.js';
 import { debounce } from '../../dom/debounce.js';
 import { lines } from '../../api/ndjson.js';
-import { listen } from './pointing.js';
+import { listen } from './pointer.js';
 import { number, quantity as withUnit, unbroken } from '../../dom/numbers.js';
 
 /** @typedef {import('../../api/scene-fields.js').Field} Field */
 /** @typedef {import('./settings.js').Settings} Settings */
 /** @typedef {import('./picture.js').Cell} Cell */
 
-/** @typedef {import('../card.js').Page} Page */
+/** @typedef {import('../card.js').PanelPage} PanelPage */
 
 /** A map of more bounces than this waits until somebody asks for it: about a second of one core. */
 const UNASKED_BOUNCES = 1e8;
@@ -62,13 +62,13 @@ class MapPanel {
 
   /**
    * @param {HTMLElement} root
-   * @param {Page} page
+   * @param {PanelPage} page
    * @param {URLSearchParams} link
    */
   constructor(root, page, link) {
     this.#page = page;
     this.#settings = readSettings(link, page.fields).settings;
-    this.#controls = new Controls(page.fields, this.#settings, {
+    this.#controls = new MapControls(page.fields, this.#settings, {
       changed: (settings) => this.#set(settings),
       compute: () => void this.#ask(),
       cancel: () => this.#cancel(),
@@ -92,7 +92,7 @@ class MapPanel {
         this.#links,
       ),
     );
-    this.#picture = new Picture(this.#box, this.#settings, this.#names(this.#settings));
+    this.#picture = new MapPicture(this.#box, this.#settings, this.#names(this.#settings));
     listen(this.#box, this.#picture, {
       point: (cell, byKey) => this.#read(cell, byKey),
       take: (cell) => this.#launch(cell),
@@ -194,11 +194,11 @@ class MapPanel {
     } catch (error) {
       if (signal.aborted) return;
       const problem = error instanceof Problem ? error : null;
-      const homeless = this.#controls.blame(problem?.errors ?? []);
+      const elsewhere = this.#controls.blame(problem?.errors ?? []);
       const words = problem
         ? problem.errors.length === 0
           ? problem.message
-          : homeless.join(' ')
+          : elsewhere.join(' ')
         : 'The server does not answer.';
       this.#controls.say(
         [

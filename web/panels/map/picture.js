@@ -16,7 +16,7 @@ import { number } from '../../dom/numbers.js';
 const ROOM = { left: 52, right: 18, top: 24, bottom: 96 };
 const BAR = { below: 62, height: 12 };
 
-export class Picture {
+export class MapPicture {
   /** @type {Grid | null} */
   #grid = null;
   /** @type {Settings} */

@@ -5,7 +5,7 @@ import { COMPARED, residuals, sums } from './compare.js';
 import { LIMIT_BYTES, Unreadable, read } from './read.js';
 import { contactDistance } from '../../physics/body.js';
 import { effectiveGravity } from '../../physics/flight.js';
-import { drawResiduals } from './plot.js';
+import { drawResiduals } from './residual-chart.js';
 import { h } from '../../dom/elements.js';
 import { invalidate } from '../../charts/surface.js';
 import { number, parse } from '../../dom/numbers.js';
@@ -15,7 +15,7 @@ import { svg } from '../../charts/svg.js';
 /** @typedef {import('./read.js').Measured} Measured */
 /** @typedef {import('./compare.js').Compared} Compared */
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
-/** @typedef {{run: import('../../run/run.js').Run, plots: import('../../charts/impacts/impact-plot.js').ImpactPlot[], typed: () => Scene | null}} Page */
+/** @typedef {{run: import('../../run/run.js').Run, plots: import('../../charts/impacts/impact-plot.js').ImpactPlot[], typed: () => Scene | null}} MeasuredParts */
 
 /** @type {Record<Compared, [string, string]>} */
 const NAMES = {
@@ -68,7 +68,7 @@ export class MeasuredPanel {
 
   /**
    * @param {HTMLElement} bar over the plots
-   * @param {Page} page
+   * @param {MeasuredParts} page
    */
   constructor(bar, page) {
     this.#page = page;

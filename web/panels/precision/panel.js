@@ -3,7 +3,7 @@
 import { ChartReader } from '../../charts/readable/chart-reader.js';
 import { row, table } from '../../dom/tables.js';
 import { LongRequest } from '../long-request.js';
-import { Plot, mark } from './plot.js';
+import { PrecisionChart, mark } from './chart.js';
 import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked } from '../../dom/typeset.js';
@@ -86,7 +86,7 @@ class PrecisionPanel {
 
   /**
    * @param {HTMLElement} root
-   * @param {import('../card.js').Page} page
+   * @param {import('../card.js').PanelPage} page
    */
   constructor(root, { query, changed }) {
     this.#query = query;
@@ -142,7 +142,7 @@ class PrecisionPanel {
       this.#sheet,
     );
     this.#task.say('It runs the scene by eleven methods with all their settings, which takes the server some seconds.');
-    this.#plot = new Plot(this.#reader.box);
+    this.#plot = new PrecisionChart(this.#reader.box);
     this.#reader.read({
       nearest: (event) => this.#plot.nearest(event),
       moved: (key, at) => this.#moved(key, at),

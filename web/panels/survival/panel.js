@@ -3,7 +3,7 @@
 import { ChartReader, movedInRow } from '../../charts/readable/chart-reader.js';
 import { entries, row, table } from '../../dom/tables.js';
 import { LongRequest } from '../long-request.js';
-import { Plot } from './plot.js';
+import { SurvivalChart } from './chart.js';
 import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked, prose } from '../../dom/typeset.js';
@@ -77,7 +77,7 @@ class SurvivalPanel {
 
   /**
    * @param {HTMLElement} root
-   * @param {import('../card.js').Page} page
+   * @param {import('../card.js').PanelPage} page
    */
   constructor(root, page) {
     this.#page = page;
@@ -143,7 +143,7 @@ class SurvivalPanel {
       ),
       this.#sheet,
     );
-    this.#plot = new Plot(this.#reader.box);
+    this.#plot = new SurvivalChart(this.#reader.box);
     this.#reader.read({
       nearest: (event) => this.#plot.nearest(event),
       moved: (key, at) => (this.#shown ? movedInRow(key, at, 1, this.#shown.answer.impacts) : undefined),

@@ -1,10 +1,10 @@
 // Pointer and keys on a map: point at a cell, take it, select a rectangle, look closer.
 
-/** @typedef {import('./picture.js').Picture} Picture */
+/** @typedef {import('./picture.js').MapPicture} MapPicture */
 /** @typedef {import('./picture.js').Cell} Cell */
 
 /**
- * @typedef {object} Acts
+ * @typedef {object} PointerActions
  * @property {(cell: Cell | null, byKey: boolean) => void} point
  * @property {(cell: Cell) => void} take
  * @property {(from: {x: number, y: number}, to: {x: number, y: number}) => void} select values at two corners, low ends first
@@ -18,10 +18,10 @@ const THINNEST = 8;
 
 /**
  * @param {HTMLElement} box
- * @param {Picture} picture
- * @param {Acts} acts
+ * @param {MapPicture} picture
+ * @param {PointerActions} actions
  */
-export function listen(box, picture, acts) {
+export function listen(box, picture, actions) {
   /** @type {{x: number, y: number, id: number} | null} */
   let pressed = null;
   let dragging = false;
@@ -46,7 +46,7 @@ export function listen(box, picture, acts) {
   const point = (cell, byKey) => {
     picture.cursor = cell;
     picture.point();
-    acts.point(cell, byKey);
+    actions.point(cell, byKey);
   };
 
   box.addEventListener('pointerdown', (event) => {
@@ -78,10 +78,10 @@ export function listen(box, picture, acts) {
     release();
     if (cell) {
       point(cell, false);
-      // A finger cannot look before it acts: its first tap points, its second one there acts.
+      // A finger cannot look before it actions: its first tap points, its second one there actions.
       const again = tapped?.column === cell.column && tapped.row === cell.row;
       tapped = again ? null : cell;
-      return event.pointerType === 'touch' && !again ? undefined : acts.take(cell);
+      return event.pointerType === 'touch' && !again ? undefined : actions.take(cell);
     }
     if (!selection || selection.right - selection.left < THINNEST || selection.bottom - selection.top < THINNEST)
       return;
@@ -90,7 +90,7 @@ export function listen(box, picture, acts) {
     const across = (px) => x.low + ((px - left) / width) * (x.high - x.low);
     /** @param {number} py */
     const upwards = (py) => y.low + ((top + height - py) / height) * (y.high - y.low);
-    acts.select(
+    actions.select(
       { x: across(selection.left), y: upwards(selection.bottom) },
       { x: across(selection.right), y: upwards(selection.top) },
     );
@@ -104,7 +104,7 @@ export function listen(box, picture, acts) {
   box.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { columns, rows } = picture;
-    const cell = picture.cursor ?? acts.begin();
+    const cell = picture.cursor ?? actions.begin();
     const far = event.shiftKey ? 10 : 1;
     const [dx, dy] = {
       ArrowLeft: [-far, 0],
@@ -124,7 +124,7 @@ export function listen(box, picture, acts) {
           : cell,
         true,
       );
-    } else if (event.key === 'Enter' && picture.cursor) acts.take(cell);
+    } else if (event.key === 'Enter' && picture.cursor) actions.take(cell);
     else if (event.key === '+' || event.key === '=') closer(cell);
     else if (event.key === 'Escape' && pressed) release();
     else return;
@@ -142,6 +142,6 @@ export function listen(box, picture, acts) {
       return [low + (high - low) * from, low + (high - low) * (from + 0.5)];
     };
     const [across, upwards] = [half(x, (cell.column + 0.5) / columns), half(y, (cell.row + 0.5) / rows)];
-    acts.select({ x: across[0], y: upwards[0] }, { x: across[1], y: upwards[1] });
+    actions.select({ x: across[0], y: upwards[0] }, { x: across[1], y: upwards[1] });
   }
 }

@@ -5,7 +5,7 @@ import { roundRange, ticks } from '../../charts/axes.js';
 import { svg } from '../../charts/svg.js';
 
 /** @typedef {import('contract').Ensemble} Ensemble */
-/** @typedef {{low: number, high: number}} Range */
+/** @typedef {import('../../charts/axes.js').Range} Range */
 
 const MARGIN = { left: 46, right: 14, top: 22 };
 /** Under the upper picture there are the numbers along it and those at risk, under the lower one numbers and a name. */
@@ -16,7 +16,7 @@ const UPPER = 0.58;
 /** Between two numbers along an axis, px. */
 const APART = { x: 62, y: 34 };
 
-export class Plot {
+export class SurvivalChart {
   #box;
   #drawing = svg('svg', { 'aria-hidden': 'true' });
   #pointer = svg('path', { class: 'pointer' });

@@ -52,7 +52,7 @@ function decades({ low, high }, length, apart) {
   return found;
 }
 
-export class Plot {
+export class PrecisionChart {
   #box;
   #drawing = svg('svg', { 'aria-hidden': 'true' });
   #ring = svg('circle', { class: 'pointed', r: 9 });
