@@ -7,7 +7,7 @@ pub enum Integrator {
     RungeKutta {
         /// Step, s.
         step: f64,
-        /// What is done about a contact within a step.
+        /// Treatment of a contact within a step.
         location: Location,
     },
     /// Dormand and Prince's Runge-Kutta 5(4) with steps of its own choice, as ODE libraries have it. A contact shows by the sign of
@@ -33,7 +33,7 @@ pub enum Integrator {
     },
 }
 
-/// What a method with fixed steps does about a contact within a step.
+/// Treatment of a contact within a step, by a method with fixed steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
     /// The strike is at the end of the step.
@@ -45,7 +45,7 @@ pub enum Location {
 }
 
 impl Integrator {
-    /// Its name in answers.
+    /// Name in answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::RungeKutta { .. } => "runge_kutta",

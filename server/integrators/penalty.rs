@@ -87,7 +87,7 @@ impl Spring {
         }
     }
 
-    /// How far the contact point is above the table's plane, and how fast it rises over it.
+    /// Height of the contact point above the table's plane, and the rate at which it rises.
     fn clearance(&self, motion: &Motion, elapsed: f64) -> (f64, f64) {
         let arm = motion.arm(self.contact_distance);
         let velocity = motion.contact_velocity(self.contact_distance);

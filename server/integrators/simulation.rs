@@ -5,11 +5,11 @@ use equipoise_physics::bounce::state::State;
 /// One contact, as a method saw it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimulatedImpact {
-    /// Its number, from 1.
+    /// Number of the contact, from 1.
     pub n: u64,
     /// When, s after release.
     pub t: f64,
-    /// Where the centre of gravity is, m.
+    /// Horizontal place of the centre of gravity, m.
     pub x: f64,
     /// Angle and velocities just before it.
     pub state: State,
@@ -27,13 +27,13 @@ pub enum SimulationEnding {
     },
     /// It took all the steps that it was given.
     OutOfSteps {
-        /// How many.
+        /// Number of steps.
         steps: u64,
     },
 }
 
 impl SimulationEnding {
-    /// Its name in answers.
+    /// Name in answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Run(ending) => ending.name(),
@@ -43,7 +43,7 @@ impl SimulationEnding {
     }
 }
 
-/// What a simulation took: counts, the same on every machine.
+/// Work of a simulation: counts, the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WorkCount {
     /// Steps, or looks at the flight, those that a method tried and gave up included.
@@ -54,13 +54,13 @@ pub struct WorkCount {
     pub gaps: u64,
 }
 
-/// What a method made of a run.
+/// Result of a method on a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
     /// The contacts that it saw.
     pub impacts: Vec<SimulatedImpact>,
     /// Why it ended.
     pub ending: SimulationEnding,
-    /// What it took.
+    /// Work that it took.
     pub work: WorkCount,
 }

@@ -1,4 +1,4 @@
-//! What all methods share: the contacts they saw, the reasons for which a run ends, and the count and limit of their work.
+//! The part that all methods share: contacts seen, checks of endings, and the count and limit of work.
 //!
 //! Not here: how they move the rod.
 
@@ -43,7 +43,7 @@ pub(crate) struct SimulationRun<'a> {
     go_on: &'a mut dyn FnMut() -> bool,
     /// The flights before the last contact.
     flights: FlightTimes,
-    /// How the contact point left the last contact.
+    /// Rebound of the contact point from the last contact.
     rebound: Rebound,
 }
 
@@ -167,7 +167,7 @@ impl<'a> SimulationRun<'a> {
         Ok(strike)
     }
 
-    /// How the contact point leaves a contact without duration.
+    /// Rebound of the contact point from a contact without duration.
     pub(crate) fn rebound_of(&self, strike: &Strike, before: &Motion) -> Rebound {
         strike.rebound(self.rod.contact_distance, strike.rise_rounding(before.velocity[1], f64::EPSILON))
     }
@@ -178,7 +178,7 @@ impl<'a> SimulationRun<'a> {
 struct AtContact {
     /// Just before the strike or just after it.
     state: State,
-    /// How the contact point left the last contact.
+    /// Rebound of the contact point from the last contact.
     rebound: Rebound,
     push: f64,
     approach: f64,

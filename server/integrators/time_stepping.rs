@@ -49,7 +49,7 @@ fn drift(motion: &Motion, time: f64) -> Motion {
     Motion { place: std::array::from_fn(|row| motion.place[row] + time * motion.velocity[row]), ..*motion }
 }
 
-/// What a unit of impulse along the table's normal does to the velocities: the strike shows it.
+/// Change of the velocities by a unit of impulse along the table's normal; the strike shows it.
 pub(crate) fn per_impulse(before: &State, strike: &Strike) -> [f64; 3] {
     let after = strike.after;
     [after.x_dot - before.x_dot, after.y_dot - before.y_dot, after.theta_dot - before.theta_dot]

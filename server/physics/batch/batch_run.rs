@@ -15,7 +15,7 @@ use crate::run::rules::Rules;
 /// One run to be made.
 #[derive(Clone, Copy, Debug)]
 pub struct RunStart {
-    /// What bounces.
+    /// Body that bounces.
     pub rod: Rod,
     /// When it ends.
     pub rules: Rules,
@@ -23,7 +23,7 @@ pub struct RunStart {
     pub state: State,
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunEnd {
     /// Contacts, the last included.
@@ -105,7 +105,7 @@ struct BatchRun<S, Next, Done, GoOn> {
     go_on: GoOn,
 }
 
-/// How often `go_on` is asked, in bounces of all lanes.
+/// Bounces of all lanes between two questions whether to go on.
 const LOOK: u64 = 256;
 
 impl<S, Next, Done, GoOn> Kernel for BatchRun<S, Next, Done, GoOn>
@@ -179,11 +179,11 @@ struct LaneRuns<S> {
     busy: Mask,
     /// Lanes before the first flight of a run that can settle.
     fresh: Mask,
-    /// Whether an angle was too large for [`Near`] lately.
+    /// True where an angle was too large for [`Near`] lately.
     far: bool,
 }
 
-/// What an idle lane does: it bounces upright, for ever, and nobody looks.
+/// Run of an idle lane: it bounces upright, for ever, and nobody looks.
 const IDLE: RunStart = RunStart {
     rod: Rod {
         contact_distance: 1.0,

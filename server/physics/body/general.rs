@@ -27,7 +27,7 @@ pub const LEAST_FLIGHT: f64 = 1e-6;
 pub struct GeneralBody {
     /// The rod and its table without it.
     pub rod: Rod,
-    /// How the table tilts.
+    /// Control law of the tilt.
     pub steering: Steering,
     /// Friction and a table that moves along itself.
     pub friction: Option<Friction>,
@@ -73,7 +73,7 @@ impl GeneralBody {
         Ok(arrival)
     }
 
-    /// Where a table that strikes about the time `t`, when the contact point is at y = 0, meets the body.
+    /// End of a flight at a table that strikes about the time `t`, when the contact point is at y = 0.
     fn meet_timed(&self, flight: &Flight, t: f64, n: u64, x: f64) -> Result<Arrival, NoContact> {
         let Some(noise) = self.noise else { return Ok((t, flight.end(t)).into()) };
         let NoiseSample { timing, angle } = noise.draw(n);
@@ -92,7 +92,7 @@ impl GeneralBody {
         }
     }
 
-    /// Where a flight meets the table that was set out to strike at time `struck` the state `seen` at `x`, with its contact at
+    /// End of a flight at the table that was set out to strike at time `struck` the state `seen` at `x`, with its contact at
     /// y = 0: a plane that moves along its normal.
     ///
     /// Seen from the plane, the body flies as over a level table: with β for θ, and gravity's part along the normal.

@@ -1,4 +1,4 @@
-//! What bounces, as the map sees it: how it falls, is struck and flies on; and the plain rod as one.
+//! A body that bounces, as the map sees it: how it falls, is struck and flies on.
 //!
 //! Not here: the other bodies ([`crate::body::point`], [`crate::body::general`]) and how their runs go on ([`crate::run::orbit`]).
 
@@ -12,7 +12,7 @@ use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 
-/// What starts a run: a free body at t = 0, before its first contact.
+/// Start of a run: a free body at t = 0, before its first contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Release {
     /// Horizontal place of the centre of gravity, m.
@@ -34,7 +34,7 @@ pub struct Kick {
     pub theta_dot: f64,
 }
 
-/// Where a flight ends: just before a contact.
+/// End of a flight: just before a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
     /// Time since the flight began, s.
@@ -43,7 +43,7 @@ pub struct Arrival {
     pub state: State,
     /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
     pub clearance: f64,
-    /// What the table has set out to do, where it planned ahead.
+    /// Planned motion of the table, if it planned ahead.
     pub plan: Option<PlannedTableMotion>,
 }
 
@@ -57,9 +57,9 @@ impl From<(f64, State)> for Arrival {
 /// A contact that is about to happen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreImpact {
-    /// Its number, from 1.
+    /// Number of the contact, from 1.
     pub n: u64,
-    /// Where the centre of gravity is, m.
+    /// Horizontal place of the centre of gravity, m.
     pub x: f64,
     /// Angle and velocities just before it.
     pub state: State,
@@ -99,7 +99,7 @@ impl From<TooManyPieces> for NoContact {
 /// A vertex of the body, other than the one that bounces, on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// Its place among the vertices, from 0.
+    /// Index of the vertex, from 0.
     pub vertex: usize,
     /// Time since the last contact, or since the release, s.
     pub t: f64,

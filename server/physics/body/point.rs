@@ -22,7 +22,7 @@ impl PointMass {
         Self { rod: Rod { contact_distance: 0.0, radius_of_gyration: 1.0, ..rod } }
     }
 
-    /// Its parameters, as those of a rod of no length.
+    /// Parameters, as those of a rod of no length.
     pub fn parameters(&self) -> &Rod {
         &self.rod
     }

@@ -76,7 +76,7 @@ pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, 
     Ok(last_root(flight, Uncounted, 0.0, end, at_end))
 }
 
-/// How many times [`first_contact`] evaluates the gap of a flight. It is done for that, so it is not for loops in a hurry.
+/// Number of times that [`first_contact`] evaluates the gap of a flight. It is done for that, so it is not for loops in a hurry.
 pub fn evaluations(flight: &Flight) -> u64 {
     let count = Cell::new(0);
     let _ = look_for_contact(flight, &count);
@@ -120,7 +120,7 @@ fn look_for_contact(flight: &Flight, eye: impl EvaluationCounter) -> Result<f64,
     Ok(newton(flight, eye, end, eye.gap(flight, end)))
 }
 
-/// Where to start on a flight from the table.
+/// Start of the search for the contact time of a flight from the table.
 ///
 /// To fourth order g = v t − a t²/2 − b t³/6 − c t⁴/24. With t = 2v/a · s the root solves s = 1 − P s² − Q s³, inverted
 /// here as a series. It is a start and no more: Newton's first slope decides whether a good one.
@@ -141,7 +141,7 @@ pub(crate) fn guess<N: Number>(flight: &Flight<N>) -> N {
     rough * (((number(1.0) - q) - p) + number(2.0) * p * p)
 }
 
-/// Where to start on a flight from above the table: the root of the gap to second order.
+/// Start of the search on a flight from above the table: the root of the gap to second order.
 fn guess_from_above(flight: &Flight) -> f64 {
     let (sin, cos) = flight.sin_cos_theta;
     let v = flight.start.y_dot + flight.contact_distance * flight.start.theta_dot * sin;
@@ -235,11 +235,11 @@ fn last_root(flight: &Flight, eye: impl EvaluationCounter, from: f64, mut t: f64
 
 /// One step from `t`: Newton's, and one that uses the second derivative too.
 pub(crate) struct NewtonStep<N> {
-    /// What Newton adds to t.
+    /// Newton's step.
     pub(crate) newton: N,
     /// The better t.
     pub(crate) refined: N,
-    /// How much more that may be off, at most.
+    /// Bound on the error of `refined`.
     pub(crate) left_out: N,
     /// Half a unit in the last place of t, and less.
     pub(crate) negligible: N,

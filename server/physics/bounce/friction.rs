@@ -23,7 +23,7 @@ pub enum RestitutionLaw {
     Stronge,
 }
 
-/// How the table moves along itself at a strike.
+/// Motion of the table along itself at a strike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slide {
     /// It does not.
@@ -39,11 +39,11 @@ pub struct Friction {
     pub coefficient: f64,
     /// Law of restitution.
     pub law: RestitutionLaw,
-    /// How the table moves along itself.
+    /// Motion of the table along itself.
     pub slide: Slide,
 }
 
-/// How the contact point's velocity answers to an impulse at it: ∂v_t/∂P_t, ∂v_n/∂P_n and, of either by the other, C.
+/// Response of the contact point's velocity to an impulse at it: ∂v_t/∂P_t, ∂v_n/∂P_n and, of either by the other, C.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mobility<N = f64> {
     /// A = 1 + l² cos²β/ρ².
@@ -61,20 +61,20 @@ pub struct Impulse<N = f64> {
     pub normal: N,
     /// P_t.
     pub tangential: N,
-    /// What the contact did.
+    /// Mode of the contact.
     pub mode: ContactMode,
 }
 
-/// What has to be known of an impact to say which formula holds.
+/// A question about an impact that decides which formula holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrictionBranch {
-    /// Whether the contact point slides forwards at first: v_t ≥ 0.
+    /// Does the contact point slide forwards at first: v_t ≥ 0.
     Forward,
-    /// Whether it comes to rest before the end.
+    /// Does it come to rest before the end?
     Rests,
-    /// Whether friction can hold it then: |C| ≤ μA.
+    /// Can friction hold it then: |C| ≤ μA?
     Holds,
-    /// Whether it comes to rest while still compressed.
+    /// Does it come to rest while still compressed?
     RestsEarly,
 }
 
@@ -85,9 +85,9 @@ pub struct Decision {
     pub fork: FrictionBranch,
     /// The answer that holds.
     pub answer: bool,
-    /// How far it is from the other answer.
+    /// Distance from the other answer.
     pub margin: f64,
-    /// What the margin is small beside, > 0.
+    /// Scale beside which the margin is small, > 0.
     pub scale: f64,
 }
 
@@ -98,7 +98,7 @@ pub fn actual_branch(decision: Decision) -> bool {
 }
 
 impl<N: Number> Mobility<N> {
-    /// Of a contact point l from the centre of gravity, at sine and cosine of β.
+    /// Mobility of a contact point l from the centre of gravity, at sine and cosine of β.
     #[inline(always)]
     pub fn new(rod: &Rod<N>, sin_beta: N, cos_beta: N) -> Self {
         let one = N::from_f64(1.0);
@@ -188,7 +188,7 @@ impl Friction {
                         // Not the difference of the root and the velocity, which would cancel.
                         turn + rest / (middle + (middle * middle + second * rest).sqrt())
                     }
-                    _ => (one + restitution) * compression,
+                    (RestitutionLaw::Poisson | RestitutionLaw::Newton, _) => (one + restitution) * compression,
                 }
             }
         };

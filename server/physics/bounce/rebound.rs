@@ -7,9 +7,9 @@ const REST_RATIO: f64 = 1e3;
 /// Velocity of the contact point just after a strike, m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rebound {
-    /// Its vertical part ẏ_c⁺.
+    /// Vertical part ẏ_c⁺.
     pub rise: f64,
-    /// Its part along the table's normal.
+    /// Part along the table's normal.
     pub along_normal: f64,
     /// Size of a rise that is rounding.
     pub rounding: f64,

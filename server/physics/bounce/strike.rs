@@ -8,7 +8,7 @@ use crate::bounce::state::State;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 
-/// What the contact did along the table.
+/// Mode of a contact along the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactMode {
     /// Nothing held it.
@@ -24,7 +24,7 @@ pub enum ContactMode {
 }
 
 impl ContactMode {
-    /// Its name in answers.
+    /// Name in answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Frictionless => "frictionless",
@@ -58,7 +58,7 @@ pub struct Strike<N = f64> {
     pub impulse_normal: N,
     /// P_t, m/s.
     pub impulse_tangential: N,
-    /// What the contact does along the table.
+    /// Mode of the contact along the table.
     pub mode: ContactMode,
     /// ẏ_c⁺, vertical velocity of the contact point just after, m/s.
     pub contact_rise: N,
@@ -67,7 +67,7 @@ pub struct Strike<N = f64> {
     /// Energy per unit mass just before, above that of the rod at rest upright on the table: ½|v|² − G l (1 − cos θ), m²/s².
     /// Without the constant G l, slow bounces keep their digits.
     pub energy: N,
-    /// What the strike adds to it, ½γ(γ − 2) v_nc²/B: nothing where the strike gain is 2.
+    /// Energy that the strike adds, ½γ(γ − 2) v_nc²/B: nothing where the strike gain is 2.
     pub energy_gain: N,
 }
 
@@ -151,7 +151,7 @@ impl<N: Number> Rod<N> {
 pub(crate) const RISE_UNITS: f64 = 8.0;
 
 impl<N: Number> Strike<N> {
-    /// Whether the contact point rises from the table, by more than rounding. `y_dot` is ẏ before, m/s; `unit` the relative size of one
+    /// Tells whether the contact point rises from the table, by more than rounding. `y_dot` is ẏ before, m/s; `unit` the relative size of one
     /// unit in the last place.
     #[inline(always)]
     pub fn rises(&self, y_dot: N, unit: f64) -> bool {

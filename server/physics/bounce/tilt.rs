@@ -2,7 +2,7 @@
 
 use crate::numbers::number::Number;
 
-/// What a strike takes from the angles alone.
+/// Tilt of the table with the sines and cosines of a strike.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tilt<N> {
     /// α, table tilt, rad.
@@ -20,7 +20,7 @@ pub(crate) struct Tilt<N> {
 }
 
 impl<N: Number> Tilt<N> {
-    /// Of a rod at θ = `theta` over a table at α = `alpha`, `beta` apart.
+    /// Tilt for a rod at θ = `theta` over a table at α = `alpha`, `beta` apart.
     #[inline(always)]
     pub(crate) fn new(theta: N, alpha: N, beta: N) -> Self {
         let (sin_theta, versine_theta) = theta.sin_versine();

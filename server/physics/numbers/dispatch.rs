@@ -7,7 +7,7 @@
 
 /// Work that gains by it. Not a closure, since those are not inlined on demand, and what is not inlined is not recompiled.
 pub trait Kernel {
-    /// What it gives.
+    /// Result of the work.
     type Output;
 
     /// Does it. Implementations and all they call have to be `inline(always)`.
@@ -21,7 +21,7 @@ pub enum InstructionSet {
     Avx512,
     /// AVX2.
     Avx2,
-    /// What every CPU of this kind has.
+    /// Instructions of every CPU of this kind.
     Portable,
 }
 
@@ -29,7 +29,7 @@ impl InstructionSet {
     /// All of them, the best first.
     pub const ALL: [Self; 3] = [Self::Avx512, Self::Avx2, Self::Portable];
 
-    /// Whether this CPU can take it.
+    /// Tells whether this CPU can take it.
     #[inline]
     pub fn is_there(self) -> bool {
         #[cfg(target_arch = "x86_64")]

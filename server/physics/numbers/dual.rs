@@ -10,7 +10,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub struct Dual<const K: usize> {
     /// The value itself.
     pub value: f64,
-    /// Its derivatives, one for each direction.
+    /// Derivatives, one for each direction.
     pub partials: [f64; K],
 }
 

@@ -15,7 +15,7 @@ pub trait Number:
     /// The nearest double, to decide by.
     fn to_f64(self) -> f64;
 
-    /// Its square root.
+    /// Square root.
     fn sqrt(self) -> Self;
 
     /// Sine and cosine of an angle in rad. Not `sin_cos`, which on `f64` is the platform's.
@@ -27,7 +27,7 @@ pub trait Number:
 
 /// A number with a size: what error bounds need. Still no ordering.
 pub trait Real: Number {
-    /// Its absolute value.
+    /// Absolute value.
     fn magnitude(self) -> Self;
 }
 

@@ -1,4 +1,4 @@
-//! How runs can end: with the numbers that decided, and without them, as a cell of a region keeps it.
+//! Endings of runs: with the numbers that decided, and without them, as a cell of a stability map keeps them.
 
 use crate::body::{NoContact, Touch};
 use crate::table::actuator_load::LimitViolation;
@@ -24,7 +24,7 @@ pub enum Ending {
     },
     /// There is no next contact from above: the contact point does not rise after the strike, or not up to y = 0.
     Sinking {
-        /// Its vertical velocity after the strike, m/s; ≤ 0 unless it started below y = 0.
+        /// Vertical velocity of the contact point after the strike, m/s; ≤ 0 unless it started below y = 0.
         contact_rise: f64,
     },
     /// The planned table is never met.
@@ -58,7 +58,7 @@ impl NoContact {
 }
 
 impl Ending {
-    /// Its name in answers.
+    /// Name in answers.
     pub fn name(self) -> &'static str {
         EndingKind::from(self).name()
     }
@@ -94,7 +94,7 @@ impl EndingKind {
         Self::BeyondLimits,
     ];
 
-    /// Its name in answers.
+    /// Name in answers.
     pub fn name(self) -> &'static str {
         [
             "completed",

@@ -1,4 +1,4 @@
-//! How far a run in doubles may be off the exact one, contact by contact: the rounding of every bounce, carried forward by the
+//! Error bound of a run in doubles against the exact one, contact by contact: the rounding of every bounce, carried forward by the
 //! exact derivative of the map.
 //!
 //! Not here: the run itself ([`crate::run::orbit`]), which does not pay for this. Norms of derivatives alone would explode, since they
@@ -20,7 +20,7 @@ use crate::run::orbit::Contact;
 use crate::scene::Scene;
 use crate::scene::model::{Model, ModelLevel};
 
-/// How many standard deviations a bound is. Set on 28,000 random runs, none of which passed 0.8 of its bound;
+/// Standard deviations in a bound. Set on 28,000 random runs, none of which passed 0.8 of its bound;
 /// `tests/error_estimate.rs` holds it on others against runs with 31 digits.
 pub const SAFETY: f64 = 3.0;
 
@@ -59,7 +59,7 @@ pub struct ErrorEstimate {
     unit: f64,
     /// Standard deviation of a rounding, as a share, at this bounce.
     rounding: f64,
-    /// Whether derivatives have stopped to say anything.
+    /// True once derivatives say nothing any more.
     lost: bool,
 }
 
@@ -314,7 +314,7 @@ impl ErrorEstimate {
         self.state = State { theta, x_dot, y_dot, theta_dot };
     }
 
-    /// Whether all flights within the bound end at the same root of the gap. Only a fast spin has more than one.
+    /// Tells whether all flights within the bound end at the same root of the gap. Only a fast spin has more than one.
     #[inline]
     fn same_root(&self, flight: &Flight<Number8>, t: f64, speed: f64) -> bool {
         let State { theta, y_dot, theta_dot, .. } = &flight.start;

@@ -103,12 +103,12 @@ impl ExtendedOrbit {
         self.t
     }
 
-    /// Where the centre of gravity is at the coming contact, m.
+    /// Horizontal place of the centre of gravity at the coming contact, m.
     pub fn x(&self) -> DoubleDouble {
         self.x
     }
 
-    /// What bounces; its parameters are those of a rod of no length where it is a point mass.
+    /// Body that bounces; its parameters are those of a rod of no length where it is a point mass.
     pub fn rod(&self) -> &Rod<DoubleDouble> {
         &self.rod
     }

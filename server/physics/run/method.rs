@@ -2,7 +2,7 @@
 //! digits.
 //!
 //! A pure function: costs come from a table and not from a clock, so that the same question always gets the same answer.
-//! Whether a method is accurate enough is its own bound's to say.
+//! The bound of a method says whether it is accurate enough.
 
 use crate::body::{Body, PreImpact};
 use crate::bounce::state::State;
@@ -21,7 +21,7 @@ use crate::scene::model::ModelLevel;
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::{AngleClass, linear_verdict};
 
-/// How a run is computed.
+/// Method by which a run is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunMethod {
     /// [`crate::run::linear_solution`].
@@ -36,7 +36,7 @@ impl RunMethod {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Linear, Self::Map, Self::Extended];
 
-    /// Its name in requests and answers.
+    /// Name in requests and answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Linear => "linear",
@@ -45,7 +45,7 @@ impl RunMethod {
         }
     }
 
-    /// What the states at so many impacts cost with their error estimates, in microseconds of one core as it was when this table
+    /// Cost of the states at so many impacts with their error estimates, in microseconds of one core as it was when this table
     /// was measured (AMD EPYC, Zen 4, 3.0 GHz).
     pub fn cost_us(self, impacts: u64) -> f64 {
         let (once, each) = match self {
@@ -73,9 +73,9 @@ pub struct ComputedImpact<'a> {
 pub struct MethodChoice {
     /// Which.
     pub method: RunMethod,
-    /// Its largest error estimate over the run, m/s.
+    /// Largest error estimate over the run, m/s.
     pub error_estimate: f64,
-    /// What it costs, microseconds of the table.
+    /// Cost by the table, µs.
     pub cost_us: f64,
     /// The next dearer one that applies and its cost, if there is one.
     pub next: Option<(RunMethod, f64)>,
@@ -88,11 +88,11 @@ pub struct MethodChoice {
 pub struct NoMethod {
     /// Up to which impact the best method holds it.
     pub horizon: u64,
-    /// What it says, in a sentence.
+    /// Reason, in a sentence.
     pub detail: String,
 }
 
-/// How far a method holds a tolerance.
+/// Reach of a method within a tolerance.
 enum MethodReach {
     /// Over all impacts, with this largest bound.
     All(f64),
@@ -145,7 +145,7 @@ pub fn choose_method(
     Some(Err(NoMethod { horizon, detail }))
 }
 
-/// Whether small deviations circle: elsewhere the linear solution is soon off, and its bound costs as much as a run.
+/// Tells whether small deviations circle: elsewhere the linear solution is soon off, and its bound costs as much as a run.
 pub fn deviations_circle(scene: &Scene) -> bool {
     scene.beyond(&[]).is_none()
         && find_fixed_point(scene).is_ok_and(|fixed_point| {

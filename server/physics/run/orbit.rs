@@ -56,7 +56,7 @@ impl CompensatedSum {
 /// A run that is computed contact by contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Orbit<B> {
-    /// What bounces.
+    /// Body that bounces.
     pub body: B,
     rules: Rules,
     /// Just before the coming contact.
@@ -122,12 +122,12 @@ impl<B: Body> Orbit<B> {
         self.t.value
     }
 
-    /// Where the centre of gravity is at the coming contact, m.
+    /// Horizontal place of the centre of gravity at the coming contact, m.
     pub fn x(&self) -> f64 {
         self.x.value
     }
 
-    /// How many contacts have been.
+    /// Number of contacts so far.
     pub fn contacts(&self) -> u64 {
         self.n
     }

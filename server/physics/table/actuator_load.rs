@@ -1,4 +1,4 @@
-//! What a run asks of the table: tilt, tilt rate between strikes, speed and stroke. It decides whether a rig can do it.
+//! Load of a run on the table: tilt, tilt rate between strikes, speed and stroke. It decides whether a real table can do it.
 //!
 //! Between two strikes nothing of the table touches the body, so how it gets from one to the next is the rig's affair; what is
 //! told here is the least that any rig needs.
@@ -10,11 +10,11 @@ use crate::bounce::strike::Strike;
 pub struct Pose {
     /// α, rad.
     pub alpha: f64,
-    /// Its velocity in x and y, m/s.
+    /// Velocity in x and y, m/s.
     pub velocity: (f64, f64),
 }
 
-/// What is asked of the table, at one strike and on the way to it or at most over a run.
+/// Load on the table: of one strike and the way to it, or the largest over a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ActuatorLoad {
     /// |α|, rad.
@@ -28,7 +28,7 @@ pub struct ActuatorLoad {
     pub stroke: f64,
 }
 
-/// How much of each the table can do; infinite where nothing limits it. Units as in [`ActuatorLoad`].
+/// Largest load that the table can do; infinite where nothing limits it. Units as in [`ActuatorLoad`].
 pub type ActuatorLimits = ActuatorLoad;
 
 /// A limit that a strike goes beyond.
@@ -36,16 +36,16 @@ pub type ActuatorLimits = ActuatorLoad;
 pub struct LimitViolation {
     /// Which: a name of [`ActuatorLoad`]'s.
     pub quantity: &'static str,
-    /// What the strike asks for.
+    /// Value that the strike needs.
     pub value: f64,
-    /// What there is.
+    /// Limit of the table.
     pub limit: f64,
     /// The unit of both.
     pub unit: &'static str,
 }
 
 impl Pose {
-    /// What this strike asks for, after the last one and the flight between them, s, if there was one.
+    /// Load of this strike, after the last one and the flight between them, s, if there was one.
     #[inline(never)]
     pub fn demand(&self, last: Option<(Self, f64)>) -> ActuatorLoad {
         let (x, y) = self.velocity;
@@ -76,7 +76,7 @@ fn stroke(v0: f64, v1: f64, time: f64) -> f64 {
     high - low
 }
 
-/// What a run has demanded so far.
+/// Largest load of a run so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LoadTracker {
     /// The most of each.

@@ -5,7 +5,7 @@ use crate::bounce::state::State;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 
-/// How the table's tilt follows from what it senses.
+/// Control law of the tilt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Steering<N = f64> {
     /// α = κθ.

@@ -5,12 +5,12 @@
 
 use rand_philox::philox4x32_10;
 
-/// What the table does with a wrong time.
+/// Meaning of a timing error for the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoiseModel {
     /// The paper's: it meets the object at the wrong time, wherever that then is.
     Strike,
-    /// What a real table does: it carries out the plan made for the wrong time, and the object meets that plane when it
+    /// A real table: it carries out the plan made for the wrong time, and the object meets that plane when it
     /// gets there.
     Plan,
 }
@@ -22,7 +22,7 @@ pub struct Noise {
     pub timing_sd: f64,
     /// Standard deviation of the angle that it senses, rad.
     pub angle_sd: f64,
-    /// What it does with a wrong time.
+    /// Meaning of a timing error.
     pub model: NoiseModel,
     /// Which errors, of all that there could be.
     pub seed: u64,
@@ -33,9 +33,9 @@ pub struct Noise {
 /// The errors at one contact, independent of each other and of those at any other contact, run or seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseSample {
-    /// Of the time, s.
+    /// Error of the time, s.
     pub timing: f64,
-    /// Of the angle, rad.
+    /// Error of the angle, rad.
     pub angle: f64,
 }
 

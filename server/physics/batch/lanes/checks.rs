@@ -26,7 +26,7 @@ pub(super) struct LaneContact {
     pub(super) found: bool,
     /// s.
     pub(super) flight_time: f64,
-    /// Of a run that can settle, s; 0 of others.
+    /// First flight of a run that can settle, s; 0 of others.
     pub(super) first_flight: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What the lanes strike on: a contact without friction, or with it.
+//! Kinds of contact in the lanes: without friction, or with it.
 //!
 //! Each has a loop of its own over the lanes, so that the one without pays nothing for the other. Not here: where the table
 //! is then, and the flight after ([`super::step`]).
@@ -15,7 +15,7 @@ use crate::table::control_law::Steering;
 
 /// A kind of contact.
 pub(crate) trait Surface {
-    /// What sets one lane apart from the others.
+    /// Parameter that differs from lane to lane.
     type Of: Copy;
 
     /// That of a lane that idles.

@@ -15,7 +15,7 @@ pub(crate) const WIDTH: usize = 16;
 /// A number for each of them.
 pub(crate) type Lanes = [f64; WIDTH];
 
-/// What bounces, and how far it may tilt.
+/// Rods in the lanes, and the angles at which they topple.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(crate) struct Rods {
@@ -29,11 +29,11 @@ pub(crate) struct Rods {
     pub(super) strike_gain_per_energy: Lanes,
     pub(super) target_energy: Lanes,
     pub(super) topple_angle: Lanes,
-    /// Of runs that can settle, s: [`BEFORE_FLIGHT`] until it is over; 0 for those that cannot.
+    /// First flight of runs that can settle, s: [`BEFORE_FLIGHT`] until it is over; 0 for those that cannot.
     pub(super) first_flight: Lanes,
 }
 
-/// What changes from contact to contact.
+/// State of the runs in the lanes.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(crate) struct Moving {
@@ -47,7 +47,7 @@ pub(crate) struct Moving {
     pub(crate) max_theta: Lanes,
 }
 
-/// What one part of a bounce leaves for the next.
+/// Results that one part of a bounce leaves for the next.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(crate) struct Scratch {
@@ -69,7 +69,7 @@ pub(crate) struct Scratch {
 /// Stands for the first flight until it is over, s: so short that no flight is too short beside it, and its share still normal.
 const BEFORE_FLIGHT: f64 = 1e-200;
 
-/// What stands for the first flight before there is one.
+/// Stand-in for the first flight before there is one.
 fn before_flight(rules: &Rules) -> f64 {
     if rules.settles { BEFORE_FLIGHT } else { 0.0 }
 }
@@ -140,7 +140,7 @@ impl Rods {
         self.contact_distance[lane] * self.contact_distance[lane] * self.leverage[lane]
     }
 
-    /// Whether the run in a lane can settle.
+    /// Tells whether the run in a lane can settle.
     #[inline(always)]
     pub(super) fn settles(&self, lane: usize) -> bool {
         self.first_flight[lane] != 0.0
@@ -151,7 +151,7 @@ impl Rods {
         Rules { topple_angle: self.topple_angle[lane], settles: self.settles(lane), holds_energy: false, limits: None }
     }
 
-    /// Where the run in a lane is.
+    /// State of the run in a lane.
     pub(crate) fn midst(&self, moving: &Moving, lane: usize) -> LaneRunState {
         let first_flight = Some(self.first_flight[lane]).filter(|&flight| flight != BEFORE_FLIGHT).unwrap_or(0.0);
         LaneRunState { state: moving.state(lane), energy: moving.energy[lane], first_flight }

@@ -16,12 +16,12 @@ use crate::run::rules::CheckedByMask;
 /// Most Newton steps of a common bounce: nearly all take one, few two.
 const STEPS: u32 = 3;
 
-/// How a bounce of all lanes went.
+/// Result of a bounce of all lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounced {
-    /// Whether all angles were in the reach of [`Near`].
+    /// True where all angles were in the reach of [`Near`].
     pub(crate) near: bool,
-    /// Whether it was a common one in all lanes; else see [`Scratch::apart`].
+    /// True where it was a common one in all lanes; else see [`Scratch::apart`].
     pub(crate) common: bool,
 }
 
@@ -83,7 +83,7 @@ fn tilt<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut 
     near
 }
 
-/// Where to start on the time of flight.
+/// Start of the search for the time of flight.
 #[inline(always)]
 fn guess<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &mut Scratch) {
     for lane in 0..WIDTH {
@@ -95,7 +95,7 @@ fn guess<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &mut Scr
 
 struct Fallen {
     near: bool,
-    /// Whether all lanes have found their time of flight or are apart.
+    /// True where all lanes have found their time of flight or are apart.
     all: bool,
 }
 

@@ -12,7 +12,7 @@ pub enum PolygonError {
     TooMany(usize),
     /// A coordinate farther from zero than [`FARTHEST`], or not finite.
     TooFar {
-        /// Of which vertex.
+        /// Index of the vertex.
         vertex: usize,
         /// The coordinate, m.
         coordinate: f64,
@@ -36,7 +36,7 @@ pub enum PolygonError {
     NoSuchVertex {
         /// The contact vertex.
         contact_vertex: usize,
-        /// How many vertices there are.
+        /// Number of vertices.
         count: usize,
     },
     /// The contact vertex is too near the centre of gravity, or too far.
@@ -53,7 +53,7 @@ pub enum PolygonError {
 }
 
 impl PolygonError {
-    /// Whether it is the choice of the contact vertex that is wrong, and not the polygon.
+    /// Tells whether the choice of the contact vertex is wrong, and not the polygon.
     pub fn is_of_contact_vertex(&self) -> bool {
         matches!(self, Self::NoLowest(..) | Self::NoSuchVertex { .. } | Self::ContactDistance { .. } | Self::Hidden(_))
     }

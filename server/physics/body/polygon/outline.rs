@@ -10,10 +10,10 @@ use crate::bounce::state::State;
 use crate::numbers::trig;
 use std::f64::consts::PI;
 
-/// How far below the table a vertex counts as flush with it, as a share of the body's size.
+/// Depth below the table at which a vertex still counts as flush with it, as a share of the body's size.
 pub const FLUSH: f64 = 1e-9;
 
-/// How far before the contact vertex another has to arrive to count as earlier, as a share of the flight.
+/// Lead over the contact vertex with which another vertex counts as earlier, as a share of the flight.
 const EARLIER: f64 = 1e-12;
 
 /// A body whose vertices are known: the polygon about its centre of gravity, turned so that at θ = 0 that stands straight
@@ -32,9 +32,9 @@ pub struct Outline {
 /// A vertex near the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VertexClearance {
-    /// Its place in the order in which the vertices were given, from 0.
+    /// Index in the order in which the vertices were given, from 0.
     pub vertex: usize,
-    /// Its distance from the table, m; negative below it.
+    /// Distance from the table, m; negative below it.
     pub clearance: f64,
 }
 
@@ -42,7 +42,7 @@ impl Outline {
     /// The body of these vertices on that one of them.
     ///
     /// # Errors
-    /// Where they are no simple polygon, l or ρ is out of its range, or the contact vertex can never be the only one on
+    /// If they are no simple polygon, l or ρ is out of its range, or the contact vertex can never be the only one on
     /// a flat table.
     pub fn new(vertices: &Vertices, contact_vertex: usize) -> Result<Self, PolygonError> {
         vertices.check()?;

@@ -17,7 +17,7 @@ impl Vertices {
     /// Vertices in counter-clockwise order, m, wherever the polygon may lie.
     ///
     /// # Errors
-    /// Where there are too few or too many of them, or one lies too far out. Whether they are a polygon is found with
+    /// If there are too few or too many of them, or one lies too far out. Whether they are a polygon is found with
     /// its contact vertex ([`Outline::new`](super::Outline::new)).
     pub fn new(places: &[[f64; 2]]) -> Result<Self, PolygonError> {
         let count = places.len();
@@ -45,7 +45,7 @@ impl Vertices {
     /// The lowest, which is the contact unless another is said.
     ///
     /// # Errors
-    /// Where they are no polygon, or two are the lowest.
+    /// If they are no polygon, or two are the lowest.
     pub fn lowest(&self) -> Result<usize, PolygonError> {
         self.check()?;
         let height = |vertex: usize| self.places[vertex][1];
@@ -62,7 +62,7 @@ impl Vertices {
         (0..self.count).map(move |edge| (edge, places[edge], places[(edge + 1) % places.len()]))
     }
 
-    /// Whether they are a polygon whose outline does not meet itself, in counter-clockwise order.
+    /// Checks that they are a polygon whose outline does not meet itself, in counter-clockwise order.
     pub(super) fn check(&self) -> Result<(), PolygonError> {
         let places = self.places();
         for (b, place) in places.iter().enumerate() {
@@ -163,7 +163,7 @@ fn cross_or_touch(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
     side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0 && !apart(0) && !apart(1)
 }
 
-/// Whether the edge from b to c lies on that from a to b.
+/// Tells whether the edge from b to c lies on that from a to b.
 fn runs_back(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> bool {
     side(a, b, c) == 0.0 && dot(minus(b, a), minus(c, b)) < 0.0
 }

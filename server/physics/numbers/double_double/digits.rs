@@ -127,7 +127,7 @@ pub(super) fn in_units(value: f64, unit: i32) -> i128 {
     digits.parse::<i128>().unwrap_or(0) * if carries { 10 } else { 1 }
 }
 
-/// Of the first digit of the exact expansion, which may be one less than that of the shortest.
+/// Place of the first digit of the exact expansion, which may be one less than that of the shortest.
 pub(super) fn exponent(value: f64) -> i32 {
     format!("{value:.40e}").split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! How far the linear solution may be off: what each bounce leaves out, carried on by the powers that the solution takes, and rounding.
+//! Error bound of the linear solution: what each bounce leaves out, carried on by the powers that the solution takes, and rounding.
 
 use super::closed_form::{LinearImpact, LinearSolution, power};
 use super::left_out::LeftOut;
@@ -53,7 +53,7 @@ impl LinearSolution {
         let slope = match self.class {
             AngleClass::Elliptic => 0.5 / (self.residue * (1.0 - self.residue)).sqrt(),
             AngleClass::Parabolic => 0.0,
-            _ => now + 1.0 / libm::sinh(self.exponent),
+            AngleClass::Hyperbolic | AngleClass::Attracting => now + 1.0 / libm::sinh(self.exponent),
         };
         let off = f64::EPSILON * (4.0 * now.max(before) + m as f64 * self.exponent * slope);
         let steep = 4.0 * self.residue.abs();

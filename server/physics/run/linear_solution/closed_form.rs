@@ -53,7 +53,7 @@ impl LinearSolution {
         self.flight_time * self.start.theta_dot
     }
 
-    /// How far ẏ starts from its fixed point, m/s.
+    /// Distance of the first ẏ from its fixed point, m/s.
     pub(super) fn start_excess(&self) -> f64 {
         self.start.y_dot + self.speed
     }
@@ -71,7 +71,9 @@ impl LinearSolution {
                 let sine = 2.0 * (self.residue * (1.0 - self.residue)).sqrt();
                 return trig::sin_cos(count * self.exponent).0 / sine;
             }
-            _ => libm::sinh(count * self.exponent) / libm::sinh(self.exponent),
+            AngleClass::Hyperbolic | AngleClass::Attracting => {
+                libm::sinh(count * self.exponent) / libm::sinh(self.exponent)
+            }
         };
         if self.residue > 0.5 && m.is_multiple_of(2) { -size } else { size }
     }

@@ -5,7 +5,7 @@
 pub(super) struct LeftOut {
     pub(super) theta: f64,
     pub(super) u: f64,
-    /// Of θ and u together, in the norm that the rotation keeps.
+    /// θ and u together, in the norm that the rotation keeps.
     pub(super) turned: f64,
     pub(super) drift: f64,
     pub(super) y_dot: f64,

@@ -49,8 +49,12 @@ impl LinearSolution {
         let exponent = match linear.class {
             AngleClass::Elliptic if residue <= 0.5 => root(residue),
             AngleClass::Elliptic => std::f64::consts::PI - root(1.0 - residue),
-            _ if residue < 0.0 => 2.0 * libm::asinh((-residue).sqrt()),
-            _ => 2.0 * libm::asinh(f64::max(residue - 1.0, 0.0).sqrt()),
+            AngleClass::Hyperbolic | AngleClass::Parabolic | AngleClass::Attracting if residue < 0.0 => {
+                2.0 * libm::asinh((-residue).sqrt())
+            }
+            AngleClass::Hyperbolic | AngleClass::Parabolic | AngleClass::Attracting => {
+                2.0 * libm::asinh(f64::max(residue - 1.0, 0.0).sqrt())
+            }
         };
         let mut solution = Self {
             extended: scene.parameters(),
