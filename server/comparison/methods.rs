@@ -3,11 +3,11 @@
 /// A method of the chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ComparedMethod {
-    /// Its name in requests and answers.
+    /// Name in requests and answers.
     pub name: &'static str,
-    /// The same in words.
+    /// Title.
     pub title: &'static str,
-    /// What it is, in a sentence.
+    /// Description in a sentence.
     pub about: &'static str,
     pub(super) kind: MethodKind,
 }
@@ -108,18 +108,18 @@ pub const METHODS: [ComparedMethod; 11] = {
     ]
 };
 
-/// What a method can be told.
+/// A setting of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MethodSetting {
     /// `step` or `tolerance`.
     pub name: &'static str,
-    /// Its value.
+    /// Value.
     pub value: f64,
-    /// Its unit; `1` for none.
+    /// Unit; `1` for none.
     pub unit: &'static str,
 }
 
-/// How many points the methods have at most.
+/// Most points that the methods have together.
 pub fn most_points(methods: &[ComparedMethod]) -> u64 {
     methods.iter().map(|method| method.kind.settings(1.0).len() as u64).sum()
 }

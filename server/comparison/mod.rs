@@ -23,7 +23,7 @@ use runs::{MethodRun, Subject};
 pub struct WorkPrecisionPoint {
     /// The method.
     pub method: ComparedMethod,
-    /// Its setting, if it has one.
+    /// The setting, if the method has one.
     pub setting: Option<MethodSetting>,
     /// Clock time of the whole run; none where there was no run.
     pub timing: Option<Timing>,
@@ -35,13 +35,13 @@ pub struct WorkPrecisionPoint {
     pub evaluations: Option<u64>,
     /// Largest of |ρδθ| (m), |δẋ|, |δẏ|, |ρδθ̇| (m/s) just before the reference's last contact.
     pub error: Option<f64>,
-    /// How its run ended, or `unavailable`.
+    /// Outcome of the run, or `unavailable`.
     pub outcome: &'static str,
-    /// Why there is no error, or no run.
+    /// Reason for which there is no error, or no run.
     pub reason: Option<String>,
-    /// Whether nothing is both faster and more accurate.
+    /// True if no point is both faster and more accurate.
     pub pareto: bool,
-    /// Whether nothing takes fewer evaluations and is more accurate.
+    /// True if no point takes fewer evaluations and is more accurate.
     pub pareto_evaluations: bool,
 }
 
@@ -61,11 +61,11 @@ impl WorkPrecisionPoint {
 /// The chart of a scene.
 #[derive(Clone, Debug)]
 pub struct WorkPrecisionChart {
-    /// What errors are from.
+    /// The run that errors are measured from.
     pub reference: ReferenceRun,
     /// All points, method by method.
     pub points: Vec<WorkPrecisionPoint>,
-    /// What was left out.
+    /// Notes on points that were left out.
     pub notes: Vec<String>,
 }
 

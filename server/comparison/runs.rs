@@ -22,20 +22,20 @@ use crate::integrators;
 use crate::integrators::{Location, simulate};
 use crate::limits;
 
-/// How the reference ran.
+/// The run of the reference.
 #[derive(Clone, Copy, Debug)]
 pub struct ReferenceRun {
-    /// How it ended.
+    /// Outcome.
     pub outcome: &'static str,
     /// Contacts, the last included.
     pub impacts: u64,
     /// When the last one was, s.
     pub t: f64,
-    /// What one unit in the last place of its last state is, m or m/s: no double is surely nearer.
+    /// One unit in the last place of its last state, m or m/s: the resolution of doubles there.
     pub rounding: f64,
 }
 
-/// What a run came to.
+/// Result of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct MethodRun {
     pub(crate) outcome: &'static str,
@@ -79,7 +79,7 @@ impl<'a> Subject<'a> {
         self.reference
     }
 
-    /// How far a state is from the reference's last one.
+    /// Distance of a state from the reference's last one.
     pub(crate) fn error(&self, state: &State) -> f64 {
         let State { theta, x_dot, y_dot, theta_dot } = self.state;
         let off = |exact: DoubleDouble, value: f64| (exact - DoubleDouble::from_f64(value)).to_f64();
@@ -135,7 +135,7 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// The same for the clock: nothing is made ready, counted or kept that is not the run itself.
+    /// The run for the clock, without preparation, counting or recording.
     pub(crate) fn race(&self, kind: MethodKind, setting: Option<MethodSetting>, cancel: &CancelFlag) {
         match kind {
             MethodKind::Map => _ = black_box(self.bounce(self.rules(), |_| ())),
@@ -159,7 +159,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// Those that every method has; the map alone looks at what the table can do.
+    /// The rules that every method has; only the map checks the limits of the table.
     fn rules(&self) -> Rules {
         Rules { limits: None, ..self.scene.rules() }
     }

@@ -16,7 +16,7 @@ pub(crate) struct AngleHistory {
 }
 
 impl AngleHistory {
-    /// That of a scene, up to a number of contacts.
+    /// The history of a scene, up to a number of contacts.
     pub(crate) fn of(scene: &Scene, impacts: u64) -> Self {
         let mut angles = Vec::new();
         let ending = scene.orbit().ok().and_then(|mut orbit| {
@@ -28,7 +28,7 @@ impl AngleHistory {
         Self { angles, ending: ending.unwrap_or(Ending::Completed) }
     }
 
-    /// That of the linear map: θ' = (1 − 4R)θ + u, u' = u − 4Rθ with u = τθ̇.
+    /// The history of the linear map: θ' = (1 − 4R)θ + u, u' = u − 4Rθ with u = τθ̇.
     pub(crate) fn linear(scene: &Scene, fixed_point: &FixedPoint, impacts: u64) -> Self {
         let residue = linear_verdict(scene, fixed_point).residue.unwrap_or_default();
         let start = scene.start();
@@ -54,7 +54,7 @@ impl AngleHistory {
         self.angles.iter().map(|theta| theta.abs()).fold(0.0, f64::max)
     }
 
-    /// What it says of the angle: a run shows what it shows, and no more.
+    /// The claim of the run about the angle.
     pub(crate) fn says(&self, method: &'static str) -> MethodClaim {
         let (verdict, end) = if self.survived() {
             ("bounded", format!("{} contacts survived", self.angles.len()))

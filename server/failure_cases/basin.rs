@@ -1,4 +1,4 @@
-//! Where the linear analysis is right about nothing but its neighbourhood: a drift of the angle, a wide start, and a resonance.
+//! Cases in which the linear analysis holds only in a small neighbourhood: a drift of the angle, a wide start, and a resonance.
 
 use crate::charts::{Chart, Curve, Look, Plot, Side};
 use crate::failure_cases::angle_history::AngleHistory;

@@ -98,7 +98,7 @@ pub(crate) const TRIVIAL_ROOT: FailureCase = FailureCase {
     },
 };
 
-/// How much later the search starts, and its grid, s.
+/// Delay of the search and step of its grid, s.
 const NUDGE: f64 = 1e-3;
 
 /// A flight that is shorter than the nudge.

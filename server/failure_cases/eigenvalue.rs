@@ -8,7 +8,7 @@ use equipoise_physics::stability::jacobian;
 use equipoise_physics::stability::jacobian::modulus;
 use equipoise_physics::stability::linear_verdict::{PARABOLIC, linear_verdict};
 
-/// What the largest modulus of the computed Jacobian's eigenvalues at the fixed point says, and the eigenvalue of the angle
+/// Verdict by the largest modulus of the computed Jacobian's eigenvalues at the fixed point, and the eigenvalue of the angle
 /// farthest from 1: (re, im).
 fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f64, (f64, f64)) {
     let upright = State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
@@ -29,7 +29,7 @@ pub(crate) fn upright(scene: &Scene) -> FixedPoint {
     find_fixed_point(scene).expect("a test builds every case")
 }
 
-/// What the eigenvalues of a computed Jacobian say.
+/// The claim of the eigenvalues of a computed Jacobian.
 pub(crate) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> MethodClaim {
     let (verdict, radius, (re, im)) = spectral_radius(scene, fixed_point);
     let exact = linear_verdict(scene, fixed_point).spectral_radius();

@@ -304,7 +304,7 @@ fn limit(scene: &Scene) -> f64 {
     fall * (1.0 + rod.restitution) / (1.0 - rod.restitution)
 }
 
-/// How the run ends, and when it is at rest.
+/// End of the run, and the time when it comes to rest.
 fn settled(scene: &Scene, impacts: u64) -> (&'static str, Option<f64>) {
     let ending = scene.orbit().ok().and_then(|mut orbit| run(&mut orbit, impacts, |_| true));
     let settle_time =

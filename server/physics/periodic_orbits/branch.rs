@@ -33,13 +33,13 @@ pub struct ParameterRange<'a> {
     pub scene: &'a Scene,
     /// The field, which must be a number.
     pub name: Name,
-    /// Where the parameter starts.
+    /// First value of the parameter.
     pub from: f64,
-    /// Where it ends; not `from`.
+    /// Last value; not equal to `from`.
     pub to: f64,
 }
 
-/// Where a branch begins.
+/// Start of a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BranchStart {
     /// Near the upright bounce, at `from`.
@@ -51,7 +51,7 @@ pub enum BranchStart {
     Symmetric(f64),
 }
 
-/// How stability changes.
+/// Change of stability.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bifurcation {
     /// An eigenvalue passes −1 (R = 1); also where the branch itself springs from an orbit of half its period.
@@ -65,7 +65,7 @@ pub enum Bifurcation {
 }
 
 impl Bifurcation {
-    /// Its name in answers.
+    /// Name in answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::PeriodDoubling => "period_doubling",
@@ -83,20 +83,20 @@ pub struct BranchPoint {
     pub parameter: f64,
     /// The orbit.
     pub orbit: PeriodicOrbit,
-    /// What changes here; only at points that were located for it.
+    /// Change of stability at this point; only at points that were located for it.
     pub change: Option<Bifurcation>,
-    /// Whether the branch begins or ends here at an orbit of half the period.
+    /// True if the branch begins or ends here at an orbit of half the period.
     pub springs: bool,
 }
 
 /// A branch, in its order.
 #[derive(Clone, Debug)]
 pub struct Branch {
-    /// Its points.
+    /// Points in order.
     pub points: Vec<BranchPoint>,
     /// Index of the point it was followed from.
     pub start: usize,
-    /// Why it ends where it does, at its first point (if it was followed both ways) and at its last.
+    /// Reasons for its ends, at its first point (if it was followed both ways) and at its last.
     pub ends: Vec<String>,
 }
 
@@ -149,7 +149,7 @@ fn no_tangent(solution: &ClosedOrbit) -> OrbitFailure {
     OrbitFailure::NoConvergence { residual: solution.closed.residual(), steps: solution.steps }
 }
 
-/// What a walk along a branch needs to know.
+/// State of a walk along a branch.
 struct BranchFollower<'a> {
     path: &'a ParameterPath<'a>,
     period: usize,
@@ -249,7 +249,7 @@ impl BranchFollower<'_> {
         Ok((next, leads))
     }
 
-    /// How far the orbit is from repeating after half of its period, as a vector.
+    /// Difference of the states half a period apart, as a vector.
     fn half_way(&self, solution: &ClosedOrbit) -> Option<ScaledPoint> {
         let states = &solution.closed.states;
         if !self.period.is_multiple_of(2) {

@@ -31,7 +31,7 @@ type Five = Dual<5>;
 /// The equations at a place, with their derivatives by its five components.
 #[derive(Clone, Debug)]
 pub(super) struct ClosedEquations {
-    /// What is left of each: the state's return, the energy (where nothing steers it), the drift.
+    /// Remainders: of the state's return, of the energy (unless feedback sets it), of the drift.
     remainder: DVector<f64>,
     pub(super) derivative: DMatrix<f64>,
     pub(super) states: Vec<State>,
@@ -130,12 +130,12 @@ pub(super) struct SearchPlane {
 }
 
 impl SearchPlane {
-    /// That of a fixed parameter.
+    /// The plane of a fixed parameter.
     pub(super) fn at_parameter(point: ScaledPoint) -> Self {
         Self { normal: ScaledPoint::ith(4, 1.0), point }
     }
 
-    /// That of a fixed angle at the first contact.
+    /// The plane of a fixed angle at the first contact.
     pub(super) fn at_theta(point: ScaledPoint) -> Self {
         Self { normal: ScaledPoint::ith(0, 1.0), point }
     }

@@ -1,6 +1,6 @@
 //! The derivative over a period, judged: eigenvalues, Greene's residue, and whether small deviations stay small.
 //!
-//! Where nothing steers the energy, one eigenvalue is 1 by the energy and one by the drift. With energy feedback the one of the
+//! Without energy feedback, one eigenvalue is 1 by the energy and one by the drift. With energy feedback the one of the
 //! drift is 1 at the upright bounce and at mirror-symmetric orbits of period 2, and not at others. Such eigenvalues make the matrix
 //! defective, so the others come from the characteristic polynomial with those factors divided out, never from an iteration on it.
 
@@ -16,7 +16,7 @@ const ONE: f64 = 1e-11;
 pub(super) enum TrivialMultipliers {
     /// One of the energy and one of the drift: nothing steers the energy.
     EnergyAndDrift,
-    /// None but that of the drift, if it is 1: energy feedback.
+    /// At most one, of the drift: with energy feedback.
     Drift,
 }
 
@@ -27,7 +27,7 @@ pub struct Multipliers {
     pub eigenvalues: Vec<Complex<f64>>,
     /// Greene's residue R = (2 − λ − λ')/4 of the pair that belongs to the angle.
     pub residue: f64,
-    /// Whether small deviations stay small; none on the boundary, where the linear analysis is silent.
+    /// True if small deviations stay small; `None` on the boundary, where the linear analysis is silent.
     pub stable: Option<bool>,
     /// The test functions of the bifurcations.
     pub(super) tests: TestFunctions,
@@ -67,7 +67,7 @@ impl TestFunctions {
 }
 
 impl Multipliers {
-    /// Of the derivative over a period.
+    /// The verdict on the derivative over a period.
     pub(super) fn new(product: &Matrix4<f64>, known: TrivialMultipliers) -> Option<Self> {
         let trace = product.trace();
         let second = 0.5 * (trace * trace - (product * product).trace());
@@ -113,7 +113,7 @@ impl Multipliers {
         found.residue.is_finite().then_some(found)
     }
 
-    /// Of a derivative of which no eigenvalue is known.
+    /// The verdict on a derivative without a known eigenvalue.
     fn of_all(product: &Matrix4<f64>, slack: f64) -> Option<Self> {
         let schur = Schur::try_new(*product, f64::EPSILON, 10_000)?;
         let mut eigenvalues: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();

@@ -14,7 +14,7 @@ pub struct PeriodicOrbit {
     pub states: Vec<State>,
     /// The least period: a divisor of the one asked for.
     pub least_period: usize,
-    /// What is left of the equations, in parts of the scene's speed.
+    /// Remainder of the equations, in parts of the scene's speed.
     pub residual: f64,
     /// Steps of the iteration.
     pub steps: u32,
@@ -26,7 +26,7 @@ pub struct PeriodicOrbit {
     pub flight_time: f64,
     /// ẏ_c just before the contact nearest to grazing, m/s.
     pub contact_speed: f64,
-    /// What the derivative over the period says.
+    /// Verdict on the derivative over the period.
     pub multipliers: Multipliers,
 }
 

@@ -1,6 +1,6 @@
 //! The path of a problem along a field of a scene, and how the parameters of the rod move along it.
 //!
-//! How the rod's own parameters move with a field of the scene is a central difference, since one field may move several of them or
+//! The derivative of the rod's parameters by a field of the scene is a central difference, since one field may move several of them or
 //! one of them nonlinearly; it steers the iteration, and no answer depends on it.
 
 use crate::bounce::rod::Rod;
@@ -47,7 +47,7 @@ impl<'a> ParameterPath<'a> {
         }
     }
 
-    /// How rod and energy move with the share.
+    /// Derivatives of rod and energy by the share.
     pub(super) fn rates(&self, share: f64) -> Result<(Rod, f64), OrbitFailure> {
         let still = |problem: &OrbitProblem| (problem.rod, problem.energy.unwrap_or(0.0));
         let Some((_, name)) = self.scene else {

@@ -11,7 +11,7 @@ use crate::stability::fixed_point::find_fixed_point;
 /// Remainder of the equations, in parts of the scene's speed, up to which they count as solved.
 pub(super) const SOLVED: f64 = 1e-11;
 
-/// What an orbit is sought in: a rod and what closes the equations.
+/// The rod of an orbit and the conditions that close its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrbitProblem {
     /// The rod.
@@ -25,10 +25,10 @@ pub struct OrbitProblem {
 }
 
 impl OrbitProblem {
-    /// That of a scene: its energy is the release's, less what drift would keep, as for its fixed point.
+    /// The problem of a scene. Its energy is that of the release without the drift, as for the fixed point.
     ///
     /// # Errors
-    /// Why the scene has no periodic orbits, in a sentence.
+    /// A sentence that says why the scene has no periodic orbits.
     pub fn of(scene: &Scene) -> Result<Self, String> {
         if let Some(error) = scene.beyond(&[]) {
             return Err(error.detail);
@@ -52,7 +52,7 @@ impl OrbitProblem {
     }
 }
 
-/// Why there is no orbit to give.
+/// Reason for which there is no orbit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OrbitFailure {
     /// The run from the best state so far ends before it could come back.
@@ -64,7 +64,7 @@ pub enum OrbitFailure {
     },
     /// The iteration came to no orbit.
     NoConvergence {
-        /// What was left of the equations, in parts of the scene's speed.
+        /// Remainder of the equations, in parts of the scene's speed.
         residual: f64,
         /// Steps taken.
         steps: u32,

@@ -22,7 +22,7 @@ fn along(rod: &Rod, theta: f64, speed: f64) -> State {
     State { theta, x_dot: speed * sin / cos, y_dot: -speed, theta_dot: rod.gravity * theta / speed }
 }
 
-/// How finely a range is searched for the symmetric orbit through an angle.
+/// Cells in which a range is searched for the symmetric orbit through an angle.
 const CELLS: u32 = 512;
 
 /// The first place along a path where the symmetric orbit through an angle has the energy, or with feedback the
@@ -58,7 +58,7 @@ pub(super) fn symmetric_orbit_on_path(path: &ParameterPath<'_>, theta: f64) -> R
     Err(OrbitFailure::Scene(detail))
 }
 
-/// How much more energy, or height at the top with feedback, the symmetric orbit has than it should.
+/// Excess of energy, or with feedback of height, of the symmetric orbit over the required one.
 fn excess(path: &ParameterPath<'_>, theta: f64, share: f64) -> Option<f64> {
     let problem = path.problem(share).ok()?;
     let state = symmetric(&problem.rod, theta)?;

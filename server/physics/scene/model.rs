@@ -26,7 +26,7 @@ pub enum ModelLevel {
     Linear,
     /// The rod without friction, on a table that looks at its angle and velocities.
     Rod,
-    /// The same on a table that looks at its place too.
+    /// The rod without friction, on a table that also senses its position.
     RodWithX,
     /// The rod on a table with friction, or that moves along itself.
     Friction,
@@ -37,7 +37,7 @@ pub enum ModelLevel {
 }
 
 impl ModelLevel {
-    /// Its name in answers.
+    /// Name in answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Point => "point",
@@ -50,7 +50,7 @@ impl ModelLevel {
         }
     }
 
-    /// What an impact costs, ns of one core as it was when this table was measured (AMD EPYC, Zen 4, 3.0 GHz; `cargo bench --bench
+    /// Cost of an impact, ns of one core as it was when this table was measured (AMD EPYC, Zen 4, 3.0 GHz; `cargo bench --bench
     /// bounce rungs`). Fixed, so that the same question gets the same answer.
     pub fn cost_ns(self) -> f64 {
         match self {
@@ -72,7 +72,7 @@ pub struct ModelRequirement {
     pub level: ModelLevel,
     /// The field that asked for it.
     pub path: &'static str,
-    /// Why it takes that level, in a sentence.
+    /// A sentence that says why the field needs that level.
     pub detail: String,
 }
 
@@ -203,12 +203,12 @@ impl Scene {
         }
     }
 
-    /// What the table believes the restitution to be.
+    /// Restitution that the table assumes.
     pub fn assumed_restitution(&self) -> f64 {
         self.assumed_restitution.unwrap_or(self.restitution)
     }
 
-    /// Whether bounces lose energy that nothing gives back.
+    /// Tells whether bounces lose energy for good.
     pub fn is_lossy(&self) -> bool {
         let lost = match self.strike {
             Striking::Still => self.restitution < 1.0,
@@ -217,24 +217,24 @@ impl Scene {
         lost && self.energy_gain == 0.0
     }
 
-    /// Whether the table takes no energy away. With an energy gain it does where a run has too much, and with a negative one where it
+    /// Tells whether the table takes no energy away. With an energy gain it does where a run has too much, and with a negative one where it
     /// has too little, down to nothing.
     fn keeps_energy(&self) -> bool {
         !self.is_lossy() && self.energy_gain == 0.0
     }
 
-    /// Its friction, where the contact has some or the table moves along itself.
+    /// The friction, if the contact has some or the table moves along itself.
     pub(crate) fn contact_friction(&self) -> Option<Friction> {
         self.is_rough().then_some(Friction { coefficient: self.friction, law: self.law, slide: self.slide })
     }
 
-    /// Whether the contact has friction or the table moves along itself.
+    /// Tells whether the contact has friction or the table moves along itself.
     pub fn is_rough(&self) -> bool {
         self.friction != 0.0 || self.slide != Slide::None
     }
 
-    /// Why what is derived for the plain rod, and for the levels `known` above it, does not hold for this scene, with the field that
-    /// makes it so; none where it does.
+    /// The first field that takes the scene outside the plain rod and the levels `known`, with a message; `None` if the scene is
+    /// within them.
     pub fn beyond(&self, known: &[ModelLevel]) -> Option<FieldError> {
         let beyond = |level| level != ModelLevel::Polygon && !known.contains(&level);
         let ModelRequirement { level, path, .. } =
@@ -256,12 +256,12 @@ impl Scene {
     /// The run of the scene from its release.
     ///
     /// # Errors
-    /// Why there is not even a first contact.
+    /// The reason for which there is no first contact.
     pub fn orbit(&self) -> Result<Orbit<Model>, NoContact> {
         Orbit::new(self.running_model(), self.rules(), &self.release)
     }
 
-    /// The same with 31 digits.
+    /// The run of the scene from its release with 31 digits.
     ///
     /// # Errors
     /// [`TooManyPieces`], which the ranges of a scene exclude.
@@ -289,7 +289,7 @@ impl Scene {
         }
     }
 
-    /// What of the scene asked for the levels above the plain rod, from the least.
+    /// The requirements of the scene beyond the plain rod, from the lowest level.
     pub fn requirements(&self) -> Vec<ModelRequirement> {
         let mut steps = Vec::new();
         let mut step =
@@ -331,7 +331,7 @@ impl Scene {
         steps
     }
 
-    /// Why the scene needs its level, in a sentence.
+    /// A sentence that says why the scene needs its level.
     pub fn level_reason(&self) -> String {
         let e = self.restitution;
         if self.body == BodyShape::Point {

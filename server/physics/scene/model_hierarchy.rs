@@ -1,6 +1,6 @@
 //! The ladder of models: the same scene on each level up to its own, and what each of them changed.
 //!
-//! What a level leaves out is left out of the scene itself, so each runs as it would if it had been asked for alone.
+//! A level leaves fields out of the scene itself, so each level runs exactly as a scene without these fields.
 
 use crate::bounce::state::State;
 use crate::run::cancellation::CHECK_INTERVAL;
@@ -17,16 +17,16 @@ pub struct LevelResult {
     pub level: ModelLevel,
     /// The scene with what this level leaves out taken away.
     pub scene: Scene,
-    /// What of the scene asked for it; nothing for the lowest.
+    /// Requirement of the scene that needs this level; `None` for the lowest levels.
     pub requirement: Option<ModelRequirement>,
-    /// What came of it, or why it does not apply.
+    /// The run, or the reason for which the level does not apply.
     pub run: Result<LevelRun, String>,
 }
 
-/// How a run on a level went.
+/// A run on a level.
 #[derive(Clone, Debug)]
 pub struct LevelRun {
-    /// How it ended.
+    /// End of the run.
     pub ending: Ending,
     /// Contacts until then.
     pub impacts: u64,
@@ -34,7 +34,7 @@ pub struct LevelRun {
     pub t: f64,
     /// The most that it asked of the table.
     pub demand: ActuatorLoad,
-    /// What this level changed against the next lower one that applies.
+    /// Change against the next lower one that applies.
     pub change: Option<LevelChange>,
 }
 
@@ -43,21 +43,21 @@ pub struct LevelRun {
 pub struct LevelChange {
     /// Contacts compared.
     pub impacts: u64,
-    /// Of t, s.
+    /// Difference of t, s.
     pub t: LargestDifference,
-    /// Of x, m.
+    /// Difference of x, m.
     pub x: LargestDifference,
-    /// Of θ, rad.
+    /// Difference of θ, rad.
     pub theta: LargestDifference,
-    /// Of ẋ, m/s.
+    /// Difference of ẋ, m/s.
     pub x_dot: LargestDifference,
-    /// Of ẏ, m/s.
+    /// Difference of ẏ, m/s.
     pub y_dot: LargestDifference,
-    /// Of θ̇, rad/s.
+    /// Difference of θ̇, rad/s.
     pub theta_dot: LargestDifference,
-    /// Of ρθ (m), ẋ, ẏ and ρθ̇ (m/s) together, in the measure of error estimates.
+    /// Difference of ρθ (m), ẋ, ẏ and ρθ̇ (m/s) together, in the measure of error estimates.
     pub state: LargestDifference,
-    /// Whether both ended alike, at the same contact.
+    /// True if both ended alike, at the same contact.
     pub same_outcome: bool,
 }
 
@@ -78,7 +78,7 @@ impl LargestDifference {
     }
 }
 
-/// What of a contact is compared.
+/// The compared values of a contact.
 #[derive(Clone, Copy)]
 struct ComparedContact {
     t: f64,

@@ -1,4 +1,4 @@
-//! How far aside a scene may start: the release angles from which a run survives.
+//! The basin of a scene: the release angles from which a run survives.
 //!
 //! A scan in lanes and a search of its edges. Not a map over two fields, and no proof: between two angles of the scan a
 //! narrow hole stays unseen.
@@ -42,12 +42,12 @@ pub struct ReleaseBasin {
     pub bounces: u64,
 }
 
-/// Why there is no basin.
+/// Reason for which there is no basin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoBasin {
-    /// It was told to stop.
+    /// The search was cancelled.
     Stopped,
-    /// It does not exist, for this reason.
+    /// There is none, for this reason.
     Because(String),
 }
 

@@ -52,7 +52,7 @@ pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<B
 /// θ, rad, of the mirror-symmetric period-2 orbit at the energy of the fixed point, the one nearest to upright; `None` if there is
 /// none within the topple angle (rad).
 ///
-/// Its states are (±θ, ±V tan κθ, −V, ±Gθ/V) with V² = Gρ²θ cos κθ / (l sin((κ − 1)θ)); with energy feedback η is held in
+/// The states of the orbit are (±θ, ±V tan κθ, −V, ±Gθ/V) with V² = Gρ²θ cos κθ / (l sin((κ − 1)θ)); with energy feedback η is held in
 /// place of the energy. `None` also with friction and with state feedback, for which it is not derived.
 pub fn period_two_angle(model: &Model, topple_angle: f64, fixed_point: &FixedPoint) -> Option<f64> {
     let &Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, strike_gain_per_energy, .. } =

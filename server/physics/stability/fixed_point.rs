@@ -46,7 +46,7 @@ pub fn drift_speed(scene: &Scene) -> Option<f64> {
 /// energy of sideways motion and spin, so there V² = ẏ₀² + 2G(y₀ − l).
 ///
 /// # Errors
-/// Why there is none, in a sentence.
+/// A sentence that says why there is none.
 pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
     if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
         return Err(error.detail);
@@ -109,7 +109,7 @@ fn belief(scene: &Scene) -> String {
     format!("the table believes restitution {} and meets {}", scene.assumed_restitution(), scene.restitution)
 }
 
-/// How far above the target height the energy feedback comes to rest, m: where the strike gain is 2 for an assumed restitution
+/// Height above the target height at which the energy feedback comes to rest, m: the strike gain is 2 there for an assumed restitution
 /// ê, κ_E(η* − η) = 2(ê − e)/((1 + e)(1 + ê)). Nothing without feedback, or where ê is e.
 pub fn height_error(scene: &Scene) -> f64 {
     let (e, assumed) = (scene.restitution, scene.assumed_restitution());
@@ -124,7 +124,7 @@ pub fn height_error(scene: &Scene) -> f64 {
 /// proportional tilt. Friction takes the energy of sideways motion and spin.
 ///
 /// # Errors
-/// Why there is none, in a sentence.
+/// A sentence that says why there is none.
 pub fn bounce_in_place(scene: &Scene) -> Result<FixedPoint, String> {
     if scene.body() == BodyShape::Point {
         return Err("a point mass has no angle to feed back".to_owned());

@@ -30,29 +30,29 @@ pub struct Linearization {
     pub matrix: DMatrix<f64>,
     /// The state at the end.
     pub end: State,
-    /// Where the centre of gravity is then, m.
+    /// Horizontal position of the centre of gravity at the end, m.
     pub x: f64,
     /// Length of the flights passed, s.
     pub flight_time: f64,
     /// ẏ_c just before the contact nearest to grazing, m/s: derivatives grow without bound as it goes to 0.
     pub contact_speed: f64,
-    /// What the first contact did along the table.
+    /// Contact mode of the first contact.
     pub contact_mode: ContactMode,
-    /// Where the map has a kink, its derivatives on all sides of it; else none.
+    /// At a kink of the map, the derivatives on all of its sides; empty elsewhere.
     pub one_sided: Vec<OneSidedDerivative>,
 }
 
 /// A derivative of the map on one side of a kink.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OneSidedDerivative {
-    /// What the contact does along the table on that side.
+    /// Contact mode on that side.
     pub contact_mode: ContactMode,
     /// As [`Linearization::matrix`].
     pub matrix: DMatrix<f64>,
 }
 
-/// What decides on the formula of an impact with friction is taken both ways where it is nearer than this share to the other
-/// answer, some thousands of roundings.
+/// Relative distance from a switch between two formulas of an impact with friction below which both are followed. It is some
+/// thousands of roundings.
 pub const TIED: f64 = 1e-12;
 
 /// Most sides that are told: each contact on a kink doubles them.
@@ -95,7 +95,7 @@ pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<
     })
 }
 
-/// The same by central differences with a step of `step` m/s (m for ρθ) in each component.
+/// The derivative by central differences with a step of `step` m/s (m for ρθ) in each component.
 ///
 /// # Errors
 /// As [`jacobian`]; also where a run that starts one step aside ends.

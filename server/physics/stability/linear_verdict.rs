@@ -16,21 +16,21 @@ use nalgebra::Complex;
 /// |R| or |R − 1| up to which the angle is called parabolic; likewise for the energy eigenvalue at ±1.
 pub const PARABOLIC: f64 = 1e-9;
 
-/// How the angle moves near the fixed point.
+/// Motion of the angle near the fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AngleClass {
-    /// It comes back (point mass).
+    /// The angle returns to the fixed point.
     Attracting,
-    /// It circles, 0 < R < 1.
+    /// The angle circles about it, 0 < R < 1.
     Elliptic,
     /// R = 0 or R = 1: a double eigenvalue ±1, on which the linear analysis is silent.
     Parabolic,
-    /// It leaves.
+    /// The angle leaves it.
     Hyperbolic,
 }
 
 impl AngleClass {
-    /// Its name in answers.
+    /// Name in answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Attracting => "attracting",
@@ -44,7 +44,7 @@ impl AngleClass {
 /// The linear verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearVerdict {
-    /// How the angle moves.
+    /// Motion of the angle.
     pub class: AngleClass,
     /// R = (κ − 1)V²l/(Gρ²), with ρ² + l² for ρ² where a matched contact sticks; none for a point mass, and where the contact sticks to
     /// a table that only tilts.
@@ -61,7 +61,7 @@ pub struct LinearVerdict {
     pub upper_energy_gain: f64,
     /// 1 − (1 + e)κ_E V².
     pub energy_eigenvalue: f64,
-    /// What the state feedback does, where the table has one.
+    /// Closed loop of the state feedback, if the table has one.
     pub closed_loop: Option<ClosedLoop>,
 }
 
@@ -81,7 +81,7 @@ impl LinearVerdict {
         angle.max(self.energy_eigenvalue.abs())
     }
 
-    /// Whether it says that a small deviation stays small.
+    /// Tells whether a small deviation stays small by this verdict.
     pub fn says_bounded(&self) -> bool {
         matches!(self.class, AngleClass::Attracting | AngleClass::Elliptic)
             && self.energy_eigenvalue.abs() <= 1.0 + PARABOLIC

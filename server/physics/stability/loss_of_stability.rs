@@ -1,4 +1,4 @@
-//! How stability is lost at the ends of the linear verdict: softly, to a small swing that grows with the distance from the
+//! Loss of stability at the ends of the linear verdict: soft, to a small swing that grows with the distance from the
 //! end, or hard, so that every small start falls.
 //!
 //! At each end one direction of the map is on the unit circle, and its cubic coefficient decides ([`crate::stability::normal_form`]). For
@@ -58,14 +58,14 @@ pub enum SettledMotion {
     },
 }
 
-/// How stability is lost at an end.
+/// Loss of stability at an end of the linear verdict.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityLoss {
     /// Which end.
     pub end: CriticalParameter,
     /// κ, κ_E (s²/m²) or the factor at which it is.
     pub value: f64,
-    /// How eigenvalues leave the unit circle there.
+    /// Bifurcation by which eigenvalues leave the unit circle there.
     pub bifurcation: Bifurcation,
     /// The coefficient whose sign decides, positive where the loss is soft: C for the tilt gain, s²/m² of the bounce speed for the
     /// energy gain, per bounce and rad² for feedback.

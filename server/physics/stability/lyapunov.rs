@@ -14,9 +14,9 @@ use nalgebra::Complex;
 /// Fate of a swing about upright in the long run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SwingFate {
-    /// It grows, from every start but upright itself.
+    /// The swing grows, from every start but upright itself.
     Repelling,
-    /// It dies out.
+    /// The swing dies out.
     Attracting,
     /// To third order it does neither.
     Neutral,
@@ -58,7 +58,7 @@ impl LyapunovCoefficient {
 /// The coefficient of a scene about its fixed point, with the amplitude of the scene's release.
 ///
 /// # Errors
-/// Why it does not apply, in a sentence.
+/// A sentence that says why it does not apply.
 pub fn lyapunov_coefficient(
     scene: &Scene,
     fixed_point: &FixedPoint,
@@ -103,7 +103,7 @@ pub fn lyapunov_coefficient(
 /// (ρθ, ẋ, ρθ̇, x) just before the first contact of a scene's run.
 ///
 /// # Errors
-/// That there is none, in a sentence.
+/// A sentence that says that there is none.
 pub(crate) fn first_contact(scene: &Scene) -> Result<[f64; 4], String> {
     let orbit = scene.orbit().map_err(|_| "the release comes to no contact".to_owned())?;
     let rho = scene.parameters::<f64>().radius_of_gyration;

@@ -1,4 +1,4 @@
-//! How far a scene is from the edge of stability when its body is not quite what it is said to be: the linear verdict over a box
+//! Distance of a scene from the edge of stability when its body deviates from the given one: the linear verdict over a box
 //! of contact distances, radii of gyration and restitutions.
 //!
 //! The table keeps to what it was told: its gains, and the restitution that it believes in.
@@ -7,14 +7,14 @@ use crate::scene::{Name, Scene, Value};
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::linear_verdict;
 
-/// How far off each may be, either way.
+/// Tolerance of each parameter, in both directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tolerances {
-    /// Of l, m.
+    /// Tolerance of l, m.
     pub contact_distance: f64,
-    /// Of ρ, m.
+    /// Tolerance of ρ, m.
     pub radius_of_gyration: f64,
-    /// Of e; what would be below 0 or above 1 is left out.
+    /// Tolerance of e; the range is cut to 0 to 1.
     pub restitution: f64,
 }
 
@@ -38,18 +38,18 @@ pub struct ValueRange {
     pub most: f64,
 }
 
-/// What holds over the whole box.
+/// The verdict over the whole box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToleranceMargins {
     /// κ_c.
     pub critical_tilt_gain: ValueRange,
-    /// Where κ_c is least.
+    /// The body with the least κ_c.
     pub worst: SampledBody,
     /// Height of the centre of gravity at the top of the bounce in place, m.
     pub apex_height: ValueRange,
     /// Eigenvalue of the energy.
     pub energy_eigenvalue: ValueRange,
-    /// Whether the linear verdict is stable for every body in the box.
+    /// True if the linear verdict is stable for every body in the box.
     pub holds: bool,
 }
 
@@ -60,7 +60,7 @@ const ROUNDS: usize = 24;
 /// The linear verdict over a box of bodies.
 ///
 /// # Errors
-/// Why there is none for one of them, in a sentence.
+/// A sentence that says why one of the bodies has no verdict.
 pub fn margins_over_tolerances(scene: &Scene, tolerances: &Tolerances) -> Result<ToleranceMargins, String> {
     if scene.outline().is_some() {
         return margins_over_tolerances(&scene.as_rod(), tolerances);

@@ -9,7 +9,7 @@ use crate::table::actuator_load::{ActuatorLoad, LoadTracker};
 /// The summary of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NonlinearRun {
-    /// How it ended.
+    /// End of the run.
     pub ending: Ending,
     /// Contacts until then.
     pub impacts: u64,

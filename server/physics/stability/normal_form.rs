@@ -43,11 +43,11 @@ pub struct UprightBounce {
     friction: Option<Friction>,
     /// V, m/s.
     speed: f64,
-    /// How ẏ answers to itself: λ_E and the coefficients of δẏ² (s/m) and δẏ³ (s²/m²).
+    /// Response of ẏ to itself: λ_E and the coefficients of δẏ² (s/m) and δẏ³ (s²/m²).
     height: [f64; 3],
 }
 
-/// How a swing of one direction changes in a bounce, to third order: w ↦ λw(1 + d|w|²).
+/// Change of a swing in one direction over a bounce, to third order: w ↦ λw(1 + d|w|²).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubicCoefficient {
     /// ℓ of dA/dn = ℓA³ per bounce and rad², A the largest |θ| of the linear swing.
@@ -69,7 +69,7 @@ impl UprightBounce {
     /// The bounce of a model about its fixed point.
     ///
     /// # Errors
-    /// Why it has no third derivatives, in a sentence.
+    /// A sentence that says why it has no third derivatives.
     pub fn of(model: &Model, fixed_point: &FixedPoint) -> Result<Self, String> {
         let (rod, steering, friction) = match *model {
             Model::Rod(rod) => (rod, Steering::TiltGain, None),
@@ -89,7 +89,7 @@ impl UprightBounce {
         Ok(bounce)
     }
 
-    /// The same with `factor` times the gains of its state feedback.
+    /// This bounce with `factor` times the gains of its state feedback.
     #[must_use]
     pub fn with_gains_times(mut self, factor: f64) -> Self {
         if let Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) = self.steering {
@@ -119,7 +119,7 @@ impl UprightBounce {
         ([rho * theta, x_dot, rho * theta_dot, x + t * x_dot], y_dot)
     }
 
-    /// How many odd components move each other: x does only where it is fed back.
+    /// Number of odd components that act on each other; x is one of them only if it is fed back.
     fn odd_size(&self) -> usize {
         match self.steering {
             Steering::Feedback(gains) if gains.x != 0.0 => 4,
@@ -169,7 +169,7 @@ impl UprightBounce {
     /// swing through (ρθ, ẋ, ρθ̇, x).
     ///
     /// # Errors
-    /// Why there is none, in a sentence.
+    /// A sentence that says why there is none.
     pub fn cubic(&self, eigenvalue: Complex<f64>, start: [f64; 4]) -> Result<CubicCoefficient, String> {
         let size = self.odd_size();
         let odd_derivative = self.odd_derivative();

@@ -1,4 +1,4 @@
-//! How regular a run is: its rotation about the fixed point, whether it is chaotic, and how far it can be predicted.
+//! Regularity of a run: its rotation about the fixed point, its chaos indicator, and the horizon of prediction.
 //!
 //! All of it comes from one watch over the first contacts of a run, with the exact derivative of the map carried along.
 //! Not here: what is concluded from it ([`crate::stability::verdict`]).
@@ -41,7 +41,7 @@ pub struct Resonance {
     pub p: u32,
     /// Bounces for them: the order.
     pub q: u32,
-    /// How far the rotation number is from p/q, without sign.
+    /// Distance of the rotation number from p/q, without sign.
     pub distance: f64,
 }
 
@@ -56,30 +56,30 @@ pub struct Rotation {
     pub resonance: Resonance,
 }
 
-/// Whether deviations from a run grow without bound.
+/// Growth of small deviations from a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChaosIndicator {
     /// Mean exponential growth factor of nearby orbits (P. M. Cincotta and C. Simó, 2000): 2 for regular runs.
     pub indicator: f64,
-    /// Whether it is above [`CHAOTIC`].
+    /// True if the indicator is above [`CHAOTIC`].
     pub chaotic: bool,
     /// Contacts that were watched for it.
     pub impacts: u64,
 }
 
-/// What a watch over a run says.
+/// The measurements over the first contacts of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regularity {
-    /// None where small deviations do not circle.
+    /// `None` if small deviations do not circle.
     pub rotation: Option<Rotation>,
-    /// None where the run ended before [`WATCHED`] contacts, or stands at the fixed point.
+    /// `None` if the run ended before [`WATCHED`] contacts, or stands at the fixed point.
     pub chaos: Option<ChaosIndicator>,
     /// ln of the largest growth of deviations so far, for each contact that was passed.
     pub growth: Vec<f64>,
 }
 
 impl Regularity {
-    /// What the watch took, in bounces: that of each contact, and one for each of its four tangents.
+    /// Cost in bounces: one for each contact and one for each of its four tangents.
     pub fn bounces(&self) -> u64 {
         5 * self.growth.len() as u64
     }

@@ -27,25 +27,25 @@ pub enum Verdict {
     WeaklyUnstable,
     /// At or beyond an end of the linear verdict, yet bounded around what branches off there, for as long as it was watched.
     BoundedBeyondBoundary,
-    /// It falls, or would from a start a little aside.
+    /// The body falls, or would fall from a slightly different start.
     Unstable,
 }
 
-/// What a verdict rests on.
+/// Evidence that decided a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DecidedBy {
     /// Eigenvalues, by residue.
     Linear,
     /// The run of the scene.
     Nonlinear,
-    /// How stability is lost at an end of the linear verdict.
+    /// Loss of stability at an end of the linear verdict.
     Boundary,
     /// The first Lyapunov coefficient.
     Lyapunov,
 }
 
 impl DecidedBy {
-    /// Its name in answers.
+    /// Name in answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Linear => "linear",
@@ -61,9 +61,9 @@ impl DecidedBy {
 pub struct Assessment {
     /// The verdict.
     pub verdict: Verdict,
-    /// What decided.
+    /// Evidence that decided.
     pub decided_by: DecidedBy,
-    /// Whether linear analysis and run tell the same story.
+    /// True if the linear analysis and the run agree.
     pub agree: bool,
     /// Why, in a sentence with numbers.
     pub reason: String,

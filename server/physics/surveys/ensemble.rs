@@ -20,9 +20,9 @@ const DEVIATE: f64 = 1.959_963_984_540_054;
 /// Runs of a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Ensemble {
-    /// What runs; run k has the noise that its seed gives run k.
+    /// The scene; run k has the noise that its seed gives run k.
     pub scene: Scene,
-    /// How many runs.
+    /// Number of runs.
     pub runs: u64,
     /// For how many contacts each is watched.
     pub impacts: u64,
@@ -30,7 +30,7 @@ pub struct Ensemble {
     pub angle_contacts: u64,
 }
 
-/// How one run ended.
+/// End of one run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunEnd {
     /// Contacts, the last included; 0 where there was not even a first one.
@@ -39,10 +39,10 @@ pub struct RunEnd {
     pub outcome: EndingKind,
 }
 
-/// What is kept of some runs.
+/// Record of some runs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EnsembleRuns {
-    /// How they ended, in their order.
+    /// Ends of the runs, in their order.
     pub ends: Vec<RunEnd>,
     /// For each contact of [`Ensemble::watched`], |θ| there in rad of those that went on; in their order.
     pub angles: Vec<Vec<f64>>,
@@ -53,11 +53,11 @@ pub struct EnsembleRuns {
 pub struct SurvivalPoint {
     /// Runs that came to it, or would have come to the first one.
     pub at_risk: u64,
-    /// Those of them that ended there.
+    /// Runs of these that ended there.
     pub ended: u64,
     /// The share of all runs that went on.
     pub share: f64,
-    /// Where the probability to go on lies, with a confidence of 95 %.
+    /// Confidence interval (95 %) of the probability to go on.
     pub interval: (f64, f64),
 }
 
@@ -132,7 +132,7 @@ impl EnsembleRuns {
         curve.collect()
     }
 
-    /// How many runs ended so.
+    /// Number of runs with this outcome.
     pub fn count(&self, outcome: EndingKind) -> u64 {
         self.ends.iter().filter(|end| end.outcome == outcome).count() as u64
     }

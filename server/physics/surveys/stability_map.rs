@@ -18,11 +18,11 @@ use std::ops::Range;
 pub struct MapAxis {
     /// The field, one whose values are numbers.
     pub name: Name,
-    /// Its first value.
+    /// First value.
     pub from: f64,
-    /// Its last value.
+    /// Last value.
     pub to: f64,
-    /// How many values.
+    /// Number of values.
     pub count: usize,
 }
 
@@ -38,7 +38,7 @@ impl MapAxis {
     }
 }
 
-/// What a cell shows.
+/// Quantity that a cell shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapQuantity {
     /// Contacts survived.
@@ -62,16 +62,16 @@ pub struct StabilityMap {
     pub y: MapAxis,
     /// Contacts.
     pub impacts: u64,
-    /// What the cells show.
+    /// Quantity of the cells.
     pub quantity: MapQuantity,
 }
 
-/// What is known of a cell.
+/// A cell of the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapCell {
-    /// Its quantity; none where the scene cannot be, or has no fixed point to ask.
+    /// Value of the quantity; `None` for an impossible scene and for one without a fixed point.
     pub value: Option<f64>,
-    /// How its run ended; none where there was no run.
+    /// Outcome of the run; `None` without a run.
     pub outcome: Option<EndingKind>,
 }
 
@@ -96,7 +96,7 @@ impl StabilityMap {
         draft.build().ok()
     }
 
-    /// Whether all runs go in lanes, by those at its corners; the others take many times as long.
+    /// Tells whether all runs fit in lanes, judged by the corners of the map. Other runs take many times as long.
     pub fn fits_lanes(&self) -> bool {
         let corners = [(0, 0), (self.x.count - 1, 0), (0, self.y.count - 1), (self.x.count - 1, self.y.count - 1)];
         corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(|scene| in_lanes(&scene).is_some()))
@@ -180,7 +180,7 @@ impl StabilityMap {
         if self.quantity == MapQuantity::Residue { linear.residue } else { Some(linear.spectral_radius()) }
     }
 
-    /// Where the residue is 0 or 1, the ends of the linear verdict, as line segments (residue, from, to) of points (x, y).
+    /// The lines of residue 0 and 1, the ends of the linear verdict, as segments (residue, from, to) of points (x, y).
     ///
     /// From a grid of at most `nodes` × `nodes` over the whole region, with every crossing of an edge refined to 1e-12 of
     /// the region. None once `go_on` said `false`, which is asked after a hundred scenes or two.
@@ -232,7 +232,7 @@ fn linear(scene: &Scene) -> Option<LinearVerdict> {
     Some(linear_verdict(scene, &find_fixed_point(scene).ok()?))
 }
 
-/// Where a function changes its sign between two points, by bisection.
+/// Sign change of a function between two points, by bisection.
 fn cross(mut low: [f64; 2], mut high: [f64; 2], function: impl Fn([f64; 2]) -> Option<f64>) -> [f64; 2] {
     let negative = |point| function(point).is_some_and(|value| value < 0.0);
     let side = negative(low);
@@ -244,7 +244,7 @@ fn cross(mut low: [f64; 2], mut high: [f64; 2], function: impl Fn([f64; 2]) -> O
     middle(low, high)
 }
 
-/// What bounces, if its run can go in a lane: where the table is limited, it goes alone.
+/// Rod and friction of a scene whose run fits in a lane; `None` for other models and for tables with limits.
 fn in_lanes(scene: &Scene) -> Option<(Rod, Option<Friction>)> {
     scene.running_model().in_lanes().filter(|_| scene.rules().limits.is_none())
 }
@@ -256,7 +256,7 @@ fn start_of(scene: &Scene) -> Option<(RunStart, Option<Friction>)> {
     Some((RunStart { rod, rules: scene.rules(), state }, friction))
 }
 
-/// None once `go_on` said `false`. What never meets the table has ended before its first contact.
+/// `None` once `go_on` returned `false`. A body that never meets the table has ended before its first contact.
 fn run_alone(scene: &Scene, impacts: u64, looks: &mut CancellationCheck<'_>) -> Option<RunEnd> {
     if !looks.begin() {
         return None;
