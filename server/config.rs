@@ -12,6 +12,7 @@ use clap::{CommandFactory, FromArgMatches, Parser};
 use crate::compute::Network;
 use crate::http::{HostName, Origin, Token};
 use crate::limits::Limits;
+use crate::logging::LogFormat;
 
 /// Says whether a bouncing object can be balanced: a page and an HTTP API.
 #[derive(Debug, Clone, Parser)]
@@ -28,6 +29,10 @@ pub struct Config {
     /// Serve the page's files from this folder instead of the embedded ones, while working on them
     #[arg(long, env = "EQUIPOISE_WEB", value_name = "FOLDER")]
     pub web: Option<PathBuf>,
+
+    /// Form of the log on stderr. `RUST_LOG` sets its level, as in RUST_LOG=warn
+    #[arg(long, env = "EQUIPOISE_LOG_FORMAT", value_name = "FORMAT", value_enum, default_value = "text")]
+    pub log_format: LogFormat,
 
     /// Write a line of JSON to stderr for each request: time, id, peer, method, target, status, milliseconds
     #[arg(long, env = "EQUIPOISE_ACCESS_LOG")]

@@ -14,6 +14,7 @@ pub mod http;
 pub mod integrators;
 pub mod limits;
 pub mod live;
+pub mod logging;
 pub mod memory;
 pub mod middleware;
 pub mod router;

@@ -8,7 +8,7 @@ use clap::Parser;
 use equipoise::api::App;
 use equipoise::config::Config;
 use equipoise::limits::Limits;
-use equipoise::{BUILD, limits, router, transport};
+use equipoise::{BUILD, limits, logging, router, transport};
 use mimalloc::MiMalloc;
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
@@ -31,11 +31,13 @@ async fn main() -> ExitCode {
 }
 
 async fn run(mut config: Config) -> Result<(), String> {
+    logging::init(config.log_format)?;
     if transport::fit_open_files(&mut config.limits) {
         let Limits { connections, live_sessions, .. } = config.limits;
-        eprintln!(
-            "equipoise: the system's limit of open files allows {connections} connections and {live_sessions} live runs; raise it \
-             with ulimit -n"
+        tracing::warn!(
+            connections,
+            live_sessions,
+            "the system's limit of open files lowers the number of connections and of live runs; raise it with ulimit -n"
         );
     }
     let listener = TcpListener::bind(&config.listen).await.map_err(|error| cannot_listen(&config.listen, &error))?;

@@ -1,10 +1,9 @@
 //! Everything that surrounds the routes, in one place and in order.
 
 use std::any::Any;
-use std::io::{Write, stderr};
-use std::net::{IpAddr, SocketAddr};
+use std::net::SocketAddr;
 use std::sync::Arc;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::Instant;
 
 use axum::Router;
 use axum::body::{Body, to_bytes};
@@ -13,11 +12,11 @@ use axum::http::uri::PathAndQuery;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, Version, header};
 use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::{IntoResponse, Redirect, Response};
-use serde::Serialize;
 use tower::ServiceBuilder;
 use tower::util::option_layer;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::cors::CorsLayer;
+use tracing::Instrument;
 
 use crate::api::App;
 use crate::compute::Peer;
@@ -25,6 +24,7 @@ use crate::config::Config;
 use crate::http::problem::{MEDIA_TYPE, shortened};
 use crate::http::security::{host, site};
 use crate::http::{HostName, Origin, Problem, REQUEST_ID, RequestContext, Token, peer, transfer};
+use crate::logging::{AccessLogEntry, request_span};
 use crate::{BUILD, limits};
 
 /// Surrounds a router. The order, from the outside in:
@@ -110,14 +110,13 @@ async fn identify(State(edge): State<Arc<EdgeConfig>>, mut request: Request, nex
     let logged = edge.config.access_log.then(|| (request.method().clone(), request.uri().clone()));
     let context = RequestContext::new(request.headers(), edge.base.clone());
     let mut response = match strip_base(request.uri_mut(), &edge.base) {
-        Ok(()) => context.clone().scope(next.run(request)).await,
+        Ok(()) => context.clone().scope(next.run(request)).instrument(request_span(&context.id)).await,
         Err(elsewhere) => elsewhere.into_response(),
     };
     add_common_headers(response.headers_mut());
     response.headers_mut().insert(REQUEST_ID, context.header());
     if let Some((method, uri)) = logged {
-        let line = AccessLogEntry {
-            time: SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64(),
+        let entry = AccessLogEntry {
             id: &context.id,
             peer: peer.address(),
             method: method.as_str(),
@@ -125,24 +124,9 @@ async fn identify(State(edge): State<Arc<EdgeConfig>>, mut request: Request, nex
             status: response.status().as_u16(),
             ms: begin.elapsed().as_secs_f64() * 1e3,
         };
-        // A log that nobody takes is no reason to answer nobody.
-        let _ = writeln!(stderr().lock(), "{}", serde_json::to_string(&line).unwrap_or_default());
+        entry.log();
     }
     response
-}
-
-/// A line of the access log. Written as JSON, so that nothing a client sends can look like another line.
-#[derive(Serialize)]
-struct AccessLogEntry<'a> {
-    /// Unix time, s.
-    time: f64,
-    id: &'a str,
-    peer: IpAddr,
-    method: &'a str,
-    target: &'a str,
-    status: u16,
-    /// From the request's head to the answer's.
-    ms: f64,
 }
 
 /// A target without the secret that may be in it, however its name is written: it ends where the name does.
@@ -297,10 +281,8 @@ async fn body_text(body: Body) -> Option<String> {
 }
 
 fn panic_to_problem(_: Box<dyn Any + Send + 'static>) -> Response {
-    // The standard library has written the panic's own text to the log; which request it was stands beside it.
-    if let Some(context) = RequestContext::current() {
-        let _ = writeln!(stderr().lock(), "equipoise: request {} failed with the panic above", context.id);
-    }
+    // The panic itself is in the log already, from the thread where it happened.
+    tracing::error!("the request failed with a panic");
     Problem::internal().into_response()
 }
 

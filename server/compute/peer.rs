@@ -1,17 +1,19 @@
-//! Who asks, as far as a server without accounts can tell: the address that a request comes from.
+//! Clients as a server without accounts tells them apart: by the address that a request comes from.
 
 use std::net::{IpAddr, Ipv6Addr, SocketAddr};
 use std::str::FromStr;
 
-/// A client, or all clients behind one address. What is scarce is shared out between peers.
+use ipnet::IpNet;
+
+/// A client, or all clients behind one address. Scarce resources are shared between peers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Peer(IpAddr);
 
 impl Peer {
-    /// Who asks where nobody says: a test without a socket.
+    /// The peer of a request without a socket, as in tests.
     pub const NOBODY: Self = Self(IpAddr::V6(Ipv6Addr::UNSPECIFIED));
 
-    /// Whoever is at this address. Of version 6 that is a network of 64 bits, which one client has all of.
+    /// The peer at this address. For IPv6 it is the /64 network, since one client has all of it.
     pub fn at(address: IpAddr) -> Self {
         Self(match address.to_canonical() {
             IpAddr::V6(address) => {
@@ -22,7 +24,7 @@ impl Peer {
         })
     }
 
-    /// The address, or the first of the network.
+    /// The IPv4 address, or the first address of the IPv6 network.
     pub fn address(self) -> IpAddr {
         self.0
     }
@@ -34,22 +36,14 @@ impl From<SocketAddr> for Peer {
     }
 }
 
-/// Addresses that begin alike. Of whole addresses, not of peers: to trust one is not to trust all that share its 64 bits.
+/// A range of whole addresses. To trust one address is not to trust all peers in its /64 network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Network {
-    first: IpAddr,
-    bits: u32,
-}
+pub struct Network(IpNet);
 
 impl Network {
-    /// Tells whether this address is one of them.
+    /// Tells whether the address is in the range. An IPv4 address may be written as IPv6.
     pub fn has(self, address: IpAddr) -> bool {
-        let same = |one: u128, other: u128, width: u32| (one ^ other).checked_shr(width - self.bits).unwrap_or(0) == 0;
-        match (self.first, address.to_canonical()) {
-            (IpAddr::V4(first), IpAddr::V4(address)) => same(first.to_bits().into(), address.to_bits().into(), 32),
-            (IpAddr::V6(first), IpAddr::V6(address)) => same(first.to_bits(), address.to_bits(), 128),
-            _ => false,
-        }
+        self.0.contains(&address.to_canonical())
     }
 }
 
@@ -57,18 +51,14 @@ impl FromStr for Network {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (address, bits) = text.split_once('/').map_or((text, None), |(address, bits)| (address, Some(bits)));
         let why = || "it must be an address, or a network as in 10.244.0.0/16".to_owned();
-        let address: IpAddr = address.parse().map_err(|_| why())?;
-        let first = address.to_canonical();
-        let width = if first.is_ipv4() { 32 } else { 128 };
-        // An address of version 4 that is written as one of version 6 has two ways of counting its bits.
-        let is_mixed = address != address.to_canonical();
-        let bits = match bits {
-            None => width,
-            Some(bits) => bits.parse().ok().filter(|bits| *bits <= width && !is_mixed).ok_or_else(why)?,
-        };
-        Ok(Self { first, bits })
+        if let Ok(address) = text.parse::<IpAddr>() {
+            return Ok(Self(address.to_canonical().into()));
+        }
+        let network: IpNet = text.parse().map_err(|_| why())?;
+        // For an IPv4 address written as IPv6, the number of bits has two readings.
+        let is_mixed = network.addr() != network.addr().to_canonical();
+        if is_mixed { Err(why()) } else { Ok(Self(network)) }
     }
 }
 

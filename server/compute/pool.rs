@@ -9,6 +9,7 @@ use prometheus_client::metrics::gauge::Gauge;
 use tokio::runtime::Handle;
 use tokio::task::spawn_blocking;
 use tokio::time::timeout;
+use tracing::Span;
 
 use crate::compute::cancel::{CancelFlag, CancelOnDrop};
 use crate::compute::fair_queue::{FairQueue, Permit, QueueKey};
@@ -193,10 +194,11 @@ impl Pool {
         let waiting = CancelOnDrop(CancelFlag::default());
         let cancel = waiting.0.clone();
         let running = GaugeGuard::new(&self.running);
+        let span = Span::current();
         let task = spawn_blocking(move || {
             let _held = (held, running);
             lower_priority();
-            work(&cancel)
+            span.in_scope(|| work(&cancel))
         });
         let done = task.await;
         done.unwrap_or_else(|error| match error.try_into_panic() {

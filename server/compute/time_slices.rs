@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use tokio::runtime::Handle;
+use tracing::Span;
 
 use crate::compute::cancel::{CancelFlag, Cancelled};
 use crate::compute::fair_queue::{FairQueue, QueueKey};
@@ -57,9 +58,10 @@ impl TimeSlices {
                 order.lock().unwrap_or_else(PoisonError::into_inner).add(block, result);
             }
         };
+        let span = Span::current();
         std::thread::scope(|scope| {
             for _ in 1..self.threads.min(blocks) {
-                scope.spawn(take);
+                scope.spawn(|| span.in_scope(take));
             }
             take();
         });

@@ -9,7 +9,7 @@ mod guarded_stream;
 mod request_body;
 
 use std::convert::Infallible;
-use std::io::{self, Write};
+use std::io;
 use std::net::SocketAddr;
 use std::pin::pin;
 use std::time::Duration;
@@ -134,7 +134,7 @@ async fn accept(listener: &TcpListener) -> (TcpStream, SocketAddr) {
             Err(error) if is_of_one_connection(&error) => {}
             Err(error) => {
                 // Out of file descriptors or memory: trying again at once would only burn a core.
-                let _ = writeln!(io::stderr(), "equipoise: cannot accept a connection: {error}");
+                tracing::error!("cannot accept a connection: {error}");
                 sleep(Duration::from_millis(200)).await;
             }
         }

@@ -1,7 +1,5 @@
 //! `/metrics`: everything that the server counts, as Prometheus text.
 
-use std::io::Write;
-
 use axum::Router;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, header};
@@ -23,7 +21,7 @@ const OPEN_METRICS: &str = "application/openmetrics-text";
 
 async fn scrape(State(app): State<App>, headers: HeaderMap) -> Result<Response, Problem> {
     let mut text = app.metrics.to_open_metrics().map_err(|error| {
-        let _ = writeln!(std::io::stderr(), "equipoise: cannot write metrics: {error}");
+        tracing::error!("cannot write metrics: {error}");
         Problem::internal()
     })?;
     let media_type = if negotiate::list(&headers, &header::ACCEPT).to_ascii_lowercase().contains(OPEN_METRICS) {
