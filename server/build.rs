@@ -1,6 +1,6 @@
 //! Gives the build its id, embeds the page and turns the contract into JSON.
 //!
-//! The id is a hash of everything that can change an answer, so that equal ids mean equal answers, git or no git.
+//! The id is a hash of everything that can change an answer, so equal ids mean equal answers, with or without git.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use std::{env, fs, io};
 
 use xxhash_rust::xxh3::Xxh3;
 
-/// What can change an answer: code, dependencies, contract, page.
+/// Inputs of the answers: code, dependencies, contract, page.
 const SOURCES: [&str; 4] = ["Cargo.lock", "openapi.yaml", "server", "web"];
 
 fn main() {
@@ -28,7 +28,7 @@ fn main() {
     fs::write(out.join("openapi.json"), to_json(&contract)).expect("OUT_DIR can be written");
 }
 
-/// Adds all files at or under `path`, relative to `root` with `/`, in a fixed order. Hidden files are not ours.
+/// Adds all files at or under `path`, relative to `root` with `/`, in a fixed order. Hidden files are skipped.
 fn list(root: &Path, path: String, files: &mut Vec<String>) -> io::Result<()> {
     let place = root.join(&path);
     if place.is_file() {
@@ -57,7 +57,7 @@ fn hash(root: &Path, files: &[String]) -> String {
     format!("{:016x}", hash.digest())[..12].to_owned()
 }
 
-/// The table of the page's files: path below `web/`, content.
+/// The table of the page's files: path under `web/`, content.
 fn assets(files: &[String]) -> String {
     let mut table = String::from("pub(super) static ASSETS: &[(&str, &[u8])] = &[\n");
     for name in files.iter().filter_map(|file| file.strip_prefix("web/")) {
@@ -67,7 +67,7 @@ fn assets(files: &[String]) -> String {
     table + "];\n"
 }
 
-/// The contract as JSON, in its own order. A contract that is no YAML stops the build with the place in it.
+/// The contract as JSON, in its own order. A contract that is not YAML stops the build with the place of the error.
 fn to_json(yaml: &str) -> Vec<u8> {
     let mut json = Vec::new();
     let mut serializer = serde_json::Serializer::new(&mut json);

@@ -1,4 +1,4 @@
-//! What can be set when the server starts: the command line and its environment variables.
+//! Settings of the server: command-line flags and their environment variables.
 
 use std::fmt::{self, Display, Formatter};
 use std::net::SocketAddr;
@@ -18,15 +18,15 @@ use crate::logging::LogFormat;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "equipoise", version = crate::BUILD, next_line_help = true)]
 pub struct Config {
-    /// Where to listen; port 0 takes any that is free
+    /// Address to listen on; port 0 takes a free one
     #[arg(long, env = "EQUIPOISE_LISTEN", value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     pub listen: String,
 
-    /// Requests computed at a time [default: as many as there are cores]
+    /// Number of requests computed at a time [default: number of cores]
     #[arg(long, env = "EQUIPOISE_PERMITS", value_name = "NUMBER")]
     pub permits: Option<NonZeroUsize>,
 
-    /// Serve the page's files from this folder instead of the embedded ones, while working on them
+    /// Serve the page's files from this folder instead of the embedded ones, for work on the page
     #[arg(long, env = "EQUIPOISE_WEB", value_name = "FOLDER")]
     pub web: Option<PathBuf>,
 
@@ -38,49 +38,49 @@ pub struct Config {
     #[arg(long, env = "EQUIPOISE_ACCESS_LOG")]
     pub access_log: bool,
 
-    /// Answer nobody without this secret, but for /health. Programs send it as `Authorization: Bearer …`; a browser opens
-    /// /?token=… once. Other users of the machine can read a command line: better set the variable
+    /// Require this secret for everything but /health. Programs send it as `Authorization: Bearer …`; a browser opens /?token=…
+    /// once. Other users of the machine can read a command line, so prefer the variable
     #[arg(long, env = "EQUIPOISE_TOKEN", value_name = "TOKEN", hide_env_values = true)]
     pub token: Option<Token>,
 
-    /// Let pages of this origin ask and open live runs too. May be given again
+    /// Let pages of this origin use the API, live runs included. May be given several times
     #[arg(long, env = "EQUIPOISE_ALLOW_ORIGIN", value_name = "ORIGIN", value_delimiter = ',')]
     pub allow_origin: Vec<Origin>,
 
-    /// Answer to this name too. Without a token, and listening to this machine alone, the server answers to localhost, to
-    /// addresses and to such names, so that no page of another site can give its own name to it (DNS rebinding). Elsewhere
-    /// any name is answered to unless one is given here. May be given again
+    /// Answer to this host name too. Without a token and on localhost, the server answers only to localhost, to addresses and to
+    /// these names, so that no page of another site can use its own name for it (DNS rebinding). Otherwise it answers to every name
+    /// unless one is given here. May be given several times
     #[arg(long, env = "EQUIPOISE_ALLOW_HOST", value_name = "NAME", value_delimiter = ',')]
     pub allow_host: Vec<HostName>,
 
-    /// Let pages of any site show pictures of this server, and its panels in frames. Otherwise what costs work is refused
-    /// to pages of other sites, but for those of --allow-origin
+    /// Let pages of any site show pictures of this server, and its panels in frames. Otherwise pages of other sites get nothing
+    /// that costs work, except those of --allow-origin
     #[arg(long, env = "EQUIPOISE_ALLOW_EMBEDDING")]
     pub allow_embedding: bool,
 
-    /// The path under which a proxy shows this server, as in /rig. Requests are taken with it and without
+    /// Path under which a proxy shows this server, as in /rig. Requests may come with it or without
     #[arg(long, env = "EQUIPOISE_BASE_PATH", value_name = "PATH", default_value = "", hide_default_value = true)]
     pub base_path: BasePath,
 
-    /// Believe the proxy with this address, or every one in a network, who asks, as its `X-Forwarded-For` says at its end. Otherwise all its
-    /// clients share what one is given. May be given again
+    /// Trust `X-Forwarded-For` from this proxy address or network, as far as its last entry. Otherwise all clients of the proxy
+    /// share one client's quota. May be given several times
     #[arg(long, env = "EQUIPOISE_TRUST_PROXY", value_name = "ADDRESS[/BITS]", value_delimiter = ',')]
     pub trust_proxy: Vec<Network>,
 
-    /// The limits that can be set.
+    /// Limits of load.
     #[command(flatten)]
     pub limits: Limits,
 }
 
 impl Config {
-    /// Requests computed at a time. How many never changes what an answer says, only when.
+    /// Number of requests computed at a time. It never changes an answer.
     pub fn permits(&self) -> usize {
         self.permits.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
     }
 
-    /// The names that are answered to beside those of the machine itself; none where every name is.
+    /// Host names that are answered besides those of the machine itself; None if every name is.
     ///
-    /// With a token no list is needed: a page that gives its own name to this server has neither the token nor a cookie.
+    /// With a token no list is needed: a page that uses its own name for this server has neither the token nor a cookie.
     pub fn hosts(&self) -> Option<&[HostName]> {
         let is_open_to_pages = self.token.is_none() && self.listens_to_itself();
         (is_open_to_pages || !self.allow_host.is_empty()).then_some(&self.allow_host)
@@ -95,7 +95,7 @@ impl Config {
         address.ip().to_canonical().is_loopback()
     }
 
-    /// What is open to whom, in a sentence, to whoever starts a server that listens here.
+    /// Says who has access, in a sentence for whoever starts the server.
     pub fn openness(&self, address: SocketAddr) -> String {
         let whom = match address.ip() {
             ip if ip.is_loopback() => "programs on this machine, and whatever a proxy on it lets through".to_owned(),
@@ -114,7 +114,7 @@ impl Config {
     }
 }
 
-/// As from an empty command line in an empty environment.
+/// The defaults. The environment is not read.
 impl Default for Config {
     fn default() -> Self {
         let command = Self::command().mut_args(|arg| arg.env(Resettable::Reset));
@@ -122,12 +122,12 @@ impl Default for Config {
     }
 }
 
-/// A path that stands before all others: none, or `/` and segments.
+/// A path in front of all others: empty, or `/` and segments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BasePath(String);
 
 impl BasePath {
-    /// Its text; empty where there is none.
+    /// The path as text; it may be empty.
     pub fn as_str(&self) -> &str {
         &self.0
     }
@@ -195,7 +195,7 @@ mod tests {
         }
     }
 
-    /// Every limit that can be set has a flag, a variable, a unit and a default, all of which `--help` shows.
+    /// `--help` shows flag, variable, unit and default of every limit.
     #[test]
     fn help_shows_every_limit() {
         let help = Config::command().render_long_help().to_string();

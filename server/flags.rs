@@ -1,11 +1,11 @@
-//! Readers of the values of command-line flags, with errors that name the limits and the unit.
+//! Parsers of flags, whose errors name the range and the unit.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 use std::time::Duration;
 
-/// Reads a whole number within a range.
+/// Parses a whole number within a range.
 pub(crate) fn within<T: FromStr + PartialOrd + Display + Copy>(
     range: RangeInclusive<T>,
     unit: &'static str,
@@ -16,7 +16,7 @@ pub(crate) fn within<T: FromStr + PartialOrd + Display + Copy>(
     }
 }
 
-/// Reads a time of whole seconds.
+/// Parses a time in whole seconds.
 pub(crate) fn seconds(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<Duration, String> + Clone {
     let number = within(range, "seconds");
     move |text| number(text).map(Duration::from_secs)

@@ -1,7 +1,7 @@
-//! equipoise: the server that says whether a bouncing object can be balanced.
+//! equipoise: a server that computes whether a bouncing object can be balanced.
 //!
-//! The library is the server without its command line, so that tests can put requests to its router. The physics is
-//! the crate `equipoise-physics`.
+//! The library is the server without its command line, so that tests can send requests to its router. The physics is the crate
+//! `equipoise-physics`.
 
 pub mod api;
 pub mod charts;
@@ -21,5 +21,5 @@ pub mod router;
 pub mod runs;
 pub mod transport;
 
-/// The version and a hash of everything that can change an answer: equal builds give equal answers.
+/// The version, and a hash of everything that can change an answer: equal builds give equal answers.
 pub const BUILD: &str = env!("EQUIPOISE_BUILD");

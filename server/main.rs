@@ -1,4 +1,4 @@
-//! The `equipoise` program: reads its command line, listens, and serves until it is told to stop.
+//! The `equipoise` program: reads its command line, listens, and serves until it is stopped.
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -14,8 +14,8 @@ use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::time::{sleep, timeout};
 
-/// Under mixed load, with answers of all sizes made on many threads, the memory that the C library's allocator holds grows for
-/// as long as one cares to watch; that of this one does not. `cargo bench --bench load -- --only soak` shows it.
+/// The C library's allocator holds ever more memory under mixed load, with answers of all sizes from many threads; this one does
+/// not. `cargo bench --bench load -- --only soak` shows it.
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 
@@ -43,10 +43,10 @@ async fn run(mut config: Config) -> Result<(), String> {
     let listener = TcpListener::bind(&config.listen).await.map_err(|error| cannot_listen(&config.listen, &error))?;
     let address = listener.local_addr().map_err(|error| error.to_string())?;
     let stop = stop_signal().map_err(|error| format!("cannot listen for signals: {error}"))?;
-    // A name has become an address.
+    // The host name has become an address.
     config.listen = address.to_string();
     let openness = config.openness(address);
-    // Nobody has to read it.
+    // A write error is ignored: nobody has to read it.
     let _ = writeln!(io::stdout(), "equipoise {BUILD} serves http://{address}{}/\n{openness}", config.base_path);
 
     let app = App::new(&config);
@@ -55,7 +55,7 @@ async fn run(mut config: Config) -> Result<(), String> {
         app.close();
     };
     transport::serve(listener, router::router(app.clone()), &config.limits, stop).await;
-    // Live runs have left their connections' tasks; they know that the server closes, and say so to their clients.
+    // Live runs are tasks apart from their connections. They see the server closing, and close their clients.
     let gone = async {
         while app.metrics.live_sessions.get() > 0 {
             sleep(Duration::from_millis(10)).await;

@@ -1,13 +1,13 @@
-//! Memory that this process may have: the least of the machine's, of its control groups' and of its own resource limits.
+//! Memory of this process: the least of the machine's memory, the limits of its control groups, and its resource limits.
 //!
-//! A pure function of the texts of files and of two numbers, so that it is tested without a container.
+//! It is a pure function of the texts of files and two numbers, so that it is tested without a container.
 
 use std::fs;
 use std::path::Path;
 
 use rustix::process::{Resource, getrlimit};
 
-/// Limits of this process beside those in files.
+/// Resource limits of this process.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ResourceLimits {
     /// Address space (`RLIMIT_AS`), bytes.
@@ -16,18 +16,18 @@ pub struct ResourceLimits {
     pub data: Option<u64>,
 }
 
-/// Memory that this process may have, bytes; none where nothing says how much.
+/// Memory of this process, bytes; None if it is unknown.
 pub fn allowed() -> Option<u64> {
     let of = |resource| getrlimit(resource).current;
     let limits = ResourceLimits { address_space: of(Resource::As), data: of(Resource::Data) };
     least(|path| fs::read_to_string(path).ok(), limits)
 }
 
-/// The least of all limits that are found, bytes. `read` gives the text of a file, if there is one.
+/// The least of all limits, bytes. `read` gives the text of a file, if it exists.
 ///
-/// A control group is limited by all above it as well. A container often sees its own group as the root of the mounted tree and
-/// its path as the host sees it, so that only the root exists: every group on the path is looked for, and those that are not there
-/// are left out.
+/// A control group is also limited by all groups above it. A container often sees its own group as the root of the mounted tree,
+/// but its path as on the host, so that only the root exists. Therefore every group on the path is tried, and missing ones are
+/// skipped.
 pub fn least(read: impl Fn(&Path) -> Option<String>, limits: ResourceLimits) -> Option<u64> {
     let physical = read(Path::new("/proc/meminfo")).and_then(|text| physical(&text));
     let groups = read(Path::new("/proc/self/cgroup")).unwrap_or_default();
@@ -41,7 +41,7 @@ fn physical(text: &str) -> Option<u64> {
     kib.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// A tree of control groups that limits memory, and the place of this process in it.
+/// A tree of control groups with memory limits, and this process's place in it.
 struct Hierarchy<'a> {
     mounted: &'static str,
     /// Files of a group that may hold a limit.
@@ -50,7 +50,7 @@ struct Hierarchy<'a> {
 }
 
 impl<'a> Hierarchy<'a> {
-    /// Reads a line of `/proc/self/cgroup` (cgroups(7)): `0::/path` of version 2, `4:memory:/path` of version 1.
+    /// Parses a line of `/proc/self/cgroup` (cgroups(7)): `0::/path` of version 2, `4:memory:/path` of version 1.
     fn read(line: &'a str) -> Option<Self> {
         let (number, rest) = line.split_once(':')?;
         let (controllers, path) = rest.split_once(':')?;
@@ -61,11 +61,11 @@ impl<'a> Hierarchy<'a> {
         is_memory.then_some(Self { mounted: "/sys/fs/cgroup/memory", files: &["memory.limit_in_bytes"], path })
     }
 
-    /// The limits of its group and of all above it, bytes. `max` is none; version 1 says so by a number near 2^63, which is never
+    /// Limits of the group and of all above it, bytes. `max` means none. Version 1 has a number near 2^63 instead, which is never
     /// the least.
     fn limits(self, read: impl Fn(&Path) -> Option<String>) -> Vec<u64> {
         let relative = Path::new(self.path.trim_start_matches('/'));
-        // A group outside of what is mounted.
+        // A group outside the mounted tree.
         let relative = if relative.starts_with("..") { Path::new("") } else { relative };
         let groups = relative.ancestors().map(|group| Path::new(self.mounted).join(group));
         let files = groups.flat_map(|group| self.files.iter().map(move |file| group.join(file)));
@@ -110,9 +110,9 @@ mod tests {
             ("/sys/fs/cgroup/kubepods/pod1/server/memory.max", "536870912\n", GIB / 2),
             ("/sys/fs/cgroup/kubepods/pod1/memory.max", "1073741824\n", GIB),
             ("/sys/fs/cgroup/kubepods/memory.high", "2147483648\n", 2 * GIB),
-            // All that a container sees of it.
+            // The only one that a container sees.
             ("/sys/fs/cgroup/memory.max", "268435456\n", GIB / 4),
-            // Another's.
+            // A limit of another group.
             ("/sys/fs/cgroup/kubepods/pod2/memory.max", "1\n", 16 * GIB),
         ] {
             let files = [MACHINE, group, (file, text)];

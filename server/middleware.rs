@@ -1,4 +1,4 @@
-//! Everything that surrounds the routes, in one place and in order.
+//! All middleware, in one place and in order.
 
 use std::any::Any;
 use std::net::SocketAddr;
@@ -27,21 +27,21 @@ use crate::http::{HostName, Origin, Problem, REQUEST_ID, RequestContext, Token, 
 use crate::logging::{AccessLogEntry, request_span};
 use crate::{BUILD, limits};
 
-/// Surrounds a router. The order, from the outside in:
+/// Surrounds a router with middleware, from the outside in:
 ///
-/// 1. `identify` puts the headers on that every answer has, knows who asks and under which id, and writes the log: all that
-///    happens to a request happens within it.
-/// 2. `check_address` refuses what is not meant for this server, or is in a form that it does not know: before CORS, which would
-///    tell a page of a name that is not ours that it may ask.
-/// 3. CORS, if there are origins to allow: before the token, which a browser does not send when it asks whether it may.
-/// 4. `to_problem` makes a problem of every error that libraries answer with on their own: 405, refused upgrades … Up to here they
-///    stand around the router as a whole, because it adds `Allow` outside of the layers of its routes.
-/// 5. `authorize` lets nobody past without the token, if there is one, and no work for a page of another site.
-/// 6. `measure` knows the route's template, so it stands within; outside of panics, which are counted as well.
-/// 7. Panics become a 500.
-/// 8. `limit_url` refuses a URL before anybody reads it.
+/// 1. `identify` gives each request its id, peer and span, and each answer its common headers, and writes the access log.
+/// 2. `check_address` refuses requests for other servers or in an unsupported form. It comes before CORS, which would permit pages
+///    of a foreign name.
+/// 3. CORS, if origins are allowed. It comes before the token, which a browser does not send in a preflight.
+/// 4. `to_problem` turns errors of libraries into problems: 405, refused upgrades and others. The layers up to here surround the
+///    router as a whole, because it adds `Allow` outside the layers of its routes.
+/// 5. `authorize` refuses requests without the token, if there is one, and work for pages of other sites.
+/// 6. `measure` counts requests. It needs the route's template, so it is inside the router, and it is outside panics, to count them
+///    too.
+/// 7. A panic becomes a 500.
+/// 8. `limit_url` refuses a long URL before it is read.
 ///
-/// HEAD needs no layer: the router answers it like GET and leaves out the body. Bodies are bounded where they are read.
+/// HEAD needs no layer: the router answers it like GET without the body. Bodies are bounded where they are read.
 pub fn apply_layers(router: Router<App>, app: App) -> Router {
     let hosts = app.config.hosts().map(Into::into);
     let edge = Arc::new(EdgeConfig { base: app.base_path.clone(), config: app.config.clone(), hosts });
@@ -60,32 +60,32 @@ pub fn apply_layers(router: Router<App>, app: App) -> Router {
     Router::new().fallback_service(router.layer(within).with_state(app)).layer(around)
 }
 
-/// What is asked of a request before anything else.
+/// Settings of the outer layers.
 #[derive(Debug)]
 struct EdgeConfig {
     base: Arc<str>,
     config: Arc<Config>,
-    /// The names that are answered to; none where every name is.
+    /// Host names that are answered; None if every name is.
     hosts: Option<Vec<HostName>>,
 }
 
 impl EdgeConfig {
-    /// Who asks: the peer of the connection or, if that is a proxy to be believed, whom it names.
+    /// The client: the peer of the connection or, behind a trusted proxy, the one that the proxy names.
     fn peer(&self, request: &Request) -> Peer {
         let peer = peer(request.extensions());
-        // The whole address: a peer of IPv6 is a network.
+        // Compares the whole address: an IPv6 peer is a network.
         let from = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(from)| from.ip());
         if !from.is_some_and(|from| self.config.trust_proxy.iter().any(|proxies| proxies.has(from))) {
             return peer;
         }
-        // The last one is what the proxy itself has seen; those before it anybody can send.
+        // The last entry is the one that the proxy has seen. Anyone can send the entries before it.
         let named = request.headers().get_all("x-forwarded-for").into_iter().next_back();
         let last = named.and_then(|named| named.to_str().ok()?.rsplit(',').next()?.trim().parse().ok());
         last.map_or(peer, Peer::at)
     }
 }
 
-/// Only what this server itself serves may be loaded, and only its own pages may frame it.
+/// Only this server's own files may be loaded, and only its own pages may frame it.
 const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; base-uri 'none'; frame-ancestors 'self'; object-src 'none'";
 
 fn cors(origins: &[Origin]) -> CorsLayer {
@@ -129,21 +129,21 @@ async fn identify(State(edge): State<Arc<EdgeConfig>>, mut request: Request, nex
     response
 }
 
-/// A target without the secret that may be in it, however its name is written: it ends where the name does.
+/// The target up to a token in it, however the parameter's name is encoded.
 fn redacted(uri: &Uri) -> String {
     let target = uri.path_and_query().map_or("*", PathAndQuery::as_str);
     let end = end_of_name(target.as_bytes()).unwrap_or(target.len());
     target[..end].chars().take(limits::URL_BYTES).collect()
 }
 
-/// End of the first `token=` in a target, of which any character may be percent-encoded, in either case.
+/// End of the first `token=` in a target. Each character may be percent-encoded, in either case.
 fn end_of_name(target: &[u8]) -> Option<usize> {
     let escaped = |labels: usize| {
         let digits = target.get(labels..)?.strip_prefix(b"%")?.get(..2)?;
         let digits = Some(digits).filter(|digits| digits.iter().all(u8::is_ascii_hexdigit))?;
         u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok()
     };
-    // Each character with where it ends.
+    // Each character with its end.
     let mut characters = Vec::with_capacity(target.len());
     let mut labels = 0;
     while labels < target.len() {
@@ -159,7 +159,7 @@ fn end_of_name(target: &[u8]) -> Option<usize> {
     found.and_then(|window| Some(window.last()?.1))
 }
 
-/// Takes the base path away, where a proxy has left it on. The page there has relative addresses, which need its slash.
+/// Removes the base path, if a proxy has left it on. The page has relative addresses, which need the slash after it.
 fn strip_base(uri: &mut Uri, base: &str) -> Result<(), Redirect> {
     let path_and_query = uri.path_and_query().map_or("", PathAndQuery::as_str);
     let Some(rest) = path_and_query.strip_prefix(base).filter(|_| !base.is_empty()) else { return Ok(()) };
@@ -189,12 +189,12 @@ pub fn add_common_headers(headers: &mut HeaderMap) {
     }
 }
 
-/// Parameter by which a browser is given the token, once.
+/// Query parameter that gives a browser the token once.
 const TOKEN_PARAMETER: &str = "token";
 
 async fn check_address(State(edge): State<Arc<EdgeConfig>>, request: Request, next: Next) -> Response {
     let headers = request.headers();
-    // A test without a socket speaks no version of HTTP.
+    // A test without a socket has no HTTP version.
     let version = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|_| request.version());
     let is_named = host::check_form(version.unwrap_or(Version::HTTP_10), headers);
     let is_ours = is_named
@@ -212,8 +212,8 @@ async fn authorize(State(edge): State<Arc<EdgeConfig>>, request: Request, next: 
     }
 }
 
-/// The answer to who may not ask: without the token, or for a page of another site. A browser that brings the token is sent on
-/// with its cookie.
+/// Refuses a request without the token, or work for a page of another site. A browser that brings the token is redirected with its
+/// cookie.
 fn refusal(config: &Config, request: &Request) -> Option<Response> {
     let (origins, embedding) = (&config.allow_origin, config.allow_embedding);
     let checked = || site::check(request.method(), request.uri().path(), request.headers(), origins, embedding);
@@ -266,7 +266,7 @@ async fn to_problem(request: Request, next: Next) -> Response {
     };
     let mut response = problem.into_response();
     for (name, value) in &parts.headers {
-        // What describes the old body is gone with it.
+        // Headers of the old body are left out.
         if *name != header::CONTENT_TYPE && *name != header::CONTENT_LENGTH && *name != header::ALLOW {
             response.headers_mut().entry(name).or_insert_with(|| value.clone());
         }
@@ -274,14 +274,14 @@ async fn to_problem(request: Request, next: Next) -> Response {
     response
 }
 
-/// The text of a library's error, if it is one that can be shown.
+/// The text of a library's error, if it is short UTF-8 text.
 async fn body_text(body: Body) -> Option<String> {
     let bytes = to_bytes(body, 1024).await.ok()?;
     String::from_utf8(bytes.to_vec()).ok().filter(|text| !text.is_empty())
 }
 
 fn panic_to_problem(_: Box<dyn Any + Send + 'static>) -> Response {
-    // The panic itself is in the log already, from the thread where it happened.
+    // The panic itself is already in the log.
     tracing::error!("the request failed with a panic");
     Problem::internal().into_response()
 }
@@ -294,7 +294,7 @@ async fn limit_url(request: Request, next: Next) -> Response {
     next.run(request).await
 }
 
-/// The answer where there is no route.
+/// The answer to an unknown path.
 pub async fn not_found(uri: Uri) -> Problem {
     Problem::not_found(format!("there is nothing at {}; /docs says what there is", shortened(uri.path())))
 }

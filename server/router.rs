@@ -1,4 +1,4 @@
-//! Puts routes and middleware together: the server as one value, which tests can ask without a socket.
+//! Joins routes and middleware: the server as one value, which tests can use without a socket.
 
 use axum::Router;
 
@@ -129,7 +129,7 @@ mod tests {
         app.closing().await;
     }
 
-    /// A resource as they all are: read, price, answer.
+    /// A resource like all others: read, price, answer.
     async fn squares(State(app): State<App>, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
         const RESOURCE: Resource = Resource { name: "squares", formats: &[Format::Json, Format::Csv] };
         let mut errors = Errors::default();

@@ -1,4 +1,4 @@
-//! A flag that says nobody waits for a result any more. Long loops look at it every few milliseconds.
+//! A flag that is set when the client of some work has gone. Long loops check it every few milliseconds.
 
 use std::fmt;
 use std::sync::Arc;
@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use tokio::sync::Notify;
 
-/// Shared between the one who waits and the one who works.
+/// A flag shared by the client's side, which sets it, and the work, which checks it.
 #[derive(Debug, Clone, Default)]
 pub struct CancelFlag(Arc<Flag>);
 
@@ -17,43 +17,43 @@ struct Flag {
 }
 
 impl CancelFlag {
-    /// One that nobody will set, for work that someone waits for in any case.
+    /// A flag that is never set, for work that is wanted in any case.
     pub fn never() -> Self {
         Self::default()
     }
 
-    /// Says that nobody waits any more.
+    /// Cancels the work.
     pub fn set(&self) {
         self.0.is_set.store(true, Ordering::SeqCst);
         self.0.changed.notify_waiters();
     }
 
-    /// Whether nobody waits any more. Costs a load; still, in a loop of nanoseconds look every thousand turns.
+    /// Tells whether the work is cancelled. Costs one load; in a loop of nanoseconds check it every thousand rounds.
     pub fn is_set(&self) -> bool {
         self.0.is_set.load(Ordering::Relaxed)
     }
 
-    /// `is_set` as an error, for `?`.
+    /// [`CancelFlag::is_set`] as an error, for `?`.
     pub fn check(&self) -> Result<(), Cancelled> {
         if self.is_set() { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// The flag itself, for code that knows only the standard library.
+    /// The flag as an atomic, for code that knows only the standard library.
     pub fn flag(&self) -> &AtomicBool {
         &self.0.is_set
     }
 
-    /// Waits until it is set.
+    /// Waits until the flag is set.
     pub(crate) async fn wait(&self) {
         let changed = self.0.changed.notified();
-        // Set before the wait began, or it wakes the wait: `notified` counts from its making on.
+        // `notified` counts from its creation on, so a flag set after this check wakes the wait.
         if !self.0.is_set.load(Ordering::SeqCst) {
             changed.await;
         }
     }
 }
 
-/// Sets a flag when it is dropped: held by whoever waits.
+/// Sets a flag when it is dropped. The client's side holds it.
 #[derive(Debug)]
 pub(crate) struct CancelOnDrop(pub(crate) CancelFlag);
 
@@ -63,7 +63,7 @@ impl Drop for CancelOnDrop {
     }
 }
 
-/// Work was given up because nobody waits for it.
+/// The work was cancelled because its client has gone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cancelled;
 

@@ -1,4 +1,4 @@
-//! A line in which everybody who waits is served in turns, whatever the number of those that one client has put into it.
+//! A queue for permits that serves its keys in turns, however many entries one of them has.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -7,28 +7,28 @@ use tokio::sync::oneshot;
 
 use crate::compute::peer::Peer;
 
-/// Permits, and those who wait for one.
+/// A number of permits and the queue for them.
 #[derive(Debug)]
 pub(crate) struct FairQueue(Mutex<QueueState>);
 
 #[derive(Debug)]
 struct QueueState {
-    /// More than none only where nobody waits.
+    /// Free permits. Not zero only while nobody waits.
     free: usize,
-    /// Who waits, the next at the front.
+    /// Waiting entries by key; the next key is at the front.
     keys: VecDeque<(QueueKey, VecDeque<oneshot::Sender<Permit>>)>,
 }
 
-/// What is served in the order in which it came, and in turns with others: a peer's requests, and the blocks of its long work.
+/// Entries of one key are served in their order; different keys are served in turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum QueueKey {
-    /// Requests.
+    /// Requests of a peer.
     Short(Peer),
-    /// Blocks of long work.
+    /// Blocks of long work of a peer.
     Long(Peer),
 }
 
-/// The right to compute; the next one's when dropped.
+/// The right to compute. When it is dropped, the next entry gets it.
 #[derive(Debug)]
 pub(crate) struct Permit(Option<Arc<FairQueue>>);
 
@@ -37,14 +37,14 @@ impl FairQueue {
         Arc::new(Self(Mutex::new(QueueState { free: permits, keys: VecDeque::new() })))
     }
 
-    /// A permit, if one is free.
+    /// Takes a permit if one is free.
     pub(crate) fn try_acquire(self: &Arc<Self>) -> Option<Permit> {
         let mut state = self.state();
         state.free = state.free.checked_sub(1)?;
         Some(Permit(Some(self.clone())))
     }
 
-    /// A permit when it is the turn of `flow`. Whoever drops the future has left the line.
+    /// Waits for a permit. Dropping the future leaves the queue.
     pub(crate) async fn acquire(self: &Arc<Self>, key: QueueKey) -> Permit {
         let receiver = {
             let mut state = self.state();
@@ -59,26 +59,26 @@ impl FairQueue {
         receiver.await.expect("senders are dropped by their receivers alone")
     }
 
-    /// The same for who is about to give a permit back in the midst of its work: it waits from now on, before all else of its
-    /// flow, so that a peer's work is ended in the order in which it was begun.
+    /// Queues work that is about to give its permit back in the middle: it goes before all other entries of its key, so that the
+    /// work of a peer ends in the order in which it began.
     pub(crate) fn requeue(self: &Arc<Self>, key: QueueKey) -> impl Future<Output = Permit> + use<> {
         let (sender, receiver) = oneshot::channel();
         self.state().waiting(key).push_front(sender);
         async { receiver.await.expect("senders are dropped by their receivers alone") }
     }
 
-    /// Tells whether another than `flow` waits.
+    /// Tells whether entries of another key wait.
     pub(crate) fn has_others_waiting(&self, key: QueueKey) -> bool {
         self.state().keys.iter().any(|(other, _)| *other != key)
     }
 
-    /// Gives a permit that somebody had to the next, if anybody waits.
+    /// Gives a permit to the next entry, if there is one.
     fn hand_over(self: &Arc<Self>) {
         loop {
             let Some(next) = self.state().next() else { return };
             match next.send(Permit(Some(self.clone()))) {
                 Ok(()) => return,
-                // Gone in between; the permit is still to be given.
+                // The receiver has gone in the meantime; the permit is still to be given.
                 Err(mut permit) => drop(permit.0.take()),
             }
         }
@@ -90,7 +90,7 @@ impl FairQueue {
 }
 
 impl QueueState {
-    /// Those of a flow who wait.
+    /// Waiting entries of a key.
     fn waiting(&mut self, key: QueueKey) -> &mut VecDeque<oneshot::Sender<Permit>> {
         let place = self.keys.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
             self.keys.push_back((key, VecDeque::new()));
@@ -99,7 +99,7 @@ impl QueueState {
         &mut self.keys[place].1
     }
 
-    /// Who is next. If nobody is, one more permit is free.
+    /// Takes the next entry. If there is none, a permit becomes free.
     fn next(&mut self) -> Option<oneshot::Sender<Permit>> {
         while let Some((key, mut waiting)) = self.keys.pop_front() {
             let next = std::iter::from_fn(|| waiting.pop_front()).find(|next| !next.is_closed());
@@ -145,7 +145,7 @@ mod tests {
         let mut order = Vec::new();
         while !waiting.is_empty() {
             let next = waiting.iter_mut().position(|(_, permit)| permit.now_or_never().is_some());
-            // The permit is dropped at once, and so passed on.
+            // The permit is dropped at once and so handed over.
             order.push(waiting.remove(next.expect("somebody's turn")).0);
         }
         assert_eq!(order, [0, 1, 2, 0, 2, 0, 0]);
@@ -162,7 +162,7 @@ mod tests {
         assert!((&mut own).now_or_never().is_none() && !queue.has_others_waiting(keys[0]));
         let mut other = Box::pin(queue.acquire(keys[1]));
         assert!((&mut other).now_or_never().is_none() && queue.has_others_waiting(keys[0]));
-        // Its flow is the next in any case, and then the other's.
+        // The next turn is of its own key, and the one after it of the other key.
         let mut again = Box::pin(queue.requeue(keys[0]));
         drop(held.take());
         held = (&mut again).now_or_never();
@@ -188,7 +188,7 @@ mod tests {
         assert!([&mut gone, &mut given, &mut last].into_iter().all(|permit| permit.now_or_never().is_none()));
         drop(gone);
         drop(only);
-        // It has its permit, and leaves without looking.
+        // It has got its permit, and leaves without taking it.
         drop(given);
         assert!(last.now_or_never().is_some());
         assert!(queue.try_acquire().is_some());

@@ -1,6 +1,6 @@
-//! The gate to the async threads: one peer's work stands on at most half of them at a time, so that they answer others.
+//! Slots for work on the async threads. One peer has at most half of them at a time, so that the threads keep answering others.
 //!
-//! Work that waits here is not refused, and waits in no queue that others wait in.
+//! Work that waits for a slot is not refused, and does not wait behind other peers.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -10,38 +10,38 @@ use tokio::task::yield_now;
 use crate::compute::fair_queue::{FairQueue, Permit, QueueKey};
 use crate::compute::peer::Peer;
 
-/// Who works on the async threads. Clones share it.
+/// Slots on the async threads. Clones share them.
 #[derive(Debug, Clone)]
 pub(crate) struct InlineSlots(Arc<SlotQueues>);
 
 #[derive(Debug)]
 struct SlotQueues {
-    /// How many works of one peer there may be at a time.
+    /// Slots of one peer.
     most: usize,
-    /// A line for each peer that has some, or waits.
+    /// The queue of each peer that has a slot or waits for one.
     queues: Mutex<BTreeMap<Peer, Weak<FairQueue>>>,
 }
 
-/// The right to work on an async thread, up to the next await.
+/// The right to compute on an async thread up to the next await.
 #[derive(Debug)]
 pub struct InlineSlot {
     _permit: Permit,
 }
 
 impl InlineSlots {
-    /// A gate to so many threads.
+    /// Slots on so many threads.
     pub(crate) fn new(threads: usize) -> Self {
         Self(Arc::new(SlotQueues { most: threads.div_ceil(2), queues: Mutex::default() }))
     }
 
-    /// A slot for `peer`, when it is free.
+    /// Waits for a slot for `peer`.
     pub(crate) async fn acquire(&self, peer: Peer) -> InlineSlot {
         let queue = self.queue(peer);
         if let Some(permit) = queue.try_acquire() {
             return InlineSlot { _permit: permit };
         }
         let permit = queue.acquire(QueueKey::Short(peer)).await;
-        // With one thread for all, others are looked at in between.
+        // With a single thread, let other tasks run in between.
         yield_now().await;
         InlineSlot { _permit: permit }
     }

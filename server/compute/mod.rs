@@ -1,6 +1,6 @@
-//! Does the work of requests: prices it, admits it, runs it on threads and stops it when nobody waits any more.
+//! Runs the work of requests: prices it, admits it, computes it on worker threads, and stops it when its client has gone.
 //!
-//! No HTTP and no physics here: work is a closure with a price, and a refusal is a value.
+//! This folder knows neither HTTP nor physics: work is a closure with a price, and a refusal is a value.
 
 mod fair_queue;
 mod quota;
@@ -20,5 +20,5 @@ pub use cancel::{CancelFlag, Cancelled};
 pub use inline_slots::InlineSlot;
 pub use peer::{Network, Peer};
 pub use pool::{GaugeGuard, HeldBytes, Overloaded, Pool};
-pub use price::{Limit, OverBudget, Price};
+pub use price::{OverBudget, Price};
 pub use time_slice::TimeSlice;

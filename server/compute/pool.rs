@@ -1,5 +1,5 @@
-//! Runs work beside the async threads, as much at a time as there are cores, with a short queue and a no beyond it. Work that is
-//! hardly worth the way there is done on them, for a short time.
+//! Runs CPU-bound work off the async threads: at most one job per core and a bounded queue; refuses work beyond that. Short work
+//! runs on the async threads, for a bounded time.
 
 use std::fmt;
 use std::sync::Arc;
@@ -25,32 +25,32 @@ use crate::limits::Limits;
 /// Admits work and runs it. Cheap to clone; clones share their permits.
 #[derive(Debug, Clone)]
 pub struct Pool {
-    /// Places to run or to wait in.
+    /// Quota of jobs that run or wait.
     admission: FairQuota,
     /// Permits to run.
     queue: Arc<FairQueue>,
     /// Slots on the async threads.
     inline: InlineSlots,
-    /// Bytes of results that are still to be taken.
+    /// Quota of bytes of unsent answers.
     results: FairQuota,
     count: usize,
     queue_time: Duration,
-    /// Whose work it is.
+    /// The client that the work is for.
     peer: Peer,
     running: Gauge,
     queued: Gauge,
 }
 
-/// Work that was not done because there is too much of it.
+/// Work was refused because of overload.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Overloaded {
-    /// No place to wait in.
+    /// The queue is full.
     QueueFull(QuotaExceeded),
-    /// Too many bytes of earlier results are still to be taken.
+    /// The client has too many unread answers.
     UnreadAnswers(QuotaExceeded),
-    /// A place, but no turn in good time.
+    /// No permit became free in time.
     QueueTimeout {
-        /// Seconds it waited.
+        /// Time in the queue, s.
         waited_s: u64,
     },
 }
@@ -79,7 +79,7 @@ impl fmt::Display for Overloaded {
 impl std::error::Error for Overloaded {}
 
 impl Pool {
-    /// A pool that does `permits` pieces of work at a time.
+    /// A pool that runs `permits` jobs at a time.
     pub fn new(permits: usize, limits: &Limits) -> Self {
         Self {
             admission: FairQuota::new(permits * (1 + limits.queue)),
@@ -94,29 +94,29 @@ impl Pool {
         }
     }
 
-    /// The same pool for the work of this peer.
+    /// The same pool, for the work of this peer.
     pub fn for_peer(&self, peer: Peer) -> Self {
         Self { peer, ..self.clone() }
     }
 
-    /// A result of work, which counts as memory of the peer's until it is dropped.
+    /// Accounts an answer to the peer until it is dropped.
     pub fn hold(&self, result: Vec<u8>) -> HeldBytes {
         HeldBytes { _reservation: self.results.charge(self.peer, result.len()), result }
     }
 
-    /// How much runs at the moment.
+    /// Number of running jobs.
     pub fn running(&self) -> &Gauge {
         &self.running
     }
 
-    /// How much waits at the moment.
+    /// Number of waiting jobs.
     pub fn queued(&self) -> &Gauge {
         &self.queued
     }
 
-    /// Does `work`: at once if it is cheap, else on another thread when it is its turn. Work that is cheap by its price and not
-    /// by the clock is begun anew on another thread. If the future is dropped, the flag that `work` is given is set, and work
-    /// that waits is never begun. A panic in `work` goes on here.
+    /// Runs `work`: at once on this thread if its price is low, else on a worker thread. Work that takes longer than its price says
+    /// starts again on a worker thread. Dropping the future cancels the work, or removes it from the queue. A panic in `work` is
+    /// resumed here.
     pub async fn run<T, E>(
         &self,
         price: Price,
@@ -134,7 +134,7 @@ impl Pool {
         self.run_on_worker(work).await
     }
 
-    /// Does `work` on this thread, when one more work of the peer's may be; none where it takes too long.
+    /// Runs `work` on this thread as soon as the peer has a slot. Returns None if it takes too long.
     pub async fn run_inline<T>(&self, work: impl FnOnce(&TimeSlice) -> T) -> Option<T> {
         let _slot = self.inline_slot().await;
         let _running = GaugeGuard::new(&self.running);
@@ -143,12 +143,12 @@ impl Pool {
         (!slice.overran()).then_some(result)
     }
 
-    /// The right to work on this thread, which ends with the next await.
+    /// Waits for the right to work on this thread, up to the next await.
     pub async fn inline_slot(&self) -> InlineSlot {
         self.inline.acquire(self.peer).await
     }
 
-    /// Does `work` on another thread when it is its turn, which ends and comes again while it goes on. Otherwise as `run`.
+    /// Runs `work` on a worker thread, in time slices. Cancellation and panics are as in [`Pool::run`].
     pub async fn run_on_worker<T, E>(
         &self,
         work: impl FnOnce(&TimeSlice) -> Result<T, E> + Send + 'static,
@@ -159,13 +159,13 @@ impl Pool {
     {
         let (reservation, permit) = self.admit().await?;
         let (queue, key, runtime) = (self.queue.clone(), QueueKey::Short(self.peer), Handle::current());
-        // The permit goes along: it is free again when the work has ended, not when its result is no longer wanted.
+        // The permit goes to the worker: it becomes free when the work ends, not when the future is dropped.
         let work = move |cancel: &CancelFlag| work(&TimeSlice::permitted(cancel.clone(), permit, queue, key, runtime));
         self.spawn_worker(reservation, work).await
     }
 
-    /// Does long `work` on another thread when it is its turn. It computes in turns only, on as many threads as there are
-    /// permits, and keeps no more than its place in between. Otherwise as `run`.
+    /// Runs long `work` on a worker thread. It computes in time slices, on as many threads as there are permits; between two slices
+    /// it holds no permit. Cancellation and panics are as in [`Pool::run`].
     pub async fn run_in_slices<T, E>(
         &self,
         work: impl FnOnce(&TimeSlices) -> Result<T, E> + Send + 'static,
@@ -181,7 +181,7 @@ impl Pool {
         self.spawn_worker(reservation, work).await
     }
 
-    /// Does `work` on another thread, which holds on to `held` until it has ended.
+    /// Runs `work` on a worker thread, which keeps `held` until it ends.
     async fn spawn_worker<T, E>(
         &self,
         held: impl Send + 'static,
@@ -221,7 +221,7 @@ impl Pool {
     }
 }
 
-/// A result that is still to be taken.
+/// Bytes of an unsent answer, accounted to its client.
 #[derive(Debug)]
 pub struct HeldBytes {
     result: Vec<u8>,
@@ -234,25 +234,25 @@ impl AsRef<[u8]> for HeldBytes {
     }
 }
 
-/// Lets this thread, and those that it starts, stand back where more threads than there are cores want one: what takes
-/// microseconds is answered first. Linux has that for single threads.
+/// Lowers the priority of this thread and of those that it starts, so that short requests are answered first when there are more
+/// threads than cores. Only Linux has priorities of threads.
 fn lower_priority() {
     #[cfg(target_os = "linux")]
     {
         thread_local!(static STANDS: std::cell::Cell<bool> = const { std::cell::Cell::new(false) });
         if !STANDS.replace(true) {
-            // Where it may not, it is as fast and only others are later.
+            // If it is not permitted, only other requests get slower.
             let _ = rustix::process::nice(limits::COMPUTE_NICENESS);
         }
     }
 }
 
-/// Counts one in a gauge for as long as it lives.
+/// Counts one in a gauge while it lives.
 #[derive(Debug)]
 pub struct GaugeGuard(Gauge);
 
 impl GaugeGuard {
-    /// One more.
+    /// Adds one to the gauge.
     pub fn new(gauge: &Gauge) -> Self {
         gauge.inc();
         Self(gauge.clone())
@@ -271,7 +271,7 @@ mod tests {
     use std::sync::mpsc;
     use std::time::{Duration, Instant};
 
-    /// Places of which one peer gets half: one to run in and eight to wait in.
+    /// Queue of a pool, of which one peer gets half: one job runs and eight wait.
     const QUEUE: usize = 8;
 
     fn dear() -> Price {
@@ -305,7 +305,7 @@ mod tests {
         assert_eq!((pool.running().get(), pool.queued().get()), (0, 0));
     }
 
-    /// Two endless works of one peer, each of which says when it computes, and a third of another peer's.
+    /// Two endless jobs of one peer, each of which reports its start, and a third of another peer.
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
     async fn a_turn_ends_in_the_midst_of_work() {
         let pool = Pool::new(1, &Limits::default());
@@ -321,12 +321,12 @@ mod tests {
         };
         let (first, begun) = endless(one.clone());
         begun.await.unwrap();
-        // Of the same peer: it waits for the first, which does not end.
+        // The second job of the same peer waits for the first, which does not end.
         let (second, mut begun) = endless(one);
         let done = other.run_on_worker(|slice| Ok::<_, Overloaded>(slice.should_continue()));
         assert_eq!(timeout(Duration::from_secs(5), done).await.expect("a turn"), Ok(true));
         assert!(begun.try_recv().is_err());
-        // Whoever goes away in the midst of its work or between two turns frees the permit.
+        // Cancelling a job in the middle of its work or between two slices frees the permit.
         first.abort();
         timeout(Duration::from_secs(5), begun).await.expect("a turn").unwrap();
         second.abort();
@@ -350,7 +350,7 @@ mod tests {
         assert!(timeout(Duration::from_millis(20), work).await.is_err());
         let dropped = Instant::now();
         let ended = end.recv_timeout(Duration::from_secs(5)).expect("the work should have been cancelled");
-        // Some ms on a machine that is not busy; the work would never end.
+        // It takes some ms on an idle machine; the work itself would never end.
         assert!(ended.saturating_duration_since(dropped) < Duration::from_secs(1));
         assert_eq!(pool.run(dear(), |_| Ok::<_, Overloaded>(7)).await, Ok(7));
     }
@@ -375,7 +375,7 @@ mod tests {
         assert_eq!(pool.running().get(), 1);
         let refused = pool.run(dear(), |_| Ok::<_, Overloaded>(())).await;
         assert_eq!(refused, Err(Overloaded::QueueFull(QuotaExceeded { held: 1 + QUEUE, free: QUEUE })));
-        // Another's request still has a place.
+        // A request of another peer still has a place.
         let other = tokio::spawn({
             let pool = pool.for_peer(Peer::at([192, 0, 2, 1].into()));
             async move { pool.run(dear(), |_| Ok::<_, Overloaded>(())).await }

@@ -1,6 +1,8 @@
-//! What work costs, known before it is done, and the budget it has to fit in.
+//! Prices: the cost of work, known before it is done and checked against a limit.
 
 use std::fmt;
+
+use crate::limits::Limit;
 
 /// The cost of one piece of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -8,57 +10,52 @@ pub struct Price {
     bounces: u64,
 }
 
-/// A budget, with the name and the unit that its error gives.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Limit {
-    /// What is limited: `work of this request`.
-    pub name: &'static str,
-    /// How much there may be.
-    pub most: u64,
-    /// Of what: `bounces`.
-    pub unit: &'static str,
-}
-
 impl Limit {
-    /// Refuses an `amount` beyond the limit.
+    /// Checks an amount.
+    ///
+    /// # Errors
+    /// The amount is over the limit.
     pub fn admit(&self, amount: u64) -> Result<(), OverBudget> {
         if amount <= self.most { Ok(()) } else { Err(OverBudget { amount, limit: *self }) }
     }
 }
 
 impl Price {
-    /// Work of so many bounces of the plain rod, the unit of all prices. Dearer ones are multiples of it.
+    /// Price of so many bounces of the plain rod, the unit of all prices. Other bounces cost a multiple of it.
     pub fn bounces(bounces: u64) -> Self {
         Self { bounces }
     }
 
-    /// The same work so many times. An absurd product is over any budget, not a small number again.
+    /// Price of the same work `factor` times. It saturates, so that an overflow passes every limit.
     pub fn times(self, factor: u64) -> Self {
         Self { bounces: self.bounces.saturating_mul(factor) }
     }
 
-    /// Both pieces of work.
+    /// Sum of two prices. It saturates too.
     pub fn and(self, other: Self) -> Self {
         Self { bounces: self.bounces.saturating_add(other.bounces) }
     }
 
-    /// In bounces of the plain rod.
+    /// The price in bounces of the plain rod.
     pub fn as_bounces(self) -> u64 {
         self.bounces
     }
 
-    /// Itself, if it is within the budget.
+    /// Returns the price if it is within the limit.
+    ///
+    /// # Errors
+    /// The price is over the limit.
     pub fn within(self, limit: &Limit) -> Result<Self, OverBudget> {
         limit.admit(self.bounces).map(|()| self)
     }
 }
 
-/// Work that is refused because of its price.
+/// An amount over its limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OverBudget {
-    /// What it would cost.
+    /// The amount.
     pub amount: u64,
-    /// What it may cost.
+    /// The limit.
     pub limit: Limit,
 }
 

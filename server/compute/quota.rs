@@ -1,14 +1,14 @@
-//! Places of which nobody can take so many that none is left for others.
+//! A quota that no peer can use up.
 //!
-//! One more is given to whoever has fewer than are free (the dynamic threshold of Choudhury and Hahne, 1998): a peer alone gets
-//! half of all, two get a third each, and one more always finds a place.
+//! A peer gets one more unit as long as it has fewer than are free (the dynamic threshold of Choudhury and Hahne, 1998): a single
+//! peer gets half, two peers get a third each, and there is always a unit for one more.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::compute::peer::Peer;
 
-/// A number of places.
+/// A number of units, shared between peers.
 #[derive(Debug, Clone)]
 pub struct FairQuota(Arc<Usage>);
 
@@ -18,7 +18,7 @@ struct Usage {
     held: Mutex<BTreeMap<Peer, usize>>,
 }
 
-/// A place, or several; free again when it is dropped.
+/// Units that a peer has reserved. They are free again when this is dropped.
 #[derive(Debug)]
 pub struct Reservation {
     quota: FairQuota,
@@ -26,25 +26,25 @@ pub struct Reservation {
     units: usize,
 }
 
-/// There is no place for a peer that has its share.
+/// The peer has as many units as are free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct QuotaExceeded {
-    /// How many it has.
+    /// Units of the peer.
     pub held: usize,
-    /// How many are left for others.
+    /// Free units.
     pub free: usize,
 }
 
 impl FairQuota {
-    /// So many places.
+    /// A quota of `most` units.
     pub fn new(most: usize) -> Self {
         Self(Arc::new(Usage { most, held: Mutex::default() }))
     }
 
-    /// One of them, for `peer`.
+    /// Reserves a unit for `peer`.
     ///
     /// # Errors
-    /// Where it has as many as are left.
+    /// The peer has as many units as are free.
     pub fn try_reserve(&self, peer: Peer) -> Result<Reservation, QuotaExceeded> {
         let mut held = self.held();
         self.room(&held, peer)?;
@@ -52,15 +52,15 @@ impl FairQuota {
         Ok(Reservation { quota: self.clone(), peer, units: 1 })
     }
 
-    /// Whether `peer` would get one.
+    /// Checks whether `peer` would get a unit.
     ///
     /// # Errors
-    /// Where it has as many as are left.
+    /// The peer has as many units as are free.
     pub fn check(&self, peer: Peer) -> Result<(), QuotaExceeded> {
         self.room(&self.held(), peer)
     }
 
-    /// So many places for `peer`, be they there or not: what is held is held, and counts.
+    /// Reserves units for `peer`, also beyond the quota. They count all the same.
     pub fn charge(&self, peer: Peer, units: usize) -> Reservation {
         *self.held().entry(peer).or_default() += units;
         Reservation { quota: self.clone(), peer, units }

@@ -1,44 +1,44 @@
-//! Times work by the clock: many short looks at several pieces of work in turns, so that what else the machine does falls on all of them
+//! Measures the time of several pieces of work: many short samples in turns, so that other load on the machine falls on all of them
 //! alike, and the median of each.
 //!
-//! What is measured differs from one time to the next; nothing but `precision` may ask for it.
+//! The result differs from one measurement to the next; only `precision` may use it.
 
 use std::time::{Duration, Instant};
 
 use crate::compute::{CancelFlag, Cancelled, TimeSlice};
 
-/// What was measured of one piece of work.
+/// The measured time of one piece of work.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
-    /// Seconds that doing it once takes: quartile, median, quartile of all looks.
+    /// Time of one execution, s: quartile, median, quartile of all samples.
     pub quartiles_s: [f64; 3],
-    /// How many looks there were.
+    /// Number of samples.
     pub repeats: usize,
 }
 
-/// How long to measure.
+/// Bounds of a measurement.
 #[derive(Debug, Clone, Copy)]
 pub struct TimingBudget {
-    /// Time for each piece of work; one that takes long has three looks or three times this, whichever is less.
+    /// Time for each piece of work. Long work gets three samples or three times this time, whichever is less.
     pub time: Duration,
-    /// Least time of one look: work that is shorter is done several times in it, since the clock has a grain.
+    /// Least time of one sample. Shorter work is repeated within it, because of the resolution of the clock.
     pub sample: Duration,
-    /// Most looks at one piece of work.
+    /// Most samples of one piece of work.
     pub repeats: usize,
 }
 
-/// A piece of work; it may give up when it is cancelled.
+/// A piece of work to measure. It may return early when it is cancelled.
 pub type TimedWork<'a> = Box<dyn FnMut(&CancelFlag) + 'a>;
 
 struct TimedSeries<'w, 'a> {
     work: &'w mut TimedWork<'a>,
-    /// How often it is done in one look.
+    /// Executions in one sample.
     times: u32,
     spent: Duration,
     samples_s: Vec<f64>,
 }
 
-/// Times all pieces of work in turns, and says of each when it has been `timed`. Others have their turn between two looks.
+/// Measures all pieces of work in turns, and calls `timed` for each that is done. Other jobs may run between two samples.
 pub fn time(
     works: &mut [TimedWork<'_>],
     budget: TimingBudget,
@@ -55,7 +55,7 @@ pub fn time(
         let first = sample(work, 1, slice)?;
         let times = (budget.sample.as_secs_f64() / first.as_secs_f64().max(1e-9)).ceil().clamp(1.0, 1e6) as u32;
         let mut series = TimedSeries { work, times, spent: first, samples_s: Vec::new() };
-        // The first look finds caches cold, which long work does not feel.
+        // The first sample finds cold caches, which does not matter for long work.
         if times == 1 {
             series.samples_s.push(first.as_secs_f64());
         }
@@ -88,7 +88,7 @@ fn sample(work: &mut TimedWork<'_>, times: u32, slice: &TimeSlice) -> Result<Dur
 
 fn timing(mut samples_s: Vec<f64>) -> Timing {
     samples_s.sort_by(f64::total_cmp);
-    // Of an even number the lower one in the middle: what disturbs a look makes it longer.
+    // For an even number, the lower of the two in the middle: disturbances only make samples longer.
     let at = |share: f64| samples_s[((samples_s.len() - 1) as f64 * share).floor() as usize];
     Timing { quartiles_s: [at(0.25), at(0.5), at(0.75)], repeats: samples_s.len() }
 }

@@ -1,8 +1,7 @@
-//! The right to compute for a while, which work asks whether to go on.
+//! Time slices: the right of work to compute for a while.
 //!
-//! A turn ends by the clock, in the midst of whatever is computed: who holds a permit passes it on to the next and waits for
-//! another. So others wait for a turn and not for the work, whatever a piece of it turns out to take. The clock decides when
-//! work is done and never what comes out of it.
+//! A slice ends by the clock, in the middle of the work: the work passes its permit on and waits for another. So other requests
+//! wait for a slice, not for the whole work. The clock decides when work is done, and never its result.
 
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
@@ -14,7 +13,7 @@ use crate::compute::cancel::{CancelFlag, Cancelled};
 use crate::compute::fair_queue::{FairQueue, Permit, QueueKey};
 use crate::limits;
 
-/// A turn to compute. Work asks it every millisecond or so whether to go on.
+/// A time slice. Work asks it about every millisecond whether to continue.
 #[derive(Debug)]
 pub struct TimeSlice {
     cancel: CancelFlag,
@@ -22,19 +21,19 @@ pub struct TimeSlice {
     placement: Placement,
 }
 
-/// The place at which a turn is taken.
+/// The thread and the permit of a time slice.
 #[derive(Debug)]
 enum Placement {
-    /// A thread that nobody else wants.
+    /// A thread without a permit.
     Dedicated,
-    /// On an async thread, for a short time.
+    /// An async thread, for a short time.
     Inline {
-        /// True if that was too short.
+        /// True if the time was too short.
         overran: Cell<bool>,
     },
-    /// Beside them, with a permit.
+    /// A worker thread with a permit.
     Permitted {
-        /// None only after the work was cancelled.
+        /// None only after cancellation.
         permit: RefCell<Option<Permit>>,
         queue: Arc<FairQueue>,
         key: QueueKey,
@@ -43,7 +42,7 @@ enum Placement {
 }
 
 impl TimeSlice {
-    /// A turn without end, for work that someone waits for in any case.
+    /// A slice without end, for work that is wanted in any case.
     pub fn unbounded() -> Self {
         Self::new(CancelFlag::never(), Placement::Dedicated)
     }
@@ -52,7 +51,7 @@ impl TimeSlice {
         Self::new(CancelFlag::never(), Placement::Inline { overran: Cell::new(false) })
     }
 
-    /// A turn with a permit that `flow` got in `line`.
+    /// A slice with a permit that was acquired under `key`.
     pub(crate) fn permitted(
         cancel: CancelFlag,
         permit: Permit,
@@ -67,8 +66,8 @@ impl TimeSlice {
         Self { cancel, began: Cell::new(Instant::now()), placement }
     }
 
-    /// Tells whether to go on: not where nobody waits for the result any more. Passes the permit on where it is time to, and then
-    /// comes back with the next one. Costs a look at the clock; in a loop of nanoseconds ask every hundred rounds.
+    /// Tells whether to continue; false after cancellation. At the end of a slice it passes the permit on and returns with the next
+    /// one. Costs a look at the clock: in a loop of nanoseconds call it every hundred rounds.
     pub fn should_continue(&self) -> bool {
         if self.cancel.is_set() {
             return false;
@@ -84,7 +83,7 @@ impl TimeSlice {
                     return true;
                 }
                 if queue.has_others_waiting(*key) {
-                    // Back in the line before the permit is passed on, so that the order of the line is kept.
+                    // Queued again before the permit is given back, so that the order of the queue is kept.
                     let next = queue.requeue(*key);
                     permit.take();
                     let next = runtime.block_on(async {
@@ -108,17 +107,17 @@ impl TimeSlice {
     /// [`TimeSlice::should_continue`] as an error, for `?`.
     ///
     /// # Errors
-    /// [`Cancelled`] once nobody waits for the result.
+    /// [`Cancelled`] once the client has gone.
     pub fn check(&self) -> Result<(), Cancelled> {
         if self.should_continue() { Ok(()) } else { Err(Cancelled) }
     }
 
-    /// The flag that says whether anybody still waits, for work that is not to be interrupted.
+    /// The cancellation flag, for work that must not be interrupted.
     pub fn cancel(&self) -> &CancelFlag {
         &self.cancel
     }
 
-    /// Tells whether an inline turn was too short for the work.
+    /// Tells whether the time of an inline slice was too short.
     pub(crate) fn overran(&self) -> bool {
         matches!(&self.placement, Placement::Inline { overran } if overran.get())
     }

@@ -1,5 +1,5 @@
-//! Long work in turns: cut into blocks of a few milliseconds, each of which waits for its own permit, so that requests
-//! beside it wait for a block and not for the whole. A block that takes longer passes its permit on in between.
+//! Long work in blocks of a few milliseconds. Each block waits for its own permit, so that other requests wait for one block, not
+//! for the whole work. A longer block passes its permit on in between.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -13,12 +13,12 @@ use crate::compute::fair_queue::{FairQueue, QueueKey};
 use crate::compute::peer::Peer;
 use crate::compute::time_slice::TimeSlice;
 
-/// What one piece of long work gets its turns from.
+/// The time slices of one piece of long work.
 #[derive(Debug)]
 pub struct TimeSlices {
     pub(crate) cancel: CancelFlag,
-    /// Permits of the pool, in which the blocks of one peer's long work wait apart from its requests: whatever the number of
-    /// blocks, a request finds at most one of each peer's before it.
+    /// The pool's permits. Blocks of long work have a key of their own: a request waits for at most one block of each peer,
+    /// whatever the number of blocks.
     pub(crate) queue: Arc<FairQueue>,
     pub(crate) peer: Peer,
     pub(crate) threads: usize,
@@ -26,15 +26,15 @@ pub struct TimeSlices {
 }
 
 impl TimeSlices {
-    /// Does `work` when it is its turn.
+    /// Runs `work` in one time slice.
     pub fn run_one<T>(&self, work: impl FnOnce(&TimeSlice) -> T) -> Result<T, Cancelled> {
         let slice = self.next_slice().ok_or(Cancelled)?;
         Ok(work(&slice))
     }
 
-    /// Calls `work` for each block from 0 to `blocks` on all threads, in turns, and hands the results to `done` in the
-    /// order of the blocks, each as soon as it and all before it are there. Ends early where `work` gives none or nobody
-    /// waits any more.
+    /// Calls `work` for each block from 0 to `blocks` on all threads, each in its own time slice. `done` gets the results in the
+    /// order of the blocks, each as soon as it and all before it are there. Ends early if `work` returns None or the client has
+    /// gone.
     pub fn parallel_map<T: Send>(
         &self,
         blocks: usize,
@@ -54,7 +54,7 @@ impl TimeSlices {
                     next.store(blocks, Ordering::Relaxed);
                     return;
                 };
-                // Still within the turn: writing results down is work too. A panic elsewhere ends it all in any case.
+                // Writing the result is work too, so it stays within the slice. A panic on another thread ends all of it anyway.
                 order.lock().unwrap_or_else(PoisonError::into_inner).add(block, result);
             }
         };
@@ -69,7 +69,7 @@ impl TimeSlices {
         if order.next == blocks { Ok(()) } else { Err(Cancelled) }
     }
 
-    /// Waits, on this thread, as long as somebody waits for the result.
+    /// Waits on this thread for the next slice. Returns None after cancellation.
     fn next_slice(&self) -> Option<TimeSlice> {
         let key = QueueKey::Long(self.peer);
         let permit = self.runtime.block_on(async {
@@ -83,7 +83,7 @@ impl TimeSlices {
     }
 }
 
-/// Puts results back in order.
+/// Puts results into the order of their blocks.
 struct InOrder<T, Done> {
     next: usize,
     waiting: BTreeMap<usize, T>,
@@ -156,7 +156,7 @@ mod tests {
         assert!(begun.load(Ordering::Relaxed) < 10_000);
     }
 
-    /// Two endless pieces of long work on one permit; a short one is done after a block or two of them.
+    /// Two endless pieces of long work share one permit; short work is done after one or two of their blocks.
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
     async fn short_work_waits_for_a_block_and_not_for_the_whole() {
         let pool = Pool::new(1, &Limits::default());
@@ -171,7 +171,7 @@ mod tests {
                 let work = move |slices: &TimeSlices| {
                     let block = |_, _: &TimeSlice| {
                         let _ = begun.send(());
-                        // A block lasts until the test lets it end.
+                        // A block lasts until the test ends it.
                         steps.lock().unwrap().recv().ok()?;
                         count.fetch_add(1, Ordering::Relaxed);
                         Some(())
@@ -181,7 +181,7 @@ mod tests {
                 pool.run_in_slices(work).await
             }));
         }
-        // One computes; the other waits for its turn, or still to be admitted.
+        // One computes; the other waits for a slice, or to be admitted.
         begin.recv().await.unwrap();
         while pool.running().get() + pool.queued().get() < 2 {
             tokio::task::yield_now().await;
@@ -195,7 +195,7 @@ mod tests {
         while pool.queued().get() <= before {
             tokio::task::yield_now().await;
         }
-        // Each ends one block: the one under way, and at most one that was before the short work.
+        // Each ends one block: the current one, and at most one that was queued before the short work.
         for _ in 0..2 {
             step.send(()).unwrap();
         }

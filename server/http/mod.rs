@@ -1,6 +1,6 @@
-//! What the server knows of HTTP: problems, reading requests, negotiation, entity tags and answers.
+//! HTTP: problems, reading requests, negotiation, entity tags and responses.
 //!
-//! No physics and no routes here: everything is told in JSON values, bytes and formats.
+//! This folder knows neither physics nor routes, only JSON values, bytes and formats.
 
 pub mod request;
 pub mod response;

@@ -1,4 +1,4 @@
-//! The bytes of an answer while they are written: a large one takes as long as its computing, and ends like it when nobody waits.
+//! Writes large answers to memory, and stops when their client has gone.
 
 use std::io::{self, Write};
 
@@ -6,19 +6,19 @@ use crate::compute::Cancelled;
 use crate::http::problem::Problem;
 use crate::limits;
 
-/// Bytes in memory, as long as somebody waits for them.
+/// Bytes in memory, with a cancellation check now and then.
 pub struct OutputBuffer<'a> {
     bytes: Vec<u8>,
     should_continue: &'a dyn Fn() -> bool,
-    /// Length from which on to look again whether anybody waits.
+    /// Length at which to check for cancellation again.
     next_check: usize,
     is_cancelled: bool,
 }
 
-/// The bytes that `write` writes; `go_on` is asked now and then.
+/// Returns the bytes that `write` writes, and asks `should_continue` now and then.
 ///
 /// # Errors
-/// That the work was given up, once `go_on` said `false`; an error of the server's own where `write` fails for another reason.
+/// A cancellation once `should_continue` is false; an internal error if `write` fails for another reason.
 pub fn write_to_memory(
     should_continue: &dyn Fn() -> bool,
     write: impl FnOnce(&mut OutputBuffer<'_>) -> io::Result<()>,

@@ -1,6 +1,6 @@
-//! Problems (RFC 9457): the one shape in which every 4xx and 5xx leaves the server.
+//! Problems (RFC 9457): the one shape of every 4xx and 5xx.
 //!
-//! What a client sees is only what stands in the fields here; causes inside the server go to its log, never into a body.
+//! A client sees only the fields here; internal causes go to the log, never into a body.
 
 use std::fmt::Display;
 
@@ -13,23 +13,23 @@ use crate::compute::{Cancelled, OverBudget, Overloaded};
 use crate::http::request::context::RequestContext;
 use crate::limits;
 
-/// One thing wrong with one field.
+/// One error of one field.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FieldError {
-    /// JSON pointer (RFC 6901) into the request body, or into the body that a query is equivalent to. Empty: the whole.
+    /// JSON pointer (RFC 6901) into the request body, or into the body that a query stands for. Empty for the whole body.
     pub pointer: String,
     /// A sentence with the field's name, its value, its limits and its unit.
     pub detail: String,
 }
 
-/// An error as a client sees it. Small to return: its parts are on the heap.
+/// An error as a client sees it. It is small to return: its parts are on the heap.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem(Box<Parts>);
 
 #[derive(Debug, Clone, PartialEq)]
 struct Parts {
     status: StatusCode,
-    /// Anchor in `/docs` for problems with a meaning of their own; none is `about:blank`, a plain status.
+    /// Anchor in `/docs` for a problem with a meaning of its own; None is `about:blank`.
     slug: Option<&'static str>,
     title: &'static str,
     detail: String,
@@ -66,12 +66,12 @@ impl Problem {
             .header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer realm=\"equipoise\""))
     }
 
-    /// 404: nothing by this name.
+    /// 404: there is nothing of this name.
     pub fn not_found(detail: impl Into<String>) -> Self {
         Self::plain(StatusCode::NOT_FOUND, detail)
     }
 
-    /// 405: `allow` lists the methods there are, as in the header of that name.
+    /// 405: `allow` lists the methods of the resource, as in the header `Allow`.
     pub fn method_not_allowed(method: &str, path: &str, allow: &str) -> Self {
         let spaced = allow.replace(',', ", ").replace(",  ", ", ");
         let problem = Self::plain(
@@ -84,7 +84,7 @@ impl Problem {
         }
     }
 
-    /// 406: no format, or no encoding, that the client accepts.
+    /// 406: the client accepts none of the formats or encodings.
     pub fn not_acceptable(detail: impl Into<String>) -> Self {
         Self::plain(StatusCode::NOT_ACCEPTABLE, detail)
     }
@@ -102,7 +102,7 @@ impl Problem {
         )
     }
 
-    /// 414: path and query are longer than the limit. `bytes` says how long.
+    /// 414: path and query are longer than the limit. `bytes` is their length.
     pub fn url_too_long(bytes: impl Display) -> Self {
         let limit = limits::URL_BYTES;
         let detail =
@@ -110,14 +110,14 @@ impl Problem {
         Self::plain(StatusCode::URI_TOO_LONG, detail)
     }
 
-    /// 415: the body is in a format or an encoding that is not read here, where it has to be `accepted`.
+    /// 415: the body has another format or encoding than `accepted`.
     pub fn unsupported_media_type(accepted: &'static str, detail: impl Into<String>) -> Self {
         Self::plain(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
             .header(header::ACCEPT, HeaderValue::from_static(accepted))
             .header(header::ACCEPT_ENCODING, HeaderValue::from_static("identity"))
     }
 
-    /// 422: readable, but not a valid request. `errors` holds all that is wrong with it.
+    /// 422: readable, but not a valid request. `errors` has all errors.
     pub fn invalid(errors: Vec<FieldError>) -> Self {
         let detail = match errors.as_slice() {
             [] => "the request is not valid".to_owned(),
@@ -135,7 +135,7 @@ impl Problem {
         Self::invalid(vec![FieldError { pointer: pointer.into(), detail: detail.into() }])
     }
 
-    /// 500: a fault of the server's, about which the client can do nothing.
+    /// 500: a fault of the server. The client can do nothing about it.
     pub fn internal() -> Self {
         Self::plain(
             StatusCode::INTERNAL_SERVER_ERROR,
@@ -143,44 +143,44 @@ impl Problem {
         )
     }
 
-    /// 503: too much to do at the moment.
+    /// 503: the server is overloaded.
     pub fn overloaded(detail: impl Into<String>) -> Self {
         Self::plain(StatusCode::SERVICE_UNAVAILABLE, detail)
             .named("overloaded", "The server is busy")
             .header(header::RETRY_AFTER, HeaderValue::from(limits::RETRY_AFTER_S))
     }
 
-    /// Any other status, for errors that libraries answer with on their own.
+    /// Any other status, for errors that libraries answer with.
     pub fn other(status: StatusCode, detail: impl Into<String>) -> Self {
         Self::plain(status, detail)
     }
 
-    /// The status it is answered with.
+    /// Status of the answer.
     pub fn status(&self) -> StatusCode {
         self.0.status
     }
 
-    /// What kind of problem it is, in a few words.
+    /// The kind of problem, in a few words.
     pub fn title(&self) -> &'static str {
         self.0.title
     }
 
-    /// What is wrong this time, in a sentence.
+    /// The error in a sentence.
     pub fn detail(&self) -> &str {
         &self.0.detail
     }
 
-    /// What is wrong with which field.
+    /// The errors of the fields.
     pub fn errors(&self) -> &[FieldError] {
         &self.0.errors
     }
 
-    /// Consumes it for its field errors.
+    /// The errors of the fields, consuming the problem.
     pub fn into_errors(self) -> Vec<FieldError> {
         self.0.errors
     }
 
-    /// Its JSON, as in the body of an answer.
+    /// The problem as JSON, as in the body of an answer.
     pub fn to_json(&self) -> Vec<u8> {
         serde_json::to_vec(self).expect("a problem is text and numbers under text keys")
     }
@@ -248,7 +248,7 @@ impl From<Cancelled> for Problem {
     }
 }
 
-/// A client's own text, quoted in an error: cut to a length that keeps the error readable.
+/// Cuts a client's own text to a length that keeps an error readable.
 pub fn shortened(text: &str) -> String {
     const CHARACTERS: usize = 60;
     match text.char_indices().nth(CHARACTERS) {

@@ -1,11 +1,11 @@
-//! Transfer codings of requests (RFC 9112, section 6.1): `chunked` alone is understood, and undone before a body gets here.
+//! Transfer codings of requests (RFC 9112, section 6.1). Only `chunked` is supported; the HTTP library decodes it.
 
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 
 use crate::http::problem::{Problem, shortened};
 
-/// Refuses a body in a coding that is not understood: 501. The library undoes the last one, `chunked`, and passes over those before
-/// it; a request whose last one is another it refuses by itself, see [`not_implemented`].
+/// Refuses a body in an unsupported transfer coding: 501. The library decodes a final `chunked` and ignores the codings before it.
+/// It refuses another final coding by itself, see [`not_implemented`].
 pub fn check(headers: &HeaderMap) -> Result<(), Problem> {
     let values = headers.get_all(header::TRANSFER_ENCODING).iter();
     let text: Vec<_> = values.map(|value| String::from_utf8_lossy(value.as_bytes())).collect();
@@ -19,7 +19,7 @@ pub fn check(headers: &HeaderMap) -> Result<(), Problem> {
     Ok(())
 }
 
-/// 501: the body is in a coding that is not understood, after which the connection is of no use.
+/// 501: the transfer coding is not supported. The connection cannot be used any more.
 pub fn not_implemented(coding: Option<&str>) -> Problem {
     let coding = coding.map_or_else(|| "one that does not end with chunked".to_owned(), shortened);
     let detail = format!("the transfer coding of the request is {coding}; only chunked is understood");

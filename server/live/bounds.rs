@@ -1,12 +1,11 @@
-//! What one live client may take: times, numbers and rates, each from the server's limits unless a test wants less.
+//! Bounds of one live client: times, numbers and rates, from the server's limits. Tests use smaller ones.
 
 use std::time::{Duration, Instant};
 
-use crate::compute::Limit;
 use crate::limits;
-use crate::limits::Limits;
+use crate::limits::{Limit, Limits};
 
-/// The bounds of one session, so that a test can wait for them.
+/// Bounds of one session.
 #[derive(Debug, Clone, Copy)]
 pub struct SessionBounds {
     /// Impacts that may wait for a slow client.
@@ -15,22 +14,22 @@ pub struct SessionBounds {
     pub behind: Duration,
     /// Time between pings.
     pub ping: Duration,
-    /// Time without a word from the client, pongs included.
+    /// Time without a message or pong from the client.
     pub silence: Duration,
-    /// All the time it is told a run.
+    /// Lifetime of the connection.
     pub lifetime: Duration,
-    /// Time without a message, when the run has ended or is paused.
+    /// Time without a message while the run is paused or has ended.
     pub idle: Duration,
-    /// Whether it stays when the run has ended, for a client that may begin it anew.
+    /// True if the session stays open after the end of the run, for a client that may restart it.
     pub stays: bool,
-    /// Messages a second.
+    /// Messages per second.
     pub messages_per_s: u32,
     /// Work of catching up.
     pub catch_up: Limit,
 }
 
 impl SessionBounds {
-    /// Those of a client that talks.
+    /// Bounds of a WebSocket.
     pub fn for_websocket(limits: &Limits) -> Self {
         Self {
             queue: limits::LIVE_QUEUE,
@@ -45,14 +44,14 @@ impl SessionBounds {
         }
     }
 
-    /// Those of a client that only listens, and so is never heard.
+    /// Bounds of an event stream, whose client never sends anything.
     pub fn for_sse(limits: &Limits) -> Self {
         let lifetime = limits.events_time;
         Self { silence: lifetime, lifetime, stays: false, ..Self::for_websocket(limits) }
     }
 }
 
-/// Messages that a client may still send: so many a second, saved up for three seconds.
+/// A token bucket for messages: so many per second, saved up for three seconds.
 #[derive(Debug)]
 pub struct TokenBucket {
     per_s: f64,
@@ -61,12 +60,12 @@ pub struct TokenBucket {
 }
 
 impl TokenBucket {
-    /// Three seconds' worth.
+    /// A full bucket.
     pub fn new(per_s: u32, now: Instant) -> Self {
         Self { per_s: per_s.into(), left: 3.0 * f64::from(per_s), at: now }
     }
 
-    /// Whether one more message is within it.
+    /// Takes a token if there is one.
     pub fn try_take(&mut self, now: Instant) -> bool {
         let earned = (now - self.at).as_secs_f64() * self.per_s;
         (self.left, self.at) = ((self.left + earned).min(3.0 * self.per_s), now);

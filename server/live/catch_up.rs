@@ -2,9 +2,10 @@
 
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 
-use crate::compute::{Cancelled, Limit, OverBudget, Price, TimeSlice};
+use crate::compute::{Cancelled, OverBudget, Price, TimeSlice};
 use crate::http::Problem;
 use crate::limits;
+use crate::limits::Limit;
 use crate::runs::playback::Playback;
 use crate::runs::run::Run;
 

@@ -1,6 +1,6 @@
-//! What a client says over a live connection, as it is read.
+//! Messages of a live client, and how they are read.
 //!
-//! Not here: what follows from it (`session`).
+//! `session` carries them out.
 
 use equipoise_physics::body::Kick;
 use equipoise_physics::scene::{Name, Value as FieldValue};
@@ -12,27 +12,27 @@ use crate::http::{Errors, Problem, Reader, Source};
 use crate::live::clock::SPEEDS;
 use crate::runs::interventions::{read_kick, read_set};
 
-/// What a client can say.
+/// A message of the client.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ClientMessage {
-    /// Stop the clock.
+    /// Pause the clock.
     Pause,
-    /// Let it go on.
+    /// Resume the clock.
     Resume,
-    /// While it is stopped: on to the next impact.
+    /// Move a paused clock to the next impact.
     Step,
-    /// Begin anew, now.
+    /// Release the run again, now.
     Restart,
-    /// Go on at this speed.
+    /// Change the speed.
     Speed(f64),
-    /// Change these fields from the next impact on.
+    /// Set these fields from the next impact on.
     Set(Vec<(Name, FieldValue)>),
     /// Kick the body just after the next impact.
     Kick(Kick),
 }
 
 impl ClientMessage {
-    /// Its type, as in the message.
+    /// The `type` of the message.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Pause => "pause",
@@ -48,7 +48,7 @@ impl ClientMessage {
     /// Reads a message.
     ///
     /// # Errors
-    /// A problem with everything that is wrong with it.
+    /// All errors of the message.
     pub fn read(text: &str) -> Result<Self, Problem> {
         #[derive(Clone, Copy)]
         enum Type {
@@ -102,7 +102,7 @@ impl ClientMessage {
     }
 }
 
-/// The reader of bodies calls what it reads a body; here it is a message.
+/// The JSON reader speaks of a body; here it is a message.
 fn of_a_message(problem: &Problem) -> Problem {
     let named = |detail: &str| detail.replacen("the body", "the message", 1);
     match problem.errors() {

@@ -1,11 +1,11 @@
-//! The clock of a run: which run time it is at a time on the wall. Pauses, steps and speeds are entries in it.
+//! The clock of a live run: maps wall time to run time. Pauses, steps and speeds are entries in it.
 //!
-//! It is part of the run's value and knows no clock of its own: wall times come from outside.
+//! The clock is a value: it never reads the time itself.
 
 /// Slowest and fastest speed, in run time per wall time.
 pub const SPEEDS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 
-/// From a wall time on: the run time then, and how fast it goes.
+/// The run time and the speed from a wall time on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClockEntry {
     /// Unix time, ms.
@@ -16,7 +16,7 @@ pub struct ClockEntry {
     pub speed: f64,
 }
 
-/// Maps wall time to run time. Neither goes back from entry to entry.
+/// Maps wall time to run time. Neither decreases from entry to entry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clock {
     release: ClockEntry,
@@ -29,25 +29,25 @@ impl Clock {
         Self { release: ClockEntry { wall: epoch, run: 0.0, speed }, entries: Vec::new() }
     }
 
-    /// When the run was released, unix ms.
+    /// Time of the release, unix ms.
     pub fn epoch(&self) -> u64 {
         self.release.wall
     }
 
-    /// How fast it went at first.
+    /// Speed at the release.
     pub fn first_speed(&self) -> f64 {
         self.release.speed
     }
 
-    /// What was changed since, in order.
+    /// Later changes, in their order.
     pub fn entries(&self) -> &[ClockEntry] {
         &self.entries
     }
 
-    /// Adds an entry as it is.
+    /// Adds an entry.
     ///
     /// # Errors
-    /// Where it goes back behind the last one.
+    /// The entry is before the last one in wall time or run time.
     pub fn push(&mut self, entry: ClockEntry) -> Result<(), String> {
         let last = self.last();
         if entry.wall < last.wall {
@@ -66,23 +66,23 @@ impl Clock {
         entry.run + (wall as f64 - entry.wall as f64) * 1e-3 * entry.speed
     }
 
-    /// The wall time, unix ms, at which it will be this run time, as far as the clock is known; none while it is paused.
+    /// Wall time, unix ms, of a run time by the last entry; None while the clock is paused.
     pub fn wall_time(&self, run: f64) -> Option<f64> {
         let entry = self.last();
         (entry.speed > 0.0).then(|| entry.wall as f64 + (run - entry.run) * 1e3 / entry.speed)
     }
 
-    /// How fast it goes, or would go on after the pause.
+    /// Present speed; of a paused clock, the speed after the pause.
     pub fn speed(&self) -> f64 {
         self.entries.iter().rev().map(|entry| entry.speed).find(|speed| *speed > 0.0).unwrap_or(self.release.speed)
     }
 
-    /// Whether it stands still.
+    /// Tells whether the clock is paused.
     pub fn is_paused(&self) -> bool {
         self.last().speed == 0.0
     }
 
-    /// Stops it.
+    /// Pauses the clock.
     pub fn pause(&mut self, wall: u64) {
         if !self.is_paused() {
             let run = self.run_time(self.not_before(wall));
@@ -90,7 +90,7 @@ impl Clock {
         }
     }
 
-    /// Lets it go on.
+    /// Resumes the clock.
     pub fn resume(&mut self, wall: u64) {
         if self.is_paused() {
             let (run, speed) = (self.last().run, self.speed());
@@ -98,7 +98,7 @@ impl Clock {
         }
     }
 
-    /// Goes on at another speed, after the pause if there is one.
+    /// Changes the speed. A paused clock stays paused.
     pub fn set_speed(&mut self, wall: u64, speed: f64) {
         let (run, paused) = (self.run_time(self.not_before(wall)), self.is_paused());
         self.change(wall, run, speed);
@@ -107,13 +107,13 @@ impl Clock {
         }
     }
 
-    /// Moves a paused clock on to a run time.
+    /// Moves a paused clock to a run time.
     pub fn step(&mut self, wall: u64, run: f64) {
         let run = run.max(self.last().run);
         self.change(wall, run, 0.0);
     }
 
-    /// Forgets the oldest entries beyond so many: whoever asks from now on sees no difference.
+    /// Drops the oldest entries beyond `most`. Later wall times map to the same run times.
     pub fn forget_beyond(&mut self, most: usize) {
         let beyond = self.entries.len().saturating_sub(most);
         self.entries.drain(..beyond);
@@ -123,14 +123,14 @@ impl Clock {
         self.entries.last().copied().unwrap_or(self.release)
     }
 
-    /// A wall clock that was set back must not take the run back with it.
+    /// A wall clock that was set back must not move the run back.
     fn not_before(&self, wall: u64) -> u64 {
         wall.max(self.last().wall)
     }
 
     fn change(&mut self, wall: u64, run: f64, speed: f64) {
         let wall = self.not_before(wall);
-        // A pause that ends in another one, or at once, says nothing any more.
+        // A pause followed by another one, or of no length, has no effect any more.
         if self.entries.last().is_some_and(|last| last.speed == 0.0 && (speed == 0.0 || last.wall == wall)) {
             self.entries.pop();
             if self.entries.last().is_some_and(|last| last.speed > 0.0 && last.wall == wall && speed > 0.0) {

@@ -1,11 +1,11 @@
-//! How the connection of a live run ends, and the codes that say why.
+//! Ends of a live connection, with the codes of their reasons.
 
 use axum::extract::ws::close_code;
 
-/// How a session ends; none if the client has ended it.
+/// Code and reason of a close; None if the client has ended the session.
 pub(crate) type Close = Option<(u16, &'static str)>;
 
-/// Reasons for which no message can be read any more.
+/// Reasons why no more messages can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unreadable {
     /// A message or a frame is larger than the limit.
@@ -14,12 +14,12 @@ pub enum Unreadable {
     NotUtf8,
     /// A frame breaks the protocol (RFC 6455).
     Broken,
-    /// The connection is gone: there is nobody to tell.
+    /// The connection is gone, so nothing can be sent.
     Gone,
 }
 
 impl Unreadable {
-    /// The close that says so (RFC 6455, section 7.4.1).
+    /// The close with this reason (RFC 6455, section 7.4.1).
     pub(crate) fn close(self) -> Close {
         match self {
             Unreadable::TooLarge => Some((close_code::SIZE, "a message too large")),

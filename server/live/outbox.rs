@@ -1,5 +1,5 @@
-//! What waits to be sent to one live client: a bounded queue that skips over the oldest impacts of a slow one and says
-//! so. Nothing else is ever left out.
+//! The queue of messages to one live client. It is bounded: for a slow client it skips the oldest impacts and says so with a `gap`.
+//! No other message is skipped.
 
 use std::collections::VecDeque;
 use std::time::Instant;
@@ -25,32 +25,32 @@ pub struct Outbox {
 }
 
 impl Outbox {
-    /// An empty one in which so many impacts may wait.
+    /// An empty queue for so many impacts.
     pub fn new(most_impacts: usize) -> Self {
         Self { items: VecDeque::new(), impacts: 0, most_impacts: most_impacts.max(1), gap: None, since: None }
     }
 
-    /// Whether nothing waits.
+    /// Tells whether nothing waits.
     pub fn is_empty(&self) -> bool {
         self.items.is_empty()
     }
 
-    /// Since when something has been waiting without a break.
+    /// Time since which something has been waiting without a break.
     pub fn waiting_since(&self) -> Option<Instant> {
         self.since
     }
 
-    /// Messages other than impacts that wait: each is an answer to one of the client's.
+    /// Number of waiting messages other than impacts. Each answers a message of the client.
     pub fn answers(&self) -> usize {
         self.items.len() - self.impacts
     }
 
-    /// Adds anything but an impact.
+    /// Adds any message but an impact.
     pub fn push(&mut self, frame: OutgoingFrame) {
         self.add(QueuedItem::Frame(frame));
     }
 
-    /// Adds an impact; the oldest one goes if there are too many.
+    /// Adds an impact, and skips the oldest one if there are too many.
     pub fn push_impact(&mut self, impact: ImpactMessage) {
         self.add(QueuedItem::Impact(Box::new(impact)));
         self.impacts += 1;
@@ -63,14 +63,14 @@ impl Outbox {
         }
     }
 
-    /// Forgets the impacts that wait: they are of a run that is over for the client.
+    /// Drops the waiting impacts, for a client that has left their run.
     pub fn drop_impacts(&mut self) {
         self.items.retain(|item| matches!(item, QueuedItem::Frame(_)));
         (self.impacts, self.gap) = (0, None);
         self.note_emptiness();
     }
 
-    /// The next frame: impacts that wait one behind the other become one.
+    /// The next frame. Consecutive impacts are sent as one message.
     pub fn pop(&mut self) -> Option<OutgoingFrame> {
         let frame = match self.items.pop_front()? {
             QueuedItem::Frame(frame) => frame,

@@ -1,6 +1,6 @@
-//! A live run as a value: a run with a clock, and the URL that says both.
+//! Live runs as values: a run with a clock, and the URL of both.
 //!
-//! The URL is read from a request with everything that is wrong, and written so that it reads back as the same run.
+//! The URL of a run reads back as the same run. A request gets all errors at once.
 
 use form_urlencoded::Serializer;
 
@@ -16,17 +16,17 @@ use crate::runs::run::Run;
 /// Path of live runs.
 pub const PATH: &str = "/v1/live";
 
-/// Run times that a clock may show, s: all that it comes to between the earliest and the latest time, at the highest speed. An
-/// epoch in s instead of ms is 57 years ago, and its run can be paused as well.
+/// Range of a clock's run times, s: everything between the earliest and the latest time at the highest speed. An epoch in s instead
+/// of ms is decades ago, and its run can still be paused.
 const RUN_TIMES: std::ops::RangeInclusive<f64> = -2e14..=2e14;
 
-/// How far the clocks of two servers may be apart, ms.
+/// Largest difference between the clocks of two servers, ms.
 const CLOCK_SKEW_MS: u64 = 60_000;
 
-/// Bytes kept free in a URL for the clock's entries and for a `from`, so that pausing never fails.
+/// Bytes kept free in a URL for clock entries and `from`, so that pausing never fails.
 const CLOCK_ROOM: usize = limits::LIVE_CLOCK_ENTRIES * 100 + 40;
 
-/// A run on the wall clock. Two that are equal give the same impacts at the same times.
+/// A run on the wall clock. Equal live runs have the same impacts at the same times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveRun {
     /// Scene and interventions.
@@ -46,18 +46,19 @@ impl LiveRun {
 /// A request for a live run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveRequest {
-    /// The run.
+    /// The run and its clock.
     pub live: LiveRun,
     /// First impact to send; None is the last one so far.
     pub from: Option<u64>,
 }
 
-/// Reads a run, released now, unix ms, unless it says when. None if something is wrong; then it is in the errors.
+/// Reads a live run, released at `now`, unix ms, unless it has an epoch. Returns None if something is wrong; the reader then has
+/// the errors.
 pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
     let scene = read_scene(reader);
     let speed = reader.number("speed", SPEEDS, "").unwrap_or(1.0);
     let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
-    // Of a run that begins with this request, nothing is missed.
+    // A run that is released by this request is sent from its first impact.
     let from = reader.integer("from", 1..=limits::LIVE_IMPACTS).or(epoch.is_none().then_some(1));
     let interventions = read_interventions(reader);
     let mut entries = Vec::new();
@@ -66,7 +67,7 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
     apply_interventions(&mut run, interventions, reader);
     for (index, entry) in entries.into_iter().enumerate() {
         let Some(entry) = entry else { continue };
-        // What is done to a run before its release is noted at the release.
+        // A change before the release has the wall time of the release.
         let latest = now.saturating_add(CLOCK_SKEW_MS).max(clock.epoch());
         let pushed = if entry.wall > latest {
             Err(format!("wall is {} ms, which is still to come: it is {now} ms", entry.wall))

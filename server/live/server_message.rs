@@ -1,6 +1,6 @@
-//! What the server says over a live connection, as it is written.
+//! Messages of the server to a live client, and how they are written.
 //!
-//! Not here: when it is said, and what a client says (`client_message`).
+//! `session` decides when they are sent.
 
 use serde::Serialize;
 
@@ -16,75 +16,75 @@ use crate::live::run_url;
 use crate::live::run_url::LiveRun;
 use crate::runs::playback::Playback;
 
-/// A message of the server's.
+/// A message of the server.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum ServerMessage<'a> {
-    /// First of all, and after a restart: which run it is.
+    /// The run: first of all messages, and again after a restart.
     Hello(Box<Hello<'a>>),
-    /// An impact, when it happens.
+    /// An impact, sent when it happens.
     Impact(&'a ImpactMessage),
-    /// Several of them.
+    /// Several impacts.
     Impacts {
-        /// Column by column.
+        /// The impacts column by column.
         columns: ImpactColumns,
     },
-    /// Impacts that a slow client does not get.
+    /// Impacts that were skipped for a slow client.
     Gap {
-        /// The first of them.
+        /// Number of the first one.
         from: u64,
-        /// The last.
+        /// Number of the last one.
         to: u64,
     },
-    /// The run has ended.
+    /// The end of the run.
     End {
-        /// How.
+        /// The outcome.
         outcome: &'a Outcome,
-        /// The most that it asked of the table.
+        /// The largest demands on the table.
         demand: DemandAnswer,
     },
-    /// Something is wrong with a message, or with the whole run.
+    /// An error in a message or in the whole run.
     Problem {
-        /// What kind of problem.
+        /// Kind of the problem.
         title: &'static str,
-        /// What is wrong this time.
+        /// The error in a sentence.
         detail: &'a str,
-        /// What is wrong with which field.
+        /// Errors of the fields.
         errors: &'a [FieldError],
     },
-    /// A message was carried out.
+    /// A message of the client was carried out.
     Ack(Ack<'a>),
 }
 
-/// What goes to a client, whatever carries it.
+/// A frame for any carrier.
 #[derive(Debug, Clone, PartialEq)]
 pub enum OutgoingFrame {
-    /// A message of the server's.
+    /// A message of the server.
     Message {
-        /// Its type.
+        /// Type of the message.
         kind: &'static str,
-        /// How far the run has been told with it, if it tells of it.
+        /// Position in the run, if the message has one.
         id: Option<EventId>,
-        /// As JSON.
+        /// The message as JSON.
         text: String,
     },
-    /// Nothing to say, but still here.
+    /// A sign of life without a message.
     Ping,
-    /// Goodbye, with a code of RFC 6455 and why.
+    /// A close, with a code of RFC 6455 and the reason.
     Close(u16, &'static str),
 }
 
-/// How far a run has been told.
+/// Position of a message in its run, sent as the id of an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EventId {
-    /// Up to this impact.
+    /// After this impact.
     Impact(u64),
-    /// To its end.
+    /// At the end.
     End,
 }
 
 impl ServerMessage<'_> {
-    /// As it is sent.
+    /// The message as a frame.
     pub fn to_frame(&self) -> OutgoingFrame {
         let (kind, id) = match self {
             ServerMessage::Hello(_) => ("hello", None),
@@ -102,12 +102,12 @@ impl ServerMessage<'_> {
     }
 }
 
-/// A problem as a message.
+/// A problem as a frame.
 pub fn problem(problem: &Problem) -> OutgoingFrame {
     ServerMessage::Problem { title: problem.title(), detail: problem.detail(), errors: problem.errors() }.to_frame()
 }
 
-/// Which run it is and where it is.
+/// The run and its present state.
 #[derive(Debug, Serialize)]
 pub struct Hello<'a> {
     scene: Resolved<'a>,
@@ -136,7 +136,7 @@ struct Release {
 }
 
 impl<'a> Hello<'a> {
-    /// Of a run that is told from `playback` on, at the wall time `now`, unix ms. Its URL begins with `base`.
+    /// The run from `playback` on, at the wall time `now`, unix ms. Its URL begins with `base`.
     pub fn new(live: &'a LiveRun, playback: &'a Playback, base: &str, now: u64) -> Self {
         let (scene, clock) = (live.run.scene(), &live.clock);
         let release = scene.release();
@@ -166,22 +166,22 @@ impl<'a> Hello<'a> {
     }
 }
 
-/// What was done, and the run as it is now.
+/// Acknowledgement of a message, with the state of the run.
 #[derive(Debug, Serialize)]
 pub struct Ack<'a> {
-    /// The type of the message that was carried out.
+    /// Type of the message.
     pub of: &'static str,
-    /// The run's URL from now on.
+    /// URL of the run from now on.
     pub url: &'a str,
     /// Run time, s.
     pub run_time: f64,
     /// Wall time, unix ms.
     pub now: u64,
-    /// Run time per wall time, also while paused.
+    /// Run time per wall time; of a paused run, the speed after the pause.
     pub speed: f64,
-    /// Whether it stands still.
+    /// True if the run is paused.
     pub paused: bool,
-    /// The impact at which it acts, for `set`, `kick` and `step`.
+    /// Impact at which `set`, `kick` or `step` acts.
     pub impact: Option<u64>,
 }
 

@@ -1,7 +1,7 @@
-//! One live client: what it hears and when, and what it may ask for.
+//! One live client: sends it the impacts when they happen, and carries out its messages.
 //!
-//! A single loop over the clock, the client and the server's end. Impacts are computed when they are due, never ahead;
-//! what cannot be sent at once waits in the outbox. Not here: what carries it, a WebSocket or Server-Sent Events.
+//! A single loop waits for the clock, the client and the end of the server. Impacts are computed when they are due, never ahead;
+//! messages that cannot be sent at once wait in the outbox. The carrier is a WebSocket or an event stream.
 
 use std::pin::pin;
 use std::sync::Arc;
@@ -16,9 +16,10 @@ use tokio::time::{sleep_until, timeout};
 
 use crate::api::scene::has_angle;
 use crate::api::trajectories::columns::ImpactRow;
-use crate::compute::{Limit, Pool, TimeSlice};
+use crate::compute::{Pool, TimeSlice};
 use crate::http::{FieldError, Problem};
 use crate::limits;
+use crate::limits::Limit;
 use crate::live::bounds::{SessionBounds, TokenBucket};
 use crate::live::catch_up;
 use crate::live::catch_up::CatchUpError;
@@ -33,24 +34,24 @@ use crate::live::server_message::{Ack, Hello, OutgoingFrame, ServerMessage};
 use crate::runs::interventions::NO_ANGLE;
 use crate::runs::playback::Playback;
 
-/// What a session needs of the server.
+/// Parts of the server that a session uses.
 #[derive(Debug, Clone)]
 pub struct SessionContext {
-    /// Where long work is done.
+    /// Runs long work.
     pub pool: Pool,
     /// Counts the bounces.
     pub bounces: Counter,
-    /// How late impacts are looked for, s.
+    /// Delay of computing due impacts, s.
     pub lags: Histogram,
-    /// What stands before its URLs as clients see them.
+    /// Path in front of the run's URL, as clients see it.
     pub base_path: Arc<str>,
-    /// The bounds to keep.
+    /// Bounds of the session.
     pub bounds: SessionBounds,
 }
 
 #[cfg(test)]
 impl SessionContext {
-    /// One of its own, with these bounds.
+    /// A context with these bounds and a pool of its own.
     pub(crate) fn for_test(bounds: SessionBounds) -> Self {
         let pool = Pool::new(1, &limits::Limits::default());
         Self { pool, bounces: Counter::default(), lags: Histogram::new([]), base_path: "".into(), bounds }
@@ -75,8 +76,7 @@ impl From<OutgoingFrame> for Message {
     }
 }
 
-/// Tells a client its run until it leaves, breaks a bound, or the server is `closing`. What there is to tell first has been
-/// found by [`caught_up`].
+/// Serves a client until it leaves, breaks a bound, or the server is `closing`. [`catch_up`] gives `playback`.
 pub async fn serve(
     request: LiveRequest,
     playback: Result<Playback, Problem>,
@@ -85,7 +85,7 @@ pub async fn serve(
     context: SessionContext,
     closing: impl Future<Output = ()> + Send,
 ) {
-    // One message is being sent while the next is chosen: all others wait where they can still be left out.
+    // One message is being sent while the next is chosen. All others wait in the outbox, where impacts can be skipped.
     let (sender, receiver) = mpsc::channel(1);
     let mut writer = tokio::spawn(write(receiver, outgoing));
     let mut outbox = Outbox::new(context.bounds.queue);
@@ -114,7 +114,7 @@ pub async fn serve(
         }
         drop(sender);
         let _ = (&mut writer).await;
-        // Until the client has closed too, so that it gets all of this.
+        // Waits for the client's close, so that the client gets all messages.
         while let Some(Ok(_)) = incoming.next().await {}
     };
     let _ = timeout(limits::GOODBYE_TIME, goodbye).await;
@@ -127,13 +127,13 @@ async fn write(mut receiver: mpsc::Receiver<OutgoingFrame>, mut outgoing: impl S
             return;
         }
     }
-    // What was said last has been flushed; dropping the other half ends the connection.
+    // The last message has been flushed. Dropping the other half ends the connection.
 }
 
-/// The run where the telling begins. Little work is done here, much in the pool.
+/// Computes the run up to the first impact to send: on this thread if it is little work, else in the pool.
 ///
 /// # Errors
-/// Where it is too far back, or the pool is busy.
+/// The work is over its limit, or the pool is overloaded.
 pub async fn catch_up(request: &LiveRequest, context: &SessionContext) -> Result<Playback, Problem> {
     let until = request.live.clock.run_time(wall_now());
     let limit = context.bounds.catch_up;
@@ -158,13 +158,13 @@ pub async fn catch_up(request: &LiveRequest, context: &SessionContext) -> Result
 struct Session {
     live: LiveRun,
     playback: Playback,
-    /// The first impact that the client wants to hear of.
+    /// Number of the first impact to send.
     first: u64,
     outbox: Outbox,
     context: SessionContext,
-    /// Whether impacts of before the client came are being told, as fast as it takes them.
+    /// True while past impacts are being sent, as fast as the client reads them.
     catching_up: bool,
-    /// The run time at which it came, s. A run so fast that it never catches up is still paced.
+    /// Run time at which the client came, s. So a run that is too fast to catch up is paced as well.
     came_at: f64,
     next_compute: Instant,
     next_ping: Instant,
@@ -241,7 +241,7 @@ impl Session {
         }
     }
 
-    /// Says which run it is.
+    /// Sends the run, and its end if it has ended.
     fn send_hello(&mut self, now: u64) {
         let hello = Hello::new(&self.live, &self.playback, &self.context.base_path, now);
         self.outbox.push(ServerMessage::Hello(Box::new(hello)).to_frame());
@@ -250,7 +250,7 @@ impl Session {
         }
     }
 
-    /// Computes what is due, but not too much at a time, and sets when to look again.
+    /// Computes due impacts, up to a limit, and sets the time of the next computation.
     fn compute_due(&mut self, now: u64) {
         let begin = Instant::now();
         let run_time = self.live.clock.run_time(now);
@@ -281,14 +281,14 @@ impl Session {
             self.next_compute = batch;
             return;
         }
-        // Looked at once a second at least, since the wall clock may be set.
+        // At least once a second, since the wall clock may be set.
         let wait_ms = self.live.clock.wall_time(t).map_or(1000.0, |wall| wall.ceil() - now as f64).clamp(1.0, 1000.0);
         let due = begin + Duration::from_millis(wait_ms as u64);
         let is_fast = last_flight.is_some_and(|flight| flight * limits::LIVE_SINGLE_PER_S < self.live.clock.speed());
         self.next_compute = if is_fast { due.max(batch) } else { due };
     }
 
-    /// The bound that has been broken, if one has; pings on the way.
+    /// Returns the close for a broken bound, if there is one. Sends pings.
     fn broken_bound(&mut self, now: Instant) -> Option<(u16, &'static str)> {
         let bounds = &self.context.bounds;
         if now >= self.next_ping {
@@ -315,7 +315,7 @@ impl Session {
         self.playback.next_n().is_none() || self.live.clock.is_paused()
     }
 
-    /// When to look at the time again.
+    /// Time at which to look at the clock again.
     fn next_wakeup(&self) -> Instant {
         let bounds = &self.context.bounds;
         let idle = self.is_idle().then(|| self.last_message + bounds.idle);
@@ -325,14 +325,14 @@ impl Session {
         [Some(self.next_ping), idle, behind, compute].into_iter().flatten().fold(end, Instant::min)
     }
 
-    /// Takes a message.
+    /// Handles a message of the client.
     fn handle(&mut self, message: &Message) -> Option<(u16, &'static str)> {
         let now = Instant::now();
         let is_client_message = !matches!(message, Message::Ping(_) | Message::Pong(_));
         if is_client_message {
             self.last_message = now;
         }
-        // Pings too: each is answered.
+        // Pings count too: each is answered.
         if !self.message_rate.try_take(now) {
             let most = self.context.bounds.messages_per_s;
             let detail = format!("more than {most} messages a second, which is the limit");
@@ -358,7 +358,7 @@ impl Session {
 
     fn apply(&mut self, message: &ClientMessage, now: u64) -> Result<(), Problem> {
         if !self.catching_up {
-            // What is due has happened before the order.
+            // Due impacts have happened before the message.
             self.compute_due(now);
         }
         let mut live = self.live.clone();
@@ -430,7 +430,7 @@ impl Session {
         Ok(())
     }
 
-    /// The coming impact, its number and its time.
+    /// Number and time of the next impact.
     fn next_impact(&self) -> Result<(u64, f64), Problem> {
         self.playback.next_n().zip(self.playback.next_t()).ok_or_else(|| {
             let n = self.playback.outcome().map_or(0, |outcome| outcome.impacts);

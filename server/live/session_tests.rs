@@ -1,4 +1,4 @@
-//! A session over channels in the place of a socket: what happens to clients that are slow, silent or idle.
+//! Sessions over channels instead of a socket, with slow, silent and idle clients.
 
 use std::time::Duration;
 
@@ -52,7 +52,7 @@ impl Client {
         timeout(Duration::from_secs(20), self.hears.recv()).await.expect("the session is silent")
     }
 
-    /// Everything up to the end, as JSON, and the code with which it was closed.
+    /// All messages up to the end, as JSON, and the close code.
     async fn rest(&mut self) -> (Vec<Value>, Option<u16>) {
         let (mut texts, mut code) = (vec![], None);
         while let Some(message) = self.hear().await {

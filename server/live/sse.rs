@@ -1,6 +1,6 @@
-//! A live run as Server-Sent Events: where a client that comes back goes on, and how what it is told is written.
+//! Live runs as Server-Sent Events: the position of a client that reconnects, and the form of events.
 //!
-//! The client only listens; a session tells it the same as over a WebSocket. Not here: what is said and when.
+//! The client only listens. A session sends it the same messages as over a WebSocket.
 
 use std::convert::Infallible;
 
@@ -22,20 +22,20 @@ use crate::live::session;
 use crate::live::session::SessionContext;
 use crate::runs::playback::Playback;
 
-/// The id of a run's last event.
+/// Id of the last event of a run.
 const END: &str = "end";
 
-/// What a client is to hear.
+/// A request for events.
 #[derive(Debug)]
 pub enum EventsRequest {
     /// A run.
     Run(Box<LiveRequest>),
-    /// Nothing: it has heard the end already.
+    /// The client has already got the end.
     AlreadyEnded,
 }
 
-/// Reads a run, and the id of the last event of it that the client has heard: the header that clients send by themselves
-/// when they come back, or the parameter. None if something is wrong; then it is in the errors.
+/// Reads a live run and the id of its last event that the client got: from the header that browsers send when they reconnect, or
+/// from the parameter. Returns None if something is wrong; the reader then has the errors.
 pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Option<EventsRequest> {
     const NAME: &str = "last_event_id";
     let has_epoch = reader.has("epoch");
@@ -54,7 +54,7 @@ pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Optio
             request.from = Some(heard + 1);
             return Some(EventsRequest::Run(request.into()));
         }
-        // Released now, it would be another run.
+        // Without an epoch it would be released now, and so be another run.
         Ok(_) => "is of a run whose epoch is not given; come back to the address in `url` of `hello`".to_owned(),
         Err(error) => format!("{error}, or `{END}`"),
     };
@@ -62,8 +62,7 @@ pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Optio
     None
 }
 
-/// Tells a run. The session ends when the events are dropped, as they are when the client has gone, or when `closing` does; with it
-/// goes what is `held` for it.
+/// The events of a run. The session ends when the client goes, which drops the events, or at `closing`. It keeps `held` until then.
 pub fn events(
     request: LiveRequest,
     playback: Playback,
@@ -92,7 +91,7 @@ pub fn events(
     stream::iter([first]).chain(rest).map(Ok)
 }
 
-/// A frame as an event; a goodbye is the end of all events.
+/// A frame as an event. A close ends the events.
 fn event(frame: OutgoingFrame) -> Option<Event> {
     match frame {
         OutgoingFrame::Message { kind, id, text } => {
@@ -124,7 +123,7 @@ mod tests {
     use crate::live::run_url::LiveRun;
     use crate::runs::run::tests::case;
 
-    /// All that a client hears which begins to read late.
+    /// Everything that a client gets that begins to read late.
     async fn heard(preset: &str, bounds: SessionBounds) -> String {
         let live = LiveRun { run: case(preset), clock: Clock::new(session::wall_now(), 20.0) };
         let request = LiveRequest { live, from: None };

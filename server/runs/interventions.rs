@@ -151,7 +151,7 @@ fn read_group(
     }
 }
 
-/// Why a field cannot be set in a run that is under way; None if it can.
+/// The error of a field that cannot be set in a run; None if it can be set.
 fn refusal(row: &Field) -> Option<String> {
     (!row.live).then(|| format!("{} cannot be changed while a run is live; start another run with it", row.path))
 }

@@ -1,14 +1,14 @@
-//! One connection's socket, and who is at its other end: a client that has gone, or one that has only said all it has to say.
+//! The sending half of one connection, and whether its client is still there.
 //!
-//! Both have closed their sending half, so to the server they look alike. `nc -N` and many scripts close it with their request and wait
-//! for the answer; a client that has gone takes nothing any more. Only bytes tell them apart: a system answers those to a connection
-//! that its program has left with a reset. So while an answer is made for such a client, bytes go out that stand before it in any
-//! case, one at a time: the first ones of its status line, and between two pieces of a body that is sent piece by piece zeros before
-//! the size of the next one (RFC 9112, section 7.1). What the client reads is the answer that it would have read.
+//! A client that has gone and a client that has only finished sending look alike: both have closed their sending half. `nc -N` and
+//! many scripts close it with their request and wait for the answer. Only bytes tell them apart: to a connection whose program has
+//! gone, the client's system answers them with a reset. So while such a client waits, the server sends bytes ahead that come next
+//! in any case, one at a time: the first bytes of the status line, or, between two pieces of a body, zeros before the size of the
+//! next chunk (RFC 9112, section 7.1). The client reads the same answer as without them.
 //!
-//! The first byte goes out at once, the next ones ever later: who has gone is known by the time that a byte takes to get there
-//! and a reset to come back, and who goes later by three times the time since it closed its half. There is no byte
-//! to send when all of these have been; nor between the pieces of an answer of HTTP/1.0. Then the next piece, or the answer, tells.
+//! The first byte goes out at once, the next ones ever later. So a client that has gone is detected within a round trip, and one
+//! that goes later within three times the time since it closed its half. There is no byte to send once all of these are out, or
+//! between the pieces of an HTTP/1.0 answer. Then the next piece, or the answer, detects it.
 
 use std::future::poll_fn;
 use std::io::{self, IoSlice};
@@ -27,14 +27,13 @@ use tokio::time::{sleep, timeout};
 
 use crate::limits;
 
-/// Event that says that the client has closed its sending half, as closely as the system tells. Linux tells it from bytes that wait
-/// to be read, as a next request does.
+/// Event of a client that closes its sending half. On Linux it is distinct from bytes that wait to be read, such as a next request.
 #[cfg(target_os = "linux")]
 const CLOSED: Interest = Interest::PRIORITY;
 #[cfg(not(target_os = "linux"))]
 const CLOSED: Interest = Interest::READABLE;
 
-/// The sending half of a connection, and how far it is with the answer.
+/// The sending half of a connection, and the state of the answer.
 #[derive(Debug)]
 pub(crate) struct ClientSocket {
     socket: OwnedWriteHalf,
@@ -44,28 +43,28 @@ pub(crate) struct ClientSocket {
 #[derive(Debug)]
 struct SendState {
     expected: Expected,
-    /// True if the HTTP library has written all that it had.
+    /// True if the HTTP library has written all it had.
     is_flushed: bool,
-    /// Bytes of the status line that went out ahead of it.
+    /// Bytes of the status line that were sent ahead.
     sent_ahead: usize,
-    /// Zeros that went out ahead of the size of a chunk.
+    /// Zeros that were sent ahead of the size of a chunk.
     zeros: usize,
     /// Number of writes.
     writes: u64,
-    /// Status of a bare error that the HTTP library wanted to write.
+    /// Status of a bare error that the HTTP library would have written.
     bare_error: Option<StatusCode>,
 }
 
-/// What the client waits for.
+/// The next bytes that the client waits for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Expected {
-    /// Nothing, or the rest of an answer that is made.
+    /// None, or the rest of a complete answer.
     Nothing,
-    /// An answer, whose status line begins so.
+    /// A status line that begins with these bytes.
     Head(&'static [u8]),
-    /// The next chunk of one.
+    /// The next chunk of an answer.
     Chunk,
-    /// The next bytes of one whose end is the connection's.
+    /// More bytes of an answer that ends with the connection.
     Bytes,
 }
 
@@ -90,12 +89,12 @@ impl ClientSocket {
         self.state().expected = expected;
     }
 
-    /// An answer is being made.
+    /// Notes that an answer is being computed.
     pub(crate) fn start_response(&self, version: Version) {
         self.expect(Expected::Head(if version == Version::HTTP_10 { b"HTTP/1.0 " } else { b"HTTP/1.1 " }));
     }
 
-    /// An answer is made, or its pieces will be while it is sent.
+    /// Notes that an answer is complete, or will be sent piece by piece.
     pub(crate) fn send_response(self: &Arc<Self>, version: Version, answer: Response<Body>) -> Response<Body> {
         if answer.body().size_hint().exact().is_some() {
             self.expect(Expected::Nothing);
@@ -106,7 +105,7 @@ impl ClientSocket {
         answer.map(|body| Body::new(TrackedBody { body, client }))
     }
 
-    /// Writes what the HTTP library has to write, but for what went out ahead of it.
+    /// Writes the bytes of the HTTP library, without those that were sent ahead.
     pub(crate) fn poll_write(&self, context: &mut Context<'_>, buffers: &[IoSlice<'_>]) -> Poll<io::Result<usize>> {
         let mut state = self.state();
         state.is_flushed = false;
@@ -133,13 +132,12 @@ impl ClientSocket {
         }
     }
 
-    /// Notes that the HTTP library has written all that it had.
+    /// Notes that the HTTP library has written all it had.
     pub(crate) fn flushed(&self) {
         self.state().is_flushed = true;
     }
 
-    /// Keeps a bare error from being written: [`ClientSocket::bare_error`] is asked for it when the connection has ended, and it is known
-    /// what was wrong.
+    /// Holds back a bare error. It is answered in full when the connection has ended and the reason is known.
     pub(crate) fn withhold(&self, status: StatusCode) {
         self.state().bare_error = Some(status);
     }
@@ -148,7 +146,7 @@ impl ClientSocket {
         self.state().bare_error
     }
 
-    /// Writes an answer at the end of a connection. Gives up after `time`.
+    /// Writes the last answer of a connection. Gives up after `time`.
     pub(crate) async fn send_last(&self, mut answer: &[u8], time: Duration) {
         let writing = async {
             while !answer.is_empty() {
@@ -161,13 +159,13 @@ impl ClientSocket {
             }
             self.shutdown()
         };
-        // Nobody is left to tell that it failed.
+        // If it fails, there is nobody to tell.
         let _ = timeout(time, writing).await;
     }
 
     pub(crate) fn shutdown(&self) -> io::Result<()> {
         match shutdown(self.socket.as_ref(), Shutdown::Write) {
-            // The client was faster.
+            // The client has closed the connection first.
             Err(rustix::io::Errno::NOTCONN) => Ok(()),
             done => done.map_err(Into::into),
         }
@@ -181,7 +179,7 @@ impl ClientSocket {
         Ok(())
     }
 
-    /// Sends a byte that stands before what comes, if there is one left, unless something has been written since `writes`.
+    /// Sends the next probe byte, if there is one, unless something has been written since `writes`.
     fn probe(&self, writes: &mut Option<u64>) -> io::Result<()> {
         let mut state = self.state();
         if writes.replace(state.writes).is_some_and(|before| before != state.writes) || !state.is_flushed {
@@ -196,7 +194,7 @@ impl ClientSocket {
         match self.socket.try_write(byte) {
             Ok(written) if state.expected == Expected::Chunk => state.zeros += written,
             Ok(written) => state.sent_ahead += written,
-            // Bytes wait already for a client that takes none.
+            // The client already has unread bytes.
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
             Err(error) => return Err(error),
         }
@@ -222,8 +220,8 @@ impl ClientSocket {
     }
 }
 
-/// Drives a connection to its end, which it gives, or until its client has gone while it waits for an answer. What is worked on for
-/// the client is dropped with the connection.
+/// Drives a connection to its end and returns its result, or None as soon as the client has gone while it waits for an answer.
+/// Dropping the connection cancels the work for it.
 pub(crate) async fn until_client_leaves<C: Future>(
     mut connection: Pin<&mut C>,
     client: &Arc<ClientSocket>,
@@ -243,7 +241,7 @@ pub(crate) async fn until_client_leaves<C: Future>(
     driven.await
 }
 
-/// A body that is made piece by piece while it is sent.
+/// A body that is sent while it is made.
 struct TrackedBody {
     body: Body,
     client: Arc<ClientSocket>,
@@ -269,7 +267,7 @@ impl HttpBody for TrackedBody {
     }
 }
 
-/// Its last piece is made, or nobody wants it.
+/// The last piece is made, or the client has gone.
 impl Drop for TrackedBody {
     fn drop(&mut self) {
         self.client.expect(Expected::Nothing);

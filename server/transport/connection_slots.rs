@@ -1,4 +1,4 @@
-//! Who has which connection, and which of them give way when all places are taken.
+//! Slots for connections, and which connections are closed when all slots are taken.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -11,7 +11,7 @@ use tokio::time::timeout;
 use crate::compute::Peer;
 use crate::limits;
 
-/// The places for connections.
+/// The slots for connections.
 #[derive(Debug)]
 pub(crate) struct ConnectionSlots {
     most: usize,
@@ -21,19 +21,19 @@ pub(crate) struct ConnectionSlots {
     freed: Notify,
 }
 
-/// The place of one connection, as far as others may ask for it.
+/// The slot of one connection.
 #[derive(Debug)]
 pub(crate) struct ConnectionSlot {
     peer: Peer,
-    /// When the last byte went over it, ms after the beginning of time.
+    /// Time of the last byte, ms after the start of the server.
     moved_ms: AtomicU64,
-    /// Whether its client waits for the server, and not the server for its client.
+    /// True while the client waits for the server; false while the server waits for the client.
     is_answering: AtomicBool,
     end: Notify,
     begin: Instant,
 }
 
-/// A place that is taken; free again when it is dropped.
+/// A taken slot, free again when it is dropped.
 #[derive(Debug)]
 pub(crate) struct SlotGuard {
     number: u64,
@@ -47,8 +47,7 @@ impl ConnectionSlots {
         Arc::new(Self { most, begin, open: Mutex::default(), next: AtomicU64::new(0), freed: Notify::new() })
     }
 
-    /// A place for one more. If there is none, those give way whose clients have been waited for longest. Waits where
-    /// everybody is being answered.
+    /// Takes a slot. If none is free, the longest idle connections are closed. Waits while all connections are being answered.
     pub(crate) async fn acquire(self: &Arc<Self>, peer: Peer) -> SlotGuard {
         loop {
             let freed = self.freed.notified();
@@ -64,12 +63,12 @@ impl ConnectionSlots {
                     slot.end.notify_one();
                 }
             }
-            // Again after a while in any case: one that was being answered may be idle now.
+            // Checked again after a while: a connection that was being answered may be idle now.
             let _ = timeout(Duration::from_millis(20), freed).await;
         }
     }
 
-    /// Waits until nobody has a place.
+    /// Waits until all slots are free.
     pub(crate) async fn all_free(&self) {
         loop {
             let freed = self.freed.notified();
@@ -85,8 +84,7 @@ impl ConnectionSlots {
     }
 }
 
-/// So many connections to close, of those whose clients are waited for: where a peer has more than others its own go first, and of
-/// one peer's those over which nothing has gone for longest.
+/// Chooses so many idle connections to close: first those of the peer with the most connections, and of each peer the longest idle.
 fn eviction_candidates<'a>(
     open: impl Iterator<Item = &'a Arc<ConnectionSlot>>,
     count: usize,
@@ -116,25 +114,25 @@ impl ConnectionSlot {
         slot
     }
 
-    /// Bytes went over it.
+    /// Notes that bytes have been sent or received.
     pub(crate) fn touch(&self) {
         let ms = u64::try_from(self.begin.elapsed().as_millis()).unwrap_or(u64::MAX - 1);
         self.moved_ms.store(ms, Ordering::Relaxed);
     }
 
-    /// Whether its client waits for the server, from now on.
+    /// Sets whether the client waits for the server.
     pub(crate) fn set_answering(&self, answers: bool) {
         self.is_answering.store(answers, Ordering::Relaxed);
     }
 }
 
 impl SlotGuard {
-    /// The place.
+    /// The slot.
     pub(crate) fn slot(&self) -> &Arc<ConnectionSlot> {
         &self.slot
     }
 
-    /// Waits until it has to give way.
+    /// Waits until the connection must be closed.
     pub(crate) async fn evicted(&self) {
         self.slot.end.notified().await;
     }

@@ -1,5 +1,5 @@
-//! A connection's bytes, with two things that the HTTP library leaves out: its own answers to what is not HTTP have no
-//! body, and it waits for ever for a client that takes no bytes.
+//! The bytes of a connection, with two additions to the HTTP library: a full answer to input that is not HTTP, and a time limit for
+//! clients that do not read.
 
 use std::io::{self, IoSlice};
 use std::pin::Pin;
@@ -19,13 +19,13 @@ use crate::middleware::add_common_headers;
 use crate::transport::client_socket::ClientSocket;
 use crate::transport::connection_slots::ConnectionSlot;
 
-/// A socket that withholds a bare error, and gives up on a client that does not read.
+/// A stream that holds back bare errors and gives up on a client that does not read.
 #[derive(Debug)]
 pub(crate) struct GuardedStream {
     socket: OwnedReadHalf,
     client: Arc<ClientSocket>,
     slot: Arc<ConnectionSlot>,
-    /// Runs while the socket takes too little, and what it has taken since.
+    /// Time limit while the socket accepts too little, and the bytes accepted since.
     stall: Option<(Pin<Box<Sleep>>, usize)>,
     stall_time: Duration,
 }
@@ -46,7 +46,7 @@ impl GuardedStream {
             self.slot.touch();
             let (took, offered) =
                 (*written.as_ref().unwrap_or(&0), buffers.iter().map(|part| part.len()).sum::<usize>());
-            // A client that takes a byte now and then is as slow as one that takes none.
+            // A client that reads a byte now and then is as slow as one that reads none.
             self.stall = self.stall.take().map(|(stall, guard)| (stall, guard + took));
             self.stall.take_if(|(_, guard)| took == offered || *guard >= limits::STALL_BYTES);
             return Poll::Ready(written);
@@ -69,7 +69,7 @@ impl AsyncWrite for GuardedStream {
     ) -> Poll<io::Result<usize>> {
         let this = self.get_mut();
         if let Some(status) = buffers.first().and_then(|head| bare_error(head)) {
-            // To the library, it has been written.
+            // For the library it counts as written.
             this.client.withhold(status);
             return Poll::Ready(Ok(buffers.iter().map(|buffer| buffer.len()).sum()));
         }
@@ -86,7 +86,7 @@ impl AsyncWrite for GuardedStream {
     }
 
     fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
-        // After a bare error there is still something to say.
+        // After a bare error there is still an answer to send.
         Poll::Ready(if self.client.bare_error().is_some() { Ok(()) } else { self.client.shutdown() })
     }
 }
@@ -102,11 +102,11 @@ impl AsyncRead for GuardedStream {
     }
 }
 
-/// Words of the library for a request whose last transfer coding is not `chunked`, which to it is as wrong as any other.
+/// The library's words for a request whose last transfer coding is not `chunked`; otherwise it treats it like any bad request.
 const UNKNOWN_CODING: &str = "invalid transfer-encoding parsed";
 
-/// The status of an error that the HTTP library answers with by itself: a head without a body, and without the header
-/// that all answers of this server have.
+/// Status of an error that the HTTP library answers by itself: a head without a body, and without the header that all answers of
+/// this server have.
 fn bare_error(head: &[u8]) -> Option<StatusCode> {
     let status = head.strip_prefix(b"HTTP/1.1 ").or_else(|| head.strip_prefix(b"HTTP/1.0 "))?.get(..3)?;
     let status = StatusCode::from_bytes(status).ok().filter(StatusCode::is_client_error)?;
@@ -116,8 +116,7 @@ fn bare_error(head: &[u8]) -> Option<StatusCode> {
     is_bare.then_some(status)
 }
 
-/// The whole answer, head and body, that says what the bare error only hints at. `error` is why the library has ended the
-/// connection.
+/// The full answer, head and body, in place of a bare error. `error` is the reason why the library has ended the connection.
 pub(crate) fn full_error_response(status: StatusCode, error: &hyper::Error) -> Vec<u8> {
     let problem = match status {
         _ if error.to_string() == UNKNOWN_CODING => transfer::not_implemented(None),

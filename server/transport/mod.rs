@@ -1,6 +1,4 @@
-//! Connections: accepting them, bounding them, and letting them finish when the server stops.
-//!
-//! Not here: what is answered on them.
+//! Connections: accepts them, bounds them, and lets them finish when the server stops.
 
 mod connection_slots;
 
@@ -36,14 +34,14 @@ use client_socket::{ClientSocket, until_client_leaves};
 use guarded_stream::{GuardedStream, full_error_response};
 use request_body::RequestBody;
 
-/// Serves until `stop`, then waits for the answers under way, but not for ever.
+/// Serves until `stop`, then waits for unfinished answers for a bounded time.
 pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop: impl Future<Output = ()>) {
     let slots = ConnectionSlots::new(limits.connections);
     let (closing, _) = watch::channel(false);
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new())
         .header_read_timeout(limits.head_time)
-        // Whether a client that has closed its sending half is still there is found out here.
+        // `client_socket` finds out whether a client that has closed its sending half is still there.
         .half_close(true)
         .max_buf_size(limits::HEAD_BYTES)
         .max_headers(limits::HEADERS);
@@ -90,7 +88,7 @@ pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop:
                     until_client_leaves(connection.as_mut(), &client).await
                 }
             };
-            // Another error is a client that left or broke the protocol; it has been told what can be told.
+            // Any other error is a client that has gone or broken the protocol; it has got what answer there is.
             if let (Some(Err(error)), Some(status)) = (ended, client.bare_error()) {
                 client.send_last(&full_error_response(status, &error), stall_time).await;
             }
@@ -101,12 +99,12 @@ pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop:
     let _ = timeout(limits.shutdown_time, slots.all_free()).await;
 }
 
-/// Raises how many files the process may open as far as it may, and lowers the numbers of connections and of live runs to what
-/// then fits. Whether it has lowered them.
+/// Raises the limit of open files as far as possible, and lowers the numbers of connections and live runs to fit it. Returns true
+/// if it has lowered them.
 pub fn fit_open_files(limits: &mut Limits) -> bool {
     let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
     let raised = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum }).is_ok();
-    // None is no limit.
+    // None means no limit.
     let files = if raised { maximum } else { current };
     files.and_then(|files| usize::try_from(files).ok()).is_some_and(|files| fit(limits, files))
 }
@@ -116,7 +114,7 @@ fn fit(limits: &mut Limits, files: usize) -> bool {
     if limits.connections + limits.live_sessions <= files {
         return false;
     }
-    // Who has few has some of both.
+    // With few files, there are some for both.
     let live_runs = files.saturating_sub(limits.connections).max(files / 4);
     limits.live_sessions = limits.live_sessions.min(live_runs).max(1);
     limits.connections = limits.connections.min(files.saturating_sub(limits.live_sessions)).max(1);
@@ -127,13 +125,13 @@ async fn accept(listener: &TcpListener) -> (TcpStream, SocketAddr) {
     loop {
         match listener.accept().await {
             Ok((socket, from)) => {
-                // Small messages of live runs go out at once. It fails only on a connection that is gone already.
+                // Sends the small messages of live runs at once. It fails only on a closed connection.
                 let _ = socket.set_nodelay(true);
                 return (socket, from);
             }
             Err(error) if is_of_one_connection(&error) => {}
             Err(error) => {
-                // Out of file descriptors or memory: trying again at once would only burn a core.
+                // Out of file descriptors or memory: an immediate retry would only load a core.
                 tracing::error!("cannot accept a connection: {error}");
                 sleep(Duration::from_millis(200)).await;
             }
@@ -186,7 +184,7 @@ mod tests {
             let mut socket = TcpStream::connect(address).await.unwrap();
             socket.write_all(request.as_bytes()).await.unwrap();
             let mut answer = String::new();
-            // A server that closes with bytes unread resets the connection; what it said before has arrived.
+            // A server that closes with unread bytes resets the connection, but the client has its answer by then.
             let _ = socket.read_to_string(&mut answer).await;
             let (head, body) = answer.split_once("\r\n\r\n").unwrap();
             assert!(head.starts_with(&format!("HTTP/1.1 {status} ")), "{head}");

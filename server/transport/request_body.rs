@@ -1,4 +1,4 @@
-//! A request's body that says when it waits for its client.
+//! The body of a request. It notes when the server waits for the client to send it.
 
 use std::pin::Pin;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use hyper::body::Incoming;
 
 use crate::transport::connection_slots::ConnectionSlot;
 
-/// A body that arrives over a connection with this place.
+/// A body that arrives over the connection of this slot.
 pub(crate) struct RequestBody {
     body: Incoming,
     slot: Arc<ConnectionSlot>,

@@ -1,4 +1,4 @@
-//! `/openapi.yaml` as it was written, and `/openapi.json`, the same for programs.
+//! `/openapi.yaml`, the contract as it was written, and `/openapi.json`, the same for programs.
 
 use std::sync::LazyLock;
 
@@ -16,7 +16,7 @@ static JSON: LazyLock<StaticAsset> = LazyLock::new(|| {
     StaticAsset::new("application/json", include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json")).as_slice())
 });
 
-/// The two of them.
+/// Both paths.
 pub fn routes() -> Router<App> {
     Router::new()
         .route("/openapi.yaml", get(async |headers: HeaderMap| YAML.answer(&headers)))

@@ -1,4 +1,4 @@
-//! Everything that the server counts, and its texts for Prometheus.
+//! Metrics of the server, and their texts for Prometheus.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -16,21 +16,21 @@ use prometheus_client::registry::Registry;
 use crate::BUILD;
 use crate::compute::Pool;
 
-/// Everything that is counted.
+/// All metrics.
 #[derive(Debug)]
 pub struct Metrics {
     registry: Registry,
     requests: Family<RequestLabels, Counter>,
     durations: Family<RouteLabels, Histogram, fn() -> Histogram>,
-    /// Bounces computed for answers and live runs. Whoever computes them counts them.
+    /// Bounces computed for answers and live runs.
     pub bounces: Counter,
-    /// Live runs at the moment (`compute::GaugeGuard` keeps it).
+    /// Open live runs (`compute::GaugeGuard` counts them).
     pub live_sessions: Gauge,
-    /// How late live runs look for the impacts that are due, s.
+    /// Delay of live runs behind their due impacts, s.
     pub live_lags: Histogram,
 }
 
-/// From 0.1 ms, what a small request takes, to 10 s, what none should.
+/// From 0.1 ms, the time of a small request, to 10 s, longer than any should take.
 const BUCKETS_S: [f64; 11] = [1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
@@ -47,7 +47,7 @@ struct RouteLabels {
 }
 
 impl Metrics {
-    /// Nothing counted yet. The load of `pool` is among what is shown.
+    /// Metrics without counts. The load of `pool` is among them.
     pub fn new(pool: &Pool) -> Self {
         let durations: Family<RouteLabels, Histogram, fn() -> Histogram> =
             Family::new_with_constructor(|| Histogram::new(BUCKETS_S));
@@ -65,7 +65,7 @@ impl Metrics {
         Self { registry, requests, durations, bounces, live_sessions, live_lags }
     }
 
-    /// Counts one answered request. `route` is the template, not the path: clients do not choose how many there are.
+    /// Counts one answered request. `route` is the template and not the path, so clients cannot make up labels.
     pub fn record(&self, method: &str, route: &str, status: u16, duration: Duration) {
         let method = match method {
             "GET" | "HEAD" | "POST" | "PUT" | "PATCH" | "DELETE" | "OPTIONS" => method,
@@ -76,10 +76,10 @@ impl Metrics {
         self.requests.get_or_create(&RequestLabels { method: labels.method, route: labels.route, status }).inc();
     }
 
-    /// All of it as OpenMetrics.
+    /// All metrics as OpenMetrics.
     ///
     /// # Errors
-    /// Those of the encoder.
+    /// The encoder fails.
     pub fn to_open_metrics(&self) -> Result<String, fmt::Error> {
         let mut text = String::new();
         encode(&mut text, &self.registry)?;
@@ -87,8 +87,8 @@ impl Metrics {
     }
 }
 
-/// OpenMetrics as the older text that every other collector reads: there a family has the name of its samples, an info is
-/// a gauge, and the end is not marked.
+/// Turns OpenMetrics into the older Prometheus text: a family is named like its samples, an info is a gauge, and there is no end
+/// mark.
 pub(crate) fn plain(open_metrics: &str) -> String {
     let families = open_metrics.lines().filter_map(|line| line.strip_prefix("# TYPE ")?.split_once(' '));
     let families: BTreeMap<&str, &str> = families.collect();

@@ -1,4 +1,4 @@
-//! Resources for whoever runs the server: health, metrics, the contract, and the page.
+//! Resources for operators: health, metrics, the contract and the page.
 
 pub mod contract;
 pub mod health;

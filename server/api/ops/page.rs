@@ -1,5 +1,5 @@
-//! The page and its files, embedded: `web/index.html` is `/`, `web/docs/index.html` is `/docs`,
-//! `web/embed/index.html` is `/embed/` and the name of a panel, others are by name.
+//! The page and its files, embedded: `web/index.html` is `/`, `web/docs/index.html` is `/docs`, `web/embed/index.html` is `/embed/`
+//! with the name of a panel, and other files have their own names.
 
 use std::sync::Arc;
 
@@ -16,15 +16,14 @@ use crate::http::response::static_asset::StaticAsset;
 
 include!(concat!(env!("OUT_DIR"), "/assets.rs"));
 
-/// The page of one panel alone, under every name: its script says which there are.
+/// The page of one panel, under every name: its script knows the panels.
 const EMBED: &str = "embed/index.html";
 
-/// It may stand in a frame of any page: it shows what its address says, holds no secret and changes nothing. Its paths are
-/// relative to the page above it.
+/// The panel may stand in a frame of any page: it has no secret and changes nothing. Its paths are relative to the folder above.
 const EMBED_POLICY: HeaderValue =
     HeaderValue::from_static("default-src 'self'; base-uri 'self'; frame-ancestors *; object-src 'none'");
 
-/// One route for each file, so that a path is known or is not: nothing is looked up by what a client sends.
+/// One route for each file, so that no path of a client is looked up on disk.
 pub fn routes() -> Router<App> {
     let mut router = Router::new();
     for (name, bytes) in ASSETS.iter().copied() {

@@ -1,4 +1,4 @@
-//! `/metrics`: everything that the server counts, as Prometheus text.
+//! `/metrics`: all metrics as Prometheus text.
 
 use axum::Router;
 use axum::extract::State;

@@ -1,5 +1,5 @@
-//! What a client asks: the fields of a request, from the query of a GET or the JSON body of a POST, and how it wants
-//! the answer. Both kinds give the same tree, so nothing behind this tells one from the other.
+//! A request to the API: the fields of a GET's query or of a POST's JSON body, and the wanted format. Both give the same tree of
+//! fields.
 
 use axum::extract::{FromRef, FromRequest, Request};
 use axum::http::{Extensions, HeaderMap, Method};
@@ -15,31 +15,30 @@ use crate::http::request::{json, query};
 use crate::limits;
 use crate::limits::Limits;
 
-/// A request for something computed. As an extractor it takes the body, so it stands last.
+/// A request for something computed. As an extractor it takes the body, so it comes last.
 #[derive(Debug, Clone)]
 pub struct ApiRequest {
-    /// The fields of the JSON body, or of the body that the query is equivalent to. `format` is not among them.
+    /// Fields of the JSON body, or of the body that the query stands for, without `format`.
     pub fields: Map<String, Value>,
-    /// Whether leaves are JSON or text.
+    /// Source of the values: JSON or the text of a query.
     pub source: Source,
-    /// The request's headers.
+    /// Headers of the request.
     pub headers: HeaderMap,
-    /// Who asks.
+    /// The client.
     pub peer: Peer,
-    /// What `?format=` says.
+    /// The value of `?format=`.
     pub(crate) format: Option<String>,
 }
 
 impl ApiRequest {
-    /// A reader of all fields, which gathers what is wrong in `errors`.
+    /// A reader of all fields, which gathers errors in `errors`.
     pub fn reader<'v, 'e>(&'v self, errors: &'e mut Errors) -> Reader<'v, 'e> {
         Reader::new(&self.fields, String::new(), self.source, errors)
     }
 
-    /// Reads all fields at once: what `read` makes of them, or a 422 with everything that is wrong.
+    /// Reads all fields with `read`; a 422 has all errors.
     ///
-    /// `read` has to ask for every field it knows before it gives up on one, or that one counts as unknown. Where it
-    /// gives nothing it has said why.
+    /// `read` must ask for every field that it knows, or the others count as unknown. If it returns None, it has recorded an error.
     pub fn read<'v, T>(&'v self, read: impl FnOnce(&mut Reader<'v, '_>) -> Option<T>) -> Result<T, Problem> {
         let mut errors = Errors::default();
         let mut reader = self.reader(&mut errors);
@@ -89,12 +88,12 @@ where
     }
 }
 
-/// Who asks, as far as it was found out; nobody where a test has no socket.
+/// The client of a request; [`Peer::NOBODY`] in a test without a socket.
 pub fn peer(extensions: &Extensions) -> Peer {
     extensions.get().copied().unwrap_or(Peer::NOBODY)
 }
 
-/// The one parameter that is about the answer and not part of the request, and all others.
+/// Separates `format` from all other parameters: it is about the answer and not part of the request.
 #[expect(clippy::type_complexity, reason = "named parts, used twice, right above")]
 fn split_format(query: &str) -> Result<(Option<String>, Vec<(String, String)>), Problem> {
     let (formats, others): (Vec<_>, Vec<_>) =

@@ -1,4 +1,4 @@
-//! What the body of a request may be: its media type, its size, and the time it takes to arrive.
+//! The body of a request: its media type, its size, and the time it takes to arrive.
 
 use axum::body::{Body, Bytes, to_bytes};
 use axum::http::{HeaderMap, header};
@@ -8,7 +8,7 @@ use tokio::time::timeout;
 use crate::http::problem::{Problem, shortened};
 use crate::limits::Limits;
 
-/// A type of bodies that are read.
+/// A media type that is read.
 pub(crate) struct MediaType {
     name: &'static str,
     is: fn(&str) -> bool,
@@ -20,14 +20,14 @@ pub(crate) const JSON: MediaType = MediaType {
     is: |essence| essence == "application/json" || (essence.starts_with("application/") && essence.ends_with("+json")),
 };
 
-/// Many, one a line.
+/// Many requests, one on each line.
 pub(crate) const NDJSON: MediaType = MediaType {
     name: "application/x-ndjson",
     is: |essence| matches!(essence, "application/x-ndjson" | "application/ndjson" | "application/jsonl"),
 };
 
 impl MediaType {
-    /// 415 if a body with these headers is of another type, not in UTF-8, or compressed.
+    /// Refuses a body of another type, not in UTF-8, or compressed: 415.
     pub(crate) fn check(&self, headers: &HeaderMap) -> Result<(), Problem> {
         let refused = |detail: String| Err(Problem::unsupported_media_type(self.name, detail));
         let text = |name| headers.get(name).map(|value| value.to_str().unwrap_or("not text"));

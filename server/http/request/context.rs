@@ -1,4 +1,4 @@
-//! What is known of the request under way wherever in its task it is answered: its id, and where clients see this server.
+//! The context of the request that the current task answers: its id, and the base path that clients see.
 
 use std::sync::Arc;
 use std::sync::LazyLock;
@@ -9,24 +9,24 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue};
 
 use crate::limits;
 
-/// The header that a request's id is taken from and given back in.
+/// The header of the request id, in requests and answers.
 pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
 tokio::task_local! {
     static CURRENT: RequestContext;
 }
 
-/// What an answer, and above all a problem, has to know of its request.
+/// The context of a request, which problems show.
 #[derive(Debug, Clone)]
 pub struct RequestContext {
-    /// Its id: letters, digits and `-._`.
+    /// Id of the request: letters, digits and `-._`.
     pub id: Arc<str>,
-    /// What stands before every path, as clients see it.
+    /// Path in front of every other path, as clients see it.
     pub base: Arc<str>,
 }
 
 impl RequestContext {
-    /// Of a request with these headers: the id that a proxy or the client chose, or one of its own.
+    /// The context of a request with these headers. The id is the one that a proxy or the client chose, or a new one.
     pub fn new(headers: &HeaderMap, base: Arc<str>) -> Self {
         let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._".contains(&byte);
         let is_fine = |id: &&str| (1..=limits::REQUEST_ID_BYTES).contains(&id.len()) && id.bytes().all(is_plain);
@@ -34,23 +34,23 @@ impl RequestContext {
         Self { id: chosen.map_or_else(fresh, Arc::from), base }
     }
 
-    /// Answers the request with `future`, in which it is known.
+    /// Runs `future` in this context.
     pub async fn scope<T>(self, future: impl Future<Output = T>) -> T {
         CURRENT.scope(self, future).await
     }
 
-    /// The one that this task answers, if any.
+    /// The context of the current task, if it answers a request.
     pub fn current() -> Option<Self> {
         CURRENT.try_with(Clone::clone).ok()
     }
 
-    /// The id as a header.
+    /// The id as the value of a header.
     pub fn header(&self) -> HeaderValue {
         HeaderValue::from_str(&self.id).expect("an id is letters, digits and -._")
     }
 }
 
-/// An id that no other request to this process has, and hardly one to another.
+/// A new id. It is unique in this process, and very probably elsewhere.
 fn fresh() -> Arc<str> {
     static COUNT: AtomicU64 = AtomicU64::new(1);
     static PROCESS: LazyLock<u64> = LazyLock::new(|| {

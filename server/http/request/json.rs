@@ -1,5 +1,5 @@
-//! Reads a JSON body strictly: depth and names are bounded, a key that comes twice is an error rather than a silent choice, and a
-//! number too large for double precision is an error with its place rather than a broken body.
+//! Reads a JSON body strictly: depth and length of names are bounded, and a duplicate key or a number too large for double
+//! precision is an error with its pointer.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use crate::http::problem::{Problem, shortened};
 use crate::http::request::reader::{Errors, join};
 use crate::limits;
 
-/// The fields of a body: 400 if it is not JSON, 422 if it is not an object or is ambiguous.
+/// Returns the fields of a body: 400 if it is not JSON, 422 if it is not an object or is ambiguous.
 pub fn object(body: &[u8]) -> Result<Map<String, Value>, Problem> {
     if body.trim_ascii().is_empty() {
         return Err(Problem::not_readable("the body is empty; it must be a JSON object"));
@@ -29,7 +29,7 @@ pub fn object(body: &[u8]) -> Result<Map<String, Value>, Problem> {
             state.pointer(),
             format!("the body is nested more than {} levels deep", limits::DEPTH),
         )),
-        // The one error of the parser's that is about a value and not about the grammar; it has no category of its own.
+        // The only parser error about a value rather than the grammar. It has no category of its own.
         Err(error) if error.to_string().starts_with("number out of range") => Err(Problem::invalid_at(
             state.pointer(),
             format!("the number at line {} column {} is not finite in double precision", error.line(), error.column()),
@@ -38,7 +38,7 @@ pub fn object(body: &[u8]) -> Result<Map<String, Value>, Problem> {
     }
 }
 
-/// Where the reading is, and what it has found wrong.
+/// Position in the body, and the errors so far.
 #[derive(Default)]
 struct ParseState {
     path: Vec<String>,
@@ -51,7 +51,7 @@ impl ParseState {
         self.path.iter().fold(String::new(), |pointer, name| join(&pointer, name))
     }
 
-    /// Goes down one level. On an error the path stays where it was found.
+    /// Reads one level deeper. After an error the path stays at its place.
     fn within<T, E: Error>(&mut self, name: String, read: impl FnOnce(&mut Self) -> Result<T, E>) -> Result<T, E> {
         self.path.push(name);
         if self.path.len() > limits::DEPTH {
@@ -199,7 +199,7 @@ mod tests {
         assert_eq!((status, pointer.as_str()), (422, "/scene"));
         assert!(detail.ends_with("…\" has 258 bytes; a name has at most 256"), "{detail}");
         assert!(object(named(limits::NAME_BYTES).replace("1e999", "1").as_bytes()).is_ok());
-        // However many errors there are below it, the answer is no longer for it.
+        // The length of the answer does not grow with the number of errors below the name.
         let twice = format!("{{\"{}\": {{{}}}}}", "x".repeat(100_000), vec!["\"a\": 1"; 100].join(","));
         assert!(object(twice.as_bytes()).unwrap_err().to_json().len() < 1000);
     }

@@ -1,4 +1,4 @@
-//! A request as it is read: fields of a query or a JSON body, with everything that is wrong.
+//! Requests: reading the fields of a query or a JSON body, with all errors.
 
 pub mod api_request;
 pub mod body;

@@ -1,4 +1,4 @@
-//! Many requests in one body, one JSON object a line (NDJSON).
+//! Batches: many requests in one body, one JSON object on each line (NDJSON).
 
 use axum::body::Bytes;
 use axum::extract::{FromRef, FromRequest, Request};
@@ -11,16 +11,16 @@ use crate::http::request::body;
 use crate::http::request::body::NDJSON;
 use crate::limits::Limits;
 
-/// The requests. As an extractor it takes the body, so it stands last.
+/// A batch of requests. As an extractor it takes the body, so it comes last.
 #[derive(Debug)]
 pub struct NdjsonBatch {
-    /// What is asked of the answer to all of them; without fields.
+    /// Format and headers for the answer to the batch; it has no fields.
     pub request: ApiRequest,
     body: Bytes,
 }
 
 impl NdjsonBatch {
-    /// The lines that are not blank, with their numbers from 1 on.
+    /// The requests on lines that are not blank.
     pub fn into_items(self) -> impl Iterator<Item = BatchItem> + Send {
         let mut rest = Some(self.body);
         let lines = std::iter::from_fn(move || {
@@ -37,17 +37,17 @@ impl NdjsonBatch {
     }
 }
 
-/// One of them.
+/// One request of a batch.
 #[derive(Debug)]
 pub struct BatchItem {
-    /// Which line of the body it is, from 1 on.
+    /// Number of the line in the body, from 1.
     pub number: usize,
     body: Bytes,
     peer: Peer,
 }
 
 impl BatchItem {
-    /// The request that it is, as if it had been posted alone.
+    /// The request, as if it had been posted alone.
     pub fn request(&self) -> Result<ApiRequest, Problem> {
         ApiRequest::from_body("", &self.body, HeaderMap::new(), self.peer)
     }

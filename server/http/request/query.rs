@@ -1,6 +1,6 @@
-//! Unfolds a dotted query into the JSON tree it is equivalent to: `a.b=1&c.0=2` is `{"a": {"b": "1"}, "c": ["2"]}`.
+//! Unfolds a dotted query into a JSON tree: `a.b=1&c.0=2` becomes `{"a": {"b": "1"}, "c": ["2"]}`.
 //!
-//! Every leaf is text; what it means is for the schema to say (`scalar`). An array is written by its indices, 0 and up.
+//! Every value is text; `scalar` reads it as the schema asks. Arrays are written by indices from 0.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::http::problem::{Problem, shortened};
 use crate::http::request::reader::{Errors, join};
 use crate::limits;
 
-/// The decoded names and values of a query, in order. 400 if it is not properly encoded.
+/// Decoded names and values of a query, in their order. 400 if the encoding is not valid.
 pub fn parameters(query: &str) -> Result<Vec<(String, String)>, Problem> {
     let broken = query.split('%').skip(1).find(|rest| {
         let digits = rest.as_bytes().get(..2);
@@ -32,7 +32,7 @@ pub fn parameters(query: &str) -> Result<Vec<(String, String)>, Problem> {
     Ok(parameters)
 }
 
-/// The JSON tree of dotted parameters. 422 if they contradict each other.
+/// JSON tree of dotted parameters. 422 if they contradict each other.
 pub fn unfold(parameters: Vec<(String, String)>) -> Result<Map<String, Value>, Problem> {
     let mut errors = Errors::default();
     let mut root = BTreeMap::new();
@@ -102,7 +102,7 @@ impl Node {
         }
         let mut fields = fields;
         let count = fields.len();
-        // Taken out by index: the map is sorted as text, 10 before 2. What is left over shows a hole or a name.
+        // Removed by index, since the map is sorted as text (10 before 2). The rest shows a missing index or a name.
         let items: Vec<Value> = (0..count)
             .map_while(|index| fields.remove(&index.to_string()).map(|node| (index, node)))
             .map(|(index, node)| node.into_value(&format!("{pointer}/{index}"), errors))

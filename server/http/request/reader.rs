@@ -1,7 +1,7 @@
-//! Reads the fields of one JSON object by name, and gathers everything that is wrong instead of stopping at the first.
+//! Reads the fields of one JSON object by name, and gathers all errors instead of stopping at the first.
 //!
-//! A getter answers `None` both for an absent field and for a wrong one; the wrong one is in the errors, so that
-//! `.unwrap_or(default)` is safe as long as the errors are looked at before anything is done. `null` is absent.
+//! A getter returns None both for an absent field and for a wrong one, whose error is recorded. So `.unwrap_or(default)` is safe as
+//! long as the errors are checked before the value is used. `null` is absent.
 
 use std::ops::RangeInclusive;
 
@@ -12,35 +12,35 @@ use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
 use crate::limits;
 
-/// Everything found wrong with a request so far.
+/// Errors of a request so far.
 #[derive(Debug, Default)]
 pub struct Errors(Vec<FieldError>);
 
 impl Errors {
-    /// Adds one; beyond the limit they are dropped, since the first of them say enough.
+    /// Adds an error. Errors beyond the limit are dropped.
     pub fn push(&mut self, pointer: impl Into<String>, detail: impl Into<String>) {
         if self.0.len() < limits::ERRORS {
             self.0.push(FieldError { pointer: pointer.into(), detail: detail.into() });
         }
     }
 
-    /// How many there are.
+    /// Number of errors.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether nothing is wrong.
+    /// Tells whether there are no errors.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// A 422 with all of them, or nothing if there are none.
+    /// Returns a 422 with all errors, if there are any.
     pub fn into_result(self) -> Result<(), Problem> {
         if self.0.is_empty() { Ok(()) } else { Err(Problem::invalid(self.0)) }
     }
 }
 
-/// One object of a request, at its JSON pointer. `finish` it, or unknown fields go unnoticed.
+/// One object of a request, at its JSON pointer. Call `finish`, or unknown fields stay unnoticed.
 #[must_use = "call `finish`, which reports unknown fields"]
 #[derive(Debug)]
 pub struct Reader<'v, 'e> {
@@ -52,27 +52,27 @@ pub struct Reader<'v, 'e> {
 }
 
 impl<'v, 'e> Reader<'v, 'e> {
-    /// Reads `fields`, which stand at `pointer` in the request.
+    /// A reader of `fields`, which are at `pointer` in the request.
     pub fn new(fields: &'v Map<String, Value>, pointer: String, source: Source, errors: &'e mut Errors) -> Self {
         Self { fields, pointer, source, known: Vec::new(), errors }
     }
 
-    /// Where this object stands in the request.
+    /// Pointer of this object in the request.
     pub fn pointer(&self) -> &str {
         &self.pointer
     }
 
-    /// Where a field of this object stands in the request.
+    /// Pointer of a field of this object in the request.
     pub fn pointer_to(&self, name: &str) -> String {
         join(&self.pointer, name)
     }
 
-    /// Whether the values are JSON or text of a query.
+    /// Source of the values: JSON or a query.
     pub fn source(&self) -> Source {
         self.source
     }
 
-    /// The errors, for a reader of another kind that walks a value of this one.
+    /// The errors, for other readers of the same request.
     pub fn errors(&mut self) -> &mut Errors {
         self.errors
     }
@@ -83,12 +83,12 @@ impl<'v, 'e> Reader<'v, 'e> {
         self.errors.push(pointer, detail);
     }
 
-    /// Records an error of the object itself.
+    /// Records an error of the whole object.
     pub fn refuse_whole(&mut self, detail: impl Into<String>) {
         self.errors.push(self.pointer.clone(), detail);
     }
 
-    /// The field as it was sent. From here on its name is known.
+    /// The field as it was sent. Its name is known from here on.
     pub fn value(&mut self, name: &'v str) -> Option<&'v Value> {
         if !self.known.contains(&name) {
             self.known.push(name);
@@ -96,7 +96,7 @@ impl<'v, 'e> Reader<'v, 'e> {
         self.fields.get(name).filter(|value| !value.is_null())
     }
 
-    /// Whether the field is there. From here on its name is known.
+    /// Tells whether the field is there. Its name is known from here on.
     pub fn has(&mut self, name: &'v str) -> bool {
         self.value(name).is_some()
     }
@@ -110,7 +110,7 @@ impl<'v, 'e> Reader<'v, 'e> {
         }
     }
 
-    /// The field, read by one of the functions of `leaf`, whose errors continue a sentence that begins with the name.
+    /// Reads the field with a function of `scalar`, whose error continues a sentence that begins with the name.
     pub fn read<T>(&mut self, name: &'v str, read: impl FnOnce(&'v Value, Source) -> Result<T, String>) -> Option<T> {
         let value = self.value(name)?;
         read(value, self.source).map_err(|error| self.refuse(name, format!("{name} {error}"))).ok()
@@ -126,7 +126,7 @@ impl<'v, 'e> Reader<'v, 'e> {
         self.read(name, |value, source| scalar::number_within(value, source, &range, unit))
     }
 
-    /// A yes or no.
+    /// A boolean.
     pub fn boolean(&mut self, name: &'v str) -> Option<bool> {
         self.read(name, scalar::boolean)
     }
@@ -136,12 +136,12 @@ impl<'v, 'e> Reader<'v, 'e> {
         self.read(name, |value, _| scalar::text(value))
     }
 
-    /// One of the words in `known`, answered with what stands beside it.
+    /// The meaning of one of the words in `known`.
     pub fn choice<T: Copy>(&mut self, name: &'v str, known: &[(&str, T)]) -> Option<T> {
         self.read(name, |value, _| scalar::choice(value, known))
     }
 
-    /// An object within this one, with errors to the same place. Finish it before reading on here.
+    /// A reader of an object within this one, with the same errors. Finish it before reading on here.
     pub fn object(&mut self, name: &'v str) -> Option<Reader<'v, '_>> {
         let fields = self.read(name, |value, _| {
             value.as_object().ok_or_else(|| format!("is {}; it must be an object", scalar::shown(value)))
@@ -149,7 +149,7 @@ impl<'v, 'e> Reader<'v, 'e> {
         Some(Reader::new(fields, self.pointer_to(name), self.source, self.errors))
     }
 
-    /// Like `object`, for what can be read at one go: calls `read` and finishes the reader.
+    /// Like `object`, if it can be read in one go: calls `read` and finishes the reader.
     pub fn within<T>(&mut self, name: &'v str, read: impl FnOnce(&mut Reader<'v, '_>) -> T) -> Option<T> {
         let mut reader = self.object(name)?;
         let value = read(&mut reader);
@@ -165,7 +165,7 @@ impl<'v, 'e> Reader<'v, 'e> {
         })
     }
 
-    /// Numbers with names: an object of some of them, or an array of all, in this order. What is not said stays as it is.
+    /// Numbers with names: an object of some of them, or an array of all in this order. Absent numbers are left unchanged.
     pub fn numbers(&mut self, name: &'v str, names: &[&'v str], range: &RangeInclusive<f64>, into: &mut [f64]) {
         if !self.fields.get(name).is_some_and(Value::is_array) {
             self.within(name, |reader| {
@@ -188,7 +188,7 @@ impl<'v, 'e> Reader<'v, 'e> {
         }
     }
 
-    /// An array of at most `limit` objects: calls `each` with a reader for every one, and finishes it.
+    /// An array of at most `limit` objects. Calls `each` with a reader for each, and finishes the reader.
     pub fn objects(&mut self, name: &'v str, limit: usize, mut each: impl FnMut(usize, &mut Reader<'v, '_>)) {
         for (index, item) in self.array(name, limit).unwrap_or_default().iter().enumerate() {
             let pointer = format!("{}/{index}", self.pointer_to(name));
@@ -206,7 +206,7 @@ impl<'v, 'e> Reader<'v, 'e> {
         }
     }
 
-    /// Reports the fields that nobody asked for, with the names of those there are.
+    /// Reports unknown fields, with the names of the known ones.
     pub fn finish(self) {
         for name in self.fields.keys().filter(|name| !self.known.contains(&name.as_str())) {
             let shown = crate::http::problem::shortened(name);

@@ -1,7 +1,7 @@
-//! Single values of a request: what counts as a number, a whole number, a yes or no, a text, and how an error says so.
+//! Single values of a request: numbers, whole numbers, booleans and texts, with the words of their errors.
 //!
-//! JSON says which kind a value is, and is held to it; in a query every value is text and is read as what the field
-//! asks for. Not here: names, pointers and nesting (`reader`).
+//! A JSON value must have the type of its field; the text of a query is read as that type. `reader` has names, pointers and
+//! nesting.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -10,16 +10,16 @@ use serde_json::Value;
 
 use crate::http::problem::shortened;
 
-/// Where a request's values come from.
+/// Source of the values of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
-    /// A JSON body: a value has to be of the kind that the field asks for.
+    /// A JSON body: a value must have the type of its field.
     Json,
-    /// A query: a value is text, read as the kind that the field asks for.
+    /// A query: a value is text, read as the type of its field.
     Query,
 }
 
-/// The largest whole number that every JSON reader keeps exactly, 2⁵³ − 1.
+/// Largest whole number that every JSON reader keeps exactly, 2⁵³ − 1.
 pub const LARGEST_EXACT: u64 = (1 << 53) - 1;
 
 /// A finite number. The error continues a sentence that begins with the field's name.
@@ -44,7 +44,7 @@ pub fn number(value: &Value, source: Source) -> Result<f64, String> {
     }
 }
 
-/// A finite number within `range`, whose `unit` (`"m"`; `""` or `"1"` for none) the error names.
+/// A finite number within `range`. The error names `unit`, such as `"m"`; `""` or `"1"` for none.
 pub fn number_within(value: &Value, source: Source, range: &RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     let wanted = || describe_range(range, unit);
     let number =
@@ -58,12 +58,12 @@ pub fn integer(value: &Value, source: Source, range: &RangeInclusive<u64>) -> Re
         format!("is {shown}; it must be a whole number from {} to {}", range.start(), range.end())
     };
     let number = number(value, source).map_err(|_| wrong(&shown(value)))?;
-    // A JSON 100.0 is the same number as 100. Beyond 2⁵³ a double no longer tells one whole number from the next.
+    // A JSON 100.0 is the same number as 100. Above 2⁵³ a double does not distinguish all whole numbers.
     let whole = number.fract() == 0.0 && (0.0..=LARGEST_EXACT as f64).contains(&number);
     if whole && range.contains(&(number as u64)) { Ok(number as u64) } else { Err(wrong(&number)) }
 }
 
-/// A yes or no.
+/// A boolean.
 pub fn boolean(value: &Value, source: Source) -> Result<bool, String> {
     match (value, source) {
         (Value::Bool(yes), Source::Json) => Ok(*yes),
@@ -73,12 +73,12 @@ pub fn boolean(value: &Value, source: Source) -> Result<bool, String> {
     }
 }
 
-/// A text. In a query everything is.
+/// A text. Every value of a query is one.
 pub fn text(value: &Value) -> Result<&str, String> {
     value.as_str().ok_or_else(|| format!("is {}; it must be text", shown(value)))
 }
 
-/// One of the words in `known`, answered with what stands beside it.
+/// The meaning of one of the words in `known`.
 pub fn choice<T: Copy>(value: &Value, known: &[(&str, T)]) -> Result<T, String> {
     let found = value.as_str().and_then(|text| known.iter().find(|(word, _)| *word == text));
     found.map(|(_, meaning)| *meaning).ok_or_else(|| {
@@ -105,7 +105,7 @@ pub fn one_of(words: &[&str]) -> String {
     }
 }
 
-/// A value in an error: as sent if it is short, by its kind if it is large.
+/// A value as an error shows it: as sent if it is short, by its type if it is large.
 pub fn shown(value: &Value) -> String {
     match value {
         Value::Array(items) => format!("an array of {} values", items.len()),

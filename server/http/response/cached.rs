@@ -1,6 +1,7 @@
-//! Answers to an `ApiRequest`: negotiated, tagged, computed only if the client does not have them, compressed if it likes.
+//! Answers to an [`ApiRequest`]: negotiated, with an entity tag, computed only if the client does not have them, and compressed on
+//! request.
 //!
-//! What a resource computes, and what it costs, is the route's to say.
+//! The resource decides what it computes and at which price.
 
 use axum::body::{Body, Bytes};
 use axum::http::{HeaderValue, Response, StatusCode, header};
@@ -17,20 +18,21 @@ use crate::http::response::negotiate::{Encoding, Format};
 use crate::http::response::streaming::{BodyWriter, stream_in_slices, stream_on_worker};
 use crate::{BUILD, limits};
 
-/// A resource as far as negotiation and entity tags go.
+/// A resource, as far as negotiation and entity tags need it.
 #[derive(Debug, Clone, Copy)]
 pub struct Resource {
-    /// Its name in the URL: `trajectories`.
+    /// Name in the URL, such as `trajectories`.
     pub name: &'static str,
-    /// What it can be written as; the first is the default.
+    /// Formats of the answer; the first is the default.
     pub formats: &'static [Format],
 }
 
 impl ApiRequest {
-    /// The answer of a pure resource: 304 if the client has it, else what `compute` writes, done by `pool` at `price`.
+    /// The answer of a pure resource: 304 if the client has it, else the bytes that `compute` returns, computed by `pool` at
+    /// `price`.
     ///
-    /// `canonical` is the request with all defaults filled in and in a fixed order: together with the build, the format
-    /// and the encoding it has to determine every byte of the answer.
+    /// `canonical` is the request with all defaults, in a fixed order. Together with build, format and encoding it must determine
+    /// every byte of the answer.
     pub async fn respond(
         &self,
         pool: &Pool,
@@ -49,7 +51,7 @@ impl ApiRequest {
         .await
     }
 
-    /// The same for long work, which `compute` does in turns. Formats that are in `streamed` are sent piece by piece.
+    /// The same for long work, which `compute` does in time slices. Formats in `streamed` are sent piece by piece.
     pub async fn respond_in_slices(
         &self,
         pool: &Pool,
@@ -65,7 +67,7 @@ impl ApiRequest {
         self.with_entity_tag(resource, (format, encoding), canonical, answer).await
     }
 
-    /// An answer under its entity tag, or a 304 without computing it.
+    /// An answer with its entity tag, or a 304 without computing it.
     async fn with_entity_tag(
         &self,
         resource: &Resource,
@@ -75,12 +77,12 @@ impl ApiRequest {
     ) -> Result<Response<Body>, Problem> {
         let parts = [resource.name, BUILD, format.name(), encoding.name()].map(str::as_bytes);
         let tag = EntityTag::of(&[parts[0], parts[1], parts[2], parts[3], canonical]);
-        // A query is a GET or a HEAD; on POST the precondition has no such meaning.
+        // A query means GET or HEAD. On POST the precondition has no such meaning.
         let held = if self.source == Source::Query { tag.if_none_match(&self.headers) } else { IfNoneMatch::NoMatch };
         let mut response =
             if held == IfNoneMatch::Match { status_only(StatusCode::NOT_MODIFIED) } else { answer.await? };
         if held == IfNoneMatch::Any {
-            // That there is one at all is known only now.
+            // Only now is it known that there is an answer.
             response = status_only(StatusCode::NOT_MODIFIED);
         }
         response.headers_mut().insert(header::ETAG, tag.header());
@@ -88,8 +90,8 @@ impl ApiRequest {
         Ok(response)
     }
 
-    /// The answer of a resource that measures something: never kept, no entity tag, because the next one is different.
-    /// Formats that are in `streamed` are sent piece by piece.
+    /// The answer of a measurement: `no-store` and without an entity tag, because the next one differs. Formats in `streamed` are
+    /// sent piece by piece.
     pub async fn respond_uncached(
         &self,
         pool: &Pool,
@@ -105,13 +107,13 @@ impl ApiRequest {
         Ok(response)
     }
 
-    /// An answer that is made while it is sent, and not compressed.
+    /// An answer that is sent while it is made. It is not compressed.
     pub fn respond_stream(&self, resource: &Resource, pieces: Body) -> Result<Response<Body>, Problem> {
         let (format, _) = self.negotiate(resource)?;
         Ok(ok(format.media_type(), Encoding::Identity, pieces))
     }
 
-    /// 406 if the client takes the resource in none of its formats.
+    /// Refuses a client that accepts none of the resource's formats: 406.
     pub fn accepts(&self, resource: &Resource) -> Result<(), Problem> {
         self.negotiate(resource).map(drop)
     }
@@ -130,7 +132,7 @@ async fn compute_whole(
     price: Price,
     compute: impl FnOnce(Format, &TimeSlice) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
-    // Compression is part of the work: it takes as long as computing, and ends with it when the client goes away.
+    // Compression is part of the work: it takes as long as computing, and is cancelled with it.
     let work = move |slice: &TimeSlice| {
         let bytes = compute(format, slice)?;
         Ok::<_, Problem>(if encoding == Encoding::Gzip { gzip::gzip(&bytes, slice)? } else { bytes })
@@ -139,7 +141,7 @@ async fn compute_whole(
     Ok(ok(format.media_type(), encoding, Bytes::from_owner(pool.hold(bytes))))
 }
 
-/// The price of an answer in this format: drawing is work of its own, and so are pixels.
+/// The price of an answer in this format. Drawing and pixels cost extra.
 fn with_drawing(price: Price, format: Format) -> Price {
     match format {
         Format::Svg => price.and(Price::bounces(limits::SVG_PRICE)),

@@ -1,27 +1,27 @@
-//! Strong entity tags, known before anything is computed, and `If-None-Match` (RFC 9110, section 13.1.2).
+//! Strong entity tags, known before the answer is computed, and `If-None-Match` (RFC 9110, section 13.1.2).
 
 use axum::http::{HeaderMap, HeaderValue, header};
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::http::response::negotiate::list;
 
-/// An entity tag with its quotes. Two answers with different bytes never share one, short of a collision in 128 bits.
+/// An entity tag with its quotes. Answers with different bytes have different tags, short of a collision in 128 bits.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EntityTag(String);
 
-/// What of a resource a client says it has.
+/// Result of `If-None-Match` for an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IfNoneMatch {
-    /// What is asked for.
+    /// The client has this answer.
     Match,
-    /// Whatever there is of it, if there is anything.
+    /// The client has some answer (`*`).
     Any,
-    /// Nothing, or something else.
+    /// The client has no answer, or another one.
     NoMatch,
 }
 
 impl EntityTag {
-    /// The tag of everything that determines an answer's bytes. The parts are told apart by their lengths.
+    /// The tag of everything that determines the bytes of an answer. Lengths separate the parts.
     pub fn of(parts: &[&[u8]]) -> Self {
         let mut hash = Xxh3::new();
         for part in parts {
@@ -31,15 +31,15 @@ impl EntityTag {
         Self(format!("\"{:032x}\"", hash.digest128()))
     }
 
-    /// As in the header of that name.
+    /// The tag as the value of `ETag`.
     pub fn header(&self) -> HeaderValue {
         HeaderValue::from_str(&self.0).expect("hexadecimal digits in quotes")
     }
 
-    /// Whether the client has it already: `If-None-Match` lists it (compared weakly, as on GET) or is `*`.
+    /// Compares the tag with `If-None-Match`, weakly as on GET.
     pub fn if_none_match(&self, headers: &HeaderMap) -> IfNoneMatch {
         let listed = list(headers, &header::IF_NONE_MATCH);
-        // Our own tags have no comma, so splitting a foreign one that has does no harm.
+        // The server's own tags have no comma, so splitting another's does no harm.
         let mut tags = listed.split(',').map(str::trim);
         match tags.find(|tag| *tag == "*" || tag.strip_prefix("W/").unwrap_or(tag) == self.0) {
             Some("*") => IfNoneMatch::Any,

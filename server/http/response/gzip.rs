@@ -1,4 +1,4 @@
-//! Compresses answers. Always the same bytes for the same input: one algorithm in plain Rust, one level.
+//! Compresses answers. Equal input gives equal bytes: one algorithm in plain Rust at one level.
 
 use std::io::Write;
 
@@ -8,32 +8,32 @@ use flate2::write::GzEncoder;
 use crate::compute::{Cancelled, TimeSlice};
 use crate::limits;
 
-/// Fast rather than small: digits of doubles hardly shrink more.
+/// Fast rather than small: digits of doubles hardly get smaller at higher levels.
 const FAST: Compression = Compression::new(1);
 
-/// Compresses an answer that was computed for one request.
+/// Compresses an answer to one request.
 pub fn gzip(bytes: &[u8], slice: &TimeSlice) -> Result<Vec<u8>, Cancelled> {
     compress(bytes, FAST, slice)
 }
 
-/// Compresses what is sent many times, as well as it goes.
+/// Compresses bytes that are sent many times, as small as possible.
 pub fn gzip_best(bytes: &[u8]) -> Vec<u8> {
     compress(bytes, Compression::best(), &TimeSlice::unbounded()).expect("nobody cancels it")
 }
 
 fn compress(bytes: &[u8], level: Compression, slice: &TimeSlice) -> Result<Vec<u8>, Cancelled> {
-    // No time, no name and no system in the header, so that equal answers are equal bytes.
+    // The header has no time, name or system, so that equal answers are equal bytes.
     let mut encoder = GzEncoder::new(Vec::with_capacity(bytes.len() / 2), level);
     feed(&mut encoder, bytes, slice)?;
     Ok(encoder.finish().expect("a vector takes all bytes"))
 }
 
-/// Compresses what comes piece by piece as `gzip` does.
+/// An encoder for pieces, at the level of `gzip`.
 pub(crate) fn encoder() -> GzEncoder<Vec<u8>> {
     GzEncoder::new(Vec::new(), FAST)
 }
 
-/// Compresses a large piece, as long as somebody waits for it.
+/// Compresses a large piece, with checks for cancellation.
 pub(crate) fn feed(encoder: &mut GzEncoder<Vec<u8>>, bytes: &[u8], slice: &TimeSlice) -> Result<(), Cancelled> {
     for step in bytes.chunks(limits::GZIP_STEP_BYTES) {
         slice.check()?;

@@ -1,4 +1,4 @@
-//! Answers: negotiated, tagged, compressed, whole or streamed.
+//! Responses: negotiated, tagged, compressed, whole or streamed.
 
 pub(crate) mod builder;
 pub mod cached;

@@ -1,12 +1,12 @@
-//! Which format and which content encoding an answer has (RFC 9110, section 12).
+//! Negotiation of format and content encoding (RFC 9110, section 12).
 //!
-//! `?format=` outranks `Accept`. JSON is the default, so also for `*/*` and for lists that name nothing else there is.
+//! `?format=` outranks `Accept`. JSON is the default, also for `*/*` and for lists without any format of the resource.
 
 use axum::http::{HeaderMap, HeaderName, header};
 
 use crate::http::problem::{Problem, shortened};
 
-/// What an answer can be written as.
+/// Format of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Format {
     /// One JSON object.
@@ -15,11 +15,11 @@ pub enum Format {
     Csv,
     /// One JSON object per line.
     Ndjson,
-    /// The same, of how far the work is, and last of all the answer. Only `?format=` asks for it.
+    /// NDJSON with the progress of the work, and the answer last. Only `?format=` asks for it.
     Progress,
-    /// A picture in vectors.
+    /// A vector picture.
     Svg,
-    /// A picture in pixels.
+    /// A pixel picture.
     Png,
     /// Server-Sent Events.
     Events,
@@ -29,7 +29,7 @@ impl Format {
     const ALL: [Format; 7] =
         [Format::Json, Format::Csv, Format::Ndjson, Format::Progress, Format::Svg, Format::Png, Format::Events];
 
-    /// Its name in `?format=`.
+    /// Name in `?format=`.
     pub fn name(self) -> &'static str {
         match self {
             Format::Json => "json",
@@ -42,7 +42,7 @@ impl Format {
         }
     }
 
-    /// Its `Content-Type`.
+    /// Value of `Content-Type`.
     pub fn media_type(self) -> &'static str {
         match self {
             Format::Json => "application/json",
@@ -54,7 +54,7 @@ impl Format {
         }
     }
 
-    /// The types and subtypes in `Accept` that ask for it.
+    /// Types and subtypes in `Accept` that stand for the format.
     fn accepted_as(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Format::Json => &[("application", "json")],
@@ -67,13 +67,13 @@ impl Format {
         }
     }
 
-    /// Whether its bytes shrink when compressed.
+    /// Tells whether compression makes the bytes fewer.
     pub fn is_compressible(self) -> bool {
         !matches!(self, Format::Png | Format::Events)
     }
 }
 
-/// The format of an answer that exists in `formats`, of which the first is the default. 406 if none is wanted.
+/// Chooses among `formats`, of which the first is the default. 406 if the client accepts none.
 pub fn format(asked: Option<&str>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
     let names = || formats.iter().map(|format| format.name()).collect::<Vec<_>>().join(", ");
     if let Some(asked) = asked {
@@ -89,7 +89,7 @@ pub fn format(asked: Option<&str>, headers: &HeaderMap, formats: &[Format]) -> R
         return Ok(formats[0]);
     }
     let ranges: Vec<(&str, f32)> = items(&accept).collect();
-    // By weight, then by how closely it was named, then by the order here; `max_by` keeps the last of equals.
+    // By weight, then by closeness, then by the order in `formats`; `max_by` returns the last of equals.
     let best = formats
         .iter()
         .rev()
@@ -104,7 +104,7 @@ pub fn format(asked: Option<&str>, headers: &HeaderMap, formats: &[Format]) -> R
     })
 }
 
-/// Weight of a format and how closely the range that decides names it: 3 by name, 2 by type, 1 as anything.
+/// Weight of a format, and closeness of the range that gives it: 3 for its name, 2 for its type, 1 for `*/*`.
 fn weight(ranges: &[(&str, f32)], format: Format) -> (f32, u8) {
     let mut best = (0.0, 0);
     for (range, q) in ranges {
@@ -124,17 +124,17 @@ fn weight(ranges: &[(&str, f32)], format: Format) -> (f32, u8) {
     best
 }
 
-/// How an answer's bytes are encoded on the way.
+/// Content encoding of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Encoding {
-    /// As they are.
+    /// Not compressed.
     Identity,
     /// Compressed (RFC 1952).
     Gzip,
 }
 
 impl Encoding {
-    /// Its name in `Content-Encoding`.
+    /// Name in `Content-Encoding`.
     pub fn name(self) -> &'static str {
         match self {
             Encoding::Identity => "identity",
@@ -143,7 +143,7 @@ impl Encoding {
     }
 }
 
-/// The encoding by `Accept-Encoding`: gzip where it is as welcome as none. 406 if the client refuses both.
+/// Encoding by `Accept-Encoding`: gzip if it weighs at least as much as none. 406 if the client refuses both.
 pub fn encoding(headers: &HeaderMap) -> Result<Encoding, Problem> {
     let accept = list(headers, &header::ACCEPT_ENCODING);
     let codings: Vec<(&str, f32)> = items(&accept).collect();
@@ -161,13 +161,13 @@ pub fn encoding(headers: &HeaderMap) -> Result<Encoding, Problem> {
     }
 }
 
-/// All lines of a header as the one list they are equivalent to.
+/// All lines of a header, joined into one list.
 pub fn list(headers: &HeaderMap, name: &HeaderName) -> String {
     let lines: Vec<&str> = headers.get_all(name).iter().filter_map(|value| value.to_str().ok()).collect();
     lines.join(", ")
 }
 
-/// The items of a list with their weights; an item whose weight cannot be read is left out.
+/// Items of a list with their weights. An item with an invalid weight is left out.
 fn items(list: &str) -> impl Iterator<Item = (&str, f32)> {
     list.split(',').filter_map(|item| {
         let mut parts = item.split(';').map(str::trim);

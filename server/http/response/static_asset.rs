@@ -1,4 +1,4 @@
-//! Answers that are known when the server starts: pages, scripts, the contract. Compressed once, on first demand.
+//! Answers that are known when the server starts: pages, scripts, the contract. Each is compressed once, on first demand.
 
 use std::sync::OnceLock;
 
@@ -12,7 +12,7 @@ use crate::http::response::gzip;
 use crate::http::response::negotiate;
 use crate::http::response::negotiate::Encoding;
 
-/// Bytes of one media type, and their compressed form.
+/// Bytes of a media type, and their compressed form.
 #[derive(Debug)]
 pub struct StaticAsset {
     media_type: &'static str,
@@ -21,7 +21,7 @@ pub struct StaticAsset {
 }
 
 impl StaticAsset {
-    /// These bytes, as this media type.
+    /// An asset of these bytes.
     pub fn new(media_type: &'static str, bytes: impl Into<Bytes>) -> Self {
         Self { media_type, identity: bytes.into(), gzip: OnceLock::new() }
     }
@@ -42,7 +42,7 @@ impl StaticAsset {
         Ok(response)
     }
 
-    /// The compressed form, if there is anything to gain.
+    /// The compressed form, if it is smaller.
     fn gzip(&self) -> Option<&Bytes> {
         let compressed = self.gzip.get_or_init(|| {
             let gzip = gzip::gzip_best(&self.identity);

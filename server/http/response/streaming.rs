@@ -1,9 +1,8 @@
-//! Answers that are sent while they are computed, where the format has lines for that.
+//! Answers that are sent while they are computed.
 //!
-//! Computing never waits for the reader: what is not yet read is kept, never more than the whole answer, which the price
-//! has bounded (`Limits::answer`), and counts as the client's (`Limits::held_bytes`). A reader that takes nothing is cut off
-//! after `Limits::stall_time`. So a slow reader holds neither a permit nor a place in the queue. A reader that leaves ends
-//! the work.
+//! Computing never waits for the reader. Unread bytes are kept: at most the whole answer, which the price has bounded
+//! (`Limits::answer`), accounted to the client (`Limits::held_bytes`). A reader that takes nothing is disconnected after
+//! `Limits::stall_time`. So a slow reader holds neither a permit nor a place in the queue. A reader that leaves cancels the work.
 
 use std::io::{self, Write};
 use std::panic::AssertUnwindSafe;
@@ -21,7 +20,7 @@ use crate::http::response::builder::ok;
 use crate::http::response::gzip;
 use crate::http::response::negotiate::{Encoding, Format};
 
-/// Where work puts the bytes of its answer.
+/// Receives the bytes of an answer from the work.
 #[derive(Debug)]
 pub struct BodyWriter {
     to: UnboundedSender<Bytes>,
@@ -30,7 +29,7 @@ pub struct BodyWriter {
 }
 
 impl BodyWriter {
-    /// Sends a piece of the answer. The same pieces give the same bytes, compressed ones as well: each can be read at once.
+    /// Sends a piece of the answer. Equal pieces give equal bytes, also compressed: each piece can be decompressed at once.
     pub fn send(&mut self, piece: Vec<u8>) {
         if piece.is_empty() {
             return;
@@ -42,11 +41,11 @@ impl BodyWriter {
                 std::mem::take(gzip.get_mut())
             }
         };
-        // An error is a reader that has gone, of which the work hears otherwise.
+        // An error means that the reader has gone; the work is cancelled by other means.
         let _ = self.to.send(Bytes::from_owner(self.pool.hold(piece)));
     }
 
-    /// Sends an answer as a whole.
+    /// Sends a whole answer.
     pub fn send_whole(&mut self, answer: Vec<u8>, slice: &TimeSlice) -> Result<(), Cancelled> {
         match &mut self.gzip {
             None => self.send(answer),
@@ -71,7 +70,7 @@ struct BodyPieces {
 }
 
 impl BodyPieces {
-    /// The next one; none at the end. An error instead where the work has failed.
+    /// The next piece; None at the end. An error if the work has failed.
     async fn next(&mut self) -> Result<Option<Bytes>, Problem> {
         loop {
             let Some(work) = &mut self.work else { return Ok(self.made.recv().await) };
@@ -86,8 +85,7 @@ impl BodyPieces {
         }
     }
 
-    /// All from here on. After a piece has been sent a failure can no longer be told, so the body breaks off: the client
-    /// sees neither its end nor the last line.
+    /// The body from here on. Once a piece is sent, a failure has no status any more, so the body breaks off without its last line.
     fn into_body(self, first: Bytes) -> Body {
         let rest =
             stream::unfold(self, async |mut pieces| match AssertUnwindSafe(pieces.next()).catch_unwind().await {
@@ -98,7 +96,7 @@ impl BodyPieces {
     }
 }
 
-/// Does `compute` in turns. Where it `streams` the answer begins with the first piece, else it is whole.
+/// Runs `compute` in time slices. If it `streams`, the answer begins with the first piece, else it is whole.
 pub(crate) async fn stream_in_slices(
     pool: &Pool,
     format: Format,
@@ -118,7 +116,7 @@ pub(crate) async fn stream_in_slices(
     stream_body(pool, (format, encoding), streams, work).await
 }
 
-/// The same of work that is done on one thread.
+/// The same for work on one thread.
 pub(crate) async fn stream_on_worker(
     pool: &Pool,
     (format, encoding): (Format, Encoding),

@@ -1,8 +1,8 @@
-//! Names under which this server is asked (`Host`, RFC 9110, section 7.2), and which of them it answers to.
+//! The `Host` of a request (RFC 9110, section 7.2), and the names that this server answers to.
 //!
-//! A page of another site can let its own name lead to this machine once it is loaded (DNS rebinding). To the browser the answers are
-//! then the page's own, and neither CORS nor `Origin` keeps it from them; only `Host` still has its name. No such page can have the
-//! name `localhost` or an address for a name.
+//! A page of another site can make its own name resolve to this machine once it is loaded (DNS rebinding). Then the browser takes
+//! the answers for the page's own, and neither CORS nor `Origin` protects them; only `Host` still has the page's name. Such a page
+//! can have neither the name `localhost` nor an address for its name.
 
 use std::fmt::{self, Display, Formatter};
 use std::net::{Ipv4Addr, Ipv6Addr};
@@ -13,7 +13,7 @@ use axum::http::{HeaderMap, StatusCode, Uri, Version, header};
 
 use crate::http::problem::{Problem, shortened};
 
-/// Name of this server, in lower case and without a final dot.
+/// A name of this server, in lower case and without a final dot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct HostName(String);
 
@@ -41,8 +41,7 @@ fn plain(name: &str) -> String {
     name.strip_suffix('.').unwrap_or(name).to_ascii_lowercase()
 }
 
-/// Refuses a request that does not say under which name it asks, or says several: 400 (RFC 9112, section 3.2). HTTP/1.0 need not
-/// say it.
+/// Refuses a request without `Host` or with several: 400 (RFC 9112, section 3.2). HTTP/1.0 needs none.
 pub fn check_form(version: Version, headers: &HeaderMap) -> Result<(), Problem> {
     let refused = |detail: String| Err(Problem::not_readable(detail));
     let mut hosts = headers.get_all(header::HOST).iter();
@@ -62,8 +61,8 @@ pub fn check_form(version: Version, headers: &HeaderMap) -> Result<(), Problem> 
     }
 }
 
-/// The name in `name:port`; none if it is not of this form. Of what a URL allows in a name, commas and other punctuation are in none
-/// that can be looked up; a comma stands between two of them.
+/// The name in `name:port`; None if it has another form. A URL allows commas and other punctuation in a name, but no name that
+/// resolves has them.
 fn name_of(host: &str) -> Option<String> {
     let authority: Authority = host.parse().ok()?;
     let name = authority.host();
@@ -75,9 +74,8 @@ fn name_of(host: &str) -> Option<String> {
     (is_fine && is_port).then(|| plain(name))
 }
 
-/// Refuses a request to a name that leads to this machine without being its name: 421 (RFC 9110, section 15.5.20), since the
-/// server does not answer for that name whoever asks, which 403 would not say. Names of the machine itself, addresses, and what is
-/// `allowed` are answered to.
+/// Refuses a request for a name that is not this server's: 421 (RFC 9110, section 15.5.20). Names of the machine itself, addresses
+/// and `allowed` names are answered.
 ///
 /// The headers have passed [`check_form`].
 pub fn check_name(uri: &Uri, headers: &HeaderMap, allowed: &[HostName]) -> Result<(), Problem> {
@@ -93,7 +91,7 @@ pub fn check_name(uri: &Uri, headers: &HeaderMap, allowed: &[HostName]) -> Resul
     Err(Problem::other(StatusCode::MISDIRECTED_REQUEST, detail))
 }
 
-/// A name that no page of another site can have: of this machine (RFC 6761), or an address.
+/// Tells whether the name is of this machine (RFC 6761) or an address. A page of another site cannot have it.
 fn is_local(name: &str) -> bool {
     let in_brackets = name.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
     // A zone may follow, as in [fe80::1%25eth0].
@@ -171,7 +169,7 @@ mod tests {
                 problem.is_some_and(|problem| problem.status() == 421 && problem.detail().contains("--allow-host"))
             );
         }
-        // As a target says it to a proxy.
+        // In absolute form, as clients send it to a proxy.
         assert!(check("http://evil.example/", "localhost").is_err());
         assert!(check_name(&"/".parse().unwrap(), &HeaderMap::new(), &[]).is_ok());
     }

@@ -1,4 +1,4 @@
-//! Who may ask: token, origin and host.
+//! Access control: token, origin, host and site.
 
 pub mod host;
 pub mod origin;

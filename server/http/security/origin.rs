@@ -1,4 +1,4 @@
-//! Origins of pages (RFC 6454): which of them may ask in their visitors' names.
+//! Origins of pages (RFC 6454), and which of them may open live runs.
 
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
@@ -12,7 +12,7 @@ use crate::http::problem::{Problem, shortened};
 pub struct Origin(HeaderValue);
 
 impl Origin {
-    /// As in a header.
+    /// The origin as the value of a header.
     pub fn header(&self) -> HeaderValue {
         self.0.clone()
     }
@@ -42,8 +42,8 @@ impl Display for Origin {
     }
 }
 
-/// Refuses a page of another host that is not `allowed`: it must not open a run in its visitor's name, which CORS would not
-/// keep it from. A program has no origin.
+/// Refuses a page of another host that is not `allowed`: it must not open a run for its visitor, and CORS does not prevent that.
+/// Programs send no origin.
 pub fn check(headers: &HeaderMap, allowed: &[Origin]) -> Result<(), Problem> {
     let Some(origin) = headers.get(header::ORIGIN) else { return Ok(()) };
     let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
@@ -59,7 +59,7 @@ pub fn check(headers: &HeaderMap, allowed: &[Origin]) -> Result<(), Problem> {
     Err(Problem::other(StatusCode::FORBIDDEN, detail))
 }
 
-/// Tells whether a request is of a page of one of these origins.
+/// Tells whether a request comes from a page of one of these origins.
 pub fn is_among(headers: &HeaderMap, allowed: &[Origin]) -> bool {
     headers.get(header::ORIGIN).is_some_and(|origin| allowed.iter().any(|allowed| allowed.0 == origin))
 }

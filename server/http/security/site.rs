@@ -1,8 +1,9 @@
-//! Sites that let their visitors' browsers ask (Fetch Metadata, W3C): which of their requests may cost work.
+//! Requests that pages of other sites make through their visitors' browsers (Fetch Metadata, W3C).
 //!
-//! A page of any site can put an address of this server into an `<img>`, a script or a form, and every visitor's browser asks it. The
-//! page learns nothing, but it sets the visitor's machine to work. A browser says so: `Sec-Fetch-Site: cross-site`. Programs, and
-//! browsers on plain HTTP to another machine, send no such header; nobody is kept out by its absence.
+//! A page of any site can put an address of this server into an `<img>`, a script or a form, and the browser of every visitor sends
+//! the request. The page cannot read the answer, but the work is done on the visitor's machine. A browser marks such requests with
+//! `Sec-Fetch-Site: cross-site`. Programs, and browsers on plain HTTP to another machine, do not send the header, and are not
+//! refused without it.
 
 use axum::http::{HeaderMap, Method, StatusCode};
 
@@ -10,7 +11,7 @@ use crate::http::problem::Problem;
 use crate::http::security::origin;
 use crate::http::security::origin::Origin;
 
-/// Tables that are the same for everybody and cost nothing.
+/// Tables that are the same for everyone and cost nothing.
 const TABLES: [&str; 2] = ["/v1/scenes", "/v1/fields"];
 
 /// Refuses work for a page of another site: 403.
@@ -18,10 +19,10 @@ const TABLES: [&str; 2] = ["/v1/scenes", "/v1/fields"];
 /// Exceptions:
 /// - an `allowed` origin;
 /// - a preflight, which CORS answers;
-/// - a visit: a link that somebody follows, in a window of its own. It is one request, which the visitor sees, and addresses of this
-///   server are made to be passed on. A page that is fetched before anybody goes there is no visit;
-/// - with `embedding`: pictures (`<img>`), and frames of `/embed/`. The requests of such a frame are of the same origin, so to refuse
-///   them is to refuse the frame.
+/// - a visit: a link that someone follows, in a window of its own. It is a single request that the visitor sees, and addresses of
+///   this server are made to be shared. A prefetched page is no visit;
+/// - with `embedding`: pictures (`<img>`), and frames of `/embed/`. Requests of such a frame have the same origin as the server, so
+///   refusing them means refusing the frame.
 pub fn check(
     method: &Method,
     path: &str,
@@ -59,7 +60,7 @@ pub fn check(
 
 const DESTINATION: &str = "sec-fetch-dest";
 
-/// Destinations of a page within another.
+/// Destinations of a page within another page.
 const FRAMES: [&str; 5] = ["iframe", "frame", "object", "embed", "fencedframe"];
 
 #[cfg(test)]

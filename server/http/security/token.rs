@@ -1,10 +1,10 @@
-//! The one secret of a server on a shared network, and where a request may carry it.
+//! The secret of a server on a shared network, and the places in a request that may carry it.
 //!
-//! Programs send `Authorization: Bearer`. A browser sends no header of a page's choosing with a WebSocket, a picture or a frame,
-//! so it keeps a cookie; and a page of another origin, which has no cookie here, offers the token as a subprotocol.
+//! Programs send `Authorization: Bearer`. A browser cannot add headers to a WebSocket, a picture or a frame, so it keeps a cookie;
+//! a page of another origin has no cookie here, and offers the token as a subprotocol.
 //!
-//! The cookie is not the token but its HMAC: who reads a browser's files, or a server on another port of this host, to which the
-//! browser sends the cookie as well, does not learn the token. Replicas with one token derive the same cookie.
+//! The cookie is not the token but its HMAC. So the token stays secret even if someone reads the browser's files or runs a server
+//! on another port of this host, to which the browser sends the cookie too. Replicas with one token have the same cookie.
 
 use std::fmt;
 use std::str::FromStr;
@@ -17,16 +17,16 @@ use subtle::ConstantTimeEq;
 
 use crate::limits;
 
-/// The name of the cookie.
+/// Name of the cookie.
 const COOKIE: &str = "equipoise_token";
 
-/// Message of which the cookie is the HMAC. Another one makes all cookies invalid.
+/// Message whose HMAC is the cookie. Another message makes all cookies invalid.
 const COOKIE_MESSAGE: &[u8] = b"equipoise cookie 1";
 
-/// What stands before the token where it is offered as a subprotocol of a WebSocket.
+/// Prefix of a token that is offered as a subprotocol of a WebSocket.
 const SUBPROTOCOL: &str = "equipoise.token.";
 
-/// A secret that is whole wherever it has to stand: in a URL, a header, a subprotocol.
+/// A secret of characters that need no escape in a URL, a header or a subprotocol.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Token {
     secret: Arc<str>,
@@ -60,7 +60,7 @@ impl fmt::Debug for Token {
 }
 
 impl Token {
-    /// Whether this is it. How long that takes says nothing about how much of it was right.
+    /// Compares the token in constant time.
     pub fn is(&self, offered: &str) -> bool {
         self.secret.as_bytes().ct_eq(offered.as_bytes()).into()
     }
@@ -69,7 +69,7 @@ impl Token {
         self.derived.as_bytes().ct_eq(cookie.as_bytes()).into()
     }
 
-    /// Tells whether a request carries it, or the cookie that is derived from it.
+    /// Tells whether a request carries the token or its cookie.
     pub fn is_in(&self, headers: &HeaderMap) -> bool {
         let parts = |name, separator| {
             let values = headers.get_all(name).into_iter().filter_map(|value| value.to_str().ok());
@@ -84,8 +84,8 @@ impl Token {
         bearer.chain(subprotocol).any(|offered| self.is(offered)) || cookie.any(|cookie| self.is_derived(cookie))
     }
 
-    /// What makes a browser keep what is derived from it, for the folder of the page that it opened, out of reach of scripts and of requests
-    /// that pages of other sites make.
+    /// `Set-Cookie` for a browser: valid for the folder of the page, and out of reach of scripts and of requests that other sites
+    /// make.
     pub fn cookie(&self) -> HeaderValue {
         let cookie = format!("{COOKIE}={}; HttpOnly; SameSite=Lax", self.derived);
         HeaderValue::from_str(&cookie).expect("digits are ASCII")
