@@ -21,4 +21,4 @@ pub use crate::http::response::streaming::BodyWriter;
 pub use crate::http::security::host::HostName;
 pub use crate::http::security::origin::Origin;
 pub use crate::http::security::token::Token;
-pub use problem::{FieldError, Problem};
+pub use problem::{Problem, ValidationError};

@@ -15,7 +15,7 @@ use crate::limits;
 
 /// One error of one field.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct FieldError {
+pub struct ValidationError {
     /// JSON pointer (RFC 6901) into the request body, or into the body that a query stands for. Empty for the whole body.
     pub pointer: String,
     /// A sentence with the field's name, its value, its limits and its unit.
@@ -33,7 +33,7 @@ struct Parts {
     slug: Option<&'static str>,
     title: &'static str,
     detail: String,
-    errors: Vec<FieldError>,
+    errors: Vec<ValidationError>,
     headers: Vec<(HeaderName, HeaderValue)>,
 }
 
@@ -118,7 +118,7 @@ impl Problem {
     }
 
     /// 422: readable, but not a valid request. `errors` has all errors.
-    pub fn invalid(errors: Vec<FieldError>) -> Self {
+    pub fn invalid(errors: Vec<ValidationError>) -> Self {
         let detail = match errors.as_slice() {
             [] => "the request is not valid".to_owned(),
             [one] => one.detail.clone(),
@@ -132,7 +132,7 @@ impl Problem {
 
     /// 422 with one error at one pointer.
     pub fn invalid_at(pointer: impl Into<String>, detail: impl Into<String>) -> Self {
-        Self::invalid(vec![FieldError { pointer: pointer.into(), detail: detail.into() }])
+        Self::invalid(vec![ValidationError { pointer: pointer.into(), detail: detail.into() }])
     }
 
     /// 500: a fault of the server. The client can do nothing about it.
@@ -171,12 +171,12 @@ impl Problem {
     }
 
     /// The errors of the fields.
-    pub fn errors(&self) -> &[FieldError] {
+    pub fn errors(&self) -> &[ValidationError] {
         &self.0.errors
     }
 
     /// The errors of the fields, consuming the problem.
-    pub fn into_errors(self) -> Vec<FieldError> {
+    pub fn into_errors(self) -> Vec<ValidationError> {
         self.0.errors
     }
 
@@ -264,8 +264,8 @@ mod tests {
     #[test]
     fn a_problem_says_everything_once() {
         let problem = Problem::invalid(vec![
-            FieldError { pointer: "/a".into(), detail: "a is wrong".into() },
-            FieldError { pointer: "/b".into(), detail: "b is wrong".into() },
+            ValidationError { pointer: "/a".into(), detail: "a is wrong".into() },
+            ValidationError { pointer: "/b".into(), detail: "b is wrong".into() },
         ]);
         let json: serde_json::Value = serde_json::from_slice(&problem.to_json()).unwrap();
         assert_eq!(json["type"], "/docs#problem-invalid-request");

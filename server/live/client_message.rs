@@ -51,20 +51,20 @@ impl ClientMessage {
     /// All errors of the message.
     pub fn read(text: &str) -> Result<Self, Problem> {
         #[derive(Clone, Copy)]
-        enum Type {
+        enum MessageType {
             Plain(fn() -> ClientMessage),
             Speed,
             Set,
             Kick,
         }
-        const TYPES: [(&str, Type); 7] = [
-            ("pause", Type::Plain(|| ClientMessage::Pause)),
-            ("resume", Type::Plain(|| ClientMessage::Resume)),
-            ("step", Type::Plain(|| ClientMessage::Step)),
-            ("restart", Type::Plain(|| ClientMessage::Restart)),
-            ("speed", Type::Speed),
-            ("set", Type::Set),
-            ("kick", Type::Kick),
+        const TYPES: [(&str, MessageType); 7] = [
+            ("pause", MessageType::Plain(|| ClientMessage::Pause)),
+            ("resume", MessageType::Plain(|| ClientMessage::Resume)),
+            ("step", MessageType::Plain(|| ClientMessage::Step)),
+            ("restart", MessageType::Plain(|| ClientMessage::Restart)),
+            ("speed", MessageType::Speed),
+            ("set", MessageType::Set),
+            ("kick", MessageType::Kick),
         ];
         let fields = json::object(text.as_bytes()).map_err(|problem| of_a_message(&problem))?;
         let mut errors = Errors::default();
@@ -74,22 +74,22 @@ impl ClientMessage {
             return errors.into_result().and_then(|()| Err(Problem::internal()));
         };
         let message = match kind {
-            Type::Plain(message) => {
+            MessageType::Plain(message) => {
                 reader.finish();
                 Some(message())
             }
-            Type::Speed => {
+            MessageType::Speed => {
                 reader.require(&["value"]);
                 let speed = reader.number("value", SPEEDS, "");
                 reader.finish();
                 speed.map(ClientMessage::Speed)
             }
-            Type::Kick => {
+            MessageType::Kick => {
                 let kick = read_kick(&mut reader);
                 reader.finish();
                 kick.map(ClientMessage::Kick)
             }
-            Type::Set => {
+            MessageType::Set => {
                 let paths: Map<String, Value> = fields.clone().into_iter().filter(|(key, _)| key != "type").collect();
                 for (key, _) in paths.iter().filter(|(_, value)| value.is_object()) {
                     errors.push(join("", key), "an object has no place here; name fields by dotted path");

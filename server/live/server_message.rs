@@ -9,7 +9,7 @@ use crate::api::scene::{Resolved, has_angle};
 use crate::api::shared::demand::DemandAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
-use crate::http::{FieldError, Problem};
+use crate::http::{Problem, ValidationError};
 use crate::limits;
 use crate::live::impact_message::{ImpactColumns, ImpactMessage};
 use crate::live::run_url;
@@ -50,7 +50,7 @@ pub enum ServerMessage<'a> {
         /// The error in a sentence.
         detail: &'a str,
         /// Errors of the fields.
-        errors: &'a [FieldError],
+        errors: &'a [ValidationError],
     },
     /// A message of the client was carried out.
     Ack(Ack<'a>),
@@ -119,13 +119,13 @@ pub struct Hello<'a> {
     now: u64,
     run_time: f64,
     url: String,
-    release: Release,
+    release: ReleaseState,
     flight_time: Option<f64>,
     build: &'static str,
 }
 
 #[derive(Debug, Serialize)]
-struct Release {
+struct ReleaseState {
     t: f64,
     x: f64,
     y: f64,
@@ -151,7 +151,7 @@ impl<'a> Hello<'a> {
             now,
             run_time: clock.run_time(now),
             url: format!("{base}{}", run_url::url(live)),
-            release: Release {
+            release: ReleaseState {
                 t: 0.0,
                 x: release.x,
                 y: release.height,

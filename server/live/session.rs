@@ -17,7 +17,7 @@ use tokio::time::{sleep_until, timeout};
 use crate::api::scene::has_angle;
 use crate::api::trajectories::columns::ImpactRow;
 use crate::compute::{Pool, TimeSlice};
-use crate::http::{FieldError, Problem};
+use crate::http::{Problem, ValidationError};
 use crate::limits;
 use crate::limits::Limit;
 use crate::live::bounds::{SessionBounds, TokenBucket};
@@ -348,7 +348,9 @@ impl Session {
                 Err(Problem::invalid_at("", format!("the message has {bytes} bytes; the limit is {most} bytes")))
             }
             Message::Text(text) => ClientMessage::read(text).and_then(|message| self.apply(&message, wall_now())),
-            _ => Err(Problem::invalid_at("", "the message is binary; it must be JSON text")),
+            Message::Binary(_) | Message::Ping(_) | Message::Pong(_) | Message::Close(_) => {
+                Err(Problem::invalid_at("", "the message is binary; it must be JSON text"))
+            }
         };
         if let Err(problem) = done {
             self.outbox.push(server_message::problem(&problem));
@@ -385,7 +387,7 @@ impl Session {
                     Problem::invalid(
                         errors
                             .into_iter()
-                            .map(|error| FieldError { pointer: pointer(error.path), detail: error.detail })
+                            .map(|error| ValidationError { pointer: pointer(error.path), detail: error.detail })
                             .collect(),
                     )
                 })?;

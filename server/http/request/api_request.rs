@@ -6,7 +6,7 @@ use axum::http::{Extensions, HeaderMap, Method};
 use serde_json::{Map, Value};
 
 use crate::compute::Peer;
-use crate::http::problem::{FieldError, Problem, shortened};
+use crate::http::problem::{Problem, ValidationError, shortened};
 use crate::http::request::body;
 use crate::http::request::body::JSON;
 use crate::http::request::reader::{Errors, Reader, join};
@@ -56,7 +56,7 @@ impl ApiRequest {
     pub(crate) fn from_body(query: &str, body: &[u8], headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
         let (format, parameters) = split_format(query)?;
         if !parameters.is_empty() {
-            let error = |(name, _): (String, String)| FieldError {
+            let error = |(name, _): (String, String)| ValidationError {
                 pointer: name.split('.').fold(String::new(), |pointer, part| join(&pointer, part)),
                 detail: format!(
                     "on POST only `format` is read from the query; `{}` belongs in the body",

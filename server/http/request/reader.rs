@@ -7,20 +7,20 @@ use std::ops::RangeInclusive;
 
 use serde_json::{Map, Value};
 
-use crate::http::problem::{FieldError, Problem};
+use crate::http::problem::{Problem, ValidationError};
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
 use crate::limits;
 
 /// Errors of a request so far.
 #[derive(Debug, Default)]
-pub struct Errors(Vec<FieldError>);
+pub struct Errors(Vec<ValidationError>);
 
 impl Errors {
     /// Adds an error. Errors beyond the limit are dropped.
     pub fn push(&mut self, pointer: impl Into<String>, detail: impl Into<String>) {
         if self.0.len() < limits::ERRORS {
-            self.0.push(FieldError { pointer: pointer.into(), detail: detail.into() });
+            self.0.push(ValidationError { pointer: pointer.into(), detail: detail.into() });
         }
     }
 

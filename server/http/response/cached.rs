@@ -146,7 +146,7 @@ fn with_drawing(price: Price, format: Format) -> Price {
     match format {
         Format::Svg => price.and(Price::bounces(limits::SVG_PRICE)),
         Format::Png => price.and(Price::bounces(limits::SVG_PRICE + limits::PNG_PRICE)),
-        _ => price,
+        Format::Json | Format::Csv | Format::Ndjson | Format::Progress | Format::Events => price,
     }
 }
 

@@ -30,7 +30,7 @@ impl StaticAsset {
     pub fn answer(&self, headers: &HeaderMap) -> Result<Response<Body>, Problem> {
         let (encoding, bytes) = match (negotiate::encoding(headers)?, self.gzip()) {
             (Encoding::Gzip, Some(gzip)) => (Encoding::Gzip, gzip),
-            _ => (Encoding::Identity, &self.identity),
+            (Encoding::Gzip, None) | (Encoding::Identity, _) => (Encoding::Identity, &self.identity),
         };
         let tag = EntityTag::of(&[self.media_type.as_bytes(), bytes]);
         let mut response = match tag.if_none_match(headers) {
