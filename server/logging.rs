@@ -89,7 +89,7 @@ pub struct AccessLogEntry<'a> {
 
 impl AccessLogEntry<'_> {
     /// Writes the entry to the access log.
-    pub fn log(&self) {
+    pub fn write(&self) {
         let Self { id, peer, method, target, status, ms } = self;
         tracing::info!(target: ACCESS, id, %peer, method, target, status, ms);
     }
@@ -214,7 +214,7 @@ mod tests {
             ms: 0.25,
         };
         for format in [LogFormat::Text, LogFormat::Json] {
-            let lines = logged(format, || request_span("lab-1").in_scope(|| entry.log()));
+            let lines = logged(format, || request_span("lab-1").in_scope(|| entry.write()));
             let (time, rest) = lines[0].split_once(",\"id\":").unwrap();
             assert!(time.strip_prefix("{\"time\":").unwrap().parse::<f64>().unwrap() > 1e9);
             assert_eq!(

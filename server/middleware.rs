@@ -124,7 +124,7 @@ async fn identify(State(edge): State<Arc<EdgeConfig>>, mut request: Request, nex
             status: response.status().as_u16(),
             ms: begin.elapsed().as_secs_f64() * 1e3,
         };
-        entry.log();
+        entry.write();
     }
     response
 }
