@@ -246,7 +246,7 @@ impl Scene {
             ModelLevel::Rod | ModelLevel::RodWithX => "with state feedback",
             ModelLevel::Point | ModelLevel::Linear | ModelLevel::Polygon => "for this body",
         };
-        Some(FieldError::at(path, format!("{path} is {shown}; this is not available {feature}")))
+        Some(FieldError::at(path, format!("{path} is {shown}; this is not available {feature} in this version")))
     }
 
     fn shown(&self, name: Name) -> String {
