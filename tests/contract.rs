@@ -283,7 +283,7 @@ fn scene_parts_follow_from_the_table() {
 }
 
 #[test]
-fn the_documentation_has_the_fields_of_the_table() {
+fn the_documentation_has_units_and_defaults_of_the_table() {
     assert_eq!(docs::differences(include_str!("../docs/physics.md")), Vec::<String>::new());
 }
 

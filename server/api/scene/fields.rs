@@ -127,10 +127,7 @@ pub fn field_text(name: Name) -> FieldText {
             example: "0",
             ..text("Angle noise", "σ_θ", "Standard deviation of the error in the angle that the table senses")
         },
-        Name::NoiseModel => FieldText {
-            detail: "`strike`: it meets the body. `plan`: it carries out the plan",
-            ..text("Noise model", "", "Action of the table at a wrong time: it meets the body there, or carries out the plan made for that time")
-        },
+        Name::NoiseModel => text("Noise model", "", "Action of the table at a wrong time: it meets the body there (`strike`), or carries out the plan made for that time (`plan`)"),
         Name::Seed => text("Seed", "", "Seed of the noise"),
         Name::NoiseRun => text("Run", "", "Number of the run, in an ensemble with this seed"),
     }
