@@ -20,7 +20,7 @@ const SIGNS = {
   map: '#map-links a',
   survival: '#survival-told:has-text("outlast")',
   ladder: '.rungs td',
-  design: '#design-sheet img',
+  design: '#design-sheet svg',
   branch: '.changes',
   precision: '#precision-told:has-text("Measured over")',
   paper: '.paper',

@@ -41,15 +41,28 @@ import { h, retryButton } from '../dom/elements.js';
  * @property {string} title
  * @property {string} about
  * @property {boolean} [half] shares its row
+ * @property {string[]} [shared] style sheets that it shares with other panels
  * @property {() => Promise<Module>} load
  */
 
-/** @param {string} path @returns {Promise<void>} */
+/** The style sheets that are loaded or on their way. @type {Map<string, Promise<void>>} */
+const sheets = new Map();
+
+/** Loads a style sheet once; one that failed can be asked for again. @param {string} path */
 export function styles(path) {
+  const sheet = sheets.get(path) ?? appendSheet(path);
+  sheets.set(path, sheet);
+  return sheet;
+}
+
+/** @param {string} path @returns {Promise<void>} */
+function appendSheet(path) {
   return new Promise((resolve, reject) => {
-    document.head.append(
-      h('link', { rel: 'stylesheet', href: path, load: () => resolve(), error: () => reject(new Error(path)) }),
-    );
+    const failed = () => {
+      sheets.delete(path);
+      reject(new Error(path));
+    };
+    document.head.append(h('link', { rel: 'stylesheet', href: path, load: () => resolve(), error: failed }));
   });
 }
 
@@ -60,7 +73,7 @@ export function styles(path) {
  * @param {() => URLSearchParams} link
  * @param {(panel: Panel) => void} mounted
  */
-export function card({ id, title, about, half, load }, page, link, mounted) {
+export function card({ id, title, about, half, shared = [], load }, page, link, mounted) {
   const body = h('div', { id: `${id}-body`, class: 'lazy-body' });
   const element = h(
     'section',
@@ -71,7 +84,7 @@ export function card({ id, title, about, half, load }, page, link, mounted) {
   element.firstElementChild?.append(enlarger(element, title));
   const bring = async () => {
     try {
-      const [module] = await Promise.all([load(), styles(`panels/${id}/${id}.css`)]);
+      const [module] = await Promise.all([load(), ...[...shared, `panels/${id}/${id}.css`].map(styles)]);
       body.replaceChildren();
       mounted(module.mount(body, page, link()));
     } catch {

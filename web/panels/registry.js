@@ -1,5 +1,8 @@
 // The panels below the fold: their names, a sentence on each, and where their code is.
 
+/** The colours and the size of the server's pictures in the page. */
+const FIGURE_STYLES = ['charts/generated/figure-colours.css', 'charts/readable/server-figure.css'];
+
 /** @type {import('./card.js').Entry[]} */
 export const PANELS = [
   {
@@ -24,12 +27,14 @@ export const PANELS = [
     id: 'design',
     title: 'Design a controller',
     about: 'A law that brings this scene to rest in place.',
+    shared: FIGURE_STYLES,
     load: () => import('./design/panel.js'),
   },
   {
     id: 'branch',
     title: 'Orbits of period 2',
     about: 'What the boundary of stability gives birth to.',
+    shared: FIGURE_STYLES,
     load: () => import('./branch/panel.js'),
   },
   {
