@@ -198,6 +198,35 @@ fn every_module_opens_with_what_it_is_for() {
     none(faults);
 }
 
+/// Most doc comments that may open with one of [`VAGUE`]. A doc comment says what a thing is or does: it opens with a noun or a verb.
+const VAGUE_OPENINGS: usize = 30;
+
+const VAGUE: [&str; 4] = ["What", "Whether", "Where", "Its"];
+
+#[test]
+fn doc_comments_open_with_a_noun_or_a_verb() {
+    let mut found = Vec::new();
+    for source in sources(&["rs", "js", "mjs"]) {
+        let lines: Vec<&str> = source.text.lines().map(str::trim).collect();
+        for (index, line) in lines.iter().enumerate() {
+            let follows = |mark: &str| index > 0 && lines[index - 1].starts_with(mark);
+            let text = if let Some(text) = line.strip_prefix("/**") {
+                let next = lines.get(index + 1).copied().unwrap_or_default();
+                if text.is_empty() { next.trim_start_matches('*') } else { text }
+            } else {
+                let mark = ["///", "//!"].into_iter().find(|mark| line.starts_with(mark) && !follows(mark));
+                mark.map_or("", |mark| &line[mark.len()..])
+            };
+            let first = text.trim_start().split(|character: char| !character.is_alphanumeric()).next();
+            if first.is_some_and(|word| VAGUE.contains(&word)) {
+                found.push(format!("{}:{}: {line}", source.path, index + 1));
+            }
+        }
+    }
+    let count = found.len();
+    assert!(count <= VAGUE_OPENINGS, "\n{}\n{count} of at most {VAGUE_OPENINGS}\n", found.join("\n"));
+}
+
 /// Functions that the standard library takes from the platform; their last bits differ between platforms. Square roots, rounding and
 /// fused multiplication are exact everywhere. The physics has its own versions under other names.
 const PLATFORM: [&str; 27] = [
