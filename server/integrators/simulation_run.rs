@@ -113,7 +113,7 @@ impl<'a> SimulationRun<'a> {
         let contacts = self.impacts.len() as u64;
         if let Some(before) = self.impacts.last().filter(|_| self.rules.settles) {
             let flown = AtContact { flight_time: t - before.t, t: before.t, ..self.at_contact(state) };
-            let ending = self.check(flown, |at| rules::after_flight(at));
+            let ending = self.check(flown, rules::after_flight);
             go_on(ending)?;
             self.flights.last = flown.flight_time;
         }
@@ -121,7 +121,7 @@ impl<'a> SimulationRun<'a> {
         self.impacts.push(SimulatedImpact { n: contacts + 1, t, x: motion.place[0], state });
         let strike = self.rod.strike(&state);
         let struck = AtContact { push: strike.push, approach: strike.approach, ..self.at_contact(state) };
-        go_on(self.check(struck, |at| rules::before_strike(at)))?;
+        go_on(self.check(struck, rules::before_strike))?;
         Ok(strike)
     }
 
@@ -132,7 +132,7 @@ impl<'a> SimulationRun<'a> {
         let speed_squared = rules::speed_squared(state.x_dot, state.y_dot, spin);
         let t = self.impacts.last().map_or(0.0, |impact| impact.t);
         let left = AtContact { speed_squared, t, ..self.at_contact(*state) };
-        go_on(self.check(left, |at| rules::after_strike(at)))?;
+        go_on(self.check(left, rules::after_strike))?;
         // Where a run can settle, the flight after its last contact decides too.
         if self.rules.settles { Ok(()) } else { go_on(rules::completed(self.impacts.len() as u64, self.wanted)) }
     }
