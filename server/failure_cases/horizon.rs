@@ -24,10 +24,10 @@ pub(crate) const CHAOS: FailureCase = FailureCase {
     title: "A single run beyond its horizon",
     method: "one simulation, however accurate",
     why: "Neighbouring runs part by a constant factor a bounce here, so that a difference in the last digit of a double has grown \
-to the size of the motion after some hundred and fifty contacts. Beyond that horizon every computed run is a run of \
-the rod, but not of this start: another compiler, another order of the same sums or 1e-15 rad at release give another \
-end. No smaller step and no higher order moves the horizon by more than a few bounces for each digit. What stays is the \
-distribution, and an ensemble measures it.",
+          to the size of the motion after some hundred and fifty contacts. Beyond that horizon every computed run is a run of \
+          the rod, but not of this start: another compiler, another order of the same sums or 1e-15 rad at release give another \
+          end. No smaller step and no higher order moves the horizon by more than a few bounces for each digit. What stays is the \
+          distribution, and an ensemble measures it.",
     impacts: 3_000,
     ask: ("stability", "impacts=3000"),
     price: 2 * RUNS as u64 * 3_000 / 6 + 15_000,
@@ -91,7 +91,7 @@ distribution, and an ensemble measures it.",
             subtitle: "two runs whose starts differ by 1e-15 rad (left), and ensembles of such runs (right)".to_owned(),
             caption: format!(
                 "Left: their difference reaches the size of the motion at the horizon, contact {horizon}. Right: the two runs end at \
-contacts {} and {}; two ensembles of {RUNS} runs, {SPACING:.0e} rad apart, agree.",
+                 contacts {} and {}; two ensembles of {RUNS} runs, {SPACING:.0e} rad apart, agree.",
                 one.angles.len(),
                 other.angles.len()
             ),

@@ -15,10 +15,10 @@ pub(crate) const INVENTED: FailureCase = FailureCase {
     title: "A step that keeps the rod up",
     method: "Runge-Kutta of order 4, contacts by one secant step",
     why: "A flight is a parabola, which Runge-Kutta follows without error: everything that is off comes from the contacts. One secant \
-step puts each of them a little off its place, and the strike there changes energy and angle by as little. The start \
-is just outside of the basin, where a little decides: the true run falls, the computed one is pushed inside and \
-circles on as if the rod were stable. The result looks smoother than the truth, and nothing in it gives it away; \
-only smaller steps do.",
+          step puts each of them a little off its place, and the strike there changes energy and angle by as little. The start \
+          is just outside of the basin, where a little decides: the true run falls, the computed one is pushed inside and \
+          circles on as if the rod were stable. The result looks smoother than the truth, and nothing in it gives it away; \
+          only smaller steps do.",
     impacts: 400,
     ask: ("trajectories", "impacts=400"),
     price: 130_000,
@@ -47,10 +47,10 @@ pub(crate) const DESTROYED: FailureCase = FailureCase {
     title: "A contact model that throws the rod down",
     method: "penalty contact, steps of 1 ms",
     why: "The paper's first case circles for ever as far as anyone has looked. A spring and a damper in place of the strike hold the \
-rod for some sixteen steps, a fifteenth of a flight, in which the rod turns on, gravity works on, and the table pushes \
-where the rod no longer is. What it adds to each bounce is small and always \
-on the same side, so it adds up, and the rod falls within a few contacts. A stiffer spring needs smaller steps, and \
-only delays it.",
+          rod for some sixteen steps, a fifteenth of a flight, in which the rod turns on, gravity works on, and the table pushes \
+          where the rod no longer is. What it adds to each bounce is small and always \
+          on the same side, so it adds up, and the rod falls within a few contacts. A stiffer spring needs smaller steps, and \
+          only delays it.",
     impacts: 400,
     ask: ("stability", "impacts=20000"),
     price: 220_000,
@@ -74,9 +74,9 @@ pub(crate) const MISSED: FailureCase = FailureCase {
     title: "A contact between two looks",
     method: "event detection by the sign of the gap",
     why: "The rod spins through upright, and for a moment its tip would be below the table. A method that looks for a change of \
-sign at the ends of its steps sees the gap open before and open after, and flies on. The steps of an adaptive \
-integrator are worst: the flight is a parabola, which costs it nothing, so it takes steps as long as the flight, \
-whatever its tolerance. No tolerance and no step excludes such a contact; convex and concave pieces of the gap do.",
+          sign at the ends of its steps sees the gap open before and open after, and flies on. The steps of an adaptive \
+          integrator are worst: the flight is a parabola, which costs it nothing, so it takes steps as long as the flight, \
+          whatever its tolerance. No tolerance and no step excludes such a contact; convex and concave pieces of the gap do.",
     impacts: 10,
     ask: ("trajectories", "impacts=10"),
     price: 3_000,
@@ -116,7 +116,7 @@ whatever its tolerance. No tolerance and no step excludes such a contact; convex
             subtitle: "the gap between tip and table after the first contact".to_owned(),
             caption: format!(
                 "The tip meets the table {:.3} ms after the first contact and would be above it again by the next look. Looks every \
-10 ms, from the first contact on.",
+                 10 ms, from the first contact on.",
                 1e3 * flight_time
             ),
             plots: vec![
@@ -149,10 +149,10 @@ pub(crate) const ZENO: FailureCase = FailureCase {
     title: "Infinitely many bounces in a third of a second",
     method: "fixed or adaptive steps with event detection",
     why: "On a table that stands still, every flight is half as long as the one before: there are infinitely many, and together they \
-take a finite time, after which the rod is at rest. A method that goes from event to event or from step to step has no \
-way past that time that is not wrong: fixed steps go on bouncing at the size of a step for ever, and exact event \
-location makes more and more of ever shorter flights, until it counts rounding errors as bounces. The map sees the \
-flights shrink in proportion and gives the limit of their sum.",
+          take a finite time, after which the rod is at rest. A method that goes from event to event or from step to step has no \
+          way past that time that is not wrong: fixed steps go on bouncing at the size of a step for ever, and exact event \
+          location makes more and more of ever shorter flights, until it counts rounding errors as bounces. The map sees the \
+          flights shrink in proportion and gives the limit of their sum.",
     impacts: 100,
     ask: ("trajectories", "impacts=100"),
     price: 12_000,

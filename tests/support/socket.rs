@@ -165,8 +165,22 @@ pub(crate) fn impacts_in(message: &Value) -> Vec<Row> {
 
 fn row(impact: &Value) -> Row {
     let mut row = Row::new();
-    for name in ["n", "t", "alpha", "flight_time", "energy", "contact_speed", "clearance"] {
+    for name in [
+        "n",
+        "t",
+        "alpha",
+        "flight_time",
+        "energy",
+        "contact_speed",
+        "clearance",
+        "impulse_normal",
+        "impulse_tangential",
+        "contact_mode",
+    ] {
         row.insert(name.to_owned(), impact[name].clone());
+    }
+    for name in ["x", "y"] {
+        row.insert(format!("table_velocity_{name}"), impact["table_velocity"][name].clone());
     }
     for name in ["x", "theta", "x_dot", "y_dot", "theta_dot"] {
         row.insert(name.to_owned(), impact["before"][name].clone());

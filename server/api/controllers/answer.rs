@@ -181,10 +181,10 @@ impl ControllerAnswer {
         let what = if with_x { "x, theta, x_dot and theta_dot" } else { "theta, x_dot and theta_dot" };
         if let Some(bounces) = self.law.bounces_per_decade {
             notes.push(format!(
-"every small deviation of {what} dies out, in the long run by a factor of ten in {} bounces; how large a deviation may be \
-is not a linear matter: see regions",
-significant(bounces, 3)
-));
+                "every small deviation of {what} dies out, in the long run by a factor of ten in {} bounces; how \
+                 large a deviation may be is not a linear matter: see regions",
+                significant(bounces, 3)
+            ));
         }
         if !with_x {
             notes.push("x has no weight and is left out: the body comes to rest wherever it then is".to_owned());
@@ -199,16 +199,16 @@ significant(bounces, 3)
         }
         if self.energy_eigenvalue == 1.0 {
             notes.push(
-"the height of the bounce is not steered: what energy is left when the deviations have died out decides it \
-(energy_gain steers it)"
-.to_owned(),
-);
+                "the height of the bounce is not steered: what energy is left when the deviations have died out \
+                 decides it (energy_gain steers it)"
+                    .to_owned(),
+            );
         } else if self.energy_eigenvalue.abs() >= 1.0 {
             notes.push(format!(
-"deviations of the height grow by {} a bounce: energy_gain is outside of its own limits, and no state feedback changes \
-that",
-self.energy_eigenvalue
-));
+                "deviations of the height grow by {} a bounce: energy_gain is outside of its own limits, and no state \
+                 feedback changes that",
+                self.energy_eigenvalue
+            ));
         }
         if let Some(applied) = &self.applied {
             let verdict = if applied.stable { "stable" } else { "not stable" };
@@ -269,7 +269,7 @@ fn refusal(why: DesignFailure) -> String {
     match why {
         DesignFailure::Diverging => {
             "the Riccati equation has no solution that the doubling finds: a deviation that grows by itself has no \
-weight, or the rod can hardly be steered at this speed"
+             weight, or the rod can hardly be steered at this speed"
                 .to_owned()
         }
         DesignFailure::Inaccurate(residual) => format!(
@@ -277,7 +277,7 @@ weight, or the rod can hardly be steered at this speed"
         ),
         DesignFailure::Unseen(spectral_radius) => format!(
             "with these weights a deviation without a weight does not die out (spectral radius {spectral_radius}): give theta and, \
-without x, x_dot a weight above 0"
+             without x, x_dot a weight above 0"
         ),
     }
 }

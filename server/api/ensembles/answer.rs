@@ -141,16 +141,18 @@ impl Summary {
         let (share, (lower, upper)) = curve.last().map_or((1.0, (0.0, 1.0)), |last| (last.share, last.interval));
         let (median, half_life) = (median_impacts(curve), late_half_life(curve));
         let mut notes = vec![
-"intervals are those of Wilson, 95 % at each contact by itself; quantiles of |θ| are over the runs that went on"
-.to_owned(),
-];
+            "intervals are those of Wilson, 95 % at each contact by itself; quantiles of |θ| are over the runs that \
+                 went on"
+                .to_owned(),
+        ];
         if tile.of > 1 {
             let (numbers, all) = (request.numbers(), ensemble.runs);
             notes.push(format!(
-"all of this is about runs {} to {} of {all}: counts of tiles add up to those of all, quantiles do not, their angles do",
-numbers.start,
-numbers.end - 1,
-));
+                "all of this is about runs {} to {} of {all}: counts of tiles add up to those of all, quantiles \
+                 do not, their angles do",
+                numbers.start,
+                numbers.end - 1,
+            ));
         }
         if !is_noisy(&ensemble.scene) {
             let detail = "the scene has no noise, so all runs are alike: give noise.timing_sd or noise.angle_sd";

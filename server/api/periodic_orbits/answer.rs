@@ -200,7 +200,7 @@ fn has_target_height(scene: &Scene, theta: f64) -> Result<(), OrbitFailure> {
         found.map_or_else(|| "there is none".to_owned(), |found| format!("that is the one through theta {found} rad"));
     Err(OrbitFailure::Scene(format!(
         "theta is {theta} rad; with energy_gain a symmetric orbit must have the target height, and at tilt_gain {kappa} {there}: give \
-that angle, or sweep a parameter"
+         that angle, or sweep a parameter"
     )))
 }
 

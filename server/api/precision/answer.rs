@@ -82,10 +82,11 @@ impl<'a> PrecisionAnswer<'a> {
         let named =
             |method: &ComparedMethod| MethodAnswer { name: method.name, title: method.title, about: method.about };
         let mut notes = vec![
-"cost is measured on this machine while it serves others; steps, evaluations and errors are the same everywhere"
-.to_owned(),
-"the cost of linear is that of its impacts with their bounds; its solution is made once before".to_owned(),
-];
+            "cost is measured on this machine while it serves others; steps, evaluations and errors are the \
+                 same everywhere"
+                .to_owned(),
+            "the cost of linear is that of its impacts with their bounds; its solution is made once before".to_owned(),
+        ];
         notes.extend(chart.notes.iter().cloned());
         let ReferenceRun { outcome, impacts, t, rounding } = chart.reference;
         Ok(Self {

@@ -156,7 +156,7 @@ impl Serialize for RegionAnswer {
                 MapQuantity::SpectralRadius => ", has no fixed point or has noise",
                 MapQuantity::Residue => {
                     ", has no fixed point or has noise; and where the angle has no block of its own: of a point mass, with \
-state feedback, and where friction holds the contact"
+                     state feedback, and where friction holds the contact"
                 }
             };
             notes.push(format!("a value is null where the scene cannot be{beside}"));

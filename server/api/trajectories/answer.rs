@@ -206,14 +206,14 @@ impl<'a> TrajectoryAnswer<'a> {
             ));
         } else if unknown > 0 {
             notes.push(format!(
-"error_estimate is null at {unknown} impacts: past a graze, or once rounding has grown to the size of the \
-run, no bound is known"
-));
+                "error_estimate is null at {unknown} impacts: past a graze, or once rounding has grown to the \
+                 size of the run, no bound is known"
+            ));
         }
         if !has_angle {
             notes.push(
                 "theta is the angle of the velocity from straight down, and theta_dot is null: a point mass has no \
-angle of its own"
+                 angle of its own"
                     .to_owned(),
             );
         }

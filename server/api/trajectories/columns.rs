@@ -154,62 +154,37 @@ impl ImpactColumn {
 
 /// All columns, in their order.
 pub static COLUMNS: [ImpactColumn; 22] = [
-        column(
-            "n",
-            "",
-            "Number of the impact, counted from 1.",
-            Read::Count(|row| row.contact.n),
-        ),
-        column(
-            "time",
-            "",
-            "Wall time, in milliseconds since 1970 (UTC). Only with `epoch`.",
-            Read::SparseCount(|row| row.time),
-        )
-        .scope(ColumnScope::DatedTrajectories),
-        column(
-            "t",
-            "s",
-            "Time since the release, in seconds.",
-            Read::Number(|row| row.contact.t),
-        )
+    column("n", "", "Number of the impact, counted from 1.", Read::Count(|row| row.contact.n)),
+    column(
+        "time",
+        "",
+        "Wall time, in milliseconds since 1970 (UTC). Only with `epoch`.",
+        Read::SparseCount(|row| row.time),
+    )
+    .scope(ColumnScope::DatedTrajectories),
+    column("t", "s", "Time since the release, in seconds.", Read::Number(|row| row.contact.t))
         .digits(|row| Some(row.contact.t)),
-        column(
-            "x",
-            "m",
-            "Horizontal position of the centre of gravity, in metres.",
-            Read::Number(|row| row.contact.x),
-        )
+    column("x", "m", "Horizontal position of the centre of gravity, in metres.", Read::Number(|row| row.contact.x))
         .digits(|row| Some(row.contact.x)),
-        column(
-            "theta",
-            "rad",
-            "Angle, in radians. Of a point mass: of its velocity from straight down.",
-            Read::Number(|row| row.contact.state.theta),
-        )
-        .digits(|row| Some(row.contact.state.theta)),
-        column(
-            "x_dot",
-            "m/s",
-            "Horizontal velocity, in metres per second.",
-            Read::Number(|row| row.contact.state.x_dot),
-        )
+    column(
+        "theta",
+        "rad",
+        "Angle, in radians. For a point mass, the angle of its velocity from straight down.",
+        Read::Number(|row| row.contact.state.theta),
+    )
+    .digits(|row| Some(row.contact.state.theta)),
+    column("x_dot", "m/s", "Horizontal velocity, in metres per second.", Read::Number(|row| row.contact.state.x_dot))
         .digits(|row| Some(row.contact.state.x_dot)),
-        column(
-            "y_dot",
-            "m/s",
-            "Vertical velocity, in metres per second.",
-            Read::Number(|row| row.contact.state.y_dot),
-        )
+    column("y_dot", "m/s", "Vertical velocity, in metres per second.", Read::Number(|row| row.contact.state.y_dot))
         .digits(|row| Some(row.contact.state.y_dot)),
-        column(
-            "theta_dot",
-            "rad/s",
-            "Angular velocity, in radians per second. Null for a point mass.",
-            Read::Sparse(|row| row.angle(row.contact.state.theta_dot)),
-        )
-        .digits(|row| row.has_angle.then_some(row.contact.state.theta_dot)),
-        column(
+    column(
+        "theta_dot",
+        "rad/s",
+        "Angular velocity, in radians per second. Null for a point mass.",
+        Read::Sparse(|row| row.angle(row.contact.state.theta_dot)),
+    )
+    .digits(|row| row.has_angle.then_some(row.contact.state.theta_dot)),
+    column(
         "x_dot_after",
         "m/s",
         "Horizontal velocity just after the impact, in metres per second.",
@@ -230,84 +205,79 @@ pub static COLUMNS: [ImpactColumn; 22] = [
         Read::Sparse(|row| row.after()?.theta_dot),
     )
     .scope(ColumnScope::Live),
-    column(
-            "alpha",
-            "rad",
-            "Angle of the table, in radians.",
-            Read::Number(|row| row.contact.alpha),
-        )
+    column("alpha", "rad", "Angle of the table, in radians.", Read::Number(|row| row.contact.alpha))
         .digits(|row| Some(row.orbit.rod().tilt_gain * row.contact.state.theta)),
-        column(
-            "table_velocity_x",
-            "m/s",
-            "Horizontal velocity of the table, in metres per second.",
-            Read::Sparse(ImpactRow::table_velocity_x),
-        )
-        .digits(|row| row.struck(|strike| strike.table_velocity.0)),
-        column(
-            "table_velocity_y",
-            "m/s",
-            "Vertical velocity of the table, in metres per second.",
-            Read::Sparse(ImpactRow::table_velocity_y),
-        )
-        .digits(|row| row.struck(|strike| strike.table_velocity.1)),
-        column(
-            "impulse_normal",
-            "m/s",
-            "Impulse along the normal of the table per unit mass, in metres per second.",
-            Read::Sparse(ImpactRow::impulse_normal),
-        )
-        .digits(|row| row.struck(|strike| strike.impulse_normal)),
-        column(
-            "impulse_tangential",
-            "m/s",
-            "Impulse along the table per unit mass, in metres per second.",
-            Read::Sparse(ImpactRow::impulse_tangential),
-        ),
-        column(
-            "contact_mode",
-            "",
-            "What the contact did along the table: it slid one way throughout (`slide`); was or came to rest and stayed (`stick`); \
-             came to rest and slid the other way (`reverse_slide`); or was at rest and friction could not hold it (`slide_through`). \
-             Null where there was no impact.",
-            Read::Word(ImpactRow::contact_mode),
-        ),
-        column(
-            "energy",
-            "m²/s²",
-            "Kinetic and potential energy per unit mass just before the impact, in metres squared per second squared.",
-            Read::Number(|row| row.energy),
-        )
-        .digits(|row| Some(row.orbit.energy(&row.contact.state))),
-        column(
-            "flight_time",
-            "s",
-            "Time to the next impact, in seconds. Null for the last.",
-            Read::Sparse(|row| row.contact.flight_time),
-        )
-        .digits(|row| row.contact.flight_time),
-        column(
-            "contact_speed",
-            "m/s",
-            "Vertical velocity of the contact point, in metres per second.",
-            Read::Number(|row| row.contact_speed),
-        )
-        .digits(|row| Some(row.orbit.contact_speed(&row.contact.state))),
-        column(
-            "clearance",
-            "m",
-            "Height of the contact point at the strike, in metres: 0 unless the table strikes early or late (`noise`).",
-            Read::Number(|row| row.contact.clearance),
-        ),
-        column(
-            "error_estimate",
-            "m/s",
-            "Bound on the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇|, in metres (per second); of a point mass on that of |δẋ| and |δẏ|. \
-             Null where no bound is known: with state feedback, noise or interventions, past a graze, and once rounding has grown to \
-             the size of the run.",
-            Read::Sparse(|row| row.error_estimate),
-        )
-        .scope(ColumnScope::Trajectories),
+    column(
+        "table_velocity_x",
+        "m/s",
+        "Horizontal velocity of the table, in metres per second.",
+        Read::Sparse(ImpactRow::table_velocity_x),
+    )
+    .digits(|row| row.struck(|strike| strike.table_velocity.0)),
+    column(
+        "table_velocity_y",
+        "m/s",
+        "Vertical velocity of the table, in metres per second.",
+        Read::Sparse(ImpactRow::table_velocity_y),
+    )
+    .digits(|row| row.struck(|strike| strike.table_velocity.1)),
+    column(
+        "impulse_normal",
+        "m/s",
+        "Impulse along the normal of the table per unit mass, in metres per second.",
+        Read::Sparse(ImpactRow::impulse_normal),
+    )
+    .digits(|row| row.struck(|strike| strike.impulse_normal)),
+    column(
+        "impulse_tangential",
+        "m/s",
+        "Impulse along the table per unit mass, in metres per second.",
+        Read::Sparse(ImpactRow::impulse_tangential),
+    ),
+    column(
+        "contact_mode",
+        "",
+        "Mode of the contact along the table: it slid one way throughout (`slide`); was at rest or came to \
+             rest, and stayed (`stick`); came to rest and slid the other way (`reverse_slide`); or was at rest \
+             and friction could not hold it (`slide_through`). Null without an impact.",
+        Read::Word(ImpactRow::contact_mode),
+    ),
+    column(
+        "energy",
+        "m²/s²",
+        "Kinetic and potential energy per unit mass just before the impact, in metres squared per second squared.",
+        Read::Number(|row| row.energy),
+    )
+    .digits(|row| Some(row.orbit.energy(&row.contact.state))),
+    column(
+        "flight_time",
+        "s",
+        "Time to the next impact, in seconds. Null for the last.",
+        Read::Sparse(|row| row.contact.flight_time),
+    )
+    .digits(|row| row.contact.flight_time),
+    column(
+        "contact_speed",
+        "m/s",
+        "Vertical velocity of the contact point, in metres per second.",
+        Read::Number(|row| row.contact_speed),
+    )
+    .digits(|row| Some(row.orbit.contact_speed(&row.contact.state))),
+    column(
+        "clearance",
+        "m",
+        "Height of the contact point at the strike, in metres: 0 unless the table strikes early or late (`noise`).",
+        Read::Number(|row| row.contact.clearance),
+    ),
+    column(
+        "error_estimate",
+        "m/s",
+        "Bound on the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇|, in metres (per second); for a point mass, of \
+             |δẋ| and |δẏ|. Null if no bound is known: with state feedback, noise or interventions, past a graze, \
+             and once rounding has grown to the size of the run.",
+        Read::Sparse(|row| row.error_estimate),
+    )
+    .scope(ColumnScope::Trajectories),
 ];
 
 /// The columns of a trajectory. With a known time of release they include its dates.

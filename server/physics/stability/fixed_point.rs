@@ -91,7 +91,7 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
         if available - drift * drift <= 0.0 {
             return Err(format!(
                 "the release has {available} m²/s² for bouncing upright and the drift at {drift} m/s takes {} m²/s²: no \
-upright bounce has that energy",
+                 upright bounce has that energy",
                 drift * drift
             ));
         }
