@@ -5,9 +5,10 @@
 
 use std::sync::{Arc, LazyLock};
 
-use resvg::tiny_skia::{Pixmap, PixmapMut, Transform};
+use resvg::tiny_skia::{Paint, Pixmap, PixmapMut, Transform};
+use resvg::usvg;
 use resvg::usvg::fontdb::Database;
-use resvg::usvg::{Group, Node, Options, Tree};
+use resvg::usvg::{Group, Node, Options, Path, Tree};
 
 use crate::limits;
 
@@ -60,15 +61,26 @@ fn draw(group: &Group, pixels: &mut PixmapMut<'_>, check: &impl Fn() -> Result<(
             Node::Group(group) if !group.should_isolate() && group.transform().is_identity() => {
                 draw(group, pixels, check)?;
             }
-            // A node that is drawn alone is moved to the origin; this moves it back. A node without a size has no pixels.
-            _ => {
-                if let Some(place) = node.abs_layer_bounding_box() {
+            // A node that is drawn alone is moved to the origin; this moves it back.
+            _ => match (node.abs_layer_bounding_box(), node) {
+                (Some(place), _) => {
                     resvg::render_node(node, Transform::from_translate(place.x(), place.y()), pixels);
                 }
-            }
+                (None, Node::Path(path)) => draw_line(path, pixels),
+                (None, Node::Group(_) | Node::Image(_) | Node::Text(_)) => {}
+            },
         }
     }
     check()
+}
+
+/// Draws a horizontal or vertical line. It encloses no area, so it has no box and [`resvg::render_node`] leaves it out.
+fn draw_line(path: &Path, pixels: &mut PixmapMut<'_>) {
+    let Some(stroke) = path.stroke().filter(|_| path.is_visible()) else { return };
+    let usvg::Paint::Color(colour) = stroke.paint() else { return };
+    let mut paint = Paint { anti_alias: path.rendering_mode().use_shape_antialiasing(), ..Paint::default() };
+    paint.set_color_rgba8(colour.red, colour.green, colour.blue, stroke.opacity().to_u8());
+    pixels.stroke_path(path.data(), &paint, &stroke.to_tiny_skia(), path.abs_transform(), None);
 }
 
 fn written(width: u32, height: u32, pixels: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
@@ -79,4 +91,25 @@ fn written(width: u32, height: u32, pixels: &[u8]) -> Result<Vec<u8>, png::Encod
     encoder.set_compression(png::Compression::Fast);
     encoder.write_header()?.write_image_data(pixels)?;
     Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn horizontal_and_vertical_lines_are_drawn() {
+        for line in ["M2 10H18", "M10 2V18", "M2 9L18 11"] {
+            let svg = format!(
+                r##"<svg xmlns="http://www.w3.org/2000/svg" width="20" height="20"><g><path d="{line}" stroke="#0080ff" stroke-width="4"/></g></svg>"##
+            );
+            let bytes = png(&svg, || true).expect("a picture");
+            let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG");
+            let mut pixels = vec![0; 20 * 20 * 4];
+            reader.next_frame(&mut pixels).expect("its pixels");
+            let at = |x: usize, y: usize| &pixels[(y * 20 + x) * 4..][..4];
+            assert_eq!(at(10, 10), [0, 128, 255, 255], "{line}");
+            assert_eq!(at(2, 2), [0, 0, 0, 0], "{line}");
+        }
+    }
 }
