@@ -25,8 +25,8 @@ const open = (page, id) => page.click(`#${id} .enlarge`);
 
 test('the CSV of a plot is the API’s, bit for bit, and has the impacts that the plot shows', async () => {
   const { page, clean } = await changedRun(stage);
-  const shown = await numbers(page, 'plane-angle');
   const last = await impacts(page);
+  const shown = await numbers(page, 'plane-angle', last);
   await open(page, 'plane-angle');
   const { name, bytes } = await saved(page, 'CSV');
   assert.equal(name, 'equipoise-plane-angle.csv');
@@ -59,7 +59,7 @@ test('the CSV of a plot is the API’s, bit for bit, and has the impacts that th
 
 test('the copied curl runs, and gives the data of the plots with all that was done to the run', async () => {
   const { page, clean } = await changedRun(stage);
-  const shown = await numbers(page, 'plane-velocity');
+  const shown = await numbers(page, 'plane-velocity', await impacts(page));
   await open(page, 'plane-velocity');
   await page.locator('dialog.large').getByRole('button', { name: 'Copy curl' }).click();
   const command = await page.evaluate(() => navigator.clipboard.readText());

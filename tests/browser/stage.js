@@ -201,10 +201,13 @@ export function ink(page, selector, property) {
 }
 
 /** The numbers behind a chart, as its table shows them. */
-export async function numbers(page, id) {
+export async function numbers(page, id, least = 1) {
   const summary = page.locator(`#${id} summary`);
   if (!(await page.locator(`#${id} details`).evaluate((details) => details.open))) await summary.click();
-  await page.waitForFunction((chart) => document.querySelectorAll(`#${chart} tbody tr`).length > 0, id);
+  await page.waitForFunction(
+    ([chart, rows]) => document.querySelectorAll(`#${chart} tbody tr`).length >= rows,
+    [id, least],
+  );
   return page
     .locator(`#${id} tbody tr`)
     .evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
