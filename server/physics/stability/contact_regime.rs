@@ -1,5 +1,5 @@
 //! The contact at the upright bounce: without friction, sticking to a table that moves along with it, or sticking to a table that
-//! only tilts. Gives the inertia that a strike turns, the stick cone, and the eigenvalues of a table that only tilts.
+//! only tilts. Computes the inertia that a strike turns, the stick cone, and the eigenvalues for a table that only tilts.
 //!
 //! Not here: the impulse itself ([`crate::bounce::friction`]), and the conclusions ([`crate::stability::linear_verdict`],
 //! [`crate::stability::verdict`]).
@@ -15,7 +15,7 @@ use nalgebra::Complex;
 pub enum ContactRegime {
     /// No friction.
     Frictionless,
-    /// The contact sticks to a table that moves along itself with the contact point.
+    /// The contact sticks to a table that moves along its surface with the contact point.
     VelocityMatched,
     /// The contact sticks to a table that only tilts: v_t = 0 is inside the stick cone for any μ > 0.
     Sticking,
@@ -41,7 +41,7 @@ pub(crate) fn turning_radius_squared(rod: &Rod, regime: ContactRegime) -> f64 {
     }
 }
 
-/// The rod of a model with an angle, and the coefficient of friction, if its contact is velocity-matched.
+/// Rod and coefficient of friction of a model with a velocity-matched contact; `None` for other models.
 fn velocity_matched(model: &Model) -> Option<(&Rod, f64)> {
     let matched = contact_regime(model) == ContactRegime::VelocityMatched;
     matched.then(|| (model.rod(), model.friction().map_or(0.0, |friction| friction.coefficient)))
@@ -79,13 +79,13 @@ pub fn sticking_polynomial_at_one(rod: &Rod, speed: f64) -> f64 {
     -4.0 * rod.contact_distance * speed * speed / (rod.gravity * turning)
 }
 
-/// The eigenvalues of θ, ẋ and θ̇ in the same regime: 0, since every strike takes away the contact's velocity along the table, and
-/// λ = 1 + m ± √(m² + 2ν) with ν = 2lV²/(G(l² + ρ²)), m = ν(2 − κ)/2.
+/// The eigenvalues of θ, ẋ and θ̇ for [`ContactRegime::Sticking`]. One is 0: every strike removes the contact's velocity along the
+/// table. The others are λ = 1 + m ± √(m² + 2ν) with ν = 2lV²/(G(l² + ρ²)), m = ν(2 − κ)/2.
 pub(crate) fn sticking_eigenvalues(rod: &Rod, speed: f64) -> [Complex<f64>; 3] {
     let nu = -0.5 * sticking_polynomial_at_one(rod, speed);
     let mean = 0.5 * nu * (2.0 - rod.tilt_gain);
     let root = (mean * mean + 2.0 * nu).sqrt();
-    // The product of the two is −2ν; the smaller one follows from it without cancellation.
+    // The two values of λ − 1 have the product −2ν, which gives the smaller one without cancellation.
     let large = if mean < 0.0 { mean - root } else { mean + root };
     [1.0 + large, 1.0 - 2.0 * nu / large, 0.0].map(|value| Complex::new(value, 0.0))
 }

@@ -1,8 +1,8 @@
 //! The derivative of the map from contact to contact, at any state, by differentiating its formulas with the contact
 //! time implicit; and the same by finite differences, only to compare.
 //!
-//! States here are (ρθ, ẋ, ẏ, ρθ̇) just before a contact, in this order, and then x where the table feeds the state back; (ẋ, ẏ) for
-//! a point mass.
+//! A state is (ρθ, ẋ, ẏ, ρθ̇) just before a contact, followed by x if the table has state feedback. The state of a point mass is
+//! (ẋ, ẏ).
 
 use crate::body::Body;
 use crate::body::general::GeneralBody;
@@ -25,8 +25,8 @@ use nalgebra::{Complex, DMatrix, Schur};
 /// The map linearized about one orbit segment.
 #[derive(Clone, Debug)]
 pub struct Linearization {
-    /// Derivative of the state at the end by the state at the start, 4 × 4 (5 × 5 with state feedback, 2 × 2 for a point mass), m/s
-    /// by m/s except for ρθ and x in m.
+    /// Derivative of the state at the end with respect to the state at the start: 4 × 4, with state feedback 5 × 5, for a point
+    /// mass 2 × 2. Components are in m/s, except ρθ and x in m.
     pub matrix: DMatrix<f64>,
     /// The state at the end.
     pub end: State,
@@ -38,7 +38,7 @@ pub struct Linearization {
     pub contact_speed: f64,
     /// Contact mode of the first contact.
     pub contact_mode: ContactMode,
-    /// At a kink of the map, the derivatives on all of its sides; empty elsewhere.
+    /// Derivatives on all sides of a kink of the map; empty away from kinks.
     pub one_sided: Vec<OneSidedDerivative>,
 }
 
@@ -51,11 +51,11 @@ pub struct OneSidedDerivative {
     pub matrix: DMatrix<f64>,
 }
 
-/// Relative distance from a switch between two formulas of an impact with friction below which both are followed. It is some
-/// thousands of roundings.
+/// Relative distance from a switch between two branches of an impact with friction up to which both branches are followed. It is a
+/// few thousand ulps.
 pub const TIED: f64 = 1e-12;
 
-/// Most sides that are told: each contact on a kink doubles them.
+/// Maximum number of sides that are reported. Each contact on a kink doubles the number.
 pub const MOST_SIDES: usize = 16;
 
 /// Names of the components of a state, in the order of a matrix's rows and columns.
@@ -72,12 +72,12 @@ pub fn state_order(model: &Model) -> &'static [&'static str] {
 /// Derivative of the map over `period` contacts from a state, exact but for rounding.
 ///
 /// # Errors
-/// The contact at which the run ends before that, which has no derivative.
+/// The contact that ends the run early; it has no derivative.
 pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
     jacobian_at(model, 0.0, start, period)
 }
 
-/// [`jacobian`] from a place x, m, on which it depends where the table feeds it back.
+/// [`jacobian`] from a horizontal position x, m. The derivative depends on x only if the table feeds it back.
 ///
 /// # Errors
 /// As [`jacobian`].
@@ -87,7 +87,7 @@ pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<
     along(model, x, start, period, |Contact { x, state, .. }| match model {
         Model::Rod(rod) => rod_jacobian(rod, state).map(smooth),
         Model::Point(point) => Some(smooth(point_jacobian(point, state))),
-        // Not derived, and nobody is to take anything else for it.
+        // The derivative with noise is not derived; NaN marks it as unknown.
         Model::General(GeneralBody { noise: Some(_), .. }) => Some(smooth(DMatrix::from_element(size, size, f64::NAN))),
         // The outline of a polygon ends runs and changes no bounce.
         Model::General(rig) if size == 5 => rig_jacobians::<5>(rig, *x, state),
@@ -98,12 +98,12 @@ pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<
 /// The derivative by central differences with a step of `step` m/s (m for ρθ) in each component.
 ///
 /// # Errors
-/// As [`jacobian`]; also where a run that starts one step aside ends.
+/// As [`jacobian`], also for the runs that start one step aside.
 pub fn finite_difference(model: &Model, start: &State, period: u64, step: f64) -> Result<Linearization, Box<Contact>> {
     finite_difference_at(model, 0.0, start, period, step)
 }
 
-/// [`finite_difference`] from a place x, m.
+/// [`finite_difference`] from a horizontal position x, m.
 ///
 /// # Errors
 /// As [`finite_difference`].
@@ -134,8 +134,8 @@ pub fn finite_difference_at(
 
 /// Eigenvalues, largest modulus first.
 ///
-/// A defective pair comes out wrong by the square root of rounding: do not decide stability by them. None if the
-/// iteration does not converge.
+/// A defective pair has an error of the order of √ε, so do not decide stability by these values. `None` if the iteration does not
+/// converge.
 pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let schur = Schur::try_new(matrix.clone(), f64::EPSILON, 10_000)?;
     let mut values: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
@@ -143,7 +143,7 @@ pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     Some(values)
 }
 
-/// Modulus of a complex number, with the same bits everywhere.
+/// Modulus of a complex number, with the same bits on every platform.
 pub fn modulus(value: Complex<f64>) -> f64 {
     libm::hypot(value.re, value.im)
 }
@@ -152,7 +152,7 @@ pub(crate) fn sort_eigenvalues(values: &mut [Complex<f64>]) {
     values.sort_by(|a, b| modulus(*b).total_cmp(&modulus(*a)).then(b.re.total_cmp(&a.re)).then(b.im.total_cmp(&a.im)));
 }
 
-/// Follows the run, multiplying the derivatives that `derivative` gives at each of its contacts.
+/// Follows the run and multiplies the `derivatives` at its contacts.
 fn along(
     model: &Model,
     x: f64,
@@ -187,7 +187,7 @@ fn along(
     })
 }
 
-/// Every derivative of a contact after every one of those before it, the main one of both first.
+/// Products of each derivative of a contact with each derivative before it; the product of the two main ones comes first.
 fn multiply(factors: &[OneSidedDerivative], sides: &[OneSidedDerivative]) -> Vec<OneSidedDerivative> {
     let pairs = factors.iter().flat_map(|factor| sides.iter().map(move |side| (factor, side)));
     let product = |(factor, side): (&OneSidedDerivative, &OneSidedDerivative)| OneSidedDerivative {
@@ -204,10 +204,10 @@ fn rod_jacobian(rod: &Rod, state: &State) -> Option<DMatrix<f64>> {
     Some(after_flight(&lifted, Dual::from_f64(0.0), &lifted.strike(&start), root))
 }
 
-/// The derivative as the impact went, and those on the other sides of a kink that it lies on.
+/// The derivative on the branch that the impact takes, followed by those on the other sides if it lies on a kink.
 ///
-/// Coming to rest at once, v_t = 0, is no kink where friction holds: the impulse depends on the sliding before only by where it
-/// ends, and there in the same way from both sides.
+/// An impact without sliding, v_t = 0, is smooth if friction holds the contact: the impulse depends on the sliding only through its
+/// end, and in the same way from both sides.
 fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Option<Vec<OneSidedDerivative>> {
     let rod = &rig.rod;
     let lifted: Rod<Dual<K>> = rod.lift();
@@ -229,7 +229,7 @@ fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Op
         }
         actual_branch(decision)
     });
-    // Without restitution the impact ends where compression does.
+    // Without restitution the impact ends with compression.
     let ends_early = [FrictionBranch::Rests, FrictionBranch::RestsEarly].iter().all(|fork| tied.contains(fork));
     tied.retain(|fork| match fork {
         FrictionBranch::Forward => !held,
@@ -262,7 +262,7 @@ fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Op
     Some(sides)
 }
 
-/// A state that moves along each of its components.
+/// A state in dual numbers, with one partial derivative for each component.
 fn along_all<const K: usize>(rod: &Rod, state: &State) -> State<Dual<K>> {
     let per_length = 1.0 / rod.radius_of_gyration;
     State {
@@ -273,7 +273,7 @@ fn along_all<const K: usize>(rod: &Rod, state: &State) -> State<Dual<K>> {
     }
 }
 
-/// The derivative of the state at the end of a flight that takes `root`, s.
+/// The derivative of the state at the end of a flight of duration `root`, s.
 fn after_flight<const K: usize>(
     lifted: &Rod<Dual<K>>,
     place: Dual<K>,
@@ -300,7 +300,7 @@ fn point_jacobian(point: &PointMass, state: &State) -> DMatrix<f64> {
     rows(&[strike.after.x_dot, -strike.after.y_dot])
 }
 
-/// The derivative of the first K of these components.
+/// The matrix of the partial derivatives of the first K components.
 fn rows<const K: usize>(components: &[Dual<K>]) -> DMatrix<f64> {
     DMatrix::from_fn(K, K, |row, column| components[row].partials[column])
 }

@@ -1,9 +1,9 @@
-//! Loss of stability at the ends of the linear verdict: soft, to a small swing that grows with the distance from the
-//! end, or hard, so that every small start falls.
+//! Loss of stability at the ends of the stable range of the linear verdict. A soft loss leads to a small swing that grows with the
+//! distance from the end. After a hard loss the body falls from every small deviation.
 //!
-//! At each end one direction of the map is on the unit circle, and its cubic coefficient decides ([`crate::stability::normal_form`]). For
-//! the tilt gain that is C of [`BoundaryCoefficient`]; for the energy gain the height flips; for state feedback a pair or a real eigenvalue
-//! leaves the circle at a factor on the gains.
+//! At each end an eigenvalue of the map is on the unit circle, and the cubic coefficient of its normal form decides
+//! ([`crate::stability::normal_form`]). For the tilt gain that is C of [`BoundaryCoefficient`]. For the energy gain the bounce
+//! height doubles its period. For state feedback a pair or a real eigenvalue leaves the circle at a factor on the gains.
 
 use crate::bounce::state::State;
 use crate::control::bounce_model::{BounceModel, STABLE};
@@ -19,10 +19,10 @@ use crate::stability::lyapunov::first_contact;
 use crate::stability::normal_form::UprightBounce;
 use nalgebra::{Complex, DMatrix, RowVector4};
 
-/// Modulus of an eigenvalue of the angle over two bounces of different height up to which it counts as circling.
+/// Largest modulus of an eigenvalue of the angle, over two bounces of different height, for which the angle counts as bounded.
 const CIRCLING: f64 = 1.0 + 1e-7;
 
-/// An end of the linear verdict.
+/// Parameter whose stable range ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CriticalParameter {
     /// κ_c, the upper end of the tilt gain.
@@ -34,7 +34,7 @@ pub enum CriticalParameter {
 }
 
 impl CriticalParameter {
-    /// Name in answers: the dotted name of a field of the scene, or of a factor on one.
+    /// Name in answers: the dotted name of a field of the scene, or of the group that the factor is on.
     pub fn name(self) -> &'static str {
         match self {
             Self::TiltGain => Name::TiltGain.row().path,
@@ -47,30 +47,30 @@ impl CriticalParameter {
 /// The motion on which a scene beyond a soft end settles, by the normal form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SettledMotion {
-    /// On a swing of this largest |θ|, rad.
+    /// A swing with this largest |θ|, rad.
     Swing(f64),
-    /// On bounces of two heights in turn.
+    /// Bounces of two alternating heights.
     Heights {
-        /// Heights of the centre of gravity at the top, m, the lower one first.
+        /// Apex heights of the centre of gravity, m, the lower one first.
         heights: [f64; 2],
-        /// True if the angle stays bounded on them, by the eigenvalues over two bounces.
+        /// True if the angle stays bounded, by the eigenvalues over two bounces.
         angle_bounded: bool,
     },
 }
 
-/// Loss of stability at an end of the linear verdict.
+/// Loss of stability at an end of the stable range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityLoss {
-    /// Which end.
+    /// The parameter whose range ends.
     pub end: CriticalParameter,
-    /// κ, κ_E (s²/m²) or the factor at which it is.
+    /// Critical value: κ, κ_E (s²/m²) or the factor on the gains.
     pub value: f64,
     /// Bifurcation by which eigenvalues leave the unit circle there.
     pub bifurcation: Bifurcation,
-    /// The coefficient whose sign decides, positive where the loss is soft: C for the tilt gain, s²/m² of the bounce speed for the
-    /// energy gain, per bounce and rad² for feedback.
+    /// The coefficient whose sign decides; positive for a soft loss. It is C for the tilt gain, in s²/m² of the bounce speed for
+    /// the energy gain, and per bounce and rad² for feedback.
     pub coefficient: f64,
-    /// The motion on which this scene settles, if it is beyond a soft end and the normal form says.
+    /// The motion on which this scene settles, if it is beyond a soft end and the normal form gives one.
     pub settles: Option<SettledMotion>,
 }
 
@@ -80,13 +80,13 @@ impl StabilityLoss {
         BoundaryCoefficient { coefficient: self.coefficient }.kind()
     }
 
-    /// Tells whether it is soft.
+    /// Tells whether the loss is soft.
     pub fn is_soft(&self) -> bool {
         self.coefficient > 0.0
     }
 }
 
-/// The ends of a scene's linear verdict for which the loss is derived, and why it is not for others.
+/// The losses of stability at the ends of a scene's linear verdict, and notes on those that cannot be derived.
 pub fn losses(
     scene: &Scene,
     fixed_point: &FixedPoint,
@@ -115,8 +115,8 @@ pub fn losses(
     (found, notes)
 }
 
-/// The upper end of κ_E: upright bounces are u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E, which flips at KV² = 2 with the coefficient
-/// 4K = 8/V².
+/// The loss at the upper end of κ_E. The speeds of upright bounces follow u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E. This map doubles
+/// its period at KV² = 2 with the coefficient 4K = 8/V².
 fn energy_gain(scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) -> StabilityLoss {
     let speed_squared = fixed_point.speed * fixed_point.speed;
     StabilityLoss {
@@ -128,8 +128,8 @@ fn energy_gain(scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) 
     }
 }
 
-/// The bounces of two heights beyond the flip, where they attract. With D = 1 + ½KV² their speeds are u² = 2s/K and 2/(Ks),
-/// s + 1/s = D, and a deviation is multiplied by 9 − 2D² over both.
+/// The bounces of two alternating heights beyond the period doubling; `None` if they do not attract. With D = 1 + ½KV² their speeds
+/// are u² = 2s/K and 2/(Ks), s + 1/s = D. Over both bounces a deviation is multiplied by 9 − 2D².
 fn two_heights(scene: &Scene, fixed_point: &FixedPoint, loop_gain: f64) -> Option<SettledMotion> {
     let sum = 1.0 + 0.5 * loop_gain;
     let multiplier = 9.0 - 2.0 * sum * sum;
@@ -151,7 +151,7 @@ fn two_heights(scene: &Scene, fixed_point: &FixedPoint, loop_gain: f64) -> Optio
     Some(SettledMotion::Heights { heights: [height(low), height(high)], angle_bounded: angle_bounded.unwrap_or(false) })
 }
 
-/// The rows and columns of a derivative that are not of ẏ; x only where it is fed back.
+/// A derivative without the row and column of ẏ, and without those of x unless x is fed back.
 fn odd_part(matrix: &DMatrix<f64>, with_x: bool) -> DMatrix<f64> {
     let kept: &[usize] = match (matrix.nrows(), with_x) {
         (2, _) => &[0],
@@ -161,8 +161,8 @@ fn odd_part(matrix: &DMatrix<f64>, with_x: bool) -> DMatrix<f64> {
     DMatrix::from_fn(kept.len(), kept.len(), |row, column| matrix[(kept[row], kept[column])])
 }
 
-/// The ends of the factors on a state feedback: both margins of a stable loop; of an unstable one the end of the stable range
-/// next to it, if there is one.
+/// The losses at the ends of the stable range of a factor on a state feedback. A stable loop gets both ends of its range, an
+/// unstable one the near end of an adjacent stable range, if there is one.
 fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<StabilityLoss>, String> {
     let model = scene.model();
     let Some(gain) = model.feedback() else { return Ok(Vec::new()) };
@@ -183,7 +183,7 @@ fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<StabilityLoss
     };
     let is_stable =
         |low: f64, high: f64| radius(if high.is_finite() { 0.5 * (low + high) } else { 2.0 * low + 1.0 }) <= STABLE;
-    // The range between two crossings that 1 is in.
+    // The range between adjacent crossings that contains 1.
     let above = factors.partition_point(|factor| *factor <= 1.0).min(factors.len() - 1);
     let (low, high) = (factors[above - 1], factors[above]);
     let ends = if radius(1.0) <= STABLE {
@@ -203,7 +203,7 @@ fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<StabilityLoss
         .collect()
 }
 
-/// The loss at one factor; `own` is the eigenvalue of the scene itself that is beyond the circle, if there is one.
+/// The loss at one factor; `own` is the eigenvalue of the scene itself that is outside the unit circle, if there is one.
 fn feedback_end(
     bounce: &UprightBounce,
     factor: f64,
@@ -223,7 +223,7 @@ fn feedback_end(
     } else {
         Bifurcation::Pitchfork
     };
-    // ln |λ| + ℓA² = 0.
+    // The amplitude A solves ln |λ| + ℓA² = 0.
     let settles = own
         .filter(|_| coefficient > 0.0)
         .map(|own| SettledMotion::Swing((libm::log(modulus(own)) / coefficient).sqrt()));

@@ -1,7 +1,7 @@
 //! Distance of a scene from the edge of stability when its body deviates from the given one: the linear verdict over a box
 //! of contact distances, radii of gyration and restitutions.
 //!
-//! The table keeps to what it was told: its gains, and the restitution that it believes in.
+//! The table keeps its gains and its assumed restitution.
 
 use crate::scene::{Name, Scene, Value};
 use crate::stability::fixed_point::find_fixed_point;
@@ -18,7 +18,7 @@ pub struct Tolerances {
     pub restitution: f64,
 }
 
-/// A body in the box.
+/// Parameters of a body in the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledBody {
     /// l, m.
@@ -29,12 +29,12 @@ pub struct SampledBody {
     pub restitution: f64,
 }
 
-/// The least and the most of a quantity over the box.
+/// Range of a quantity over the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValueRange {
-    /// The least.
+    /// Minimum.
     pub least: f64,
-    /// The most.
+    /// Maximum.
     pub most: f64,
 }
 
@@ -45,7 +45,7 @@ pub struct ToleranceMargins {
     pub critical_tilt_gain: ValueRange,
     /// The body with the least κ_c.
     pub worst: SampledBody,
-    /// Height of the centre of gravity at the top of the bounce in place, m.
+    /// Apex height of the centre of gravity in the bounce in place, m.
     pub apex_height: ValueRange,
     /// Eigenvalue of the energy.
     pub energy_eigenvalue: ValueRange,
@@ -53,8 +53,10 @@ pub struct ToleranceMargins {
     pub holds: bool,
 }
 
-/// Points along each side of the box to begin with, and then of ever smaller boxes about the best of them.
+/// Grid points along each side of the box in the first round of the search.
 const POINTS: usize = 9;
+
+/// Rounds of the search, each over a smaller box about the best point so far.
 const ROUNDS: usize = 24;
 
 /// The linear verdict over a box of bodies.
@@ -130,7 +132,7 @@ struct Looked {
     energy: f64,
 }
 
-/// The least value of a smooth function over a box, and where: the best point of a grid, then of smaller ones about it.
+/// Minimum of a smooth function over a box, and its location: the best point of a grid, then of smaller grids about it.
 fn search(
     low: [f64; 3],
     high: [f64; 3],

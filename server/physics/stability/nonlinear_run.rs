@@ -1,4 +1,4 @@
-//! The run of the scene itself, summed up for the verdict.
+//! Summary of the scene's own run, for the verdict.
 
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
@@ -11,17 +11,17 @@ use crate::table::actuator_load::{ActuatorLoad, LoadTracker};
 pub struct NonlinearRun {
     /// End of the run.
     pub ending: Ending,
-    /// Contacts until then.
+    /// Number of contacts until the end.
     pub impacts: u64,
-    /// When, s.
+    /// Time of the last contact, s.
     pub t: f64,
     /// Largest |θ| at a contact, rad.
     pub max_theta: f64,
-    /// The most that it asked of the table.
+    /// Largest load of the run on the table's actuators.
     pub demand: ActuatorLoad,
 }
 
-/// Runs the scene for up to `impacts` contacts; `go_on` is asked now and then, and `None` follows a `false`.
+/// Runs the scene for up to `impacts` contacts. `go_on` is called at intervals; `None` once it returns `false`.
 pub fn run_nonlinear(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<NonlinearRun> {
     let mut orbit = match scene.orbit() {
         Ok(orbit) => orbit,

@@ -1,6 +1,6 @@
 //! Regularity of a run: its rotation about the fixed point, its chaos indicator, and the horizon of prediction.
 //!
-//! All of it comes from one watch over the first contacts of a run, with the exact derivative of the map carried along.
+//! All three come from one pass over the first contacts of a run, which carries the exact derivative of the map along.
 //! Not here: what is concluded from it ([`crate::stability::verdict`]).
 
 use crate::body::general::GeneralBody;
@@ -16,19 +16,21 @@ use crate::stability::linear_verdict::LinearVerdict;
 use crate::table::control_law::Steering;
 use std::f64::consts::TAU;
 
-/// Contacts that are watched at most. Four tangents cost some four bounces each.
+/// Maximum number of contacts that are watched. The four tangents of a contact cost about as much as four bounces.
 pub const WATCHED: u64 = 500;
 
-/// Fewest turns from which a rotation is measured; its average has two or three digits there.
+/// Minimum number of turns that a rotation is averaged over. The average then has two or three digits.
 pub const FEWEST: usize = 50;
 
-/// The mean growth factor above which a run is called chaotic. Regular ones tend to 2 from below, chaotic ones grow with
-/// their length; `tests/regularity.rs` measures how often this is wrong: on other bodies than it was chosen on, 10 of 694
-/// regular and 6 of 48 chaotic runs. On the same runs the alignment of tangents (SALI) and
-/// the bare growth (FLI) separate as well, halves of a weighted average of the rotation half as well.
+/// Mean growth factor above which a run is called chaotic. It tends to 2 from below for regular runs, and grows with the length of
+/// chaotic ones.
+///
+/// `tests/regularity.rs` measures the error rate on bodies other than those it was chosen on: 10 of 694 regular and 6 of 48
+/// chaotic runs are misjudged. On the same runs the alignment of tangents (SALI) and the bare growth (FLI) separate equally well;
+/// comparing a weighted average of the rotation over the two halves of a run separates half as well.
 pub const CHAOTIC: f64 = 2.2;
 
-/// Share of V that a run may be off and still be called predicted.
+/// Error, as a share of V, up to which a run counts as predicted.
 pub const TOLERANCE: f64 = 1e-3;
 
 /// Largest denominator of the resonances that are named.
@@ -37,22 +39,22 @@ pub const HIGHEST_ORDER: u32 = 8;
 /// A rational number of turns a bounce.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resonance {
-    /// Turns.
+    /// Number of turns.
     pub p: u32,
-    /// Bounces for them: the order.
+    /// Number of bounces in these turns: the order of the resonance.
     pub q: u32,
-    /// Distance of the rotation number from p/q, without sign.
+    /// Absolute distance of the rotation number from p/q.
     pub distance: f64,
 }
 
 /// Mean turns a bounce about the fixed point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
-    /// As the run did; none where it did not last long enough, or stands at the fixed point.
+    /// Rotation of the run; `None` if the run is too short or stands at the fixed point.
     pub measured: Option<f64>,
-    /// σ/2π, that of small deviations.
+    /// Rotation of small deviations, σ/2π.
     pub linear: f64,
-    /// Nearest to the measured one, or to the linear one where there is none.
+    /// Resonance nearest to the measured rotation, or to the linear one if none was measured.
     pub resonance: Resonance,
 }
 
@@ -63,7 +65,7 @@ pub struct ChaosIndicator {
     pub indicator: f64,
     /// True if the indicator is above [`CHAOTIC`].
     pub chaotic: bool,
-    /// Contacts that were watched for it.
+    /// Number of contacts that were watched.
     pub impacts: u64,
 }
 
@@ -74,7 +76,7 @@ pub struct Regularity {
     pub rotation: Option<Rotation>,
     /// `None` if the run ended before [`WATCHED`] contacts, or stands at the fixed point.
     pub chaos: Option<ChaosIndicator>,
-    /// ln of the largest growth of deviations so far, for each contact that was passed.
+    /// Logarithm of the largest growth of deviations so far, for each contact that was passed.
     pub growth: Vec<f64>,
 }
 
@@ -84,9 +86,10 @@ impl Regularity {
         5 * self.growth.len() as u64
     }
 
-    /// The contact before which deviations as large as rounding have grown beyond `tolerance`, both as a share of V: where
-    /// ln(tolerance/rounding) is used up by the growth of the product of the derivatives along the run, in the Frobenius
-    /// norm with ρδθ divided by the flight time. None where it is not used up over the contacts watched.
+    /// Number of contacts until a deviation as large as rounding has grown to `tolerance`; both are shares of V.
+    ///
+    /// The growth is that of the product of the derivatives along the run, in the Frobenius norm with ρδθ divided by the flight
+    /// time. `None` if it stays below ln(tolerance/rounding) over the contacts watched.
     pub fn predictable_impacts(&self, tolerance: f64) -> Option<u64> {
         let budget = libm::log(tolerance / (0.5 * f64::EPSILON));
         self.growth.iter().position(|growth| *growth >= budget).map(|index| index as u64 + 1)
@@ -142,13 +145,13 @@ pub fn measure_regularity(
     Some(Regularity { rotation, chaos, growth })
 }
 
-/// The nearest rational with a denominator of at most [`HIGHEST_ORDER`], the least one if there are two.
+/// The nearest rational with a denominator of at most [`HIGHEST_ORDER`]; the smaller denominator wins a tie.
 pub fn nearest_resonance(turns: f64) -> Resonance {
     let mut nearest = Resonance { p: 0, q: 1, distance: f64::INFINITY };
     for q in 1..=HIGHEST_ORDER {
         let p = (turns * f64::from(q)).round().max(0.0);
         let distance = (turns - p / f64::from(q)).abs();
-        // Only a truly nearer one: 2/8 is 1/4.
+        // The margin keeps rounding from replacing 1/4 by 2/8.
         if distance < nearest.distance - 1e-12 {
             nearest = Resonance { p: p as u32, q, distance };
         }
@@ -156,8 +159,8 @@ pub fn nearest_resonance(turns: f64) -> Resonance {
     nearest
 }
 
-/// The average of a sequence with the weights exp(−1/(s(1 − s))), 0 < s < 1: along a regular run it converges faster than any
-/// power of the length (S. Das, Y. Saiki, E. Sander and J. A. Yorke, 2017). None for an empty one.
+/// The average of a sequence with the weights exp(−1/(s(1 − s))), 0 < s < 1. Along a regular run it converges faster than any
+/// power of the length (S. Das, Y. Saiki, E. Sander and J. A. Yorke, 2017). `None` for an empty sequence.
 pub fn weighted_average(values: &[f64]) -> Option<f64> {
     let length = values.len() as f64 + 1.0;
     let (mut sum, mut weights) = (0.0, 0.0);
@@ -170,9 +173,9 @@ pub fn weighted_average(values: &[f64]) -> Option<f64> {
     (weights > 0.0).then(|| sum / weights)
 }
 
-/// Turns about the fixed point from contact to contact, counted in the coordinates in which the linear map is a rotation.
+/// Counts turns about the fixed point from contact to contact, in coordinates in which the linear map is a rotation.
 ///
-/// With u = τθ̇ that map is θ' = (1 − 4R)θ + u, u' = u − 4Rθ; then (sin σ · θ, u − 2Rθ) turns by σ, sin σ = 2√(R(1 − R)).
+/// With u = τθ̇ the linear map is θ' = (1 − 4R)θ + u, u' = u − 4Rθ. It turns (sin σ · θ, u − 2Rθ) by σ, sin σ = 2√(R(1 − R)).
 #[derive(Clone, Copy, Debug)]
 pub struct RotationCounter {
     flight_time: f64,
@@ -183,7 +186,7 @@ pub struct RotationCounter {
 }
 
 impl RotationCounter {
-    /// Turns about a fixed point at which the angle circles; none elsewhere.
+    /// A counter for a fixed point at which the angle circles; `None` for other fixed points.
     pub fn new(fixed_point: &FixedPoint, linear: &LinearVerdict) -> Option<Self> {
         let residue = linear.residue?;
         let rotation = linear.rotation?;
@@ -191,8 +194,8 @@ impl RotationCounter {
         (sine > 0.0).then_some(Self { flight_time: fixed_point.flight_time, residue, sine, rotation, angle: None })
     }
 
-    /// The angle turned since the state before, rad, within half a turn of the linear one: how many whole turns there were
-    /// between two contacts is no more than a name. None for the first state, and at the fixed point itself.
+    /// The angle turned since the previous state, rad. The number of whole turns between two contacts cannot be observed, so the
+    /// angle is taken within half a turn of the linear one. `None` for the first state, and at the fixed point itself.
     pub fn next(&mut self, state: &State) -> Option<f64> {
         let across = self.sine * state.theta;
         let along = self.flight_time * state.theta_dot - 2.0 * self.residue * state.theta;
@@ -207,37 +210,37 @@ impl RotationCounter {
     }
 }
 
-/// Four small deviations, carried along a run by the exact derivative of its map: the product of the derivatives.
+/// Four tangents of a run, carried along by the exact derivative of its map. Together they are the product of the derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct Tangents {
     lifted: Rod<Dual<4>>,
     friction: Option<Friction>,
-    /// ρ/τ and ρ, which bring angles and spins to m/s beside the velocities.
+    /// Factors that convert θ, ẋ, ẏ and θ̇ to m/s: ρ/τ, 1, 1 and ρ.
     scales: [f64; 4],
-    /// θ, ẋ, ẏ and θ̇ of the four, divided by e^growth.
+    /// θ, ẋ, ẏ and θ̇ of the four tangents, divided by e^growth.
     rows: [[f64; 4]; 4],
     growth: f64,
 }
 
 impl Tangents {
-    /// The deviations by 1 m/s in each component, for flights of some `flight_time`, s.
+    /// Equal deviations in each component, with a joint norm of 1 m/s, for flights of about `flight_time`, s.
     pub fn new(rod: &Rod, friction: Option<Friction>, flight_time: f64) -> Self {
         let rho = rod.radius_of_gyration;
         let scales = [rho / flight_time, 1.0, 1.0, rho];
         let mut rows = [[0.0; 4]; 4];
         for (index, row) in rows.iter_mut().enumerate() {
-            // Half of 1 m/s each, so that the norm of all is 1 m/s.
+            // Four deviations of 0.5 m/s have a joint norm of 1 m/s.
             row[index] = 0.5 / scales[index];
         }
         Self { lifted: rod.lift(), friction, scales, rows, growth: 0.0 }
     }
 
-    /// ln of how much the largest has grown, by the Frobenius norm of the product.
+    /// Logarithm of the growth of the product of the derivatives, in the Frobenius norm.
     pub fn growth(&self) -> f64 {
         self.growth
     }
 
-    /// Carries them over a contact and the flight after it.
+    /// Carries the tangents over a contact and the flight after it.
     pub fn pass(&mut self, before: &State, flight_time: f64) {
         let dual = |value, row: usize| Dual { value, partials: self.rows[row] };
         let State { theta, x_dot, y_dot, theta_dot } = *before;
