@@ -18,7 +18,7 @@ import { drawStrike } from './strike-marks.js';
 /** @typedef {import('../physics/flight.js').Arc} Arc */
 /** @typedef {import('../physics/table.js').Strike} Strike */
 
-/** A strike is seen for this long, in wall time. */
+/** Time for which the marks of a strike are visible, in wall time. */
 const GLOW_S = 0.28;
 const TRAIL_FLIGHTS = 3;
 
@@ -44,7 +44,7 @@ export class RunDrawing {
     const impact = place === null ? null : run.impacts.row(place);
     const arc = run.arcAt(now);
     if (!arc) return drawGrid(surface, camera);
-    // Without flights, the pose of the last strike stands still until the next one.
+    // Without flights, the pose of the last strike is held until the next one.
     const t = moving || !impact ? now : arc.t;
     const pose = poseOn(arc, t, scene);
     camera.contain(scene, arc.y + Math.max(0, arc.y_dot) ** 2 / (2 * effectiveGravity(scene)));
@@ -74,17 +74,17 @@ export class RunDrawing {
     const { run } = this.#parts;
     if (run.phase === 'ended') return 1;
     const still = now - struck < 1e-6 || !moving ? 0 : GLOW_S / 2;
-    // Slower runs keep the strike as long as it can be seen.
+    // Divided by the speed, run time is wall time.
     const age_s = run.phase === 'running' && moving ? (now - struck) / Math.max(run.clock.speed, 1e-6) : still;
     return Math.max(0, 1 - age_s / GLOW_S);
   }
 
-  /** Shows in numbers what is drawn, at a pace one can read. @param {number} now_ms @param {number} t @param {import('../physics/flight.js').Pose} pose @param {Impact | null} impact */
+  /** Writes the drawn values as text, at most ten times a second while running. @param {number} now_ms @param {number} t @param {import('../physics/flight.js').Pose} pose @param {Impact | null} impact */
   #say(now_ms, t, pose, impact) {
     const { run, readout, box } = this.#parts;
     const running = run.phase === 'running';
     if (running && now_ms - this.#read_ms < 100) return;
-    // A picture that stands still can be read to the last digit that matters.
+    // More digits are legible while the picture stands still.
     const [seconds, rest] = running ? [2, 3] : [4, 5];
     const n = impact?.n ?? 0;
     readout.textContent = unbroken(
@@ -100,7 +100,7 @@ export class RunDrawing {
     this.#read_ms = now_ms;
   }
 
-  /** The way of the centre of gravity on the last flights. @param {Scene} scene @param {number | null} place @param {number} t */
+  /** Draws the path of the centre of gravity on the last flights. @param {Scene} scene @param {number | null} place @param {number} t */
   #drawTrail(scene, place, t) {
     const {
       run,
@@ -152,7 +152,7 @@ function strikeOf(impact, scene) {
   };
 }
 
-/** The newest contact in words, where there is more to it than a strike at y = 0. @param {Impact | null} impact @param {number} decimals */
+/** Describes the newest contact; empty for a frictionless strike at y = 0. @param {Impact | null} impact @param {number} decimals */
 function contactWords(impact, decimals) {
   if (!impact) return '';
   const mode = MODES[impact.mode] ?? 'frictionless';

@@ -163,7 +163,7 @@ export class MapControls {
     return { element, field, from, to, unit, error };
   }
 
-  /** Another field begins where its slider would; two sides cannot have the same one, so they change places. @param {Name} name */
+  /** Takes the selected field with the range of its slider. The sides swap if the other one has it. @param {Name} name */
   #turn(name) {
     const other = name === 'x' ? 'y' : 'x';
     const settings = structuredClone(this.#settings);
@@ -182,7 +182,7 @@ export class MapControls {
   /** @param {HTMLInputElement} input @param {number} value */
   #put(input, value) {
     input.value = String(Number(value.toPrecision(8)));
-    // The exact value of a shortened text, until it is edited.
+    // Keeps the exact value of the rounded text until it is edited.
     input.dataset.text = input.value;
     input.dataset.value = String(value);
   }
@@ -206,7 +206,7 @@ export class MapControls {
     this.blame([]);
   }
 
-  /** Takes the typed settings; marks values that are none, and then changes nothing. */
+  /** Reads the typed settings. Invalid values are marked, and the settings stay unchanged. */
   #read() {
     const settings = structuredClone(this.#settings);
     /** @type {import('contract').ProblemError[]} */
@@ -238,9 +238,9 @@ export class MapControls {
   }
 
   /**
-   * Errors beside what they are about.
+   * Shows errors beside their controls.
    * @param {import('contract').ProblemError[]} errors
-   * @returns {string[]} those that belong to no control here
+   * @returns {string[]} errors of other controls
    */
   blame(errors) {
     for (const { from, to, field, error } of Object.values(this.#sides)) {
@@ -265,11 +265,11 @@ export class MapControls {
     return elsewhere;
   }
 
-  /** @param {{arrived: number, rows: number} | null} progress null when nothing is under way */
+  /** @param {{arrived: number, rows: number} | null} progress null when no answer is awaited */
   busy(progress) {
     const ended = this.#cancel === document.activeElement && progress === null;
     this.#cancel.disabled = progress === null;
-    // Whoever pressed it should not find the focus gone.
+    // A disabled button loses the focus.
     if (ended) this.#compute.focus();
     this.#progress.hidden = progress === null;
     if (!progress) return;
