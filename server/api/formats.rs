@@ -1,6 +1,6 @@
-//! The sets of formats that answers come in.
+//! Sets of formats for answers.
 //!
-//! Each set is an enum, and writing an answer is a `match` over it: a format without a way to write it does not compile.
+//! Each set is an enum, and an answer is written by a `match` over it: the compiler demands a writer for every format.
 
 use std::borrow::Cow;
 
@@ -13,10 +13,10 @@ use crate::http::{Format, Problem};
 
 /// The formats of an answer; the first is the default.
 pub trait FormatSet: Copy + Send + 'static {
-    /// All of them, for negotiation.
+    /// All formats of the set, for content negotiation.
     const FORMATS: &'static [Format];
 
-    /// The member of the set that is this format, if there is one.
+    /// The member of the set for a format; `None` if the set lacks it.
     fn of(format: Format) -> Option<Self>;
 }
 
@@ -39,22 +39,22 @@ macro_rules! format_set {
 }
 
 format_set! {
-    /// Formats of columns.
+    /// Formats of an answer with columns.
     TableFormat { Json, Csv, Ndjson }
 }
 
 format_set! {
-    /// Formats of an answer that is drawn and has no columns.
+    /// Formats of an answer with a picture.
     FigureFormat { Json, Svg, Png }
 }
 
 format_set! {
-    /// Formats of columns that are drawn as well.
+    /// Formats of an answer with columns and a picture.
     ChartFormat { Json, Csv, Ndjson, Svg, Png }
 }
 
 format_set! {
-    /// The same, with reports of progress.
+    /// Formats of an answer with columns, a picture and reports of progress.
     ProgressFormat { Json, Csv, Ndjson, Progress, Svg, Png }
 }
 
@@ -63,7 +63,7 @@ pub trait Tabular: Serialize {
     /// The columns.
     fn to_table(&self) -> Cow<'_, Table>;
 
-    /// Last line of NDJSON: everything that is no column.
+    /// Last line of NDJSON: the part of the answer outside the columns.
     fn end(&self) -> impl Serialize;
 }
 
@@ -72,7 +72,7 @@ pub trait Pictured: Serialize {
     /// The picture as SVG.
     ///
     /// # Errors
-    /// A problem where this answer has nothing to draw.
+    /// A problem if this answer has nothing to draw.
     fn to_picture(&self) -> Result<String, Problem>;
 }
 
@@ -80,7 +80,7 @@ impl TableFormat {
     /// Writes an answer.
     ///
     /// # Errors
-    /// That the work was given up.
+    /// Cancelled work.
     pub fn write(self, answer: &impl Tabular, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
             Self::Json => write::json(answer, slice),
@@ -94,7 +94,7 @@ impl FigureFormat {
     /// Writes an answer.
     ///
     /// # Errors
-    /// That the work was given up, or that there is nothing to draw.
+    /// Cancelled work, or an answer with nothing to draw.
     pub fn write(self, answer: &impl Pictured, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
             Self::Json => write::json(answer, slice),
@@ -108,7 +108,7 @@ impl ChartFormat {
     /// Writes an answer.
     ///
     /// # Errors
-    /// That the work was given up, or that there is nothing to draw.
+    /// Cancelled work, or an answer with nothing to draw.
     pub fn write(self, answer: &(impl Tabular + Pictured), slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
             Self::Json => TableFormat::Json.write(answer, slice),
@@ -124,7 +124,7 @@ impl ProgressFormat {
     /// Writes an answer, after all reports of progress.
     ///
     /// # Errors
-    /// That the work was given up, or that there is nothing to draw.
+    /// Cancelled work, or an answer with nothing to draw.
     pub fn write(self, answer: &(impl Tabular + Pictured), slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
             Self::Json => ChartFormat::Json.write(answer, slice),

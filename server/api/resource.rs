@@ -17,13 +17,13 @@ use crate::limits::Limits;
 
 /// A valid request, with all defaults filled in.
 pub trait ResourceRequest: Clone + Send + Sync + 'static {
-    /// Reads a request. If it returns none, the reader has the errors.
+    /// Reads a request. On `None`, the reader has the errors.
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self>;
 
     /// Prices the work.
     ///
     /// # Errors
-    /// The limit that the work passes.
+    /// The limit that the work exceeds.
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget>;
 }
 
@@ -53,7 +53,7 @@ type Whole<R> = fn(
     &Counter,
 ) -> Result<Vec<u8>, Problem>;
 
-/// Computes an answer, counts the bounces that it took, and sends it in a format.
+/// Computes an answer, counts the bounces that it took, and sends it in a format piece by piece.
 type Streaming<R, TimeSlices> = fn(
     &<R as ComputedResource>::Request,
     <R as ComputedResource>::Format,
@@ -81,7 +81,7 @@ pub enum Work<R: ComputedResource> {
         /// See [`Streaming`].
         compute: Streaming<R, TimeSlices>,
     },
-    /// A measurement, which is never the same twice and so is not cached.
+    /// A measurement, which differs each time and so is never cached.
     Measured {
         /// See [`Work`].
         streamed: &'static [Format],
@@ -90,7 +90,7 @@ pub enum Work<R: ComputedResource> {
     },
 }
 
-/// A resource as it is listed among the routes.
+/// A resource in the list of routes.
 #[derive(Debug, Clone, Copy)]
 pub struct Endpoint {
     /// See [`ComputedResource::NAME`].
@@ -142,7 +142,7 @@ async fn answer<R: ComputedResource>(app: App, api_request: ApiRequest) -> Resul
     }
 }
 
-/// The negotiated format, which is one of its set.
+/// The negotiated format as a member of its set.
 pub(crate) fn negotiated<F: FormatSet>(format: Format) -> F {
     F::of(format).expect("negotiation chooses among the formats of the set")
 }

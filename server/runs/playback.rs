@@ -40,12 +40,12 @@ impl Playback {
         Self { orbit, scene: Arc::new(scene), outcome, meter: LoadTracker::default(), last }
     }
 
-    /// Time of the next impact, s; None after the end.
+    /// Time of the next impact, s; `None` after the end.
     pub fn next_t(&self) -> Option<f64> {
         self.outcome.is_none().then(|| self.orbit.t())
     }
 
-    /// Number of the next impact; None after the end.
+    /// Number of the next impact; `None` after the end.
     pub fn next_n(&self) -> Option<u64> {
         self.outcome.is_none().then(|| self.orbit.contacts() + 1)
     }
@@ -60,7 +60,7 @@ impl Playback {
         self.meter.most
     }
 
-    /// The body with the fields in force.
+    /// The model of the scene in force.
     pub fn body(&self) -> &Model {
         &self.orbit.body
     }
@@ -70,7 +70,7 @@ impl Playback {
         &self.scene
     }
 
-    /// Computes the next impact of a run that has not ended. Returns its price with it.
+    /// Computes the next impact of a run that has not ended, and its price.
     pub fn advance(&mut self, run: &Run) -> (Contact, Price) {
         let n = self.orbit.contacts() + 1;
         let intervention = run.at(n);
@@ -109,8 +109,8 @@ impl Playback {
     }
 }
 
-/// One bounce, and one more for each turn of the body in the flight after it, up to a limit: the next contact is searched for turn by
-/// turn, but in a few turns only.
+/// One bounce, and one more for each turn of the body in the following flight, up to a limit. The search for the next contact goes
+/// turn by turn, but examines only a few turns.
 fn price(contact: &Contact) -> Price {
     let spin = contact.strike.map_or(0.0, |strike| strike.after.theta_dot.abs());
     let turns = spin * contact.flight_time.unwrap_or_default() / (2.0 * PI);

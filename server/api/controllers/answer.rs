@@ -1,4 +1,4 @@
-//! The answer of `controllers`: the state feedback that is best for the weights.
+//! The answer of `controllers`: the state feedback that is optimal for the weights (LQR).
 
 use std::borrow::Cow;
 
@@ -21,7 +21,7 @@ use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::charts::significant;
 
-/// Residue of the law α = κθ that is compared if the scene has no κ: the residue of the paper's first case.
+/// Residue of the law α = κθ that the design is compared with if the request has no κ. It is that of the paper's first case.
 const PROPORTIONAL: f64 = 0.2;
 
 /// A number for each component of the state.
@@ -90,7 +90,7 @@ impl LawAnswer {
     }
 }
 
-/// Requests for maps of the basins.
+/// URLs of maps of the basins of attraction.
 #[derive(Debug, Clone, Serialize)]
 struct RegionLinks {
     designed: String,
@@ -126,7 +126,7 @@ impl ControllerAnswer {
     /// Designs the law.
     ///
     /// # Errors
-    /// The reason why there is none.
+    /// The reason why the design failed.
     pub fn compute(request: &ControllerRequest) -> Result<Self, Refusal> {
         let ControllerRequest { scene, tilt_gain, regime, state, input } = *request;
         let slow = || ("/weights", "the eigenvalues of this law did not converge".to_owned());
@@ -264,7 +264,7 @@ impl Tabular for ControllerAnswer {
     }
 }
 
-/// The reason why there is no law, in a sentence.
+/// The reason why the design failed, in a sentence.
 fn refusal(why: DesignFailure) -> String {
     match why {
         DesignFailure::Diverging => {
@@ -282,7 +282,7 @@ fn refusal(why: DesignFailure) -> String {
     }
 }
 
-/// The scene with another law.
+/// The scene with this gain as its state feedback.
 fn designed(scene: &Scene, gain: [f64; 4]) -> Result<Scene, Refusal> {
     let mut draft = scene.draft();
     set(&mut draft, Name::TiltGain, None);
@@ -299,8 +299,8 @@ fn designed(scene: &Scene, gain: [f64; 4]) -> Result<Scene, Refusal> {
     draft.build().map_err(unbuilt)
 }
 
-/// The scene with the law α = κθ: its own κ, or the κ of residue [`PROPORTIONAL`]. On a contact that sticks to a table that only
-/// tilts no κ is stable, so κ is that of the contact without friction.
+/// The scene with the law α = κθ: κ is `tilt_gain`, or else that of residue [`PROPORTIONAL`]. A contact that sticks to a table that
+/// only tilts is unstable for every κ, so it gets the κ of the contact without friction.
 fn proportional(scene: &Scene, tilt_gain: Option<f64>, rod: &Rod, place: &FixedPoint) -> Result<Scene, Refusal> {
     let mut draft = scene.draft();
     for name in FEEDBACK {
@@ -323,9 +323,9 @@ fn unbuilt(errors: Vec<equipoise_physics::scene::FieldError>) -> Refusal {
     Refusal::At("/scene", details.join("; "))
 }
 
-/// The basin of a scene's law over angle and spin of the release, as a request for `regions`.
+/// URL of `regions` that maps the basin of a scene's law over angle and spin of the release.
 fn region(scene: &Scene, place: &FixedPoint) -> String {
-    // A turn of one radian during a flight, to two digits.
+    // Spin by one radian during a flight, to two digits.
     let spin: f64 = format!("{:.1e}", 1.0 / place.flight_time).parse().unwrap_or(1.0);
     let spin = spin.clamp(0.01, 200.0);
     let mut query = form_urlencoded::Serializer::new(String::new());

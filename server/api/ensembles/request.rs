@@ -1,4 +1,4 @@
-//! The request for `ensembles`: a scene, the number of its runs, and the tile of them that is computed.
+//! The request for `ensembles`: a scene, the number of its runs, and the tile of runs to compute.
 
 use std::ops::Range;
 
@@ -19,9 +19,9 @@ use crate::limits::Limits;
 pub struct EnsembleRequest {
     /// All runs.
     pub ensemble: Ensemble,
-    /// The tile of them.
+    /// The tile of runs to compute.
     pub tile: Tile,
-    /// True if the answer has the angles themselves.
+    /// True if the answer lists the angles.
     pub angles: bool,
 }
 
@@ -66,12 +66,12 @@ impl EnsembleRequest {
         write::canonical(scene, &(runs, impacts, self.tile, self.angles))
     }
 
-    /// Numbers of the runs of the tile.
+    /// Range of run numbers in the tile.
     pub fn numbers(&self) -> Range<u64> {
         self.tile.share(self.ensemble.runs)
     }
 
-    /// Number of runs of the tile.
+    /// Number of runs in the tile.
     pub fn runs(&self) -> u64 {
         let numbers = self.numbers();
         numbers.end - numbers.start
@@ -86,14 +86,14 @@ impl EnsembleRequest {
         runs.saturating_add(impacts * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
     }
 
-    /// Highest number of angles in the answer.
+    /// Maximum number of angles in the answer.
     pub fn angles(&self) -> u64 {
         let watched = self.ensemble.angle_contacts.min(self.ensemble.impacts);
         if self.angles { self.runs() * watched } else { 0 }
     }
 }
 
-/// Checks that a tile has a run, and no more than one answer may have.
+/// Checks that a tile has at least one run, and at most as many as one answer may have.
 fn check_tile(reader: &mut Reader<'_, '_>, tile: Tile, is_tiled: bool, runs: u64) {
     const MOST: u64 = limits::ENSEMBLE_RUNS;
     if tile.of > runs {

@@ -1,4 +1,4 @@
-//! `/v1/failures`: the gallery of scenes on which a common method is wrong.
+//! `/v1/failures`: the gallery of scenes for which a common method gives a wrong result.
 
 pub mod answer;
 
@@ -35,7 +35,7 @@ async fn failures(State(app): State<App>, api_request: ApiRequest) -> Result<Res
     let price = Price::bounces(CASES.iter().map(|case| case.price).sum());
     api_request
         .respond(&app.pool, &RESOURCE, b"", price, move |_, slice: &TimeSlice| {
-            // Each case takes a few milliseconds, so the check between two of them is often enough.
+            // A case takes a few milliseconds, so one check per case is enough.
             let each = CASES
                 .iter()
                 .map(|case| if slice.should_continue() { Some(FailureAnswer::compute(case)) } else { None });

@@ -22,7 +22,7 @@ pub struct LadderAnswer<'a> {
     tolerance: f64,
     /// The rung that the scene is run on.
     rung: &'static str,
-    /// The lowest rung that would have done.
+    /// The lowest rung that is sufficient.
     enough: &'static str,
     reason: String,
     rungs: Vec<RungAnswer>,
@@ -89,7 +89,7 @@ impl ChangeAnswer {
 }
 
 impl<'a> LadderAnswer<'a> {
-    /// Runs a scene on its rungs. None if `go_on` returned false.
+    /// Runs a scene on its rungs. `None` once `go_on` returns `false`.
     pub fn compute(request: &'a LadderRequest, go_on: impl FnMut() -> bool) -> Option<Self> {
         let LadderRequest { scene, impacts, tolerance } = request;
         let (impacts, tolerance) = (*impacts, *tolerance);
@@ -106,7 +106,7 @@ impl<'a> LadderAnswer<'a> {
                     outcome = Some(Outcome::new(ending, impacts, t));
                     needed = found.map(|found| !found.same_outcome || found.state.value > tolerance);
                     change = found.zip(below).map(|(found, below)| ChangeAnswer::new(&found, below.name()));
-                    // Once a rung was needed, so is every one below it.
+                    // A needed rung makes every rung below it insufficient.
                     if needed != Some(false) {
                         enough = Some(rung);
                     }

@@ -1,4 +1,4 @@
-//! `/health/live` and `/health/ready`, for restarting this server and for sending it requests.
+//! Liveness and readiness probes, `/health/live` and `/health/ready`.
 
 use axum::extract::State;
 use axum::http::{HeaderValue, header};
@@ -11,7 +11,7 @@ use crate::BUILD;
 use crate::api::app::App;
 use crate::http::Problem;
 
-/// Both paths.
+/// The routes.
 pub fn routes() -> Router<App> {
     Router::new().route("/health/live", get(live)).route("/health/ready", get(ready))
 }

@@ -1,4 +1,4 @@
-//! Metrics of the server, and their texts for Prometheus.
+//! Metrics of the server, and their text formats for Prometheus.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -26,11 +26,11 @@ pub struct Metrics {
     pub bounces: Counter,
     /// Open live runs (`compute::GaugeGuard` counts them).
     pub live_sessions: Gauge,
-    /// Delay of live runs behind their due impacts, s.
+    /// Delay of the impacts of live runs behind their due times, s.
     pub live_lags: Histogram,
 }
 
-/// From 0.1 ms, the time of a small request, to 10 s, longer than any should take.
+/// Upper bounds of the histogram buckets, from 0.1 ms, the time of a small request, to 10 s, longer than any request should take.
 const BUCKETS_S: [f64; 11] = [1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
@@ -47,7 +47,7 @@ struct RouteLabels {
 }
 
 impl Metrics {
-    /// Metrics without counts. The load of `pool` is among them.
+    /// Metrics with all counts at zero. The gauges of `pool` are registered with them.
     pub fn new(pool: &Pool) -> Self {
         let durations: Family<RouteLabels, Histogram, fn() -> Histogram> =
             Family::new_with_constructor(|| Histogram::new(BUCKETS_S));
@@ -79,7 +79,7 @@ impl Metrics {
     /// All metrics as OpenMetrics.
     ///
     /// # Errors
-    /// The encoder fails.
+    /// Failure of the encoder.
     pub fn to_open_metrics(&self) -> Result<String, fmt::Error> {
         let mut text = String::new();
         encode(&mut text, &self.registry)?;
@@ -87,8 +87,8 @@ impl Metrics {
     }
 }
 
-/// Turns OpenMetrics into the older Prometheus text: a family is named like its samples, an info is a gauge, and there is no end
-/// mark.
+/// Converts OpenMetrics to the older Prometheus text format: a family has the name of its samples, an info becomes a gauge, and the
+/// end mark is dropped.
 pub(crate) fn plain(open_metrics: &str) -> String {
     let families = open_metrics.lines().filter_map(|line| line.strip_prefix("# TYPE ")?.split_once(' '));
     let families: BTreeMap<&str, &str> = families.collect();

@@ -1,5 +1,5 @@
-//! The page and its files, embedded: `web/index.html` is `/`, `web/docs/index.html` is `/docs`, `web/embed/index.html` is `/embed/`
-//! with the name of a panel, and other files have their own names.
+//! The embedded page and its files: `web/index.html` is `/`, `web/docs/index.html` is `/docs`, `web/embed/index.html` is
+//! `/embed/{panel}`, and other files have their own names.
 
 use std::sync::Arc;
 
@@ -16,14 +16,14 @@ use crate::http::response::static_asset::StaticAsset;
 
 include!(concat!(env!("OUT_DIR"), "/assets.rs"));
 
-/// The page of one panel, under every name: its script knows the panels.
+/// The page of one panel, served under every panel name. Its script picks the panel. Its links are relative to the parent folder.
 const EMBED: &str = "embed/index.html";
 
-/// The panel may stand in a frame of any page: it has no secret and changes nothing. Its paths are relative to the folder above.
+/// Content security policy of the panel page. Any site may frame it, because it has no secret and changes no state.
 const EMBED_POLICY: HeaderValue =
     HeaderValue::from_static("default-src 'self'; base-uri 'self'; frame-ancestors *; object-src 'none'");
 
-/// One route for each file, so that no path of a client is looked up on disk.
+/// One route for each embedded file, so that a path from a client is never looked up on disk.
 pub fn routes() -> Router<App> {
     let mut router = Router::new();
     for (name, bytes) in ASSETS.iter().copied() {

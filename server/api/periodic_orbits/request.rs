@@ -13,7 +13,7 @@ use crate::http::Reader;
 use crate::limits;
 use crate::limits::Limits;
 
-/// A range of a field.
+/// The range that a field is swept over.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct SweptRange {
     /// The field.
@@ -23,7 +23,7 @@ pub struct SweptRange {
     pub from: f64,
     /// Value at the end.
     pub to: f64,
-    /// Number of orbits along it, at most.
+    /// Maximum number of orbits along the sweep.
     pub points: u64,
 }
 
@@ -109,12 +109,12 @@ impl PeriodicOrbitRequest {
         write::canonical(&self.scene, &(self.period, start, self.sweep))
     }
 
-    /// Price of the work, in bounces of the plain rod: a bounce with derivatives costs about twelve.
+    /// Price of the work, in bounces of the plain rod. A bounce with derivatives costs as much as about twelve.
     fn work(&self) -> u64 {
         limits::ANSWER_PRICE + 12 * self.period * self.sweep.map_or(60, |sweep| 10 * sweep.points + 2000)
     }
 
-    /// JSON pointer to the field that an error of the start is about.
+    /// JSON pointer to the field that caused an error of the start.
     pub(super) fn pointer(&self) -> &'static str {
         match (self.start, self.sweep) {
             (BranchStart::Symmetric(_), _) => "/theta",

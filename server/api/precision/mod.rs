@@ -1,4 +1,4 @@
-//! `/v1/precision`: speed against accuracy of all methods. The one resource that measures a clock, so it is never cached.
+//! `/v1/precision`: speed against accuracy of all methods. The answer has measured times, so it is never cached.
 
 pub mod answer;
 pub mod picture;

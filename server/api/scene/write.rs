@@ -4,7 +4,7 @@ use equipoise_physics::scene::{FIELDS, Scene, VERTICES, Value as FieldValue};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
-/// A scene as it is written in answers: nested, all defaults filled in, ready to be asked again.
+/// A scene as it is written in answers: nested, with all defaults filled in, and valid in a request.
 #[derive(Debug, Clone, Copy)]
 pub struct Resolved<'a>(pub &'a Scene);
 
@@ -23,7 +23,7 @@ pub fn scene_to_json(scene: &Scene) -> Value {
     nested(values.chain(vertices))
 }
 
-/// Values by dotted path as nested objects.
+/// Nests values by their dotted paths.
 pub(super) fn nested<'a>(values: impl Iterator<Item = (&'a str, Value)>) -> Value {
     let mut root = Map::new();
     for (path, value) in values {

@@ -12,11 +12,11 @@ pub struct ModelChoice {
     pub name: &'static str,
     /// The reason, in a sentence.
     pub reason: String,
-    /// Fields of the scene that ask for the levels above the rod.
+    /// Fields of the scene that require levels above the rod.
     pub forced: Vec<RequirementAnswer>,
 }
 
-/// A field that asks for a level of the model hierarchy.
+/// A field that requires a level of the model hierarchy.
 #[derive(Debug, Clone, Serialize)]
 pub struct RequirementAnswer {
     rung: &'static str,
@@ -44,7 +44,7 @@ impl ModelChoice {
         Self { name: scene.model_level().name(), reason: scene.level_reason(), forced }
     }
 
-    /// The model that a method needs of it.
+    /// The model that a run method computes a scene with.
     pub(crate) fn by_method(scene: &Scene, method: RunMethod) -> Self {
         if method != RunMethod::Linear {
             return Self::of(scene);
