@@ -1,6 +1,6 @@
 //! A map of stability over two fields of a scene: how long each cell's run survives, or what the linear analysis says of it.
 //!
-//! Not here: which threads do it, and how it is drawn.
+//! Not here: threads and drawing.
 
 use crate::batch::batch_run::{RunEnd, RunStart, run_batch, run_batch_with_friction};
 use crate::bounce::friction::Friction;
@@ -16,7 +16,7 @@ use std::ops::Range;
 /// One side of a region: a field and the values it takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapAxis {
-    /// The field, one whose values are numbers.
+    /// A field with numbers as values.
     pub name: Name,
     /// First value.
     pub from: f64,
@@ -32,7 +32,7 @@ impl MapAxis {
         self.at(index as f64 / (self.count.max(2) - 1) as f64)
     }
 
-    /// The value at a share of the way.
+    /// The value at a fraction of the range.
     fn at(&self, share: f64) -> f64 {
         if share == 1.0 { self.to } else { self.from + (self.to - self.from) * share }
     }
@@ -51,16 +51,16 @@ pub enum MapQuantity {
     SpectralRadius,
 }
 
-/// A region: a scene, two of its fields, and for how many contacts each run is watched.
+/// A region: a scene, two of its fields, and the number of contacts that each run is watched for.
 #[derive(Clone, Copy, Debug)]
 pub struct StabilityMap {
-    /// Everything but the two fields.
+    /// The scene without the two fields.
     pub scene: Draft,
     /// The field that grows along a row.
     pub x: MapAxis,
     /// The field that grows from row to row.
     pub y: MapAxis,
-    /// Contacts.
+    /// Number of contacts that each run is watched for.
     pub impacts: u64,
     /// Quantity of the cells.
     pub quantity: MapQuantity,
@@ -75,16 +75,16 @@ pub struct MapCell {
     pub outcome: Option<EndingKind>,
 }
 
-/// Cells between two looks at whether to go on, where there are no runs: the linear analysis of the dearest takes 10 µs.
+/// Cells of linear analysis between two calls of `go_on`. The most expensive cell takes 10 µs.
 const CELLS_A_LOOK: usize = 64;
 
-/// A piece of the linear boundary: a residue, and two points (x, y) between which it is that.
+/// A segment of the linear boundary: its residue, and its two ends (x, y).
 pub type BoundarySegment = (f64, [f64; 2], [f64; 2]);
 
 const NOTHING: MapCell = MapCell { value: None, outcome: None };
 
 impl StabilityMap {
-    /// The scene of a cell, if it can be: a release may lie below the table, a target height be missing.
+    /// The scene of a cell; `None` for an invalid one, such as a release below the table or a missing target height.
     pub fn scene(&self, column: usize, row: usize) -> Option<Scene> {
         self.scene_at(self.x.value(column), self.y.value(row))
     }
@@ -96,14 +96,14 @@ impl StabilityMap {
         draft.build().ok()
     }
 
-    /// Tells whether all runs fit in lanes, judged by the corners of the map. Other runs take many times as long.
+    /// Tells whether all runs fit in lanes, judged by the corners of the map. Runs outside lanes take many times as long.
     pub fn fits_lanes(&self) -> bool {
         let corners = [(0, 0), (self.x.count - 1, 0), (0, self.y.count - 1), (self.x.count - 1, self.y.count - 1)];
         corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(|scene| in_lanes(&scene).is_some()))
     }
 
-    /// Some cells, counted row after row; none if `go_on` said `false`, which is asked every hundred
-    /// contacts, and for lanes every few thousand.
+    /// Computes the cells with these numbers, counted row after row. `None` once `go_on` returns `false`; it is called every hundred
+    /// contacts, in lanes every few thousand.
     pub fn cells(&self, numbers: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<MapCell>> {
         let first = numbers.start;
         let mut cells = vec![NOTHING; numbers.len()];
@@ -146,7 +146,7 @@ impl StabilityMap {
             },
         );
         if let (Some(contact), false) = (contact, stopped) {
-            // All of one law and one way to slide: a region is over numbers.
+            // All cells have the same friction law and way to slide, because the fields of a map are numbers.
             let mut rough = rough.into_iter();
             let done = |index: usize, end| cells[index] = self.cell(&end);
             run_batch_with_friction(
@@ -182,8 +182,8 @@ impl StabilityMap {
 
     /// The lines of residue 0 and 1, the ends of the linear verdict, as segments (residue, from, to) of points (x, y).
     ///
-    /// From a grid of at most `nodes` × `nodes` over the whole region, with every crossing of an edge refined to 1e-12 of
-    /// the region. None once `go_on` said `false`, which is asked after a hundred scenes or two.
+    /// Uses a grid of at most `nodes` × `nodes` over the whole region, and refines every crossing of an edge to 1e-12 of the region.
+    /// `None` once `go_on` returns `false`; it is called every one or two hundred scenes.
     pub fn boundary(&self, nodes: usize, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<BoundarySegment>> {
         let residue = |u: f64, v: f64| {
             let scene = self.scene_at(self.x.at(u), self.y.at(v))?;
@@ -249,14 +249,14 @@ fn in_lanes(scene: &Scene) -> Option<(Rod, Option<Friction>)> {
     scene.running_model().in_lanes().filter(|_| scene.rules().limits.is_none())
 }
 
-/// The start of a run that can go in a lane, with its friction.
+/// Start and friction of a run that fits in a lane.
 fn start_of(scene: &Scene) -> Option<(RunStart, Option<Friction>)> {
     let (rod, friction) = in_lanes(scene)?;
     let (_, state) = rod.fall(scene.release()).ok()?;
     Some((RunStart { rod, rules: scene.rules(), state }, friction))
 }
 
-/// `None` once `go_on` returned `false`. A body that never meets the table has ended before its first contact.
+/// Runs a scene outside lanes; `None` once cancelled. The run of a body that never meets the table ends with 0 impacts.
 fn run_alone(scene: &Scene, impacts: u64, looks: &mut CancellationCheck<'_>) -> Option<RunEnd> {
     if !looks.begin() {
         return None;
