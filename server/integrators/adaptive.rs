@@ -40,11 +40,11 @@ pub(crate) fn simulate(run: &mut SimulationRun, tolerance: f64) -> Result<Infall
     }
 }
 
-/// One flight, from just after a contact to the next one, whose time from its start it gives.
+/// Integrates one flight, from just after a contact to the next one. Returns its duration, s.
 fn fly(run: &mut SimulationRun, tolerance: f64, t: f64, motion: &mut Motion) -> Result<f64, Halt> {
     let flight = FreeFlight { gravity: run.rod.gravity };
     let mut solver = ExplicitRungeKutta::dopri5().rtol(tolerance).atol(tolerance).max_steps(usize::MAX);
-    // Its step control gives up where the numbers are no longer finite or the tolerance is below rounding.
+    // The step control fails for numbers that are not finite, and for a tolerance below rounding.
     let failed = |_| Halt::from(Ending::Diverged { speed: motion.velocity[0].abs().max(motion.velocity[1].abs()) });
     let evaluations = solver.init(&flight, 0.0, HORIZON, &numbers(motion)).map_err(failed)?;
     run.work.accelerations += evaluations.function as u64;

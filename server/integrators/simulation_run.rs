@@ -133,7 +133,7 @@ impl<'a> SimulationRun<'a> {
         let t = self.impacts.last().map_or(0.0, |impact| impact.t);
         let left = AtContact { speed_squared, t, ..self.at_contact(*state) };
         go_on(self.check(left, rules::after_strike))?;
-        // Where a run can settle, the flight after its last contact decides too.
+        // For a run that may settle, the flight after its last contact decides too.
         if self.rules.settles { Ok(()) } else { go_on(rules::completed(self.impacts.len() as u64, self.wanted)) }
     }
 

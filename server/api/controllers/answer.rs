@@ -21,7 +21,7 @@ use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::charts::significant;
 
-/// Residue of the law α = κθ that the design is compared with if the request has no κ. It is that of the paper's first case.
+/// Residue of the law α = κθ that the design is compared with if the scene has no κ. It is that of the paper's first case.
 const PROPORTIONAL: f64 = 0.2;
 
 /// A number for each component of the state.

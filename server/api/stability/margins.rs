@@ -68,7 +68,7 @@ impl MarginsAnswer {
                 Self {
                     tolerances: said,
                     holds: Some(margins.holds),
-                    // None where no tilt gain balances.
+                    // `None` if every tilt gain is unstable.
                     tilt_gain: critical.least.is_finite().then_some(TiltGainMargin {
                         value: tilt_gain,
                         critical: critical.into(),

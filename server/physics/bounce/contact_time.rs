@@ -1,8 +1,8 @@
 //! When a flight ends: the first time at which the contact point comes down to y = 0, found with a certificate and
 //! without sampling. The same for any point of the body, from above or below.
 //!
-//! Where l θ̇² ≤ G the gap is concave and Newton falls onto its one root from the right. A faster spin is cut at the
-//! inflections of the gap into convex and concave pieces, on each of which a down-crossing is found or excluded.
+//! For l θ̇² ≤ G the gap is concave, and Newton's method converges to its one root from the right. For a faster spin the flight is
+//! cut at the inflections of the gap into convex and concave pieces. On each piece a down-crossing is found or excluded.
 
 use crate::bounce::flight::{Flight, Gap};
 use crate::bounce::state::State;
@@ -112,7 +112,7 @@ fn look_for_contact(flight: &Flight, eye: impl EvaluationCounter) -> Result<f64,
     }
     let start = if flight.clearance == 0.0 { guess(flight) } else { guess_from_above(flight) };
     let gap = eye.gap(flight, start);
-    // Where l θ̇² is about G the guess may be off by any power of ten, which Newton's halving would take for ever to make up.
+    // For l θ̇² near G the guess may be off by many powers of ten, and Newton's method would only halve the error in each step.
     if gap.slope < 0.0 && start > 0.0 && gap.value > 0.25 * start * gap.slope {
         return Ok(newton(flight, eye, start, gap));
     }
@@ -338,7 +338,7 @@ impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
         (angle - self.angle) / self.spin
     }
 
-    /// `above` is whether the point has been above y = 0, before and after.
+    /// `above` tells whether the point has been above y = 0; it is updated.
     fn first_down_crossing(
         &self,
         from: f64,
@@ -363,7 +363,7 @@ impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
             let crossing = match (*above, convex) {
                 (true, true) => self.in_convex(a, at_a, b, at_b),
                 (true, false) => self.in_concave(a, at_a, b, at_b),
-                // What is convex and starts below may rise, and no more.
+                // A convex gap that starts below zero can only cross upwards.
                 (false, true) => None,
                 (false, false) => self.in_concave_from_below(a, at_a, b, at_b),
             };

@@ -1,4 +1,4 @@
-//! How many pieces a flight is cut into.
+//! Number of pieces that a flight is cut into.
 
 use super::*;
 use proptest::prelude::*;

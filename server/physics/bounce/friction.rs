@@ -141,7 +141,7 @@ impl Friction {
             rests =
                 decide(Decision { fork: FrictionBranch::Rests, answer: margin > 0.0, margin, scale: push.to_f64() });
         }
-        // Where compression would end if it slid for ever.
+        // End of compression for a contact that slides throughout.
         let alone = -normal / first;
         if !rests {
             let end = (one + restitution) * alone;

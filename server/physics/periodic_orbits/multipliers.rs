@@ -71,7 +71,7 @@ impl Multipliers {
     pub(super) fn new(product: &Matrix4<f64>, known: TrivialMultipliers) -> Option<Self> {
         let trace = product.trace();
         let second = 0.5 * (trace * trace - (product * product).trace());
-        // What rounding does to the coefficients grows with the entries.
+        // The rounding error of the coefficients grows with the entries.
         let slack = 1e-8 + 1e-14 * product.norm_squared();
         let found = match known {
             TrivialMultipliers::Drift if !has_one(product) => Self::of_all(product, slack)?,

@@ -224,7 +224,7 @@ impl ErrorEstimate {
         let (_, versine) = crate::numbers::trig::sin_versine(before.theta.value);
         let parts = 1.5 * strike.speed_squared.value + 2.0 * weight * versine;
         let stretch = if self.holds_energy { self.rounding * parts / strike.speed_squared.value } else { 0.0 };
-        // Where nothing changes the energy, it is not rounded again either.
+        // A held energy is rounded only if the strike changes it.
         let energy_parts = if self.energy.is_none() {
             parts
         } else if strike.energy_gain.value != 0.0 {

@@ -145,7 +145,7 @@ impl<B: Body> Orbit<B> {
             strike.after.y_dot += kick.y_dot;
             strike.after.theta_dot += kick.theta_dot;
             strike.contact_rise += kick.y_dot + orbit.body.contact_distance() * kick.theta_dot * strike.sin_cos_theta.0;
-            // What the kick gave is known only from the coming contact.
+            // The energy after the kick is known only at the coming contact.
             orbit.energy = None;
         })
     }

@@ -29,7 +29,7 @@ pub enum BodyShape {
     Point,
 }
 
-/// How the table moves along its normal at a strike.
+/// Motion of the table along its normal at a strike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Striking {
     /// The table makes up the energy that the bounce loses, eq. (25) and (28).

@@ -166,7 +166,7 @@ pub fn wilson_interval(successes: u64, trials: u64) -> (f64, f64) {
     let middle = share + square / (2.0 * count);
     let half = DEVIATE * (share * (1.0 - share) / count + square / (4.0 * count * count)).sqrt();
     let whole = 1.0 + square / count;
-    // Its ends are exact there, whatever rounding says.
+    // The bounds 0 and 1 are exact; the formula would round them.
     let lower = if successes == 0 { 0.0 } else { (middle - half) / whole };
     let upper = if successes == trials { 1.0 } else { (middle + half) / whole };
     (lower, upper)

@@ -102,8 +102,8 @@ impl StabilityMap {
         corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(|scene| in_lanes(&scene).is_some()))
     }
 
-    /// Computes the cells with these numbers, counted row after row. `None` once `go_on` returns `false`; it is called every hundred
-    /// contacts, in lanes every few thousand.
+    /// Computes the cells with these numbers, counted row after row. `None` once `go_on` returns `false`; it is called every
+    /// hundred contacts, in lanes every few thousand.
     pub fn cells(&self, numbers: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<MapCell>> {
         let first = numbers.start;
         let mut cells = vec![NOTHING; numbers.len()];
@@ -182,8 +182,8 @@ impl StabilityMap {
 
     /// The lines of residue 0 and 1, the ends of the linear verdict, as segments (residue, from, to) of points (x, y).
     ///
-    /// Uses a grid of at most `nodes` × `nodes` over the whole region, and refines every crossing of an edge to 1e-12 of the region.
-    /// `None` once `go_on` returns `false`; it is called every one or two hundred scenes.
+    /// Uses a grid of at most `nodes` × `nodes` over the whole region, and refines every crossing of an edge to 1e-12 of the
+    /// region. `None` once `go_on` returns `false`; it is called every one or two hundred scenes.
     pub fn boundary(&self, nodes: usize, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<BoundarySegment>> {
         let residue = |u: f64, v: f64| {
             let scene = self.scene_at(self.x.at(u), self.y.at(v))?;

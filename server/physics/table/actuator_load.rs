@@ -58,9 +58,9 @@ impl Pose {
     }
 }
 
-/// From end to end of time·s(1 − s)(v₀(1 − s) − v₁s), 0 ≤ s ≤ 1, m.
+/// Maximum minus minimum of time·s(1 − s)(v₀(1 − s) − v₁s) over 0 ≤ s ≤ 1, m.
 fn stroke(v0: f64, v1: f64, time: f64) -> f64 {
-    // Its derivative is 3(v₀ + v₁)s² − (4v₀ + 2v₁)s + v₀, whose roots are both real: the discriminant is v₀² + v₀v₁ + v₁².
+    // The derivative 3(v₀ + v₁)s² − (4v₀ + 2v₁)s + v₀ has two real roots: its discriminant is 4(v₀² + v₀v₁ + v₁²).
     let height = |s: f64| time * s * (1.0 - s) * (v0 * (1.0 - s) - v1 * s);
     let half = 2.0 * v0 + v1;
     let root = (v0 * v0 + v0 * v1 + v1 * v1).sqrt();

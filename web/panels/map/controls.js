@@ -163,7 +163,7 @@ export class MapControls {
     return { element, field, from, to, unit, error };
   }
 
-  /** Takes the selected field with the range of its slider. The sides swap if the other one has it. @param {Name} name */
+  /** Takes the selected field with the range of its slider. Swaps the sides if the other has it. @param {Name} name */
   #turn(name) {
     const other = name === 'x' ? 'y' : 'x';
     const settings = structuredClone(this.#settings);

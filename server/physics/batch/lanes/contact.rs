@@ -49,7 +49,7 @@ impl Surface for Smooth {
             let rod = rods.rod(lane).lift::<L>();
             let tilt = scratch.tilt::<L>(lane);
             let mut strike = rod.strike_with(&moving.state(lane).map(number), &tilt, number(rods.leverage(lane)));
-            // Where none is held, the one that there is: then nothing is corrected.
+            // A run that may settle holds no energy: its own energy leaves the strike uncorrected.
             let held = if rods.settles(lane) { strike.energy } else { number(moving.energy[lane]) };
             let energy = rod.hold_energy(&mut strike, held);
             next.struck(lane, &strike, energy.to_f64(), SURE_RISE, scratch);

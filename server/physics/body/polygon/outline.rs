@@ -138,7 +138,7 @@ impl Outline {
         let mut first: Option<Touch> = None;
         for (vertex, [x, y]) in self.others() {
             let distance = dot([x, y], [x, y]).sqrt();
-            // Its height has no inflection, and it is not below at the end: it comes down later, whatever it was before.
+            // A vertex that ends above y = 0, and whose height has no inflection, comes down later.
             let below = drop + fall + (x * end_sin + y * end_cos) < -FLUSH * self.size;
             if !below && distance * theta_dot * theta_dot <= flight.gravity {
                 continue;

@@ -208,7 +208,7 @@ mod tests {
         close(one / seven - one / three, "-0.190476190476190476190476190476190476", 1e-31);
         close((seven + seven).sqrt(), "3.74165738677394138558374873231654930176", 1e-31);
         close((one / seven).squared(), "0.0204081632653061224489795918367346938775", 1e-31);
-        // What is left of a difference of near doubles.
+        // Remainder of a subtraction of nearly equal numbers.
         assert_eq!(number("1") + number("1e-25") - number("1"), DoubleDouble::from(1e-25));
     }
 

@@ -45,7 +45,7 @@ impl Power {
             significand[2 - place] = if lead == 0 { upper } else { (upper << lead) | (lower >> (64 - lead)) };
             place += 1;
         }
-        // Of the fourth word the significand has the first `lead` bits.
+        // The significand has the top `lead` bits of the fourth word. It is exact if the rest is zero.
         if top >= 3 {
             is_exact = whole[top - 3] << lead == 0;
             let mut below = 3;

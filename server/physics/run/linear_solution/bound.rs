@@ -49,7 +49,7 @@ impl LinearSolution {
             return (0.0, 0.0);
         }
         let (now, before) = (self.chebyshev(m).abs(), self.chebyshev(m - 1).abs());
-        // How fast U changes with the phase.
+        // Rate of change of U with the phase.
         let slope = match self.class {
             AngleClass::Elliptic => 0.5 / (self.residue * (1.0 - self.residue)).sqrt(),
             AngleClass::Parabolic => 0.0,
@@ -157,7 +157,7 @@ impl LinearSolution {
         } else {
             self.start.theta.abs().max(state.theta.abs())
         };
-        // What bounces leave out is taken at the linear state: an error as large as the deviation itself is no longer that of a few.
+        // The terms that bounces leave out are taken at the linear state, so the bound fails for errors as large as the deviation.
         let lost = theta.max(u) > widest.max(reached);
         let pushed = 2.0 * (self.speed * self.rod.tilt_gain).abs() * widest;
         let speeds = self.start.x_dot.abs() + state.x_dot.abs();

@@ -34,7 +34,7 @@ impl LinearSolution {
         let (Model::Rod(rod), Some(residue)) = (scene.model(), linear.residue) else {
             return Err("a point mass has no angle; its eq. (5) is exact".to_owned());
         };
-        // What is left out is counted against the powers that are taken, so those of R = 0 or 1 are not of a residue beside it.
+        // The left-out terms must belong to the same residue as the powers of the map; parabolic powers are those of R = 0 or 1.
         let residue = if linear.class == AngleClass::Parabolic { residue.round() } else { residue };
         let unknown = |_| "the first contact is not found".to_owned();
         scene.orbit().map_err(|_| unknown(()))?;
