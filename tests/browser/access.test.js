@@ -130,7 +130,7 @@ test('a whole session needs no pointer', async () => {
   await page.waitForFunction(() => /survived/.test(document.querySelector('#map-readout').textContent));
   await page.keyboard.press('Enter');
   await page.waitForFunction(() => /Released with/.test(document.querySelector('#map-body').textContent));
-  // What it shows is taken away.
+  // The shown map can be saved.
   await page.locator('#map .enlarge').focus();
   await page.keyboard.press('Enter');
   await page.locator('dialog.large').getByRole('link', { name: 'Save as CSV' }).focus();

@@ -196,7 +196,7 @@ test('with keys alone: from impact to impact, a selection of some, and a start a
   const fresh = await trajectory(`${release}&impacts=2`);
   assert.ok(Math.abs(fresh.theta[0] - all.theta[6]) < 1e-9, `${fresh.theta[0]}, ${all.theta[6]}`);
   assert.ok(Math.abs(fresh.theta_dot[0] - all.theta_dot[6]) < 1e-9);
-  // Of the other plane: ẋ and ẏ of an impact, the angle being what it is.
+  // The other plane releases with ẋ and ẏ of an impact and keeps the angle.
   // A connection that is given up before it is made is an error to the browser.
   await page.locator('#run-state:not([data-phase=connecting])').waitFor();
   await page.selectOption('#case', 'case-2');
@@ -233,7 +233,7 @@ test('a click starts a run whose first impact is there, a slip of a pixel is no 
   await spoken(page, /Released anew/);
   await page.waitForFunction(() => /scene\.release\.theta=/.test(location.search));
   await reachImpact(page, 1);
-  // What was clicked with has not taken the keys of the page.
+  // The shortcuts of the page still work after the click.
   await page.keyboard.press(' ');
   await reachPhase(page, 'paused');
   const rows = await numbers(page, 'plane-angle');

@@ -1,4 +1,4 @@
-// What the verdict shows beyond the linear map, beside the server’s own numbers.
+// Evidence of the verdict beyond the linear map, compared with the server’s numbers.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -377,7 +377,7 @@ test('errors stand beside what they are about, and what was typed stays', async 
   await type('map-impacts', '100');
   await whole(page);
   await page.locator('#field-release-theta').fill('?');
-  // What is out of sight asks nothing.
+  // A map out of sight sends no request.
   await page.locator('#map-box').scrollIntoViewIfNeeded();
   await page.locator('#map-told', { hasText: 'not a number' }).waitFor();
 });

@@ -1,4 +1,4 @@
-// What can be taken away from a panel: it is the panel's own, and what the server gives for the same.
+// Downloads from a panel match the panel and the server's answer.
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';

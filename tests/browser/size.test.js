@@ -1,4 +1,4 @@
-// What loads before the first plot stays small, and all of it comes from here.
+// Files that load before the first plot stay small, and all come from this server.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -56,7 +56,7 @@ test('curve, numbers at risk, table and figures are the server’s', async () =>
   const risk = await page.locator('#survival-box .risk').allTextContents();
   assert.equal(risk[0], String(runs));
   assert.equal(risk.at(-1), String(survival.at_risk[impacts - 1]));
-  // Where the curve ends on the screen is where the numbers end, between its band's edges.
+  // The drawn curve ends at the last value, between the edges of its band.
   const heights = await page.locator('#survival-box').evaluate((box) => {
     const last = (path) => Number(path.getAttribute('d').split('L').at(-1).replace('Z', '').split(' ')[1]);
     const edge = box.querySelector('.edge');

@@ -75,7 +75,7 @@ fn the_choice_holds_and_is_nearly_always_the_cheapest() {
                 let off = error(&scene, choice.method, impacts, &exact);
                 assert!(off.is_some_and(|off| off <= tolerance), "{kind:?} {run}: {choice:?} is off by {off:?}");
             }
-            // Of the impacts that there were.
+            // Cost of the impacts that took place.
             let cost = |method: RunMethod| method.cost_us(exact.states.len() as u64);
             let cheaper = |method: &RunMethod| cost(*method) < cost(choice.method);
             let would_do =

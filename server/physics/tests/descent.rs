@@ -151,10 +151,10 @@ fn a_fast_one_from_below_comes_round_and_down_again() {
     assert_eq!(found(&Flight { clearance: -0.3, ..wheel }), None);
 }
 
-/// A planned plane that is all but vertical: gravity along its normal is small, so that the body is below it for ever so long.
+/// A nearly vertical table: gravity along its normal is small, so the body stays below it for hours.
 #[test]
 fn what_is_below_for_hours_is_not_looked_at_turn_by_turn() {
-    // Its centre rises from 1.52 m below to 0.72 m below in eleven hours; once within 1 m the point comes up and down in a turn.
+    // The centre rises from 1.52 m to 0.72 m below in eleven hours. Within 1 m the point comes up and down in one turn.
     let slow = Flight { gravity: 1e-9, ..flight(0.5, 200.0, 4e-5, -2.4, 1.0) };
     let enters = (4e-5 - (1.6e-9_f64 - 2e-9 * (1.4 - 0.5_f64.cos())).sqrt()) / 1e-9;
     let down = found(&slow).expect("it comes up");

@@ -1,4 +1,4 @@
-//! What a scene may ask beyond the plain rod: feedback, beliefs, limits, and the ladder of models that tells what each was good for.
+//! Scenes beyond the plain rod: state feedback, assumed restitution, limits of the table, and the model hierarchy.
 
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::extended;
@@ -61,7 +61,7 @@ fn a_wrong_belief_shifts_the_height_that_the_energy_feedback_holds() {
         let scene = scene(&values(assumed));
         let fixed_point = find_fixed_point(&scene).unwrap();
         let end = states(&scene, 3000).pop().unwrap();
-        // Of second order in the angle, which goes on circling.
+        // The difference is of second order in the angle, which goes on circling.
         assert!(
             (end[4] + fixed_point.speed).abs() < 1e-3 * fixed_point.speed,
             "ê = {assumed}: {} {}",

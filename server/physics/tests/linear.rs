@@ -127,7 +127,7 @@ fn bounds_hold_over_small_angles() {
     }
 }
 
-/// What the paper's eq. (14) gives when it is applied again and again.
+/// Compares the closed form with repeated application of the paper's eq. (14).
 #[test]
 fn the_closed_form_is_the_power_of_the_matrix() {
     for kind in KINDS {

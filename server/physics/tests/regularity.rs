@@ -120,8 +120,8 @@ fn the_period_two_orbit_is_one() {
     assert_eq!(period_two_angle(&none.model(), none.rules().topple_angle, &fixed_point), None);
 }
 
-/// What 30,000 contacts show: chaotic where it falls or a twin 1e-10 rad aside leaves it, regular where both halves turn at
-/// the same rate; none where neither is clear.
+/// Classifies a run by 30,000 contacts. `true` is chaotic: the run falls, or a twin 1e-10 rad aside separates from it. `false` is
+/// regular: both halves turn at the same rate. `None` if neither is clear.
 fn label(one: &Scene, other: &Scene) -> Option<bool> {
     let fixed_point = find_fixed_point(one).unwrap();
     let mut turns = RotationCounter::new(&fixed_point, &linear_verdict(one, &fixed_point))?;
@@ -143,7 +143,7 @@ fn label(one: &Scene, other: &Scene) -> Option<bool> {
     (separation < 1e-4 && change.abs() < 1e-7).then_some(false)
 }
 
-/// How often the indicator was right.
+/// Counts of right and wrong verdicts of the indicator.
 #[derive(Debug, Default)]
 struct Tally {
     regular: u32,
@@ -153,12 +153,12 @@ struct Tally {
     /// Chaotic, called regular.
     missed: u32,
     unclear: u32,
-    /// Within the contacts that were watched.
+    /// Ended within the contacts that were watched.
     fell: u32,
 }
 
 impl Tally {
-    /// Of scenes, each with a twin 1e-10 rad aside.
+    /// Tally of scenes, each with a twin 1e-10 rad aside.
     fn of(pairs: impl Iterator<Item = (Scene, Scene)>) -> Self {
         let mut tally = Self::default();
         for (one, twin) in pairs {

@@ -88,7 +88,7 @@ fn distance(one: &DMatrix<f64>, other: &DMatrix<f64>) -> f64 {
     (one - other).amax() / one.amax()
 }
 
-/// Whether the flight after is an easy one: no grazing, which stretches everything.
+/// Tells whether the contact after the flight is far from grazing, near which derivatives grow without bound.
 fn calm(linearization: &Linearization) -> bool {
     linearization.contact_speed < -0.5 && linearization.matrix.amax() < 50.0
 }
@@ -162,8 +162,8 @@ fn one_sided_difference(rough: &RoughRod, state: &State, column: usize, step: f6
     std::array::from_fn(|row| (4.0 * near[row] - 3.0 * here[row] - far[row]) / (2.0 * step))
 }
 
-/// Whether every column by differences to one side is that of one of the sides, and all of them are needed; none where the map
-/// bends too much for differences to say so.
+/// Tells whether each column of one-sided differences agrees with one of the sides, and each side is needed. `None` if the map is too
+/// curved for the differences to decide.
 fn sides_are_right(rough: &RoughRod, state: &State, sides: &[&DMatrix<f64>]) -> Option<bool> {
     let mut used = vec![sides.len() == 1; sides.len()];
     let mut right = true;

@@ -16,7 +16,7 @@ use random::Random;
 mod simple;
 use simple::Simple;
 
-/// How a run ends.
+/// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct End {
     ending: Ending,

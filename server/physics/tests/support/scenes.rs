@@ -3,7 +3,7 @@
 use crate::random::Random;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
-/// What a random scene shows.
+/// Kind of a random scene, by its motion or body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
     Regular,
