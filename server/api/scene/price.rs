@@ -3,7 +3,7 @@
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Name, Scene};
 
-/// Tells whether the body has an angle; a point mass has none.
+/// True if the body has an angle: every body except a point mass.
 pub fn has_angle(scene: &Scene) -> bool {
     scene.value(Name::PointMass).is_none()
 }

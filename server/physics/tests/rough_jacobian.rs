@@ -162,8 +162,8 @@ fn one_sided_difference(rough: &RoughRod, state: &State, column: usize, step: f6
     std::array::from_fn(|row| (4.0 * near[row] - 3.0 * here[row] - far[row]) / (2.0 * step))
 }
 
-/// Tells whether each column of one-sided differences agrees with one of the sides, and each side is needed. `None` if the map is too
-/// curved for the differences to decide.
+/// Tells whether each column of one-sided differences agrees with one of the sides, and each side is needed. `None` if the map is
+/// too curved for the differences to decide.
 fn sides_are_right(rough: &RoughRod, state: &State, sides: &[&DMatrix<f64>]) -> Option<bool> {
     let mut used = vec![sides.len() == 1; sides.len()];
     let mut right = true;

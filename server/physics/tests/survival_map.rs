@@ -40,8 +40,8 @@ fn the_map_of_the_papers_body_is_true() {
     let at = |column: usize, row: usize| cells[row * COLUMNS + column];
     let survives = |column, row| at(column, row).value == Some(IMPACTS as f64);
 
-    // Shape of the surviving region: dents just beyond the resonances of order 4 (R = 1/2, κ = 1.25) and 3 (R = 3/4, κ = 1.375), and a tongue of
-    // small angles beyond κ_c = 1.5, where the linear verdict is unstable.
+    // Shape of the surviving region: dents just beyond the resonances of order 4 (R = 1/2, κ = 1.25) and 3 (R = 3/4, κ = 1.375),
+    // and a tongue of small angles beyond κ_c = 1.5, where the linear verdict is unstable.
     let outline = |tilt_gain| outline(&region, survives, tilt_gain);
     let shape = [1.1, 1.235, 1.265, 1.35, 1.375, 1.41, 1.445, 1.49, 1.51, 1.525, 1.56].map(outline);
     println!("θ₀ survived at κ = 1.1, 1.235, 1.265, 1.35, 1.375, 1.41, 1.445, 1.49, 1.51, 1.525, 1.56: {shape:.3?}");
