@@ -79,7 +79,13 @@ export class RunDrawing {
     return Math.max(0, 1 - age_s / GLOW_S);
   }
 
-  /** Writes the drawn values as text, at most ten times a second while running. @param {number} now_ms @param {number} t @param {import('../physics/flight.js').Pose} pose @param {Impact | null} impact */
+  /**
+   * Writes the drawn values as text, at most ten times a second while running.
+   * @param {number} now_ms
+   * @param {number} t
+   * @param {import('../physics/flight.js').Pose} pose
+   * @param {Impact | null} impact
+   */
   #say(now_ms, t, pose, impact) {
     const { run, readout, box } = this.#parts;
     const running = run.phase === 'running';
@@ -100,7 +106,12 @@ export class RunDrawing {
     this.#read_ms = now_ms;
   }
 
-  /** Draws the path of the centre of gravity on the last flights. @param {Scene} scene @param {number | null} place @param {number} t */
+  /**
+   * Draws the path of the centre of gravity on the last flights.
+   * @param {Scene} scene
+   * @param {number | null} place
+   * @param {number} t
+   */
   #drawTrail(scene, place, t) {
     const {
       run,
@@ -152,7 +163,11 @@ function strikeOf(impact, scene) {
   };
 }
 
-/** Describes the newest contact; empty for a frictionless strike at y = 0. @param {Impact | null} impact @param {number} decimals */
+/**
+ * Describes the newest contact; empty for a frictionless strike at y = 0.
+ * @param {Impact | null} impact
+ * @param {number} decimals
+ */
 function contactWords(impact, decimals) {
   if (!impact) return '';
   const mode = MODES[impact.mode] ?? 'frictionless';
