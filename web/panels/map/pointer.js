@@ -78,7 +78,7 @@ export function listen(box, picture, actions) {
     release();
     if (cell) {
       point(cell, false);
-      // A finger cannot look before it actions: its first tap points, its second one there actions.
+      // A finger cannot look before it acts: its first tap points, a second one there acts.
       const again = tapped?.column === cell.column && tapped.row === cell.row;
       tapped = again ? null : cell;
       return event.pointerType === 'touch' && !again ? undefined : actions.take(cell);
