@@ -234,7 +234,10 @@ fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Op
     tied.retain(|fork| match fork {
         FrictionBranch::Forward => !held,
         // The work of compression has no kink where the sliding ends.
-        FrictionBranch::RestsEarly => friction.law == RestitutionLaw::Poisson && !ends_early,
+        FrictionBranch::RestsEarly => match friction.law {
+            RestitutionLaw::Poisson => !ends_early,
+            RestitutionLaw::Newton | RestitutionLaw::Stronge => false,
+        },
         FrictionBranch::Rests | FrictionBranch::Holds => true,
     });
     let root = first_contact(&rod.flight(&strike)).ok()?;
