@@ -3,7 +3,7 @@
 use equipoise_physics::scene::Scene;
 use serde::Serialize;
 
-use crate::api::scene::Resolved;
+use crate::api::scene::write::Resolved;
 use crate::api::shared::table::Table;
 use crate::charts::{NoPixels, png};
 use crate::compute::{Cancelled, TimeSlice};
