@@ -8,7 +8,7 @@ use crate::middleware::{apply_layers, not_found};
 
 /// The whole server.
 pub fn router(app: App) -> Router {
-    apply_layers(api::all().fallback(not_found), app)
+    apply_layers(api::all(app.config.web.as_deref()).fallback(not_found), app)
 }
 
 #[cfg(test)]
@@ -34,7 +34,7 @@ mod tests {
         let broken = Router::new()
             .route("/panics", get(async || -> &'static str { panic!("on purpose") }))
             .route("/speaks", get(async || (axum::http::StatusCode::IM_A_TEAPOT, "short and stout")));
-        let router = apply_layers(api::all().merge(broken).fallback(not_found), app);
+        let router = apply_layers(api::all(None).merge(broken).fallback(not_found), app);
         router.oneshot(request).await.unwrap()
     }
 

@@ -85,7 +85,7 @@ async fn every_route_is_in_the_contract() {
 /// The routes, read from the router's debug output; axum has no other list of them.
 fn routes() -> Vec<String> {
     let app = equipoise::api::App::new(&equipoise::config::Config::default());
-    let printed = format!("{:?}", equipoise::api::all().with_state::<()>(app));
+    let printed = format!("{:?}", equipoise::api::all(None).with_state::<()>(app));
     let quoted = printed.split('"').skip(1).step_by(2);
     quoted.filter(|text| text.starts_with('/') && !text.contains("__private__axum")).map(str::to_owned).collect()
 }

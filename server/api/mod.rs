@@ -21,6 +21,8 @@ pub mod shared;
 pub mod stability;
 pub mod trajectories;
 
+use std::path::Path;
+
 use axum::Router;
 
 pub use crate::api::app::App;
@@ -39,10 +41,10 @@ const COMPUTED: [Endpoint; 9] = [
     Endpoint::of::<trajectories::Trajectories>(),
 ];
 
-/// All routes.
-pub fn all() -> Router<App> {
+/// All routes; the page's files from `web`, if that is given.
+pub fn all(web: Option<&Path>) -> Router<App> {
     let others = Router::new()
-        .merge(ops::page::routes())
+        .merge(ops::page::routes(web))
         .merge(ops::contract::routes())
         .merge(ops::health::routes())
         .merge(ops::scrape::routes())

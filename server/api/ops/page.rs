@@ -1,13 +1,14 @@
 //! The embedded page and its files: `web/index.html` is `/`, `web/docs/index.html` is `/docs`, `web/embed/index.html` is
 //! `/embed/{panel}`, and other files have their own names.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use axum::Router;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::Redirect;
-use axum::routing::get;
+use axum::routing::{MethodRouter, get};
 use tower_http::set_header::SetResponseHeaderLayer;
 
 use crate::api::app::App;
@@ -23,33 +24,53 @@ const EMBED: &str = "embed/index.html";
 const EMBED_POLICY: HeaderValue =
     HeaderValue::from_static("default-src 'self'; base-uri 'self'; frame-ancestors *; object-src 'none'");
 
-/// One route for each embedded file, so that a path from a client is never looked up on disk.
-pub fn routes() -> Router<App> {
-    let mut router = Router::new();
-    for (name, bytes) in ASSETS.iter().copied() {
-        let fixed = Arc::new(StaticAsset::new(media_type(name), bytes));
-        let handler = get(async move |State(app): State<App>, headers: HeaderMap| match &app.config.web {
-            None => fixed.answer(&headers),
-            Some(folder) => match tokio::task::block_in_place(|| std::fs::read(folder.join(name))) {
-                Ok(bytes) => StaticAsset::new(media_type(name), bytes).answer(&headers),
-                Err(error) => Err(Problem::not_found(format!("{name}: {error}"))),
-            },
-        });
-        let handler = match name {
-            EMBED => handler.layer(SetResponseHeaderLayer::overriding(header::CONTENT_SECURITY_POLICY, EMBED_POLICY)),
-            _ => handler,
-        };
-        router = router.route(&format!("/{name}"), handler.clone());
-        router = match name {
-            "index.html" => router.route("/", handler),
+/// One route for each file, embedded or found in `web` at the start, so that a path from a client is never looked up on disk.
+pub fn routes(web: Option<&Path>) -> Router<App> {
+    let embedded = ASSETS.iter().map(|&(name, bytes)| (name.to_owned(), bytes));
+    let found = web.map(|folder| files_in(folder, "")).unwrap_or_default();
+    let new =
+        found.into_iter().filter(|name| ASSETS.iter().all(|(known, _)| known != name)).map(|name| (name, &[][..]));
+    embedded.chain(new).fold(Router::new(), |router, (name, bytes)| {
+        let handler = file(name.clone(), bytes);
+        match name.as_str() {
+            "index.html" => router.route("/", handler.clone()),
             "docs/index.html" => {
-                router.route("/docs", handler).route("/docs/", get(async || Redirect::permanent("../docs")))
+                router.route("/docs", handler.clone()).route("/docs/", get(async || Redirect::permanent("../docs")))
             }
-            EMBED => router.route("/embed/{panel}", handler),
+            EMBED => router.route("/embed/{panel}", handler.clone()),
             _ => router,
-        };
+        }
+        .route(&format!("/{name}"), handler)
+    })
+}
+
+/// Answers with one file of the page.
+fn file(name: String, bytes: &'static [u8]) -> MethodRouter<App> {
+    let embed = name == EMBED;
+    let fixed = Arc::new(StaticAsset::new(media_type(&name), bytes));
+    let handler = get(async move |State(app): State<App>, headers: HeaderMap| match &app.config.web {
+        None => fixed.answer(&headers),
+        Some(folder) => match tokio::task::block_in_place(|| std::fs::read(folder.join(&name))) {
+            Ok(bytes) => StaticAsset::new(media_type(&name), bytes).answer(&headers),
+            Err(error) => Err(Problem::not_found(format!("{name}: {error}"))),
+        },
+    });
+    if embed {
+        handler.layer(SetResponseHeaderLayer::overriding(header::CONTENT_SECURITY_POLICY, EMBED_POLICY))
+    } else {
+        handler
     }
-    router
+}
+
+/// The files of a folder and its folders, by their paths from `root`. Skips what cannot be read and names with a brace, which
+/// routes would take for a parameter.
+fn files_in(root: &Path, folder: &str) -> Vec<String> {
+    let entries = std::fs::read_dir(root.join(folder)).into_iter().flatten().flatten();
+    entries
+        .filter_map(|entry| Some((format!("{folder}{}", entry.file_name().to_str()?), entry.file_type().ok()?)))
+        .filter(|(name, _)| !name.contains(['{', '}']))
+        .flat_map(|(name, kind)| if kind.is_dir() { files_in(root, &format!("{name}/")) } else { vec![name] })
+        .collect()
 }
 
 fn media_type(name: &str) -> &'static str {
