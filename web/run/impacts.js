@@ -1,6 +1,6 @@
 // The impacts of a run in columns; the newest of them are kept.
 
-/** The columns that charts show; they are kept for long. */
+/** The columns that charts show. */
 export const LASTING = /** @type {const} */ ([
   'n',
   't',
@@ -31,19 +31,14 @@ export const COLUMNS = /** @type {const} */ ([
 
 /** @typedef {(typeof LASTING)[number]} Lasting */
 
-// Limits of memory, so that a day's run does not grow the page: 65,536 impacts with the columns of charts (4 MB), and all columns
-// of the newest 1,024.
+/** Limit of memory, so that a day's run does not grow the page: 65,536 impacts, in 9 MB. */
 const KEPT = 1 << 16;
-const NEWEST = 1 << 10;
 
-/** @param {readonly string[]} names @param {number} room */
-const allocate = (names, room) =>
-  Object.fromEntries(
-    names.map((name) => [
-      name,
-      name === 'n' ? new Uint32Array(room) : name === 'series' ? new Uint8Array(room) : new Float64Array(room),
-    ]),
-  );
+/** @param {string} name */
+const kindOf = (name) => (name === 'n' ? Uint32Array : name === 'series' ? Uint8Array : Float64Array);
+
+/** @param {number} room @returns {Record<string, Float64Array | Uint32Array | Uint8Array>} */
+const allocate = (room) => Object.fromEntries(COLUMNS.map((name) => [name, new (kindOf(name))(room)]));
 
 export class Impacts {
   /** Counts every impact taken in, forgotten ones included: the place of the next one. */
@@ -52,12 +47,7 @@ export class Impacts {
   missing = 0;
   #kept;
   #room = 256;
-  /** @type {Record<string, Float64Array | Uint32Array | Uint8Array>} */
-  #lasting = allocate(LASTING, this.#room);
-  #newest = allocate(
-    COLUMNS.filter((name) => !LASTING.some((one) => one === name)),
-    NEWEST,
-  );
+  #columns = allocate(this.#room);
 
   /** @param {number} [kept] a power of 4, at least 256 */
   constructor(kept = KEPT) {
@@ -70,19 +60,32 @@ export class Impacts {
   }
 
   /**
-   * NaN where there is none, or none any more.
+   * NaN where there is none.
    * @param {Column} column
    * @param {number} place from `begin` to `end`
    */
   at(column, place) {
-    const lasting = this.#lasting[column];
-    if (lasting) return lasting[place % this.#room];
-    return place >= this.end - NEWEST ? this.#newest[column][place % NEWEST] : NaN;
+    return this.#columns[column][place % this.#room];
+  }
+
+  /**
+   * The last place whose value is not beyond this one; `begin` − 1 where there is none. For columns that rise: `n` and `t`.
+   * @param {'n' | 't'} column
+   * @param {number} value
+   */
+  lastUpTo(column, value) {
+    let [low, high] = [this.begin - 1, this.end - 1];
+    while (low < high) {
+      const middle = Math.ceil((low + high) / 2);
+      if (this.at(column, middle) <= value) low = middle;
+      else high = middle - 1;
+    }
+    return low;
   }
 
   /** All that is kept of a column, for those who read much of it: a place is its index, less whole lengths. @param {Lasting} column */
   column(column) {
-    return this.#lasting[column];
+    return this.#columns[column];
   }
 
   /** @param {number} place @returns {Impact} */
@@ -99,14 +102,11 @@ export class Impacts {
   append(impact) {
     if (this.end === this.#room && this.#room < this.#kept) {
       this.#room *= 4;
-      const wider = allocate(LASTING, this.#room);
-      for (const name of LASTING) wider[name].set(this.#lasting[name]);
-      this.#lasting = wider;
+      const wider = allocate(this.#room);
+      for (const name of COLUMNS) wider[name].set(this.#columns[name]);
+      this.#columns = wider;
     }
-    for (const name of COLUMNS) {
-      if (name in this.#lasting) this.#lasting[name][this.end % this.#room] = impact[name];
-      else this.#newest[name][this.end % NEWEST] = impact[name];
-    }
+    for (const name of COLUMNS) this.#columns[name][this.end % this.#room] = impact[name];
     this.end += 1;
   }
 

@@ -35,6 +35,10 @@ export class RunState {
   interventions = [];
   /** The query that replays this run. */
   query = new URLSearchParams();
+  /** The time that the reader looks at; null while it is the present. @type {number | null} */
+  past = null;
+  /** Pace at which the past is played, in times real time; 0 while it stands still. */
+  replayed = 0;
   watcher;
 
   /** @param {Watcher} watcher */
@@ -43,6 +47,8 @@ export class RunState {
   }
 
   clear() {
+    this.past = null;
+    this.replayed = 0;
     this.impacts.clear();
     this.outcome = null;
     this.interventions = [];
@@ -75,6 +81,22 @@ export class RunState {
     return this.phase === 'running' || this.phase === 'paused';
   }
 
+  /** The newest time of the run, s since its release. */
+  get present() {
+    return this.phase === 'ended' ? (this.outcome?.t ?? Infinity) : this.clock.runTime();
+  }
+
+  /** The time to draw. */
+  get shown() {
+    return this.past ?? this.present;
+  }
+
+  /** Pace of the time to draw, in times real time; 0 while it stands still. */
+  get pace() {
+    if (this.past !== null) return this.replayed;
+    return this.phase === 'running' ? this.clock.speed : 0;
+  }
+
   /** Brings the scene up to date with impacts and interventions. */
   rebuild() {
     this.scene = this.#sceneAt((this.impacts.last?.n ?? 0) + 1);
@@ -95,13 +117,18 @@ export class RunState {
     return this.#sceneAt(Infinity);
   }
 
+  /** The scene of the first strike after `t`. @param {number} t */
+  sceneAfter(t) {
+    const place = this.placeAt(t);
+    if (this.interventions.length === 0 || place === this.impacts.end - 1) return this.scene;
+    return this.#sceneAt(place === null ? 1 : this.impacts.at('n', place) + 1);
+  }
+
   /** The place of the last impact not after `t`, or null before the first. @param {number} t */
   placeAt(t) {
     const { impacts } = this;
-    for (let place = impacts.end - 1; place >= impacts.begin; place -= 1) {
-      if (impacts.at('t', place) <= t) return place;
-    }
-    return null;
+    const place = impacts.lastUpTo('t', t);
+    return place < impacts.begin ? null : place;
   }
 
   /** The flight at `t`. @param {number} t */

@@ -38,8 +38,8 @@ export class RunDrawing {
     const { context } = surface;
     const since_s = Math.min(0.1, (now_ms - this.#drawn_ms) / 1000);
     this.#drawn_ms = now_ms;
-    const scene = /** @type {Scene} */ (run.scene);
-    const now = run.phase === 'ended' ? (run.outcome?.t ?? Infinity) : run.clock.runTime();
+    const now = run.shown;
+    const scene = /** @type {Scene} */ (run.sceneAfter(now));
     const place = run.placeAt(now);
     const impact = place === null ? null : run.impacts.row(place);
     const arc = run.arcAt(now);
@@ -48,7 +48,7 @@ export class RunDrawing {
     const t = moving || !impact ? now : arc.t;
     const pose = poseOn(arc, t, scene);
     camera.contain(scene, arc.y + Math.max(0, arc.y_dot) ** 2 / (2 * effectiveGravity(scene)));
-    camera.follow(pose.x, run.phase === 'running' && moving ? since_s : null);
+    camera.follow(pose.x, run.pace > 0 && moving ? since_s : null);
     drawGrid(surface, camera);
     const { scale } = camera;
     drawTarget(surface, camera, scene);
@@ -72,10 +72,10 @@ export class RunDrawing {
    */
   #glow(now, struck, moving) {
     const { run } = this.#parts;
-    if (run.phase === 'ended') return 1;
+    if (run.phase === 'ended' && run.past === null) return 1;
     const still = now - struck < 1e-6 || !moving ? 0 : GLOW_S / 2;
     // Divided by the speed, run time is wall time.
-    const age_s = run.phase === 'running' && moving ? (now - struck) / Math.max(run.clock.speed, 1e-6) : still;
+    const age_s = run.pace > 0 && moving ? (now - struck) / Math.max(run.pace, 1e-6) : still;
     return Math.max(0, 1 - age_s / GLOW_S);
   }
 
@@ -88,7 +88,7 @@ export class RunDrawing {
    */
   #say(now_ms, t, pose, impact) {
     const { run, readout, box } = this.#parts;
-    const running = run.phase === 'running';
+    const running = run.pace > 0;
     if (running && now_ms - this.#read_ms < 100) return;
     // More digits are legible while the picture stands still.
     const [seconds, rest] = running ? [2, 3] : [4, 5];

@@ -99,7 +99,7 @@ export class SceneView {
     else if (live) this.#loadDrawing();
     else if (this.#draft) this.#drawRelease(this.#draft);
     else drawGrid(surface, camera);
-    return live && this.#drawing !== null && run.phase === 'running' && this.#moving && this.#seen;
+    return live && this.#drawing !== null && run.pace > 0 && this.#moving && this.#seen;
   }
 
   #loadDrawing() {

@@ -48,6 +48,8 @@ export class ImpactPlot {
   selection = null;
   /** Draws over the dots. @type {((context: CanvasRenderingContext2D) => void) | null} */
   over = null;
+  /** The impact that the reader looks at; the newest one without. @type {number | null} */
+  #shown = null;
   #impacts;
   #drawn = 0;
   /** @type {number | null} */
@@ -98,6 +100,7 @@ export class ImpactPlot {
   clear() {
     this.#extent = ImpactPlot.#nothing();
     this.#pointed = null;
+    this.#shown = null;
     this.#drawn = 0;
     this.redraw();
   }
@@ -106,6 +109,13 @@ export class ImpactPlot {
   point(place) {
     if (place === this.#pointed) return;
     this.#pointed = place;
+    invalidate(this);
+  }
+
+  /** Marks the impact of the time shown, in place of the newest. @param {number | null} place */
+  show(place) {
+    if (place === this.#shown) return;
+    this.#shown = place;
     invalidate(this);
   }
 
@@ -257,7 +267,7 @@ export class ImpactPlot {
     context.clearRect(0, 0, width, height);
     this.over?.(context);
     const { begin, end } = this.#impacts;
-    const place = this.#pointed !== null && this.#pointed >= begin && this.#pointed < end ? this.#pointed : end - 1;
+    const place = [this.#pointed, this.#shown].find((one) => one !== null && one >= begin && one < end) ?? end - 1;
     if (place < 0) return this.figure.read('');
     const [x, y] = this.at(place);
     const { left, top, width: w, height: h } = this.frame;
