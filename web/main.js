@@ -2,16 +2,15 @@
 
 import { get, server } from './api/client.js';
 import { fieldsOf } from './api/scene-fields.js';
-import { edited } from './app/edits.js';
+import { edited } from './app/typed/edits.js';
 import { GAIN, Page } from './app/page.js';
 import { kick, restart, setSpeed, step, toggle } from './app/run-actions.js';
 import { showRun } from './app/run-state.js';
 import { watcherOf } from './app/run-watcher.js';
-import { plain } from './app/scene-name.js';
+import { plain } from './app/typed/scene-name.js';
 import { choose, restore } from './app/scenes.js';
 import { byId, h } from './dom/elements.js';
 import { clearNotice, notice } from './dom/notices.js';
-import { Form } from './form/form.js';
 
 const page = new Page(watcherOf, (page) => ({
   toggle: () => toggle(page),
@@ -19,7 +18,7 @@ const page = new Page(watcherOf, (page) => ({
   restart: () => restart(page),
   speed: (value) => setSpeed(page, value),
   gain: (value, final) => {
-    page.form?.put(GAIN, value);
+    page.put(GAIN, value);
     edited(page, GAIN, final);
   },
   kick: (velocities) => kick(page, velocities),
@@ -41,9 +40,6 @@ async function begin() {
     page.verdict.fail('The server does not answer.');
     return failed('The server does not answer. ', 'Try again', begin);
   }
-  const root = byId('parameters');
-  root.replaceChildren();
-  page.form = new Form(root, page.fields, (path, final) => edited(page, path, final));
   page.controls.knowGain(page.fields.find((field) => field.path === GAIN) ?? null);
   offerCases();
   byId('build').textContent = server.build;

@@ -8,6 +8,7 @@ import { Verdict } from '../panels/verdict/verdict.js';
 import { RunControls } from '../run/controls.js';
 import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
+import { TypedScene } from './typed/typed-scene.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
@@ -15,14 +16,11 @@ import { SceneView } from '../scene/scene-view.js';
 export const GAIN = 'table.tilt_gain';
 
 export class Page {
-  /** @type {import('../api/scene-fields.js').Field[]} */
-  fields = [];
+  #typed = new TypedScene();
   /** @type {import('contract').Preset[]} */
   cases = [];
   /** The case that the scene began with. @type {import('contract').Preset | null} */
   chosen = null;
-  /** @type {import('../form/form.js').Form | null} */
-  form = null;
   speed = 1;
   /** The typed scene when the run began. @type {Scene} */
   releasedAs = {};
@@ -67,15 +65,48 @@ export class Page {
     byId('impacts-bar').before(angle, velocity, this.circle.figure.element, energy);
   }
 
-  /** The typed scene as far as it goes. @returns {Scene | undefined} */
+  /** The fields of a scene; none before the server has named them. */
+  get fields() {
+    return this.#typed.fields;
+  }
+
+  set fields(fields) {
+    this.#typed.fields = fields;
+  }
+
+  /** The form of the typed scene. It comes after the first plot. */
+  get form() {
+    return this.#typed.form;
+  }
+
+  /** The typed scene, of a text that is no value the last that was one; undefined before there is a scene. */
   get typed() {
-    return this.form?.read().scene;
+    return this.#typed.scene;
   }
 
   /** The typed scene; null while some of it is no value. */
   get complete() {
-    const read = this.form?.read();
-    return read?.complete ? read.scene : null;
+    return this.#typed.complete;
+  }
+
+  /** Another scene takes the place of the typed one. @param {Scene} scene */
+  fill(scene) {
+    this.#typed.fill(scene);
+  }
+
+  /** Sets a value of the typed scene from elsewhere than the form. @param {string} path @param {unknown} value */
+  put(path, value) {
+    this.#typed.put(path, value);
+  }
+
+  /** Reads what was typed into the form. */
+  take() {
+    this.#typed.take();
+  }
+
+  /** @param {import('../form/form.js').Form} form shows and edits the typed scene from now on */
+  join(form) {
+    this.#typed.join(form);
   }
 
   /** The panels' part of the address. */

@@ -20,7 +20,7 @@ export function showRun(page) {
       ? prose(capitalized(outcome?.detail ?? ''))
       : [`${impacts.missing} impacts were skipped over.`]),
   );
-  controls.show(phase, phase !== 'idle' && unplayed(page).length > 0, page.form !== null);
+  controls.show(phase, phase !== 'idle' && unplayed(page).length > 0, page.typed !== undefined);
   if (run.active) {
     page.speed = run.clock.speed || page.speed;
     controls.setSpeed(page.speed);

@@ -8,7 +8,7 @@ import { pushAddress, updateAddress } from './address-bar.js';
 import { readLink } from './link.js';
 import { GAIN } from './page.js';
 import { start } from './run-actions.js';
-import { caseOf, nameScene } from './scene-name.js';
+import { caseOf, nameScene } from './typed/scene-name.js';
 import { askVerdict } from './verdict-request.js';
 
 /** @typedef {import('./page.js').Page} Page */
@@ -27,7 +27,7 @@ export function sceneChanged(page) {
 
 /** Shows a scene without running it. @param {Page} page @param {Scene} scene */
 function present(page, scene) {
-  page.form?.fill(scene);
+  page.fill(scene);
   page.controls.setGain(valueAt(scene, GAIN) ?? null);
   page.controls.setSpeed(page.speed);
   sceneChanged(page);
@@ -48,7 +48,7 @@ export function choose(page, one) {
 export function launch(page, values) {
   updateAddress(page);
   history.pushState(null, '', location.href);
-  for (const [path, value] of Object.entries(values)) page.form?.put(path, value);
+  for (const [path, value] of Object.entries(values)) page.put(path, value);
   page.run.reset();
   const gain = valueAt(page.typed ?? {}, GAIN) ?? null;
   page.controls.setGain(gain);

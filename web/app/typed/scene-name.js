@@ -1,15 +1,15 @@
 // The name of the typed scene: its case, or how it differs from that.
 
-import { playedAt, same } from '../api/scene-fields.js';
-import { byId, h } from '../dom/elements.js';
-import { prose } from '../dom/typeset.js';
+import { playedAt, same } from '../../api/scene-fields.js';
+import { byId, h } from '../../dom/elements.js';
+import { prose } from '../../dom/typeset.js';
 
-/** @typedef {import('./page.js').Page} Page */
+/** @typedef {import('../page.js').Page} Page */
 
 /** Text without subscripts, for an option or the window's title. @param {string} text */
 export const plain = (text) => text.replaceAll('κ_', 'κ');
 
-/** The case that a scene is, if it is one. @param {Page} page @param {import('./page.js').Scene} scene */
+/** The case that a scene is, if it is one. @param {Page} page @param {import('../page.js').Scene} scene */
 export const caseOf = ({ cases, fields }, scene) =>
   cases.find((one) => fields.every((field) => same(playedAt(one.scene, field), playedAt(scene, field)))) ?? null;
 

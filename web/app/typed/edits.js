@@ -1,14 +1,14 @@
 // Reacts to an edit of the form or of a slider beside the scene.
 
-import { valueAt } from '../api/scene-fields.js';
-import { updateAddressSoon } from './address-bar.js';
-import { GAIN } from './page.js';
-import { sendChanges } from './run-actions.js';
-import { showRun } from './run-state.js';
-import { sceneChanged } from './scenes.js';
+import { valueAt } from '../../api/scene-fields.js';
+import { updateAddressSoon } from '../address-bar.js';
+import { GAIN } from '../page.js';
+import { sendChanges } from '../run-actions.js';
+import { showRun } from '../run-state.js';
+import { sceneChanged } from '../scenes.js';
 
 /**
- * @param {import('./page.js').Page} page
+ * @param {import('../page.js').Page} page
  * @param {string} path of the field
  * @param {boolean} final true when a slider was let go or a text was left
  */
