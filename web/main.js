@@ -11,6 +11,7 @@ import { plain } from './app/typed/scene-name.js';
 import { choose, restore } from './app/scenes.js';
 import { byId, h } from './dom/elements.js';
 import { clearNotice, notice } from './dom/notices.js';
+import { knowTitles } from './dom/typeset.js';
 
 const page = new Page(watcherOf, (page) => ({
   toggle: () => toggle(page),
@@ -35,6 +36,7 @@ async function begin() {
     const [table, list] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
     clearNotice('server');
     page.fields = fieldsOf(table);
+    knowTitles(page.fields);
     page.cases = list.scenes;
   } catch {
     page.verdict.fail('The server does not answer.');

@@ -105,7 +105,7 @@ test('the basin is measured when somebody asks, and belongs to its scene', async
   const told = await words(page);
   assert.ok(
     told.includes(
-      `${basin.impacts} impacts from up to ${short(basin.unbroken)} rad (${short((basin.unbroken * 180) / Math.PI, 3)} °)`,
+      `${basin.impacts} impacts from up to ${short(basin.unbroken)} rad (${short((basin.unbroken * 180) / Math.PI, 3)}°)`,
     ),
     told,
   );

@@ -2,6 +2,7 @@
 
 import { sceneQuery } from '../api/scene-query.js';
 import { debounce } from '../dom/debounce.js';
+import { keepAngles } from '../dom/units.js';
 import { typedQuery } from './queries.js';
 
 /** @typedef {import('./page.js').Page} Page */
@@ -16,6 +17,7 @@ export function updateAddress(page) {
     for (const [key, value] of run.query) if (key !== 'preset' && !key.startsWith('scene.')) query.set(key, value);
   } else if (speed !== 1) query.set('speed', String(speed));
   for (const [key, value] of page.panelQuery) query.set(key, value);
+  keepAngles(query);
   history.replaceState(null, '', `?${query}`);
   page.panels?.played();
 }
@@ -23,5 +25,8 @@ export function updateAddress(page) {
 export const updateAddressSoon = debounce(150, updateAddress);
 
 /** A new entry of the history, with the panels' part of the address. @param {Page} page @param {Iterable<string[]>} query */
-export const pushAddress = ({ panelQuery }, query) =>
-  history.pushState(null, '', `?${new URLSearchParams([...query, ...panelQuery])}`);
+export function pushAddress({ panelQuery }, query) {
+  const whole = new URLSearchParams([...query, ...panelQuery]);
+  keepAngles(whole);
+  history.pushState(null, '', `?${whole}`);
+}

@@ -66,7 +66,7 @@ export function readLink(search, fields, cases) {
       else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
     } else if (PANEL_KEYS.test(key)) {
       link.panels.set(key, text);
-    } else if (key !== 'from') {
+    } else if (key !== 'from' && !(key === 'angles' && /^(deg|rad)$/.test(text))) {
       link.dropped.push(`“${shown(key)}”, which has no meaning here`);
     }
   }

@@ -1,6 +1,7 @@
 // Scales with round numbers, their ticks and axes for canvases.
 
 import { number } from '../dom/numbers.js';
+import { shownFactor, shownUnit } from '../dom/units.js';
 import { SANS, SERIF, theme } from './theme.js';
 
 /** @typedef {{low: number, high: number}} Range */
@@ -62,10 +63,16 @@ export const toX = ({ left, width, x }, value) => left + ((value - x.low) / (x.h
 /** @param {Frame} frame @param {number} value */
 export const toY = ({ top, height, y }, value) => top + height - ((value - y.low) / (y.high - y.low)) * height;
 
+/** Ticks that are round in the unit that is shown, and their numbers. @param {Range} range @param {number} count @param {string} name */
+function shownTicks({ low, high }, count, name) {
+  const factor = shownFactor(name.split(' / ')[1] ?? null);
+  return ticks({ low: low * factor, high: high * factor }, count).map((told) => ({ told, value: told / factor }));
+}
+
 /**
  * @param {CanvasRenderingContext2D} context
  * @param {Frame} frame
- * @param {string} xName with its unit
+ * @param {string} xName with its unit, in SI
  * @param {string} yName
  */
 export function drawAxes(context, frame, xName, yName) {
@@ -76,17 +83,17 @@ export function drawAxes(context, frame, xName, yName) {
   context.fillStyle = colours.muted;
   context.textAlign = 'center';
   context.textBaseline = 'top';
-  for (const value of ticks(frame.x, Math.max(2, width / 70))) {
+  for (const { value, told } of shownTicks(frame.x, Math.max(2, width / 70), xName)) {
     const x = Math.round(toX(frame, value)) + 0.5;
     line(context, value === 0 ? colours.line : colours.faint, x, top, x, top + height);
-    context.fillText(number(value), x, top + height + 5);
+    context.fillText(number(told), x, top + height + 5);
   }
   context.textAlign = 'right';
   context.textBaseline = 'middle';
-  for (const value of ticks(frame.y, Math.max(2, height / 42))) {
+  for (const { value, told } of shownTicks(frame.y, Math.max(2, height / 42), yName)) {
     const y = Math.round(toY(frame, value)) + 0.5;
     line(context, value === 0 ? colours.line : colours.faint, left, y, left + width, y);
-    context.fillText(number(value), left - 6, y);
+    context.fillText(number(told), left - 6, y);
   }
   context.strokeStyle = colours.line;
   context.strokeRect(left + 0.5, top + 0.5, width - 1, height - 1);
@@ -94,10 +101,10 @@ export function drawAxes(context, frame, xName, yName) {
   context.fillStyle = colours.ink;
   context.textBaseline = 'top';
   context.textAlign = 'right';
-  context.fillText(xName, left + width, top + height + 19);
+  context.fillText(shownUnit(xName), left + width, top + height + 19);
   context.textAlign = 'left';
   context.textBaseline = 'bottom';
-  context.fillText(yName, Math.max(2, left - 40), top - 5);
+  context.fillText(shownUnit(yName), Math.max(2, left - 40), top - 5);
 }
 
 /**

@@ -4,6 +4,7 @@ import { table as numberTable } from '../dom/tables.js';
 import { enlarger } from '../export/enlarge-button.js';
 import { h } from '../dom/elements.js';
 import { unbroken } from '../dom/numbers.js';
+import { UNITS, shownUnit } from '../dom/units.js';
 
 /**
  * @typedef {object} Table the numbers behind a picture
@@ -38,11 +39,18 @@ export class Figure {
     this.box = h('div', { class: 'canvas-box', role: 'img', 'aria-label': 'Nothing to show yet' });
     this.#readout = h('output', { class: 'readout', 'aria-live': 'off' });
     this.#body = h('tbody');
+    const heads = table.head.map((name) => h('span', {}, shownUnit(name)));
+    document.addEventListener(UNITS, () => {
+      for (const [index, name] of table.head.entries()) heads[index].textContent = shownUnit(name);
+      this.#named_ms = -Infinity;
+      this.#listed_ms = -Infinity;
+      this.list(Infinity);
+    });
     this.#disclosure = h(
       'details',
       { toggle: () => this.list(Infinity) },
       h('summary', {}, 'Numbers'),
-      numberTable(`Numbers: ${title}`, table.head, this.#body),
+      numberTable(`Numbers: ${title}`, heads, this.#body),
     );
     this.#head = h('div', { class: 'card-head' }, h('h3', {}, title));
     this.element = h(

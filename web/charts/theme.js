@@ -1,5 +1,7 @@
 // The style sheet's colours for canvases, read once per change of scheme.
 
+import { UNITS } from '../dom/units.js';
+
 const NAMES = /** @type {const} */ ([
   'ink',
   'muted',
@@ -32,8 +34,13 @@ export function theme() {
   return colours;
 }
 
-/** @param {() => void} listener */
+/** Calls when what is drawn looks another way: the scheme or the unit of angles has changed. @param {() => void} listener */
 export const onThemeChange = (listener) => void listeners.add(listener);
+
+// Units are drawn too.
+document.addEventListener(UNITS, () => {
+  for (const listener of listeners) listener();
+});
 
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   colours = null;

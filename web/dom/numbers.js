@@ -1,5 +1,7 @@
 // Numbers as people read and type them: true minus, narrow spaces, units.
 
+import { angles, isAngle, shownFactor, shownUnit } from './units.js';
+
 const MINUS = '\u2212';
 const NARROW = '\u202f';
 const SUPERSCRIPT = '⁰¹²³⁴⁵⁶⁷⁸⁹';
@@ -44,14 +46,40 @@ function grouped(text) {
   return typeset(part === undefined ? parted : `${parted}.${part}`);
 }
 
-/** The unit as printed after a number: nothing for a pure number. @param {string | null} unit */
-export const unitAfter = (unit) => (unit === null || unit === '1' || unit === '' ? '' : NARROW + unit);
+/** The unit as printed after a number: nothing for a pure number, and no space before a degree sign. @param {string | null} unit */
+export function unitAfter(unit) {
+  if (unit === null || unit === '1' || unit === '') return '';
+  const printed = shownUnit(unit);
+  return printed.startsWith('°') ? printed : NARROW + printed;
+}
 
 /**
- * @param {number | null | undefined} value
+ * A value with its unit; angles in the unit that the page shows.
+ * @param {number | null | undefined} value in SI units
  * @param {string | null} unit
  */
-export const quantity = (value, unit, digits = 4) => number(value, digits) + (value == null ? '' : unitAfter(unit));
+export const quantity = (value, unit, digits = 4) =>
+  value == null ? number(value) : number(value * shownFactor(unit), digits) + unitAfter(unit);
+
+/**
+ * A value of a readout or a table without its unit; an angle in degrees has a decimal less.
+ * @param {number | null | undefined} value in SI units
+ * @param {string} unit
+ * @param {number} decimals
+ */
+export function fixedIn(value, unit, decimals) {
+  const factor = shownFactor(unit);
+  return value == null ? fixed(value, 0) : fixed(value * factor, factor > 1 ? Math.max(0, decimals - 1) : decimals);
+}
+
+/**
+ * The same with its unit.
+ * @param {number | null | undefined} value
+ * @param {string} unit
+ * @param {number} decimals
+ */
+export const fixedQuantity = (value, unit, decimals) =>
+  fixedIn(value, unit, decimals) + (value == null ? '' : unitAfter(unit));
 
 /** A readout that breaks between its quantities only, which three spaces part; a sentence is none. @param {string} text */
 export const unbroken = (text) =>
@@ -60,22 +88,29 @@ export const unbroken = (text) =>
     .map((part) => (part.length > 48 ? part : part.replaceAll(' ', '\u00a0')))
     .join('   ');
 
+/** Units that may be typed after a number of an angle. */
+const TYPED = /^(.+?)(°|deg|degrees?|rad)(?:\/s|\/m|·?s\/m)?$/i;
+
 /**
- * Parses a typed number: decimal comma, typographic minus, `45°` and `pi/4` included; null when it is none.
+ * Parses a typed number: decimal comma, typographic minus and `pi/4` included; null when it is none. An angle may have its unit, as in
+ * `20°`, `20 deg` and `0.3 rad`; without one it is in the unit that the page shows.
  * @param {string} text
  * @param {string | null} unit
+ * @returns {number | null} in SI units
  */
 export function parse(text, unit) {
   const plain = text
     .trim()
     .replaceAll(MINUS, '-')
     .replace(/[\s\u202f\u2009]/g, '')
-    .replace(/^(-?\d*),(\d+)$/, '$1.$2');
+    .replace(/^(-?\d*),(\d+)/, '$1.$2');
   const turn = /^(-?)(\d*\.?\d*)\*?(?:π|pi)(?:\/(\d+\.?\d*))?$/i.exec(plain);
   if (turn) return ((turn[1] ? -1 : 1) * (turn[2] ? Number(turn[2]) : 1) * Math.PI) / (turn[3] ? Number(turn[3]) : 1);
-  const degrees = unit?.startsWith('rad') && /^(.+)°$/.exec(plain);
-  if (degrees) return scaled(degrees[1], Math.PI / 180);
-  return scaled(plain, 1);
+  if (!isAngle(unit))
+    return scaled(unit && unit !== '1' && plain.endsWith(unit) ? plain.slice(0, -unit.length) : plain, 1);
+  const typed = TYPED.exec(plain);
+  const degrees = typed ? !/^rad/i.test(typed[2]) : angles() === 'deg';
+  return scaled(typed ? typed[1] : plain, degrees ? Math.PI / 180 : 1);
 }
 
 /**

@@ -1,7 +1,8 @@
 // Words with symbols, minus signs and numbers set as in print.
 
 import { h } from './elements.js';
-import { number } from './numbers.js';
+import { number, quantity } from './numbers.js';
+import { angles } from './units.js';
 
 /** @param {string} words */
 export const capitalized = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
@@ -22,18 +23,68 @@ export function symbol(text) {
   );
 }
 
+/** Titles of a scene's fields by the names that the server's sentences use: the path, and its last part where that is a name. */
+const titles = new Map();
+
+/** Takes the titles of fields from their table. @param {{path: string, title: string}[]} fields */
+export function knowTitles(fields) {
+  for (const { path, title } of fields) {
+    // A symbol keeps its case: gain of θ; a word does not: tilt gain.
+    const words = `${title.slice(0, 1).toLowerCase()}${title.slice(1)}`;
+    const last = path.slice(path.lastIndexOf('.') + 1);
+    if (path.includes('.')) titles.set(path, words);
+    if (last.includes('_') && !path.startsWith('table.feedback.')) titles.set(last, titles.get(last) ?? words);
+  }
+}
+
+/** Names of quantities in answers. @type {Record<string, string>} */
+const QUANTITIES = {
+  'table.feedback': 'state feedback',
+  'table.limits': 'limits of the table',
+  max_theta: 'largest |θ|',
+  lyapunov: 'third-order coefficient',
+  linear: 'linear map',
+  loss_of_stability: 'loss of stability',
+  agree: 'agreement with the run',
+};
+
+/**
+ * The server's sentences in words: titles in place of names of fields, `null` as what there is none of, angles in the page's unit.
+ * @param {string} text
+ */
+export function inWords(text) {
+  const plain = text
+    .replaceAll('`', '')
+    .replace(/ ?\((?:no unit|null takes a preset's back)\)/g, '')
+    .replace(/(^|; )(\w+(?:(?:, | and )\w+)*) (?:is|are) null: /gi, (_, before, names) => {
+      const words = names.replace(/\w+/g, inOwnWords);
+      return before ? `; no ${words}: ` : `No ${words}: `;
+    })
+    .replace(/\b[a-z]+(?:_[a-z]+)*(?:\.[a-z]+(?:_[a-z]+)*)+\b|\b[a-z]+(?:_[a-z]+)+\b/gi, inOwnWords);
+  if (angles() === 'rad') return plain;
+  return plain.replace(/(-?\d[\d.]*(?:e[+-]?\d+)?) (rad(?:\/s)?)(?![\w/])/g, (_, digits, unit) =>
+    quantity(Number(digits), unit).replaceAll('\u2212', '-'),
+  );
+}
+
+/** @param {string} name */
+function inOwnWords(name) {
+  const key = name.slice(0, 1).toLowerCase() + name.slice(1);
+  const words = QUANTITIES[key] ?? titles.get(key);
+  if (words === undefined) return name.replaceAll('_', ' ');
+  return key === name ? words : capitalized(words);
+}
+
 /**
  * The server's sentences: symbols and minus signs set as such, names of fields in words.
  * @param {string} text
  */
 export const marked = (text) =>
-  text
-    .replaceAll('`', '')
-    .replace(/(?<=[a-z])_(?=[a-z])/g, ' ')
+  inWords(text)
     .replace(/(?<![\w.])-(?=\d)/g, '\u2212')
     .split(/((?:κ|σ)_[A-Za-z]+(?:,max)?|y\*)/)
     .map((part, index) => (index % 2 ? symbol(part) : part));
 
 /** The same with numbers no longer than one reads. @param {string} text */
 export const prose = (text) =>
-  marked(text.replace(/-?\b\d+\.\d{6,}(?:e-?\d+)?/g, (digits) => number(Number(digits), 6)));
+  marked(text.replace(/-?\b\d+\.\d{5,}(?:e-?\d+)?/g, (digits) => number(Number(digits)).replaceAll('\u202f', ' ')));

@@ -1,7 +1,7 @@
 // Draws a run at a time: the body on its flight, the table on its way to the next strike, the last strike and the trail.
 
 import { theme } from '../charts/theme.js';
-import { fixed, unbroken } from '../dom/numbers.js';
+import { fixed, fixedQuantity, unbroken } from '../dom/numbers.js';
 import { contactDistance } from '../physics/body.js';
 import { effectiveGravity, poseOn } from '../physics/flight.js';
 import { strikeAfter, tableBetween } from '../physics/table.js';
@@ -94,13 +94,13 @@ export class RunDrawing {
     const [seconds, rest] = running ? [2, 3] : [4, 5];
     const n = impact?.n ?? 0;
     readout.textContent = unbroken(
-      `t ${fixed(t, seconds)} s   impact ${n}   θ ${fixed(pose.theta, rest)} rad   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m${contactWords(impact, rest)}`,
+      `t ${fixed(t, seconds)} s   impact ${n}   θ ${fixedQuantity(pose.theta, 'rad', rest)}   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m${contactWords(impact, rest)}`,
     );
     if (!running || now_ms - this.#read_ms > 2000 || this.#read_ms === -Infinity) {
       const contact = contactWords(impact, 3).replace(/ {3}/g, ', ');
       box.setAttribute(
         'aria-label',
-        `The rod and the table after impact ${n}: tilted by ${fixed(pose.theta, 2)} rad at x = ${fixed(pose.x, 2)} m${contact}`,
+        `The rod and the table after impact ${n}: tilted by ${fixedQuantity(pose.theta, 'rad', 2)} at x = ${fixed(pose.x, 2)} m${contact}`,
       );
     }
     this.#read_ms = now_ms;

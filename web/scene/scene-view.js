@@ -3,7 +3,7 @@
 import { surfaces, invalidate } from '../charts/surface.js';
 import { onThemeChange } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
-import { fixed, number } from '../dom/numbers.js';
+import { fixed, fixedQuantity, number, quantity } from '../dom/numbers.js';
 import { contactDistance } from '../physics/body.js';
 import { drawRod, drawTable } from './bodies.js';
 import { Camera } from './camera.js';
@@ -127,10 +127,10 @@ export class SceneView {
     drawTable(surface.context, scale, table, camera.halfTable(scene), camera.floor);
     drawRod(surface.context, scale, scene, { x, y, theta });
     drawRulers(surface, camera);
-    readout.textContent = `Released at ${fixed(height, 3)} m, θ ${fixed(theta, 3)} rad`;
+    readout.textContent = `Released at ${fixed(height, 3)} m, θ ${fixedQuantity(theta, 'rad', 3)}`;
     box.setAttribute(
       'aria-label',
-      `The scene before release: the centre of gravity ${number(height)} m high, tilted by ${number(theta)} rad`,
+      `The scene before release: the centre of gravity ${number(height)} m high, tilted by ${quantity(theta, 'rad')}`,
     );
   }
 }

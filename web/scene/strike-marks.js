@@ -3,7 +3,7 @@
 import { MODES } from '../run/impact-messages.js';
 import { line } from '../charts/axes.js';
 import { SANS, SERIF, theme } from '../charts/theme.js';
-import { fixed } from '../dom/numbers.js';
+import { fixed, fixedQuantity } from '../dom/numbers.js';
 
 /** @typedef {import('./camera.js').Scale} Scale */
 
@@ -63,7 +63,7 @@ export function drawStrike(context, scale, impact, strike, strength) {
       arrow(context, x + offset, y, x + offset + (dx / impulse) * length, y - (dy / impulse) * length, colours.strike);
     context.font = `11px ${SANS}`;
     context.fillStyle = colours.strike;
-    const words = [`impulse ${fixed(impulse, 2)}\u202fm/s`, `α ${fixed(strike.alpha, 3)}\u202frad`];
+    const words = [`impulse per mass ${fixed(impulse, 2)}\u202fm/s`, `α ${fixedQuantity(strike.alpha, 'rad', 3)}`];
     const widest = Math.max(...words.map((text) => context.measureText(text).width));
     const left = offset > 0 ? x + offset * 1.6 : x + offset * 1.6 - widest;
     const at = Math.max(34, Math.min(scale.right - widest - 6, left));
@@ -73,7 +73,7 @@ export function drawStrike(context, scale, impact, strike, strength) {
     context.fillText(words[1], at, y + 34);
     if (rubs) {
       // On the other side of the table's foot.
-      const told = `friction ${fixed(friction, 2)}\u202fm/s`;
+      const told = `friction per mass ${fixed(friction, 2)}\u202fm/s`;
       const width = context.measureText(told).width;
       const start = offset > 0 ? x - offset * 1.6 - width : x - offset * 1.6;
       context.fillStyle = colours.good;

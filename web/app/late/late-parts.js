@@ -5,25 +5,19 @@ import { copy } from '../../dom/clipboard.js';
 import { byId } from '../../dom/elements.js';
 import { brokenLinkNotice, clearNotice } from '../../dom/notices.js';
 import { enlarger } from '../../export/enlarge-button.js';
-import { Form } from '../../form/form.js';
 import { styles } from '../../panels/card.js';
 import { Panels } from '../../panels/panels.js';
 import { updateAddress, updateAddressSoon } from '../address-bar.js';
-import { edited } from '../typed/edits.js';
 import { playedQuery, typedQuery } from '../queries.js';
 import { launch, play } from '../scenes.js';
 import { bindingsOf } from './key-bindings.js';
 import { listenToKeys } from './keys.js';
 import { savesOf } from './saves.js';
+import { bringSettings } from './settings.js';
 
 /** @param {import('../page.js').Page} page */
 export async function bringLateParts(page) {
-  page.join(
-    new Form(byId('parameters'), page.fields, (path, final) => {
-      page.take();
-      edited(page, path, final);
-    }),
-  );
+  bringSettings(page);
   // Buttons that save and enlarge come with their styles, or without them where those do not load.
   await styles('export/export.css').catch(() => {});
   const { plots, circle, view, fields, run } = page;

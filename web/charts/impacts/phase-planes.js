@@ -1,7 +1,7 @@
 // The two phase planes: the states they pair, and their names.
 
 import { ImpactPlot } from './impact-plot.js';
-import { fixed } from '../../dom/numbers.js';
+import { fixed, fixedIn, fixedQuantity } from '../../dom/numbers.js';
 
 /** @typedef {import('../../run/impacts.js').Impacts} Impacts */
 
@@ -23,12 +23,12 @@ export function anglePlane(impacts) {
     cells: (all, place) => [
       String(all.at('n', place)),
       fixed(all.at('t', place), 4),
-      fixed(all.at('theta', place), 6),
-      fixed(all.at('theta_dot', place), 6),
-      fixed(all.at('alpha', place), 6),
+      fixedIn(all.at('theta', place), 'rad', 6),
+      fixedIn(all.at('theta_dot', place), 'rad/s', 6),
+      fixedIn(all.at('alpha', place), 'rad', 6),
     ],
     readout: (all, place) =>
-      `n ${all.at('n', place)}   θ ${fixed(all.at('theta', place), 4)} rad   θ̇ ${fixed(all.at('theta_dot', place), 3)} rad/s`,
+      `n ${all.at('n', place)}   θ ${fixedQuantity(all.at('theta', place), 'rad', 4)}   θ̇ ${fixedQuantity(all.at('theta_dot', place), 'rad/s', 3)}`,
   });
 }
 

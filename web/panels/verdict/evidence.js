@@ -4,11 +4,13 @@ import { Problem } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
 import { prose } from '../../dom/typeset.js';
 import { number, quantity } from '../../dom/numbers.js';
+import { angles } from '../../dom/units.js';
 
 /** @typedef {import('contract').Stability} Stability */
 
 /** @param {number} angle */
-const inBoth = (angle) => `${quantity(angle, 'rad')} (${quantity((angle * 180) / Math.PI, '°', 3)})`;
+const inBoth = (angle) =>
+  `${quantity(angle, 'rad')}${angles() === 'deg' ? '' : ` (${quantity((angle * 180) / Math.PI, '°', 3)})`}`;
 
 /** @param {Stability} answer @returns {(readonly [string, string])[]} name and sentence */
 function sentences({ rotation_number: rotation, chaos, predictable_impacts: predictable }) {

@@ -28,8 +28,7 @@ function linearNumbers({ linear }) {
   }
   if (residue != null) rows.push([symbol('R'), number(residue), `residue: ${linear.class}`]);
   if (rotation != null) {
-    const degrees = quantity((rotation * 180) / Math.PI, '°');
-    rows.push([symbol('σ'), `${quantity(rotation, 'rad')} (${degrees})`, 'rotation a bounce']);
+    rows.push([symbol('σ'), quantity(rotation, 'rad'), 'rotation a bounce']);
   }
   if (linear.spectral_radius != null) rows.push(['max |λ|', number(linear.spectral_radius, 5), 'spectral radius']);
   if (energy && energy.value !== 0) {

@@ -9,6 +9,8 @@ export class Verdict {
   #root;
   /** The answer to show, once its code is loaded. @type {Stability | null} */
   #newest = null;
+  /** Shows the last answer anew, for another unit of angles. @type {() => void} */
+  retell = () => {};
   // Only the words are spoken, not the table of numbers at every turn of a knob.
   #spoken = h('p', { class: 'unseen', role: 'status' });
 
@@ -29,6 +31,7 @@ export class Verdict {
   fail(words, retry) {
     this.busy(false);
     this.#newest = null;
+    this.retell = () => {};
     this.#spoken.textContent = `No verdict. ${words}`;
     this.#root.replaceChildren(
       h('p', { class: 'verdict-words none' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, '–'), ' No verdict'),
@@ -40,6 +43,9 @@ export class Verdict {
   /** @param {Stability} answer @param {() => Promise<Stability>} measureBasin */
   async show(answer, measureBasin) {
     this.#newest = answer;
+    this.retell = () => {
+      if (this.#newest) void this.show(answer, measureBasin);
+    };
     const module = await import('./answer.js').catch(() => null);
     if (this.#newest !== answer) return;
     if (!module) return this.fail('Part of the page did not load.', () => location.reload());
