@@ -2,13 +2,13 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, verdict } from './stage.js';
+import { Stage, openPanel, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
 async function open(query) {
   const opened = await stage.page(query);
-  await opened.page.locator('#branch-body').scrollIntoViewIfNeeded();
+  await openPanel(opened.page, 'branch');
   return opened;
 }
 
@@ -54,7 +54,7 @@ test('it follows the scene, and a body without an angle has none', async () => {
   await page.locator('#branch-body svg.figure').waitFor();
   const before = await src();
   await page.locator('#field-release-height').fill('0.25');
-  await page.locator('#branch-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'branch');
   await page.waitForFunction(
     (old) => ![old, undefined].includes(document.querySelector('#branch-body .actions a')?.getAttribute('href')),
     before,
@@ -62,10 +62,10 @@ test('it follows the scene, and a body without an angle has none', async () => {
   assert.match(await src(), /scene\.release\.height=0\.25/);
   await page.selectOption('#case', 'point-mass');
   await verdict(page);
-  await page.locator('#branch-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'branch');
   await page.locator('#branch-body', { hasText: 'no angle' }).waitFor();
   await page.selectOption('#case', 'still-lossy');
-  await page.locator('#branch-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'branch');
   await page.locator('#branch-body', { hasText: 'no critical gain' }).waitFor();
   clean();
 });
@@ -81,7 +81,7 @@ test('without a server it says so and can be asked for again', async () => {
           : real(input, init);
     },
   });
-  await page.locator('#branch-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'branch');
   await page.locator('#branch-body', { hasText: 'The server does not answer' }).waitFor();
   await page.evaluate(() => {
     globalThis.refuse = false;

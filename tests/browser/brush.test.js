@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { angleStart, velocityStart, within } from '../../web/physics/first-impact.js';
-import { Stage, ink, numbers, reachImpact, reachPhase, speedUp } from './stage.js';
+import { Stage, ink, numbers, reachImpact, reachPhase, speedUp, showChart } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -32,6 +32,7 @@ async function paused(query, n, options) {
 }
 
 async function boxOf(page, id) {
+  await showChart(page, id);
   const box = page.locator(`#${id} .canvas-box`);
   await box.scrollIntoViewIfNeeded();
   return box.boundingBox();

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, reachImpact, verdict } from './stage.js';
+import { Stage, openPanel, reachImpact, verdict } from './stage.js';
 
 const stage = await Stage.open();
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
@@ -10,7 +10,7 @@ const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212'
 async function open(query, options) {
   const opened = await stage.page(query, options);
   await verdict(opened.page);
-  await opened.page.locator('#design-body').scrollIntoViewIfNeeded();
+  await openPanel(opened.page, 'design');
   await opened.page.locator('#design-start').waitFor();
   return opened;
 }

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, verdict } from './stage.js';
+import { Stage, openPanel, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -116,7 +116,7 @@ test('the printed values stand beside the computed ones, with the reason where t
   const differing = scenes.find(({ name }) => name === 'case-4').computed.filter(({ why }) => why);
   // Symbols are set as such, so only the letters are compared.
   const letters = (text) => text.replace(/[\s_*]/g, '').toLowerCase();
-  await page.locator('#paper').scrollIntoViewIfNeeded();
+  await openPanel(page, 'paper');
   await page.locator('#paper tbody tr').first().waitFor();
   const text = letters(await page.locator('#paper').innerText());
   for (const { why } of differing) assert.ok(text.includes(letters(why)), why);
@@ -127,7 +127,7 @@ test('the printed values stand beside the computed ones, with the reason where t
 test('the copied curl gives the page’s verdict', async () => {
   const { page, clean } = await stage.page('?preset=case-1&scene.table.tilt_gain=1.3');
   await verdict(page);
-  await page.locator('#calls').scrollIntoViewIfNeeded();
+  await openPanel(page, 'calls');
   await page.locator('.call button').first().click();
   const call = await page.evaluate(() => navigator.clipboard.readText());
   const url = /^curl '(.+)'$/.exec(call)[1];

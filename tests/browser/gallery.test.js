@@ -2,13 +2,13 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, reachImpact, verdict } from './stage.js';
+import { Stage, openPanel, reachImpact, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
 async function open(options = {}) {
   const opened = await stage.page('?preset=case-1', options);
-  await opened.page.locator('#gallery-body').scrollIntoViewIfNeeded();
+  await openPanel(opened.page, 'gallery');
   await opened.page.locator('article').first().waitFor();
   return opened;
 }
@@ -119,7 +119,7 @@ test('without a server the gallery says so and can be asked for again', async ()
           : real(input, init);
     },
   });
-  await page.locator('#gallery-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'gallery');
   await page.locator('#gallery-body', { hasText: 'The server does not answer' }).waitFor();
   await page.evaluate(() => {
     globalThis.refuse = false;
@@ -131,7 +131,7 @@ test('without a server the gallery says so and can be asked for again', async ()
 test('a part that cannot be loaded says so and can be tried again', async () => {
   const { page, context } = await stage.page('?preset=case-1');
   await context.route('**/panels/gallery/gallery.css', (route) => route.abort());
-  await page.locator('#gallery-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'gallery');
   await page.locator('#gallery-body', { hasText: 'did not load' }).waitFor();
   await context.unroute('**/panels/gallery/gallery.css');
   await page.locator('#gallery-body button').click();

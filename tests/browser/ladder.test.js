@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, verdict } from './stage.js';
+import { Stage, openPanel, verdict } from './stage.js';
 
 const stage = await Stage.open();
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
@@ -10,7 +10,7 @@ const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212'
 async function open(query) {
   const opened = await stage.page(query);
   await verdict(opened.page);
-  await opened.page.locator('#ladder-body').scrollIntoViewIfNeeded();
+  await openPanel(opened.page, 'ladder');
   await opened.page.locator('.rungs td').first().waitFor();
   return opened;
 }
@@ -49,7 +49,7 @@ test('it follows the scene and its own two numbers', async () => {
   const { page } = await open('?preset=case-1');
   assert.equal((await rows(page)).length, 2);
   await page.fill('#field-contact-friction', '0.2');
-  await page.locator('#ladder-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'ladder');
   await page.locator('.rungs tbody th', { hasText: 'friction' }).waitFor();
   await page.fill('#ladder-tolerance', '10');
   await page.locator('#ladder-tolerance').blur();

@@ -89,7 +89,7 @@ test('what does not load after the first look is said, and asked for again', asy
   await page.locator('.notice', { hasText: 'Part of the page did not load' }).waitFor();
   await page.unroute('**/panels/panels.js');
   await page.getByRole('button', { name: 'Load it again' }).click();
-  await page.locator('#map').waitFor();
+  await page.locator('#tab-map').waitFor();
 });
 
 const BROKEN = [

@@ -3,14 +3,14 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { gate } from './slow-network.js';
-import { Stage, reachPhase, verdict } from './stage.js';
+import { Stage, openPanel, reachPhase, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
 /** Opens the page and goes down to the map. */
 async function open(query = '?preset=case-1', options = {}) {
   const opened = await stage.page(query, options);
-  await opened.page.locator('#map-body').scrollIntoViewIfNeeded();
+  await openPanel(opened.page, 'map');
   await opened.page.locator('#map-box canvas').first().waitFor();
   return opened;
 }
@@ -89,7 +89,7 @@ test('nothing of the map is loaded before it comes near', async () => {
       () => performance.getEntriesByType('resource').filter(({ name }) => /\/map\/|regions/.test(name)).length,
     );
   assert.equal(await asked(), 0);
-  await page.locator('#map-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'map');
   await whole(page);
   assert.ok((await asked()) > 3);
   clean();
@@ -143,7 +143,7 @@ test('rows are drawn as they arrive, with their count', async () => {
   await page.evaluate(() => {
     globalThis.linesLet = 20;
   });
-  await page.locator('#map-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'map');
   await page.locator('.map-progress', { hasText: '20 / 64 rows' }).waitFor();
   assert.equal(await page.locator('#map-progress').evaluate((bar) => bar.value / bar.max), 20 / 64);
   assert.ok(isColour(await colourAt(page, 0.4, 0.1), LIGHTEST), 'the rows that are there');
@@ -342,7 +342,7 @@ test('what a link says wrongly of the map is dropped and told there', async () =
   const { page, clean } = await stage.page(
     '?preset=case-1&map.x.parameter=body.colour&map.x.from=1&map.x.to=2&map.quantity=beauty&map.impacts=-3&map.columns=7',
   );
-  await page.locator('#map-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'map');
   await page.locator('#map-links a').first().waitFor();
   const told = await page.locator('#map-notice').innerText();
   for (const word of ['body.colour', 'beauty', 'impacts', 'resolution']) assert.ok(told.includes(word), told);
@@ -404,7 +404,7 @@ test('an answer that is cut off keeps its rows and says so', async () => {
       };
     },
   });
-  await page.locator('#map-body').scrollIntoViewIfNeeded();
+  await openPanel(page, 'map');
   await page.locator('#map-told', { hasText: /cut off\. \d+ of 64 rows/ }).waitFor();
   assert.ok(isColour(await colourAt(page, 0.4, 0.1), LIGHTEST));
 });

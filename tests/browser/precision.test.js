@@ -2,14 +2,14 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, answersOf, free, measure, slide, verdict } from './stage.js';
+import { Stage, answersOf, free, measure, openPanel, slide, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
 async function open(query, options) {
   const opened = await stage.page(query, options);
   await verdict(opened.page);
-  await opened.page.locator('#precision-body').scrollIntoViewIfNeeded();
+  await openPanel(opened.page, 'precision');
   await opened.page.locator('#precision-measure').waitFor();
   return { ...opened, answers: await answersOf(opened.page, 'v1/precision?') };
 }

@@ -176,7 +176,8 @@ export const reachImpact = (page, n) =>
 export const reachPhase = (page, phase) => page.locator(`#run-state[data-phase=${phase}]`).waitFor();
 
 /** How many pixels of a canvas have (nearly) the colour of the style sheet's property. */
-export function ink(page, selector, property) {
+export async function ink(page, selector, property) {
+  await showChart(page, selector.slice(1));
   return page
     .locator(`${selector} canvas`)
     .first()
@@ -200,8 +201,19 @@ export function ink(page, selector, property) {
     }, property);
 }
 
+/** Switches to a chart that shares its place with another. */
+export async function showChart(page, id) {
+  if ((await page.locator(`#other-charts #${id}`).count()) === 0) return;
+  const button = page.locator(`.switch [aria-controls=${id}]`);
+  await page.locator('.switch').waitFor({ state: 'attached' });
+  if (!(await button.isVisible())) return;
+  await button.click();
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+}
+
 /** The numbers behind a chart, as its table shows them. */
 export async function numbers(page, id, least = 1) {
+  await showChart(page, id);
   const summary = page.locator(`#${id} summary`);
   if (!(await page.locator(`#${id} details`).evaluate((details) => details.open))) await summary.click();
   await page.waitForFunction(
@@ -231,29 +243,51 @@ export async function measure(page, impacts = 10) {
   await page.locator('#precision-told', { hasText: 'Measured over' }).waitFor();
 }
 
-/** What a panel below the fold shows once it is whole. */
-const LATER = {
-  'map-body': '#map-links a',
-  'survival-body': '#survival-start',
-  'ladder-body': '.rungs td',
-  'design-body': '#design-start',
-  'branch-body': '.changes',
-  'precision-body': '#precision-measure',
-  'gallery-body': 'article',
+/** Opens a tab of the studies by its id, such as `map`. */
+export async function openTab(page, id) {
+  await page.locator(`#tab-${id}`).click();
+  await page.locator(`#panel-${id}`).waitFor();
+}
+
+/** Opens the tab that holds a panel, and brings the panel into view. */
+export async function openPanel(page, id) {
+  const body = page.locator(`#${id}-body`);
+  await body.waitFor({ state: 'attached' });
+  const tab = await body.evaluate((element) => element.closest('[role=tabpanel]').id.replace('panel-', ''));
+  await openTab(page, tab);
+  await body.scrollIntoViewIfNeeded();
+}
+
+/** What each panel of the studies shows once it is whole, what is asked for included. */
+const PANELS = {
+  map: (page) => page.locator('#map-links a').first().waitFor(),
+  survival: async (page) => {
+    await page.fill('#survival-runs', '30');
+    await page.click('#survival-start');
+    await page.locator('#survival-told', { hasText: 'outlast' }).waitFor();
+  },
+  ladder: (page) => page.locator('.rungs td').first().waitFor(),
+  design: async (page) => {
+    await page.click('#design-start');
+    await page.locator('#design-sheet svg').waitFor();
+  },
+  branch: (page) => page.locator('.changes').first().waitFor(),
+  precision: (page) => measure(page),
+  paper: (page) => page.locator('#paper-body td').first().waitFor(),
+  calls: (page) => page.locator('#calls-body code').first().waitFor(),
+  gallery: (page) => page.locator('#gallery-body article').first().waitFor(),
 };
 
-/** Brings all panels that load later, those that are asked for included. */
-export async function loadAll(page) {
-  for (const [id, sign] of Object.entries(LATER)) {
-    await page.locator(`#${id}`).scrollIntoViewIfNeeded();
-    await page.locator(`#${id} ${sign}`).first().waitFor();
+/**
+ * Opens all tabs of the studies one after another, each with what is asked for in it.
+ * @param {(panel: string) => Promise<void>} [look] at each while it is open
+ */
+export async function loadAll(page, look) {
+  for (const [id, whole] of Object.entries(PANELS)) {
+    await openPanel(page, id);
+    await whole(page);
+    await look?.(id);
   }
-  await measure(page);
-  await page.click('#design-start');
-  await page.locator('#design-sheet svg').waitFor();
-  await page.fill('#survival-runs', '30');
-  await page.click('#survival-start');
-  await page.locator('#survival-told', { hasText: 'outlast' }).waitFor();
 }
 
 /** A run with a change and a kick in it, paused. */

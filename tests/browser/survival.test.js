@@ -2,14 +2,14 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, answersOf, free, reachImpact, verdict } from './stage.js';
+import { Stage, answersOf, free, openPanel, reachImpact, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
 async function open(query, options) {
   const opened = await stage.page(query, options);
   await verdict(opened.page);
-  await opened.page.locator('#survival-body').scrollIntoViewIfNeeded();
+  await openPanel(opened.page, 'survival');
   await opened.page.locator('#survival-start').waitFor();
   return { ...opened, answers: await answersOf(opened.page, 'v1/ensembles?') };
 }

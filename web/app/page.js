@@ -62,7 +62,8 @@ export class Page {
     ];
     this.controls = new RunControls(byId('controls'), actionsOf(this));
     const [angle, velocity, energy] = this.plots.map(({ figure }) => figure.element);
-    byId('impacts-bar').before(angle, velocity, this.circle.figure.element, energy);
+    byId('charts').prepend(angle, velocity);
+    byId('other-charts').append(this.circle.figure.element, energy);
   }
 
   /** The fields of a scene; none before the server has named them. */

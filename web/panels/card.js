@@ -40,7 +40,7 @@ import { h, retryButton } from '../dom/elements.js';
  * @property {string} id also its folder, its style sheet, its part of the address, and its name under `embed/`
  * @property {string} title
  * @property {string} about
- * @property {boolean} [half] shares its row
+ * @property {string} tab in which it stands
  * @property {string[]} [shared] style sheets that it shares with other panels
  * @property {() => Promise<Module>} load
  */
@@ -73,11 +73,11 @@ function appendSheet(path) {
  * @param {() => URLSearchParams} link
  * @param {(panel: Panel) => void} mounted
  */
-export function card({ id, title, about, half, shared = [], load }, page, link, mounted) {
+export function card({ id, title, about, shared = [], load }, page, link, mounted) {
   const body = h('div', { id: `${id}-body`, class: 'lazy-body' });
   const element = h(
     'section',
-    { class: `card lazy${half ? ' half' : ''}`, id, 'aria-labelledby': `${id}-title` },
+    { class: 'card lazy', id, 'aria-labelledby': `${id}-title` },
     h('div', { class: 'card-head' }, h('h2', { id: `${id}-title` }, title), h('p', { class: 'muted' }, about)),
     body,
   );

@@ -1,33 +1,40 @@
-// All panels below the fold, each loaded when it comes near.
+// All studies, in tabs: what is in a tab is loaded when it is opened for the first time.
 
-import { h } from '../dom/elements.js';
+import { Tabs } from '../workbench/tabs.js';
 import { card } from './card.js';
-import { PANELS } from './registry.js';
+import { PANELS, TABS } from './registry.js';
 
 /** @typedef {import('./card.js').PanelPage} PanelPage */
 /** @typedef {import('./card.js').Panel} Panel */
 /** @typedef {import('./card.js').Judged} Judged */
 
-/** All of them, each brought when it comes near. */
 export class Panels {
   /** @type {Map<string, Panel>} */
   #mounted = new Map();
+  /** What the panels of tabs that are not open have missed. @type {Set<string>} */
+  #missed = new Set();
+  /** Loads the panels of a tab, until it was opened. @type {Map<string, (() => Promise<void>)[]>} */
+  #waiting = new Map();
   #link = new URLSearchParams();
   /** @type {Judged | null} */
   #judged = null;
   #dropped;
+  #tabs;
 
   /**
-   * @param {HTMLElement} main
+   * @param {HTMLElement} list of the tabs
+   * @param {HTMLElement} panels
    * @param {PanelPage} page
    * @param {(id: string, what: string[]) => void} dropped parts of a link that a panel could not keep
    */
-  constructor(main, page, dropped) {
+  constructor(list, panels, page, dropped) {
     this.#dropped = dropped;
-    /** @type {HTMLElement | null} */
-    let row = null;
+    this.#tabs = new Tabs(list, panels, TABS, (id, byHand) => {
+      this.#open(id);
+      if (byHand) page.changed();
+    });
     for (const entry of PANELS) {
-      const { element, body, bring } = card(
+      const { element, bring } = card(
         entry,
         page,
         () => this.#link,
@@ -37,19 +44,26 @@ export class Panels {
           if (this.#judged) panel.judged?.(this.#judged);
         },
       );
-      if (entry.half) {
-        row ??= main.appendChild(h('div', { class: 'notes' }));
-        row.append(element);
-      } else main.append(element);
-      new IntersectionObserver(
-        (entries, observer) => {
-          if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
-          observer.disconnect();
-          void bring();
-        },
-        { rootMargin: '100px 0px' },
-      ).observe(body);
+      this.#tabs.panel(entry.tab).append(element);
+      this.#waiting.set(entry.tab, [...(this.#waiting.get(entry.tab) ?? []), bring]);
     }
+  }
+
+  /** @param {string} tab */
+  #open(tab) {
+    for (const bring of this.#waiting.get(tab) ?? []) void bring();
+    this.#waiting.delete(tab);
+    for (const { id } of PANELS.filter((entry) => entry.tab === tab && this.#missed.delete(entry.id))) {
+      const panel = this.#mounted.get(id);
+      panel?.sceneChanged?.();
+      panel?.played?.();
+      if (this.#judged) panel?.judged?.(this.#judged);
+    }
+  }
+
+  /** Opens the tab with this panel. @param {string} id */
+  show(id) {
+    this.#tabs.choose(PANELS.find((entry) => entry.id === id)?.tab ?? id, true);
   }
 
   /** One that has its place already takes its part of the address as well. @param {string} id @param {Panel} panel */
@@ -62,32 +76,48 @@ export class Panels {
     this.#dropped(id, panel.restore?.(this.#link) ?? []);
   }
 
-  /** @param {URLSearchParams} link */
+  /** Shows what a link asks for: its tab, else that of the first panel with a part in it. @param {URLSearchParams} link */
   restore(link) {
     this.#link = link;
     for (const [id, panel] of this.#mounted) this.#restore(id, panel);
+    const named = link.get('tab');
+    const asked = [...link.keys()].map((key) => PANELS.find(({ id }) => id === key.split('.')[0])).find(Boolean);
+    const tab = named ?? asked?.tab ?? TABS[0].id;
+    const known = TABS.some(({ id }) => id === tab);
+    this.#dropped('tab', known ? [] : [`the tab “${tab.slice(0, 40)}”, which is not known here`]);
+    this.#tabs.choose(known ? tab : TABS[0].id);
   }
 
   /** Their parts of the page’s address: of those that are not there yet as the link had it. */
   query() {
-    const query = new URLSearchParams();
-    for (const [key, value] of this.#link) if (!this.#mounted.get(key.split('.')[0])?.query) query.append(key, value);
+    const query = this.#tabs.query();
+    for (const [key, value] of this.#link)
+      if (key !== 'tab' && !this.#mounted.get(key.split('.')[0])?.query) query.append(key, value);
     for (const panel of this.#mounted.values())
       for (const [key, value] of panel.query?.() ?? []) query.append(key, value);
     return query;
   }
 
+  /** The panels that somebody sees; the others are told when their tab is opened. */
+  *#seen() {
+    for (const [id, panel] of this.#mounted) {
+      const tab = PANELS.find((entry) => entry.id === id)?.tab;
+      if (tab === undefined || tab === this.#tabs.chosen) yield panel;
+      else this.#missed.add(id);
+    }
+  }
+
   played() {
-    for (const panel of this.#mounted.values()) panel.played?.();
+    for (const panel of this.#seen()) panel.played?.();
   }
 
   sceneChanged() {
-    for (const panel of this.#mounted.values()) panel.sceneChanged?.();
+    for (const panel of this.#seen()) panel.sceneChanged?.();
   }
 
   /** @param {Judged} judged */
   judged(judged) {
     this.#judged = judged;
-    for (const panel of this.#mounted.values()) panel.judged?.(judged);
+    for (const panel of this.#seen()) panel.judged?.(judged);
   }
 }

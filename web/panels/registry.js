@@ -1,30 +1,48 @@
-// The panels below the fold: their names, a sentence on each, and where their code is.
+// The studies: their tabs, and the panels in each with a sentence on them and where their code is.
 
 /** The colours and the size of the server's pictures in the page. */
 const FIGURE_STYLES = ['charts/generated/figure-colours.css', 'charts/readable/server-figure.css'];
+
+/** The tabs in their order; the first is open unless the address says another. @type {readonly {id: string, name: string}[]} */
+export const TABS = [
+  { id: 'run', name: 'Run' },
+  { id: 'map', name: 'Map' },
+  { id: 'orbits', name: 'Orbits' },
+  { id: 'models', name: 'Models' },
+  { id: 'noise', name: 'Noise' },
+  { id: 'control', name: 'Control' },
+  { id: 'accuracy', name: 'Speed and accuracy' },
+  { id: 'paper', name: 'Paper' },
+  { id: 'limits', name: 'Where methods fail' },
+  { id: 'api', name: 'API' },
+];
 
 /** @type {import('./card.js').Entry[]} */
 export const PANELS = [
   {
     id: 'map',
+    tab: 'map',
     title: 'Stability map',
     about: 'Which scenes keep their balance, beside this one: a run in every cell.',
     load: () => import('./map/panel.js'),
   },
   {
     id: 'survival',
+    tab: 'noise',
     title: 'Survival under noise',
     about: 'How long runs of this scene last when the table errs.',
     load: () => import('./survival/panel.js'),
   },
   {
     id: 'ladder',
+    tab: 'models',
     title: 'Which model does it need',
     about: 'The same scene by every simpler model, and what each leaves out.',
     load: () => import('./ladder/panel.js'),
   },
   {
     id: 'design',
+    tab: 'control',
     title: 'Design a controller',
     about: 'A law that brings this scene to rest in place.',
     shared: FIGURE_STYLES,
@@ -32,6 +50,7 @@ export const PANELS = [
   },
   {
     id: 'branch',
+    tab: 'orbits',
     title: 'Orbits of period 2',
     about: 'What the boundary of stability gives birth to.',
     shared: FIGURE_STYLES,
@@ -39,26 +58,28 @@ export const PANELS = [
   },
   {
     id: 'precision',
+    tab: 'accuracy',
     title: 'Speed against accuracy',
     about: 'What this scene costs by each method, and how far it ends from the truth.',
     load: () => import('./precision/panel.js'),
   },
   {
     id: 'paper',
+    tab: 'paper',
     title: 'Printed and computed',
     about: 'The numbers of the paper beside those of the server.',
-    half: true,
     load: () => import('./paper/panel.js'),
   },
   {
     id: 'calls',
+    tab: 'api',
     title: 'The same from the API',
     about: 'What this page shows, as commands.',
-    half: true,
     load: () => import('./calls/panel.js'),
   },
   {
     id: 'gallery',
+    tab: 'limits',
     title: 'Where usual methods fail',
     about: 'Scenes on which they are wrong, with what is true.',
     load: () => import('./gallery/panel.js'),

@@ -69,7 +69,8 @@ export function bindingsOf(page) {
       label: 'm',
       name: 'Go to the stability map',
       act: () => {
-        byId('map').scrollIntoView();
+        page.panels?.show('map');
+        byId('studies').scrollIntoView();
         void focusIn(byId('map-body'));
       },
     },

@@ -7,6 +7,7 @@ import { brokenLinkNotice, clearNotice } from '../../dom/notices.js';
 import { enlarger } from '../../export/enlarge-button.js';
 import { styles } from '../../panels/card.js';
 import { Panels } from '../../panels/panels.js';
+import { chartSwitch } from '../../workbench/chart-switch.js';
 import { updateAddress, updateAddressSoon } from '../address-bar.js';
 import { playedQuery, typedQuery } from '../queries.js';
 import { launch, play } from '../scenes.js';
@@ -18,14 +19,15 @@ import { bringSettings } from './settings.js';
 /** @param {import('../page.js').Page} page */
 export async function bringLateParts(page) {
   bringSettings(page);
-  // Buttons that save and enlarge come with their styles, or without them where those do not load.
-  await styles('export/export.css').catch(() => {});
+  // Form, and buttons that save and enlarge, come with their styles, or without them where those do not load.
+  await Promise.all(['form/form.css', 'export/export.css'].map(styles)).catch(() => {});
   const { plots, circle, view, fields, run } = page;
   for (const one of [...plots, circle]) {
     one.figure.offer(() => savesOf(page, one.figure.id, one.figure.title, one));
   }
   const card = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
   card.querySelector('.card-head')?.append(enlarger(card, 'Scene', () => savesOf(page, 'scene', 'Scene', view)));
+  chartSwitch(byId('other-charts'));
   listenToKeys(bindingsOf(page));
   byId('share').addEventListener('click', (event) => {
     updateAddress(page);
@@ -37,7 +39,8 @@ export async function bringLateParts(page) {
     changed: () => updateAddressSoon(page),
   };
   page.panels = new Panels(
-    byId('main'),
+    byId('tabs'),
+    byId('tab-panels'),
     {
       ...actions,
       query: () => typedQuery(page),
