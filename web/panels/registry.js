@@ -1,6 +1,6 @@
 // The panels below the fold: their names, a sentence on each, and where their code is.
 
-/** The colours and the size of the server's pictures in the page. */
+/** The colours and sizes of the server's pictures in the page. */
 const FIGURE_STYLES = ['charts/generated/figure-colours.css', 'charts/readable/server-figure.css'];
 
 /** @type {import('./card.js').Entry[]} */
@@ -15,6 +15,7 @@ export const PANELS = [
     id: 'survival',
     title: 'Survival under noise',
     about: 'How long runs of this scene last when the table errs.',
+    shared: FIGURE_STYLES,
     load: () => import('./survival/panel.js'),
   },
   {
@@ -41,6 +42,7 @@ export const PANELS = [
     id: 'precision',
     title: 'Speed against accuracy',
     about: 'What this scene costs by each method, and how far it ends from the truth.',
+    shared: FIGURE_STYLES,
     load: () => import('./precision/panel.js'),
   },
   {
