@@ -210,8 +210,11 @@ async fn progress_is_told_in_runs() {
         let answer = server.get(&format!("{target}&format=progress")).await.expect(200);
         let lines: Vec<Value> = answer.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         let whole = server.get(&target).await.expect(200);
-        assert_eq!(lines.last().unwrap(), &json!({"end": whole.json()}), "{size}");
-        assert!(answer.text().ends_with(&format!("{{\"end\":{}}}\n", whole.text())), "{size}: the same bytes");
+        let picture = server.get(&format!("{target}&format=svg")).await.expect(200);
+        let pictures = json!({"survival": picture.text()});
+        assert_eq!(lines.last().unwrap(), &json!({"end": whole.json(), "pictures": pictures}), "{size}");
+        let end = format!("{{\"end\":{},\"pictures\":{pictures}}}\n", whole.text());
+        assert!(answer.text().ends_with(&end), "{size}: the same bytes");
         let runs = whole.json()["runs"].as_u64().unwrap();
         let expected: Vec<Value> =
             (0..=runs).step_by(step).map(|done| json!({"progress": {"done": done, "of": runs}})).collect();

@@ -166,7 +166,7 @@ async fn unknown_methods_are_refused_with_those_there_are() {
     assert!(NAMES.iter().all(|name| detail.contains(name)), "{detail}");
     let empty = json!({"preset": "case-1", "methods": []});
     assert_eq!(server.post("/v1/precision", &empty).await.expect(422).pointers(), ["/methods"]);
-    assert_eq!(server.get("/v1/precision?preset=case-1&axis=steps").await.expect(422).pointers(), ["/axis"]);
+    assert_eq!(server.get("/v1/precision?preset=case-1&axis=luck").await.expect(422).pointers(), ["/axis"]);
 }
 
 #[tokio::test]
@@ -184,6 +184,8 @@ async fn every_format_has_every_point() {
             assert!(picture.text().contains(part), "{axis}: {part}");
         }
     }
+    let steps = server.get(&format!("{asked}&axis=steps&format=svg")).await.expect(200);
+    assert!(steps.text().contains("different work") && !steps.text().contains("Pareto front"), "steps have no front");
     let progress = server.get(&format!("{asked}&format=progress")).await.expect(200);
     assert_eq!((progress.header("cache-control"), progress.header("etag")), (Some("no-store"), None));
     let lines: Vec<Value> = progress.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
@@ -193,6 +195,22 @@ async fn every_format_has_every_point() {
     assert_eq!(lines[..lines.len() - 1], expected);
     let whole = lines.last().unwrap()["end"]["points"].as_array().unwrap();
     assert_eq!(counted(whole), counted(&points(&server.get(asked).await)));
+    // The pictures are of this measurement: each has all points that have an error, by their places in the answer.
+    let pictures = lines.last().unwrap()["pictures"].as_object().unwrap();
+    let drawn: Vec<usize> = (0..whole.len()).filter(|index| whole[*index]["error"].is_number()).collect();
+    for (axis, cost) in [("time", "cost_ns_per_impact"), ("evaluations", "evaluations"), ("steps", "steps")] {
+        let picture = roxmltree::Document::parse(pictures[axis].as_str().unwrap()).unwrap();
+        let attributes = |name| picture.descendants().filter_map(move |node| node.attribute(name));
+        let numbers: Vec<usize> =
+            attributes("data-point").flat_map(|list| list.split(' ')).map(|number| number.parse().unwrap()).collect();
+        let has_cost = |index: &usize| whole[*index][cost].as_f64().is_some_and(|cost| cost > 0.0);
+        let expected: Vec<usize> = drawn.iter().copied().filter(has_cost).collect();
+        assert_eq!(numbers, expected, "{axis}");
+        let marks: Vec<&str> = attributes("data-mark").collect();
+        let methods: Vec<&str> = expected.iter().map(|index| whole[*index]["method"].as_str().unwrap()).collect();
+        assert_eq!(marks, methods, "{axis}");
+        assert_eq!(attributes("data-curve").count(), usize::from(axis != "steps"), "{axis}");
+    }
     let pixels = server.get(&format!("{asked}&format=png")).await.expect(200);
     assert_eq!((pixels.media_type(), pixels.header("cache-control")), ("image/png", Some("no-store")));
 }

@@ -76,6 +76,15 @@ pub trait Pictured: Serialize {
     fn to_picture(&self) -> Result<String, Problem>;
 }
 
+/// An answer that tells its progress. Its pictures come with its last line, so that a page that waited for it needs no second request.
+pub trait Watched: Tabular + Pictured {
+    /// The pictures as SVG, by name.
+    ///
+    /// # Errors
+    /// A problem if this answer has nothing to draw.
+    fn to_pictures(&self) -> Result<Vec<(&'static str, String)>, Problem>;
+}
+
 impl TableFormat {
     /// Writes an answer.
     ///
@@ -125,12 +134,12 @@ impl ProgressFormat {
     ///
     /// # Errors
     /// Cancelled work, or an answer with nothing to draw.
-    pub fn write(self, answer: &(impl Tabular + Pictured), slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+    pub fn write(self, answer: &impl Watched, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
             Self::Json => ChartFormat::Json.write(answer, slice),
             Self::Csv => ChartFormat::Csv.write(answer, slice),
             Self::Ndjson => ChartFormat::Ndjson.write(answer, slice),
-            Self::Progress => Ok(progress::end(&write::json(answer, slice)?)),
+            Self::Progress => Ok(progress::end(&write::json(answer, slice)?, answer.to_pictures()?)),
             Self::Svg => ChartFormat::Svg.write(answer, slice),
             Self::Png => ChartFormat::Png.write(answer, slice),
         }

@@ -14,7 +14,7 @@ pub use crate::charts::figures::closed_loop::{Loop, closed_loop};
 pub use crate::charts::figures::eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
 pub use crate::charts::figures::heat_map::{HeatAxis, HeatMap, heat_map};
 pub use crate::charts::figures::phase_planes::{PhasePlanes, phase_planes};
-pub use crate::charts::figures::speed_accuracy::{SYMBOLS, Series, SpeedAccuracy, speed_accuracy};
+pub use crate::charts::figures::speed_accuracy::{CostAndError, SYMBOLS, Series, SpeedAccuracy, speed_accuracy};
 pub use crate::charts::figures::survival::{AnglesAt, SurvivalAt, SurvivalCurve, survival_curve};
 
 #[cfg(test)]

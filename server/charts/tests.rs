@@ -17,7 +17,7 @@ pub(crate) fn sound(picture: &str) -> String {
     for name in ["title", "desc"] {
         assert!(root.children().any(|node| node.has_tag_name(("http://www.w3.org/2000/svg", name))), "{name}");
     }
-    let known = ["svg", "title", "desc", "rect", "path", "circle", "text", "tspan"];
+    let known = ["svg", "g", "title", "desc", "rect", "path", "circle", "text", "tspan"];
     for node in root.descendants().filter(roxmltree::Node::is_element) {
         assert!(known.contains(&node.tag_name().name()), "{node:?}");
         for attribute in node.attributes() {
@@ -125,7 +125,11 @@ fn no_numbers_break_speed_against_accuracy() {
         for b in AWKWARD {
             let series: Vec<_> = SYMBOLS
                 .into_iter()
-                .map(|symbol| Series { symbol, label: "<one>", points: vec![([a, b, a], b), ([1.0; 3], a)] })
+                .map(|symbol| {
+                    let points = [([a, b, a], b), ([1.0; 3], a)].into_iter().enumerate();
+                    let points = points.map(|(index, (cost, error))| CostAndError { index, cost, error }).collect();
+                    Series { symbol, name: "one", label: "<one>", points }
+                })
                 .collect();
             let picture = speed_accuracy(&SpeedAccuracy {
                 title: "Cost",
@@ -157,6 +161,22 @@ fn a_survival_curve_says_how_many_were_there() {
     {
         assert!(text.contains(wanted), "{wanted} is not in {text}");
     }
+    let picture = ensemble(&curve, &angles);
+    let document = roxmltree::Document::parse(&picture).unwrap();
+    let with =
+        |name: &str, value: &str| document.descendants().find(|node| node.attribute(name) == Some(value)).unwrap();
+    // A page reads the contact at a place from the panels, and finds the curve, its interval and the number at risk.
+    let [upper, lower] = ["survival", "angle"].map(|name| with("data-panel", name));
+    assert_eq!((upper.attribute("data-x"), upper.attribute("data-y")), (Some("0 1000"), Some("0 1")));
+    assert_eq!((lower.attribute("data-x"), lower.attribute("x")), (Some("0 1000"), upper.attribute("x")));
+    let number = |name| upper.attribute(name).unwrap().parse::<f64>().unwrap();
+    let curve = with("data-curve", "survival").attribute("d").unwrap();
+    let (x, y) = curve.rsplit('L').next().unwrap().split_once(' ').unwrap();
+    assert_eq!(x.parse::<f64>().unwrap(), number("x") + number("width"));
+    assert_eq!(y.parse::<f64>().unwrap(), number("y") + 0.5 * number("height"));
+    assert_eq!(with("data-curve", "interval").children().filter(roxmltree::Node::is_element).count(), 1);
+    let risk: Vec<_> = with("data-row", "at-risk").children().filter_map(|node| node.text()).map(str::trim).collect();
+    assert!(risk.contains(&"2000") && risk.contains(&"1001"), "{risk:?}");
     let long: Vec<_> = (0..100_000).map(|_| at(1)).collect();
     let falling: Vec<_> = (0..100_000).map(|n| SurvivalAt { share: 1.0 - n as f64 * 1e-5, ..at(1) }).collect();
     assert!(ensemble(&long, &[]).len() < 20_000 && ensemble(&falling, &angles).len() < 100_000);

@@ -52,6 +52,11 @@ impl WorkPrecisionPoint {
         Some(timing.quartiles_s.map(|time_s| time_s * 1e9 / self.impacts as f64))
     }
 
+    /// Steps for a contact.
+    pub fn steps_per_impact(&self) -> Option<f64> {
+        (self.impacts > 0).then(|| self.steps as f64 / self.impacts as f64)
+    }
+
     /// Evaluations for a contact.
     pub fn evaluations_per_impact(&self) -> Option<f64> {
         self.evaluations.filter(|_| self.impacts > 0).map(|count| count as f64 / self.impacts as f64)

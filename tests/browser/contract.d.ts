@@ -90,7 +90,7 @@ export interface components {
          * @default time
          * @enum {string}
          */
-        "precision.axis": "time" | "evaluations";
+        "precision.axis": "time" | "evaluations" | "steps";
         /** @default 2000 */
         "stability.impacts": number;
         /** @default false */
@@ -449,9 +449,17 @@ export interface components {
         };
         EnsembleProgressEnd: {
             end: components["schemas"]["Ensemble"];
+            pictures: {
+                survival: string;
+            };
         };
         PrecisionProgressEnd: {
             end: components["schemas"]["Precision"];
+            pictures: {
+                time: string;
+                evaluations: string;
+                steps: string;
+            };
         };
         EnsembleLine: {
             n: number;

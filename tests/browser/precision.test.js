@@ -15,7 +15,7 @@ async function open(query, options) {
 }
 
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
-const marks = (page) => page.locator('#precision-box .mark').count();
+const marks = (page) => page.locator('#precision-box [data-mark]').count();
 
 test('it is measured when somebody asks, and shows every point that has an error', async () => {
   const { page, answers, clean } = await open('?preset=case-1');
@@ -28,7 +28,7 @@ test('it is measured when somebody asks, and shows every point that has an error
   const drawn = (cost) => points.filter((point) => point.error !== null && cost(point) > 0);
   assert.equal(await marks(page), drawn((point) => point.cost_ns_per_impact).length);
   // Costs rise to the right and errors upwards: the order on the screen is that of the numbers.
-  const places = await page.locator('#precision-box .mark').evaluateAll((all) =>
+  const places = await page.locator('#precision-box [data-mark]').evaluateAll((all) =>
     all.map((one) => {
       const { x, y, width, height } = one.getBBox();
       return [x + width / 2, y + height / 2];
@@ -41,7 +41,7 @@ test('it is measured when somebody asks, and shows every point that has an error
   ];
   assert.equal(timed[right].error, Math.max(...timed.map(({ error }) => error)));
   assert.ok(timed[left].cost_ns_per_impact <= 1.2 * Math.min(...timed.map((point) => point.cost_ns_per_impact)));
-  assert.equal(await page.locator('#precision-box .front').count(), 1);
+  assert.equal(await page.locator('#precision-box [data-curve=front]').count(), 1);
   const listed = await page.locator('.methods li').allInnerTexts();
   assert.equal(listed.length, methods.length);
   for (const [index, { title }] of methods.entries()) assert.ok(listed[index].startsWith(title), listed[index]);
@@ -62,7 +62,7 @@ test('it is measured when somebody asks, and shows every point that has an error
   );
   await page.selectOption('#precision-axis', 'steps');
   assert.equal(await marks(page), drawn((point) => point.steps).length);
-  assert.equal(await page.locator('#precision-box .front').count(), 0);
+  assert.equal(await page.locator('#precision-box [data-curve=front]').count(), 0);
   assert.equal((await answers()).length, 1, 'another axis is no other measurement');
   clean();
 });
@@ -88,7 +88,7 @@ test('pointer and keys read the points', async () => {
   await page.keyboard.press('Escape');
   assert.equal(await readout(), '');
   await page.locator('#precision-box').scrollIntoViewIfNeeded();
-  const box = await page.locator('#precision-box .mark').first().boundingBox();
+  const box = await page.locator('#precision-box [data-mark]').first().boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   assert.match(await readout(), /ns an impact.*steps.*error/);
   assert.ok(await page.locator('#precision-box .pointed').isVisible());

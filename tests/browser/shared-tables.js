@@ -1,8 +1,7 @@
-// Writes the tables that the page shares with the server's pictures, from the server's sources: the colours of maps, and the symbols
-// of the methods. With --check it only says whether they are current.
+// Writes the tables that the page shares with the server's pictures, from the server's sources: the colours of maps, and those of
+// pictures. With --check it only says whether they are current.
 
 import { readFileSync, writeFileSync } from 'node:fs';
-import { load } from 'js-yaml';
 
 const root = new URL('../../', import.meta.url);
 const read = (path) => readFileSync(new URL(path, root), 'utf8');
@@ -22,18 +21,6 @@ function cividis() {
   return `${note(path)}/** The colours from the darkest on, six hexadecimal digits each. */\nexport const TABLE = \`\n${lines}\n\`.replaceAll('\\n', '');\n`;
 }
 
-function outlines() {
-  const path = 'server/charts/figures/speed_accuracy.rs';
-  const symbols = part(path, /const SYMBOLS: [^=]*= \[([\s\S]*?)\n\];/);
-  const paths = [...symbols.matchAll(/&\[([^\]]*)\]/g)].map(([, corners]) =>
-    [...corners.matchAll(/\((-?[\d.]+), (-?[\d.]+)\)/g)].map(([, x, y]) => `${Number(x)} ${Number(y)}`).join(', '),
-  );
-  const names = load(read('openapi.yaml')).components.schemas.PrecisionMethod.enum;
-  if (names.length !== paths.length) throw new Error(`${names.length} methods, ${paths.length} symbols in ${path}`);
-  const rows = names.map((name, index) => `  ${name}: '${paths[index]}',\n`).join('');
-  return `${note(`${path} and openapi.yaml`)}/** The corners of each method's symbol about its middle, x and y in half widths. */\nexport const OUTLINES = {\n${rows}};\n`;
-}
-
 /** The page's colours for those of the server's pictures; a colour that is not listed stays as it is. */
 const PAGE_COLOURS = {
   PAPER: 'surface',
@@ -44,10 +31,14 @@ const PAGE_COLOURS = {
   ZERO: 'line',
   GRID: 'faint',
   BLUE: 'series-0',
-  PALE_BLUE: 'chip',
+  PALE_BLUE: 'figure-pale-blue',
   VERMILION: 'strike',
   GREEN: 'series-2',
   PURPLE: 'series-3',
+  SKY: 'figure-sky',
+  ORANGE: 'figure-orange',
+  LIGHT_GREEN: 'figure-light',
+  PALE_GREEN: 'figure-pale',
 };
 
 function figureColours() {
@@ -61,7 +52,6 @@ function figureColours() {
 
 for (const [path, text] of [
   ['web/charts/generated/cividis-table.js', cividis()],
-  ['web/charts/generated/method-outlines.js', outlines()],
   ['web/charts/generated/figure-colours.css', figureColours()],
 ]) {
   if (!process.argv.includes('--check')) writeFileSync(new URL(path, root), text);

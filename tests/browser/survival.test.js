@@ -53,16 +53,16 @@ test('curve, numbers at risk, table and figures are the server’s', async () =>
     plain(await page.locator('#survival-told').innerText()),
     new RegExp(`^${survived.runs} of 80 runs outlast 300`),
   );
-  const risk = await page.locator('#survival-box .risk').allTextContents();
+  const risk = await page.locator('#survival-box [data-row=at-risk] text').allTextContents();
   assert.equal(risk[0], String(runs));
   assert.equal(risk.at(-1), String(survival.at_risk[impacts - 1]));
   // The drawn curve ends at the last value, between the edges of its band.
   const heights = await page.locator('#survival-box').evaluate((box) => {
     const last = (path) => Number(path.getAttribute('d').split('L').at(-1).replace('Z', '').split(' ')[1]);
-    const edge = box.querySelector('.edge');
+    const edge = box.querySelector('[data-panel=survival]');
     const [top, height] = ['y', 'height'].map((name) => Number(edge.getAttribute(name)));
     const band = box
-      .querySelector('.band')
+      .querySelector('[data-curve=interval] path')
       .getAttribute('d')
       .slice(1, -1)
       .split('L')
@@ -70,7 +70,7 @@ test('curve, numbers at risk, table and figures are the server’s', async () =>
     const right = Math.max(...band.map(([x]) => x));
     const share = (y) => 1 - (y - top) / height;
     return {
-      curve: share(last(box.querySelector('.curve'))),
+      curve: share(last(box.querySelector('[data-curve=survival]'))),
       band: band.filter(([x]) => x === right).map(([, y]) => share(y)),
     };
   });
@@ -113,7 +113,7 @@ test('pointer and keys read the curve', async () => {
   assert.match(await page.locator('.survival-sheet .unseen').innerText(), /^contact 1 /);
   await page.keyboard.press('Escape');
   assert.equal(await readout(), '');
-  const box = await page.locator('#survival-box .edge').first().boundingBox();
+  const box = await page.locator('#survival-box [data-panel]').first().boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   assert.match(await readout(), /^contact (99|100|101) /);
   clean();
@@ -139,7 +139,7 @@ test('its links answer, and the first run can be watched', async () => {
 test('progress is counted in runs, and Cancel frees the server', async () => {
   const { page, clean } = await open('?preset=case-1');
   await runAll(page, 40, 50);
-  const before = await page.locator('#survival-box .curve').getAttribute('d');
+  const before = await page.locator('#survival-box [data-curve=survival]').getAttribute('d');
   // From a small angle no run ends early: the dearest there is.
   await page.fill('#field-release-theta', '0.05');
   await page.fill('#survival-runs', '20000');
@@ -160,7 +160,11 @@ test('progress is counted in runs, and Cancel frees the server', async () => {
     !(await page.locator('#survival-told [role=status]').innerText()).includes('of'),
     'the count is not spoken at every step',
   );
-  assert.equal(await page.locator('#survival-box .curve').getAttribute('d'), before, 'what was there stays');
+  assert.equal(
+    await page.locator('#survival-box [data-curve=survival]').getAttribute('d'),
+    before,
+    'what was there stays',
+  );
   assert.notEqual(await stage.running(), 0);
   assert.equal(await page.evaluate(() => document.activeElement.id), 'survival-cancel');
   await page.keyboard.press('Enter');
@@ -168,7 +172,7 @@ test('progress is counted in runs, and Cancel frees the server', async () => {
   assert.ok(await bar.isHidden());
   assert.equal(await page.evaluate(() => document.activeElement.id), 'survival-start');
   await free(stage);
-  assert.equal(await page.locator('#survival-box .curve').getAttribute('d'), before);
+  assert.equal(await page.locator('#survival-box [data-curve=survival]').getAttribute('d'), before);
   await runAll(page, 30, 50);
   clean();
 });

@@ -61,9 +61,9 @@ export class LongRequest {
   }
 
   /**
-   * The answer; null where there is none, which is told. One question at a time.
+   * The answer and its pictures; null where there is none, which is told. One question at a time.
    * @param {string} path with a query, and no format
-   * @returns {Promise<any>}
+   * @returns {Promise<{end: any, pictures: Record<string, string>} | null>}
    */
   async ask(path) {
     const under = new AbortController();
@@ -78,7 +78,7 @@ export class LongRequest {
       for await (const line of lines(response.body)) {
         if (signal.aborted) return null;
         if (line.progress) this.#show(line.progress);
-        else answer = line.end;
+        else answer = line;
       }
       if (!answer) throw new TypeError('no end');
       this.#answered = true;

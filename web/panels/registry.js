@@ -1,6 +1,6 @@
 // The studies: their tabs, and the panels in each with a sentence on them and where their code is.
 
-/** The colours and the size of the server's pictures in the page. */
+/** The colours and sizes of the server's pictures in the page. */
 const FIGURE_STYLES = ['charts/generated/figure-colours.css', 'charts/readable/server-figure.css'];
 
 /** The tabs in their order; the first is open unless the address says another. @type {readonly {id: string, name: string}[]} */
@@ -31,6 +31,7 @@ export const PANELS = [
     tab: 'noise',
     title: 'Survival under noise',
     about: 'How long runs of this scene last when the table errs.',
+    shared: FIGURE_STYLES,
     load: () => import('./survival/panel.js'),
   },
   {
@@ -61,6 +62,7 @@ export const PANELS = [
     tab: 'accuracy',
     title: 'Speed against accuracy',
     about: 'What this scene costs by each method, and how far it ends from the truth.',
+    shared: FIGURE_STYLES,
     load: () => import('./precision/panel.js'),
   },
   {

@@ -4,7 +4,7 @@ use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 use crate::api::ensembles::answer::{EnsembleAnswer, Survived, is_noisy};
-use crate::api::formats::Pictured;
+use crate::api::formats::{Pictured, Watched};
 use crate::api::shared::tile::Tile;
 use crate::charts::{SurvivalAt, SurvivalCurve, significant, survival_curve};
 use crate::http::Problem;
@@ -39,6 +39,12 @@ impl Pictured for EnsembleAnswer<'_> {
             curve: &points.collect::<Vec<_>>(),
             angles: &self.marks,
         }))
+    }
+}
+
+impl Watched for EnsembleAnswer<'_> {
+    fn to_pictures(&self) -> Result<Vec<(&'static str, String)>, Problem> {
+        Ok(vec![("survival", self.to_picture()?)])
     }
 }
 

@@ -31,6 +31,14 @@ pub enum CostAxis {
     Time,
     /// Evaluations of motion and gap.
     Evaluations,
+    /// Steps. Steps of different methods are different work, so no point is better than another by them.
+    Steps,
+}
+
+impl CostAxis {
+    /// All axes, by their names in requests.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("time", Self::Time), ("evaluations", Self::Evaluations), ("steps", Self::Steps)];
 }
 
 impl ResourceRequest for PrecisionRequest {
@@ -38,7 +46,7 @@ impl ResourceRequest for PrecisionRequest {
         let scene = read_frictionless_scene(reader);
         let before = reader.errors().len();
         let impacts = reader.integer("impacts", 1..=limits::PRECISION_IMPACTS).unwrap_or(100);
-        let axis = reader.choice("axis", &[("time", CostAxis::Time), ("evaluations", CostAxis::Evaluations)]);
+        let axis = reader.choice("axis", &CostAxis::ALL);
         let known = METHODS.map(|method| (method.name, method));
         let mut asked = Vec::new();
         let names = reader.array("methods", METHODS.len());

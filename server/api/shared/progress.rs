@@ -3,6 +3,8 @@
 //! Lines depend on the work done and not on a clock, so the same request has the same lines. Each resource chooses the unit of
 //! its work.
 
+use serde_json::Value;
+
 /// Progress reported so far.
 #[derive(Debug, Default)]
 pub struct Progress {
@@ -21,9 +23,12 @@ impl Progress {
     }
 }
 
-/// The last line: an answer in JSON.
-pub fn end(answer: &[u8]) -> Vec<u8> {
-    [b"{\"end\":", answer, b"}\n"].concat()
+/// The last line: an answer in JSON, and its pictures by name.
+pub fn end(answer: &[u8], pictures: Vec<(&'static str, String)>) -> Vec<u8> {
+    let pictures: serde_json::Map<String, Value> =
+        pictures.into_iter().map(|(name, picture)| (name.to_owned(), Value::String(picture))).collect();
+    let pictures = Value::Object(pictures).to_string();
+    [b"{\"end\":", answer, b",\"pictures\":", pictures.as_bytes(), b"}\n"].concat()
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use crate::charts::draw::colour::{AXIS, GRID, INK, PAPER, SOFT_INK, ZERO};
 use crate::charts::draw::geometry::Frame;
-use crate::charts::draw::marks::line;
+use crate::charts::draw::marks::{line, listed};
 use crate::charts::draw::number::raised;
 use crate::charts::draw::scale::{Range, Scale, Ticks, decades, ticks};
-use crate::charts::draw::svg::{Anchor, Svg, Type};
+use crate::charts::draw::svg::{Anchor, Svg, Tag, Type};
 use crate::charts::draw::text::{Span, width};
 
 /// Text of ticks, px.
@@ -59,9 +59,20 @@ impl Panel {
 
     /// Draws the frame over the marks.
     pub(crate) fn edge(&self, svg: &mut Svg) {
+        self.edge_tag(svg).end();
+    }
+
+    /// The same with data attributes, from which a page reads values at a place: `data-panel` has the name, `data-x` and `data-y` the
+    /// values at the ends of each axis.
+    pub(crate) fn readable_edge(&self, svg: &mut Svg, name: &str, x: Range, y: Range) {
+        let [x, y] = [x, y].map(|range| listed([range.low, range.high].into_iter()));
+        self.edge_tag(svg).word("data-panel", name).word("data-x", &x).word("data-y", &y).end();
+    }
+
+    fn edge_tag<'a>(&self, svg: &'a mut Svg) -> Tag<'a> {
         let Frame { left, top, width, height } = self.frame;
         let rectangle = svg.tag("rect").number("x", left).number("y", top).number("width", width);
-        rectangle.number("height", height).word("fill", "none").word("stroke", AXIS).end();
+        rectangle.number("height", height).word("fill", "none").word("stroke", AXIS)
     }
 
     fn draw_axes(&self, svg: &mut Svg, x: Axis<'_>, y: Axis<'_>, logarithmic: [bool; 2]) {

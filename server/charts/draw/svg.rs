@@ -124,6 +124,16 @@ impl Svg {
         self.out.push_str("</tspan>");
     }
 
+    /// Starts a group with a data attribute, from which a page finds its elements. `end_group` ends it.
+    pub(crate) fn begin_group(&mut self, name: &str, value: &str) {
+        let tag = self.tag("g").word(name, value);
+        tag.svg.out.push_str(">\n");
+    }
+
+    pub(crate) fn end_group(&mut self) {
+        self.out.push_str("</g>\n");
+    }
+
     /// Closes the document.
     pub(crate) fn finish(mut self) -> String {
         self.out.push_str("</svg>\n");

@@ -2,7 +2,7 @@
 
 use crate::charts::draw::colour::{BLUE, GREEN, INK, ORANGE, PAPER, PURPLE, SKY, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::{Frame, Point};
-use crate::charts::draw::marks::line;
+use crate::charts::draw::marks::{line, readable_line};
 use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
 use crate::charts::draw::sheet::{Sheet, Words};
@@ -35,10 +35,23 @@ pub struct SpeedAccuracy<'a> {
 pub struct Series<'a> {
     /// Symbol and colour.
     pub symbol: Symbol,
-    /// Name.
+    /// Name in requests.
+    pub name: &'a str,
+    /// Name in words.
     pub label: &'a str,
-    /// Lower quartile, median and upper quartile of the cost, and the error.
-    pub points: Vec<([f64; 3], f64)>,
+    /// The points, in the order of the method's settings.
+    pub points: Vec<CostAndError>,
+}
+
+/// A point of the chart.
+#[derive(Clone, Copy, Debug)]
+pub struct CostAndError {
+    /// Place among the points of the answer, from 0.
+    pub index: usize,
+    /// Lower quartile, median and upper quartile of the cost.
+    pub cost: [f64; 3],
+    /// Error.
+    pub error: f64,
 }
 
 /// The mark of a method: a colour and an outline, each of which tells methods apart.
@@ -108,14 +121,19 @@ const SIZE: f64 = 5.0;
 /// Space between lines of the legend, px.
 const LEADING: f64 = 23.0;
 
-fn draw_symbol(svg: &mut Svg, (x, y): Point, Symbol { colour, outline }: Symbol) {
+/// Draws a symbol. `mark` is the method of a point, for pages that look for its points; a legend has none.
+fn draw_symbol(svg: &mut Svg, (x, y): Point, Symbol { colour, outline }: Symbol, mark: Option<&str>) {
     let corner = |(index, (right, down)): (usize, &Point)| {
         let kind = if index == 0 { "M" } else { "L" };
         format!("{kind}{} {}", fixed(x + SIZE * right), fixed(y + SIZE * down))
     };
     let path: String = outline.iter().enumerate().map(corner).collect();
     let tag = svg.tag("path").word("d", &format!("{path}Z")).word("fill", colour);
-    tag.word("stroke", PAPER).number("stroke-width", 0.8).end();
+    let tag = tag.word("stroke", PAPER).number("stroke-width", 0.8);
+    match mark {
+        Some(method) => tag.word("data-mark", method).end(),
+        None => tag.end(),
+    }
 }
 
 /// Draws the chart.
@@ -129,8 +147,8 @@ pub fn speed_accuracy(drawn: &SpeedAccuracy<'_>) -> String {
     // Values without a logarithm are drawn on the lower edge.
     let place = |value: f64| if value > 0.0 { libm::log10(value) } else { f64::NEG_INFINITY };
     let points = || drawn.series.iter().flat_map(|series| series.points.iter());
-    let cost = Range::around(points().flat_map(|point| point.0).map(place));
-    let error = Range::around(points().map(|point| point.1).chain([drawn.rounding]).map(place));
+    let cost = Range::around(points().flat_map(|point| point.cost).map(place));
+    let error = Range::around(points().map(|point| point.error).chain([drawn.rounding]).map(place));
     let x = Axis { name: drawn.cost.0, symbol: "", unit: drawn.cost.1, range: cost };
     let y = Axis { name: drawn.error, symbol: "", unit: "m or m/s", range: error };
     let panel = Panel::draw_scaled(&mut svg, frame, x, y, [true; 2]);
@@ -152,17 +170,16 @@ pub fn speed_accuracy(drawn: &SpeedAccuracy<'_>) -> String {
             stairs.push(point);
         }
         stairs.push((right, last.1));
-        line(&mut svg, &stairs, INK, 1.6, None);
+        readable_line(&mut svg, &stairs, INK, 1.6, None, &[("data-curve", "front")]);
     }
     for series in drawn.series {
         let colour = series.symbol.colour;
-        let middles: Vec<Point> = series.points.iter().map(|(cost, error)| at(cost[1], *error)).collect();
-        if middles.len() > 1 {
-            line(&mut svg, &middles, colour, 1.2, None);
-        }
-        for ((cost, error), middle) in series.points.iter().zip(middles) {
+        let middles: Vec<Point> = series.points.iter().map(|point| at(point.cost[1], point.error)).collect();
+        let indices: Vec<String> = series.points.iter().map(|point| point.index.to_string()).collect();
+        readable_line(&mut svg, &middles, colour, 1.2, None, &[("data-point", &indices.join(" "))]);
+        for (CostAndError { cost, error, .. }, middle) in series.points.iter().zip(middles) {
             line(&mut svg, &[at(cost[0], *error), at(cost[2], *error)], colour, 2.4, None);
-            draw_symbol(&mut svg, middle, series.symbol);
+            draw_symbol(&mut svg, middle, series.symbol, Some(series.name));
         }
     }
     panel.edge(&mut svg);
@@ -175,9 +192,11 @@ pub fn speed_accuracy(drawn: &SpeedAccuracy<'_>) -> String {
         y += LEADING;
     };
     for series in drawn.series {
-        label(&mut svg, series.label, &|svg, y| draw_symbol(svg, (left + 8.0, y), series.symbol));
+        label(&mut svg, series.label, &|svg, y| draw_symbol(svg, (left + 8.0, y), series.symbol, None));
     }
-    label(&mut svg, "Pareto front", &|svg, y| line(svg, &[(left, y), (left + 18.0, y)], INK, 1.6, None));
+    if !drawn.front.is_empty() {
+        label(&mut svg, "Pareto front", &|svg, y| line(svg, &[(left, y), (left + 18.0, y)], INK, 1.6, None));
+    }
     label(&mut svg, "rounding of doubles", &|svg, y| {
         line(svg, &[(left, y), (left + 18.0, y)], SOFT_INK, 1.4, Some("2 3"));
     });

@@ -4,7 +4,7 @@
 use crate::charts::draw::colour::{BLUE, GREEN, INK, LIGHT_GREEN, PALE_BLUE, PALE_GREEN, SOFT_INK};
 use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::legend::{Sample, legend};
-use crate::charts::draw::marks::{area, line};
+use crate::charts::draw::marks::{area, line, readable_line};
 use crate::charts::draw::panel::{Axis, Panel, TICK_SIZE};
 use crate::charts::draw::scale::{Range, ticks};
 use crate::charts::draw::sheet::{Sheet, Words};
@@ -79,17 +79,21 @@ fn draw_survival(svg: &mut Svg, frame: Frame, x: Axis<'_>, curve: &[SurvivalAt])
     let y = Axis { name: "runs still going", symbol: "", unit: "", range: Range::new(0.0, 1.0) };
     let panel = Panel::draw(svg, frame, x, y);
     let stairs = |value: &dyn Fn(&SurvivalAt) -> f64| stairs(&panel, curve, value);
+    svg.begin_group("data-curve", "interval");
     area(svg, &stairs(&|at| at.interval.1), &stairs(&|at| at.interval.0), PALE_BLUE);
-    line(svg, &stairs(&|at| at.share), BLUE, 2.4, None);
-    panel.edge(svg);
+    svg.end_group();
+    readable_line(svg, &stairs(&|at| at.share), BLUE, 2.4, None, &[("data-curve", "survival")]);
+    panel.readable_edge(svg, "survival", x.range, y.range);
     // At the ticks of the axis, which has room for six.
     let y = frame.top + frame.height + 62.0;
     let look = Type::new(TICK_SIZE, INK);
+    svg.begin_group("data-row", "at-risk");
     for (n, _) in ticks(x.range, 6).marks {
         let place = (n as usize).saturating_sub(1);
         let Some(at) = curve.get(place) else { continue };
         svg.text(panel.at(n, 0.0).0, y, look.anchored(Anchor::Middle), &[Span::Plain(&at.at_risk.to_string())]);
     }
+    svg.end_group();
     let label = Type::new(TICK_SIZE, SOFT_INK).anchored(Anchor::End);
     svg.text(frame.left - 22.0, y, label, &[Span::Plain("at risk")]);
 }
@@ -124,5 +128,5 @@ fn draw_angles(svg: &mut Svg, frame: Frame, x: Axis<'_>, angles: &[AnglesAt]) {
     area(svg, &along(4), &along(0), PALE_GREEN);
     area(svg, &along(3), &along(1), LIGHT_GREEN);
     line(svg, &along(2), GREEN, 2.0, None);
-    panel.edge(svg);
+    panel.readable_edge(svg, "angle", x.range, y.range);
 }

@@ -13,7 +13,12 @@ import { ChartReader, movedInRow } from './chart-reader.js';
 export async function serverFigure(path, signal) {
   const response = await fetch(path, { signal });
   if (!response.ok) throw await problemOf(response);
-  const parsed = new DOMParser().parseFromString(await response.text(), 'image/svg+xml');
+  return figureOf(await response.text());
+}
+
+/** @param {string} text an SVG @returns {SVGSVGElement} */
+export function figureOf(text) {
+  const parsed = new DOMParser().parseFromString(text, 'image/svg+xml');
   const figure = /** @type {SVGSVGElement} */ (
     /** @type {unknown} */ (document.importNode(parsed.documentElement, true))
   );
@@ -26,7 +31,7 @@ export async function serverFigure(path, signal) {
 }
 
 /** Points of a figure with the values in its data attributes. */
-class FigurePoints {
+export class FigurePoints {
   /** @type {{x: number, y: number, values: Record<string, string>}[]} */
   points = [];
   #figure;
@@ -72,6 +77,48 @@ class FigurePoints {
     if (!point) return;
     this.#ring.setAttribute('cx', String(point.x));
     this.#ring.setAttribute('cy', String(point.y));
+  }
+}
+
+/** Panels of a figure, one below the other, that share whole numbers along x. */
+export class FigureColumns {
+  #figure;
+  #line = svg('path', { class: 'pointed', hidden: '' });
+  /** @type {{left: number, right: number, top: number, bottom: number, low: number, high: number}[]} */
+  #panels;
+
+  /** @param {SVGSVGElement} figure */
+  constructor(figure) {
+    this.#figure = figure;
+    const rectangles = /** @type {NodeListOf<SVGRectElement>} */ (figure.querySelectorAll('rect[data-panel]'));
+    this.#panels = [...rectangles].map((rectangle) => {
+      const [left, top, width, height] = ['x', 'y', 'width', 'height'].map((name) =>
+        Number(rectangle.getAttribute(name)),
+      );
+      const [low, high] = (rectangle.dataset.x ?? '').split(' ').map(Number);
+      return { left, right: left + width, top, bottom: top + height, low, high };
+    });
+    figure.append(this.#line);
+  }
+
+  /** The number next to a place on the screen, or null beside the panels. @param {PointerEvent} event */
+  nearest({ clientX, clientY }) {
+    const { x } = new DOMPoint(clientX, clientY).matrixTransform(this.#figure.getScreenCTM()?.inverse());
+    const { left, right, low, high } = this.#panels[0];
+    if (x < left - 8 || x > right + 8) return null;
+    const value = Math.round(low + ((x - left) / (right - left)) * (high - low));
+    return Math.max(low + 1, Math.min(high, value));
+  }
+
+  /** @param {number | null} value */
+  mark(value) {
+    this.#line.toggleAttribute('hidden', value === null);
+    if (value === null) return;
+    const way = this.#panels.map(({ left, right, top, bottom, low, high }) => {
+      const x = (left + ((value - low) / (high - low)) * (right - left)).toFixed(1);
+      return `M${x} ${top}V${bottom}`;
+    });
+    this.#line.setAttribute('d', way.join(''));
   }
 }
 

@@ -1,13 +1,12 @@
 // The panel of speed against accuracy: every method on the page's scene. It measures on request only, since that keeps a core busy.
 
 import { ChartReader } from '../../charts/readable/chart-reader.js';
+import { FigurePoints, figureOf } from '../../charts/readable/server-figure.js';
 import { row, table } from '../../dom/tables.js';
 import { LongRequest } from '../long-request.js';
-import { PrecisionChart, mark } from './chart.js';
 import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked } from '../../dom/typeset.js';
-import { symbolOf } from '../../charts/method-symbols.js';
 import { number, parse, quantity } from '../../dom/numbers.js';
 import { svg } from '../../charts/svg.js';
 
@@ -23,22 +22,12 @@ const isRight = (impacts) => impacts !== null && Number.isInteger(impacts) && im
 
 /**
  * The axes across. Steps of different methods are different work, so that no point beats another by them.
- * @type {Record<string, {title: string, name: string, of: (point: Point) => number | null, front: ((point: Point) => boolean) | null}>}
+ * @type {Record<string, {title: string, hasFront: boolean}>}
  */
 const AXES = {
-  time: {
-    title: 'Clock time',
-    name: 'time / ns per impact',
-    of: (point) => point.cost_ns_per_impact,
-    front: (point) => point.pareto,
-  },
-  evaluations: {
-    title: 'Evaluations',
-    name: 'evaluations per impact',
-    of: (point) => each(point, point.evaluations),
-    front: (point) => point.pareto_evaluations,
-  },
-  steps: { title: 'Steps', name: 'steps per impact', of: (point) => each(point, point.steps), front: null },
+  time: { title: 'Clock time', hasFront: true },
+  evaluations: { title: 'Evaluations', hasFront: true },
+  steps: { title: 'Steps', hasFront: false },
 };
 
 /** @param {Point} point @param {number | null} count */
@@ -78,8 +67,9 @@ class PrecisionPanel {
   #notes = h('div');
   #front = h('span');
   #sheet;
-  #plot;
-  /** @type {{answer: Precision, request: URLSearchParams} | null} */
+  /** @type {FigurePoints | null} */
+  #plot = null;
+  /** @type {{answer: Precision, pictures: Record<string, string>, request: URLSearchParams} | null} */
   #shown = null;
   /** Points that the chart has. @type {Point[]} */
   #drawn = [];
@@ -142,11 +132,11 @@ class PrecisionPanel {
       this.#sheet,
     );
     this.#task.say('It runs the scene by eleven methods with all their settings, which takes the server some seconds.');
-    this.#plot = new PrecisionChart(this.#reader.box);
+    this.#reader.box.classList.add('figure-box');
     this.#reader.read({
-      nearest: (event) => this.#plot.nearest(event),
+      nearest: (event) => this.#plot?.nearest(event) ?? null,
       moved: (key, at) => this.#moved(key, at),
-      mark: (index) => this.#plot.point(index),
+      mark: (index) => this.#plot?.mark(index),
       words: (index) => this.#words(this.#drawn[index]),
     });
     this.restore(new URLSearchParams());
@@ -198,10 +188,10 @@ class PrecisionPanel {
     request.set('impacts', String(impacts));
     const answer = await this.#task.ask(`v1/precision?${request}`);
     if (!answer) return;
-    this.#shown = { answer, request };
+    this.#shown = { answer: answer.end, pictures: answer.pictures, request };
     const {
       reference: { impacts: seen, outcome },
-    } = answer;
+    } = this.#shown.answer;
     this.#task.say(`Measured over ${number(seen)} impacts: ${outcome.replaceAll('_', ' ')}.`);
     this.#sheet.hidden = false;
     this.#show();
@@ -212,6 +202,7 @@ class PrecisionPanel {
     const {
       answer: { methods, points, notes, reference },
     } = this.#shown;
+    this.#draw();
     const title = new Map(methods.map((method) => [method.name, method.title]));
     const missing = (/** @type {string} */ name) => {
       const own = points.filter(({ method }) => method === name);
@@ -226,7 +217,7 @@ class PrecisionPanel {
         h(
           'li',
           { title: about },
-          svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, mark(symbolOf(name), 8, 8)),
+          this.#symbol(name),
           h('span', {}, words, missing(name) && h('span', { class: 'muted' }, ...marked(missing(name)))),
         ),
       ),
@@ -259,43 +250,35 @@ class PrecisionPanel {
       ),
       ...notes.map((note) => h('p', { class: 'muted' }, ...marked(note))),
     );
-    this.#draw();
+  }
+
+  /** The symbol of a method, as the chart has it; empty for a method that is not drawn. @param {string} method */
+  #symbol(method) {
+    const index = this.#drawn.findIndex((point) => point.method === method);
+    const place = this.#plot?.points[index] ?? { x: 0, y: 0 };
+    const mark = this.#reader.box.querySelector(`[data-mark="${method}"]`)?.cloneNode(true);
+    const box = `${place.x - 8} ${place.y - 8} 16 16`;
+    return svg('svg', { class: 'figure', viewBox: box, 'aria-hidden': 'true' }, ...(mark ? [mark] : []));
   }
 
   #draw() {
     if (!this.#shown) return;
     const {
-      answer: { points, reference },
+      answer: { points },
+      pictures,
       request,
     } = this.#shown;
     const axis = AXES[this.#axis.value];
-    const places = [];
-    this.#drawn = [];
-    for (const [index, point] of points.entries()) {
-      const cost = axis.of(point);
-      if (cost === null || cost <= 0 || point.error === null) continue;
-      this.#drawn.push(point);
-      places.push({
-        index,
-        method: symbolOf(point.method),
-        cost,
-        spread: this.#axis.value === 'time' ? point.spread_ns_per_impact : null,
-        error: point.error,
-        front: axis.front?.(point) ?? false,
-      });
-    }
-    this.#plot.show(
-      places,
-      { x: axis.name, y: `error at impact ${reference.impacts} / m or m s⁻¹` },
-      reference.rounding,
-      axis.front !== null,
-    );
+    const figure = figureOf(pictures[this.#axis.value]);
+    this.#reader.box.replaceChildren(figure);
+    this.#plot = new FigurePoints(figure, ['point']);
+    this.#drawn = this.#plot.points.map(({ values }) => points[Number(values.point)]);
     this.#reader.box.setAttribute(
       'aria-label',
       `Speed against accuracy: error over ${axis.title.toLowerCase()}, ${this.#drawn.length} points`,
     );
-    this.#front.textContent = axis.front
-      ? 'Nothing lies below and left of the dashed front.'
+    this.#front.textContent = axis.hasFront
+      ? 'Nothing lies below and left of the front.'
       : 'Steps of different methods are different work, so there is no front.';
     // A picture is of a measurement of its own: no two of them are the same.
     const picture = new URLSearchParams(request);
@@ -305,8 +288,8 @@ class PrecisionPanel {
       ...actions({
         id: 'precision',
         title: 'Speed against accuracy',
-        path: `v1/precision?${axis.front ? picture : request}`,
-        formats: axis.front ? ['svg', 'png', 'csv', 'json'] : ['csv', 'json'],
+        path: `v1/precision?${picture}`,
+        formats: ['svg', 'png', 'csv', 'json'],
       }),
     );
     this.#reader.point(null, false);

@@ -1,9 +1,9 @@
 // The panel of survival under noise: how long many runs of the page's scene last. It asks on request only.
 
 import { ChartReader, movedInRow } from '../../charts/readable/chart-reader.js';
+import { FigureColumns, figureOf } from '../../charts/readable/server-figure.js';
 import { entries, row, table } from '../../dom/tables.js';
 import { LongRequest } from '../long-request.js';
-import { SurvivalChart } from './chart.js';
 import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked, prose } from '../../dom/typeset.js';
@@ -71,7 +71,8 @@ class SurvivalPanel {
   #notes = h('div');
   #links = h('p', { class: 'actions', id: 'survival-links' });
   #sheet;
-  #plot;
+  /** @type {FigureColumns | null} */
+  #plot = null;
   /** @type {{answer: Ensemble, path: string} | null} */
   #shown = null;
 
@@ -143,11 +144,11 @@ class SurvivalPanel {
       ),
       this.#sheet,
     );
-    this.#plot = new SurvivalChart(this.#reader.box);
+    this.#reader.box.classList.add('figure-box');
     this.#reader.read({
-      nearest: (event) => this.#plot.nearest(event),
+      nearest: (event) => this.#plot?.nearest(event) ?? null,
       moved: (key, at) => (this.#shown ? movedInRow(key, at, 1, this.#shown.answer.impacts) : undefined),
-      mark: (contact) => this.#plot.point(contact),
+      mark: (contact) => this.#plot?.mark(contact),
       words: (contact) => (this.#shown ? wordsAt(this.#shown.answer, contact) : ''),
     });
     this.#offer();
@@ -246,9 +247,13 @@ class SurvivalPanel {
     const path = `v1/ensembles?${request}`;
     const answer = await this.#task.ask(path);
     if (!answer) return;
-    this.#shown = { answer, path };
+    this.#shown = { answer: answer.end, path };
     this.#sheet.hidden = false;
     this.#show();
+    const figure = figureOf(answer.pictures.survival);
+    this.#reader.box.replaceChildren(figure);
+    this.#plot = new FigureColumns(figure);
+    this.#reader.point(null, false);
   }
 
   #show() {
@@ -299,8 +304,6 @@ class SurvivalPanel {
         'Watch the first run',
       ),
     );
-    this.#plot.show(answer);
-    this.#reader.point(null, false);
   }
 }
 
