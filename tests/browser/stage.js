@@ -243,8 +243,16 @@ export async function measure(page, impacts = 10) {
   await page.locator('#precision-told', { hasText: 'Measured over' }).waitFor();
 }
 
+/** Opens a part of the page that is a sheet on a phone; elsewhere it is there already. */
+export async function openSheet(page, id) {
+  const button = page.locator(`#parts [aria-controls=${id}]:enabled`);
+  await button.waitFor({ state: 'attached' });
+  if ((await button.isVisible()) && (await button.getAttribute('aria-expanded')) === 'false') await button.click();
+}
+
 /** Opens a tab of the studies by its id, such as `map`. */
 export async function openTab(page, id) {
+  await openSheet(page, 'studies');
   await page.locator(`#tab-${id}`).click();
   await page.locator(`#panel-${id}`).waitFor();
 }
