@@ -188,6 +188,8 @@ test('with keys alone: from impact to impact, a selection of some, and a start a
   await page.keyboard.press('Escape');
   await page.locator('#brush-clear').waitFor({ state: 'hidden' });
   await page.keyboard.press('Enter');
+  await spoken(page, /Enter releases there/);
+  await page.keyboard.press('Enter');
   await spoken(page, /Released anew/);
   await page.waitForFunction(() => /scene\.release\.theta=/.test(location.search));
   await reachImpact(page, 1);
@@ -210,6 +212,7 @@ test('with keys alone: from impact to impact, a selection of some, and a start a
   for (let k = 0; k < 3; k += 1) await page.keyboard.press('ArrowRight');
   await spoken(page, /^n 4 /);
   await page.keyboard.press('Enter');
+  await page.keyboard.press('Enter');
   await page.waitForFunction(() => /scene\.release\.x_dot=/.test(location.search));
   const moved = new URLSearchParams(
     [...new URL(page.url()).searchParams].filter(([key]) => key === 'preset' || key.startsWith('scene.')),
@@ -222,7 +225,7 @@ test('with keys alone: from impact to impact, a selection of some, and a start a
   clean();
 });
 
-test('a click starts a run whose first impact is there, a slip of a pixel is no drag', async () => {
+test('a click offers a run whose first impact is there, a slip of a pixel is no drag', async () => {
   const { page, clean } = await paused('?preset=case-1', 30);
   await wake(page);
   const { x, y, width, height } = await boxOf(page, 'plane-angle');
@@ -231,6 +234,7 @@ test('a click starts a run whose first impact is there, a slip of a pixel is no 
   await page.mouse.down();
   await page.mouse.move(x + px + 2, y + py + 2);
   await page.mouse.up();
+  await page.click('#ghost-release');
   await spoken(page, /Released anew/);
   await page.waitForFunction(() => /scene\.release\.theta=/.test(location.search));
   await reachImpact(page, 1);
@@ -338,7 +342,7 @@ test('a start in closed form is what the server computes, and what it refuses do
   assert.ok(counted.landed > 15 && counted.before > 0 && counted.other > 0, JSON.stringify(counted));
 });
 
-test('by touch a tap points and the second one there starts; the page still scrolls over a plot', async () => {
+test('by touch a tap offers and the second one there starts; the page still scrolls over a plot', async () => {
   const { page, clean } = await paused('?preset=case-1', 10, { hasTouch: true });
   const box = page.locator('#plane-angle .canvas-box');
   await box.scrollIntoViewIfNeeded();

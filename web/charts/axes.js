@@ -6,6 +6,12 @@ import { SANS, SERIF, theme } from './theme.js';
 
 /** @typedef {{low: number, high: number}} Range */
 
+/** @param {Range} range widened @param {number} value */
+export function include(range, value) {
+  if (value < range.low) range.low = value;
+  if (value > range.high) range.high = value;
+}
+
 /** The round step (1, 2 or 5 times a power of ten) that parts a span into about so many. @param {number} span @param {number} count */
 export function roundStep(span, count) {
   const raw = span / count;

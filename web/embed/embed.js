@@ -61,7 +61,7 @@ function plot(view, { impacts }) {
     selection,
     typed: () => null,
     fields: [],
-    launch: () => {},
+    ghost: null,
     point: (place) => view.point(place),
     say: (words) => {
       spoken.textContent = words;

@@ -60,6 +60,7 @@ export async function bringLateParts(page) {
     view,
     plots,
     typed: () => page.complete,
+    query: () => typedQuery(page),
   });
   page.panels.join('brush', page.interaction);
   page.panels.restore(page.panelLink);

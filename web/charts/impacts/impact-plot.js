@@ -1,8 +1,8 @@
 // A plot with one mark per impact, drawn on without starting over. Its maker gives the meaning of its axes.
 
 import { Figure } from '../figure.js';
-import { MARGIN, drawAxes, line, roundRange, toX, toY } from '../axes.js';
-import { drawDot, drawMark } from '../marks.js';
+import { MARGIN, drawAxes, include, line, roundRange, toX, toY } from '../axes.js';
+import { drawDot } from '../marks.js';
 import { SANS, theme, onThemeChange } from '../theme.js';
 import { invalidate, surfaces } from '../surface.js';
 
@@ -37,6 +37,9 @@ import { invalidate, surfaces } from '../surface.js';
 /** More dots than these are drawn pixel by pixel, and small. */
 export const MANY = 20_000;
 
+/** Scales stay while what they hold takes more than this share of them. */
+const STAYS = 0.45;
+
 export class ImpactPlot {
   figure;
   meaning;
@@ -60,8 +63,8 @@ export class ImpactPlot {
   /** Draws many dots at once, where that is loaded. @type {typeof import('./dense-dots.js').drawPixels | null} */
   #pixels = null;
   #many = false;
-  /** Measured points under the dots. @type {[number, number][]} */
-  #laid = [];
+  /** Marks of others than the run; their module comes with the first of them. @type {import('./companions.js').Companions | null} */
+  #companions = null;
   /** @type {{x: import('../axes.js').Range, y: import('../axes.js').Range}} */
   #extent = ImpactPlot.#nothing();
 
@@ -121,8 +124,44 @@ export class ImpactPlot {
 
   /** Measured points, drawn under the dots and held by the scales. @param {[number, number][]} points */
   lay(points) {
-    this.#laid = points;
-    this.redraw();
+    this.#beside('measured', points);
+  }
+
+  /** Impacts to come, as rings that give way to the dots of the run. @param {import('./companions.js').Columns | null} columns */
+  preview(columns) {
+    this.#beside('preview', columns);
+  }
+
+  /** Runs to compare with. @param {import('./companions.js').Reference[]} references */
+  references(references) {
+    this.#beside('references', references);
+  }
+
+  /** A release that is only offered. @param {import('./companions.js').Offered | null} ghost */
+  ghost(ghost) {
+    this.#beside('ghost', ghost);
+  }
+
+  /** @param {'measured' | 'preview' | 'references' | 'ghost'} kind @param {any} marks */
+  #beside(kind, marks) {
+    // Without their module the run has its dots all the same.
+    import('./companions.js').then(
+      ({ Companions }) => {
+        this.#companions ??= new Companions(this, this.#impacts);
+        this.#companions[kind] = marks;
+        const { x, y } = this.#scales();
+        const held = x.low === this.frame.x.low && x.high === this.frame.x.high;
+        const same = held && y.low === this.frame.y.low && y.high === this.frame.y.high;
+        if (same && this.#hinting === this.#vacant && (kind === 'preview' || kind === 'ghost')) invalidate(this);
+        else this.redraw();
+      },
+      () => {},
+    );
+  }
+
+  /** True when there is no dot, nor a ring. */
+  get #vacant() {
+    return this.#impacts.end === 0 && !this.#companions?.rings;
   }
 
   /** The place of an impact, px. @param {number} place */
@@ -150,7 +189,7 @@ export class ImpactPlot {
   draw(now_ms) {
     const { begin, end } = this.#impacts;
     if (end < this.#drawn) this.#drawn = begin;
-    if (!this.#extend(Math.max(begin, this.#drawn)) || (this.#hinting && end > 0)) this.#stale = true;
+    if (!this.#extend(Math.max(begin, this.#drawn)) || this.#hinting !== this.#vacant) this.#stale = true;
     this.selection?.update();
     const many = end - begin > MANY;
     if (many !== this.#many) {
@@ -162,9 +201,12 @@ export class ImpactPlot {
     this.#drawn = end;
     this.#highlight();
     this.figure.name(now_ms, () =>
-      end === 0
-        ? `${this.meaning.spoken}: nothing yet`
-        : `${this.meaning.spoken}. ${end} impacts; the last: ${this.meaning.readout(this.#impacts, end - 1)}`,
+      [
+        end === 0
+          ? `${this.meaning.spoken}: nothing yet`
+          : `${this.meaning.spoken}. ${end} impacts; the last: ${this.meaning.readout(this.#impacts, end - 1)}`,
+        ...(this.#companions?.words ?? []),
+      ].join('. '),
     );
     this.figure.list(now_ms);
     return false;
@@ -198,32 +240,34 @@ export class ImpactPlot {
     }
   }
 
-  /** The empty plot with scales that hold what there is. */
+  /** The scales that hold what there is, and stay while rings come and go within them. */
+  #scales() {
+    const extent = structuredClone(this.#extent);
+    for (const { value } of this.meaning.levels?.() ?? []) include(extent.y, value);
+    this.#companions?.extend(extent);
+    /** @param {'x' | 'y'} axis */
+    const range = (axis) => {
+      const { low, high } = extent[axis];
+      const wish = this.meaning[axis];
+      if (!(high >= low)) return roundRange({ low: 0, high: 0 }, { ...wish, span: wish.span || 1 });
+      const now = this.frame[axis];
+      const next = roundRange({ low, high }, wish);
+      const holds = now.low <= low && now.high >= high && next.high - next.low > STAYS * (now.high - now.low);
+      return holds && this.#companions?.rings && this.frame.width > 0 ? now : next;
+    };
+    return { x: range('x'), y: range('y') };
+  }
+
+  /** The empty plot with its scales. */
   #paper() {
     const { context, width, height } = this.layers[0];
     const { x, y, hint, lacking, levels } = this.meaning;
-    const extent = structuredClone(this.#extent);
-    const beside = [...(levels?.() ?? []).map(({ value }) => [NaN, value]), ...this.#laid];
-    for (const [across, up] of beside) {
-      if (across < extent.x.low) extent.x.low = across;
-      if (across > extent.x.high) extent.x.high = across;
-      if (up < extent.y.low) extent.y.low = up;
-      if (up > extent.y.high) extent.y.high = up;
-    }
-    const empty = !(extent.x.high >= extent.x.low) || !(extent.y.high >= extent.y.low);
     this.frame = {
       left: MARGIN.left,
       top: MARGIN.top,
       width: Math.max(1, width - MARGIN.left - MARGIN.right),
       height: Math.max(1, height - MARGIN.top - MARGIN.bottom),
-      x:
-        extent.x.high >= extent.x.low
-          ? roundRange(extent.x, x)
-          : roundRange({ low: 0, high: 0 }, { ...x, span: x.span || 1 }),
-      y:
-        extent.y.high >= extent.y.low
-          ? roundRange(extent.y, y)
-          : roundRange({ low: 0, high: 0 }, { ...y, span: y.span || 1 }),
+      ...this.#scales(),
     };
     context.clearRect(0, 0, width, height);
     drawAxes(context, this.frame, x.name, y.name);
@@ -239,25 +283,23 @@ export class ImpactPlot {
       context.textBaseline = 'bottom';
       context.fillText(name, this.frame.left + this.frame.width, this.frame.top - 6);
     }
-    this.#hinting = this.#impacts.end === 0;
-    if (empty || this.#hinting) {
+    this.#hinting = this.#vacant;
+    const lacks =
+      this.#impacts.end > 0 &&
+      !(this.#extent.x.high >= this.#extent.x.low && this.#extent.y.high >= this.#extent.y.low);
+    if (lacks || this.#hinting) {
       context.font = `12px ${SANS}`;
       context.fillStyle = colours.muted;
       context.textAlign = 'center';
       context.textBaseline = 'middle';
       context.fillText(
-        this.#impacts.end > 0 && lacking ? lacking : hint,
+        lacks && lacking ? lacking : hint,
         this.frame.left + this.frame.width / 2,
         this.frame.top + this.frame.height / 2 - 14,
         this.frame.width - 16,
       );
     }
-    context.lineWidth = 1.5;
-    context.strokeStyle = colours.measured;
-    for (const [across, up] of this.#laid) {
-      drawMark(context, 2, toX(this.frame, across), toY(this.frame, up), 3.6);
-      context.stroke();
-    }
+    this.#companions?.drawUnder(context);
     this.#drawn = 0;
     this.#stale = false;
   }
@@ -265,6 +307,7 @@ export class ImpactPlot {
   #highlight() {
     const { context, width, height } = this.layers[1];
     context.clearRect(0, 0, width, height);
+    this.#companions?.drawOver(context);
     this.over?.(context);
     const { begin, end } = this.#impacts;
     const place = [this.#pointed, this.#shown].find((one) => one !== null && one >= begin && one < end) ?? end - 1;

@@ -1,5 +1,6 @@
 // The interaction with all charts of the impacts: one selection, one impact pointed at, a start by a click, a lab's own impacts.
 
+import { Ghost } from './ghost.js';
 import { Selection } from '../../run/selection.js';
 import { drawContacts } from './overlay.js';
 import { h } from '../../dom/elements.js';
@@ -14,19 +15,21 @@ import { styles } from '../../panels/card.js';
  * @property {import('../../scene/scene-view.js').SceneView} view
  * @property {import('./impact-plot.js').ImpactPlot[]} plots
  * @property {() => import('../../api/scene-fields.js').Scene | null} typed what a run would be released with; null while some of it is no value
+ * @property {() => URLSearchParams | null} query the same as a query
  * @property {import('../../api/scene-fields.js').Field[]} fields
  * @property {(values: Record<string, number>) => void} launch
  * @property {() => void} changed what the address says
  */
 
-const BY_POINTER = 'Drag over a plot to select impacts; click in a plane to say where a run first lands.';
+const BY_POINTER = 'Drag over a plot to select impacts; click in a plane to place a release there.';
 const BY_KEYS =
-  'Left and right go from impact to impact, with Shift they select; Enter starts a run whose first impact is that one; Escape clears the selection.';
+  'Left and right go from impact to impact, with Shift they select; Enter offers a release whose first impact is that one, a second Enter releases it; Escape drops it and clears the selection.';
 
 export class PlotInteraction {
   #bar;
   #page;
   #selection;
+  #ghost;
   #told = h('span', { id: 'brush-told' }, BY_POINTER);
   #clear = h(
     'button',
@@ -70,17 +73,25 @@ export class PlotInteraction {
     selection.changed = () => this.#selected();
     bar.append(this.#told, this.#clear, this.#load, this.#file, this.#hint, this.#spoken);
     view.under = (surface, scale, scene) => drawContacts(surface, scale, scene, impacts, selection);
+    const say = (/** @type {string} */ words) => {
+      this.#spoken.textContent = words;
+    };
+    this.#ghost = new Ghost({
+      ...page,
+      plots,
+      say,
+      preview: (answer) => /** @type {any} */ (view).preview?.(answer),
+    });
     for (const plot of plots) {
       listen(plot, {
         ...page,
         impacts,
         selection,
+        ghost: this.#ghost,
         point: (place) => {
           for (const one of plots) one.point(place);
         },
-        say: (words) => {
-          this.#spoken.textContent = words;
-        },
+        say,
       });
       const { box } = plot.figure;
       box.setAttribute('aria-describedby', this.#hint.id);
@@ -108,6 +119,11 @@ export class PlotInteraction {
       event.preventDefault();
       void this.#take(event.dataTransfer?.files[0]);
     });
+  }
+
+  /** What a click has offered was of the scene before. */
+  sceneChanged() {
+    this.#ghost.drop();
   }
 
   query() {

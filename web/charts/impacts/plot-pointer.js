@@ -14,7 +14,7 @@ import { angleStart, velocityStart, within } from '../../physics/first-impact.js
  * @property {import('../../run/selection.js').Selection} selection
  * @property {() => import('../../api/scene-fields.js').Scene | null} typed what a run would be released with; null while some of it is no value
  * @property {import('../../api/scene-fields.js').Field[]} fields
- * @property {(values: Record<string, number>) => void} launch
+ * @property {import('./ghost.js').Ghost | null} ghost the release that a click offers; null where nothing is released
  * @property {(place: number | null) => void} point at an impact, in all plots
  * @property {(words: string) => void} say aloud
  */
@@ -33,7 +33,7 @@ export function listen(plot, page) {
   /** @type {(Place & {id: number, before: import('../../run/selection.js').Limits[]}) | null} */
   let pressed = null;
   let dragging = false;
-  /** The place that a finger has tapped last. @type {Place | null} */
+  /** The place that a click or a tap has offered. @type {Place | null} */
   let tapped = null;
   /** The impact that keys stand at, and where they began to select. @type {number | null} */
   let cursor = null;
@@ -95,24 +95,24 @@ export function listen(plot, page) {
   };
 
   /** Shows the action that a click would take. @param {Place | null} place */
-  const offer = (place, verb = 'click') => {
+  const offer = (place) => {
     const values = plot.meaning.start && place && inside(place) ? valuesAt(place) : null;
     const start = values && startAt(values.x, values.y);
     offered =
       place && start
-        ? { ...place, words: start.values ? `${verb}: ${start.words}` : start.words, possible: start.values !== null }
+        ? { ...place, words: start.values ? `click: ${start.words}` : start.words, possible: start.values !== null }
         : null;
     invalidate(plot);
   };
 
   /** @param {number} x @param {number} y */
   const start = (x, y) => {
-    if (!plot.meaning.start) return;
+    if (!plot.meaning.start || !page.ghost) return;
     const found = startAt(x, y);
-    if (!found) return page.say('Nothing can be released: a parameter is not a number.');
     offer(null);
-    if (found.values) page.launch(found.values);
-    page.say(found.values ? `Released anew for a first impact there: ${found.words}` : found.words);
+    if (found?.values) return page.ghost.offer(plot, { x, y }, found.values, found.words);
+    page.ghost.drop();
+    page.say(found ? found.words : 'Nothing can be released: a parameter is not a number.');
   };
 
   /** Selects what lies between two places; with numbers no longer than the pixels tell. @param {Place} from @param {Place} to */
@@ -170,16 +170,16 @@ export function listen(plot, page) {
     const dragged = dragging;
     release();
     if (dragged) return page.say(count());
-    const again = tapped !== null && Math.hypot(tapped.x - place.x, tapped.y - place.y) < NEAR;
-    // A finger cannot look before it acts: its first tap points, its second one there acts.
-    if (event.pointerType === 'touch' && !again) {
-      tapped = place;
-      page.point(nearest(place));
-      return offer(place, 'tap again');
-    }
-    const values = valuesAt(tapped ?? place);
-    tapped = null;
+    // A finger is not as exact as the tip of a mouse.
+    const near = event.pointerType === 'touch' ? NEAR : SLIP;
+    const again = tapped !== null && Math.hypot(tapped.x - place.x, tapped.y - place.y) < near;
+    if (again && page.ghost?.offered?.plot === plot) return page.ghost.release();
+    tapped = place;
+    if (event.pointerType === 'touch') page.point(nearest(place));
+    const values = valuesAt(place);
     start(values.x, values.y);
+    // A finger does not hover, so that the reason stays to be read.
+    if (event.pointerType === 'touch' && !page.ghost?.offered) offer(place);
   });
   box.addEventListener('pointercancel', cancel);
   box.addEventListener('pointerleave', (event) => {

@@ -1,0 +1,280 @@
+// The planes beside the run's own dots: impacts to come as rings, runs to compare with, a release that is offered before it runs.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, ink, reachImpact, reachPhase, speedUp } from './stage.js';
+
+const stage = await Stage.open();
+const spoken = (page, words) => page.locator('#impacts-spoken', { hasText: words }).waitFor({ state: 'attached' });
+
+/** How many pixels of a plot's upper canvas have a colour of the style sheet, within the frame of its axes. */
+async function above(page, id, property) {
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  return page
+    .locator(`#${id} canvas`)
+    .nth(1)
+    .evaluate((canvas, name) => {
+      const probe = document.createElement('canvas').getContext('2d');
+      probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+      probe.fillRect(0, 0, 1, 1);
+      const [r, g, b] = probe.getImageData(0, 0, 1, 1).data;
+      const copy = Object.assign(document.createElement('canvas'), {
+        width: canvas.width,
+        height: canvas.height,
+      }).getContext('2d', { willReadFrequently: true });
+      copy.drawImage(canvas, 0, 0);
+      const { data } = copy.getImageData(45, 25, canvas.width - 54, canvas.height - 62);
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4)
+        if (data[i + 3] > 90 && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 40)
+          count += 1;
+      return count;
+    }, property);
+}
+
+/** The page with its plots reachable, as the parts of the page reach them. */
+async function open(query = '?preset=case-1', options = {}) {
+  const opened = await stage.page(query, options);
+  await opened.page.locator('#plane-angle .canvas-box[aria-describedby]').waitFor();
+  return opened;
+}
+
+/** Two planes of impacts of their own, beside those of the page. */
+async function bench(page) {
+  await page.evaluate(async () => {
+    const [{ Impacts, COLUMNS }, { anglePlane }] = await Promise.all([
+      import('./run/impacts.js'),
+      import('./charts/impacts/phase-planes.js'),
+    ]);
+    const impacts = new Impacts();
+    const plot = anglePlane(impacts);
+    plot.figure.element.id = 'own';
+    document.querySelector('#charts').append(plot.figure.element);
+    const columns = { n: [], theta: [], theta_dot: [] };
+    for (let n = 1; n <= 200; n += 1) {
+      columns.n.push(n);
+      columns.theta.push(0.3 * Math.cos(n));
+      columns.theta_dot.push(1.1 * Math.sin(n));
+    }
+    Object.assign(globalThis, {
+      plot,
+      columns,
+      strike: (count, aside = 0) => {
+        for (let k = 0; k < count; k += 1) {
+          const n = impacts.end + 1;
+          impacts.append({
+            ...Object.fromEntries(COLUMNS.map((name) => [name, 0])),
+            n,
+            theta: 0.3 * Math.cos(n) + aside,
+            theta_dot: 1.1 * Math.sin(n),
+          });
+        }
+        plot.draw(performance.now());
+      },
+    });
+  });
+  await page.locator('#own').scrollIntoViewIfNeeded();
+  await page.waitForFunction(() => globalThis.plot.layers[0].width > 0);
+}
+
+const scales = (page) => page.evaluate(() => [globalThis.plot.frame.x, globalThis.plot.frame.y]);
+const settled = (page) => page.waitForTimeout(150);
+
+test('impacts to come are rings with a legend, and give way to the dots of the same run only', async () => {
+  const { page, clean } = await open();
+  await bench(page);
+  assert.equal(await above(page, 'own', '--muted'), 0);
+  await page.evaluate(() => globalThis.plot.preview(globalThis.columns));
+  await settled(page);
+  const rings = await above(page, 'own', '--muted');
+  assert.ok(rings > 400, `rings: ${rings}`);
+  assert.equal(await ink(page, '#own', '--series-0'), 0, 'no ring is a dot');
+  const before = await scales(page);
+  // The same run: each dot takes the place of its ring.
+  await page.evaluate(() => globalThis.strike(100));
+  const half = await above(page, 'own', '--muted');
+  assert.ok(half < 0.65 * rings && half > 0.35 * rings, `${half} of ${rings}`);
+  assert.ok((await ink(page, '#own', '--series-0')) > 300);
+  assert.deepEqual(await scales(page), before, 'the axes stay');
+  // Another run leaves the rest as it is.
+  await page.evaluate(() => globalThis.strike(60, 0.01));
+  const other = await above(page, 'own', '--muted');
+  assert.ok(other > 0.9 * half, `${other} of ${half}`);
+  await page.evaluate(() => globalThis.plot.preview(null));
+  await settled(page);
+  assert.ok((await above(page, 'own', '--muted')) < 60);
+  clean();
+});
+
+test('the axes hold rings and dots, and do not jump while a slider moves', async () => {
+  const { page, clean } = await open();
+  await bench(page);
+  const seen = new Set();
+  for (let step = 0; step <= 20; step += 1) {
+    await page.evaluate(
+      (factor) => {
+        const { plot, columns } = globalThis;
+        const scaled = (all) => all.map((value) => value * factor);
+        plot.preview({ n: columns.n, theta: scaled(columns.theta), theta_dot: scaled(columns.theta_dot) });
+      },
+      1 - step * 0.02,
+    );
+    await page.waitForTimeout(20);
+    seen.add(JSON.stringify(await scales(page)));
+  }
+  assert.ok(seen.size <= 2, [...seen].join('\n'));
+  const wide = JSON.parse([...seen].at(-1));
+  await page.evaluate(() => {
+    const { plot, columns } = globalThis;
+    plot.preview({ ...columns, theta: columns.theta.map((value) => value * 4) });
+  });
+  await settled(page);
+  const [x] = await scales(page);
+  assert.ok(x.high >= 1.2 && x.high > wide[0].high, 'a larger orbit is held at once');
+  await page.evaluate(() => {
+    const { plot, columns } = globalThis;
+    plot.preview({ ...columns, theta: columns.theta.map((value) => value / 10) });
+  });
+  await settled(page);
+  assert.ok((await scales(page))[0].high < 0.2, 'a far smaller one does not stay a speck');
+  clean();
+});
+
+test('runs to compare with have their own symbols and colours, and a legend', async () => {
+  const { page, clean } = await open();
+  await bench(page);
+  await page.evaluate(() => {
+    const { plot, columns } = globalThis;
+    plot.references([
+      { columns, symbol: '■', colour: 'series-1', label: 'B' },
+      {
+        columns: { ...columns, theta: columns.theta.map((value) => -0.5 * value) },
+        symbol: 3,
+        colour: '#c0ffee',
+        label: 'C',
+      },
+    ]);
+  });
+  await settled(page);
+  assert.ok((await scales(page))[0].high >= 0.3);
+  const far = await page.evaluate(() => {
+    const { canvas } = globalThis.plot.layers[0];
+    const copy = Object.assign(document.createElement('canvas'), {
+      width: canvas.width,
+      height: canvas.height,
+    }).getContext('2d', { willReadFrequently: true });
+    copy.drawImage(canvas, 0, 0);
+    const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+    const count = ([r, g, b]) => {
+      let found = 0;
+      for (let i = 0; i < data.length; i += 4)
+        if (data[i + 3] > 120 && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 20)
+          found += 1;
+      return found;
+    };
+    return { orange: count([0xd5, 0x5e, 0]), pale: count([0xc0, 0xff, 0xee]) };
+  });
+  assert.ok(far.orange > 300 && far.pale > 300, JSON.stringify(far));
+  // Its name is spoken anew once a second.
+  await page.waitForTimeout(1100);
+  await page.evaluate(() => globalThis.plot.redraw());
+  await page.locator('#own .canvas-box[aria-label*="dots of B"]').waitFor();
+  await page.evaluate(() => {
+    globalThis.plot.references([]);
+  });
+  await settled(page);
+  assert.equal(await ink(page, '#own', '--series-1'), 0);
+  clean();
+});
+
+async function boxOf(page, id) {
+  const box = page.locator(`#${id} .canvas-box`);
+  await box.scrollIntoViewIfNeeded();
+  return box.boundingBox();
+}
+
+test('a click offers a release with its values and impacts; its button, Enter and a second click release it', async () => {
+  const { page, clean } = await open();
+  const state = () => page.locator('#run-state').getAttribute('data-phase');
+  const { x, y, width, height } = await boxOf(page, 'plane-angle');
+  const place = [x + width * 0.6, y + height * 0.42];
+  const before = page.url();
+  for (const release of [
+    () => page.click('#ghost-release'),
+    () => page.keyboard.press('Enter'),
+    () => page.mouse.click(...place),
+  ]) {
+    const asked = page.waitForResponse((response) => /trajectories.*theta=/.test(response.url()));
+    await page.mouse.click(...place);
+    await spoken(page, /^θ₀ .*Enter releases there/);
+    assert.match(await page.locator('.ghost').innerText(), /θ₀.*rad.*θ̇₀.*rad\/s/s);
+    assert.equal((await (await asked).json()).impacts.n.length, 200);
+    await page.waitForFunction(() => {
+      const canvas = document.querySelectorAll('#plane-velocity canvas')[1];
+      const copy = Object.assign(document.createElement('canvas'), {
+        width: canvas.width,
+        height: canvas.height,
+      }).getContext('2d', { willReadFrequently: true });
+      copy.drawImage(canvas, 0, 0);
+      return copy.getImageData(0, 0, canvas.width, canvas.height).data.some((value) => value > 0);
+    });
+    assert.equal(await state(), 'idle', 'nothing runs yet');
+    assert.equal(page.url(), before, 'nor is the address another one');
+    await release();
+    await spoken(page, /Released anew/);
+    await reachImpact(page, 1);
+    assert.equal(await page.locator('.ghost').count(), 0);
+    await page.goBack();
+    await reachPhase(page, 'idle');
+  }
+  clean();
+});
+
+test('Escape, the cross, a click elsewhere and an edit drop what is offered', async () => {
+  const { page, clean } = await open();
+  const click = async (across, down) => {
+    const { x, y, width, height } = await boxOf(page, 'plane-velocity');
+    await page.mouse.click(x + width * across, y + height * down);
+    await page.locator('.ghost', { hasText: 'Release here' }).waitFor();
+  };
+  for (const drop of [
+    () => page.keyboard.press('Escape'),
+    () => page.click('.ghost-drop'),
+    () => page.click('#plane-velocity h3'),
+    () => page.fill('#field-release-theta', '0.21'),
+  ]) {
+    await click(0.6, 0.6);
+    await drop();
+    await page.locator('.ghost').waitFor({ state: 'detached' });
+  }
+  assert.equal(await page.locator('#run-state').getAttribute('data-phase'), 'idle');
+  // Another click moves it instead.
+  await click(0.6, 0.6);
+  const first = await page.locator('.ghost p').innerText();
+  await click(0.4, 0.75);
+  assert.notEqual(await page.locator('.ghost p').innerText(), first);
+  assert.equal(await page.locator('.ghost').count(), 1);
+  clean();
+});
+
+test('a release is offered with keys alone, beside a run that goes on', async () => {
+  const { page, clean } = await open();
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 5);
+  await page.locator('#plane-angle .canvas-box').focus();
+  await page.keyboard.press('Home');
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Enter');
+  await spoken(page, /Enter releases there/);
+  assert.equal(await page.locator('#run-state').getAttribute('data-phase'), 'running');
+  await page.keyboard.press('Tab');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'ghost-release');
+  await page.keyboard.press('Escape');
+  assert.equal(await page.evaluate(() => document.activeElement.className), 'canvas-box');
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Enter');
+  await spoken(page, /Released anew/);
+  await page.waitForFunction(() => /scene\.release\.theta=/.test(location.search));
+  clean();
+});
