@@ -1,18 +1,14 @@
 // The frame around a chart: title, sentence, picture with a name, readout, table of its numbers.
 
-import { table as numberTable } from '../dom/tables.js';
-import { enlarger } from '../export/enlarge-button.js';
 import { h } from '../dom/elements.js';
 import { unbroken } from '../dom/numbers.js';
-import { UNITS, shownUnit } from '../dom/units.js';
+import { UNITS } from '../dom/units.js';
 
 /**
  * @typedef {object} Table the numbers behind a picture
  * @property {string[]} head
  * @property {() => string[][]} rows newest first
  */
-
-const LISTED = 50;
 
 export class Figure {
   element;
@@ -21,7 +17,8 @@ export class Figure {
   #head;
   #readout;
   #table;
-  #body;
+  /** The table, once it was opened. @type {import('./figure-numbers.js').FigureNumbers | null} */
+  #numbers = null;
   #disclosure;
   #named_ms = -Infinity;
   #listed_ms = -Infinity;
@@ -38,20 +35,12 @@ export class Figure {
     this.#table = table;
     this.box = h('div', { class: 'canvas-box', role: 'img', 'aria-label': 'Nothing to show yet' });
     this.#readout = h('output', { class: 'readout', 'aria-live': 'off' });
-    this.#body = h('tbody');
-    const heads = table.head.map((name) => h('span', {}, shownUnit(name)));
     document.addEventListener(UNITS, () => {
-      for (const [index, name] of table.head.entries()) heads[index].textContent = shownUnit(name);
       this.#named_ms = -Infinity;
       this.#listed_ms = -Infinity;
       this.list(Infinity);
     });
-    this.#disclosure = h(
-      'details',
-      { toggle: () => this.list(Infinity) },
-      h('summary', {}, 'Numbers'),
-      numberTable(`Numbers: ${title}`, heads, this.#body),
-    );
+    this.#disclosure = h('details', { toggle: () => void this.#open() }, h('summary', {}, 'Numbers'));
     this.#head = h('div', { class: 'card-head' }, h('h3', {}, title));
     this.element = h(
       'figure',
@@ -63,9 +52,17 @@ export class Figure {
     );
   }
 
-  /** Offers to save and to enlarge it. @param {() => import('../export/save-actions.js').Saves} saves */
-  offer(saves) {
-    this.#head.append(enlarger(this.element, this.title, saves));
+  /** Adds a button to its head. @param {HTMLElement} button */
+  offer(button) {
+    this.#head.append(button);
+  }
+
+  /** Fills the table, which loads when it is opened for the first time. */
+  async #open() {
+    const late = await import('./figure-numbers.js').catch(() => null);
+    if (!late) return;
+    this.#numbers ??= new late.FigureNumbers(this.#disclosure, this.title, this.#table);
+    this.list(Infinity);
   }
 
   /** @param {string} text */
@@ -88,11 +85,6 @@ export class Figure {
   list(now_ms) {
     if (!this.#disclosure.open || now_ms - this.#listed_ms < 1000) return;
     this.#listed_ms = now_ms === Infinity ? -Infinity : now_ms;
-    this.#body.replaceChildren(
-      ...this.#table
-        .rows()
-        .slice(0, LISTED)
-        .map((cells) => h('tr', {}, ...cells.map((cell) => h('td', {}, cell)))),
-    );
+    this.#numbers?.fill();
   }
 }

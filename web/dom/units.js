@@ -19,7 +19,8 @@ function stored() {
 }
 
 /** @type {Angles} */
-let shown = asked(location.search) ?? stored();
+// Formulas of the page are tested without one.
+let shown = asked(globalThis.location?.search ?? '') ?? stored();
 
 /** The unit in which angles are shown. */
 export const angles = () => shown;

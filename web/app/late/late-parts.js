@@ -23,7 +23,8 @@ export async function bringLateParts(page) {
   await Promise.all(['form/form.css', 'export/export.css'].map(styles)).catch(() => {});
   const { plots, circle, view, fields, run } = page;
   for (const one of [...plots, circle]) {
-    one.figure.offer(() => savesOf(page, one.figure.id, one.figure.title, one));
+    const { figure } = one;
+    figure.offer(enlarger(figure.element, figure.title, () => savesOf(page, figure.id, figure.title, one)));
   }
   const card = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
   card.querySelector('.card-head')?.append(enlarger(card, 'Scene', () => savesOf(page, 'scene', 'Scene', view)));

@@ -25,6 +25,8 @@ import { drawMark } from '../marks.js';
  */
 
 const SYMBOLS = '●■◆▲';
+/** Scales stay while what they hold takes more than this share of them. */
+const STAYS = 0.45;
 /** The radius of a ring, px. */
 const RING = 2.2;
 /** Numbers of one run and of its preview differ by no more than this, of their size: they are the same bounce. */
@@ -90,6 +92,30 @@ export class Companions {
       include(extent.y, y);
     }
     if (extent.x.low > extent.x.high && !this.ghost?.clicked) this.#hold(extent, this.ghost?.columns ?? null);
+  }
+
+  /**
+   * Scales that stay while rings come and go within them.
+   * @param {{x: Range, y: Range}} wanted
+   * @param {{x: Range, y: Range}} extent of what there is
+   */
+  steady(wanted, extent) {
+    const { frame } = this.#plot;
+    if (!this.rings || frame.width === 0) return wanted;
+    /** @param {'x' | 'y'} axis */
+    const range = (axis) => {
+      const [now, next, held] = [frame[axis], wanted[axis], extent[axis]];
+      const holds = now.low <= held.low && now.high >= held.high;
+      return holds && next.high - next.low > STAYS * (now.high - now.low) ? now : next;
+    };
+    return { x: range('x'), y: range('y') };
+  }
+
+  /** True when marks of this kind do not need the plot to be drawn anew. @param {string} kind @param {{x: Range, y: Range}} scales */
+  fits(kind, { x, y }) {
+    const { frame } = this.#plot;
+    const same = (/** @type {Range} */ a, /** @type {Range} */ b) => a.low === b.low && a.high === b.high;
+    return (kind === 'preview' || kind === 'ghost') && same(x, frame.x) && same(y, frame.y);
   }
 
   /** @param {{x: Range, y: Range}} extent @param {Columns | null} columns */

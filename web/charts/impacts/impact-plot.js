@@ -37,9 +37,6 @@ import { invalidate, surfaces } from '../surface.js';
 /** More dots than these are drawn pixel by pixel, and small. */
 export const MANY = 20_000;
 
-/** Scales stay while what they hold takes more than this share of them. */
-const STAYS = 0.45;
-
 export class ImpactPlot {
   figure;
   meaning;
@@ -123,40 +120,25 @@ export class ImpactPlot {
   }
 
   /** Measured points, drawn under the dots and held by the scales. @param {[number, number][]} points */
-  lay(points) {
-    this.#beside('measured', points);
-  }
+  lay = (points) => this.#beside('measured', points);
 
   /** Impacts to come, as rings that give way to the dots of the run. @param {import('./companions.js').Columns | null} columns */
-  preview(columns) {
-    this.#beside('preview', columns);
-  }
+  preview = (columns) => this.#beside('preview', columns);
 
   /** Runs to compare with. @param {import('./companions.js').Reference[]} references */
-  references(references) {
-    this.#beside('references', references);
-  }
+  references = (references) => this.#beside('references', references);
 
   /** A release that is only offered. @param {import('./companions.js').Offered | null} ghost */
-  ghost(ghost) {
-    this.#beside('ghost', ghost);
-  }
+  ghost = (ghost) => this.#beside('ghost', ghost);
 
   /** @param {'measured' | 'preview' | 'references' | 'ghost'} kind @param {any} marks */
-  #beside(kind, marks) {
-    // Without their module the run has its dots all the same.
-    import('./companions.js').then(
-      ({ Companions }) => {
-        this.#companions ??= new Companions(this, this.#impacts);
-        this.#companions[kind] = marks;
-        const { x, y } = this.#scales();
-        const held = x.low === this.frame.x.low && x.high === this.frame.x.high;
-        const same = held && y.low === this.frame.y.low && y.high === this.frame.y.high;
-        if (same && this.#hinting === this.#vacant && (kind === 'preview' || kind === 'ghost')) invalidate(this);
-        else this.redraw();
-      },
-      () => {},
-    );
+  async #beside(kind, marks) {
+    const late = await import('./companions.js').catch(() => null);
+    if (!late) return;
+    this.#companions ??= new late.Companions(this, this.#impacts);
+    this.#companions[kind] = marks;
+    if (this.#companions.fits(kind, this.#scales()) && this.#hinting === this.#vacant) invalidate(this);
+    else this.redraw();
   }
 
   /** True when there is no dot, nor a ring. */
@@ -240,22 +222,21 @@ export class ImpactPlot {
     }
   }
 
-  /** The scales that hold what there is, and stay while rings come and go within them. */
+  /** The scales that hold what there is. */
   #scales() {
     const extent = structuredClone(this.#extent);
     for (const { value } of this.meaning.levels?.() ?? []) include(extent.y, value);
     this.#companions?.extend(extent);
     /** @param {'x' | 'y'} axis */
     const range = (axis) => {
-      const { low, high } = extent[axis];
       const wish = this.meaning[axis];
-      if (!(high >= low)) return roundRange({ low: 0, high: 0 }, { ...wish, span: wish.span || 1 });
-      const now = this.frame[axis];
-      const next = roundRange({ low, high }, wish);
-      const holds = now.low <= low && now.high >= high && next.high - next.low > STAYS * (now.high - now.low);
-      return holds && this.#companions?.rings && this.frame.width > 0 ? now : next;
+      const { low, high } = extent[axis];
+      return high >= low
+        ? roundRange({ low, high }, wish)
+        : roundRange({ low: 0, high: 0 }, { ...wish, span: wish.span || 1 });
     };
-    return { x: range('x'), y: range('y') };
+    const wanted = { x: range('x'), y: range('y') };
+    return this.#companions?.steady(wanted, extent) ?? wanted;
   }
 
   /** The empty plot with its scales. */
