@@ -11,7 +11,7 @@ export class FigureNumbers {
   #heads;
   #body = h('tbody');
 
-  /** @param {HTMLElement} place @param {string} title of the chart @param {import('./figure.js').Table} table */
+  /** @param {HTMLElement} place @param {string} title of the chart @param {{head: string[], rows: () => string[][]}} table */
   constructor(place, title, table) {
     this.#table = table;
     this.#heads = table.head.map(() => h('span'));

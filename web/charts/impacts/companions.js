@@ -5,6 +5,7 @@ import { SANS, theme } from '../theme.js';
 import { drawMark } from '../marks.js';
 
 /** @typedef {import('../axes.js').Range} Range */
+/** @typedef {{frame: import('../axes.js').Frame, meaning: Record<'x' | 'y', {column: import('../../run/impacts.js').Lasting}>}} Plot on which they are drawn */
 /** @typedef {Record<string, ArrayLike<number | null> | undefined>} Columns of impacts, as `/v1/trajectories` answers */
 
 /**
@@ -48,7 +49,7 @@ export class Companions {
   /** Places of the preview's rings that the run has not reached, for so many impacts. @type {{of: Columns | null, end: number, places: number[]}} */
   #ahead = { of: null, end: -1, places: [] };
 
-  /** @param {import('./impact-plot.js').ImpactPlot} plot @param {import('../../run/impacts.js').Impacts} impacts */
+  /** @param {Plot} plot @param {import('../../run/impacts.js').Impacts} impacts */
   constructor(plot, impacts) {
     this.#plot = plot;
     this.#impacts = impacts;
