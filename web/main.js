@@ -27,6 +27,8 @@ const page = new Page(watcherOf, (page) => ({
 
 /** @param {string} words @param {string} label @param {() => void} again */
 function failed(words, label, again) {
+  // The looks of notices come late too.
+  document.head.append(h('link', { rel: 'stylesheet', href: 'app/app.css' }));
   const button = h('button', { type: 'button', click: again }, label);
   notice('server', [words, button], { dismissible: false, caution: true });
 }
