@@ -41,7 +41,7 @@ async function begin() {
     knowTitles(page.fields);
     page.cases = list.scenes;
   } catch {
-    page.verdict.fail('The server does not answer.');
+    byId('verdict').textContent = 'The server does not answer.';
     return failed('The server does not answer. ', 'Try again', begin);
   }
   page.controls.knowGain(page.fields.find((field) => field.path === GAIN) ?? null);
@@ -52,10 +52,18 @@ async function begin() {
   // The plots of the first look are drawn in the next frame; what nobody sees yet comes after.
   await new Promise((resolve) => requestAnimationFrame(resolve));
   performance.mark('first plot');
-  const late = await import('./app/late/late-parts.js').catch(() => null);
+  const [following, late] = await Promise.all([
+    import('./app/follow.js')
+      .then(({ beginToFollow }) => beginToFollow(page))
+      .then(
+        () => true,
+        () => false,
+      ),
+    import('./app/late/late-parts.js').catch(() => null),
+  ]);
   if (late) await late.bringLateParts(page);
   // A browser remembers a module that it did not get, so that only a fresh page gets it.
-  else failed('Part of the page did not load. ', 'Load it again', () => location.reload());
+  if (!late || !following) failed('Part of the page did not load. ', 'Load it again', () => location.reload());
 }
 
 function offerCases() {

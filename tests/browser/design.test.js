@@ -98,7 +98,7 @@ test('a link keeps noise and limits, and the form wants one law or the other', a
   await page.selectOption('#field-noise-model', 'plan');
   await page.waitForFunction(() => /tilt_gain=null/.test(location.search) && /noise\.model=plan/.test(location.search));
   await verdict(page);
-  assert.match(await page.locator('#verdict .reason').innerText(), /noise/, 'the server took it');
+  assert.match(await page.locator('#verdict-more .reason').innerText(), /noise/, 'the server took it');
   assert.equal(await page.locator('.field .error:not(:empty)').count(), 0);
   const second = await stage.page(new URL(page.url()).search);
   for (const [path, text] of [

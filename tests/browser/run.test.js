@@ -174,7 +174,7 @@ test('what was missed while the server was away is made up for', async () => {
   await stage.startServer();
   await reachPhase(page, 'running');
   await page.waitForFunction(() => /interventions\.0\.set\.table\.tilt_gain=1\.3/.test(location.search));
-  await page.locator('#verdict', { hasText: 'decided by' }).waitFor();
+  await page.locator('#verdict-more', { hasText: 'decided by' }).waitFor();
   assert.equal(await page.locator('#restart').innerText(), 'Restart');
 });
 

@@ -4,7 +4,6 @@ import { EigenvalueCircle } from '../charts/eigenvalue-circle.js';
 import { energyPlot } from '../charts/impacts/energy-plot.js';
 import { anglePlane, velocityPlane } from '../charts/impacts/phase-planes.js';
 import { byId } from '../dom/elements.js';
-import { Verdict } from '../panels/verdict/verdict.js';
 import { RunControls } from '../run/controls.js';
 import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
@@ -40,7 +39,12 @@ export class Page {
   lastSent = 'other';
   /** The element that names the scene's case. */
   chooser = byId('case', HTMLSelectElement);
-  verdict = new Verdict(byId('verdict'));
+  /** Comes after the first plot, with what asks for verdicts. @type {import('../panels/verdict/verdict.js').Verdict | null} */
+  verdict = null;
+  /** Asks for what belongs to the typed scene, once it is there; true when answers on the scene before are void. @type {(another: boolean) => void} */
+  follow = () => {};
+  /** The line on the run, once there is a run. @type {import('../panels/verdict/this-run.js').ThisRun | null} */
+  thisRun = null;
   circle = new EigenvalueCircle();
   run;
   view;

@@ -1,25 +1,18 @@
-// The state of the run in words, beside the scene and at its controls.
+// The state of the run in words, beside the scene, at its controls and beside the verdict.
 
 import { byId } from '../dom/elements.js';
-import { capitalized, prose } from '../dom/typeset.js';
 import { updateAddressSoon } from './address-bar.js';
 import { unplayed } from './queries.js';
 
-/** @param {import('./page.js').Page} page */
+/** @typedef {import('./page.js').Page} Page */
+
+/** @param {Page} page */
 export function showRun(page) {
   const { run, controls } = page;
-  const { phase, outcome, impacts } = run;
-  const words = run.words || 'Ready';
-  const state = byId('run-state');
-  if (state.textContent !== words) state.textContent = words;
-  state.dataset.phase = phase;
-  const ending = byId('outcome');
-  ending.hidden = phase !== 'ended' && impacts.missing === 0;
-  ending.replaceChildren(
-    ...(phase === 'ended'
-      ? prose(capitalized(outcome?.detail ?? ''))
-      : [`${impacts.missing} impacts were skipped over.`]),
-  );
+  const { phase } = run;
+  if (phase !== 'ended') tell(run.words || 'Ready');
+  byId('run-state').dataset.phase = phase;
+  showThisRun(page);
   controls.show(phase, phase !== 'idle' && unplayed(page).length > 0, page.typed !== undefined);
   if (run.active) {
     page.speed = run.clock.speed || page.speed;
@@ -27,4 +20,26 @@ export function showRun(page) {
     updateAddressSoon(page);
   }
   page.view.redraw();
+}
+
+/** @param {string} words */
+function tell(words) {
+  const state = byId('run-state');
+  if (state.textContent !== words) state.textContent = words;
+}
+
+/** The line on the run; its code comes with the first run. @param {Page} page */
+export function showThisRun(page) {
+  const { run, thisRun } = page;
+  if (thisRun) {
+    const words = thisRun.show(run, page.fields);
+    if (run.phase === 'ended') tell(words);
+  } else if (run.phase !== 'idle') void bringThisRun(page);
+}
+
+/** @param {Page} page */
+async function bringThisRun(page) {
+  const { ThisRun } = await import('../panels/verdict/this-run.js');
+  page.thisRun ??= new ThisRun(byId('this-run'));
+  showThisRun(page);
 }

@@ -6,8 +6,7 @@ import { h } from '../dom/elements.js';
 import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
 import { updateAddressSoon } from './address-bar.js';
 import { sendChanges } from './run-actions.js';
-import { showRun } from './run-state.js';
-import { askVerdict } from './verdict-request.js';
+import { showRun, showThisRun } from './run-state.js';
 
 /** @typedef {import('./page.js').Page} Page */
 
@@ -18,6 +17,7 @@ export const watcherOf = (page) => ({
     for (const plot of page.plots) invalidate(plot);
     page.interaction?.struck();
     page.view.redraw();
+    showThisRun(page);
   },
   cleared: () => {
     for (const plot of page.plots) plot.clear();
@@ -48,6 +48,6 @@ export const watcherOf = (page) => ({
 /** Makes up for what was missed while the server was away. @param {Page} page */
 function returned(page) {
   page.away = false;
-  if (page.unjudged) askVerdict(page);
+  if (page.unjudged) page.follow(false);
   sendChanges(page);
 }

@@ -9,20 +9,19 @@ import { readLink } from './link.js';
 import { GAIN } from './page.js';
 import { start } from './run-actions.js';
 import { caseOf, nameScene } from './typed/scene-name.js';
-import { askVerdict } from './verdict-request.js';
 
 /** @typedef {import('./page.js').Page} Page */
 /** @typedef {import('./page.js').Scene} Scene */
 
-/** Tells all parts of the page that the typed scene is another one. @param {Page} page */
-export function sceneChanged(page) {
+/** Tells all parts of the page that the typed scene is another one. @param {Page} page @param {boolean} [another] answers on the scene before are void */
+export function sceneChanged(page, another = false) {
   nameScene(page, () => {
     if (page.chosen) choose(page, page.chosen);
   });
   page.view.draft(page.typed ?? {});
   page.plots[2].redraw();
   page.panels?.sceneChanged();
-  askVerdict(page);
+  page.follow(another);
 }
 
 /** Shows a scene without running it. @param {Page} page @param {Scene} scene */
@@ -30,7 +29,7 @@ function present(page, scene) {
   page.fill(scene);
   page.controls.setGain(valueAt(scene, GAIN) ?? null);
   page.controls.setSpeed(page.speed);
-  sceneChanged(page);
+  sceneChanged(page, true);
 }
 
 /** Shows a case; runs it where a run was going on. @param {Page} page @param {import('contract').Preset} one */

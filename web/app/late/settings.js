@@ -33,7 +33,7 @@ function offerUnits(page) {
   addEventListener('popstate', () => followAddress(location.search));
   document.addEventListener(UNITS, () => {
     show();
-    page.verdict.retell();
+    page.verdict?.retell();
     page.view.redraw();
     updateAddress(page);
   });

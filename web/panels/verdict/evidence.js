@@ -24,7 +24,7 @@ function sentences({ rotation_number: rotation, chaos, predictable_impacts: pred
     const turns =
       measured === null
         ? `Small deviations make ${number(linear)} turns a bounce`
-        : `The run makes ${number(measured)} turns a bounce, small deviations ${number(linear)}`;
+        : `A fresh release makes ${number(measured)} turns a bounce, small deviations ${number(linear)}`;
     found.push(
       /** @type {const} */ ([
         'Rotation',

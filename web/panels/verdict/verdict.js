@@ -1,59 +1,108 @@
-// The card of the verdict: waiting, failed, or with the newest answer.
+// The verdict on the setting: waiting, failed, held while there is no newer one, or with the newest answer.
 
-import { h, retryButton } from '../../dom/elements.js';
-import { capitalized } from '../../dom/typeset.js';
+import { h } from '../../dom/elements.js';
 
 /** @typedef {import('contract').Stability} Stability */
+/** @typedef {() => Promise<Stability>} Measure asks for the basin as well, which is dearer */
+
+const LABEL = () => h('p', { class: 'line-label' }, 'This setting');
 
 export class Verdict {
   #root;
+  /** What carries the verdict, after the line on the run. */
+  #more = h('div', { id: 'verdict-more' });
   /** The answer to show, once its code is loaded. @type {Stability | null} */
   #newest = null;
-  /** Shows the last answer anew, for another unit of angles. @type {() => void} */
-  retell = () => {};
+  /** The answer on the page, with the way to measure its basin. @type {[Stability, Measure] | null} */
+  #shown = null;
+  #busy = false;
   // Only the words are spoken, not the table of numbers at every turn of a knob.
   #spoken = h('p', { class: 'unseen', role: 'status' });
 
-  /** @param {HTMLElement} root */
-  constructor(root) {
+  /** @param {HTMLElement} root @param {HTMLElement} run the line on the run, which follows the one on the setting */
+  constructor(root, run) {
     this.#root = root;
-    this.#root.before(this.#spoken);
-    this.#root.append(h('p', { class: 'muted' }, 'Waiting for the server…'));
+    root.before(this.#spoken);
+    run.after(this.#more);
   }
 
-  /** Marks the card as out of date, an answer that is about to be shown included. @param {boolean} busy */
+  /** Shows the last answer anew, for another unit of angles. */
+  retell() {
+    if (this.#shown && !this.#root.classList.contains('stale')) void this.#draw(...this.#shown, false);
+  }
+
+  /** Marks the verdict as out of date. @param {boolean} busy */
   busy(busy) {
+    this.#busy = busy;
     if (busy) this.#newest = null;
     this.#root.setAttribute('aria-busy', String(busy));
   }
 
-  /** @param {string} words @param {() => void} [retry] */
-  fail(words, retry) {
+  /**
+   * Keeps the last verdict, dimmed, beside the reason why there is no newer one.
+   * @param {string} words
+   * @param {string} label of the way to mend it
+   * @param {() => void} act
+   */
+  hold(words, label, act) {
     this.busy(false);
     this.#newest = null;
-    this.retell = () => {};
+    const kept = this.#shown !== null;
     this.#spoken.textContent = `No verdict. ${words}`;
-    this.#root.replaceChildren(
-      h('p', { class: 'verdict-words none' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, '–'), ' No verdict'),
-      h('p', { class: 'muted' }, words),
-      retry ? retryButton(retry) : '',
+    for (const part of [this.#root, this.#more]) part.classList.toggle('stale', kept);
+    const reason = h(
+      'p',
+      { class: 'held' },
+      `${words} `,
+      h('button', { type: 'button', class: 'link', click: act }, label),
     );
+    const term = this.#root.querySelector('.verdict-term, .held');
+    if (kept && term) term.replaceWith(reason);
+    else
+      this.#root.replaceChildren(
+        LABEL(),
+        h(
+          'div',
+          { class: 'verdict-words none' },
+          h('p', { class: 'headline' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, '–'), ' No verdict'),
+        ),
+        reason,
+      );
   }
 
-  /** @param {Stability} answer @param {() => Promise<Stability>} measureBasin */
-  async show(answer, measureBasin) {
+  /** @param {string} words */
+  fail(words) {
+    this.#shown = null;
+    this.#root.replaceChildren();
+    this.hold(words, 'Load again', () => location.reload());
+  }
+
+  /**
+   * @param {Stability} answer
+   * @param {Measure} measure
+   * @param {boolean} newest false while the answer to a newer question is awaited
+   */
+  async show(answer, measure, newest) {
+    if (newest) this.#busy = false;
     this.#newest = answer;
-    this.retell = () => {
-      if (this.#newest) void this.show(answer, measureBasin);
-    };
+    await this.#draw(answer, measure, newest);
+  }
+
+  /** @param {Stability} answer @param {Measure} measure */
+  async #draw(answer, measure, newest = true) {
     const module = await import('./answer.js').catch(() => null);
-    if (this.#newest !== answer) return;
-    if (!module) return this.fail('Part of the page did not load.', () => location.reload());
-    this.busy(false);
-    this.#spoken.textContent = `Verdict: ${capitalized(answer.verdict ?? 'No verdict')}`;
-    const open = [...this.#root.querySelectorAll('details[open]')].map(({ className }) => className);
-    this.#root.replaceChildren(...module.answerParts(answer, measureBasin));
+    if (newest && this.#newest !== answer) return;
+    if (!module) return this.fail('Part of the page did not load.');
+    this.#shown = [answer, measure];
+    const { said, head, more } = module.answerParts(answer, measure);
+    for (const part of [this.#root, this.#more]) part.classList.remove('stale');
+    this.#root.replaceChildren(LABEL(), ...head);
+    const open = [...this.#more.querySelectorAll('details[open]')].map(({ className }) => className);
+    this.#more.replaceChildren(...more);
     // Details that somebody opened stay open while the numbers in it change.
-    for (const details of this.#root.querySelectorAll('details')) details.open = open.includes(details.className);
+    for (const details of this.#more.querySelectorAll('details')) details.open = open.includes(details.className);
+    if (!newest || this.#busy) return;
+    this.#root.setAttribute('aria-busy', 'false');
+    this.#spoken.textContent = `This setting: ${said}`;
   }
 }

@@ -1,0 +1,101 @@
+// The two lines of the verdict: on the setting, which rests on a fresh release, and on the run that is seen.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
+const thisRun = async (page) => plain(await page.locator('#this-run').innerText());
+
+test('the setting keeps balance in plain words, with the field’s term and the evidence below', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  assert.match(await verdict(page), /Keeps balance\s+Elliptic; 2000 bounces of a fresh release survived/);
+  assert.doesNotMatch(plain(await page.locator('#verdict-card').innerText()), /this run ended|_gain|\bnull\b/);
+  await page.click('#run');
+  await reachImpact(page, 2);
+  assert.match(await thisRun(page), /^This run\s+Bounce \d+\s*$/);
+  clean();
+});
+
+test('a run that falls says so in its own line, and nothing moves', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&scene.table.tilt_gain=1.49');
+  await verdict(page);
+  // All buttons of the scene's card are there.
+  await page.locator('#keys-list dt').first().waitFor({ state: 'attached' });
+  const boxes = () =>
+    page.evaluate(() =>
+      ['#scene-frame', '#verdict', '#this-run', '#verdict-more', '#charts', '#controls'].map((selector) => {
+        const { x, y, height } = document.querySelector(selector).getBoundingClientRect();
+        return [selector, x, y, selector === '#verdict-more' ? 0 : height];
+      }),
+    );
+  const before = await boxes();
+  await page.click('#run');
+  await reachPhase(page, 'ended');
+  const answer = await (
+    await fetch(`${stage.url}v1/trajectories?preset=case-1&scene.table.tilt_gain=1.49&impacts=200`)
+  ).json();
+  assert.match(
+    await thisRun(page),
+    new RegExp(`^This run\\s+Fell at bounce ${answer.outcome.impacts}\\s+The table struck too steeply\\.\\s+Details`),
+  );
+  assert.deepEqual(await boxes(), before, 'nothing jumps when it ends');
+  const details = page.locator('#this-run details');
+  assert.equal(await details.evaluate((element) => element.open), false);
+  await details.locator('summary').click();
+  assert.match(await thisRun(page), /does not rise again/);
+  clean();
+});
+
+test('a fall after a kick leaves the verdict on the setting as it was', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.05');
+  assert.match(await verdict(page), /Keeps balance/);
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 4);
+  await page.locator('.kick input').fill('4');
+  await page.click('#kick');
+  await page.waitForFunction(() => /kick\.theta_dot=4/.test(location.search));
+  const at = await page.evaluate(() => new URLSearchParams(location.search).get('interventions.0.impact'));
+  await reachPhase(page, 'ended');
+  assert.match(await thisRun(page), new RegExp(`Fell at bounce \\d+, after your kick at ${at}\\s`));
+  assert.match(await verdict(page), /Keeps balance\s+Elliptic; 2000 bounces of a fresh release survived/);
+  clean();
+});
+
+test('a fall after a change names what was changed', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2');
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 4);
+  await slide(page, '#gain', 1.7);
+  await reachPhase(page, 'ended');
+  assert.match(await thisRun(page), /Fell at bounce \d+, after your change of tilt gain at \d+/);
+  assert.match(await verdict(page), /Falls\s+Unstable; a fresh release fell at bounce \d+/);
+  clean();
+});
+
+test('one wrong field erases nothing: the last verdict stays, dimmed, and its message leads to the field', async () => {
+  const { page, wrongs } = await stage.page('?preset=case-1');
+  await verdict(page);
+  for (const text of ['much', '5000']) {
+    await page.locator('#field-table-tilt_gain').fill(text);
+    await page.locator('#verdict.stale').waitFor();
+    await page.waitForFunction(() => document.querySelector('#verdict[aria-busy=false]'));
+    assert.match(await verdict(page), /Keeps balance/);
+    assert.match(await page.locator('#verdict-more').innerText(), /decided by/);
+    await page.locator('#controls button').first().focus();
+    await page.locator('#verdict .held button').click();
+    await page.waitForFunction(() => document.activeElement.id === 'field-table-tilt_gain');
+  }
+  await page.locator('#field-table-tilt_gain').fill('1.2');
+  await page.locator('#verdict:not(.stale)[aria-busy=false]').waitFor();
+  assert.match(await verdict(page), /Keeps balance/);
+  // The browser itself notes every refusal by the server.
+  assert.deepEqual(
+    wrongs.filter((wrong) => !/status of 422/.test(wrong)),
+    [],
+  );
+});

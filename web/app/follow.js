@@ -1,0 +1,144 @@
+// Asks for the verdict and for a preview of the typed scene while it changes: one request of each kind at a time, always for the newest.
+
+import { Problem, get, server } from '../api/client.js';
+import { pathOf, valueAt } from '../api/scene-fields.js';
+import { byId } from '../dom/elements.js';
+import { debounce } from '../dom/debounce.js';
+import { Verdict } from '../panels/verdict/verdict.js';
+import { GAIN } from './page.js';
+import { typedQuery } from './queries.js';
+
+/** @typedef {import('./page.js').Page} Page */
+
+/** Least time between two requests of a kind, ms. */
+const PACE_MS = 60;
+/** An edit counts as settled after so long without another, ms. */
+const QUIET_MS = 150;
+/** Impacts of a preview. */
+const AHEAD = 200;
+
+class Follower {
+  #ask;
+  #wanted = false;
+  #begun_ms = -Infinity;
+  /** @type {number | undefined} */
+  #timer;
+  /** @type {AbortController | null} */
+  #request = null;
+
+  /** @param {(page: Page, signal: AbortSignal, newest: () => boolean) => Promise<void>} ask */
+  constructor(ask) {
+    this.#ask = ask;
+  }
+
+  /** @param {Page} page */
+  want(page) {
+    this.#wanted = true;
+    this.#next(page);
+  }
+
+  /** Gives up an answer that is out of date, so that the newest is not kept waiting. */
+  hurry() {
+    if (this.#wanted) this.#request?.abort();
+  }
+
+  /** @param {Page} page */
+  #next(page) {
+    if (!this.#wanted || this.#request || this.#timer !== undefined) return;
+    const wait_ms = Math.max(0, this.#begun_ms + PACE_MS - performance.now());
+    this.#timer = setTimeout(async () => {
+      this.#timer = undefined;
+      this.#wanted = false;
+      this.#begun_ms = performance.now();
+      const request = new AbortController();
+      this.#request = request;
+      await this.#ask(page, request.signal, () => !this.#wanted);
+      this.#request = null;
+      this.#next(page);
+    }, wait_ms);
+  }
+}
+
+const verdicts = new Follower(async (page, signal, newest) => {
+  const { circle } = page;
+  const scene = typedQuery(page);
+  if (!scene) {
+    return hold(page, 'A setting is no number.', 'Show it', () => {
+      page.form?.complain();
+      page.form?.focusError();
+    });
+  }
+  try {
+    const answer = await get(`v1/stability?${scene}`, signal);
+    if (signal.aborted) return;
+    page.unjudged = false;
+    page.form?.blame([]);
+    circle.show(answer);
+    circle.figure.element.classList.remove('stale');
+    // The slider may have gone on.
+    const gain = valueAt(page.typed ?? {}, GAIN);
+    if (typeof gain === 'number') circle.preview(gain);
+    const judged = { answer, scene };
+    page.judged = judged;
+    await page.verdict?.show(answer, () => get(`v1/stability?${scene}&basin=true`), newest());
+    if (newest()) tellPanels(page);
+    byId('build').textContent = server.build;
+  } catch (error) {
+    if (signal.aborted) return;
+    page.unjudged = !(error instanceof Problem);
+    if (error instanceof Problem && error.errors.length > 0) {
+      const elsewhere = page.form?.blame(error.errors) ?? [];
+      const blamed = page.fields.find(({ path }) => error.errors.some(({ pointer }) => pathOf(pointer) === path));
+      const words = elsewhere.join(' ') || 'There is no such scene.';
+      hold(page, words, blamed ? blamed.title : 'Show it', () => page.form?.focusError());
+    } else {
+      const words = error instanceof Problem ? error.message : 'The server does not answer.';
+      hold(page, words, 'Try again', () => page.follow(true));
+    }
+  }
+});
+
+const previews = new Follower(async (page, signal) => {
+  const scene = typedQuery(page);
+  if (!scene) return;
+  const answer = await get(`v1/trajectories?${scene}&impacts=${AHEAD}`, signal).catch(() => null);
+  // One of a scene that is wrong or out of date stays until there is another.
+  if (answer) preview(page, answer);
+});
+
+/** @param {Page} page @param {import('contract').Trajectory} answer */
+function preview(page, answer) {
+  for (const plot of page.plots) /** @type {any} */ (plot).preview?.(answer.impacts);
+  /** @type {any} */ (page.view).preview?.(answer);
+}
+
+/** Keeps the last verdict, dimmed, beside the reason why there is no newer one. @param {Page} page @param {string} words @param {string} label @param {() => void} act */
+function hold(page, words, label, act) {
+  page.verdict?.hold(words, label, act);
+  page.circle.figure.element.classList.add('stale');
+}
+
+/** Panels compute for longer, so they hear of a verdict once the scene has settled. */
+const tellPanels = debounce(QUIET_MS, (/** @type {Page} */ page) => {
+  if (page.judged) page.panels?.judged(page.judged);
+});
+
+function hurry() {
+  verdicts.hurry();
+  previews.hurry();
+}
+
+const settle = debounce(QUIET_MS, hurry);
+
+/** Begins to ask for what belongs to the typed scene. @param {Page} page */
+export function beginToFollow(page) {
+  page.verdict = new Verdict(byId('verdict'), byId('this-run'));
+  page.follow = (another) => {
+    page.verdict?.busy(true);
+    verdicts.want(page);
+    previews.want(page);
+    if (another) hurry();
+    else settle();
+  };
+  page.follow(false);
+}

@@ -1,0 +1,67 @@
+// The line on the run that is seen: its bounce, or how it ended and after what. The verdict is on another run, a fresh release.
+
+import { h } from '../../dom/elements.js';
+import { number } from '../../dom/numbers.js';
+import { capitalized, prose } from '../../dom/typeset.js';
+import { endedAs, reasonOf } from './plain-words.js';
+
+/** @typedef {import('../../run/run-state.js').RunState} RunState */
+
+const LABEL = () => h('p', { class: 'line-label' }, 'This run');
+
+/** The last thing that was done to a run up to an impact, as in “, after your kick at 7”. @param {RunState} run @param {number} until @param {import('../../api/scene-fields.js').Field[]} fields */
+function doneTo({ interventions }, until, fields) {
+  const last = interventions.findLast(({ impact }) => impact <= until);
+  if (!last) return '';
+  const [path] = Object.keys(last.set);
+  const title = fields.find((field) => field.path === path)?.title.toLowerCase();
+  const deed = Object.keys(last.kick).length > 0 ? 'kick' : `change of ${title ?? 'the settings'}`;
+  return `, after your ${deed} at ${number(last.impact, 8)}`;
+}
+
+/** The run in a line. @param {RunState} run @param {import('../../api/scene-fields.js').Field[]} fields */
+export function runWords(run, fields) {
+  const { phase, outcome, impacts } = run;
+  if (phase === 'ended' && outcome) {
+    const { kind, impacts: count } = outcome;
+    return capitalized(endedAs(kind, count)) + doneTo(run, count, fields);
+  }
+  if (phase === 'idle') return 'Not released yet';
+  if (phase === 'connecting') return 'Connecting…';
+  const n = impacts.last?.n ?? 0;
+  return n === 0 ? 'Released' : `Bounce ${number(n, 8)}${doneTo(run, n, fields)}`;
+}
+
+export class ThisRun {
+  #root;
+  #headline = h('p', { class: 'headline' });
+  #reason = h('p', { class: 'run-reason' });
+  #detail = h('p', { class: 'muted' });
+  #details = h('details', { class: 'run-details' }, h('summary', {}, 'Details'), this.#detail);
+
+  /** @param {HTMLElement} root */
+  constructor(root) {
+    this.#root = root;
+    root.replaceChildren(LABEL(), h('div', { id: 'outcome' }, this.#headline, this.#reason, this.#details));
+  }
+
+  /** @param {RunState} run @param {import('../../api/scene-fields.js').Field[]} fields @returns {string} the run in a line */
+  show(run, fields) {
+    const { phase, outcome, impacts } = run;
+    const words = runWords(run, fields);
+    if (this.#headline.textContent !== words) {
+      const [fact, ...after] = words.split(', after ');
+      this.#headline.replaceChildren(fact, ...after.map((deed) => h('span', { class: 'deed' }, `, after ${deed}`)));
+    }
+    const ended = phase === 'ended' && outcome !== null;
+    const told = ended ? outcome.kind : `${phase} ${impacts.missing}`;
+    if (this.#root.dataset.told === told) return words;
+    this.#root.dataset.told = told;
+    this.#root.classList.toggle('fell', ended && !['completed', 'settled'].includes(outcome.kind));
+    const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} impacts were skipped over.` : '';
+    this.#reason.textContent = ended ? `${capitalized(reasonOf(outcome.kind))}.` : skipped;
+    this.#details.hidden = !ended;
+    this.#detail.replaceChildren(...prose(ended ? `${capitalized(outcome.detail)}. ${skipped}` : ''));
+    return words;
+  }
+}
