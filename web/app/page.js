@@ -29,6 +29,8 @@ export class Page {
   panels = null;
   /** Comes after the first plot too. @type {import('../charts/impacts/plot-interaction.js').PlotInteraction | null} */
   interaction = null;
+  /** The time line over the run; it comes late as well. @type {import('../timeline/timeline.js').Timeline | null} */
+  timeline = null;
   /** The newest verdict. @type {import('../panels/card.js').Judged | null} */
   judged = null;
   /** True while the newest scene has no verdict because the server was away. */

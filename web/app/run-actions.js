@@ -26,6 +26,7 @@ export function start(page) {
 /** @param {Page} page */
 export function toggle(page) {
   const { run } = page;
+  if (page.timeline?.toggle()) return;
   page.lastSent = 'other';
   if (run.phase === 'idle' || run.phase === 'ended') start(page);
   else if (run.active) run.toggle();
@@ -33,6 +34,7 @@ export function toggle(page) {
 
 /** @param {Page} page */
 export function step(page) {
+  if (page.timeline?.step(1)) return;
   page.lastSent = 'other';
   page.run.step();
 }
@@ -42,6 +44,7 @@ export function restart(page) {
   const { run } = page;
   page.lastSent = 'other';
   if (run.phase === 'idle') return;
+  page.timeline?.toNow();
   if (!run.active || unplayed(page).length > 0) start(page);
   else run.restart();
 }
@@ -49,6 +52,7 @@ export function restart(page) {
 /** @param {Page} page @param {Record<string, number>} velocities */
 export function kick(page, velocities) {
   page.lastSent = 'kick';
+  page.timeline?.toNow();
   page.run.kick(velocities);
 }
 

@@ -64,6 +64,12 @@ export class RunControls {
   /** @type {number | null} */
   #gainSet = null;
   #speedSet = 1;
+  /** The kicks with a direction, once they are there. @type {HTMLButtonElement[]} */
+  #directions = [];
+  /** The replay of the past; null in the present. @type {'plays' | 'stands' | null} */
+  #replay = null;
+  /** @type {[import('./run-state.js').Phase, boolean, boolean]} */
+  #shown = ['idle', false, false];
 
   /**
    * @param {HTMLElement} root
@@ -104,8 +110,9 @@ export class RunControls {
       this.#gain,
       this.#gainShown,
     );
+    const buttons = h('div', { class: 'buttons' }, this.#run, this.#step, this.#restart);
+    (document.getElementById('timeline') ?? root).append(buttons);
     root.append(
-      h('div', { class: 'buttons' }, this.#run, this.#step, this.#restart),
       this.#gainBox,
       h('div', { class: 'control' }, h('label', { for: 'speed' }, 'Speed'), this.#speed, this.#speedShown),
       h('div', { class: 'control kick' }, this.#kick, this.#kickWhat, this.#kickBy, this.#kickUnit, this.#kickError),
@@ -148,11 +155,40 @@ export class RunControls {
   }
 
   kick() {
+    this.#kickWith((by) => by);
+  }
+
+  /** Kicks by as much as is typed. @param {string} name of the velocity @param {1 | -1} sign */
+  kickTowards(name, sign) {
+    const index = KICKS.findIndex((one) => one.name === name);
+    if (index !== this.#kickWhat.selectedIndex) {
+      this.#kickWhat.selectedIndex = index;
+      this.#kickWhat.dispatchEvent(new Event('change'));
+    }
+    this.#kickWith((by) => sign * Math.abs(by));
+  }
+
+  /** @param {(by: number) => number} signed */
+  #kickWith(signed) {
     const { name, unit } = KICKS[this.#kickWhat.selectedIndex];
     const by = parse(this.#kickBy.value, unit);
     this.#kickError.textContent = by === null ? `“${this.#kickBy.value}” is not a number.` : '';
     this.#kickBy.setAttribute('aria-invalid', String(by === null));
-    if (by !== null) this.#actions.kick({ [name]: by });
+    if (by !== null) this.#actions.kick({ [name]: signed(by) });
+  }
+
+  /** @param {HTMLButtonElement[]} buttons that kick in a direction */
+  offerDirections(buttons) {
+    this.#directions = buttons;
+    this.#kick.after(h('div', { class: 'directions', role: 'group', 'aria-label': 'Kick towards' }, ...buttons));
+    this.show(...this.#shown);
+  }
+
+  /** The replay of the past takes the first buttons; null gives them back to the run. @param {'plays' | 'stands' | null} replay */
+  replay(replay) {
+    if (replay === this.#replay) return;
+    this.#replay = replay;
+    this.show(...this.#shown);
   }
 
   /** @param {string} words */
@@ -166,6 +202,7 @@ export class RunControls {
    * @param {boolean} ready there is a scene to run
    */
   show(phase, waiting, ready) {
+    this.#shown = [phase, waiting, ready];
     const live = phase === 'running' || phase === 'paused';
     this.#run.textContent =
       phase === 'running'
@@ -182,6 +219,10 @@ export class RunControls {
     this.#restart.disabled = phase === 'idle' || !ready;
     this.#restart.classList.toggle('attention', waiting);
     this.#restart.textContent = waiting ? 'Restart with changes' : 'Restart';
-    this.#kick.disabled = !live;
+    for (const button of [this.#kick, ...this.#directions]) button.disabled = !live;
+    if (this.#replay === null) return;
+    this.#run.textContent = this.#replay === 'plays' ? 'Pause' : 'Play';
+    this.#run.disabled = false;
+    this.#step.disabled = false;
   }
 }

@@ -46,6 +46,16 @@ export class RunState {
     this.watcher = watcher;
   }
 
+  /** Tells one more of changes, impacts and new runs, after those who knew before. @param {Pick<Watcher, 'changed' | 'struck' | 'cleared'>} also */
+  watch(also) {
+    const before = this.watcher;
+    const both = (/** @type {keyof typeof also} */ name) => () => {
+      before[name]();
+      also[name]();
+    };
+    this.watcher = { ...before, changed: both('changed'), struck: both('struck'), cleared: both('cleared') };
+  }
+
   clear() {
     this.past = null;
     this.replayed = 0;

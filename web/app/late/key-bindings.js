@@ -3,7 +3,7 @@
 import { byId, h } from '../../dom/elements.js';
 import { FASTEST, SLOWEST } from '../../run/speed.js';
 import { impactsPath } from '../queries.js';
-import { restart, setSpeed, toggle } from '../run-actions.js';
+import { restart, setSpeed, step, toggle } from '../run-actions.js';
 import { choose } from '../scenes.js';
 
 /** The speeds that `[` and `]` go through. */
@@ -33,9 +33,11 @@ export function bindingsOf(page) {
       label: '.',
       name: 'Stop at the next strike',
       act: () => {
-        if (run.active) run.step();
+        if (run.active || run.past !== null) step(page);
       },
     },
+    { keys: [','], label: ',', name: 'Back to the strike before', act: () => void page.timeline?.step(-1) },
+    { keys: ['n'], label: 'n', name: 'Back to now', act: () => page.timeline?.toNow() },
     { keys: ['r'], label: 'r', name: 'Restart from the release', act: () => restart(page) },
     {
       keys: ['k'],

@@ -7,6 +7,7 @@ import { brokenLinkNotice, clearNotice } from '../../dom/notices.js';
 import { enlarger } from '../../export/enlarge-button.js';
 import { styles } from '../../panels/card.js';
 import { Panels } from '../../panels/panels.js';
+import { bringTimeline } from '../../timeline/bring.js';
 import { bringShell } from '../../workbench/shell.js';
 import { updateAddress, updateAddressSoon } from '../address-bar.js';
 import { playedQuery, typedQuery } from '../queries.js';
@@ -30,6 +31,7 @@ export async function bringLateParts(page) {
   }
   const card = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
   card.querySelector('.card-head')?.append(enlarger(card, 'Scene', () => savesOf(page, 'scene', 'Scene', view)));
+  await bringTimeline(page);
   bringShell();
   listenToKeys(bindingsOf(page));
   byId('share').addEventListener('click', (event) => {

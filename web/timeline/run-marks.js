@@ -1,0 +1,38 @@
+// The moments of a run that its time line marks: kicks, changes, and its end.
+
+import { quantity } from '../dom/numbers.js';
+
+/** @typedef {{n: number, t: number, kind: 'kick' | 'set' | 'end', words: string}} Mark */
+
+/** @type {Record<string, [string, string]>} */
+const VELOCITIES = { theta_dot: ['spin θ̇', 'rad/s'], x_dot: ['ẋ', 'm/s'], y_dot: ['ẏ', 'm/s'] };
+
+/** @param {number} value @param {string} unit */
+const signed = (value, unit) => (value > 0 ? '+' : '') + quantity(value, unit);
+
+/**
+ * In the order of the run; those of impacts that are not kept are left out.
+ * @param {import('../run/run-state.js').RunState} run
+ * @param {import('../api/scene-fields.js').Field[]} fields
+ * @returns {Mark[]}
+ */
+export function marksOf(run, fields) {
+  const { impacts, interventions, outcome } = run;
+  /** @type {Mark[]} */
+  const marks = [];
+  for (const { impact: n, set, kick } of interventions) {
+    const place = impacts.lastUpTo('n', n);
+    if (place < impacts.begin || impacts.at('n', place) !== n) continue;
+    const t = impacts.at('t', place);
+    const kicks = Object.entries(kick).map(([name, by]) => `${signed(by, VELOCITIES[name][1])} ${VELOCITIES[name][0]}`);
+    const sets = Object.entries(set).map(([path, value]) => {
+      const field = fields.find((one) => one.path === path);
+      const shown = typeof value === 'number' ? quantity(value, field?.unit ?? null) : value;
+      return `${field?.title.toLowerCase() ?? path} ${shown}`;
+    });
+    if (kicks.length > 0) marks.push({ n, t, kind: 'kick', words: `kick ${kicks.join(', ')}` });
+    if (sets.length > 0) marks.push({ n, t, kind: 'set', words: sets.join(', ') });
+  }
+  if (outcome) marks.push({ n: outcome.impacts, t: outcome.t, kind: 'end', words: 'the end of the run' });
+  return marks;
+}
