@@ -66,7 +66,7 @@ export class Page {
       velocityPlane(impacts),
       energyPlot(impacts, () => this.run.scene ?? this.typed ?? null),
     ];
-    this.controls = new RunControls(byId('controls'), actionsOf(this));
+    this.controls = new RunControls(byId('timeline'), actionsOf(this));
     const [angle, velocity, energy] = this.plots.map(({ figure }) => figure.element);
     byId('charts').prepend(angle, velocity);
     byId('other-charts').append(this.circle.figure.element, energy);

@@ -2,13 +2,13 @@
 
 import { byId } from '../dom/elements.js';
 import { styles } from '../panels/card.js';
-import { directions } from '../run/kick-directions.js';
+import { RunSliders } from '../run/sliders.js';
 import { Timeline } from './timeline.js';
 
 /** @param {import('../app/page.js').Page} page */
 export async function bringTimeline(page) {
   await styles('timeline/timeline.css').catch(() => {});
   const { run, view, plots, controls, fields } = page;
-  controls.offerDirections(directions((name, sign) => controls.kickTowards(name, sign)));
+  controls.join(new RunSliders(byId('controls'), controls.actions));
   page.timeline = new Timeline(byId('timeline'), { run, view, plots, controls, fields, speed: () => page.speed });
 }

@@ -1,0 +1,189 @@
+// The sliders and the kick beside the scene; they come after the first plot.
+
+import { aim } from '../form/slider-range.js';
+import { h } from '../dom/elements.js';
+import { steady } from '../form/steady-slider.js';
+import { symbol } from '../dom/typeset.js';
+import { fixed, number, parse } from '../dom/numbers.js';
+import { FASTEST, SLOWEST } from './speed.js';
+
+/** @typedef {import('./controls.js').Actions} Actions */
+
+const KICKS = [
+  { name: 'theta_dot', label: 'spin θ̇', unit: 'rad/s', usual: '0.5' },
+  { name: 'x_dot', label: 'sideways ẋ', unit: 'm/s', usual: '0.1' },
+  { name: 'y_dot', label: 'upwards ẏ', unit: 'm/s', usual: '0.1' },
+];
+
+// The slider of the speed is logarithmic, with 1 where one finds it again.
+const SLIDER_STEPS = 100;
+const slow = Math.log(SLOWEST);
+const span = Math.log(FASTEST) - slow;
+
+/** @param {number} place */
+function speedAt(place) {
+  const speed = Math.exp(slow + (span * place) / SLIDER_STEPS);
+  return Math.abs(Math.log(speed)) < span / SLIDER_STEPS ? 1 : Number(speed.toPrecision(2));
+}
+
+/** @type {{sign: string, label: string, name: string, by: 1 | -1}[]} */
+const DIRECTIONS = [
+  { sign: '←', label: 'Kick to the left', name: 'x_dot', by: -1 },
+  { sign: '→', label: 'Kick to the right', name: 'x_dot', by: 1 },
+  { sign: '↑', label: 'Kick upwards', name: 'y_dot', by: 1 },
+  { sign: '↺', label: 'Kick counter-clockwise', name: 'theta_dot', by: 1 },
+  { sign: '↻', label: 'Kick clockwise', name: 'theta_dot', by: -1 },
+];
+
+export class RunSliders {
+  #speed = h('input', { type: 'range', id: 'speed', min: 0, max: SLIDER_STEPS, step: 1 });
+  #speedShown = h('output', { class: 'value', for: 'speed' });
+  #gain = h('input', { type: 'range', id: 'gain' });
+  #gainShown = h('output', { class: 'value', for: 'gain' });
+  #gainBox;
+  #kick = h('button', { type: 'button', id: 'kick' }, 'Kick');
+  #kickWhat = h(
+    'select',
+    { 'aria-label': 'What the kick changes' },
+    ...KICKS.map(({ name, label }) => h('option', { value: name }, label)),
+  );
+  #kickBy = h('input', {
+    type: 'text',
+    inputmode: 'decimal',
+    autocomplete: 'off',
+    'aria-label': 'By how much the kick changes it',
+    value: KICKS[0].usual,
+  });
+  #kickUnit = h('span', { class: 'unit' }, KICKS[0].unit);
+  #kickError = h('p', { class: 'error', id: 'kick-error' });
+  #actions;
+  /** @type {import('../api/scene-fields.js').Field | null} */
+  #gainField = null;
+  /** @type {number | null} */
+  #gainSet = null;
+  #speedSet = 1;
+  #directions;
+
+  /**
+   * @param {HTMLElement} root
+   * @param {Actions} actions
+   */
+  constructor(root, actions) {
+    this.#actions = actions;
+    steady(this.#speed, () => {
+      const speed = this.#speedSet;
+      return () => this.setSpeed(speed);
+    });
+    steady(this.#gain, () => {
+      const gain = this.#gainSet;
+      return () => {
+        this.setGain(gain);
+        this.#actions.gain(gain, false);
+      };
+    });
+    this.#speed.addEventListener('input', () => this.#showSpeed(speedAt(this.#speed.valueAsNumber)));
+    this.#speed.addEventListener('change', () => actions.speed(speedAt(this.#speed.valueAsNumber)));
+    this.#gain.addEventListener('input', () => this.#gained(false));
+    this.#gain.addEventListener('change', () => this.#gained(true));
+    this.#kick.addEventListener('click', () => this.kick());
+    this.#kickBy.setAttribute('aria-describedby', 'kick-error');
+    this.#kickWhat.addEventListener('change', () => {
+      const chosen = KICKS[this.#kickWhat.selectedIndex];
+      this.#kickBy.value = chosen.usual;
+      this.#kickUnit.textContent = chosen.unit;
+      this.#kickError.textContent = '';
+    });
+    this.#gainBox = h(
+      'div',
+      { class: 'control wide' },
+      h('label', { for: 'gain' }, 'Tilt gain ', symbol('κ')),
+      this.#gain,
+      this.#gainShown,
+    );
+    this.#directions = DIRECTIONS.map(({ sign, label, name, by }) =>
+      h('button', { type: 'button', 'aria-label': label, click: () => this.#kickTowards(name, by) }, sign),
+    );
+    root.append(
+      this.#gainBox,
+      h('div', { class: 'control' }, h('label', { for: 'speed' }, 'Speed'), this.#speed, this.#speedShown),
+      h(
+        'div',
+        { class: 'control kick' },
+        this.#kick,
+        h('div', { class: 'directions', role: 'group', 'aria-label': 'Kick towards' }, ...this.#directions),
+        this.#kickWhat,
+        this.#kickBy,
+        this.#kickUnit,
+        this.#kickError,
+      ),
+    );
+    this.setSpeed(1);
+  }
+
+  #gained(/** @type {boolean} */ final) {
+    const gain = this.#gain.valueAsNumber;
+    this.#gainShown.textContent = fixed(gain, 3);
+    this.#gain.setAttribute('aria-valuetext', number(gain));
+    this.#actions.gain(gain, final);
+  }
+
+  /** @param {import('../api/scene-fields.js').Field | null} field of the tilt gain */
+  knowGain(field) {
+    this.#gainField = field;
+    this.#gainBox.hidden = !field;
+  }
+
+  /** @param {number | null} gain */
+  setGain(gain) {
+    this.#gainSet = gain;
+    if (!this.#gainField || (document.activeElement === this.#gain && gain === this.#gain.valueAsNumber)) return;
+    aim(this.#gain, this.#gainField, gain);
+    this.#gainShown.textContent = fixed(gain, 3);
+  }
+
+  /** @param {number} speed */
+  setSpeed(speed) {
+    this.#speedSet = speed;
+    this.#speed.value = String(Math.round(((Math.log(speed) - slow) / span) * SLIDER_STEPS));
+    this.#showSpeed(speed);
+  }
+
+  /** @param {number} speed */
+  #showSpeed(speed) {
+    this.#speedShown.textContent = `×${number(speed, 3)}`;
+    this.#speed.setAttribute('aria-valuetext', `${number(speed, 3)} times real time`);
+  }
+
+  kick() {
+    this.#kickWith((by) => by);
+  }
+
+  /** Kicks by as much as is typed. @param {string} name of the velocity @param {1 | -1} sign */
+  #kickTowards(name, sign) {
+    const index = KICKS.findIndex((one) => one.name === name);
+    if (index !== this.#kickWhat.selectedIndex) {
+      this.#kickWhat.selectedIndex = index;
+      this.#kickWhat.dispatchEvent(new Event('change'));
+    }
+    this.#kickWith((by) => sign * Math.abs(by));
+  }
+
+  /** @param {(by: number) => number} signed */
+  #kickWith(signed) {
+    const { name, unit } = KICKS[this.#kickWhat.selectedIndex];
+    const by = parse(this.#kickBy.value, unit);
+    this.#kickError.textContent = by === null ? `“${this.#kickBy.value}” is not a number.` : '';
+    this.#kickBy.setAttribute('aria-invalid', String(by === null));
+    if (by !== null) this.#actions.kick({ [name]: signed(by) });
+  }
+
+  /** @param {string} words */
+  blameKick(words) {
+    this.#kickError.textContent = words;
+  }
+
+  /** @param {boolean} live there is a run to kick */
+  show(live) {
+    for (const button of [this.#kick, ...this.#directions]) button.disabled = !live;
+  }
+}
