@@ -2,15 +2,7 @@
 
 import { h } from '../dom/elements.js';
 
-/**
- * @typedef {object} Actions
- * @property {() => void} toggle
- * @property {() => void} step
- * @property {() => void} restart
- * @property {(speed: number) => void} speed
- * @property {(gain: number | null, final: boolean) => void} gain
- * @property {(velocities: Record<string, number>) => void} kick
- */
+/** @typedef {import('./sliders.js').Actions} Actions */
 
 export class RunControls {
   #run = h('button', { type: 'button', class: 'primary', id: 'run' }, 'Run');

@@ -7,7 +7,15 @@ import { symbol } from '../dom/typeset.js';
 import { fixed, number, parse } from '../dom/numbers.js';
 import { FASTEST, SLOWEST } from './speed.js';
 
-/** @typedef {import('./controls.js').Actions} Actions */
+/**
+ * @typedef {object} Actions
+ * @property {() => void} toggle
+ * @property {() => void} step
+ * @property {() => void} restart
+ * @property {(speed: number) => void} speed
+ * @property {(gain: number | null, final: boolean) => void} gain
+ * @property {(velocities: Record<string, number>) => void} kick
+ */
 
 const KICKS = [
   { name: 'theta_dot', label: 'spin θ̇', unit: 'rad/s', usual: '0.5' },
