@@ -47,7 +47,7 @@ test('every key does what the list says', async () => {
   await press('?');
   assert.ok(await page.locator('#keys').isVisible());
   const listed = await page.locator('#keys-list kbd').allInnerTexts();
-  assert.deepEqual(listed, ['Space', '.', 'r', 'k', '1 – 5', '[ ]', 'm', 's', 'e', '?']);
+  assert.deepEqual(listed, ['Space', '.', 'r', 'k', '1 – 5', '[ ]', 'm', 'p', 's', 'e', '?']);
   clean();
 });
 

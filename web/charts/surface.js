@@ -28,10 +28,21 @@ function frame(now_ms) {
 /**
  * @typedef {object} Surface
  * @property {HTMLCanvasElement} canvas
- * @property {CanvasRenderingContext2D} context in CSS pixels
+ * @property {CanvasRenderingContext2D} context in px of the drawing: those of CSS, or larger ones where the style says so by `--zoom`
  * @property {number} width
  * @property {number} height
+ * @property {number} zoom CSS px in one of the drawing
  */
+
+/** The zoom of each box. @type {WeakMap<Element, number>} */
+const zooms = new WeakMap();
+
+/** The place of a pointer in a box, px of its drawing. @param {HTMLElement} box @param {{clientX: number, clientY: number}} event */
+export function placeIn(box, { clientX, clientY }) {
+  const { left, top } = box.getBoundingClientRect();
+  const zoom = zooms.get(box) ?? 1;
+  return { x: (clientX - left) / zoom, y: (clientY - top) / zoom };
+}
 
 /**
  * Stacked canvases that fill their box.
@@ -44,17 +55,26 @@ export function surfaces(box, layers, resized) {
   const made = Array.from({ length: layers }, () => {
     const canvas = document.createElement('canvas');
     box.append(canvas);
-    return { canvas, context: /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d')), width: 0, height: 0 };
+    return {
+      canvas,
+      context: /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d')),
+      width: 0,
+      height: 0,
+      zoom: 1,
+    };
   });
   const fit = () => {
     const { width, height } = box.getBoundingClientRect();
+    const zoom = Number(getComputedStyle(box).getPropertyValue('--zoom')) || 1;
+    zooms.set(box, zoom);
     const ratio = devicePixelRatio || 1;
     for (const surface of made) {
       surface.canvas.width = Math.round(width * ratio);
       surface.canvas.height = Math.round(height * ratio);
-      surface.width = width;
-      surface.height = height;
-      surface.context.setTransform(ratio, 0, 0, ratio, 0, 0);
+      surface.width = width / zoom;
+      surface.height = height / zoom;
+      surface.zoom = zoom;
+      surface.context.setTransform(ratio * zoom, 0, 0, ratio * zoom, 0, 0);
     }
     resized();
   };

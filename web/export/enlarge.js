@@ -16,12 +16,13 @@ export function enlarge(card, title, saves) {
   room.style.height = `${height}px`;
   const dialog = h(
     'dialog',
-    { class: 'large', 'aria-label': title },
+    // The focus is on none of its buttons, so that the keys of the run act here as well.
+    { class: 'large', 'aria-label': title, autofocus: true },
     h(
       'form',
       { method: 'dialog', class: 'large-head' },
       ...(saves ? [h('p', { class: 'actions' }, ...actions(saves))] : []),
-      h('button', { autofocus: true }, 'Close'),
+      h('button', { class: 'close' }, 'Close'),
     ),
   );
   card.before(room);

@@ -115,19 +115,21 @@ export class RunDrawing {
   #drawTrail(scene, place, t) {
     const {
       run,
-      surface: { context },
+      surface: { context, zoom },
       camera: { scale },
     } = this.#parts;
     const { impacts } = run;
+    // Seen from the back of a room.
+    const strong = zoom > 1;
     context.strokeStyle = theme().accent;
-    context.lineWidth = 1.5;
+    context.lineWidth = strong ? 2.5 : 1.5;
     for (let back = 0; back <= TRAIL_FLIGHTS; back += 1) {
       const at = place === null ? -1 - back : place - back;
       if (at < impacts.begin - 1 || at < -1) break;
       const arc = run.arcAt(at < impacts.begin ? -1 : impacts.at('t', at));
       if (!arc) break;
       const end = Math.min(t, arc.t + arc.duration);
-      context.globalAlpha = 0.5 * (1 - back / (TRAIL_FLIGHTS + 1));
+      context.globalAlpha = (strong ? 1 : 0.5) * (1 - back / (TRAIL_FLIGHTS + 1));
       context.beginPath();
       for (let k = 0; k <= 24; k += 1) {
         const pose = poseOn(arc, arc.t + ((end - arc.t) * k) / 24, scene);

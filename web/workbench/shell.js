@@ -3,6 +3,7 @@
 import { byId } from '../dom/elements.js';
 import { chartSwitch, chartTabs } from './chart-switch.js';
 import { headline } from './headline.js';
+import { present } from './present.js';
 import { sheets } from './sheets.js';
 
 /** Opens and closes what a button controls; a press elsewhere and Escape close it. @param {HTMLElement} button @param {HTMLElement} menu @param {(open: boolean) => void} show */
@@ -39,6 +40,9 @@ export function bringShell() {
   new MutationObserver(offer).observe(share, { childList: true });
   offer();
   headline(byId('headline'), byId('verdict-card'));
+  const button = byId('present', HTMLButtonElement);
+  present(button);
+  button.disabled = false;
   sheets(byId('parts'));
   chartSwitch(byId('other-charts'));
   chartTabs(byId('chart-tabs'), byId('charts'));

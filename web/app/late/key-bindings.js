@@ -71,11 +71,14 @@ export function bindingsOf(page) {
       label: 'm',
       name: 'Go to the stability map',
       act: () => {
+        /** @type {HTMLDialogElement | null} */ (document.querySelector('dialog.large'))?.close();
+        document.dispatchEvent(new Event('show-desk'));
         page.panels?.show('map');
         byId('studies').scrollIntoView();
         void focusIn(byId('map-body'));
       },
     },
+    { keys: ['p'], label: 'p', name: 'Present: scene, one plane and headline', act: () => byId('present').click() },
     { keys: ['s'], label: 's', name: 'Copy the link', act: () => byId('share').click() },
     {
       keys: ['e'],

@@ -35,7 +35,7 @@ export function listenToKeys(keys) {
   addEventListener('keydown', (event) => {
     if (
       !on.checked ||
-      document.querySelector('dialog[open]') ||
+      document.querySelector('dialog[open]:not(.large)') ||
       event.defaultPrevented ||
       event.repeat ||
       event.ctrlKey ||

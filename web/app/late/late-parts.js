@@ -21,9 +21,9 @@ import { bringSettings } from './settings.js';
 export async function bringLateParts(page) {
   bringSettings(page);
   // Form, and buttons that save and enlarge, come with their styles, or without them where those do not load.
-  await Promise.all(['workbench/shell.css', 'form/form.css', 'app/app.css', 'export/export.css'].map(styles)).catch(
-    () => {},
-  );
+  await Promise.all(
+    ['workbench/shell.css', 'workbench/present.css', 'form/form.css', 'app/app.css', 'export/export.css'].map(styles),
+  ).catch(() => {});
   const { plots, circle, view, fields, run } = page;
   for (const one of [...plots, circle]) {
     const { figure } = one;

@@ -1,7 +1,7 @@
 // Pointer and keys on one chart of the impacts: point at one, select some, set where a run first lands.
 
 import { drawBrush, drawOffer } from './overlay.js';
-import { invalidate } from '../surface.js';
+import { invalidate, placeIn } from '../surface.js';
 import { angleStart, velocityStart, within } from '../../physics/first-impact.js';
 
 /** @typedef {import('./impact-plot.js').ImpactPlot} ImpactPlot */
@@ -51,10 +51,7 @@ export function listen(plot, page) {
     box.setAttribute(name, value);
 
   /** @param {PointerEvent} event @returns {Place} */
-  const placeOf = (event) => {
-    const { left, top } = box.getBoundingClientRect();
-    return { x: event.clientX - left, y: event.clientY - top };
-  };
+  const placeOf = (event) => placeIn(box, event);
   /** @param {Place} place */
   const inside = ({ x, y }) => {
     const { left, top, width, height } = plot.frame;
