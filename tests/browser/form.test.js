@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, openPanel, verdict } from './stage.js';
+import { Stage, openPanel, reachPhase, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -22,15 +22,36 @@ test('a value outside its range shows the server’s words beside the field', as
   assert.match(await verdict(page), /elliptic/i);
 });
 
-test('what is no number is said so, kept, and not sent', async () => {
+test('what is no number is said so, kept while one is at it, and not sent; then the last value is put back', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const asked = [];
+  page.on('request', (request) => asked.push(request.url()));
   const theta = page.locator('#field-release-theta');
   await theta.fill('a bit');
-  await theta.blur();
-  await page.locator('#field-release-theta-error').filter({ hasText: 'not a number' }).waitFor();
-  await page.click('#run');
-  assert.equal(await page.evaluate(() => document.activeElement.id), 'field-release-theta');
+  const error = page.locator('#field-release-theta-error');
+  await error.filter({ hasText: '“a bit” is not a number' }).waitFor();
+  assert.equal(await theta.getAttribute('aria-invalid'), 'true');
+  await page.keyboard.press('Enter');
   assert.equal(await theta.inputValue(), 'a bit');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'field-release-theta');
+  assert.deepEqual(
+    asked.filter((url) => /stability|trajectories/.test(url)),
+    [],
+  );
+  await theta.blur();
+  await error.filter({ hasText: '0.3\u202frad was put back: “a bit” is not a number' }).waitFor();
+  assert.equal(await theta.inputValue(), '0.3');
+  assert.equal(await theta.getAttribute('aria-invalid'), null);
+  assert.match(await page.locator('#parameters > [role=status]').innerText(), /Angle: 0\.3\srad was put back/);
+  assert.match(await verdict(page), /\S/);
+  assert.equal(new URLSearchParams(new URL(page.url()).search).get('scene.release.theta'), null);
+  // Out of its limits is no value either.
+  await theta.fill('4');
+  await error.filter({ hasText: 'outside its limits' }).waitFor();
+  await page.click('#run');
+  await reachPhase(page, 'running');
+  assert.equal(await theta.inputValue(), '0.3');
   clean();
 });
 

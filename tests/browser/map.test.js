@@ -86,7 +86,8 @@ test('nothing of the map is loaded before it comes near', async () => {
   await verdict(page);
   const asked = () =>
     page.evaluate(
-      () => performance.getEntriesByType('resource').filter(({ name }) => /\/map\/|regions/.test(name)).length,
+      () =>
+        performance.getEntriesByType('resource').filter(({ name }) => /\/map\/|regions\?.*ndjson/.test(name)).length,
     );
   assert.equal(await asked(), 0);
   await openPanel(page, 'map');

@@ -90,9 +90,9 @@ export class Stage {
    * A page in a fresh browser profile, and what it did wrong so far.
    * @param {string} query
    * @param {object} options of Playwright's context; `prepare`, which the page runs before its own code; another `path`, and the `sign`
-   * that it is there
+   * that it is there; `folded` settings
    */
-  async page(query = '', { prepare, path = '', sign = '#case:enabled', ...options } = {}) {
+  async page(query = '', { prepare, path = '', sign = '#case:enabled', folded = false, ...options } = {}) {
     const context = await this.#browser.newContext({ viewport: { width: 1280, height: 860 }, ...options });
     this.#contexts.push(context);
     await context.grantPermissions(['clipboard-read', 'clipboard-write']);
@@ -114,6 +114,19 @@ export class Stage {
         console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`),
       ),
     );
+    // Tests reach every setting, unless they are about the folding.
+    if (!folded)
+      await page.addInitScript(() => {
+        localStorage['equipoise.groups'] ??= JSON.stringify([
+          'Release',
+          'Body',
+          'Table',
+          'Feedback',
+          'Limits',
+          'Noise',
+          'World',
+        ]);
+      });
     if (prepare) await page.addInitScript(prepare);
     await page.goto(this.url + path + query);
     await page.locator(sign).first().waitFor();

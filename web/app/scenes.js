@@ -18,6 +18,7 @@ export function sceneChanged(page, another = false) {
   nameScene(page, () => {
     if (page.chosen) choose(page, page.chosen);
   });
+  page.form?.compare(page.chosen?.scene ?? null);
   page.view.draft(page.typed ?? {});
   page.plots[2].redraw();
   page.panels?.sceneChanged();

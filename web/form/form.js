@@ -1,55 +1,32 @@
-// The form of a scene, made from the server's table of fields. Keeps what was typed, right or wrong; does not judge a scene: the server does.
+// The form of a scene, made from the server's table of fields. Keeps what was typed; does not judge a scene: the server does.
 
-import { aim } from './slider-range.js';
-import { h } from '../dom/elements.js';
-import { steady } from './steady-slider.js';
-import { symbol } from '../dom/typeset.js';
-import { number, parse, quantity, unitAfter } from '../dom/numbers.js';
 import { pathOf, setAt, valueAt } from '../api/scene-fields.js';
+import { h } from '../dom/elements.js';
+import { inWords } from '../dom/typeset.js';
+import { UNITS } from '../dom/units.js';
+import { Group, grouped } from './groups.js';
+import { NumberRow } from './number-row.js';
+import { BooleanRow, ChoiceRow, VerticesRow } from './other-rows.js';
+import { SettingsBar } from './search.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
+/** @typedef {import('./row.js').Row} Row */
 
-/**
- * @typedef {object} Row
- * @property {Field} field
- * @property {HTMLElement} element
- * @property {HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement} input
- * @property {HTMLInputElement | null} slider
- * @property {HTMLElement} error
- * @property {{text: string, value: number} | null} exact what a shortened text stands for, until it is edited
- */
-
-// Fields that stand at the top of a scene, each a group of its own there, make one group here.
-const TOP = 'World';
-
-/** @param {Field} field */
-function groupOf({ path, group }) {
-  if (path.startsWith('table.feedback.')) return 'State feedback';
-  if (path.startsWith('table.limits.')) return 'Limits of the table';
-  return path.includes('.') ? group[0].toUpperCase() + group.slice(1) : TOP;
-}
-
-/** Vertices from lines of two numbers. @param {string} text @returns {{value: unknown, problem: string | null}} */
-function places(text) {
-  const lines = text
-    .trim()
-    .split('\n')
-    .map((line) =>
-      line
-        .trim()
-        .split(/[\s,;]+/)
-        .map((part) => parse(part, 'm')),
-    );
-  const wrong = lines.findIndex((place) => place.length !== 2 || place.includes(null));
-  return wrong < 0
-    ? { value: lines, problem: null }
-    : { value: undefined, problem: `Line ${wrong + 1} is not x and y, as in “0.1, 0.2”.` };
-}
+const KINDS = { choice: ChoiceRow, boolean: BooleanRow, vertices: VerticesRow, number: NumberRow, integer: NumberRow };
 
 export class Form {
   /** @type {Map<string, Row>} */
   #rows = new Map();
+  /** The groups that fold, with their fields. @type {Map<Group, Row[]>} */
+  #groups = new Map();
+  /** The scene that the fields are compared with. @type {Scene | null} */
+  #case = null;
+  #spoken = h('p', { class: 'unseen', role: 'status' });
+  #bar = new SettingsBar(
+    (words) => this.#search(words),
+    () => this.#resetAll(),
+  );
   #onEdit;
 
   /**
@@ -59,211 +36,107 @@ export class Form {
    */
   constructor(root, fields, onEdit) {
     this.#onEdit = onEdit;
-    for (const title of new Set(fields.map(groupOf))) {
-      const members = fields.filter((field) => groupOf(field) === title);
-      const fieldset = h('fieldset', {}, h('legend', {}, title));
-      for (const field of members) fieldset.append(this.#row(field));
-      root.append(fieldset);
-    }
+    const host = {
+      edited: (/** @type {string} */ path, /** @type {boolean} */ final) => this.#edited(path, final),
+      needs: (/** @type {Field} */ field) => this.#needs(field),
+      tell: (/** @type {string} */ words) => {
+        this.#spoken.textContent = words;
+      },
+    };
+    const parts = grouped(fields).map(([title, members]) => {
+      const rows = members.map((field) => {
+        const row = new KINDS[field.kind](field, host);
+        this.#rows.set(field.path, row);
+        return row;
+      });
+      const elements = rows.map(({ element }) => element);
+      if (title === '') return h('div', { class: 'first' }, ...elements);
+      const group = new Group(title, elements);
+      this.#groups.set(group, rows);
+      return group.element;
+    });
+    root.replaceChildren(this.#bar.element, ...parts, this.#spoken);
     root.addEventListener('submit', (event) => event.preventDefault());
+    document.addEventListener(UNITS, () => {
+      for (const row of this.#rows.values()) row.describe();
+    });
   }
 
-  /** @param {Field} field */
-  #row(field) {
-    const id = `field-${field.path.replaceAll('.', '-')}`;
-    const error = h('p', { class: 'error', id: `${id}-error` });
-    const about = h('span', { class: 'about', id: `${id}-about` }, field.about);
-    const name = h('label', { for: id }, field.title, field.symbol && ' ', field.symbol ? symbol(field.symbol) : null);
-    const described = `${id}-about ${id}-error`;
-    /** @type {Row['input']} */
-    let input;
-    /** @type {HTMLInputElement | null} */
-    let slider = null;
-    if (field.kind === 'choice') {
-      input = h(
-        'select',
-        { id, 'aria-describedby': described, change: () => this.#edited(field.path, true) },
-        field.default == null && h('option', { value: '' }, 'not set'),
-        ...(field.choices ?? []).map((choice) => h('option', { value: choice }, choice)),
-      );
-    } else if (field.kind === 'vertices') {
-      input = h('textarea', {
-        id,
-        rows: 3,
-        spellcheck: 'false',
-        'aria-describedby': described,
-        placeholder: 'not set',
-        input: () => this.#edited(field.path, false),
-        change: () => this.#edited(field.path, true),
-      });
-    } else if (field.kind === 'boolean') {
-      input = h('input', {
-        id,
-        type: 'checkbox',
-        'aria-describedby': described,
-        change: () => this.#edited(field.path, true),
-      });
-    } else {
-      const typed = h('input', {
-        id,
-        type: 'text',
-        inputmode: 'decimal',
-        autocomplete: 'off',
-        spellcheck: 'false',
-        'aria-describedby': described,
-        placeholder: field.default == null ? 'not set' : number(Number(field.default)),
-        input: () => this.#edited(field.path, false),
-        change: () => this.#edited(field.path, true),
-      });
-      input = typed;
-      // Nobody finds one number among trillions with a slider.
-      const moved =
-        field.kind === 'integer' && (field.maximum ?? Infinity) > 1e6
-          ? null
-          : h('input', { type: 'range', 'aria-label': `${field.title}, slider`, tabindex: 0 });
-      if (moved) {
-        steady(moved, () => {
-          const row = /** @type {Row} */ (this.#rows.get(field.path));
-          const { exact } = row;
-          const text = typed.value;
-          return () => {
-            row.exact = exact;
-            typed.value = text;
-            this.#edited(field.path, false);
-          };
-        });
-      }
-      for (const [event, final] of /** @type {const} */ ([
-        ['input', false],
-        ['change', true],
-      ])) {
-        moved?.addEventListener(event, () => {
-          typed.value = moved.value;
-          this.#edited(field.path, final, true);
-        });
-      }
-      slider = moved;
-    }
-    const unit = unitAfter(field.unit).trim();
-    const range =
-      field.minimum != null && field.maximum != null
-        ? h('span', { class: 'range' }, `${number(field.minimum)} to ${quantity(field.maximum, field.unit)}`)
-        : null;
-    const element = h(
-      'div',
-      { class: `field ${field.kind}` },
-      h('div', { class: 'field-head' }, name, field.live && h('span', { class: 'live-tag' }, 'live')),
-      h(
-        'div',
-        { class: 'field-row' },
-        slider ?? h('span'),
-        input,
-        field.kind !== 'choice' && field.kind !== 'boolean' && h('span', { class: 'unit' }, unit),
-      ),
-      h('p', { class: 'field-foot' }, about, field.about && range ? ' · ' : '', range),
-      error,
-    );
-    this.#rows.set(field.path, { field, element, input, slider, error, exact: null });
-    return element;
+  /** The row of a field, where there is one. @param {string} path */
+  row(path) {
+    return this.#rows.get(path) ?? null;
   }
 
-  /**
-   * @param {string} path
-   * @param {boolean} final
-   */
-  #edited(path, final, bySlider = false) {
-    const row = /** @type {Row} */ (this.#rows.get(path));
-    // Leaving a text changes nothing: what is wrong with it stays said.
-    if (!final || row.field.kind === 'choice' || row.field.kind === 'boolean') this.#say(row, null);
-    const { value, problem } = this.#read(row);
-    if (problem && final) this.#say(row, problem);
-    if (row.slider && !problem) {
-      if (bySlider) row.slider.setAttribute('aria-valuetext', quantity(Number(value), row.field.unit));
-      else aim(row.slider, row.field, typeof value === 'number' ? value : null);
-    }
+  /** @param {string} path @param {boolean} final */
+  #edited(path, final) {
     this.#reach();
+    this.#count();
     this.#onEdit(path, final);
   }
 
   /** A point has no extent and a polygon has the rod's lengths: what one cannot have beside it cannot be typed, and stays for later. */
   #reach() {
-    const point = this.#rows.get('body.point');
-    const isPoint = point?.input instanceof HTMLInputElement && point.input.checked;
-    const isPolygon = !isPoint && this.#rows.get('body.vertices')?.input.value.trim() !== '';
-    for (const { field, input, slider, element } of this.#rows.values()) {
-      if (!field.path.startsWith('body.') || field.path === 'body.point') continue;
-      const off = isPoint || (isPolygon && ['body.contact_distance', 'body.radius_of_gyration'].includes(field.path));
-      input.disabled = off;
-      if (slider) slider.disabled = off;
-      element.classList.toggle('off', off);
+    const isPoint = this.#rows.get('body.point')?.value === true;
+    const isPolygon = !isPoint && this.#rows.get('body.vertices')?.value !== undefined;
+    for (const row of this.#rows.values()) {
+      const { path } = row.field;
+      if (!path.startsWith('body.') || path === 'body.point') continue;
+      const off = isPoint || (isPolygon && ['body.contact_distance', 'body.radius_of_gyration'].includes(path));
+      if (off !== row.input.disabled) row.disable(off);
     }
   }
 
-  /** True when a state feedback tilts the table, which then needs no tilt gain. */
-  #feedback() {
-    return [...this.#rows.values()].some(
-      ({ field, input }) => field.path.startsWith('table.feedback.') && input.value.trim() !== '',
+  /** True when a field has to have a value; a table that a state feedback tilts needs no tilt gain. @param {Field} field */
+  #needs({ path, required }) {
+    if (!required || path.startsWith('body.')) return false;
+    const feedback = [...this.#rows.values()].some(
+      ({ field, value }) => field.path.startsWith('table.feedback.') && value !== undefined,
     );
+    return path !== 'table.tilt_gain' || !feedback;
   }
 
-  /** @param {Row} row @returns {{value: unknown, problem: string | null}} */
-  #read({ field, input, exact }) {
-    if (input.disabled) return { value: undefined, problem: null };
-    if (field.kind === 'boolean')
-      return { value: /** @type {HTMLInputElement} */ (input).checked || undefined, problem: null };
-    if (field.kind === 'choice')
-      return { value: input.value === (field.default ?? '') ? undefined : input.value, problem: null };
-    if (input.value.trim() === '') {
-      if (field.required && !field.path.startsWith('body.') && !(field.path === 'table.tilt_gain' && this.#feedback()))
-        return { value: undefined, problem: `${field.title} is needed.` };
-      return { value: undefined, problem: null };
+  /** Counts what differs from the case. */
+  #count() {
+    let all = 0;
+    for (const row of this.#rows.values()) if (row.differs) all += 1;
+    for (const [group, rows] of this.#groups) group.differ(rows.filter(({ differs }) => differs).length);
+    this.#bar.differ(all);
+  }
+
+  /** @param {string[]} words @returns {number | null} fields with all of the words; null without a search */
+  #search(words) {
+    const found = (/** @type {Row} */ row) => words.every((word) => row.words.includes(word));
+    let all = 0;
+    for (const row of this.#rows.values()) {
+      const hit = found(row);
+      row.element.hidden = !hit;
+      if (hit) all += 1;
     }
-    if (field.kind === 'vertices') return places(input.value);
-    if (input.value === exact?.text) return { value: exact.value, problem: null };
-    const value = parse(input.value, field.unit);
-    return value === null
-      ? { value: undefined, problem: `“${input.value.trim()}” is not a number.` }
-      : { value, problem: null };
+    for (const [group, rows] of this.#groups)
+      group.search(words.length === 0 ? null : rows.filter(({ element }) => !element.hidden).length);
+    return words.length === 0 ? null : all;
   }
 
-  /**
-   * @param {Row} row
-   * @param {string | null} problem
-   */
-  #say({ input, error }, problem) {
-    if (problem === null) input.removeAttribute('aria-invalid');
-    else input.setAttribute('aria-invalid', 'true');
-    error.textContent = problem ?? '';
+  #resetAll() {
+    const differing = [...this.#rows.values()].filter(({ differs }) => differs);
+    for (const row of differing) row.fill(row.base);
+    this.#reach();
+    for (const { field } of differing) this.#edited(field.path, true);
+  }
+
+  /** The scene that the fields are compared with; null where there is none. @param {Scene | null} scene */
+  compare(scene) {
+    if (scene === this.#case) return;
+    this.#case = scene;
+    for (const row of this.#rows.values()) row.against(scene && valueAt(scene, row.field.path), scene !== null);
+    this.#count();
   }
 
   /** Fills in a scene; what it leaves open shows its default. @param {Scene} scene */
   fill(scene) {
-    for (const row of this.#rows.values()) {
-      const value = valueAt(scene, row.field.path);
-      this.#put(row, value === row.field.default ? null : value);
-      this.#say(row, null);
-    }
+    for (const row of this.#rows.values()) row.fill(valueAt(scene, row.field.path));
     this.#reach();
-  }
-
-  /**
-   * @param {Row} row
-   * @param {unknown} value
-   */
-  #put(row, value) {
-    const { field, input, slider } = row;
-    row.exact = null;
-    if (input instanceof HTMLInputElement && field.kind === 'boolean') input.checked = value === true;
-    else if (Array.isArray(value)) input.value = value.map((place) => place.join(', ')).join('\n');
-    else if (field.kind === 'choice') input.value = String(value ?? field.default ?? '');
-    else if (typeof value !== 'number') input.value = '';
-    else {
-      const text = String(value);
-      row.exact = text.length > 8 ? { text: String(Number(value.toPrecision(5))), value } : null;
-      input.value = row.exact?.text ?? text;
-      input.title = row.exact ? text : '';
-    }
-    if (slider) aim(slider, field, typeof value === 'number' ? value : null);
+    this.#count();
   }
 
   /**
@@ -273,30 +146,36 @@ export class Form {
    */
   put(path, value) {
     const row = this.#rows.get(path);
-    if (!row || this.#read(row).value === value) return;
-    this.#put(row, value);
-    this.#say(row, null);
+    if (!row || (row.problem === null && row.value === value)) return;
+    row.fill(value);
+    this.#count();
   }
 
-  /** The typed scene without defaults; `complete` when every text is a value. */
+  /** The typed scene without defaults, of a text that is no value the last that was one; `complete` when every text is a value. */
   read() {
     /** @type {Scene} */
     const scene = {};
     let complete = true;
     for (const row of this.#rows.values()) {
-      const { value, problem } = this.#read(row);
+      const { value, problem } = row.read();
       if (problem) complete = false;
-      else if (value !== undefined) setAt(scene, row.field.path, value);
+      if (value !== undefined) setAt(scene, row.field.path, value);
     }
     return { scene, complete };
   }
 
-  /** Shows beside every number that is none what is wrong with it. */
+  /** Shows beside every field without a value what is wrong with it. */
   complain() {
     for (const row of this.#rows.values()) {
-      const { problem } = this.#read(row);
-      if (problem) this.#say(row, problem);
+      const { problem } = row.read();
+      if (problem) this.#blameRow(row, problem);
     }
+  }
+
+  /** @param {Row} row @param {string} words */
+  #blameRow(row, words) {
+    row.say(words);
+    for (const [group, rows] of this.#groups) if (rows.includes(row)) group.reveal();
   }
 
   /**
@@ -305,18 +184,18 @@ export class Form {
    * @returns {string[]} those that belong to no field here
    */
   blame(errors) {
-    for (const row of this.#rows.values()) if (this.#read(row).problem === null) this.#say(row, null);
+    for (const row of this.#rows.values())
+      if (row.input.getAttribute('aria-invalid') === 'true' && row.read().problem === null) row.say(null);
     /** @type {string[]} */
     const elsewhere = [];
-    for (const { pointer, detail } of errors) {
-      const path = pathOf(pointer);
+    for (const error of errors) {
+      const path = pathOf(error.pointer);
+      const rows = [...this.#rows.values()];
       const row =
         this.#rows.get(path) ??
-        [...this.#rows.values()].find(
-          ({ field }) => field.path.startsWith(`${path}.`) || path.startsWith(`${field.path}.`),
-        );
-      if (row && path !== '') this.#say(row, detail);
-      else elsewhere.push(detail);
+        rows.find((one) => one.field.path.startsWith(`${path}.`) || path.startsWith(`${one.field.path}.`));
+      if (row && path !== '') this.#blameRow(row, inWords(error.detail));
+      else elsewhere.push(inWords(error.detail));
     }
     return elsewhere;
   }

@@ -1,6 +1,7 @@
 // The range and the step of a slider for a field.
 
 import { quantity } from '../dom/numbers.js';
+import { shownFactor, shownValue } from '../dom/units.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 
@@ -58,17 +59,58 @@ export function sliderRange(field, value) {
   ];
 }
 
+/** Places of a slider's end in degrees, so that it is a number one reads. */
+const ROUND_DEG = 5;
+
+/**
+ * The range of a slider in the unit that the page shows.
+ * @param {Field} field
+ * @param {number | null} value
+ * @returns {[number, number]}
+ */
+export function shownRange(field, value) {
+  const [from, to] = sliderRange(field, value);
+  const factor = shownFactor(field.unit);
+  if (factor === 1) return [from, to];
+  const low = shownValue(field.minimum ?? -Infinity, field.unit);
+  const high = shownValue(field.maximum ?? Infinity, field.unit);
+  const round = to - from < 0.2 ? ROUND_DEG / 10 : ROUND_DEG;
+  return [
+    Math.max(low, Math.floor((from * factor) / round + 1e-9) * round),
+    Math.min(high, Math.ceil((to * factor) / round - 1e-9) * round),
+  ];
+}
+
+/** The step of a slider and of the arrow keys, in the unit that the page shows. @param {Field} field @param {number | null} value */
+export function sliderStep(field, value) {
+  if (field.kind === 'integer') return 1;
+  const [from, to] = shownRange(field, value);
+  return step(to - from);
+}
+
+/** The value that a field begins with when it is set: none of its kind, or the middle of its slider. @param {Field} field */
+export function firstValue(field) {
+  const [from, to] = sliderRange(field, null);
+  if (field.kind === 'integer' || (from < 0 && to > 0)) return Math.max(0, field.minimum ?? 0);
+  return Number(((from + to) / 2).toPrecision(2));
+}
+
 /**
  * Sets a slider to a value, its ends moved where the value needs it.
- * @param {HTMLInputElement} slider
+ * @param {HTMLInputElement} slider in the unit that the page shows
  * @param {Field} field
  * @param {number | null} value
  */
 export function aim(slider, field, value) {
-  const [from, to] = sliderRange(field, value);
+  const [from, to] = shownRange(field, value);
+  const usual = typeof field.default === 'number' ? field.default : null;
+  const at = value ?? usual;
   slider.min = String(from);
   slider.max = String(to);
-  slider.step = field.kind === 'integer' ? '1' : String(step(to - from));
-  slider.value = String(value ?? field.default ?? (from + to) / 2);
-  slider.setAttribute('aria-valuetext', value == null ? 'not set' : quantity(value, field.unit));
+  slider.step = String(sliderStep(field, value));
+  slider.value = String(at === null ? (from + to) / 2 : shownValue(at, field.unit));
+  slider.setAttribute(
+    'aria-valuetext',
+    value == null ? (usual === null ? 'not set' : quantity(usual, field.unit)) : quantity(value, field.unit),
+  );
 }

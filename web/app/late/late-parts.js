@@ -15,15 +15,15 @@ import { launch, play } from '../scenes.js';
 import { bindingsOf } from './key-bindings.js';
 import { listenToKeys } from './keys.js';
 import { savesOf } from './saves.js';
-import { bringSettings } from './settings.js';
+import { bringSettings, bringTracks } from './settings.js';
 
 /** @param {import('../page.js').Page} page */
 export async function bringLateParts(page) {
-  bringSettings(page);
   // Form, and buttons that save and enlarge, come with their styles, or without them where those do not load.
   await Promise.all(
     ['workbench/shell.css', 'workbench/present.css', 'form/form.css', 'app/app.css', 'export/export.css'].map(styles),
   ).catch(() => {});
+  bringSettings(page);
   const { plots, circle, view, fields, run } = page;
   for (const one of [...plots, circle]) {
     const { figure } = one;
@@ -68,6 +68,7 @@ export async function bringLateParts(page) {
     query: () => typedQuery(page),
   });
   page.panels.join('brush', page.interaction);
+  bringTracks(page);
   page.panels.restore(page.panelLink);
   if (page.judged) page.panels.judged(page.judged);
 }

@@ -1,31 +1,69 @@
 // Brings the form of the typed scene, and the switch of the unit of angles.
 
-import { byId } from '../../dom/elements.js';
+import { byId, h } from '../../dom/elements.js';
+import { number } from '../../dom/numbers.js';
+import { symbol } from '../../dom/typeset.js';
 import { UNITS, angles, chooseAngles, followAddress } from '../../dom/units.js';
 import { Form } from '../../form/form.js';
+import { NumberRow } from '../../form/number-row.js';
+import { TrackMap } from '../../form/track-map.js';
+import { Track } from '../../form/track.js';
 import { updateAddress } from '../address-bar.js';
+import { GAIN } from '../page.js';
+import { typedQuery } from '../queries.js';
 import { edited } from '../typed/edits.js';
 
 /** @param {import('../page.js').Page} page */
 export function bringSettings(page) {
-  page.join(
-    new Form(byId('parameters'), page.fields, (path, final) => {
-      page.take();
-      edited(page, path, final);
-    }),
-  );
+  const form = new Form(byId('parameters'), page.fields, (path, final) => {
+    page.take();
+    edited(page, path, final);
+  });
+  page.join(form);
+  form.compare(page.chosen?.scene ?? null);
   offerUnits(page);
+}
+
+/** The field of the release whose track has a map as well. */
+const ANGLE = 'release.theta';
+
+/** Shows on the tracks of κ and θ₀ what is known of their values: κ_c, and a map of runs. @param {import('../page.js').Page} page */
+export function bringTracks(page) {
+  const { form, fields, panels } = page;
+  const trackOf = (/** @type {string} */ path) => {
+    const row = form?.row(path);
+    return row instanceof NumberRow && row.track ? [row.track] : [];
+  };
+  const gains = [...trackOf(GAIN), new Track(byId('gain', HTMLInputElement))];
+  const maps = /** @type {const} */ ([
+    [GAIN, gains],
+    [ANGLE, trackOf(ANGLE)],
+  ]).flatMap(([path, tracks]) => {
+    const field = fields.find((one) => one.path === path);
+    return field && tracks.length > 0 ? [new TrackMap(field, tracks, () => typedQuery(page))] : [];
+  });
+  const sceneChanged = () => {
+    for (const map of maps) map.renew();
+  };
+  const judged = (/** @type {import('../../panels/card.js').Judged} */ { answer }) => {
+    const critical = answer.linear?.tilt_gain?.critical ?? null;
+    for (const track of gains) track.mark(critical, symbol('κ_c'), `The critical gain is ${number(critical)}.`);
+  };
+  document.addEventListener(UNITS, sceneChanged);
+  panels?.join('tracks', { sceneChanged, judged });
+  sceneChanged();
 }
 
 /** @param {import('../page.js').Page} page */
 function offerUnits(page) {
   const button = byId('units', HTMLButtonElement);
+  button.hidden = false;
   const show = () => {
     const degrees = angles() === 'deg';
-    button.textContent = degrees ? '°' : 'rad';
-    button.setAttribute(
-      'aria-label',
-      `Angles in ${degrees ? 'degrees' : 'radians'}; switch to ${degrees ? 'radians' : 'degrees'}`,
+    button.replaceChildren(
+      h('span', { class: 'unseen' }, 'Angles in '),
+      degrees ? '°' : 'rad',
+      h('span', { class: 'unseen' }, `; switch to ${degrees ? 'radians' : 'degrees'}`),
     );
     button.title = `Angles in ${degrees ? 'degrees' : 'radians'}`;
   };

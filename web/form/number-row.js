@@ -1,0 +1,253 @@
+// The row of a number: its text, its slider on a track, arrow keys, a label that can be dragged, setting and unsetting.
+
+import { debounce } from '../dom/debounce.js';
+import { h } from '../dom/elements.js';
+import { number, parse, quantity, unitAfter } from '../dom/numbers.js';
+import { angles, isAngle, shownFactor, shownValue } from '../dom/units.js';
+import { dragLabel } from './label-drag.js';
+import { Row } from './row.js';
+import { aim, firstValue, shownRange, sliderStep } from './slider-range.js';
+import { steady } from './steady-slider.js';
+import { Track } from './track.js';
+
+/** Longest text of a number that is shown whole without focus. */
+const SHORT = 8;
+const DIGITS = 4;
+
+export class NumberRow extends Row {
+  /** None for a number among trillions, which nobody finds with a slider. @type {Track | null} */
+  track = null;
+  /** The text field. */
+  #text;
+  /** The field can be left open, and has no usual value then. */
+  #optional;
+  #unset;
+  #set;
+  /** True once the text was edited since it was last shown. */
+  #edited = false;
+  #complainSoon;
+  #settle;
+
+  /** @param {import('./row.js').Field} field @param {import('./row.js').Host} host */
+  constructor(field, host) {
+    const text = h('input', { type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false' });
+    super(field, host, text);
+    this.#text = text;
+    this.#optional = field.default == null && !field.required;
+    this.#unset = h(
+      'button',
+      { type: 'button', class: 'icon unset', 'aria-label': `Unset ${field.title}`, hidden: true },
+      '×',
+    );
+    this.#set = h('button', { type: 'button', class: 'set', 'aria-label': `Set ${field.title}`, hidden: true }, 'Set');
+    this.head.lastElementChild?.before(this.#unset);
+    const row = h('div', { class: 'field-row' }, text);
+    this.head.after(row);
+    if (field.kind !== 'integer' || (field.maximum ?? Infinity) <= 1e6) {
+      const slider = h('input', { type: 'range', id: `${this.id}-slider`, 'aria-label': `${field.title}, slider` });
+      row.prepend(slider);
+      this.#listenToSlider(slider);
+      this.track = new Track(slider);
+      this.track.element.addEventListener('dblclick', () => this.reset());
+    }
+    text.before(this.#set);
+    this.#set.addEventListener('click', () => {
+      this.set(firstValue(field), true);
+      text.focus();
+    });
+    this.#unset.addEventListener('click', () => {
+      this.set(undefined, true);
+      this.#set.focus();
+    });
+    this.#complainSoon = debounce(500, () => this.#complain());
+    this.#settle = debounce(300, () => host.edited(field.path, true));
+    this.#listenToText();
+    this.label.addEventListener('dblclick', () => this.reset());
+    this.label.classList.add('drags');
+    dragLabel(this.label, () => this.#drag());
+    this.describe();
+  }
+
+  #listenToText() {
+    const text = this.#text;
+    text.addEventListener('input', () => this.#typed(false));
+    text.addEventListener('change', () => this.#typed(true));
+    text.addEventListener('focus', () => {
+      if (this.#edited) return;
+      this.show();
+      text.select();
+    });
+    text.addEventListener('blur', () => this.#leave());
+    text.addEventListener('keydown', (event) => {
+      const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+      if (!way || event.ctrlKey || event.metaKey) return;
+      event.preventDefault();
+      this.#step(way * (event.shiftKey ? 10 : 1));
+    });
+  }
+
+  /** @param {HTMLInputElement} slider */
+  #listenToSlider(slider) {
+    steady(slider, () => {
+      const { value } = this;
+      return () => this.set(value, false);
+    });
+    for (const [event, final] of /** @type {const} */ ([
+      ['input', false],
+      ['change', true],
+    ]))
+      slider.addEventListener(event, () => {
+        const value = parse(slider.value, this.field.unit);
+        if (value === null) return;
+        this.#edited = false;
+        this.value = value;
+        this.#showText();
+        slider.setAttribute('aria-valuetext', quantity(value, this.field.unit));
+        this.take(value, final);
+      });
+  }
+
+  /** The value that stands where none is set. */
+  get #usual() {
+    return typeof this.field.default === 'number' ? this.field.default : null;
+  }
+
+  /** Value, or the usual one. */
+  get #number() {
+    return typeof this.value === 'number' ? this.value : this.#usual;
+  }
+
+  helpWords() {
+    const { field } = this;
+    const words = super.helpWords();
+    if (this.track) {
+      const [from, to] = shownRange(field, this.#number);
+      words.splice(-1, 0, `Slider: ${number(from)} to ${number(to)}${unitAfter(field.unit)}.`);
+    }
+    if (isAngle(field.unit) && !field.unit?.startsWith('/'))
+      words.push(
+        angles() === 'deg'
+          ? '“0.35 rad” and “pi/9” may be typed as well.'
+          : '“20°”, “20 deg” and “pi/9” may be typed as well.',
+      );
+    return words;
+  }
+
+  /** @param {boolean} final */
+  #typed(final) {
+    const text = this.#text.value.trim();
+    if (!this.#edited && final) return;
+    this.#edited = true;
+    const { value, problem } = this.#judge(text);
+    if (problem === null) {
+      this.#aim(value ?? null);
+      return this.take(value, final);
+    }
+    this.problem = problem;
+    this.host.edited(this.field.path, final);
+    if (final) this.#complain();
+    else this.#complainSoon();
+  }
+
+  /** @param {string} text @returns {{value?: number, problem: string | null}} */
+  #judge(text) {
+    const { field } = this;
+    if (text === '') return { problem: this.host.needs(field) ? `${field.title} is needed.` : null };
+    const value = parse(text, field.unit);
+    if (value === null) return { problem: `“${text}” is not a number.` };
+    if (field.kind === 'integer' && !Number.isInteger(value)) return { problem: `“${text}” is not a whole number.` };
+    const { minimum, maximum, unit } = field;
+    if ((minimum == null || value >= minimum) && (maximum == null || value <= maximum)) return { value, problem: null };
+    const limits = `${number(shownValue(minimum ?? -Infinity, unit))} to ${quantity(maximum, unit)}`;
+    return { problem: `${quantity(value, unit)} is outside its limits, ${limits}.` };
+  }
+
+  /** Marks a text that is no value. */
+  #complain() {
+    if (this.problem !== null) this.say(this.problem);
+  }
+
+  /** A text that is no value gives way to the last one that was, and says so. */
+  #leave() {
+    const { problem } = this;
+    this.#edited = false;
+    if (problem === null) return this.show();
+    this.problem = null;
+    this.show();
+    const back =
+      this.value === undefined ? `It is ${this.told(undefined)} again` : `${this.told(this.value)} was put back`;
+    const words = `${back}: ${problem}`;
+    this.say(words, false);
+    this.host.tell(`${this.field.title}: ${words}`);
+    this.host.edited(this.field.path, false);
+  }
+
+  /** @param {number} steps */
+  #step(steps) {
+    const from = this.#number ?? firstValue(this.field);
+    this.#edited = false;
+    this.set(this.#moved(from, steps), false);
+    this.#settle();
+  }
+
+  /** A value some steps from another, in round numbers of the shown unit and within the limits. @param {number} from @param {number} steps */
+  #moved(from, steps) {
+    const { field } = this;
+    const { unit, minimum, maximum } = field;
+    const step = sliderStep(field, from);
+    const to = Number((shownValue(from, unit) + steps * step).toPrecision(12));
+    return Math.min(maximum ?? Infinity, Math.max(minimum ?? -Infinity, to / shownFactor(unit)));
+  }
+
+  #drag() {
+    const from = this.value === undefined ? this.#usual : this.value;
+    if (typeof from !== 'number' || this.#text.disabled || this.problem !== null) return null;
+    const before = this.value;
+    return (/** @type {number} */ steps, /** @type {boolean} */ final) =>
+      this.set(steps === 0 ? before : this.#moved(from, steps), final);
+  }
+
+  show() {
+    this.#edited = false;
+    this.#showText();
+    this.#aim(typeof this.value === 'number' ? this.value : null);
+    const open = this.#optional && this.value === undefined;
+    this.#set.hidden = !open || this.#text.disabled;
+    this.#unset.hidden = !this.#optional || open;
+  }
+
+  #showText() {
+    const { unit } = this.field;
+    const text = this.#text;
+    text.placeholder = this.#usual === null ? 'not set' : number(shownValue(this.#usual, unit));
+    if (typeof this.value !== 'number') {
+      text.value = '';
+      text.title = '';
+      return;
+    }
+    const whole = String(shownValue(this.value, unit));
+    const short = whole.length > SHORT ? String(Number(shownValue(this.value, unit).toPrecision(DIGITS))) : whole;
+    text.value = document.activeElement === text ? whole : short;
+    text.title = short === whole ? '' : whole;
+  }
+
+  /** @param {number | null} value */
+  #aim(value) {
+    if (!this.track) return;
+    aim(this.track.slider, this.field, value);
+    this.track.hollow = value === null && this.#usual === null;
+    this.track.refresh();
+  }
+
+  /** @param {boolean} off */
+  disable(off) {
+    super.disable(off);
+    this.show();
+    if (off && this.track) this.track.slider.disabled = true;
+  }
+
+  describe() {
+    super.describe();
+    if (this.track) this.show();
+  }
+}

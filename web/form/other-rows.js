@@ -1,0 +1,92 @@
+// Rows of fields that are no numbers: a choice, yes or no, the vertices of a polygon.
+
+import { h } from '../dom/elements.js';
+import { parse } from '../dom/numbers.js';
+import { Row } from './row.js';
+
+/** @typedef {import('./row.js').Field} Field */
+/** @typedef {import('./row.js').Host} Host */
+
+export class ChoiceRow extends Row {
+  /** @param {Field} field @param {Host} host */
+  constructor(field, host) {
+    const select = h(
+      'select',
+      {},
+      field.default == null && h('option', { value: '' }, 'not set'),
+      ...(field.choices ?? []).map((choice) => h('option', { value: choice }, choice.replaceAll('_', ' '))),
+    );
+    super(field, host, select);
+    this.head.after(select);
+    select.addEventListener('change', () =>
+      this.take(select.value === (field.default ?? '') ? undefined : select.value, true),
+    );
+  }
+
+  show() {
+    this.input.value = String(this.value ?? this.field.default ?? '');
+  }
+}
+
+export class BooleanRow extends Row {
+  #box;
+
+  /** @param {Field} field @param {Host} host */
+  constructor(field, host) {
+    const box = h('input', { type: 'checkbox' });
+    super(field, host, box);
+    this.#box = box;
+    this.head.prepend(box);
+    box.addEventListener('change', () => this.take(box.checked || undefined, true));
+  }
+
+  show() {
+    this.#box.checked = this.value === true;
+  }
+}
+
+export class VerticesRow extends Row {
+  /** @param {Field} field @param {Host} host */
+  constructor(field, host) {
+    const area = h('textarea', { rows: 3, spellcheck: 'false', placeholder: 'not set' });
+    super(field, host, area);
+    this.head.after(area);
+    for (const [event, final] of /** @type {const} */ ([
+      ['input', false],
+      ['change', true],
+    ]))
+      area.addEventListener(event, () => this.#typed(final));
+  }
+
+  /** @param {boolean} final */
+  #typed(final) {
+    const text = this.input.value;
+    const { value, problem } = text.trim() === '' ? { value: undefined, problem: null } : places(text);
+    // Half a polygon is no reason to throw it away: it stays, and the page keeps the last whole one.
+    if (problem === null) return this.take(value, final);
+    this.problem = problem;
+    this.say(final ? problem : null);
+    this.host.edited(this.field.path, final);
+  }
+
+  show() {
+    this.input.value = Array.isArray(this.value) ? this.value.map((place) => place.join(', ')).join('\n') : '';
+  }
+}
+
+/** Vertices from lines of two numbers. @param {string} text @returns {{value: unknown, problem: string | null}} */
+function places(text) {
+  const lines = text
+    .trim()
+    .split('\n')
+    .map((line) =>
+      line
+        .trim()
+        .split(/[\s,;]+/)
+        .map((part) => parse(part, 'm')),
+    );
+  const wrong = lines.findIndex((place) => place.length !== 2 || place.includes(null));
+  return wrong < 0
+    ? { value: lines, problem: null }
+    : { value: undefined, problem: `Line ${wrong + 1} is not x and y, as in “0.1, 0.2”.` };
+}

@@ -1,0 +1,111 @@
+// The map behind a slider: one row of `/v1/regions`, a run of this scene at each of its values.
+
+import { get } from '../api/client.js';
+import { LatestRequest } from '../api/latest-request.js';
+import { debounce } from '../dom/debounce.js';
+import { number } from '../dom/numbers.js';
+import { shownFactor, shownUnit } from '../dom/units.js';
+
+/** @typedef {import('../api/scene-fields.js').Field} Field */
+/** @typedef {import('./track.js').Track} Track */
+
+/** Cells of a row. */
+export const CELLS = 96;
+/** Bounces of each run: few, so that the row is there at once. */
+export const BOUNCES = 500;
+/** Wait after a change of the scene, ms. */
+const QUIET_MS = 250;
+/** A field that every scene has, for the axis that stands still. */
+const STILL = 'gravity';
+/** Ranges that the words name. */
+const TOLD = 4;
+
+/** Runs once the browser has nothing more urgent to do. @param {() => void} run */
+const whenIdle = (run) =>
+  void ('requestIdleCallback' in globalThis ? requestIdleCallback(run, { timeout: 1000 }) : setTimeout(run, 50));
+
+export class TrackMap {
+  #field;
+  #tracks;
+  #scene;
+  #latest = new LatestRequest();
+  /** The request whose answer is shown or on its way. */
+  #asked = '';
+  #soon = debounce(QUIET_MS, () => whenIdle(() => void this.#ask()));
+
+  /**
+   * @param {Field} field
+   * @param {Track[]} tracks of sliders of this field, which show the same
+   * @param {() => URLSearchParams | null} scene as typed; null while some of it is no value
+   */
+  constructor(field, tracks, scene) {
+    this.#field = field;
+    this.#tracks = tracks;
+    this.#scene = scene;
+  }
+
+  /** Asks anew, once the scene has been the same for a moment, where the answer may be another one. */
+  renew() {
+    this.#soon();
+  }
+
+  /** The request for the row; null where there is no scene. */
+  #request() {
+    const scene = this.#scene();
+    if (!scene) return null;
+    const { path, unit } = this.#field;
+    const { from, to } = this.#tracks[0].range;
+    const factor = shownFactor(unit);
+    const query = new URLSearchParams(scene);
+    // The scene's own value of the field does not matter: the same row serves all of them.
+    query.set(`scene.${path}`, String(from / factor));
+    const still = query.get(`scene.${STILL}`) ?? '9.81';
+    const axes = { x: [path, from / factor, to / factor, CELLS], y: [STILL, still, still, 1] };
+    for (const [axis, values] of Object.entries(axes))
+      for (const [index, part] of ['parameter', 'from', 'to', 'count'].entries())
+        query.set(`${axis}.${part}`, String(values[index]));
+    query.set('impacts', String(BOUNCES));
+    return `v1/regions?${query}`;
+  }
+
+  async #ask() {
+    const request = this.#request();
+    if (request === null || request === this.#asked) return;
+    this.#asked = request;
+    const { range } = this.#tracks[0];
+    const signal = this.#latest.next();
+    try {
+      const { values, outcomes, outcome_names: names } = await get(request, signal);
+      const none = names.indexOf('none');
+      const survived = values[0].map((/** @type {number | null} */ contacts, /** @type {number} */ cell) =>
+        outcomes[0][cell] === none || contacts === null ? null : contacts >= BOUNCES,
+      );
+      const words = this.#words(survived, range);
+      for (const track of this.#tracks) track.know({ ...range, outcomes: survived }, words);
+    } catch {
+      if (signal.aborted) return;
+      // A scene without such runs has no map; a server that was away is asked again with the next change.
+      this.#asked = '';
+      for (const track of this.#tracks) track.know(null);
+    }
+  }
+
+  /** The row in words. @param {(boolean | null)[]} survived @param {{from: number, to: number}} range */
+  #words(survived, { from, to }) {
+    const { title, unit } = this.#field;
+    const at = (/** @type {number} */ cell) => number(from + ((to - from) * cell) / (CELLS - 1), 3);
+    /** @type {[number, number][]} */
+    const ranges = [];
+    survived.forEach((survives, cell) => {
+      if (!survives) return;
+      const last = ranges.at(-1);
+      if (last && last[1] === cell - 1) last[1] = cell;
+      else ranges.push([cell, cell]);
+    });
+    if (ranges.length === 0) return `No run lasts ${BOUNCES} bounces on this track.`;
+    const told = ranges.slice(0, TOLD).map(([low, high]) => (low === high ? at(low) : `${at(low)} to ${at(high)}`));
+    if (ranges.length > TOLD) told.push(`${ranges.length - TOLD} more`);
+    const printed = unit === '1' || unit === null ? '' : ` ${shownUnit(unit)}`;
+    return `Runs last ${BOUNCES} bounces with ${title.toLowerCase()} ${told.join(', ')}${printed}; hatched values fall.`;
+  }
+}
