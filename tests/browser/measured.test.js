@@ -32,7 +32,7 @@ async function paused(options) {
   await reachImpact(page, COUNT + 1);
   await page.click('#run');
   await reachPhase(page, 'paused');
-  await page.locator('#measured-load').waitFor();
+  await page.locator('#measured-load').waitFor({ state: 'attached' });
   return opened;
 }
 
@@ -180,7 +180,7 @@ test('units, decimal commas, other names and missing columns are understood', as
 
 test('a run that is not there yet is said, and the comparison follows it', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
-  await page.locator('#measured-load').waitFor();
+  await page.locator('#measured-load').waitFor({ state: 'attached' });
   await drop(page, 'rig.csv', await csv());
   await told(page, /Nothing is simulated yet/);
   await speedUp(page);
@@ -214,7 +214,7 @@ for (const [name, text, words] of [
 ]) {
   test(`a file with ${name} is answered in words`, async () => {
     const { page, clean } = await stage.page('?preset=case-1');
-    await page.locator('#measured-load').waitFor();
+    await page.locator('#measured-load').waitFor({ state: 'attached' });
     await drop(page, 'odd.csv', text);
     await page.locator('.measured').waitFor();
     await page.waitForFunction(() => /\w/.test(document.querySelector('#measured-told').textContent));

@@ -12,6 +12,7 @@ export const TABS = [
   { id: 'noise', name: 'Noise' },
   { id: 'control', name: 'Control' },
   { id: 'accuracy', name: 'Speed and accuracy' },
+  { id: 'measured', name: 'Measured' },
   { id: 'paper', name: 'Paper' },
   { id: 'limits', name: 'Where methods fail' },
   { id: 'api', name: 'API' },

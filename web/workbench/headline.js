@@ -1,21 +1,20 @@
-// The verdict and the state of the run in a few words, for when the verdict's card is out of sight.
+// The verdict and the run in a few words, for when the verdict's card is out of sight.
 
 import { h } from '../dom/elements.js';
 
-/** @param {HTMLElement} place hidden from screen readers, which hear the card and the state themselves @param {HTMLElement} card of the verdict */
+/** @param {HTMLElement} place hidden from screen readers, which hear the card itself @param {HTMLElement} card of the verdict */
 export function headline(place, card) {
   const verdict = h('b');
   const run = h('span');
   const tell = () => {
     const words = card.querySelector('.verdict-words');
     verdict.className = ['stable', 'beyond', 'unstable'].find((kind) => words?.classList.contains(kind)) ?? '';
-    put(verdict, words?.textContent?.trim() ?? '');
-    put(run, ` ${document.getElementById('run-state')?.textContent ?? ''}`);
+    put(verdict, words?.querySelector('.headline')?.textContent ?? '');
+    const told = card.querySelector('#this-run .headline')?.textContent ?? '';
+    put(run, told && ` · ${told}`);
+    run.classList.toggle('fell', card.querySelector('#this-run.fell') !== null);
   };
-  const state = document.getElementById('run-state');
-  const observer = new MutationObserver(tell);
-  for (const part of [card, state])
-    if (part) observer.observe(part, { childList: true, subtree: true, characterData: true });
+  new MutationObserver(tell).observe(card, { childList: true, subtree: true, characterData: true });
   place.append(verdict, run);
   tell();
   // Beside the card the headline would say the same twice.

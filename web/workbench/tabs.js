@@ -4,7 +4,10 @@ import { h } from '../dom/elements.js';
 
 /** @typedef {{id: string, name: string}} Tab */
 
+const stillness = matchMedia('(prefers-reduced-motion: reduce)');
+
 export class Tabs {
+  #list;
   #tabs;
   /** @type {Map<string, {button: HTMLButtonElement, panel: HTMLElement}>} */
   #parts = new Map();
@@ -20,6 +23,7 @@ export class Tabs {
    * @param {(id: string, byHand: boolean) => void} opened
    */
   constructor(list, panels, tabs, opened) {
+    this.#list = list;
     this.#tabs = tabs;
     this.#opened = opened;
     for (const { id, name } of tabs) {
@@ -81,6 +85,9 @@ export class Tabs {
     this.#named = byHand || id !== this.#tabs[0].id;
     if (id !== this.#chosen) this.#show(id);
     this.#opened(id, byHand);
+    // A tab at the lower edge of the screen opens below it.
+    if (byHand && this.#list.getBoundingClientRect().top > innerHeight / 2)
+      this.#list.parentElement?.scrollIntoView({ behavior: stillness.matches ? 'auto' : 'smooth' });
   }
 
   /** @param {string} chosen */

@@ -66,6 +66,7 @@ export async function bringLateParts(page) {
     plots,
     typed: () => page.complete,
     query: () => typedQuery(page),
+    measured: { bar: byId('measured-bar'), show: () => page.panels?.show('measured') },
   });
   page.panels.join('brush', page.interaction);
   bringTracks(page);

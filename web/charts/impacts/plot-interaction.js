@@ -3,7 +3,7 @@
 import { Ghost } from './ghost.js';
 import { Selection } from '../../run/selection.js';
 import { drawContacts } from './overlay.js';
-import { h } from '../../dom/elements.js';
+import { byId, h } from '../../dom/elements.js';
 import { invalidate } from '../surface.js';
 import { listen } from './plot-pointer.js';
 import { notice } from '../../dom/notices.js';
@@ -19,14 +19,16 @@ import { styles } from '../../panels/card.js';
  * @property {import('../../api/scene-fields.js').Field[]} fields
  * @property {(values: Record<string, number>) => void} launch
  * @property {() => void} changed what the address says
+ * @property {{bar: HTMLElement, show: () => void}} measured the place of a lab's own impacts
  */
 
 const BY_POINTER = 'Drag over a plot to select impacts; click in a plane to place a release there.';
+const MEASURED =
+  'Impacts that were measured, as CSV or TSV: they are drawn over the run, with the residual of each. The file stays in this browser. It may also be dropped anywhere on the page.';
 const BY_KEYS =
   'Left and right go from impact to impact, with Shift they select; Enter offers a release whose first impact is that one, a second Enter releases it; Escape drops it and clears the selection.';
 
 export class PlotInteraction {
-  #bar;
   #page;
   #selection;
   #ghost;
@@ -66,12 +68,12 @@ export class PlotInteraction {
       view,
       plots,
     } = page;
-    this.#bar = bar;
     this.#page = page;
     const selection = new Selection(impacts);
     this.#selection = selection;
     selection.changed = () => this.#selected();
-    bar.append(this.#told, this.#clear, this.#load, this.#file, this.#hint, this.#spoken);
+    bar.append(this.#told, this.#clear, this.#hint, this.#spoken);
+    page.measured.bar.append(h('p', {}, MEASURED), this.#load, this.#file);
     view.under = (surface, scale, scene) => drawContacts(surface, scale, scene, impacts, selection);
     const say = (/** @type {string} */ words) => {
       this.#spoken.textContent = words;
@@ -102,7 +104,7 @@ export class PlotInteraction {
           invalidate(this);
         });
     }
-    const root = /** @type {HTMLElement} */ (bar.parentElement);
+    const root = byId('charts');
     // Wherever on the page: a file beside the charts is meant for them, not for the browser.
     const over = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes('Files') ?? false;
     addEventListener('dragover', (event) => {
@@ -166,10 +168,11 @@ export class PlotInteraction {
         import('../../panels/measured/panel.js'),
         this.#measured ?? styles('panels/measured/measured.css'),
       ]);
-      this.#measured ??= new MeasuredPanel(this.#bar, this.#page);
+      this.#measured ??= new MeasuredPanel(this.#page.measured.bar, this.#page);
     } catch {
       return notice('measured', ['What reads measured impacts did not load.'], { caution: true });
     }
+    this.#page.measured.show();
     await this.#measured.take(file);
   }
 
