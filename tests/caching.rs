@@ -14,6 +14,7 @@ const TARGETS: [&str; 7] = [
     "/v1/scenes",
     "/v1/scenes/case-1",
     "/v1/fields",
+    "/v1/paper",
 ];
 
 #[tokio::test]

@@ -129,15 +129,18 @@ async fn every_example_of_a_parameter_runs() {
         if method != Method::GET || !template.starts_with("/v1/") || template.starts_with("/v1/live") {
             continue;
         }
-        for parameter in operation["parameters"].as_array().into_iter().flatten().map(contract::resolved) {
+        let parameters: Vec<_> =
+            operation["parameters"].as_array().into_iter().flatten().map(contract::resolved).collect();
+        let takes_scene = parameters.iter().any(|parameter| parameter["name"] == "preset");
+        for parameter in parameters {
             let Some(example) = parameter.get("example") else { continue };
             let faults = contract::faults(&parameter["schema"], example);
             assert!(faults.is_empty(), "{template}: {parameter}: {faults:?}");
             let text = example.as_str().map_or_else(|| example.to_string(), str::to_owned);
             let name = parameter["name"].as_str().unwrap();
             let base = operation["x-base-query"].as_str().unwrap_or("preset=case-1");
-            let start = match (["scenes", "fields", "failures"].iter().any(|part| template.contains(part)), name) {
-                (true, _) => String::new(),
+            let start = match (takes_scene, name) {
+                (false, _) => String::new(),
                 (_, "preset") => format!("{}&", base.trim_start_matches("preset=case-1")),
                 _ => format!("{base}&"),
             };

@@ -44,7 +44,7 @@ async fn a_method_that_is_not_there_is_405() {
             assert_eq!(answer.header("allow").map(|allow| allow.replace(' ', "")).as_deref(), Some("GET,HEAD,POST"));
         }
     }
-    for resource in ["/v1/scenes", "/v1/scenes/case-1", "/v1/fields"] {
+    for resource in ["/v1/scenes", "/v1/scenes/case-1", "/v1/fields", "/v1/paper"] {
         let answer =
             server.send(Method::POST, resource, &[("content-type", "application/json")], "{}").await.expect(405);
         assert_eq!(answer.header("allow").map(|allow| allow.replace(' ', "")).as_deref(), Some("GET,HEAD"));
@@ -59,6 +59,7 @@ async fn a_format_that_is_not_there_is_406() {
         ("/v1/stability?preset=case-1", "json, csv, ndjson, svg, png"),
         ("/v1/scenes?", "json"),
         ("/v1/fields?", "json"),
+        ("/v1/paper?", "json"),
     ] {
         for format in ["pdf", "gif", "JSON", ""] {
             let answer = server.get(&format!("{target}&format={format}")).await.expect(406);

@@ -12,6 +12,7 @@ pub mod jacobians;
 pub mod ladder;
 pub mod live;
 pub mod ops;
+mod paper;
 pub mod periodic_orbits;
 pub mod precision;
 pub mod regions;
@@ -49,6 +50,7 @@ pub fn all(web: Option<&Path>) -> Router<App> {
         .merge(ops::health::routes())
         .merge(ops::scrape::routes())
         .merge(failures::routes())
+        .merge(paper::routes())
         .merge(scene::routes())
         .merge(live::routes())
         .merge(batches::routes(&COMPUTED));

@@ -632,6 +632,31 @@ export interface components {
             printed: components["schemas"]["Quantity"][];
             computed: components["schemas"]["Quantity"][];
         };
+        Paper: {
+            items: components["schemas"]["PaperItem"][];
+        };
+        PaperItem: {
+            id: string;
+            /** @enum {string} */
+            kind: "equation" | "table" | "figure" | "claim";
+            place: string;
+            title: string;
+            printed: string;
+            agrees: boolean;
+            checks: {
+                quantity: string;
+                symbol: string;
+                unit: string;
+                printed: number | null;
+                computed: number;
+                agrees: boolean;
+                why: string | null;
+            }[];
+            why: string | null;
+            scene: components["schemas"]["Scene"];
+            ask: string;
+            picture: string | null;
+        };
         Failures: {
             failures: components["schemas"]["Failure"][];
         };
@@ -1600,6 +1625,8 @@ export type PlacedState = components['schemas']['PlacedState'];
 export type ImpactState = components['schemas']['ImpactState'];
 export type Presets = components['schemas']['Presets'];
 export type Preset = components['schemas']['Preset'];
+export type Paper = components['schemas']['Paper'];
+export type PaperItem = components['schemas']['PaperItem'];
 export type Failures = components['schemas']['Failures'];
 export type FailureName = components['schemas']['FailureName'];
 export type Failure = components['schemas']['Failure'];

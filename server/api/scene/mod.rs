@@ -4,7 +4,7 @@ pub mod fields;
 pub mod merge;
 pub mod presets;
 pub mod price;
-mod quantity;
+pub(crate) mod quantity;
 pub mod read;
 pub mod write;
 
@@ -66,7 +66,7 @@ async fn fields(State(app): State<App>, api_request: ApiRequest) -> Result<Respo
 }
 
 /// Answers with a value that depends on the build alone. `answer` returns None when the client has gone.
-async fn fixed<T: Serialize>(
+pub(crate) async fn fixed<T: Serialize>(
     app: &App,
     api_request: &ApiRequest,
     canonical: &str,

@@ -61,6 +61,15 @@ pub struct Shown {
     pub(super) computed: Vec<Quoted>,
 }
 
+impl Shown {
+    /// A quantity's printed value, its computed value, and why they differ.
+    pub(crate) fn pair(&self, quantity: Quantity) -> Option<(Option<f64>, f64, Option<&'static str>)> {
+        let printed = self.printed.iter().find(|quoted| quoted.quantity == quantity)?;
+        let computed = self.computed.iter().find(|quoted| quoted.quantity == quantity)?;
+        Some((printed.value, computed.value?, computed.why))
+    }
+}
+
 impl Preset {
     /// The scene, to change and build.
     pub fn draft(&self) -> Draft {
