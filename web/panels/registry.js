@@ -74,6 +74,14 @@ export const PANELS = [
     load: () => import('./paper/panel.js'),
   },
   {
+    id: 'reading',
+    tab: 'paper',
+    title: 'The paper, item by item',
+    about: 'Each equation, table, figure and claim: as printed, as computed, and why they differ.',
+    shared: FIGURE_STYLES,
+    load: () => import('./reading/panel.js'),
+  },
+  {
     id: 'calls',
     tab: 'api',
     title: 'The same from the API',
