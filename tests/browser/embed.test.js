@@ -24,6 +24,7 @@ const SIGNS = {
   branch: '.changes',
   precision: '#precision-told:has-text("Measured over")',
   paper: '.paper',
+  reading: '.reading-items',
   calls: '.call',
   gallery: 'article',
 };

@@ -52,7 +52,7 @@ export class ItemView {
       h(
         'summary',
         {},
-        h('span', { class: 'reading-place' }, place),
+        h('span', { class: 'reading-place' }, ...marked(place)),
         h('span', { class: 'reading-title' }, ...marked(title)),
         mark,
       ),
