@@ -67,6 +67,43 @@ async fn a_single_impact_says_all_of_it() {
 }
 
 #[tokio::test]
+async fn every_message_foresees_the_next_strike() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-5&speed=2").await;
+    let hello = client.next().await;
+    let (mut next, mut set, mut met) = (hello["first_strike"].clone(), false, 0);
+    assert_eq!(next["target"], hello["derived"]["target"]);
+    while met < 6 || next["target"]["height"] != 0.3 {
+        let message = client.next().await;
+        match message["type"].as_str() {
+            Some("impact") => {
+                for name in ["n", "t", "alpha", "table_velocity"] {
+                    assert_eq!(message[name], next[name], "{name}");
+                }
+                met += 1;
+            }
+            // Many at once, if this machine is slow: the first of them is the one that was foreseen.
+            Some("impacts") => {
+                for name in ["n", "t", "alpha"] {
+                    assert_eq!(message["columns"][name][0], next[name], "{name}");
+                }
+                met += message["columns"]["n"].as_array().unwrap().len();
+            }
+            Some("ack") => {
+                assert_ne!(message["next_strike"]["alpha"], next["alpha"]);
+                assert_eq!(message["next_strike"]["target"]["height"], 0.3);
+            }
+            other => panic!("{other:?}"),
+        }
+        next = message["next_strike"].clone();
+        if !set && met > 0 {
+            set = true;
+            client.send(json!({"type": "set", "table.tilt_gain": 1.2, "table.target_height": 0.3})).await;
+        }
+    }
+}
+
+#[tokio::test]
 async fn the_same_url_is_the_same_run_and_from_leaves_no_gap() {
     let (_, address) = start().await;
     let url = old(60);

@@ -35,6 +35,13 @@ async fn the_true_triangle_says_that_no_other_vertex_touches_and_how_near_one_co
         answer["scene"]["body"],
         json!({"vertices": [[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]], "contact_vertex": 0})
     );
+    // About the centroid, two thirds of the height above the lower corner.
+    let outline = &answer["derived"]["outline"];
+    for (vertex, [x, y]) in [[0.0, -0.4 / 3.0], [0.05, 0.2 / 3.0], [-0.05, 0.2 / 3.0]].into_iter().enumerate() {
+        close(&outline[vertex][0], x, 1e-15);
+        close(&outline[vertex][1], y, 1e-15);
+    }
+    close(&answer["derived"]["contact_distance"], 0.4 / 3.0, 1e-15);
     let nearest = &answer["nearest_vertex"];
     close(&nearest["clearance"], 0.19787, 1e-5);
     let n = nearest["impact"].as_u64().unwrap() as usize;

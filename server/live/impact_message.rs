@@ -6,10 +6,16 @@ use crate::api::shared::table::gather::Gathered;
 use crate::api::shared::table::{Column, Table};
 use crate::api::trajectories::columns;
 use crate::api::trajectories::columns::{After, ImpactRow};
+use crate::live::next_strike::{NextStrike, TableVelocity};
 
 /// An impact, as an object.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ImpactMessage(pub ImpactRow);
+pub struct ImpactMessage {
+    /// The impact.
+    pub row: ImpactRow,
+    /// The strike after it.
+    pub next_strike: Option<NextStrike>,
+}
 
 #[derive(Serialize)]
 struct Before {
@@ -21,19 +27,13 @@ struct Before {
 }
 
 #[derive(Serialize)]
-struct Velocity {
-    x: f64,
-    y: f64,
-}
-
-#[derive(Serialize)]
 struct Nested {
     n: u64,
     t: f64,
     before: Before,
     after: Option<After>,
     alpha: f64,
-    table_velocity: Option<Velocity>,
+    table_velocity: Option<TableVelocity>,
     flight_time: Option<f64>,
     energy: f64,
     contact_speed: f64,
@@ -41,23 +41,24 @@ struct Nested {
     impulse_tangential: Option<f64>,
     contact_mode: Option<&'static str>,
     clearance: f64,
+    next_strike: Option<NextStrike>,
 }
 
 impl ImpactMessage {
     /// Number of the impact, from 1.
     pub fn n(&self) -> u64 {
-        self.0.contact.n
+        self.row.contact.n
     }
 
     /// Time to the next one, s of run time.
     pub fn flight_time(&self) -> Option<f64> {
-        self.0.contact.flight_time
+        self.row.contact.flight_time
     }
 }
 
 impl Serialize for ImpactMessage {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Self(row) = self;
+        let Self { row, next_strike } = self;
         let (contact, state) = (&row.contact, &row.contact.state);
         Nested {
             n: contact.n,
@@ -71,7 +72,7 @@ impl Serialize for ImpactMessage {
             },
             after: row.after(),
             alpha: contact.alpha,
-            table_velocity: row.table_velocity_x().zip(row.table_velocity_y()).map(|(x, y)| Velocity { x, y }),
+            table_velocity: row.table_velocity_x().zip(row.table_velocity_y()).map(|(x, y)| TableVelocity { x, y }),
             flight_time: contact.flight_time,
             energy: row.energy,
             contact_speed: row.contact_speed,
@@ -79,6 +80,7 @@ impl Serialize for ImpactMessage {
             impulse_tangential: row.impulse_tangential(),
             contact_mode: row.contact_mode(),
             clearance: contact.clearance,
+            next_strike: *next_strike,
         }
         .serialize(serializer)
     }
@@ -88,11 +90,18 @@ impl Serialize for ImpactMessage {
 #[derive(Debug)]
 pub struct ImpactColumns(pub Vec<ImpactMessage>);
 
+impl ImpactColumns {
+    /// The strike after the last impact.
+    pub fn next_strike(&self) -> Option<NextStrike> {
+        self.0.last()?.next_strike
+    }
+}
+
 impl Serialize for ImpactColumns {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let column = |column: &'static columns::ImpactColumn| {
             let mut gathered = Gathered::with_capacity(column.read, self.0.len());
-            self.0.iter().for_each(|ImpactMessage(row)| gathered.push(row));
+            self.0.iter().for_each(|ImpactMessage { row, .. }| gathered.push(row));
             Column { name: column.name, unit: column.unit, cells: gathered.into_cells() }
         };
         Table(columns::of_live_runs().map(column).collect()).serialize(serializer)

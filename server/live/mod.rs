@@ -11,6 +11,7 @@ pub mod catch_up;
 pub mod clock;
 pub mod close;
 pub mod impact_message;
+pub mod next_strike;
 pub mod outbox;
 pub mod run_url;
 pub mod session;

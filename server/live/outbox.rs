@@ -97,7 +97,7 @@ impl Outbox {
         self.impacts -= batch.len();
         match batch.as_slice() {
             [one] => ServerMessage::Impact(one).to_frame(),
-            _ => ServerMessage::Impacts { columns: ImpactColumns(batch) }.to_frame(),
+            _ => ServerMessage::impacts(ImpactColumns(batch)).to_frame(),
         }
     }
 
@@ -132,7 +132,7 @@ mod tests {
         let mut playback = Playback::new(&run, limits::LIVE_IMPACTS);
         let mut next = || {
             let (contact, _) = playback.advance(&run);
-            ImpactMessage(ImpactRow::new(playback.body(), true, contact))
+            ImpactMessage { row: ImpactRow::new(playback.body(), true, contact), next_strike: None }
         };
         let mut outbox = Outbox::new(4);
         outbox.push_impact(next());

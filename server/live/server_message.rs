@@ -5,13 +5,14 @@
 use serde::Serialize;
 
 use crate::BUILD;
-use crate::api::scene::{Resolved, has_angle};
+use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::demand::DemandAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::http::{Problem, ValidationError};
 use crate::limits;
 use crate::live::impact_message::{ImpactColumns, ImpactMessage};
+use crate::live::next_strike::NextStrike;
 use crate::live::run_url;
 use crate::live::run_url::LiveRun;
 use crate::runs::playback::Playback;
@@ -28,6 +29,8 @@ pub enum ServerMessage<'a> {
     Impacts {
         /// The impacts column by column.
         columns: ImpactColumns,
+        /// The strike after the last of them.
+        next_strike: Option<NextStrike>,
     },
     /// Impacts that were skipped for a slow client.
     Gap {
@@ -84,12 +87,18 @@ pub enum EventId {
 }
 
 impl ServerMessage<'_> {
+    /// Several impacts, and the strike after the last of them.
+    pub fn impacts(columns: ImpactColumns) -> Self {
+        let next_strike = columns.next_strike();
+        Self::Impacts { columns, next_strike }
+    }
+
     /// The message as a frame.
     pub fn to_frame(&self) -> OutgoingFrame {
         let (kind, id) = match self {
             ServerMessage::Hello(_) => ("hello", None),
             ServerMessage::Impact(impact) => ("impact", Some(EventId::Impact(impact.n()))),
-            ServerMessage::Impacts { columns } => {
+            ServerMessage::Impacts { columns, .. } => {
                 ("impacts", columns.0.last().map(|impact| EventId::Impact(impact.n())))
             }
             ServerMessage::Gap { .. } => ("gap", None),
@@ -112,6 +121,7 @@ pub fn problem(problem: &Problem) -> OutgoingFrame {
 pub struct Hello<'a> {
     scene: Resolved<'a>,
     scene_in_force: Resolved<'a>,
+    derived: Derived,
     model: ModelChoice,
     epoch: u64,
     speed: f64,
@@ -121,6 +131,7 @@ pub struct Hello<'a> {
     url: String,
     release: ReleaseState,
     flight_time: Option<f64>,
+    first_strike: Option<NextStrike>,
     build: &'static str,
 }
 
@@ -139,11 +150,12 @@ impl<'a> Hello<'a> {
     /// The run from `playback` on, at the wall time `now`, unix ms. Its URL begins with `base`.
     pub fn new(live: &'a LiveRun, playback: &'a Playback, base: &str, now: u64) -> Self {
         let (scene, clock) = (live.run.scene(), &live.clock);
-        let release = scene.release();
+        let (release, released) = (scene.release(), Playback::new(&live.run, limits::LIVE_IMPACTS));
         let angle = |value| has_angle(scene).then_some(value);
         Self {
             scene: Resolved(scene),
             scene_in_force: Resolved(playback.scene()),
+            derived: Derived::of(scene),
             model: ModelChoice::of(scene),
             epoch: clock.epoch(),
             speed: clock.speed(),
@@ -160,7 +172,8 @@ impl<'a> Hello<'a> {
                 y_dot: release.state.y_dot,
                 theta_dot: angle(release.state.theta_dot),
             },
-            flight_time: Playback::new(&live.run, limits::LIVE_IMPACTS).next_t(),
+            flight_time: released.next_t(),
+            first_strike: NextStrike::of(&released, &live.run),
             build: BUILD,
         }
     }
@@ -183,6 +196,8 @@ pub struct Ack<'a> {
     pub paused: bool,
     /// Impact at which `set`, `kick` or `step` acts.
     pub impact: Option<u64>,
+    /// The strike that comes next, with what was set. None after the end.
+    pub next_strike: Option<NextStrike>,
 }
 
 #[cfg(test)]

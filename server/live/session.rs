@@ -26,6 +26,7 @@ use crate::live::catch_up::CatchUpError;
 use crate::live::client_message::ClientMessage;
 use crate::live::close::{Close, Unreadable};
 use crate::live::impact_message::ImpactMessage;
+use crate::live::next_strike::NextStrike;
 use crate::live::outbox::Outbox;
 use crate::live::run_url;
 use crate::live::run_url::{LiveRequest, LiveRun};
@@ -263,7 +264,9 @@ impl Session {
             (told, spent, last_flight) = (told + 1, spent + price.as_bounces(), contact.flight_time);
             if contact.n >= self.first {
                 let has_angle = has_angle(self.live.run.scene());
-                self.outbox.push_impact(ImpactMessage(ImpactRow::new(self.playback.body(), has_angle, contact)));
+                let row = ImpactRow::new(self.playback.body(), has_angle, contact);
+                let next_strike = NextStrike::of(&self.playback, &self.live.run);
+                self.outbox.push_impact(ImpactMessage { row, next_strike });
             }
             if let Some(outcome) = self.playback.outcome() {
                 self.outbox.push(ServerMessage::End { outcome, demand: self.playback.demand().into() }.to_frame());
@@ -427,6 +430,7 @@ impl Session {
             speed: self.live.clock.speed(),
             paused: self.live.clock.is_paused(),
             impact,
+            next_strike: NextStrike::of(&self.playback, &self.live.run),
         };
         self.outbox.push(ServerMessage::Ack(ack).to_frame());
         Ok(())

@@ -3,6 +3,8 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use equipoise_physics::body::PreImpact;
+use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, Orbit};
 use equipoise_physics::scene::model::Model;
@@ -53,6 +55,17 @@ impl Playback {
     /// The end of the run, if it has ended.
     pub fn outcome(&self) -> Option<&Outcome> {
         self.outcome.as_deref()
+    }
+
+    /// The next contact before it happens, with its strike by the changes that act there, and the scene then in force. `None` after
+    /// the end.
+    pub fn foresee(&self, run: &Run) -> Option<(PreImpact, Strike, Arc<Scene>)> {
+        let mut next = self.clone();
+        if let Some(intervention) = run.at(self.next_n()?).filter(|intervention| !intervention.set.is_empty()) {
+            next.replace(intervention.set.iter().copied());
+        }
+        let (coming, strike) = next.orbit.foresee();
+        Some((coming, strike, next.scene))
     }
 
     /// Largest demands on the table so far.

@@ -629,6 +629,7 @@ export interface components {
             title: string;
             shows: string;
             scene: components["schemas"]["Scene"];
+            derived: components["schemas"]["Derived"];
             printed: components["schemas"]["Quantity"][];
             computed: components["schemas"]["Quantity"][];
         };
@@ -712,6 +713,17 @@ export interface components {
             required: boolean;
             choices: string[] | null;
             live: boolean;
+        };
+        Derived: {
+            gravity: number;
+            contact_distance: number;
+            radius_of_gyration: number | null;
+            outline: null | number[][];
+            target: components["schemas"]["EnergyTarget"];
+        };
+        EnergyTarget: null | {
+            height: number;
+            energy: number;
         };
         Model: {
             forced: components["schemas"]["Forced"][];
@@ -815,6 +827,7 @@ export interface components {
         };
         Trajectory: {
             scene: components["schemas"]["Scene"];
+            derived: components["schemas"]["Derived"];
             model: components["schemas"]["Model"];
             method: components["schemas"]["MethodChoice"];
             outcome: components["schemas"]["Outcome"];
@@ -1204,6 +1217,7 @@ export interface components {
         };
         Stability: {
             scene: components["schemas"]["Scene"];
+            derived: components["schemas"]["Derived"];
             margins?: components["schemas"]["Margins"];
             model: components["schemas"]["Model"];
             verdict: null | ("stable in place" | "unstable") | string;
@@ -1337,6 +1351,7 @@ export interface components {
             type: "hello";
             scene: components["schemas"]["Scene"];
             scene_in_force: components["schemas"]["Scene"];
+            derived: components["schemas"]["Derived"];
             model: components["schemas"]["Model"];
             epoch: number;
             speed: number;
@@ -1354,6 +1369,7 @@ export interface components {
                 theta_dot: number | null;
             };
             flight_time: number | null;
+            first_strike: components["schemas"]["live.next_strike"];
             build: string;
         };
         "live.impact": {
@@ -1386,10 +1402,12 @@ export interface components {
             /** @enum {unknown} */
             contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null;
             clearance: number;
+            next_strike: components["schemas"]["live.next_strike"];
         };
         "live.impacts": {
             /** @constant */
             type: "impacts";
+            next_strike: components["schemas"]["live.next_strike"];
             columns: {
                 n: number[];
                 t: components["schemas"]["Numbers"];
@@ -1436,6 +1454,19 @@ export interface components {
             speed: number;
             paused: boolean;
             impact: number | null;
+            next_strike: components["schemas"]["live.next_strike"];
+        };
+        "live.next_strike": null | {
+            n: number;
+            t: number;
+            x: number;
+            y: number;
+            alpha: number;
+            table_velocity: null | {
+                x: number;
+                y: number;
+            };
+            target: components["schemas"]["EnergyTarget"];
         };
         "live.problem": {
             /** @constant */
@@ -1633,6 +1664,8 @@ export type Failure = components['schemas']['Failure'];
 export type Quantity = components['schemas']['Quantity'];
 export type Fields = components['schemas']['Fields'];
 export type Field = components['schemas']['Field'];
+export type Derived = components['schemas']['Derived'];
+export type EnergyTarget = components['schemas']['EnergyTarget'];
 export type Model = components['schemas']['Model'];
 export type Notes = components['schemas']['Notes'];
 export type OutcomeKind = components['schemas']['OutcomeKind'];
@@ -1684,6 +1717,7 @@ export type LiveImpacts = components['schemas']['live.impacts'];
 export type LiveGap = components['schemas']['live.gap'];
 export type LiveEnd = components['schemas']['live.end'];
 export type LiveAck = components['schemas']['live.ack'];
+export type LiveNextStrike = components['schemas']['live.next_strike'];
 export type LiveProblem = components['schemas']['live.problem'];
 export type LivePause = components['schemas']['live.pause'];
 export type LiveResume = components['schemas']['live.resume'];

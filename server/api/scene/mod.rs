@@ -1,5 +1,6 @@
 //! `scenes` and `fields`: presets, the table of scene fields, and scenes read from requests and written to answers.
 
+pub mod derived;
 pub mod fields;
 pub mod merge;
 pub mod presets;
@@ -21,6 +22,7 @@ use crate::api::shared;
 use crate::compute::{Cancelled, Price, TimeSlice};
 use crate::http::{ApiRequest, Format, Problem, Resource};
 
+pub use derived::{Derived, EnergyTarget};
 pub use fields::{explain, field_text};
 pub use merge::{build_scene, read_value};
 pub use price::{bounce_price, has_angle};

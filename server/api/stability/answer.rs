@@ -13,7 +13,7 @@ use equipoise_physics::stability::verdict::{Assessment, HigherOrder, Verdict, as
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
-use crate::api::scene::{Resolved, has_angle};
+use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::demand::DemandAnswer;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::fixed_point::FixedPointAnswer;
@@ -72,6 +72,7 @@ struct NonlinearPart {
 #[derive(Debug, Clone, Serialize)]
 pub struct StabilityAnswer<'a> {
     pub(super) scene: Resolved<'a>,
+    derived: Derived,
     pub(super) model: ModelChoice,
     pub(super) verdict: Option<String>,
     decided_by: Option<&'static str>,
@@ -146,6 +147,7 @@ impl<'a> StabilityAnswer<'a> {
         let mut notes = Vec::new();
         let mut answer = Self {
             scene: Resolved(scene),
+            derived: Derived::of(scene),
             model: ModelChoice::of(scene),
             verdict: None,
             decided_by: None,

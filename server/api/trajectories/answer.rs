@@ -13,7 +13,7 @@ use equipoise_physics::table::actuator_load::LoadTracker;
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
-use crate::api::scene::{Resolved, has_angle};
+use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::demand::DemandAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::nearest_vertex::NearestVertex;
@@ -98,6 +98,8 @@ impl MethodAnswer {
 pub struct TrajectoryAnswer<'a> {
     /// The scene, resolved.
     pub scene: Resolved<'a>,
+    /// Quantities that follow from the scene.
+    pub derived: Derived,
     /// The model and the reason for it.
     pub model: ModelChoice,
     /// The method and the reason for it.
@@ -219,6 +221,7 @@ impl<'a> TrajectoryAnswer<'a> {
         }
         Ok(Self {
             scene: Resolved(scene),
+            derived: Derived::of(scene),
             model: ModelChoice::by_method(scene, method),
             method: choice,
             outcome: Outcome::new(ending, contacts_made, t),

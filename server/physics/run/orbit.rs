@@ -132,6 +132,13 @@ impl<B: Body> Orbit<B> {
         self.n
     }
 
+    /// The coming contact with the strike that the table makes ready for. The run may still end there without one.
+    pub fn foresee(&self) -> (PreImpact, Strike) {
+        let Self { n, state, clearance, plan, .. } = *self;
+        let coming = PreImpact { n: n + 1, x: self.x.value, state, clearance, plan };
+        (coming, self.body.strike(&coming))
+    }
+
     /// The coming contact. After one with an ending, call it no more: the state stays that of the last contact.
     #[inline(always)]
     pub fn advance(&mut self) -> Contact {

@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::Value;
 use std::sync::OnceLock;
 
+use crate::api::scene::Derived;
 use crate::api::scene::quantity::Quantity;
 use crate::api::scene::write::{Resolved, nested, value_to_json};
 
@@ -57,6 +58,7 @@ pub struct Shown {
     title: &'static str,
     shows: &'static str,
     scene: Value,
+    derived: Derived,
     pub(super) printed: Vec<Quoted>,
     pub(super) computed: Vec<Quoted>,
 }
@@ -105,6 +107,7 @@ impl Preset {
             title: self.title,
             shows: self.shows,
             scene: serde_json::to_value(Resolved(&scene)).ok()?,
+            derived: Derived::of(&scene),
             printed: self.printed.iter().map(Printed::quoted).collect(),
             computed: self.printed.iter().filter_map(|it| it.computed(self.draft(), go_on)).collect(),
         })

@@ -1,0 +1,104 @@
+//! Quantities that follow from a scene, as part of answers: what a client needs to draw the body and its flights.
+
+use equipoise_physics::scene::{Name, Scene};
+use serde::Serialize;
+
+use crate::api::scene::has_angle;
+
+/// Quantities that follow from a scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Derived {
+    /// G, gravity in the plane, m/s².
+    gravity: f64,
+    /// l, from the centre of gravity to the contact point, m; 0 for a point mass.
+    contact_distance: f64,
+    /// ρ, m; none for a point mass.
+    radius_of_gyration: Option<f64>,
+    /// Vertices of a polygon about its centre of gravity at θ = 0, m.
+    outline: Option<Vec<[f64; 2]>>,
+    target: Option<EnergyTarget>,
+}
+
+/// The bounce that energy feedback steers for, eq. (28).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EnergyTarget {
+    /// y*, height of the centre of gravity at the top, m.
+    height: f64,
+    /// G y*, energy per unit mass, m²/s².
+    energy: f64,
+}
+
+impl Derived {
+    /// Derives the quantities of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let rod = scene.parameters::<f64>();
+        Self {
+            gravity: rod.gravity,
+            contact_distance: rod.contact_distance,
+            radius_of_gyration: has_angle(scene).then_some(rod.radius_of_gyration),
+            outline: scene.outline().map(|outline| outline.vertices().to_vec()),
+            target: EnergyTarget::of(scene),
+        }
+    }
+}
+
+impl EnergyTarget {
+    /// The target of a scene, if its table has an energy gain.
+    pub fn of(scene: &Scene) -> Option<Self> {
+        scene.number(Name::EnergyGain).filter(|gain| *gain != 0.0)?;
+        let height = scene.number(Name::TargetHeight)?;
+        Some(Self { height, energy: scene.parameters::<f64>().target_energy })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::api::scene::presets;
+
+    fn of(preset: &str) -> Derived {
+        Derived::of(&presets::find(preset).unwrap().draft().build().unwrap())
+    }
+
+    fn close(value: f64, expected: f64) {
+        assert!((value - expected).abs() <= 4.0 * f64::EPSILON * expected.abs().max(1e-3), "{value} is not {expected}");
+    }
+
+    #[test]
+    fn a_rod_has_no_outline() {
+        let Derived { gravity, contact_distance, radius_of_gyration, outline, target } = of("case-1");
+        close(gravity, 9.81);
+        close(contact_distance, 0.4 / 3.0);
+        assert_eq!(radius_of_gyration, Some(0.09428090415820635));
+        assert_eq!((outline, target), (None, None));
+    }
+
+    #[test]
+    fn a_polygon_stands_on_its_contact_vertex() {
+        let Derived { contact_distance, outline, .. } = of("triangle-polygon");
+        let outline = outline.unwrap();
+        close(contact_distance, 0.4 / 3.0);
+        for (place, expected) in outline.iter().zip([[0.0, -0.4 / 3.0], [0.05, 0.2 / 3.0], [-0.05, 0.2 / 3.0]]) {
+            close(place[0], expected[0]);
+            close(place[1], expected[1]);
+        }
+    }
+
+    #[test]
+    fn a_point_mass_is_its_own_contact_point() {
+        let Derived { contact_distance, radius_of_gyration, .. } = of("point-mass");
+        assert_eq!((contact_distance, radius_of_gyration), (0.0, None));
+    }
+
+    #[test]
+    fn an_inclined_plane_has_less_gravity_and_its_target_less_energy() {
+        let mut draft = presets::find("case-4").unwrap().draft();
+        draft.set(Name::Incline, Some(equipoise_physics::scene::Value::Number(std::f64::consts::FRAC_PI_6))).unwrap();
+        let scene = draft.build().unwrap();
+        let Derived { gravity, target, .. } = Derived::of(&scene);
+        close(gravity, 4.905);
+        let EnergyTarget { height, energy } = target.unwrap();
+        assert_eq!(Some(height), scene.number(Name::TargetHeight));
+        close(energy, 4.905 * height);
+    }
+}

@@ -1,0 +1,110 @@
+//! The next strike of a live run as the server foresees it, so that a client can draw the table on its way there.
+
+use equipoise_physics::body::Body;
+use serde::Serialize;
+
+use crate::api::scene::EnergyTarget;
+use crate::runs::playback::Playback;
+use crate::runs::run::Run;
+
+/// A strike to come. It changes if something is set before it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NextStrike {
+    n: u64,
+    t: f64,
+    x: f64,
+    y: f64,
+    alpha: f64,
+    table_velocity: Option<TableVelocity>,
+    target: Option<EnergyTarget>,
+}
+
+/// Velocity of the table, m/s.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TableVelocity {
+    /// Horizontal velocity.
+    pub x: f64,
+    /// Vertical velocity.
+    pub y: f64,
+}
+
+impl NextStrike {
+    /// The strike that a run comes to next. None after its end.
+    pub fn of(playback: &Playback, run: &Run) -> Option<Self> {
+        let t = playback.next_t()?;
+        let (coming, strike, scene) = playback.foresee(run)?;
+        let (x, y) = strike.table_velocity;
+        Some(Self {
+            n: coming.n,
+            t,
+            x: coming.x + playback.body().contact_distance() * strike.sin_cos_theta.0,
+            y: coming.clearance,
+            alpha: strike.alpha,
+            // + 0.0 turns −0, the velocity of a table at rest, into 0.
+            table_velocity: (x.is_finite() && y.is_finite()).then_some(TableVelocity { x: x + 0.0, y: y + 0.0 }),
+            target: EnergyTarget::of(&scene),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::runs::run::tests::case;
+    use equipoise_physics::scene::{Name, Value};
+
+    /// Compares each foreseen strike with the contact that comes.
+    fn follow(run: &Run, impacts: u64) {
+        let mut playback = Playback::new(run, impacts);
+        while let Some(next) = NextStrike::of(&playback, run) {
+            let (contact, _) = playback.advance(run);
+            assert_eq!((next.n, next.t.to_bits()), (contact.n, contact.t.to_bits()));
+            assert_eq!((next.y, next.alpha.to_bits()), (contact.clearance, contact.alpha.to_bits()), "at {}", next.n);
+            let foot = contact.x + playback.body().contact_distance() * contact.state.theta.sin();
+            assert!((next.x - foot).abs() <= 1e-12, "{next:?}");
+            let velocity = next.table_velocity.unwrap();
+            if let Some(strike) = contact.strike {
+                assert_eq!((velocity.x, velocity.y), strike.table_velocity);
+            }
+            assert_eq!(next.target, EnergyTarget::of(playback.scene()));
+        }
+    }
+
+    #[test]
+    fn every_strike_comes_as_it_was_foreseen() {
+        for preset in crate::api::scene::presets::all() {
+            follow(&case(preset.name), 300);
+        }
+    }
+
+    #[test]
+    fn a_change_is_foreseen_once_it_is_known() {
+        let mut run = case("case-4");
+        let before = NextStrike::of(&Playback::new(&run, 100), &run).unwrap();
+        run.set(1, &[(Name::TiltGain, Value::Number(1.3)), (Name::TargetHeight, Value::Number(0.4))]).unwrap();
+        let after = NextStrike::of(&Playback::new(&run, 100), &run).unwrap();
+        assert!((after.alpha - 1.3 / 1.1 * before.alpha).abs() < 1e-15);
+        assert_ne!((after.target, after.table_velocity), (before.target, before.table_velocity));
+        follow(&run, 100);
+    }
+
+    #[test]
+    fn the_table_makes_up_the_loss() {
+        // Eq. (25) for a rod that falls upright: with e = 1/2 the table comes up with a third of the speed that it meets.
+        let mut run = case("case-4");
+        let zero = [(Name::EnergyGain, Value::Number(0.0))];
+        run.set(1, &zero).unwrap();
+        let mut playback = Playback::new(&run, 100);
+        let next = NextStrike::of(&playback, &run).unwrap();
+        let (contact, _) = playback.advance(&run);
+        let (sin, cos) = next.alpha.sin_cos();
+        let beta = contact.state.theta - contact.alpha;
+        let state = contact.state;
+        let normal =
+            cos * state.y_dot - sin * state.x_dot + playback.body().contact_distance() * state.theta_dot * beta.sin();
+        let velocity = next.table_velocity.unwrap();
+        assert!((velocity.y * cos - velocity.x * sin + normal / 3.0).abs() < 1e-12);
+        assert!((velocity.y * sin + velocity.x * cos).abs() < 1e-12);
+        assert_eq!(next.target, None);
+    }
+}
