@@ -191,7 +191,7 @@ test('κ_c of the verdict is marked on both tracks of κ', async () => {
     assert.ok(words.startsWith(`The critical gain is ${Number(linear.tilt_gain.critical.toPrecision(4))}.`), words);
   }
   // Where the verdict knows none, there is no mark.
-  await page.selectOption('#case', 'point-mass');
+  await page.selectOption('#case', 'still-lossy');
   await page.waitForFunction(() => [...document.querySelectorAll('.track-mark')].every(({ hidden }) => hidden));
   clean();
 });

@@ -21,12 +21,12 @@ test('readouts, axes, tables and the verdict follow the switch, and no request c
   await verdict(page);
   const requests = asked(page);
   assert.match(await page.locator('#scene-readout').innerText(), /θ\s0\.235\srad/);
-  const numbersOf = () => page.locator('#verdict dl.numbers').innerText();
+  const numbersOf = () => page.locator('#verdict-more').textContent();
   const radians = await numbersOf();
   assert.match(radians, /rad/);
   await page.click('#units');
   assert.match(await page.locator('#scene-readout').innerText(), /θ\s13\.44°/);
-  await page.waitForFunction(() => /°/.test(document.querySelector('#verdict dl.numbers').innerText));
+  await page.waitForFunction(() => /°/.test(document.querySelector('#verdict-more').textContent));
   assert.doesNotMatch(await numbersOf(), /rad\b/);
   await page.click('#run');
   await reachImpact(page, 3);
