@@ -95,7 +95,7 @@ fn calm(linearization: &Linearization) -> bool {
 
 #[test]
 fn derivatives_are_those_of_differences_in_every_mode_and_law() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let mut seen = Vec::new();
     let mut worst: f64 = 0.0;
     for round in 0..6000 {
@@ -138,7 +138,7 @@ fn derivatives_are_those_of_differences_in_every_mode_and_law() {
 #[test]
 fn the_mirror_commutes_with_the_derivative() {
     let mirror = DMatrix::from_diagonal(&nalgebra::DVector::from_row_slice(&[-1.0, -1.0, 1.0, -1.0]));
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     for round in 0..300 {
         let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
         let (model, start) = (Model::General(rough.rig()), state(&mut random));
@@ -246,7 +246,7 @@ fn assert_seen(counts: &[((RestitutionLaw, Vec<ContactMode>), u32)], modes: &[Co
 
 #[test]
 fn where_the_sliding_ends_with_the_impact_both_sides_are_told() {
-    let (mut random, mut counts) = (Random(11), Vec::new());
+    let (mut random, mut counts) = (Random::new(11), Vec::new());
     for round in 0..6000 {
         let rough = model(&mut random, LAWS[round % 3], Slide::None);
         let start = state(&mut random);
@@ -280,7 +280,7 @@ fn at_rest(rough: &RoughRod, state: &State) -> bool {
 
 #[test]
 fn a_contact_at_rest_is_a_kink_only_outside_the_stick_cone() {
-    let (mut random, mut counts) = (Random(12), Vec::new());
+    let (mut random, mut counts) = (Random::new(12), Vec::new());
     for round in 0..6000 {
         let mut rough = model(&mut random, LAWS[round % 3], Slide::None);
         rough.friction.coefficient *= if round % 2 == 0 { 0.2 } else { 1.0 };
@@ -298,7 +298,7 @@ fn a_contact_at_rest_is_a_kink_only_outside_the_stick_cone() {
 
 #[test]
 fn the_edge_of_the_stick_cone_is_a_kink() {
-    let (mut random, mut counts) = (Random(13), Vec::new());
+    let (mut random, mut counts) = (Random::new(13), Vec::new());
     for round in 0..6000 {
         let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
         let start = state(&mut random);
@@ -318,7 +318,7 @@ fn the_edge_of_the_stick_cone_is_a_kink() {
 
 #[test]
 fn the_end_of_compression_is_a_kink_for_poisson_alone() {
-    let (mut random, mut counts) = (Random(14), Vec::new());
+    let (mut random, mut counts) = (Random::new(14), Vec::new());
     for round in 0..6000 {
         let rough = model(&mut random, LAWS[round % 3], Slide::None);
         // The same approach γ v_nc/(1 + e) without restitution: the impact ends where compression does.
@@ -353,7 +353,7 @@ fn the_end_of_compression_is_a_kink_for_poisson_alone() {
 
 #[test]
 fn at_the_fixed_point_it_has_a_closed_form() {
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     for round in 0..60 {
         let mut rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
         rough.friction.coefficient = random.between(0.01, 1.0);

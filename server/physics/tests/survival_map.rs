@@ -6,6 +6,8 @@ use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Value};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::SplitMix64;
 
 const IMPACTS: u64 = 20_000;
 const COLUMNS: usize = 121;
@@ -52,14 +54,10 @@ fn the_map_of_the_papers_body_is_true() {
 
     // Cell by cell, by the map alone with another rounding: nothing holds its energy. Left out are edges, where a neighbour's
     // fate is another, since there a run hangs on its last digit.
-    let mut state = 1_u64;
-    let mut random = |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % below
-    };
+    let mut random = SplitMix64::seed_from_u64(1);
     let (mut compared, mut edges, mut others) = (0, 0, Vec::new());
     for _ in 0..2000 {
-        let (column, row) = (random(COLUMNS), random(ROWS));
+        let (column, row) = (random.random_range(..COLUMNS), random.random_range(..ROWS));
         let around = |middle: usize, count: usize| middle.saturating_sub(1)..=(middle + 1).min(count - 1);
         let fate = survives(column, row);
         if around(column, COLUMNS).any(|column| around(row, ROWS).any(|row| survives(column, row) != fate)) {
