@@ -1,6 +1,6 @@
 //! Random requests from a seed: every resource that computes, every model, scenes from the whole ranges of their fields.
 
-use equipoise_physics::scene::{FIELDS, Field, Kind};
+use equipoise_physics::scene::{FIELDS, Field, FieldKind};
 use rand::RngExt;
 use rand_xoshiro::SplitMix64;
 use serde_json::{Map, Value, json};
@@ -68,7 +68,7 @@ impl Draw {
     /// A value of a field: at an end of its range, anywhere in it, or of any size.
     fn value(&mut self, field: &Field) -> Value {
         match field.kind {
-            Kind::Number { minimum, maximum } => {
+            FieldKind::Number { minimum, maximum } => {
                 let anywhere = minimum + (maximum - minimum) * self.unit();
                 let sized = 10_f64.powf(-12.0 * self.unit());
                 match self.below(10) {
@@ -79,9 +79,9 @@ impl Draw {
                     _ => json!((minimum * sized).clamp(minimum, maximum)),
                 }
             }
-            Kind::Integer { maximum } => json!(self.below(maximum)),
-            Kind::Choice(words) => json!(self.one_of(words)),
-            Kind::Flag => json!(true),
+            FieldKind::Integer { maximum } => json!(self.below(maximum)),
+            FieldKind::Choice(words) => json!(self.one_of(words)),
+            FieldKind::Flag => json!(true),
         }
     }
 

@@ -33,7 +33,7 @@ fn exact(scene: &Scene, impacts: u64) -> Exact {
     Exact { states, ending: ending.unwrap().name(), rho, is_point: scene.model().contact_distance() == 0.0 }
 }
 
-/// The largest error of a method's states; none where it ends otherwise or does not apply.
+/// The largest error of a method's states; `None` if it ends otherwise or does not apply.
 fn error(scene: &Scene, method: RunMethod, impacts: u64, exact: &Exact) -> Option<f64> {
     let (mut worst, mut made) = (0.0_f64, 0);
     let ending: Ending = run_by(scene, method, impacts, |impact| {

@@ -118,9 +118,9 @@ fn the_period_two_orbit_is_one() {
         orbit.advance();
         assert!((orbit.state().theta - theta).abs() < 1e-12);
     }
-    let none = scene(1.45, 0.01);
-    let fixed_point = find_fixed_point(&none).unwrap();
-    assert_eq!(period_two_angle(&none.model(), none.rules().topple_angle, &fixed_point), None);
+    let stable = scene(1.45, 0.01);
+    let fixed_point = find_fixed_point(&stable).unwrap();
+    assert_eq!(period_two_angle(&stable.model(), stable.rules().topple_angle, &fixed_point), None);
 }
 
 /// Classifies a run by 30,000 contacts. `true` is chaotic: the run falls, or a twin 1e-10 rad aside separates from it. `false` is
