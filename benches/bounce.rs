@@ -70,10 +70,10 @@ fn case_1() -> Scene {
 
 /// The scene on each level of the model hierarchy, endings checked.
 #[divan::bench(args = ["point", "linear", "rod", "rod_with_x", "friction", "noise", "polygon"])]
-fn rungs(bencher: Bencher, rung: &str) {
+fn levels(bencher: Bencher, level: &str) {
     let mut draft = case_1().draft();
     let bencher = bencher.counter(ItemsCount::new(BOUNCES));
-    match rung {
+    match level {
         "linear" => {
             draft.set(Name::Theta, Some(Value::Number(1e-3))).expect("a value in its range");
             let scene = draft.build().expect("a scene");
@@ -101,7 +101,7 @@ fn rungs(bencher: Bencher, rung: &str) {
         _ => {}
     }
     let mut set = |name, value| draft.set(name, Some(value)).expect("a value in its range");
-    match rung {
+    match level {
         "rod_with_x" => {
             for (name, gain) in [
                 (Name::FeedbackX, 0.1),

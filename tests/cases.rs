@@ -96,9 +96,9 @@ async fn a_scene_without_a_fixed_point_has_no_verdict_and_says_why() {
 }
 
 #[tokio::test]
-async fn the_lowest_exact_rung_is_chosen_and_named() {
+async fn the_lowest_exact_level_is_chosen_and_named() {
     let server = Server::start();
-    for (target, rung) in [
+    for (target, level) in [
         ("preset=case-1", "rod"),
         // The table makes up the loss exactly, so e drops out.
         ("preset=case-1&scene.contact.restitution=0.3", "rod"),
@@ -108,7 +108,7 @@ async fn the_lowest_exact_rung_is_chosen_and_named() {
         ("preset=point-mass", "point"),
     ] {
         let model = server.get(&format!("/v1/trajectories?{target}&impacts=1")).await.json()["model"].clone();
-        assert_eq!(model["name"], rung, "{target}");
+        assert_eq!(model["name"], level, "{target}");
         assert!(!model["reason"].as_str().unwrap().is_empty());
     }
 }

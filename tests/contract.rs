@@ -7,6 +7,8 @@
 
 #[path = "contract/docs.rs"]
 mod docs;
+#[path = "contract/endings.rs"]
+mod endings;
 #[path = "contract/scene.rs"]
 mod scene;
 mod support;
@@ -280,7 +282,7 @@ fn scene_parts_follow_from_the_table() {
     let differs = contract.lines().zip(wanted.lines()).position(|(written, wanted)| written != wanted);
     assert!(
         contract == wanted,
-        "openapi.yaml:{}: not what the table of scene fields gives; UPDATE=1 cargo test --test contract scene_parts rewrites it",
+        "openapi.yaml:{}: not what the tables of scene fields and endings give; UPDATE=1 cargo test --test contract scene_parts rewrites it",
         differs.map_or(0, |line| line + 1)
     );
 }

@@ -50,7 +50,7 @@ struct Event {
 }
 
 impl Answer {
-    /// The next event; none at the end of the stream.
+    /// The next event; `None` at the end of the stream.
     async fn event(&mut self) -> Option<Event> {
         let (mut id, mut kind, mut message) = (None, None, None);
         loop {

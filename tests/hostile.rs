@@ -4,38 +4,28 @@ mod support;
 
 use std::time::Duration;
 
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::SplitMix64;
 use serde_json::{Map, Value, json};
 use support::Server;
 
 const SCENES: u64 = 10_000;
 
-/// Reproducible random numbers (splitmix64, Steele and others, 2014).
-struct Draw(u64);
+/// A source of random scenes.
+struct Draw(SplitMix64);
 
 impl Draw {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
     fn below(&mut self, limit: u64) -> u64 {
-        self.next() % limit
+        self.0.random_range(..limit)
     }
 
     fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn chance(&mut self, share: f64) -> bool {
-        self.unit() < share
+        self.0.random()
     }
 
     /// A value of a field of `GET /v1/fields`: mostly within its range, often at an end of it, sometimes anything.
     fn value(&mut self, field: &Value) -> Value {
-        if self.chance(0.02) {
+        if self.0.random_bool(0.02) {
             let exponent = self.unit() * 600.0 - 300.0;
             let wild =
                 [json!(10_f64.powf(exponent)), json!(-10_f64.powf(exponent)), json!("nonsense"), json!([1]), json!({})];
@@ -76,15 +66,15 @@ impl Draw {
                 _ if path.starts_with("table.limits") => 0.05,
                 _ => 0.4,
             };
-            if self.chance(wanted) {
+            if self.0.random_bool(wanted) {
                 put(&mut scene, path, self.value(field));
             }
         }
         // Otherwise most random releases would lie below the table.
-        if self.chance(0.8) && scene.pointer("/body/contact_distance").is_some() {
+        if self.0.random_bool(0.8) && scene.pointer("/body/contact_distance").is_some() {
             put(&mut scene, "release.height", json!(10.0 + 20.0 * self.unit()));
         }
-        if self.chance(0.15) {
+        if self.0.random_bool(0.15) {
             scene["body"] = self.polygon();
         }
         scene
@@ -94,7 +84,7 @@ impl Draw {
     fn polygon(&mut self) -> Value {
         let count = 3 + self.below(30);
         let size = 10_f64.powf(-3.0 * self.unit());
-        let wild = self.chance(0.3);
+        let wild = self.0.random_bool(0.3);
         let places: Vec<Value> = (0..count)
             .map(|vertex| {
                 if wild {
@@ -105,7 +95,7 @@ impl Draw {
                 json!([radius * angle.cos(), radius * angle.sin()])
             })
             .collect();
-        if self.chance(0.5) {
+        if self.0.random_bool(0.5) {
             return json!({"vertices": places});
         }
         json!({"vertices": places, "contact_vertex": self.below(count + 1)})
@@ -124,7 +114,7 @@ fn put(scene: &mut Value, path: &str, value: Value) {
 async fn ten_thousand_random_scenes_are_answered() {
     let server = Server::start();
     let fields = server.get("/v1/fields").await.json()["fields"].as_array().unwrap().clone();
-    let mut draw = Draw(1);
+    let mut draw = Draw(SplitMix64::seed_from_u64(1));
     let mut answered = std::collections::BTreeMap::<String, u64>::new();
     for _ in 0..SCENES {
         let scene = draw.scene(&fields);
@@ -178,7 +168,7 @@ async fn scenes_as_dear_as_scenes_can_be_cost_what_others_do() {
 async fn ensembles_of_random_scenes_are_answered() {
     let server = Server::start();
     let fields = server.get("/v1/fields").await.json()["fields"].as_array().unwrap().clone();
-    let mut draw = Draw(2);
+    let mut draw = Draw(SplitMix64::seed_from_u64(2));
     let mut outcomes = std::collections::BTreeSet::new();
     for _ in 0..SCENES / 5 {
         let (runs, impacts) = (1 + draw.below(6), 1 + draw.below(200));

@@ -42,7 +42,7 @@ pub(crate) struct Found {
     pub(crate) rate: f64,
     /// Half of the spread of the rounds, relative to the median.
     pub(crate) spread: f64,
-    /// Share of cells whose run completed; none for quantities without runs.
+    /// Share of cells whose run completed; `None` for quantities without runs.
     pub(crate) completed: Option<f64>,
 }
 

@@ -1,10 +1,12 @@
 //! Random requests from a seed: every resource that computes, every model, scenes from the whole ranges of their fields.
 
-use equipoise_physics::scene::{FIELDS, Field, Kind};
+use equipoise_physics::scene::{FIELDS, Field, FieldKind};
+use rand::RngExt;
+use rand_xoshiro::SplitMix64;
 use serde_json::{Map, Value, json};
 
-/// Reproducible random numbers (splitmix64, Steele and others, 2014).
-pub(crate) struct Draw(pub(crate) u64);
+/// A source of random requests.
+pub(crate) struct Draw(pub(crate) SplitMix64);
 
 /// A request to a resource.
 pub(crate) struct Request {
@@ -46,24 +48,12 @@ const PRESETS: [&str; 15] = [
 ];
 
 impl Draw {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
     fn below(&mut self, limit: u64) -> u64 {
-        self.next() % limit
+        self.0.random_range(..limit)
     }
 
     fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn chance(&mut self, share: f64) -> bool {
-        self.unit() < share
+        self.0.random()
     }
 
     fn one_of<T: Copy>(&mut self, values: &[T]) -> T {
@@ -78,7 +68,7 @@ impl Draw {
     /// A value of a field: at an end of its range, anywhere in it, or of any size.
     fn value(&mut self, field: &Field) -> Value {
         match field.kind {
-            Kind::Number { minimum, maximum } => {
+            FieldKind::Number { minimum, maximum } => {
                 let anywhere = minimum + (maximum - minimum) * self.unit();
                 let sized = 10_f64.powf(-12.0 * self.unit());
                 match self.below(10) {
@@ -89,9 +79,9 @@ impl Draw {
                     _ => json!((minimum * sized).clamp(minimum, maximum)),
                 }
             }
-            Kind::Integer { maximum } => json!(self.below(maximum)),
-            Kind::Choice(words) => json!(self.one_of(words)),
-            Kind::Flag => json!(true),
+            FieldKind::Integer { maximum } => json!(self.below(maximum)),
+            FieldKind::Choice(words) => json!(self.one_of(words)),
+            FieldKind::Flag => json!(true),
         }
     }
 
@@ -110,26 +100,26 @@ impl Draw {
         let wild = self.one_of(&[0.0, 0.0, 0.03, 0.1, 0.4]);
         for field in &FIELDS {
             let rare = field.path.starts_with("body.") || field.path.starts_with("table.feedback");
-            if self.chance(if rare { 0.1 * wild } else { wild }) {
+            if self.0.random_bool(if rare { 0.1 * wild } else { wild }) {
                 let value = self.value(field);
                 put(&mut scene, field.path, value);
             }
         }
         // Near upright, so that runs last; and the models that no preset has.
-        if self.chance(0.6) {
+        if self.0.random_bool(0.6) {
             put(&mut scene, "release.theta", json!(0.3 * 10_f64.powf(-9.0 * self.unit())));
         }
-        if self.chance(0.2) {
+        if self.0.random_bool(0.2) {
             put(&mut scene, "contact.friction", json!(self.unit()));
             put(&mut scene, "contact.law", json!(self.one_of(&["poisson", "newton", "stronge"])));
             put(&mut scene, "table.slide", json!(self.one_of(&["matched", "matched", "none"])));
         }
-        if self.chance(0.2) {
+        if self.0.random_bool(0.2) {
             put(&mut scene, "noise.timing_sd", json!(10_f64.powf(-1.0 - 8.0 * self.unit())));
             put(&mut scene, "noise.angle_sd", json!(10_f64.powf(-1.0 - 8.0 * self.unit())));
             put(&mut scene, "noise.model", json!(self.one_of(&["strike", "plan"])));
         }
-        if self.chance(0.1) {
+        if self.0.random_bool(0.1) {
             // State feedback takes the place of the tilt gain.
             put(&mut scene, "table.tilt_gain", Value::Null);
             put(&mut scene, "table.feedback.theta", json!(-1.0 - 0.5 * self.unit()));
@@ -137,7 +127,7 @@ impl Draw {
             put(&mut scene, "table.feedback.x_dot", json!(0.023 * self.unit()));
             put(&mut scene, "table.feedback.theta_dot", json!(-0.031 * self.unit()));
         }
-        if self.chance(0.15) {
+        if self.0.random_bool(0.15) {
             scene["body"] = self.polygon();
         }
         request.insert("scene".to_owned(), scene);
@@ -186,7 +176,7 @@ impl Draw {
                     1 => set("tolerance", json!(10_f64.powf(-30.0 * self.unit()))),
                     _ => set("method", json!(self.one_of(&["map", "linear", "extended"]))),
                 }
-                if self.chance(0.3) {
+                if self.0.random_bool(0.3) {
                     set("samples_per_flight", json!(self.count(256)));
                 }
                 formats.extend(pictures);
@@ -206,8 +196,8 @@ impl Draw {
             }
             "stability" => {
                 set("impacts", json!(self.count(100_000)));
-                set("basin", json!(self.chance(0.3)));
-                if self.chance(0.3) {
+                set("basin", json!(self.0.random_bool(0.3)));
+                if self.0.random_bool(0.3) {
                     let off = 10_f64.powf(-3.0 * self.unit() - 0.5);
                     set("tolerances", json!({"contact_distance": off, "radius_of_gyration": off, "restitution": off}));
                 }
@@ -224,21 +214,21 @@ impl Draw {
             "ensembles" => {
                 set("runs", json!(self.count(20_000)));
                 set("impacts", json!(self.count(20_000)));
-                set("angles", json!(self.chance(0.3)));
+                set("angles", json!(self.0.random_bool(0.3)));
                 formats.extend(pictures);
             }
             "periodic-orbits" => {
                 set("period", json!(self.one_of(&[1, 2, 3, 4, 8, 16, 64])));
-                if self.chance(0.6) {
+                if self.0.random_bool(0.6) {
                     let [theta, x_dot, y_dot, theta_dot] = [0.4, 0.3, -2.0, 2.0].map(|size| size * self.unit());
                     let guess = json!({"theta": theta, "x_dot": x_dot, "y_dot": y_dot, "theta_dot": theta_dot});
                     set("guess", guess);
-                } else if self.chance(0.5) {
+                } else if self.0.random_bool(0.5) {
                     set("period", json!(2));
                     set("family", json!("symmetric"));
                     set("theta", json!(0.6 * self.unit()));
                 }
-                if self.chance(0.5) {
+                if self.0.random_bool(0.5) {
                     let (parameter, from, to) = self.one_of(&[
                         ("table.tilt_gain", 1.05, 1.9),
                         ("release.height", 0.2, 2.0),
@@ -257,7 +247,7 @@ impl Draw {
                 formats.extend(pictures);
             }
             "controllers" => {
-                if self.chance(0.5) {
+                if self.0.random_bool(0.5) {
                     set("contact", json!(self.one_of(&["frictionless", "stick"])));
                 }
                 formats.extend(pictures);
@@ -267,7 +257,7 @@ impl Draw {
                 set("tolerance", json!(1e-6));
             }
         }
-        Request { body: Value::Object(body), accept: self.one_of(&formats), gzip: self.chance(0.5) }
+        Request { body: Value::Object(body), accept: self.one_of(&formats), gzip: self.0.random_bool(0.5) }
     }
 }
 

@@ -23,6 +23,8 @@ use equipoise::api::App;
 use equipoise::config::Config;
 use equipoise::limits;
 use http_body_util::BodyExt;
+use rand::SeedableRng;
+use rand_xoshiro::SplitMix64;
 use rustix::time::{ClockId, clock_gettime};
 use serde_json::{Value, json};
 use tokio::time::timeout;
@@ -89,7 +91,7 @@ async fn main() {
         if arguments.only.as_deref().is_some_and(|only| only != resource) {
             continue;
         }
-        let mut draw = Draw(arguments.seed);
+        let mut draw = Draw(SplitMix64::seed_from_u64(arguments.seed));
         let (mut plain, mut spinning) = (Vec::new(), Vec::new());
         // Clock times take their time to measure.
         let wanted = if resource == "precision" { arguments.requests.div_ceil(20) } else { arguments.requests };

@@ -85,12 +85,17 @@ pub trait Watched: Tabular + Pictured {
     fn to_pictures(&self) -> Result<Vec<(&'static str, String)>, Problem>;
 }
 
-impl TableFormat {
+/// A set of formats in which answers of type `A` are written.
+pub trait WriteAnswer<A>: FormatSet {
     /// Writes an answer.
     ///
     /// # Errors
-    /// Cancelled work.
-    pub fn write(self, answer: &impl Tabular, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+    /// Cancelled work, or a picture of an answer with nothing to draw.
+    fn write(self, answer: &A, slice: &TimeSlice) -> Result<Vec<u8>, Problem>;
+}
+
+impl<A: Tabular> WriteAnswer<A> for TableFormat {
+    fn write(self, answer: &A, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
             Self::Json => write::json(answer, slice),
             Self::Csv => write::csv(&answer.to_table(), slice),
@@ -99,12 +104,8 @@ impl TableFormat {
     }
 }
 
-impl FigureFormat {
-    /// Writes an answer.
-    ///
-    /// # Errors
-    /// Cancelled work, or an answer with nothing to draw.
-    pub fn write(self, answer: &impl Pictured, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+impl<A: Pictured> WriteAnswer<A> for FigureFormat {
+    fn write(self, answer: &A, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
             Self::Json => write::json(answer, slice),
             Self::Svg => Ok(answer.to_picture()?.into_bytes()),
@@ -113,12 +114,8 @@ impl FigureFormat {
     }
 }
 
-impl ChartFormat {
-    /// Writes an answer.
-    ///
-    /// # Errors
-    /// Cancelled work, or an answer with nothing to draw.
-    pub fn write(self, answer: &(impl Tabular + Pictured), slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+impl<A: Tabular + Pictured> WriteAnswer<A> for ChartFormat {
+    fn write(self, answer: &A, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
             Self::Json => TableFormat::Json.write(answer, slice),
             Self::Csv => TableFormat::Csv.write(answer, slice),
@@ -129,12 +126,8 @@ impl ChartFormat {
     }
 }
 
-impl ProgressFormat {
-    /// Writes an answer, after all reports of progress.
-    ///
-    /// # Errors
-    /// Cancelled work, or an answer with nothing to draw.
-    pub fn write(self, answer: &impl Watched, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+impl<A: Watched> WriteAnswer<A> for ProgressFormat {
+    fn write(self, answer: &A, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
             Self::Json => ChartFormat::Json.write(answer, slice),
             Self::Csv => ChartFormat::Csv.write(answer, slice),

@@ -27,6 +27,12 @@ pub trait ResourceRequest: Clone + Send + Sync + 'static {
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget>;
 }
 
+/// A request that determines its answer.
+pub trait CanonicalRequest: ResourceRequest {
+    /// Canonical form: together with build, format and encoding it determines every byte of the answer.
+    fn canonical(&self) -> Vec<u8>;
+}
+
 /// A resource that computes an answer.
 pub trait ComputedResource: Sized + 'static {
     /// Name in the paths `/v1/<name>` and `/v1/batches/<name>`.
@@ -42,11 +48,11 @@ pub trait ComputedResource: Sized + 'static {
     const WORK: Work<Self>;
 }
 
-/// The canonical form of a request: together with build, format and encoding it determines every byte of the answer.
+/// See [`CanonicalRequest::canonical`].
 type Canonical<R> = fn(&<R as ComputedResource>::Request) -> Vec<u8>;
 
 /// Computes an answer, counts the bounces that it took, and returns it in a format.
-type Whole<R> = fn(
+type ComputeWhole<R> = fn(
     &<R as ComputedResource>::Request,
     <R as ComputedResource>::Format,
     &TimeSlice,
@@ -54,7 +60,7 @@ type Whole<R> = fn(
 ) -> Result<Vec<u8>, Problem>;
 
 /// Computes an answer, counts the bounces that it took, and sends it in a format piece by piece.
-type Streaming<R, TimeSlices> = fn(
+type ComputeStreaming<R, TimeSlices> = fn(
     &<R as ComputedResource>::Request,
     <R as ComputedResource>::Format,
     &TimeSlices,
@@ -67,26 +73,26 @@ type Streaming<R, TimeSlices> = fn(
 pub enum Work<R: ComputedResource> {
     /// A pure function of the request, short enough for one time slice.
     Pure {
-        /// See [`Canonical`].
+        /// See [`CanonicalRequest::canonical`].
         canonical: Canonical<R>,
-        /// See [`Whole`].
-        compute: Whole<R>,
+        /// See [`ComputeWhole`].
+        compute: ComputeWhole<R>,
     },
     /// A pure function of the request, done in many time slices.
     InSlices {
-        /// See [`Canonical`].
+        /// See [`CanonicalRequest::canonical`].
         canonical: Canonical<R>,
         /// See [`Work`].
         streamed: &'static [Format],
-        /// See [`Streaming`].
-        compute: Streaming<R, TimeSlices>,
+        /// See [`ComputeStreaming`].
+        compute: ComputeStreaming<R, TimeSlices>,
     },
     /// A measurement, which differs each time and so is never cached.
     Measured {
         /// See [`Work`].
         streamed: &'static [Format],
-        /// See [`Streaming`].
-        compute: Streaming<R, TimeSlice>,
+        /// See [`ComputeStreaming`].
+        compute: ComputeStreaming<R, TimeSlice>,
     },
 }
 

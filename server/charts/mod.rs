@@ -8,14 +8,7 @@ pub mod figures;
 
 pub use crate::charts::draw::number::significant;
 pub use crate::charts::draw::pixels::{NoPixels, png};
-pub use crate::charts::figures::branches::{Branches, Change, branches};
-pub use crate::charts::figures::chart::{Chart, Curve, Look, Plot, Side, chart};
-pub use crate::charts::figures::closed_loop::{Loop, closed_loop};
-pub use crate::charts::figures::eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
-pub use crate::charts::figures::heat_map::{HeatAxis, HeatMap, heat_map};
-pub use crate::charts::figures::phase_planes::{PhasePlanes, phase_planes};
-pub use crate::charts::figures::speed_accuracy::{CostAndError, SYMBOLS, Series, SpeedAccuracy, speed_accuracy};
-pub use crate::charts::figures::survival::{AnglesAt, SurvivalAt, SurvivalCurve, survival_curve};
+pub use crate::charts::figures::*;
 
 #[cfg(test)]
 mod heat_map_tests;

@@ -213,8 +213,8 @@ fn code_has_no_marks_in_a_picture() {
 
 #[test]
 fn an_angle_of_rounding_is_zero_in_a_branch() {
-    let changes =
-        [(1.127e-27, "period_doubling"), (0.25, "fold")].map(|(theta, kind)| Change { at: (1.5, theta), kind });
+    let changes = [(1.127e-27, "period_doubling"), (0.25, "fold")]
+        .map(|(theta, kind)| StabilityChange { at: (1.5, theta), kind });
     let text = sound(&branches(&Branches {
         title: "Orbits",
         name: "Tilt gain",

@@ -1,5 +1,7 @@
 //! The methods of the chart and the settings that each of them is run with.
 
+use crate::integrators::{Integrator, Location};
+
 /// A method of the chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ComparedMethod {
@@ -141,6 +143,22 @@ impl MethodKind {
                 | IntegratorKind::Penalty
                 | IntegratorKind::Sampling,
             ) => of("step", "s", &[10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4].map(|parts| one_digit(scale / parts))),
+        }
+    }
+}
+
+impl IntegratorKind {
+    /// The integrator with the value of its setting.
+    pub(super) fn with(self, value: f64) -> Integrator {
+        let runge_kutta = |location| Integrator::RungeKutta { step: value, location };
+        match self {
+            Self::Adaptive => Integrator::Adaptive { tolerance: value },
+            Self::StepEnd => runge_kutta(Location::StepEnd),
+            Self::Secant => runge_kutta(Location::Secant),
+            Self::Bisection => runge_kutta(Location::Bisection),
+            Self::TimeStepping => Integrator::TimeStepping { step: value },
+            Self::Penalty => Integrator::Penalty { step: value },
+            Self::Sampling => Integrator::Sampling { step: value },
         }
     }
 }

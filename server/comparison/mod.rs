@@ -25,13 +25,13 @@ pub struct WorkPrecisionPoint {
     pub method: ComparedMethod,
     /// The setting, if the method has one.
     pub setting: Option<MethodSetting>,
-    /// Clock time of the whole run; none where there was no run.
+    /// Clock time of the whole run; `None` without a run.
     pub timing: Option<Timing>,
     /// Contacts that it saw.
     pub impacts: u64,
     /// Steps, looks or bounces.
     pub steps: u64,
-    /// Evaluations of the equations of motion and of the gap; none in numbers of 31 digits.
+    /// Evaluations of the equations of motion and of the gap; `None` in numbers of 31 digits.
     pub evaluations: Option<u64>,
     /// Largest of |ρδθ| (m), |δẋ|, |δẏ|, |ρδθ̇| (m/s) just before the reference's last contact.
     pub error: Option<f64>,

@@ -19,7 +19,7 @@ use equipoise_physics::scene::model::Model;
 use crate::comparison::methods::{IntegratorKind, MethodKind, MethodSetting};
 use crate::compute::{CancelFlag, Cancelled, TimeSlice};
 use crate::integrators;
-use crate::integrators::{Location, simulate};
+use crate::integrators::simulate;
 use crate::limits;
 
 /// The run of the reference.
@@ -29,7 +29,7 @@ pub struct ReferenceRun {
     pub outcome: &'static str,
     /// Contacts, the last included.
     pub impacts: u64,
-    /// When the last one was, s.
+    /// Time of the last contact, s.
     pub t: f64,
     /// One unit in the last place of its last state, m or m/s: the resolution of doubles there.
     pub rounding: f64,
@@ -97,7 +97,7 @@ impl<'a> Subject<'a> {
         let rho = match self.model {
             Model::Rod(rod) => rod.radius_of_gyration,
             Model::Point(_) => 0.0,
-            Model::General(rig) => rig.rod.radius_of_gyration,
+            Model::General(general) => general.rod.radius_of_gyration,
         };
         let parts = [rho * theta, x_dot, y_dot, rho * theta_dot].map(f64::abs);
         if parts.iter().any(|part| part.is_nan()) { f64::NAN } else { parts.into_iter().fold(0.0, f64::max) }
@@ -129,7 +129,7 @@ impl<'a> Subject<'a> {
                 evaluations: Some(self.impacts),
             }),
             MethodKind::Integrator(integrator) => match self.rod_of_integrators() {
-                Ok(rod) => Ok(self.simulated(integrators_method(integrator, setting), &rod, slice)?),
+                Ok(rod) => Ok(self.simulated(with_setting(integrator, setting), &rod, slice)?),
                 Err(reason) => Err(reason),
             },
         })
@@ -152,7 +152,7 @@ impl<'a> Subject<'a> {
             }
             MethodKind::Integrator(integrator) => {
                 if let Ok(rod) = self.rod_of_integrators() {
-                    let method = integrators_method(integrator, setting);
+                    let method = with_setting(integrator, setting);
                     _ = black_box(self.simulate(method, &rod, &mut || !cancel.is_set()));
                 }
             }
@@ -232,17 +232,6 @@ fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::Extend
     extended::run(&mut orbit, impacts, visit)
 }
 
-fn integrators_method(integrator: IntegratorKind, setting: Option<MethodSetting>) -> integrators::Integrator {
-    use integrators::Integrator;
-    let value = setting.map_or(f64::NAN, |setting| setting.value);
-    let runge_kutta = |location| Integrator::RungeKutta { step: value, location };
-    match integrator {
-        IntegratorKind::Adaptive => Integrator::Adaptive { tolerance: value },
-        IntegratorKind::StepEnd => runge_kutta(Location::StepEnd),
-        IntegratorKind::Secant => runge_kutta(Location::Secant),
-        IntegratorKind::Bisection => runge_kutta(Location::Bisection),
-        IntegratorKind::TimeStepping => Integrator::TimeStepping { step: value },
-        IntegratorKind::Penalty => Integrator::Penalty { step: value },
-        IntegratorKind::Sampling => Integrator::Sampling { step: value },
-    }
+fn with_setting(integrator: IntegratorKind, setting: Option<MethodSetting>) -> integrators::Integrator {
+    integrator.with(setting.map_or(f64::NAN, |setting| setting.value))
 }

@@ -1,6 +1,6 @@
 //! The angle along a run, as the map gives it and as the linear map would.
 
-use crate::charts::{Curve, Look, Side};
+use crate::charts::{ChartAxis, Curve, CurveStyle};
 use crate::failure_cases::case::MethodClaim;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
@@ -67,7 +67,7 @@ impl AngleHistory {
 
     /// |θ| against the number of the contact: the largest of each of some hundred stretches, each a few percent longer than
     /// the one before.
-    pub(crate) fn outline(&self, label: &'static str, look: Look) -> Curve {
+    pub(crate) fn outline(&self, label: &'static str, style: CurveStyle) -> Curve {
         let mut points = Vec::new();
         let mut first = 0;
         while first < self.angles.len() {
@@ -76,10 +76,10 @@ impl AngleHistory {
             points.extend(largest.map(|index| (index as f64 + 1.0, self.angles[index].abs())));
             first = next;
         }
-        Curve { label, look, points }
+        Curve { label, style, points }
     }
 }
 
 /// The axes of outlines.
-pub(crate) const CONTACT: Side = Side::new("contact", "n", "").logarithmic();
-pub(crate) const ANGLE: Side = Side::new("angle at the contact", "|θ|", "rad").logarithmic();
+pub(crate) const CONTACT: ChartAxis = ChartAxis::new("contact", "n", "").logarithmic();
+pub(crate) const ANGLE: ChartAxis = ChartAxis::new("angle at the contact", "|θ|", "rad").logarithmic();

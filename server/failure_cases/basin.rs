@@ -1,6 +1,6 @@
 //! Cases in which the linear analysis holds only in a small neighbourhood: a drift of the angle, a wide start, and a resonance.
 
-use crate::charts::{Chart, Curve, Look, Plot, Side};
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::eigenvalue::{eigenvalue, upright};
@@ -22,7 +22,7 @@ pub(crate) const DRIFT: FailureCase = FailureCase {
     ask: ("trajectories", "impacts=100"),
     price: 400,
     scene: || built(rod(&[(Name::TiltGain, 1.0), (Name::ThetaDot, 0.01)])),
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let fixed_point = upright(scene);
         let course = AngleHistory::of(scene, impacts);
         let says = vec![
@@ -40,7 +40,7 @@ pub(crate) const DRIFT: FailureCase = FailureCase {
     picture: |scene, impacts| {
         let over_time = |scene: &Scene| states(scene, impacts).iter().map(|(t, theta, _)| (*t, *theta)).collect();
         let balanced = built(with(scene.draft(), &[(Name::TiltGain, 1.02)]));
-        let curve = |label, look, points| Curve { label, look, points };
+        let curve = |label, style, points| Curve { label, style, points };
         Chart {
             title: DRIFT.title,
             subtitle: format!(
@@ -52,12 +52,12 @@ pub(crate) const DRIFT: FailureCase = FailureCase {
                 AngleHistory::of(scene, impacts).says("").detail
             ),
             plots: vec![Plot {
-                x: Side::new("time", "t", "s"),
-                y: Side::new("angle at the contact", "θ", "rad"),
+                x: ChartAxis::new("time", "t", "s"),
+                y: ChartAxis::new("angle at the contact", "θ", "rad"),
                 curves: vec![
-                    curve("tilt gain 1.02", Look::BesideDots, over_time(&balanced)),
-                    curve("the run", Look::Truth, over_time(scene)),
-                    curve("", Look::TruthDots, over_time(scene)),
+                    curve("tilt gain 1.02", CurveStyle::BesideDots, over_time(&balanced)),
+                    curve("the run", CurveStyle::Truth, over_time(scene)),
+                    curve("", CurveStyle::TruthDots, over_time(scene)),
                 ],
             }],
         }
@@ -77,7 +77,7 @@ pub(crate) const WIDE: FailureCase = FailureCase {
     ask: ("stability", "impacts=500&basin=true"),
     price: 5_000,
     scene: || built(rod(&[(Name::TiltGain, 1.3), (Name::Theta, 0.3)])),
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let narrow = built(with(scene.draft(), &[(Name::Theta, 0.1)]));
         let says = vec![
             residue(scene),
@@ -88,11 +88,13 @@ pub(crate) const WIDE: FailureCase = FailureCase {
     },
     picture: |scene, _| {
         let narrow = |theta: f64| built(with(scene.draft(), &[(Name::Theta, theta)]));
-        let mut curves: Vec<Curve> =
-            [0.05, 0.1, 0.15, 0.2].iter().map(|theta| plane("", Look::BesideDots, &narrow(*theta), 400)).collect();
+        let mut curves: Vec<Curve> = [0.05, 0.1, 0.15, 0.2]
+            .iter()
+            .map(|theta| plane("", CurveStyle::BesideDots, &narrow(*theta), 400))
+            .collect();
         curves[0].label = "runs from 0.05 to 0.2 rad";
-        curves.push(plane("the run from 0.3 rad", Look::Truth, scene, 400));
-        curves.push(plane("", Look::TruthDots, scene, 400));
+        curves.push(plane("the run from 0.3 rad", CurveStyle::Truth, scene, 400));
+        curves.push(plane("", CurveStyle::TruthDots, scene, 400));
         Chart {
             title: WIDE.title,
             subtitle: "states just before the contacts; the linear analysis is that of the smallest loop".to_owned(),
@@ -117,7 +119,7 @@ pub(crate) const RESONANCE: FailureCase = FailureCase {
     price: 14_000,
     // κ = 1 + 3/4 Gρ²/(V²l).
     scene: || built(rod(&[(Name::TiltGain, 1.375), (Name::Theta, 0.001), (Name::XDot, 0.4)])),
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let run = |numbers: &[(Name, f64)]| AngleHistory::of(&built(with(scene.draft(), numbers)), impacts);
         let says = vec![
             residue(scene),
@@ -134,16 +136,17 @@ pub(crate) const RESONANCE: FailureCase = FailureCase {
         Findings { truth: "falls", detail, says }
     },
     picture: |scene, _| {
-        let side = |kappa: f64, starts: &[f64], look: Look, label: &'static str| {
+        let side = |kappa: f64, starts: &[f64], style: CurveStyle, label: &'static str| {
             let curves = starts.iter().enumerate().map(|(n, theta)| {
                 let scene = built(with(scene.draft(), &[(Name::TiltGain, kappa), (Name::Theta, *theta)]));
-                plane(if n == 0 { label } else { "" }, look, &scene, 800)
+                plane(if n == 0 { label } else { "" }, style, &scene, 800)
             });
             curves.collect::<Vec<_>>()
         };
         let axes = |curves| Plot { x: THETA.between(-0.06, 0.06), y: SPIN.between(-0.4, 0.4), curves };
-        let mut off = side(OFF_RESONANCE, &[0.003, 0.006, 0.009, 0.012, 0.015], Look::BesideDots, "runs that survive");
-        off.extend(side(OFF_RESONANCE, &[0.018], Look::TruthDots, ""));
+        let mut off =
+            side(OFF_RESONANCE, &[0.003, 0.006, 0.009, 0.012, 0.015], CurveStyle::BesideDots, "runs that survive");
+        off.extend(side(OFF_RESONANCE, &[0.018], CurveStyle::TruthDots, ""));
         let kappa = scene.number(Name::TiltGain).unwrap_or_default();
         Chart {
             title: RESONANCE.title,
@@ -154,7 +157,7 @@ pub(crate) const RESONANCE: FailureCase = FailureCase {
             caption: "Left, at the resonance: every start leaves along three arms. Right, beside it: loops within a triangle \
                       survive, and a start outside of it leaves."
                 .to_owned(),
-            plots: vec![axes(side(kappa, &[0.001, 0.0015, 0.002, 0.003, 0.005], Look::TruthDots, "runs that fall")), axes(off)],
+            plots: vec![axes(side(kappa, &[0.001, 0.0015, 0.002, 0.003, 0.005], CurveStyle::TruthDots, "runs that fall")), axes(off)],
         }
     },
 };
@@ -162,8 +165,8 @@ pub(crate) const RESONANCE: FailureCase = FailureCase {
 /// A tilt gain beside the resonance, at which small drifting loops survive.
 const OFF_RESONANCE: f64 = 1.385;
 
-const THETA: Side = Side::new("angle", "θ", "rad");
-const SPIN: Side = Side::new("angular velocity", "θ̇", "rad/s");
+const THETA: ChartAxis = ChartAxis::new("angle", "θ", "rad");
+const SPIN: ChartAxis = ChartAxis::new("angular velocity", "θ̇", "rad/s");
 
 /// Time, θ and θ̇ at the contacts of a run.
 fn states(scene: &Scene, impacts: u64) -> Vec<(f64, f64, f64)> {
@@ -177,9 +180,9 @@ fn states(scene: &Scene, impacts: u64) -> Vec<(f64, f64, f64)> {
     states
 }
 
-fn plane(label: &'static str, look: Look, scene: &Scene, impacts: u64) -> Curve {
+fn plane(label: &'static str, style: CurveStyle, scene: &Scene, impacts: u64) -> Curve {
     let points = states(scene, impacts).iter().map(|(_, theta, theta_dot)| (*theta, *theta_dot)).collect();
-    Curve { label, look, points }
+    Curve { label, style, points }
 }
 
 fn residue(scene: &Scene) -> MethodClaim {

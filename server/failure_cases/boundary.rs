@@ -1,6 +1,6 @@
 //! At κ_c and beyond it, where the eigenvalues are silent or cry wolf, and the next order of the normal form decides.
 
-use crate::charts::{Chart, Curve, Look, Plot, significant};
+use crate::charts::{Chart, Curve, CurveStyle, Plot, significant};
 use crate::failure_cases::angle_history::{ANGLE, AngleHistory, CONTACT};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::eigenvalue::{eigenvalue, upright};
@@ -23,7 +23,7 @@ pub(crate) const SOFT: FailureCase = FailureCase {
     ask: ("stability", "impacts=20000"),
     price: 45_000,
     scene: || built(rod(&[(Name::TiltGain, 1.5), (Name::Theta, 1e-4)])),
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let fixed_point = upright(scene);
         let steeper = built(with(scene.draft(), &[(Name::TiltGain, 1.5_f64.next_up())]));
         let linear = AngleHistory::linear(scene, &fixed_point, impacts);
@@ -55,7 +55,7 @@ pub(crate) const HARD: FailureCase = FailureCase {
         let rho = 0.051_370_116_691_408_14;
         built(rod(&[(Name::RadiusOfGyration, rho), (Name::TiltGain, 1.148_437_5), (Name::Theta, 1e-4)]))
     },
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let fixed_point = upright(scene);
         let mut says = vec![eigenvalue("spectral radius of the computed Jacobian", scene, &fixed_point)];
         let detail = decided(scene, &fixed_point, impacts, &mut says);
@@ -82,7 +82,7 @@ pub(crate) const HARD_WITH_FEEDBACK: FailureCase = FailureCase {
         // κ_c = 1 + ρ²/(2l(y* − l)) = 9/7.
         built(with(with(rod(&numbers), &loop_numbers), &[(Name::TiltGain, 9.0 / 7.0)]))
     },
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let fixed_point = upright(scene);
         let without = built(with(scene.draft(), &[(Name::EnergyGain, 0.0)]));
         let mut says = vec![
@@ -108,7 +108,7 @@ pub(crate) const BEYOND: FailureCase = FailureCase {
     ask: ("stability", "impacts=20000"),
     price: 45_000,
     scene: || built(rod(&[(Name::TiltGain, 1.51), (Name::Theta, 1e-3)])),
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let fixed_point = upright(scene);
         let mut says = vec![
             eigenvalue("spectral radius of the computed Jacobian", scene, &fixed_point),
@@ -148,7 +148,7 @@ fn outlines(title: &'static str, scene: &Scene, impacts: u64, label: &'static st
     linear.angles.truncate(4 * course.angles.len());
     let limit = scene.rules().topple_angle;
     let length = course.angles.len().max(linear.angles.len()) as f64;
-    let end = Curve { label: "topple angle", look: Look::Limit, points: vec![(1.0, limit), (length, limit)] };
+    let end = Curve { label: "topple angle", style: CurveStyle::Limit, points: vec![(1.0, limit), (length, limit)] };
     let run = course.says("");
     Chart {
         title,
@@ -161,7 +161,7 @@ fn outlines(title: &'static str, scene: &Scene, impacts: u64, label: &'static st
         plots: vec![Plot {
             x: CONTACT,
             y: ANGLE,
-            curves: vec![end, linear.outline(label, Look::Wrong), course.outline("the run", Look::Truth)],
+            curves: vec![end, linear.outline(label, CurveStyle::Wrong), course.outline("the run", CurveStyle::Truth)],
         }],
     }
 }

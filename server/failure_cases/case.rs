@@ -21,7 +21,7 @@ pub struct FailureCase {
     /// Cost of the claims, or of the picture, in bounces of the plain rod.
     pub price: u64,
     pub(super) scene: fn() -> Scene,
-    pub(super) look: fn(&Scene, u64) -> Findings,
+    pub(super) find: fn(&Scene, u64) -> Findings,
     pub(super) picture: fn(&Scene, u64) -> Chart,
 }
 
@@ -32,8 +32,8 @@ impl FailureCase {
     }
 
     /// The claims of the methods, and the truth.
-    pub fn look(&self) -> Findings {
-        (self.look)(&self.scene(), self.impacts)
+    pub fn findings(&self) -> Findings {
+        (self.find)(&self.scene(), self.impacts)
     }
 
     /// The picture.
@@ -62,7 +62,7 @@ pub struct MethodClaim {
     pub verdict: &'static str,
     /// The number that it rests on.
     pub value: Option<f64>,
-    /// Unit of that; none for a pure number.
+    /// Unit of that; `None` for a pure number.
     pub unit: Option<&'static str>,
     /// Derivation of the claim, in a sentence.
     pub detail: String,

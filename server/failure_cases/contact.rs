@@ -1,6 +1,6 @@
 //! The root that is always there: a contact ends at t = 0 of its own flight, and the search for the next one finds it again.
 
-use crate::charts::{Chart, Curve, Look, Plot, Side};
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, rod_of};
 use equipoise_physics::bounce::flight::Flight;
@@ -24,7 +24,7 @@ pub(crate) const TRIVIAL_ROOT: FailureCase = FailureCase {
         draft.set(Name::Strike, Some(Value::Choice("still"))).expect("a test builds every case");
         built(draft)
     },
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let Short { contact, flight, flight_time, arrives, .. } = short(scene, impacts);
         let newton = newton(&flight);
         let late = search(&flight);
@@ -74,7 +74,7 @@ pub(crate) const TRIVIAL_ROOT: FailureCase = FailureCase {
         let Short { contact, flight, flight_time, .. } = short(scene, impacts);
         let gap = |t: f64| (1e3 * t, 1e6 * flight.gap(t).value);
         let line = (0..=200).map(|n| gap(0.006 * f64::from(n) * NUDGE)).collect();
-        let curve = |label, look, points| Curve { label, look, points };
+        let curve = |label, style, points| Curve { label, style, points };
         let depth = 1.1 * gap(1.2 * NUDGE).1;
         Chart {
             title: TRIVIAL_ROOT.title,
@@ -85,13 +85,13 @@ pub(crate) const TRIVIAL_ROOT: FailureCase = FailureCase {
                 1e3 * flight_time
             ),
             plots: vec![Plot {
-                x: Side::new("time after the contact", "t", "ms"),
-                y: Side::new("gap", "g", "µm"),
+                x: ChartAxis::new("time after the contact", "t", "ms"),
+                y: ChartAxis::new("gap", "g", "µm"),
                 curves: vec![
-                    curve("start of the search", Look::Limit, vec![(1e3 * NUDGE, depth), (1e3 * NUDGE, -depth)]),
-                    curve("the gap", Look::Truth, line),
-                    curve("found, or looked at first", Look::WrongRings, vec![(0.0, 0.0), gap(NUDGE)]),
-                    curve("next contact", Look::TruthDots, vec![(1e3 * flight_time, 0.0)]),
+                    curve("start of the search", CurveStyle::Limit, vec![(1e3 * NUDGE, depth), (1e3 * NUDGE, -depth)]),
+                    curve("the gap", CurveStyle::Truth, line),
+                    curve("found, or looked at first", CurveStyle::WrongRings, vec![(0.0, 0.0), gap(NUDGE)]),
+                    curve("next contact", CurveStyle::TruthDots, vec![(1e3 * flight_time, 0.0)]),
                 ],
             }],
         }
@@ -141,6 +141,6 @@ fn newton(flight: &Flight) -> Option<f64> {
 
 /// The first change of sign from + to − on a grid that starts at the nudge, up to a second.
 fn search(flight: &Flight) -> Option<f64> {
-    let is_open = |look: &u32| flight.gap(f64::from(*look) * NUDGE).value > 0.0;
-    (1..1000).find(|look| is_open(look) && !is_open(&(look + 1))).map(|look| f64::from(look) * NUDGE)
+    let is_open = |index: &u32| flight.gap(f64::from(*index) * NUDGE).value > 0.0;
+    (1..1000).find(|index| is_open(index) && !is_open(&(index + 1))).map(|index| f64::from(index) * NUDGE)
 }

@@ -1,6 +1,6 @@
 //! Derivatives of the map by differences: the step that is neither too long nor too short, and the graze that has none.
 
-use crate::charts::{Chart, Curve, Look, Plot, Side};
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
 use equipoise_physics::body::Body;
@@ -25,7 +25,7 @@ pub(crate) const DIFFERENCES: FailureCase = FailureCase {
     ask: ("jacobians", "at.impact=1&period=100"),
     price: 40_000,
     scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.3)])),
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let (state, exact, determinant) = reference(scene, impacts);
         let off = |matrix: &DMatrix<f64>| (matrix.determinant() / determinant - 1.0).abs();
         let verdict = |error: f64| if error < EXACT { "exact but for rounding" } else { "digits lost" };
@@ -62,7 +62,7 @@ pub(crate) const DIFFERENCES: FailureCase = FailureCase {
     picture: |scene, impacts| {
         let (_, exact, determinant) = reference(scene, impacts);
         let level = (exact.determinant() / determinant - 1.0).abs();
-        let curve = |label, look, points| Curve { label, look, points };
+        let curve = |label, style, points| Curve { label, style, points };
         Chart {
             title: DIFFERENCES.title,
             subtitle: format!("error of the derivative over one contact and over {impacts}, against the step"),
@@ -70,12 +70,12 @@ pub(crate) const DIFFERENCES: FailureCase = FailureCase {
                       that of its determinant. Steps are in m/s (m for ρθ)."
                 .to_owned(),
             plots: vec![Plot {
-                x: Side::new("step of the differences", "h", "").logarithmic(),
-                y: Side::new("relative error", "", "").logarithmic().between(1e-16, 10.0),
+                x: ChartAxis::new("step of the differences", "h", "").logarithmic(),
+                y: ChartAxis::new("relative error", "", "").logarithmic().between(1e-16, 10.0),
                 curves: vec![
-                    curve("differences over 1 contact", Look::Second, self::curve(scene, 1)),
-                    curve("over 100 contacts", Look::Wrong, self::curve(scene, impacts)),
-                    curve("derivative of the formulas", Look::Truth, vec![(STEPS[0], level), (0.1, level)]),
+                    curve("differences over 1 contact", CurveStyle::Second, self::curve(scene, 1)),
+                    curve("over 100 contacts", CurveStyle::Wrong, self::curve(scene, impacts)),
+                    curve("derivative of the formulas", CurveStyle::Truth, vec![(STEPS[0], level), (0.1, level)]),
                 ],
             }],
         }
@@ -103,7 +103,7 @@ pub(crate) const GRAZE: FailureCase = FailureCase {
             (Name::Height, 0.325_747_320_128_15),
         ]))
     },
-    look: |scene, _| {
+    find: |scene, _| {
         let edge = edge(scene);
         // At the scene, and a hundred times nearer in contact speed.
         let near = at_height(scene, edge - 1e-4 * (edge - scene.release().height));
@@ -145,25 +145,25 @@ pub(crate) const GRAZE: FailureCase = FailureCase {
         let edge = edge(scene);
         let family: Vec<Scene> =
             (0..32).map(|n| at_height(scene, edge - 1e-4 * libm::pow(10.0, -0.25 * f64::from(n)))).collect();
-        let curve = |label, look, step: f64| {
+        let curve = |label, style, step: f64| {
             let points = family.iter().map(|scene| {
                 let (state, exact, _) = reference(scene, 1);
                 let matrix = if step == 0.0 { Some(exact) } else { differences(scene, &state, 1, step) };
                 (-flight(scene).1, matrix.map_or(f64::NAN, |matrix| matrix.amax()))
             });
-            Curve { label, look, points: points.collect() }
+            Curve { label, style, points: points.collect() }
         };
         Chart {
             title: GRAZE.title,
             subtitle: "the largest entry of the derivative, towards the graze (left)".to_owned(),
             caption: "Each point is a release a little lower than the one from which the contact is missed.".to_owned(),
             plots: vec![Plot {
-                x: Side::new("contact speed", "|ẏ|", "m/s").logarithmic(),
-                y: Side::new("largest entry of the derivative", "", "").logarithmic(),
+                x: ChartAxis::new("contact speed", "|ẏ|", "m/s").logarithmic(),
+                y: ChartAxis::new("largest entry of the derivative", "", "").logarithmic(),
                 curves: vec![
-                    curve("differences, step 1e-6", Look::Wrong, 1e-6),
-                    curve("differences, step 1e-8", Look::Second, 1e-8),
-                    curve("derivative of the formulas", Look::Truth, 0.0),
+                    curve("differences, step 1e-6", CurveStyle::Wrong, 1e-6),
+                    curve("differences, step 1e-8", CurveStyle::Second, 1e-8),
+                    curve("derivative of the formulas", CurveStyle::Truth, 0.0),
                 ],
             }],
         }

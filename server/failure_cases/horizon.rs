@@ -1,6 +1,6 @@
 //! A chaotic run beyond its horizon: what single runs say there, and what many of them say together.
 
-use crate::charts::{Chart, Curve, Look, Plot, Side};
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::eigenvalue::upright;
@@ -32,7 +32,7 @@ pub(crate) const CHAOS: FailureCase = FailureCase {
     ask: ("stability", "impacts=3000"),
     price: 2 * RUNS as u64 * 3_000 / 6 + 15_000,
     scene: || built(rod(&[(Name::TiltGain, 1.54), (Name::Theta, 0.032)])),
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let runs = [plainly(scene, impacts), aside(scene, impacts), uncorrected(scene, impacts)];
         let [one, other, third] = runs.each_ref().map(|course| course.angles.len());
         let differ = |end: usize| if end == one { "predictable" } else { "unpredictable" };
@@ -85,7 +85,7 @@ pub(crate) const CHAOS: FailureCase = FailureCase {
         let apart = apart.map(|(index, (a, b))| (index as f64 + 1.0, (a - b).abs())).collect();
         let horizon = horizon(scene).unwrap_or_default() as f64;
         let upright = |x: f64, y: f64| vec![(x, 0.0), (x, y)];
-        let curve = |label, look, points| Curve { label, look, points };
+        let curve = |label, style, points| Curve { label, style, points };
         Chart {
             title: CHAOS.title,
             subtitle: "two runs whose starts differ by 1e-15 rad (left), and ensembles of such runs (right)".to_owned(),
@@ -97,22 +97,22 @@ pub(crate) const CHAOS: FailureCase = FailureCase {
             ),
             plots: vec![
                 Plot {
-                    x: Side::new("contact", "n", ""),
-                    y: Side::new("difference of the angles", "|Δθ|", "rad").logarithmic().between(1e-18, 1.0),
+                    x: ChartAxis::new("contact", "n", ""),
+                    y: ChartAxis::new("difference of the angles", "|Δθ|", "rad").logarithmic().between(1e-18, 1.0),
                     curves: vec![
-                        curve("horizon", Look::Limit, vec![(horizon, 1e-18), (horizon, 1.0)]),
-                        curve("", Look::TruthDots, apart),
+                        curve("horizon", CurveStyle::Limit, vec![(horizon, 1e-18), (horizon, 1.0)]),
+                        curve("", CurveStyle::TruthDots, apart),
                     ],
                 },
                 Plot {
-                    x: Side::new("contact", "n", "").between(0.0, impacts as f64),
-                    y: Side::new("share of runs still up", "", "").between(0.0, 1.0),
+                    x: ChartAxis::new("contact", "n", "").between(0.0, impacts as f64),
+                    y: ChartAxis::new("share of runs still up", "", "").between(0.0, 1.0),
                     curves: vec![
-                        curve("", Look::Limit, upright(horizon, 1.0)),
-                        curve("single runs", Look::Wrong, upright(one.angles.len() as f64, 1.0)),
-                        curve("", Look::Wrong, upright(other.angles.len() as f64, 1.0)),
-                        curve("one ensemble", Look::Truth, survival(&ends(scene, impacts, 0..RUNS), impacts)),
-                        curve("another", Look::Beside, survival(&ends(scene, impacts, RUNS..2 * RUNS), impacts)),
+                        curve("", CurveStyle::Limit, upright(horizon, 1.0)),
+                        curve("single runs", CurveStyle::Wrong, upright(one.angles.len() as f64, 1.0)),
+                        curve("", CurveStyle::Wrong, upright(other.angles.len() as f64, 1.0)),
+                        curve("one ensemble", CurveStyle::Truth, survival(&ends(scene, impacts, 0..RUNS), impacts)),
+                        curve("another", CurveStyle::Beside, survival(&ends(scene, impacts, RUNS..2 * RUNS), impacts)),
                     ],
                 },
             ],

@@ -30,6 +30,6 @@ pub(super) fn rod_of(scene: &Scene) -> Rod {
     match scene.model() {
         Model::Rod(rod) => rod,
         Model::Point(point) => *point.parameters(),
-        Model::General(rig) => rig.rod,
+        Model::General(general) => general.rod,
     }
 }

@@ -1,6 +1,6 @@
 //! Methods that go in steps: they invent stability and destroy it, miss contacts, and never come to rest.
 
-use crate::charts::{Chart, Curve, Look, Plot, Side};
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, rod_of};
@@ -26,7 +26,7 @@ pub(crate) const INVENTED: FailureCase = FailureCase {
         let rho = 0.051_370_116_691_408_14;
         built(rod(&[(Name::RadiusOfGyration, rho), (Name::TiltGain, 1.105), (Name::Theta, 0.35)]))
     },
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let secant = |step| Integrator::RungeKutta { step, location: Location::Secant };
         let says = vec![
             stepped("Runge-Kutta with one secant step, 10 ms", scene, secant(1e-2), impacts),
@@ -55,7 +55,7 @@ pub(crate) const DESTROYED: FailureCase = FailureCase {
     ask: ("stability", "impacts=20000"),
     price: 220_000,
     scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.3)])),
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let says = vec![
             stepped("penalty contact, steps of 1 ms", scene, Integrator::Penalty { step: 1e-3 }, impacts),
             stepped("the same with steps of 0.1 ms", scene, Integrator::Penalty { step: 1e-4 }, impacts),
@@ -83,7 +83,7 @@ pub(crate) const MISSED: FailureCase = FailureCase {
     scene: || {
         built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, -1.8), (Name::ThetaDot, 6.0), (Name::Height, 0.325_747)]))
     },
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let truth = contacts(scene, impacts);
         let second = truth.get(1).map_or(f64::NAN, |contact| contact.0);
         let says = |method, times: Vec<f64>| {
@@ -110,7 +110,7 @@ pub(crate) const MISSED: FailureCase = FailureCase {
             first.strike.zip(first.flight_time).expect("the first contact of this case is a strike");
         let flight = rod_of(scene).flight(&strike);
         let gap = |t: f64| (1e3 * t, 1e6 * flight.gap(t).value);
-        let curve = |label, look, points| Curve { label, look, points };
+        let curve = |label, style, points| Curve { label, style, points };
         Chart {
             title: MISSED.title,
             subtitle: "the gap between tip and table after the first contact".to_owned(),
@@ -121,21 +121,21 @@ pub(crate) const MISSED: FailureCase = FailureCase {
             ),
             plots: vec![
                 Plot {
-                    x: Side::new("time after the contact", "t", "ms"),
-                    y: Side::new("gap", "g", "µm"),
+                    x: ChartAxis::new("time after the contact", "t", "ms"),
+                    y: ChartAxis::new("gap", "g", "µm"),
                     curves: vec![
-                        curve("the gap", Look::Truth, (0..=260).map(|n| gap(5e-4 * f64::from(n))).collect()),
-                        curve("looks", Look::WrongRings, (0..=13).map(|n| gap(1e-2 * f64::from(n))).collect()),
-                        curve("the contact", Look::TruthDots, vec![(1e3 * flight_time, 0.0)]),
+                        curve("the gap", CurveStyle::Truth, (0..=260).map(|n| gap(5e-4 * f64::from(n))).collect()),
+                        curve("looks", CurveStyle::WrongRings, (0..=13).map(|n| gap(1e-2 * f64::from(n))).collect()),
+                        curve("the contact", CurveStyle::TruthDots, vec![(1e3 * flight_time, 0.0)]),
                     ],
                 },
                 Plot {
-                    x: Side::new("time after the contact", "t", "ms").between(56.0, 74.0),
-                    y: Side::new("gap", "g", "µm").between(-3.0, 12.0),
+                    x: ChartAxis::new("time after the contact", "t", "ms").between(56.0, 74.0),
+                    y: ChartAxis::new("gap", "g", "µm").between(-3.0, 12.0),
                     curves: vec![
-                        curve("", Look::Truth, (560..=740).map(|n| gap(1e-4 * f64::from(n))).collect()),
-                        curve("", Look::WrongRings, (6..=7).map(|n| gap(1e-2 * f64::from(n))).collect()),
-                        curve("", Look::TruthDots, vec![(1e3 * flight_time, 0.0)]),
+                        curve("", CurveStyle::Truth, (560..=740).map(|n| gap(1e-4 * f64::from(n))).collect()),
+                        curve("", CurveStyle::WrongRings, (6..=7).map(|n| gap(1e-2 * f64::from(n))).collect()),
+                        curve("", CurveStyle::TruthDots, vec![(1e3 * flight_time, 0.0)]),
                     ],
                 },
             ],
@@ -161,7 +161,7 @@ pub(crate) const ZENO: FailureCase = FailureCase {
         draft.set(Name::Strike, Some(Value::Choice("still"))).expect("a test builds every case");
         built(draft)
     },
-    look: |scene, impacts| {
+    find: |scene, impacts| {
         let limit = limit(scene);
         let says = |method, simulation: Simulation| {
             let last = simulation.impacts.last().map(|impact| impact.t);
@@ -207,7 +207,7 @@ pub(crate) const ZENO: FailureCase = FailureCase {
         let numbered = |times: &mut dyn Iterator<Item = f64>| {
             times.enumerate().map(|(n, t)| (t, n as f64 + 1.0)).collect::<Vec<_>>()
         };
-        let curve = |label, look, points| Curve { label, look, points };
+        let curve = |label, style, points| Curve { label, style, points };
         let limit = limit(scene);
         Chart {
             title: ZENO.title,
@@ -216,16 +216,16 @@ pub(crate) const ZENO: FailureCase = FailureCase {
                 "The flights halve each time, and their sum is {limit:.6} s. Steps of 1 ms go on at their own pace."
             ),
             plots: vec![Plot {
-                x: Side::new("time", "t", "s"),
-                y: Side::new("contact", "n", ""),
+                x: ChartAxis::new("time", "t", "s"),
+                y: ChartAxis::new("contact", "n", ""),
                 curves: vec![
-                    curve("limit", Look::Limit, vec![(limit, 0.0), (limit, impacts as f64)]),
+                    curve("limit", CurveStyle::Limit, vec![(limit, 0.0), (limit, impacts as f64)]),
                     curve(
                         "Runge-Kutta, 1 ms",
-                        Look::Wrong,
+                        CurveStyle::Wrong,
                         numbered(&mut stepped.impacts.iter().map(|impact| impact.t)),
                     ),
-                    curve("the map", Look::TruthDots, numbered(&mut exact.iter().map(|contact| contact.0))),
+                    curve("the map", CurveStyle::TruthDots, numbered(&mut exact.iter().map(|contact| contact.0))),
                 ],
             }],
         }
@@ -263,17 +263,17 @@ fn beside(title: &'static str, name: &'static str, scene: &Scene, method: Integr
     let (exact, stepped) = (AngleHistory::of(scene, impacts), course(&simulated(scene, method, impacts)));
     let dots =
         |course: &AngleHistory| course.angles.iter().enumerate().map(|(n, theta)| (n as f64 + 1.0, *theta)).collect();
-    let curve = |label, look, points| Curve { label, look, points };
+    let curve = |label, style, points| Curve { label, style, points };
     Chart {
         title,
         subtitle: format!("the angle at the contacts, released at {} rad", scene.start().theta),
         caption: format!("The map: {}. The method: {}.", exact.says("").detail, stepped.says("").detail),
         plots: vec![Plot {
-            x: Side::new("contact", "n", "").between(0.0, 100.0),
-            y: Side::new("angle at the contact", "θ", "rad"),
+            x: ChartAxis::new("contact", "n", "").between(0.0, 100.0),
+            y: ChartAxis::new("angle at the contact", "θ", "rad"),
             curves: vec![
-                curve(name, Look::WrongRings, dots(&stepped)),
-                curve("the map", Look::TruthDots, dots(&exact)),
+                curve(name, CurveStyle::WrongRings, dots(&stepped)),
+                curve("the map", CurveStyle::TruthDots, dots(&exact)),
             ],
         }],
     }

@@ -7,7 +7,7 @@ use equipoise_physics::bounce::state::State;
 pub struct SimulatedImpact {
     /// Number of the contact, from 1.
     pub n: u64,
-    /// When, s after release.
+    /// Time, s after release.
     pub t: f64,
     /// Horizontal place of the centre of gravity, m.
     pub x: f64,
@@ -15,14 +15,14 @@ pub struct SimulatedImpact {
     pub state: State,
 }
 
-/// Why a simulation ended.
+/// Ending of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SimulationEnding {
-    /// As runs of the map end.
+    /// An ending that runs of the map have too.
     Run(equipoise_physics::run::ending::Ending),
     /// The rod is below the table and falls, and no contact was seen.
     Missed {
-        /// When that was noticed, s.
+        /// Time at which that was noticed, s.
         t: f64,
     },
     /// It took all the steps that it was given.
@@ -59,7 +59,7 @@ pub struct WorkCount {
 pub struct Simulation {
     /// The contacts that it saw.
     pub impacts: Vec<SimulatedImpact>,
-    /// Why it ended.
+    /// Its ending.
     pub ending: SimulationEnding,
     /// Work that it took.
     pub work: WorkCount,

@@ -2,19 +2,20 @@
 //!
 //! Not here: how they move the rod.
 
-use equipoise_physics::body::Release;
+use equipoise_physics::body::{NoContact, Release, Touch};
 use equipoise_physics::bounce::rebound::Rebound;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules;
-use equipoise_physics::run::rules::{Check, Checked, FlightTimes, Rules};
+use equipoise_physics::run::rules::{Checked, FlightTimes, Rules};
+use equipoise_physics::table::actuator_load::ActuatorLoad;
 
 use crate::integrators::motion::Motion;
 use crate::integrators::simulation::{SimulatedImpact, SimulationEnding, WorkCount};
 
-/// Why a method stops.
+/// Reason for which a method stops.
 pub(crate) enum Halt {
     /// The run is over.
     Ended(SimulationEnding),
@@ -191,24 +192,66 @@ struct AtContact {
 }
 
 impl Checked for AtContact {
-    fn ending_by(&mut self, check: Check) -> Option<Ending> {
-        match check {
-            // The general methods simulate a rod on a table without limits.
-            Check::OtherVertex | Check::BeyondLimits => None,
-            Check::Toppled => rules::toppled(self.state.theta, self.rules.topple_angle),
-            Check::Separating => rules::separating(self.push, self.approach),
-            Check::TooFast => rules::too_fast(self.speed_squared),
-            Check::NotRising => {
-                let Rebound { rise, rounding, .. } = self.rebound;
-                rules::not_rising(rise, rounding, self.rules.settles, self.t, || self.rebound)
-            }
-            // A method does not know that there is no contact, only that it has seen none: [`SimulationRun::step`].
-            Check::NoContact => None,
-            Check::ShortFlight => {
-                let (t, rebound) = (self.t, self.rebound);
-                self.flights.short_flight(self.flight_time, || rebound, |rest| t + rest)
-            }
-        }
+    fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
+    fn t(&self) -> f64 {
+        self.t
+    }
+
+    // The general methods simulate a rod on a table without limits.
+    fn touch(&self) -> Option<Touch> {
+        None
+    }
+
+    fn load(&mut self) -> ActuatorLoad {
+        ActuatorLoad::default()
+    }
+
+    fn theta(&self) -> f64 {
+        self.state.theta
+    }
+
+    fn push(&self) -> f64 {
+        self.push
+    }
+
+    fn approach(&self) -> f64 {
+        self.approach
+    }
+
+    fn speed_squared(&self) -> f64 {
+        self.speed_squared
+    }
+
+    fn contact_rise(&self) -> f64 {
+        self.rebound.rise
+    }
+
+    fn rise_rounding(&self) -> f64 {
+        self.rebound.rounding
+    }
+
+    fn rebound(&self) -> Rebound {
+        self.rebound
+    }
+
+    /// Always `None`: a method does not know that there is no contact, only that it has seen none ([`SimulationRun::step`]).
+    fn no_contact(&self) -> Option<NoContact> {
+        None
+    }
+
+    fn flight_time(&self) -> f64 {
+        self.flight_time
+    }
+
+    fn flights(&mut self) -> &mut FlightTimes {
+        &mut self.flights
+    }
+
+    fn time_after(&self, seconds: f64) -> f64 {
+        self.t + seconds
     }
 }
 

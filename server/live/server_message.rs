@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::BUILD;
 use crate::api::scene::{Derived, Resolved, has_angle};
-use crate::api::shared::demand::DemandAnswer;
+use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::http::{Problem, ValidationError};
@@ -43,8 +43,8 @@ pub enum ServerMessage<'a> {
     End {
         /// The outcome.
         outcome: &'a Outcome,
-        /// The largest demands on the table.
-        demand: DemandAnswer,
+        /// The largest load on the table.
+        demand: LoadAnswer,
     },
     /// An error in a message or in the whole run.
     Problem {

@@ -247,7 +247,7 @@ impl Session {
         let hello = Hello::new(&self.live, &self.playback, &self.context.base_path, now);
         self.outbox.push(ServerMessage::Hello(Box::new(hello)).to_frame());
         if let Some(outcome) = self.playback.outcome() {
-            self.outbox.push(ServerMessage::End { outcome, demand: self.playback.demand().into() }.to_frame());
+            self.outbox.push(ServerMessage::End { outcome, demand: self.playback.load().into() }.to_frame());
         }
     }
 
@@ -269,7 +269,7 @@ impl Session {
                 self.outbox.push_impact(ImpactMessage { row, next_strike });
             }
             if let Some(outcome) = self.playback.outcome() {
-                self.outbox.push(ServerMessage::End { outcome, demand: self.playback.demand().into() }.to_frame());
+                self.outbox.push(ServerMessage::End { outcome, demand: self.playback.load().into() }.to_frame());
             }
         }
         self.context.bounces.inc_by(told as u64);

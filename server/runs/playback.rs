@@ -23,7 +23,7 @@ pub struct Playback {
     /// The scene in force.
     scene: Arc<Scene>,
     outcome: Option<Arc<Outcome>>,
-    meter: LoadTracker,
+    tracker: LoadTracker,
     /// Number of the impact after which the run is completed.
     last: u64,
 }
@@ -34,12 +34,12 @@ impl Playback {
         let scene = *run.scene();
         let (orbit, outcome) = match scene.orbit() {
             Ok(orbit) => (orbit, None),
-            Err(none) => {
+            Err(no_contact) => {
                 let nowhere = Orbit::at(scene.running_model(), scene.rules(), *scene.start());
-                (nowhere, Some(Arc::new(Outcome::new(none.ending(0.0, 0.0), 0, 0.0))))
+                (nowhere, Some(Arc::new(Outcome::new(no_contact.ending(0.0, 0.0), 0, 0.0))))
             }
         };
-        Self { orbit, scene: Arc::new(scene), outcome, meter: LoadTracker::default(), last }
+        Self { orbit, scene: Arc::new(scene), outcome, tracker: LoadTracker::default(), last }
     }
 
     /// Time of the next impact, s; `None` after the end.
@@ -68,9 +68,9 @@ impl Playback {
         Some((coming, strike, next.scene))
     }
 
-    /// Largest demands on the table so far.
-    pub fn demand(&self) -> ActuatorLoad {
-        self.meter.most
+    /// Largest load on the table so far.
+    pub fn load(&self) -> ActuatorLoad {
+        self.tracker.most
     }
 
     /// The model of the scene in force.
@@ -100,7 +100,7 @@ impl Playback {
             contact.flight_time = None;
         }
         if let Some(strike) = &contact.strike {
-            self.meter.track(strike, contact.flight_time);
+            self.tracker.track(strike, contact.flight_time);
         }
         if let Some(ending) = contact.ending {
             self.outcome = Some(Arc::new(Outcome::new(ending, n, contact.t)));

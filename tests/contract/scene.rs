@@ -1,4 +1,4 @@
-//! The parts of `openapi.yaml` that follow from the table of scene fields and from the presets.
+//! The parts of `openapi.yaml` that follow from the table of scene fields, from the presets and from the endings of runs.
 //!
 //! `UPDATE=1 cargo test --test contract scene_parts` rewrites them: the blocks between `# >>>` and `# <<<`, and every list of
 //! references to scene parameters. Everything else in the file is written by hand.
@@ -9,7 +9,9 @@ use std::fmt::Write as _;
 
 use equipoise::api::scene::{field_text, presets};
 use equipoise_physics::body::polygon::{FARTHEST, MAX_VERTICES};
-use equipoise_physics::scene::{FIELDS, Field, Kind, Name, VERTICES, Value};
+use equipoise_physics::scene::{FIELDS, Field, FieldKind, Name, VERTICES, Value};
+
+use crate::endings;
 
 /// The contract with its scene parts written anew.
 pub(crate) fn rewritten(contract: &str) -> String {
@@ -58,6 +60,10 @@ fn block(name: &str) -> String {
             text
         }
         "live.set" => live_by_path(),
+        "OutcomeKind" => endings::kinds(),
+        "EnsembleCounts" => endings::counts(&[]),
+        "RegionCounts" => endings::counts(&["none"]),
+        "RegionOutcomes" => endings::codes(),
         _ => panic!("no block has the name {name}"),
     }
 }
@@ -101,9 +107,11 @@ fn range(row: &Field) -> String {
         None => None,
     };
     let range = match row.kind {
-        Kind::Number { minimum, maximum } => Some(format!("from {} to {}{unit}", number(minimum), number(maximum))),
-        Kind::Integer { maximum } => Some(format!("from 0 to {maximum}")),
-        Kind::Choice(_) | Kind::Flag => None,
+        FieldKind::Number { minimum, maximum } => {
+            Some(format!("from {} to {}{unit}", number(minimum), number(maximum)))
+        }
+        FieldKind::Integer { maximum } => Some(format!("from 0 to {maximum}")),
+        FieldKind::Choice(_) | FieldKind::Flag => None,
     };
     let parts: Vec<String> = range.into_iter().chain(default.map(|value| format!("by default {value}"))).collect();
     let mut sentence = parts.join(", ");
@@ -156,15 +164,15 @@ fn vertices_parameter() -> String {
 fn schema(row: &Field) -> String {
     let mut parts = Vec::new();
     match row.kind {
-        Kind::Number { minimum, maximum } => {
+        FieldKind::Number { minimum, maximum } => {
             parts.push(format!("type: number, minimum: {minimum}, maximum: {maximum}"));
         }
-        Kind::Integer { maximum } => parts.push(format!("type: integer, minimum: 0, maximum: {maximum}")),
-        Kind::Choice(words) => parts.push(format!("type: string, enum: [{}]", words.join(", "))),
-        Kind::Flag => parts.push("type: boolean".to_owned()),
+        FieldKind::Integer { maximum } => parts.push(format!("type: integer, minimum: 0, maximum: {maximum}")),
+        FieldKind::Choice(words) => parts.push(format!("type: string, enum: [{}]", words.join(", "))),
+        FieldKind::Flag => parts.push("type: boolean".to_owned()),
     }
     parts.extend(row.default.map(|value| format!("x-default: {value}")));
-    if matches!(row.kind, Kind::Number { .. } | Kind::Integer { .. }) {
+    if matches!(row.kind, FieldKind::Number { .. } | FieldKind::Integer { .. }) {
         parts.push(format!("x-unit: {}", quoted(row.unit)));
     }
     let symbol = field_text(row.name).symbol;

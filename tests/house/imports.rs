@@ -107,7 +107,7 @@ impl Modules {
     }
 }
 
-/// The module path of a source of one of the crates, from the crate's name on; none for tests, benches and build scripts.
+/// The module path of a source of one of the crates, from the crate's name on; `None` for tests, benches and build scripts.
 fn module(file: &str) -> Option<String> {
     let (folder, name) = CRATES.into_iter().find(|(folder, _)| file.starts_with(folder))?;
     let inside = file[folder.len()..].strip_suffix(".rs")?;

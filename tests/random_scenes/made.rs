@@ -1,6 +1,6 @@
 //! Random scenes and the requests for them.
 
-use equipoise_physics::scene::{FIELDS, Kind, Name, VERTICES};
+use equipoise_physics::scene::{FIELDS, FieldKind, Name, VERTICES};
 use proptest::prelude::*;
 use serde_json::{Map, Value, json};
 
@@ -125,14 +125,14 @@ impl Made {
     fn value(&self, name: Name) -> Value {
         let (share, anything) = self.fields[name as usize].unwrap_or((0.5, false));
         match name.row().kind {
-            Kind::Number { minimum, maximum } => {
+            FieldKind::Number { minimum, maximum } => {
                 let usual = USUAL.iter().find(|(usual, ..)| *usual == name && !anything);
                 let (low, high) = usual.map_or((minimum, maximum), |(_, low, high)| (*low, *high));
                 json!((low + share * (high - low)).clamp(minimum, maximum))
             }
-            Kind::Integer { maximum } => json!((share * maximum as f64) as u64),
-            Kind::Choice(words) => json!(words[((share * words.len() as f64) as usize).min(words.len() - 1)]),
-            Kind::Flag => json!(true),
+            FieldKind::Integer { maximum } => json!((share * maximum as f64) as u64),
+            FieldKind::Choice(words) => json!(words[((share * words.len() as f64) as usize).min(words.len() - 1)]),
+            FieldKind::Flag => json!(true),
         }
     }
 }

@@ -118,7 +118,7 @@ pub(crate) async fn begin(to: SocketAddr, ask: &Ask) -> io::Result<Begun> {
 }
 
 impl Begun {
-    /// The next piece of the body; none at its end.
+    /// The next piece of the body; `None` at its end.
     pub(crate) async fn piece(&mut self) -> io::Result<Option<Vec<u8>>> {
         if self.is_head {
             return Ok(None);

@@ -27,7 +27,7 @@ fn say(what: impl Display) {
     let _ = writeln!(stdout(), "{what}");
 }
 
-/// nginx; none if it is not installed.
+/// nginx; `None` if it is not installed.
 fn nginx() -> Option<&'static str> {
     let program = Nginx::program();
     if program.is_none() {

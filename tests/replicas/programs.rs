@@ -130,7 +130,7 @@ pub(crate) struct Nginx {
 }
 
 impl Nginx {
-    /// Path of nginx; none if it is not installed. Debian keeps it outside the PATH of users.
+    /// Path of nginx; `None` if it is not installed. Debian keeps it outside the PATH of users.
     pub(crate) fn program() -> Option<&'static str> {
         ["nginx", "/usr/sbin/nginx"].into_iter().find(|program| {
             Command::new(program).arg("-v").stderr(Stdio::null()).status().is_ok_and(|status| status.success())

@@ -83,7 +83,7 @@ impl Client {
         self.socket.send(Message::text(message.to_string())).await.unwrap();
     }
 
-    /// The next text; none after the server's close, with its code.
+    /// The next text; `None` after the server's close, with its code.
     pub(crate) async fn hear(&mut self) -> Result<Value, Option<u16>> {
         loop {
             match timeout(SOON, self.socket.next()).await.expect("the server is silent") {

@@ -6,8 +6,8 @@ pub mod request;
 
 use crate::api::controllers::answer::ControllerAnswer;
 use crate::api::controllers::request::ControllerRequest;
-use crate::api::formats::ChartFormat;
-use crate::api::resource::{ComputedResource, Work};
+use crate::api::formats::{ChartFormat, WriteAnswer};
+use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 
 /// The resource.
 #[derive(Debug)]
@@ -18,7 +18,7 @@ impl ComputedResource for Controllers {
     type Format = ChartFormat;
     type Request = ControllerRequest;
     const WORK: Work<Self> = Work::Pure {
-        canonical: ControllerRequest::canonical,
+        canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, _| format.write(&ControllerAnswer::compute(request)?, slice),
     };
 }

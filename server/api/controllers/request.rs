@@ -4,7 +4,7 @@ use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
 
-use crate::api::resource::ResourceRequest;
+use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, read_draft};
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
@@ -68,9 +68,8 @@ impl ResourceRequest for ControllerRequest {
     }
 }
 
-impl ControllerRequest {
-    /// Everything that determines the answer.
-    pub fn canonical(&self) -> Vec<u8> {
+impl CanonicalRequest for ControllerRequest {
+    fn canonical(&self) -> Vec<u8> {
         write::canonical(&self.scene, &(contact_name(self.regime), self.state, self.input, self.tilt_gain))
     }
 }

@@ -9,8 +9,8 @@ use prometheus_client::metrics::counter::Counter;
 
 use crate::api::ensembles::answer::EnsembleAnswer;
 use crate::api::ensembles::request::EnsembleRequest;
-use crate::api::formats::ProgressFormat;
-use crate::api::resource::{ComputedResource, Work};
+use crate::api::formats::{ProgressFormat, WriteAnswer};
+use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::shared::progress::Progress;
 use crate::compute::{TimeSlice, TimeSlices};
 use crate::http::{BodyWriter, Format, Problem};
@@ -25,7 +25,7 @@ impl ComputedResource for Ensembles {
     type Format = ProgressFormat;
     type Request = EnsembleRequest;
     const WORK: Work<Self> =
-        Work::InSlices { canonical: EnsembleRequest::canonical, streamed: &[Format::Progress], compute };
+        Work::InSlices { canonical: CanonicalRequest::canonical, streamed: &[Format::Progress], compute };
 }
 
 fn compute(

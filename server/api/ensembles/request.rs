@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use equipoise_physics::scene::{Kind, Name, Value};
+use equipoise_physics::scene::{FieldKind, Name, Value};
 use equipoise_physics::surveys::ensemble::Ensemble;
 
-use crate::api::resource::ResourceRequest;
+use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{bounce_price, build_scene, read_draft};
 use crate::api::shared::tile::Tile;
 use crate::api::shared::write;
@@ -32,7 +32,7 @@ impl ResourceRequest for EnsembleRequest {
         let is_known = said.is_some() || !reader.has("runs");
         let runs = said.unwrap_or(200);
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(400);
-        let Kind::Integer { maximum } = Name::Seed.row().kind else { return None };
+        let FieldKind::Integer { maximum } = Name::Seed.row().kind else { return None };
         let seed = reader.integer("seed", 0..=maximum);
         let angles = reader.boolean("angles").unwrap_or(false);
         let is_tiled = reader.has("tile");
@@ -59,13 +59,14 @@ impl ResourceRequest for EnsembleRequest {
     }
 }
 
-impl EnsembleRequest {
-    /// Everything that determines the answer.
-    pub fn canonical(&self) -> Vec<u8> {
+impl CanonicalRequest for EnsembleRequest {
+    fn canonical(&self) -> Vec<u8> {
         let Ensemble { scene, runs, impacts, .. } = &self.ensemble;
         write::canonical(scene, &(runs, impacts, self.tile, self.angles))
     }
+}
 
+impl EnsembleRequest {
     /// Range of run numbers in the tile.
     pub fn numbers(&self) -> Range<u64> {
         self.tile.share(self.ensemble.runs)

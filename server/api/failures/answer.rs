@@ -40,7 +40,7 @@ struct TruthAnswer {
 impl FailureAnswer {
     /// Computes the verdicts of a case.
     pub fn compute(case: &FailureCase) -> Self {
-        let (scene, seen) = (case.scene(), case.look());
+        let (scene, seen) = (case.scene(), case.findings());
         let said = |MethodClaim { method, verdict, value, unit, detail }| {
             let value = value.filter(|value| value.is_finite());
             VerdictAnswer { method, verdict, value, unit, right: verdict == seen.truth, detail }

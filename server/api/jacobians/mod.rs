@@ -3,10 +3,10 @@
 pub mod answer;
 pub mod request;
 
-use crate::api::formats::TableFormat;
+use crate::api::formats::{TableFormat, WriteAnswer};
 use crate::api::jacobians::answer::JacobianAnswer;
 use crate::api::jacobians::request::JacobianRequest;
-use crate::api::resource::{ComputedResource, Work};
+use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 
 /// The resource.
 #[derive(Debug)]
@@ -17,7 +17,7 @@ impl ComputedResource for Jacobians {
     type Format = TableFormat;
     type Request = JacobianRequest;
     const WORK: Work<Self> = Work::Pure {
-        canonical: JacobianRequest::canonical,
+        canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, bounces| {
             let answer = JacobianAnswer::compute(request, || slice.should_continue())?;
             bounces.inc_by(request.period);

@@ -6,7 +6,7 @@ use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::stability::jacobian;
 use serde::{Serialize, Serializer};
 
-use crate::api::resource::ResourceRequest;
+use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{bounce_price, read_scene_within};
 use crate::api::shared::state::read_state;
 use crate::api::shared::write;
@@ -96,12 +96,13 @@ impl ResourceRequest for JacobianRequest {
     }
 }
 
-impl JacobianRequest {
-    /// Everything that determines the answer.
-    pub fn canonical(&self) -> Vec<u8> {
+impl CanonicalRequest for JacobianRequest {
+    fn canonical(&self) -> Vec<u8> {
         write::canonical(&self.scene, &(self.at, self.period, self.method))
     }
+}
 
+impl JacobianRequest {
     /// Price of the work, in bounces of the plain rod.
     fn work(&self) -> u64 {
         let Self { scene, at, period, method } = self;

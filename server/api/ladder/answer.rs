@@ -1,4 +1,4 @@
-//! The answer of `ladder`: the same scene on each rung up to its own, and the change from rung to rung.
+//! The answer of `ladder`: the same scene on each level of the model hierarchy up to its own, and the change from level to level.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::api::formats::Tabular;
 use crate::api::ladder::request::LadderRequest;
 use crate::api::scene::Resolved;
-use crate::api::shared::demand::DemandAnswer;
+use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::model_choice::RequirementAnswer;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::table::{Cells, Column, Table};
@@ -20,25 +20,25 @@ pub struct LadderAnswer<'a> {
     scene: Resolved<'a>,
     impacts: u64,
     tolerance: f64,
-    /// The rung that the scene is run on.
+    /// The level that the scene is run on.
     rung: &'static str,
-    /// The lowest rung that is sufficient.
+    /// The lowest level that is sufficient.
     enough: &'static str,
     reason: String,
-    rungs: Vec<RungAnswer>,
+    rungs: Vec<LevelAnswer>,
     #[serde(skip)]
     bounces: u64,
 }
 
 #[derive(Debug, Serialize)]
-struct RungAnswer {
+struct LevelAnswer {
     name: &'static str,
     forced: Option<RequirementAnswer>,
     scene: serde_json::Value,
-    /// The reason why the rung does not apply, if it does not.
+    /// The reason for which the level does not apply, if it does not.
     reason: Option<String>,
     outcome: Option<Outcome>,
-    demand: Option<DemandAnswer>,
+    demand: Option<LoadAnswer>,
     cost_ns_per_impact: f64,
     change: Option<ChangeAnswer>,
     needed: Option<bool>,
@@ -89,53 +89,53 @@ impl ChangeAnswer {
 }
 
 impl<'a> LadderAnswer<'a> {
-    /// Runs a scene on its rungs. `None` once `go_on` returns `false`.
+    /// Runs a scene on its levels. `None` once `go_on` returns `false`.
     pub fn compute(request: &'a LadderRequest, go_on: impl FnMut() -> bool) -> Option<Self> {
         let LadderRequest { scene, impacts, tolerance } = request;
         let (impacts, tolerance) = (*impacts, *tolerance);
         let steps = run_hierarchy(scene, impacts, go_on)?;
         let (mut rungs, mut bounces) = (Vec::new(), 0);
         let (mut below, mut enough) = (None::<ModelLevel>, None::<ModelLevel>);
-        for LevelResult { level: rung, scene, requirement: forced, run } in steps {
+        for LevelResult { level, scene, requirement: forced, run } in steps {
             let (mut reason, mut outcome, mut demand, mut change, mut needed) = (None, None, None, None, None);
             match run {
                 Err(why) => reason = Some(why),
-                Ok(LevelRun { ending, impacts, t, demand: found_demand, change: found }) => {
-                    demand = Some(found_demand.into());
+                Ok(LevelRun { ending, impacts, t, load, change: found }) => {
+                    demand = Some(load.into());
                     bounces += impacts;
                     outcome = Some(Outcome::new(ending, impacts, t));
                     needed = found.map(|found| !found.same_outcome || found.state.value > tolerance);
                     change = found.zip(below).map(|(found, below)| ChangeAnswer::new(&found, below.name()));
-                    // A needed rung makes every rung below it insufficient.
+                    // A needed level makes every level below it insufficient.
                     if needed != Some(false) {
-                        enough = Some(rung);
+                        enough = Some(level);
                     }
-                    below = Some(rung);
+                    below = Some(level);
                 }
             }
-            rungs.push(RungAnswer {
-                name: rung.name(),
+            rungs.push(LevelAnswer {
+                name: level.name(),
                 forced: forced.map(RequirementAnswer::from),
                 scene: crate::api::scene::scene_to_json(&scene),
                 reason,
                 outcome,
                 demand,
-                cost_ns_per_impact: rung.cost_ns(),
+                cost_ns_per_impact: level.cost_ns(),
                 change,
                 needed,
             });
         }
-        let (rung, enough) = (scene.model_level(), enough.unwrap_or(scene.model_level()));
-        let reason = if enough == rung {
+        let (level, enough) = (scene.model_level(), enough.unwrap_or(scene.model_level()));
+        let reason = if enough == level {
             format!(
                 "the scene needs its rung, {}: on the one below it ends otherwise or differs by more than {tolerance} m/s",
-                rung.name()
+                level.name()
             )
         } else {
             format!(
                 "{} would have done: up to {}, {impacts} impacts end alike and differ by at most {tolerance} m/s from rung to rung",
                 enough.name(),
-                rung.name()
+                level.name()
             )
         };
         let reason = if rungs.len() == 1 { "there is no other rung for this body".to_owned() } else { reason };
@@ -143,7 +143,7 @@ impl<'a> LadderAnswer<'a> {
             scene: Resolved(scene),
             impacts,
             tolerance,
-            rung: rung.name(),
+            rung: level.name(),
             enough: enough.name(),
             reason,
             rungs,
@@ -158,32 +158,32 @@ impl<'a> LadderAnswer<'a> {
 }
 
 impl Tabular for LadderAnswer<'_> {
-    /// A row for each rung.
+    /// A row for each level.
     fn to_table(&self) -> Cow<'_, Table> {
         let rungs = &self.rungs;
-        let words = |of: &dyn Fn(&RungAnswer) -> Option<&'static str>| Cells::Words(rungs.iter().map(of).collect());
-        let texts = |of: &dyn Fn(&RungAnswer) -> Option<String>| Cells::Texts(rungs.iter().map(of).collect());
-        let sparse = |of: &dyn Fn(&RungAnswer) -> Option<f64>| Cells::Sparse(rungs.iter().map(of).collect());
-        let counts = |of: &dyn Fn(&RungAnswer) -> Option<u64>| Cells::SparseCounts(rungs.iter().map(of).collect());
-        let flags = |of: &dyn Fn(&RungAnswer) -> Option<bool>| Cells::Flags(rungs.iter().map(of).collect());
+        let words = |of: &dyn Fn(&LevelAnswer) -> Option<&'static str>| Cells::Words(rungs.iter().map(of).collect());
+        let texts = |of: &dyn Fn(&LevelAnswer) -> Option<String>| Cells::Texts(rungs.iter().map(of).collect());
+        let sparse = |of: &dyn Fn(&LevelAnswer) -> Option<f64>| Cells::Sparse(rungs.iter().map(of).collect());
+        let counts = |of: &dyn Fn(&LevelAnswer) -> Option<u64>| Cells::SparseCounts(rungs.iter().map(of).collect());
+        let flags = |of: &dyn Fn(&LevelAnswer) -> Option<bool>| Cells::Flags(rungs.iter().map(of).collect());
         let change = |of: fn(&ChangeAnswer) -> LargestAnswer| {
-            sparse(&move |rung: &RungAnswer| rung.change.as_ref().map(|change| of(change).difference))
+            sparse(&move |level: &LevelAnswer| level.change.as_ref().map(|change| of(change).difference))
         };
         let columns = [
-            ("rung", "", words(&|rung| Some(rung.name))),
-            ("field", "", words(&|rung| rung.forced.as_ref().map(RequirementAnswer::field))),
-            ("outcome", "", words(&|rung| rung.outcome.as_ref().map(|outcome| outcome.kind))),
-            ("impacts", "", counts(&|rung| rung.outcome.as_ref().map(|outcome| outcome.impacts))),
-            ("t", "s", sparse(&|rung| rung.outcome.as_ref().map(|outcome| outcome.t))),
-            ("cost", "ns_per_impact", sparse(&|rung| Some(rung.cost_ns_per_impact))),
-            ("needed", "", flags(&|rung| rung.needed)),
+            ("rung", "", words(&|level| Some(level.name))),
+            ("field", "", words(&|level| level.forced.as_ref().map(RequirementAnswer::field))),
+            ("outcome", "", words(&|level| level.outcome.as_ref().map(|outcome| outcome.kind))),
+            ("impacts", "", counts(&|level| level.outcome.as_ref().map(|outcome| outcome.impacts))),
+            ("t", "s", sparse(&|level| level.outcome.as_ref().map(|outcome| outcome.t))),
+            ("cost", "ns_per_impact", sparse(&|level| Some(level.cost_ns_per_impact))),
+            ("needed", "", flags(&|level| level.needed)),
             ("change_t", "s", change(|change| change.t)),
             ("change_x", "m", change(|change| change.x)),
             ("change_theta", "rad", change(|change| change.theta)),
             ("change_x_dot", "m_per_s", change(|change| change.x_dot)),
             ("change_y_dot", "m_per_s", change(|change| change.y_dot)),
             ("change_theta_dot", "rad_per_s", change(|change| change.theta_dot)),
-            ("reason", "", texts(&|rung| rung.reason.clone())),
+            ("reason", "", texts(&|level| level.reason.clone())),
         ];
         Cow::Owned(Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into()))
     }

@@ -3,10 +3,10 @@
 pub mod answer;
 pub mod request;
 
-use crate::api::formats::TableFormat;
+use crate::api::formats::{TableFormat, WriteAnswer};
 use crate::api::ladder::answer::LadderAnswer;
 use crate::api::ladder::request::LadderRequest;
-use crate::api::resource::{ComputedResource, Work};
+use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::compute::Cancelled;
 
 /// The resource.
@@ -18,7 +18,7 @@ impl ComputedResource for Ladder {
     type Format = TableFormat;
     type Request = LadderRequest;
     const WORK: Work<Self> = Work::Pure {
-        canonical: LadderRequest::canonical,
+        canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, bounces| {
             let answer = LadderAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
             bounces.inc_by(answer.bounces());

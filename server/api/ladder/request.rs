@@ -4,7 +4,7 @@ use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::at_level;
 
-use crate::api::resource::ResourceRequest;
+use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::read_scene;
 use crate::api::shared::write;
 use crate::api::trajectories::request::linear_price;
@@ -18,18 +18,18 @@ use crate::limits::Limits;
 pub struct LadderRequest {
     /// The scene.
     pub scene: Scene,
-    /// Highest number of contacts on each rung.
+    /// Highest number of contacts on each level.
     pub impacts: u64,
-    /// Largest difference of the states, m/s, at which a rung counts as not needed.
+    /// Largest difference of the states, m/s, at which a level counts as not needed.
     pub tolerance: f64,
 }
 
 /// Tolerances, m/s.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-15..=10.0;
 
-/// Number of rungs of the tallest ladder, and the price of one impact on a rung other than the linear one, in bounces.
-const RUNGS: u64 = 7;
-const RUNG_PRICE: u64 = 20;
+/// Number of levels of the tallest hierarchy, and the price of one impact on a level other than the linear one, in bounces.
+const LEVELS: u64 = 7;
+const LEVEL_PRICE: u64 = 20;
 
 /// Price of the rest of the work, in bounces: the setup of the linear solution, and the answer.
 const ONCE_PRICE: u64 = 2500;
@@ -47,14 +47,15 @@ impl ResourceRequest for LadderRequest {
     }
 }
 
+impl CanonicalRequest for LadderRequest {
+    fn canonical(&self) -> Vec<u8> {
+        write::canonical(&self.scene, &(self.impacts, self.tolerance))
+    }
+}
+
 impl LadderRequest {
     /// Price of the work, in bounces.
     fn work(&self) -> u64 {
-        ONCE_PRICE + self.impacts * (RUNGS * RUNG_PRICE + linear_price(&at_level(&self.scene, ModelLevel::Linear)))
-    }
-
-    /// Everything that determines the answer.
-    pub fn canonical(&self) -> Vec<u8> {
-        write::canonical(&self.scene, &(self.impacts, self.tolerance))
+        ONCE_PRICE + self.impacts * (LEVELS * LEVEL_PRICE + linear_price(&at_level(&self.scene, ModelLevel::Linear)))
     }
 }

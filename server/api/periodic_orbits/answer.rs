@@ -29,7 +29,7 @@ pub(super) struct Swept {
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct Change {
+struct StabilityChangeAnswer {
     kind: &'static str,
     parameter: f64,
     theta: f64,
@@ -56,7 +56,7 @@ pub struct PeriodicOrbitAnswer<'a> {
     contact_speed: f64,
     pub(super) sweep: Option<Swept>,
     branch: Option<Table>,
-    changes: Option<Vec<Change>>,
+    changes: Option<Vec<StabilityChangeAnswer>>,
     notes: Vec<String>,
     #[serde(skip)]
     pub(super) points: Vec<BranchPoint>,
@@ -241,7 +241,7 @@ fn columns(branch: &Branch) -> Table {
     ])
 }
 
-fn changes(branch: &Branch) -> Vec<Change> {
+fn changes(branch: &Branch) -> Vec<StabilityChangeAnswer> {
     let detail = |point: &BranchPoint, kind: Bifurcation| match kind {
         Bifurcation::PeriodDoubling if point.springs => "the branch springs here from an orbit of half its period",
         Bifurcation::PeriodDoubling => "an eigenvalue passes −1",
@@ -253,7 +253,13 @@ fn changes(branch: &Branch) -> Vec<Change> {
         let kind = point.change?;
         let residue = point.orbit.multipliers.residue;
         let theta = point.orbit.max_theta();
-        Some(Change { kind: kind.name(), parameter: point.parameter, theta, residue, detail: detail(point, kind) })
+        Some(StabilityChangeAnswer {
+            kind: kind.name(),
+            parameter: point.parameter,
+            theta,
+            residue,
+            detail: detail(point, kind),
+        })
     };
     branch.points.iter().filter_map(change).collect()
 }

@@ -4,10 +4,10 @@ pub mod answer;
 pub mod picture;
 pub mod request;
 
-use crate::api::formats::ChartFormat;
+use crate::api::formats::{ChartFormat, WriteAnswer};
 use crate::api::periodic_orbits::answer::PeriodicOrbitAnswer;
 use crate::api::periodic_orbits::request::PeriodicOrbitRequest;
-use crate::api::resource::{ComputedResource, Work};
+use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 
 /// The resource.
 #[derive(Debug)]
@@ -18,7 +18,7 @@ impl ComputedResource for PeriodicOrbits {
     type Format = ChartFormat;
     type Request = PeriodicOrbitRequest;
     const WORK: Work<Self> = Work::Pure {
-        canonical: PeriodicOrbitRequest::canonical,
+        canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, bounces| {
             let answer = PeriodicOrbitAnswer::compute(request, || slice.should_continue())?;
             bounces.inc_by(answer.bounces());

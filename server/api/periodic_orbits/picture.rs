@@ -3,7 +3,7 @@
 use crate::api::formats::Pictured;
 use crate::api::periodic_orbits::answer::PeriodicOrbitAnswer;
 use crate::api::scene::field_text;
-use crate::charts::{Branches, Change as Mark, branches};
+use crate::charts::{Branches, StabilityChange as Mark, branches};
 use crate::http::Problem;
 
 impl Pictured for PeriodicOrbitAnswer<'_> {

@@ -1,10 +1,10 @@
 //! The request for `periodic-orbits`: an orbit, or a branch of orbits along a field of the scene.
 
 use equipoise_physics::periodic_orbits::branch::BranchStart;
-use equipoise_physics::scene::{Field, Kind, Name, Scene, Value, field};
+use equipoise_physics::scene::{Field, FieldKind, Name, Scene, Value, field};
 use serde::{Serialize, Serializer};
 
-use crate::api::resource::ResourceRequest;
+use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::read_frictionless_scene;
 use crate::api::shared::state::read_state;
 use crate::api::shared::write;
@@ -98,9 +98,8 @@ impl ResourceRequest for PeriodicOrbitRequest {
     }
 }
 
-impl PeriodicOrbitRequest {
-    /// Everything that determines the answer.
-    pub fn canonical(&self) -> Vec<u8> {
+impl CanonicalRequest for PeriodicOrbitRequest {
+    fn canonical(&self) -> Vec<u8> {
         let start = match self.start {
             BranchStart::Upright => ("upright", [0.0; 4]),
             BranchStart::Near(state) => ("guess", [state.theta, state.x_dot, state.y_dot, state.theta_dot]),
@@ -108,7 +107,9 @@ impl PeriodicOrbitRequest {
         };
         write::canonical(&self.scene, &(self.period, start, self.sweep))
     }
+}
 
+impl PeriodicOrbitRequest {
     /// Price of the work, in bounces of the plain rod. A bounce with derivatives costs as much as about twelve.
     fn work(&self) -> u64 {
         limits::ANSWER_PRICE + 12 * self.period * self.sweep.map_or(60, |sweep| 10 * sweep.points + 2000)
@@ -127,7 +128,7 @@ impl PeriodicOrbitRequest {
 
 impl SweptRange {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let sweeps = |row: &&Field| matches!(row.kind, Kind::Number { .. }) && row.name != Name::Friction;
+        let sweeps = |row: &&Field| matches!(row.kind, FieldKind::Number { .. }) && row.name != Name::Friction;
         let row = reader.text("parameter").and_then(field).filter(sweeps);
         if row.is_none() && reader.has("parameter") {
             reader

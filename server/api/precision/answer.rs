@@ -13,7 +13,7 @@ use crate::comparison::{ComparedMethod, MethodSetting, ReferenceRun, WorkPrecisi
 use crate::compute::{Cancelled, TimeSlice};
 
 #[derive(Debug, Serialize)]
-pub(super) struct MethodAnswer {
+pub(super) struct ComparedMethodAnswer {
     pub(super) name: &'static str,
     pub(super) title: &'static str,
     about: &'static str,
@@ -61,7 +61,7 @@ pub struct PrecisionAnswer<'a> {
     pub(super) model: ModelChoice,
     impacts: u64,
     pub(super) reference: ReferenceAnswer,
-    pub(super) methods: Vec<MethodAnswer>,
+    pub(super) methods: Vec<ComparedMethodAnswer>,
     points: Vec<PointAnswer>,
     notes: Vec<String>,
     #[serde(skip)]
@@ -79,8 +79,11 @@ impl<'a> PrecisionAnswer<'a> {
     ) -> Result<Self, Cancelled> {
         let scene = &request.scene;
         let chart = chart(scene, request.impacts, &request.methods, progress, slice)?;
-        let named =
-            |method: &ComparedMethod| MethodAnswer { name: method.name, title: method.title, about: method.about };
+        let named = |method: &ComparedMethod| ComparedMethodAnswer {
+            name: method.name,
+            title: method.title,
+            about: method.about,
+        };
         let mut notes = vec![
             "cost is measured on this machine while it serves others; steps, evaluations and errors are the \
                  same everywhere"

@@ -4,7 +4,7 @@ pub mod answer;
 pub mod picture;
 pub mod request;
 
-use crate::api::formats::ProgressFormat;
+use crate::api::formats::{ProgressFormat, WriteAnswer};
 use crate::api::precision::answer::PrecisionAnswer;
 use crate::api::precision::request::PrecisionRequest;
 use crate::api::resource::{ComputedResource, Work};

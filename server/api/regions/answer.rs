@@ -22,14 +22,14 @@ pub struct RegionAnswer {
 }
 
 impl RegionAnswer {
-    /// The answer for the cells of a tile, row by row. Computes the boundary; none if `go_on` returned false meanwhile.
+    /// The answer for the cells of a tile, row by row. Computes the boundary; `None` if `go_on` returned false meanwhile.
     pub fn new(request: RegionRequest, cells: Vec<MapCell>, mut go_on: impl FnMut() -> bool) -> Option<Self> {
-        let boundary = request.region.boundary(limits::REGION_BOUNDARY_NODES, &mut go_on)?;
+        let boundary = request.map.boundary(limits::REGION_BOUNDARY_NODES, &mut go_on)?;
         Some(Self { request, cells, boundary })
     }
 
     fn rows(&self) -> impl Iterator<Item = (usize, &[MapCell])> {
-        self.request.rows().zip(self.cells.chunks(self.request.region.x.count))
+        self.request.rows().zip(self.cells.chunks(self.request.map.x.count))
     }
 
     fn counts(&self) -> Counts {
@@ -62,12 +62,12 @@ pub(crate) fn quantity_name(quantity: MapQuantity) -> &'static str {
 }
 
 /// A row of values. Numbers of contacts are written as whole numbers.
-pub(crate) struct Values<'a> {
+pub(crate) struct RowValues<'a> {
     pub(crate) cells: &'a [MapCell],
     pub(crate) whole: bool,
 }
 
-impl Serialize for Values<'_> {
+impl Serialize for RowValues<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let values = self.cells.iter().map(|cell| cell.value);
         if self.whole {
@@ -120,7 +120,7 @@ struct SegmentAnswer {
 impl Serialize for RegionAnswer {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
-        struct Side {
+        struct AxisAnswer {
             parameter: &'static str,
             unit: &'static str,
             from: f64,
@@ -132,11 +132,11 @@ impl Serialize for RegionAnswer {
             scene: Resolved<'a>,
             impacts: u64,
             quantity: &'static str,
-            axes: [Side; 2],
+            axes: [AxisAnswer; 2],
             tile: Tile,
             x: Vec<f64>,
             y: Vec<f64>,
-            values: Vec<Values<'a>>,
+            values: Vec<RowValues<'a>>,
             outcomes: Vec<Outcomes<'a>>,
             outcome_names: Vec<&'static str>,
             boundary: Vec<SegmentAnswer>,
@@ -144,14 +144,14 @@ impl Serialize for RegionAnswer {
             counts: Counts,
             notes: Vec<String>,
         }
-        let RegionRequest { region, scene, tile } = &self.request;
+        let RegionRequest { map, scene, tile } = &self.request;
         let side = |axis: MapAxis| {
             let row = axis.name.row();
-            Side { parameter: row.path, unit: row.unit, from: axis.from, to: axis.to, count: axis.count }
+            AxisAnswer { parameter: row.path, unit: row.unit, from: axis.from, to: axis.to, count: axis.count }
         };
         let mut notes = vec!["scene is one of the region; x and y replace its two fields".to_owned()];
         if self.cells.iter().any(|cell| cell.value.is_none()) {
-            let beside = match region.quantity {
+            let beside = match map.quantity {
                 MapQuantity::Survival | MapQuantity::MaxTheta => "",
                 MapQuantity::SpectralRadius => ", has no fixed point or has noise",
                 MapQuantity::Residue => {
@@ -163,13 +163,13 @@ impl Serialize for RegionAnswer {
         }
         Json {
             scene: Resolved(scene),
-            impacts: region.impacts,
-            quantity: quantity_name(region.quantity),
-            axes: [side(region.x), side(region.y)],
+            impacts: map.impacts,
+            quantity: quantity_name(map.quantity),
+            axes: [side(map.x), side(map.y)],
             tile: *tile,
-            x: (0..region.x.count).map(|column| region.x.value(column)).collect(),
-            y: self.request.rows().map(|row| region.y.value(row)).collect(),
-            values: self.rows().map(|(_, cells)| Values { cells, whole: self.request.is_whole() }).collect(),
+            x: (0..map.x.count).map(|column| map.x.value(column)).collect(),
+            y: self.request.rows().map(|row| map.y.value(row)).collect(),
+            values: self.rows().map(|(_, cells)| RowValues { cells, whole: self.request.is_whole() }).collect(),
             outcomes: self.rows().map(|(_, cells)| Outcomes(cells)).collect(),
             outcome_names: outcome_names().collect(),
             boundary: self

@@ -7,11 +7,11 @@ pub mod rows;
 
 use equipoise_physics::surveys::stability_map::MapCell;
 
-use crate::api::formats::{ChartFormat, FigureFormat};
+use crate::api::formats::{ChartFormat, FigureFormat, WriteAnswer};
 use crate::api::regions::answer::RegionAnswer;
 use crate::api::regions::request::RegionRequest;
 use crate::api::regions::rows::{RowFormat, Rows};
-use crate::api::resource::{ComputedResource, Work};
+use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::compute::{Cancelled, TimeSlice, TimeSlices};
 use crate::http::{BodyWriter, Format, Problem};
 
@@ -24,7 +24,7 @@ impl ComputedResource for Regions {
     type Format = ChartFormat;
     type Request = RegionRequest;
     const WORK: Work<Self> = Work::InSlices {
-        canonical: RegionRequest::canonical,
+        canonical: CanonicalRequest::canonical,
         streamed: &[Format::Csv, Format::Ndjson],
         compute: |request, format, slices, out, bounces| {
             let (cells, block) = (request.numbers(), request.block_cells());
@@ -32,7 +32,7 @@ impl ComputedResource for Regions {
             let compute = |number: usize, slice: &TimeSlice| {
                 let first = cells.start + number * block;
                 let computed =
-                    request.region.cells(first..(first + block).min(cells.end), &mut || slice.should_continue())?;
+                    request.map.cells(first..(first + block).min(cells.end), &mut || slice.should_continue())?;
                 bounces.inc_by(request.bounces_of(&computed));
                 Some(computed)
             };

@@ -11,7 +11,7 @@ use crate::http::Problem;
 
 impl Pictured for RegionAnswer {
     fn to_picture(&self) -> Result<String, Problem> {
-        let RegionRequest { region, tile, .. } = &self.request;
+        let RegionRequest { map, tile, .. } = &self.request;
         let rows = self.request.rows();
         let side = |axis: &MapAxis, first: usize, count: usize| {
             let (row, text) = (axis.name.row(), field_text(axis.name));
@@ -24,7 +24,7 @@ impl Pictured for RegionAnswer {
                 count,
             }
         };
-        let (quantity, unit) = match region.quantity {
+        let (quantity, unit) = match map.quantity {
             MapQuantity::Survival => ("contacts survived", "1"),
             MapQuantity::MaxTheta => ("largest |θ|", "rad"),
             MapQuantity::Residue => ("residue R", "1"),
@@ -33,22 +33,18 @@ impl Pictured for RegionAnswer {
         let values: Vec<Option<f64>> = self.cells.iter().map(|cell| cell.value).collect();
         let outcomes: Vec<u8> = self.cells.iter().map(|cell| code(cell) as u8).collect();
         let finite = || values.iter().flatten().copied().filter(|value| value.is_finite());
-        let scale = match region.quantity {
-            MapQuantity::Survival => (0.0, region.impacts as f64),
+        let scale = match map.quantity {
+            MapQuantity::Survival => (0.0, map.impacts as f64),
             MapQuantity::MaxTheta | MapQuantity::Residue | MapQuantity::SpectralRadius => {
                 (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max))
             }
         };
         let part = if tile.of > 1 { format!(", tile {} of {}", tile.index + 1, tile.of) } else { String::new() };
         Ok(heat_map(&HeatMap {
-            title: &format!(
-                "{quantity} over {} and {}",
-                field_text(region.x.name).title,
-                field_text(region.y.name).title
-            ),
-            subtitle: &format!("runs of up to {} contacts{part}", region.impacts),
-            x: side(&region.x, 0, region.x.count),
-            y: side(&region.y, rows.start, rows.len()),
+            title: &format!("{quantity} over {} and {}", field_text(map.x.name).title, field_text(map.y.name).title),
+            subtitle: &format!("runs of up to {} contacts{part}", map.impacts),
+            x: side(&map.x, 0, map.x.count),
+            y: side(&map.y, rows.start, rows.len()),
             values: &values,
             outcomes: &outcomes,
             scale,

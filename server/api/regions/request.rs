@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use equipoise_physics::scene::{Kind, Scene, field};
+use equipoise_physics::scene::{FieldKind, Scene, field};
 use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
-use crate::api::resource::ResourceRequest;
+use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, read_draft};
 use crate::api::shared::tile::Tile;
 use crate::api::shared::write;
@@ -19,9 +19,9 @@ use crate::limits::Limits;
 /// A request for a stability map.
 #[derive(Debug, Clone, Copy)]
 pub struct RegionRequest {
-    /// The region.
-    pub region: StabilityMap,
-    /// A valid scene of the region, which is shown in the answer.
+    /// The map.
+    pub map: StabilityMap,
+    /// A valid scene of the map, which is shown in the answer.
     pub scene: Scene,
     /// The tile: a band of whole rows.
     pub tile: Tile,
@@ -49,10 +49,10 @@ impl ResourceRequest for RegionRequest {
             reader.refuse("tile", format!("tile has {} bands, but y has only {} rows", tile.of, y.count));
             return None;
         }
-        let region = StabilityMap { scene: draft, x, y, impacts, quantity };
+        let map = StabilityMap { scene: draft, x, y, impacts, quantity };
         let corners = [(0, 0), (x.count - 1, 0), (0, y.count - 1), (x.count - 1, y.count - 1)];
         let middle = (x.count / 2, y.count / 2);
-        let possible = corners.into_iter().chain([middle]).find_map(|(column, row)| region.scene(column, row));
+        let possible = corners.into_iter().chain([middle]).find_map(|(column, row)| map.scene(column, row));
         let Some(scene) = possible else {
             let mut draft = draft;
             let mut errors = Errors::default();
@@ -69,13 +69,13 @@ impl ResourceRequest for RegionRequest {
             }
             return None;
         };
-        let linear = matches!(region.quantity, MapQuantity::Residue | MapQuantity::SpectralRadius);
+        let linear = matches!(map.quantity, MapQuantity::Residue | MapQuantity::SpectralRadius);
         if let Some(error) = scene.beyond(&LINEARLY_JUDGED).filter(|_| linear) {
             let pointer = reader.pointer_to("scene");
             reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
             return None;
         }
-        Some(Self { region, scene, tile })
+        Some(Self { map, scene, tile })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -84,28 +84,29 @@ impl ResourceRequest for RegionRequest {
     }
 }
 
-impl RegionRequest {
-    /// Everything that determines the answer.
-    pub fn canonical(&self) -> Vec<u8> {
-        let StabilityMap { x, y, impacts, quantity, .. } = self.region;
+impl CanonicalRequest for RegionRequest {
+    fn canonical(&self) -> Vec<u8> {
+        let StabilityMap { x, y, impacts, quantity, .. } = self.map;
         let sides = [x, y].map(|axis| (axis.name.row().path, axis.from, axis.to, axis.count));
         write::canonical(&self.scene, &(sides, impacts, quantity as u8, self.tile))
     }
+}
 
+impl RegionRequest {
     /// The rows of the tile.
     pub fn rows(&self) -> Range<usize> {
-        let rows = self.tile.share(self.region.y.count as u64);
+        let rows = self.tile.share(self.map.y.count as u64);
         rows.start as usize..rows.end as usize
     }
 
     /// Number of cells of the tile.
     pub fn cells(&self) -> u64 {
-        (self.rows().len() * self.region.x.count) as u64
+        (self.rows().len() * self.map.x.count) as u64
     }
 
-    /// Numbers of the tile's cells, counted over the whole region, row after row.
+    /// Numbers of the tile's cells, counted over the whole map, row after row.
     pub fn numbers(&self) -> Range<usize> {
-        let (rows, columns) = (self.rows(), self.region.x.count);
+        let (rows, columns) = (self.rows(), self.map.x.count);
         rows.start * columns..rows.end * columns
     }
 
@@ -123,14 +124,14 @@ impl RegionRequest {
 
     /// Tells whether values are whole numbers.
     pub(crate) fn is_whole(&self) -> bool {
-        self.region.quantity == MapQuantity::Survival
+        self.map.quantity == MapQuantity::Survival
     }
 
     /// Price, in bounces of lanes.
     fn work(&self) -> u64 {
         // Scenes of the boundary: the nodes of its grid, and some 80 for each of its crossings.
         let [columns, rows] =
-            [self.region.x, self.region.y].map(|axis| axis.count.clamp(2, limits::REGION_BOUNDARY_NODES) as u64);
+            [self.map.x, self.map.y].map(|axis| axis.count.clamp(2, limits::REGION_BOUNDARY_NODES) as u64);
         let scenes = columns * rows + 80 * (columns + rows);
         let boundary = scenes * (limits::REGION_LINEAR_CELL_PRICE + self.polygon_price());
         self.cells().saturating_mul(self.cell_price()).saturating_add(boundary + limits::REGION_ANSWER_PRICE)
@@ -138,20 +139,20 @@ impl RegionRequest {
 
     /// Price of making a scene beyond that of a rod: each side of a polygon is compared with each other side.
     fn polygon_price(&self) -> u64 {
-        let vertices = self.region.scene.vertices().map_or(0, |vertices| vertices.places().len() as u64);
+        let vertices = self.map.scene.vertices().map_or(0, |vertices| vertices.places().len() as u64);
         vertices * vertices * 3 / 2
     }
 
     /// Highest price of one cell.
     fn cell_price(&self) -> u64 {
-        let (once, bounce) = match self.region.quantity {
+        let (once, bounce) = match self.map.quantity {
             MapQuantity::Residue | MapQuantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),
-            MapQuantity::Survival | MapQuantity::MaxTheta if self.region.fits_lanes() => (limits::REGION_CELL_PRICE, 1),
+            MapQuantity::Survival | MapQuantity::MaxTheta if self.map.fits_lanes() => (limits::REGION_CELL_PRICE, 1),
             MapQuantity::Survival | MapQuantity::MaxTheta => {
                 (limits::REGION_ALONE_CELL_PRICE, limits::REGION_ALONE_PRICE)
             }
         };
-        once + self.polygon_price() + bounce * self.region.impacts
+        once + self.polygon_price() + bounce * self.map.impacts
     }
 }
 
@@ -168,7 +169,7 @@ fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<MapAxis>
         let path = axis.text("parameter");
         let row = path.and_then(field);
         let range = match row.map(|row| row.kind) {
-            Some(Kind::Number { minimum, maximum }) => Some(minimum..=maximum),
+            Some(FieldKind::Number { minimum, maximum }) => Some(minimum..=maximum),
             _ => None,
         };
         if let (Some(path), None) = (path, &range) {

@@ -1,10 +1,10 @@
-//! The cells of a region as rows of CSV and NDJSON. Each row is written as soon as it is complete.
+//! The cells of a map as rows of CSV and NDJSON. Each row is written as soon as it is complete.
 
 use equipoise_physics::scene::Name;
 use equipoise_physics::surveys::stability_map::{MapCell, MapQuantity, StabilityMap};
 use serde::Serialize;
 
-use crate::api::regions::answer::{Counts, Outcomes, Values, outcome_name, quantity_name, written};
+use crate::api::regions::answer::{Counts, Outcomes, RowValues, outcome_name, quantity_name, written};
 use crate::api::regions::request::RegionRequest;
 use crate::api::shared::table::with_unit;
 
@@ -33,7 +33,7 @@ pub struct Rows {
 impl Rows {
     /// No rows yet.
     pub fn new(request: RegionRequest, format: RowFormat) -> Self {
-        let x = request.region.x;
+        let x = request.map.x;
         let columns = match format {
             RowFormat::Csv => (0..x.count).map(|column| written(x.value(column))).collect(),
             RowFormat::Ndjson => Vec::new(),
@@ -43,7 +43,7 @@ impl Rows {
 
     /// Text before all rows: in CSV the names of the two fields, the quantity and `outcome`.
     pub fn begin(&self) -> Vec<u8> {
-        let StabilityMap { x, y, quantity, .. } = self.request.region;
+        let StabilityMap { x, y, quantity, .. } = self.request.map;
         if self.format == RowFormat::Ndjson {
             return Vec::new();
         }
@@ -56,7 +56,7 @@ impl Rows {
     pub fn add(&mut self, cells: &[MapCell]) -> Vec<u8> {
         self.counts.add(cells);
         self.begun.extend_from_slice(cells);
-        let columns = self.request.region.x.count;
+        let columns = self.request.map.x.count;
         let whole = self.begun.len() - self.begun.len() % columns;
         let mut out = Vec::new();
         if whole == 0 {
@@ -89,7 +89,7 @@ impl Rows {
     }
 
     fn write_csv(&self, cells: &[MapCell], out: &mut Vec<u8>) {
-        let y = written(self.request.region.y.value(self.row));
+        let y = written(self.request.map.y.value(self.row));
         let whole = self.request.is_whole();
         for (cell, x) in cells.iter().zip(&self.columns) {
             let value = match cell.value {
@@ -108,11 +108,11 @@ impl Rows {
         struct Row<'a> {
             row: usize,
             y: f64,
-            values: Values<'a>,
+            values: RowValues<'a>,
             outcomes: Outcomes<'a>,
         }
-        let (row, y, whole) = (self.row, self.request.region.y.value(self.row), self.request.is_whole());
-        line(&Row { row, y, values: Values { cells, whole }, outcomes: Outcomes(cells) }, out);
+        let (row, y, whole) = (self.row, self.request.map.y.value(self.row), self.request.is_whole());
+        line(&Row { row, y, values: RowValues { cells, whole }, outcomes: Outcomes(cells) }, out);
     }
 }
 

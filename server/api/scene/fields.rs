@@ -2,7 +2,7 @@
 //!
 //! Paths, units, ranges and defaults are not here: they come from the physics. The compiler asks for the words of every new field.
 
-use equipoise_physics::scene::{FIELDS, Field, FieldError, FieldErrorKind, Kind, Name};
+use equipoise_physics::scene::{FIELDS, Field, FieldError, FieldErrorKind, FieldKind, Name};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -152,12 +152,12 @@ pub fn explain(errors: Vec<FieldError>) -> Vec<FieldError> {
 /// `GET /v1/fields`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Fields {
-    fields: Vec<Row>,
+    fields: Vec<FieldRow>,
 }
 
 /// One field.
 #[derive(Debug, Clone, Serialize)]
-struct Row {
+struct FieldRow {
     path: &'static str,
     symbol: &'static str,
     group: &'static str,
@@ -176,17 +176,17 @@ struct Row {
 impl Fields {
     /// The whole table.
     pub fn all() -> Self {
-        Self { fields: FIELDS.iter().map(Row::of).collect() }
+        Self { fields: FIELDS.iter().map(FieldRow::of).collect() }
     }
 }
 
-impl Row {
+impl FieldRow {
     fn of(row: &'static Field) -> Self {
         let (kind, minimum, maximum, choices) = match row.kind {
-            Kind::Number { minimum, maximum } => ("number", Some(minimum.into()), Some(maximum.into()), None),
-            Kind::Integer { maximum } => ("integer", Some(0.into()), Some(maximum.into()), None),
-            Kind::Choice(choices) => ("choice", None, None, Some(choices)),
-            Kind::Flag => ("boolean", None, None, None),
+            FieldKind::Number { minimum, maximum } => ("number", Some(minimum.into()), Some(maximum.into()), None),
+            FieldKind::Integer { maximum } => ("integer", Some(0.into()), Some(maximum.into()), None),
+            FieldKind::Choice(choices) => ("choice", None, None, Some(choices)),
+            FieldKind::Flag => ("boolean", None, None, None),
         };
         let FieldText { title, symbol, about, .. } = field_text(row.name);
         Self {

@@ -1,7 +1,7 @@
 //! Merges a JSON scene, or one made of dotted query parameters, onto a draft: field by field by the table of fields.
 
 use equipoise_physics::body::polygon::{FARTHEST, MAX_VERTICES, Vertices};
-use equipoise_physics::scene::{Draft, FIELDS, Field, Kind, Scene, VERTICES, Value as FieldValue, field};
+use equipoise_physics::scene::{Draft, FIELDS, Field, FieldKind, Scene, VERTICES, Value as FieldValue, field};
 use serde_json::{Map, Value};
 
 use crate::api::scene::fields::explain;
@@ -147,17 +147,17 @@ pub fn read_value(row: &'static Field, value: &Value, source: Source) -> Result<
         (_, Value::Null) => Ok(None),
         // A query has no other way to take a value back.
         (_, Value::String(text)) if source == Source::Query && text == "null" => Ok(None),
-        (Kind::Number { minimum, maximum }, _) => {
+        (FieldKind::Number { minimum, maximum }, _) => {
             scalar::number_within(value, source, &(minimum..=maximum), row.unit).map(FieldValue::Number).map(Some)
         }
-        (Kind::Integer { maximum }, _) => {
+        (FieldKind::Integer { maximum }, _) => {
             scalar::integer(value, source, &(0..=maximum)).map(FieldValue::Integer).map(Some)
         }
-        (Kind::Choice(words), _) => {
+        (FieldKind::Choice(words), _) => {
             let known: Vec<_> = words.iter().map(|word| (*word, *word)).collect();
             scalar::choice(value, &known).map(FieldValue::Choice).map(Some)
         }
-        (Kind::Flag, _) => scalar::boolean(value, source).map(|flag| flag.then_some(FieldValue::Flag(true))),
+        (FieldKind::Flag, _) => scalar::boolean(value, source).map(|flag| flag.then_some(FieldValue::Flag(true))),
     }
 }
 

@@ -67,7 +67,7 @@ mod tests {
     use serde_json::{Value, json};
 
     #[test]
-    fn every_rung_above_the_plain_rod_makes_bounces_dearer() {
+    fn every_level_above_the_plain_rod_makes_bounces_dearer() {
         for (preset, price) in [("case-1", 1), ("point-mass", 2), ("triangle-polygon", 2), ("case-1-noise", 3)] {
             let scene = presets::find(preset).unwrap().draft().build().unwrap();
             assert_eq!(bounce_price(&scene), price, "{preset}");

@@ -1,7 +1,7 @@
 //! Parts that answers of several resources share.
 
+pub mod actuator_load;
 pub mod closed_loop;
-pub mod demand;
 pub mod eigenvalue;
 pub mod fixed_point;
 pub mod model_choice;

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved, has_angle};
-use crate::api::shared::demand::DemandAnswer;
+use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
@@ -64,7 +64,7 @@ struct NonlinearPart {
     impacts: u64,
     t: f64,
     max_theta: f64,
-    demand: DemandAnswer,
+    demand: LoadAnswer,
     detail: String,
 }
 
@@ -162,7 +162,7 @@ impl<'a> StabilityAnswer<'a> {
                 impacts: run.impacts,
                 t: run.t,
                 max_theta: run.max_theta,
-                demand: run.demand.into(),
+                demand: run.load.into(),
                 detail: Outcome::new(run.ending, run.impacts, run.t).detail,
             },
             drift_speed: drift_speed(scene),

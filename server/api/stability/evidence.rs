@@ -12,7 +12,7 @@ use serde::Serialize;
 const NEAR: f64 = 0.02;
 
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct Resonance {
+pub(crate) struct ResonanceAnswer {
     pub(crate) p: u32,
     pub(crate) q: u32,
     pub(crate) distance: f64,
@@ -22,13 +22,13 @@ pub(crate) struct Resonance {
 pub(crate) struct RotationNumber {
     pub(crate) measured: Option<f64>,
     pub(crate) linear: f64,
-    pub(crate) resonance: Resonance,
+    pub(crate) resonance: ResonanceAnswer,
 }
 
 impl From<regularity::Rotation> for RotationNumber {
     fn from(rotation: regularity::Rotation) -> Self {
         let regularity::Resonance { p, q, distance } = rotation.resonance;
-        Self { measured: rotation.measured, linear: rotation.linear, resonance: Resonance { p, q, distance } }
+        Self { measured: rotation.measured, linear: rotation.linear, resonance: ResonanceAnswer { p, q, distance } }
     }
 }
 

@@ -6,8 +6,8 @@ pub mod margins;
 pub mod picture;
 pub mod request;
 
-use crate::api::formats::ChartFormat;
-use crate::api::resource::{ComputedResource, Work};
+use crate::api::formats::{ChartFormat, WriteAnswer};
+use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::stability::answer::StabilityAnswer;
 use crate::api::stability::request::StabilityRequest;
 use crate::compute::Cancelled;
@@ -21,7 +21,7 @@ impl ComputedResource for Stability {
     type Format = ChartFormat;
     type Request = StabilityRequest;
     const WORK: Work<Self> = Work::Pure {
-        canonical: StabilityRequest::canonical,
+        canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, bounces| {
             let answer = StabilityAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
             bounces.inc_by(answer.bounces());

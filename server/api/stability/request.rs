@@ -5,7 +5,7 @@ use equipoise_physics::stability::basin;
 use equipoise_physics::stability::margins::Tolerances;
 use equipoise_physics::stability::regularity::WATCHED;
 
-use crate::api::resource::ResourceRequest;
+use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{bounce_price, read_scene};
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
@@ -46,13 +46,14 @@ impl ResourceRequest for StabilityRequest {
     }
 }
 
-impl StabilityRequest {
-    /// Everything that determines the answer.
-    pub fn canonical(&self) -> Vec<u8> {
+impl CanonicalRequest for StabilityRequest {
+    fn canonical(&self) -> Vec<u8> {
         let off = self.tolerances.map(|off| (off.contact_distance, off.radius_of_gyration, off.restitution));
         write::canonical(&self.scene, &(self.impacts, self.basin, off))
     }
+}
 
+impl StabilityRequest {
     /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs
     /// cost a quarter in lanes.
     fn work(&self) -> u64 {

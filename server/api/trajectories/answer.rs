@@ -14,14 +14,14 @@ use serde::Serialize;
 
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved, has_angle};
-use crate::api::shared::demand::DemandAnswer;
+use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::nearest_vertex::NearestVertex;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::Table;
 use crate::api::trajectories::columns::{ExtendedRow, ImpactRow, date};
-use crate::api::trajectories::flights::{Flight, Flights};
+use crate::api::trajectories::flights::{Flights, SampledFlight};
 use crate::api::trajectories::impacts::Impacts;
 use crate::api::trajectories::request::TrajectoryRequest;
 
@@ -114,7 +114,7 @@ pub struct TrajectoryAnswer<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flights: Option<Table>,
     /// Largest load on the table.
-    pub demand: DemandAnswer,
+    pub demand: LoadAnswer,
     /// Smallest distance of a polygon's other vertices from the table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_vertex: Option<NearestVertex>,
@@ -144,7 +144,7 @@ impl<'a> TrajectoryAnswer<'a> {
         let mut flights = (samples > 0).then(|| Flights::new(scene, samples, epoch));
         let (body, has_angle) = (scene.model(), has_angle(scene));
         let (mut last, mut unknown, mut predictable) = (None, 0, None);
-        let mut meter = LoadTracker::default();
+        let mut tracker = LoadTracker::default();
         let mut nearest_vertex = None;
         let mut visit = |impact: &ComputedImpact<'_>| {
             let ComputedImpact { contact, error_estimate, .. } = impact;
@@ -159,16 +159,16 @@ impl<'a> TrajectoryAnswer<'a> {
                 if contact.n == 1 {
                     let release = scene.release();
                     let (x, y, start) = (release.x, release.height, release.state);
-                    flights.push(&Flight { impact: 0, t: 0.0, x, y, start, length: contact.t });
+                    flights.push(&SampledFlight { impact: 0, t: 0.0, x, y, start, length: contact.t });
                 }
                 if let (Some(strike), Some(length)) = (contact.strike, contact.flight_time) {
                     let y = body.contact_height(&contact.state) + contact.clearance;
                     let (impact, t, x, start) = (contact.n, contact.t, contact.x, strike.after);
-                    flights.push(&Flight { impact, t, x, y, start, length });
+                    flights.push(&SampledFlight { impact, t, x, y, start, length });
                 }
             }
             if let Some(strike) = &contact.strike {
-                meter.track(strike, contact.flight_time);
+                tracker.track(strike, contact.flight_time);
             }
             if let Some(outline) = scene.outline() {
                 nearest_vertex = Some(NearestVertex::or(nearest_vertex, outline, contact));
@@ -229,7 +229,7 @@ impl<'a> TrajectoryAnswer<'a> {
             predictable_impacts: predictable,
             flights: flights.map(Flights::into_table),
             notes,
-            demand: meter.most.into(),
+            demand: tracker.most.into(),
             nearest_vertex,
         })
     }
@@ -246,7 +246,7 @@ impl Tabular for TrajectoryAnswer<'_> {
             outcome: Outcome,
             method: MethodAnswer,
             predictable_impacts: Option<u64>,
-            demand: DemandAnswer,
+            demand: LoadAnswer,
             #[serde(skip_serializing_if = "Option::is_none")]
             nearest_vertex: Option<NearestVertex>,
             notes: Vec<String>,

@@ -10,7 +10,7 @@ use crate::api::trajectories::columns::date;
 
 /// A point of a flight.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sample {
+pub(crate) struct FlightSample {
     impact: u64,
     time: Option<u64>,
     t: f64,
@@ -23,7 +23,7 @@ pub(crate) struct Sample {
 }
 
 /// The columns of samples: name, unit, and the way they are read. Dates are left out if the time of release is unknown.
-const COLUMNS: [(&str, &str, Read<Sample>); 9] = [
+const COLUMNS: [(&str, &str, Read<FlightSample>); 9] = [
     ("impact", "", Read::Count(|sample| sample.impact)),
     (DATES, "", Read::SparseCount(|sample| sample.time)),
     ("t", "s", Read::Number(|sample| sample.t)),
@@ -38,13 +38,13 @@ const COLUMNS: [(&str, &str, Read<Sample>); 9] = [
 const DATES: &str = "time";
 
 /// The columns of an answer.
-pub(crate) fn columns(dated: bool) -> impl Iterator<Item = (&'static str, &'static str, Read<Sample>)> {
+pub(crate) fn columns(dated: bool) -> impl Iterator<Item = (&'static str, &'static str, Read<FlightSample>)> {
     COLUMNS.into_iter().filter(move |(name, ..)| dated || *name != DATES)
 }
 
 /// A flight: its start and its length.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Flight {
+pub(crate) struct SampledFlight {
     /// Number of the contact before it; 0 for the fall from the release.
     pub(crate) impact: u64,
     /// Time of the start, s.
@@ -66,7 +66,7 @@ pub(crate) struct Flights {
     gravity: f64,
     has_angle: bool,
     per_flight: u64,
-    columns: Vec<(&'static str, &'static str, Gathered<Sample>)>,
+    columns: Vec<(&'static str, &'static str, Gathered<FlightSample>)>,
 }
 
 impl Flights {
@@ -77,12 +77,12 @@ impl Flights {
     }
 
     /// Adds the samples of a flight.
-    pub(crate) fn push(&mut self, flight: &Flight) {
-        let Flight { impact, t, x, y, start, length } = *flight;
+    pub(crate) fn push(&mut self, flight: &SampledFlight) {
+        let SampledFlight { impact, t, x, y, start, length } = *flight;
         for number in 0..self.per_flight {
             let since = length * number as f64 / self.per_flight as f64;
             let angle = |value| self.has_angle.then_some(value);
-            let sample = Sample {
+            let sample = FlightSample {
                 impact,
                 time: self.epoch.map(|epoch| date(epoch, t + since)),
                 t: t + since,
@@ -101,8 +101,11 @@ impl Flights {
 
     /// All of them.
     pub(crate) fn into_table(self) -> Table {
-        let column =
-            |(name, unit, gathered): (_, _, Gathered<Sample>)| Column { name, unit, cells: gathered.into_cells() };
+        let column = |(name, unit, gathered): (_, _, Gathered<FlightSample>)| Column {
+            name,
+            unit,
+            cells: gathered.into_cells(),
+        };
         Table(self.columns.into_iter().map(column).collect())
     }
 }

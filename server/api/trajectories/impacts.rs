@@ -9,11 +9,11 @@ use crate::api::trajectories::columns::{ExtendedRow, ImpactColumn, ImpactRow};
 
 /// The impacts so far.
 #[derive(Debug)]
-pub(crate) struct Impacts(Vec<(&'static ImpactColumn, Values)>);
+pub(crate) struct Impacts(Vec<(&'static ImpactColumn, ColumnValues)>);
 
 /// The values of a column so far.
 #[derive(Debug)]
-enum Values {
+enum ColumnValues {
     Doubles(Gathered<ImpactRow>),
     Digits(fn(&ExtendedRow<'_>) -> Option<DoubleDouble>, Vec<Option<DoubleDouble>>),
 }
@@ -22,8 +22,8 @@ impl Impacts {
     /// An empty table with room for some impacts. `dated` adds dates, `extended` columns with 31 digits.
     pub(crate) fn with_capacity(room: usize, dated: bool, extended: bool) -> Self {
         let values = |column: &ImpactColumn| match column.digits.filter(|_| extended) {
-            Some(digits) => Values::Digits(digits, Vec::with_capacity(room)),
-            None => Values::Doubles(Gathered::with_capacity(column.read, room)),
+            Some(digits) => ColumnValues::Digits(digits, Vec::with_capacity(room)),
+            None => ColumnValues::Doubles(Gathered::with_capacity(column.read, room)),
         };
         Self(columns::of_trajectories(dated).map(|column| (column, values(column))).collect())
     }
@@ -32,18 +32,18 @@ impl Impacts {
     pub(crate) fn push(&mut self, row: &ImpactRow, extended: Option<&ExtendedRow<'_>>) {
         for (_, values) in &mut self.0 {
             match values {
-                Values::Doubles(gathered) => gathered.push(row),
-                Values::Digits(read, cells) => cells.push(extended.and_then(|row| read(row))),
+                ColumnValues::Doubles(gathered) => gathered.push(row),
+                ColumnValues::Digits(read, cells) => cells.push(extended.and_then(|row| read(row))),
             }
         }
     }
 
     /// The table of all impacts.
     pub(crate) fn into_table(self) -> Table {
-        let column = |(column, values): (&ImpactColumn, Values)| {
+        let column = |(column, values): (&ImpactColumn, ColumnValues)| {
             let cells = match values {
-                Values::Doubles(gathered) => gathered.into_cells(),
-                Values::Digits(_, cells) => Cells::Decimals(cells),
+                ColumnValues::Doubles(gathered) => gathered.into_cells(),
+                ColumnValues::Digits(_, cells) => Cells::Decimals(cells),
             };
             Column { name: column.name, unit: column.unit, cells }
         };

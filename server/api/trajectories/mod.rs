@@ -9,8 +9,8 @@ pub mod request;
 
 use equipoise_physics::run::orbit::Contact;
 
-use crate::api::formats::ChartFormat;
-use crate::api::resource::{ComputedResource, Work};
+use crate::api::formats::{ChartFormat, WriteAnswer};
+use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::trajectories::answer::TrajectoryAnswer;
 use crate::api::trajectories::request::TrajectoryRequest;
 use crate::runs::playback::Playback;
@@ -24,7 +24,7 @@ impl ComputedResource for Trajectories {
     type Format = ChartFormat;
     type Request = TrajectoryRequest;
     const WORK: Work<Self> = Work::Pure {
-        canonical: TrajectoryRequest::canonical,
+        canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, bounces| {
             let run = &request.run;
             let mut playback = Playback::new(run, request.impacts);

@@ -3,7 +3,7 @@
 use equipoise_physics::run::method::{RunMethod, deviations_circle};
 use equipoise_physics::scene::{Name, Scene};
 
-use crate::api::resource::ResourceRequest;
+use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::shared::write;
 use crate::api::trajectories::{columns, flights};
 use crate::compute::{OverBudget, Price};
@@ -72,14 +72,15 @@ impl ResourceRequest for TrajectoryRequest {
     }
 }
 
-impl TrajectoryRequest {
-    /// Everything that determines the answer.
-    pub fn canonical(&self) -> Vec<u8> {
+impl CanonicalRequest for TrajectoryRequest {
+    fn canonical(&self) -> Vec<u8> {
         let Self { run, impacts, samples_per_flight, method, tolerance, epoch } = self;
         let rest = (impacts, samples_per_flight, method.map(RunMethod::name), tolerance, epoch);
         write::canonical(run.scene(), &(rest, intervention_parameters(run)))
     }
+}
 
+impl TrajectoryRequest {
     /// Size of the answer, in numbers.
     pub fn numbers(&self) -> u64 {
         let dated = self.epoch.is_some();

@@ -11,7 +11,7 @@ const SIZE: f64 = 12.5;
 
 /// A sample of a mark, which stands before its meaning.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Sample {
+pub(crate) enum LegendSample {
     Dot { radius: f64, colour: &'static str },
     Disc(&'static str),
     Ring(&'static str),
@@ -24,7 +24,7 @@ pub(crate) enum Sample {
     Arrow(&'static str),
 }
 
-impl Sample {
+impl LegendSample {
     fn width(self) -> f64 {
         match self {
             Self::Line { .. } | Self::Cased { .. } => 26.0,
@@ -53,10 +53,10 @@ impl Sample {
 }
 
 /// Draws a row of samples, centred on `middle`.
-pub(crate) fn legend(svg: &mut Svg, middle: f64, y: f64, entries: &[(Sample, &str)]) {
+pub(crate) fn legend(svg: &mut Svg, middle: f64, y: f64, entries: &[(LegendSample, &str)]) {
     const GAP: f64 = 22.0;
     const SPACE: f64 = 7.0;
-    let wide = |(sample, text): &(Sample, &str)| sample.width() + SPACE + width(text, SIZE);
+    let wide = |(sample, text): &(LegendSample, &str)| sample.width() + SPACE + width(text, SIZE);
     let all: f64 = entries.iter().map(wide).sum::<f64>() + GAP * (entries.len().saturating_sub(1)) as f64;
     let mut x = middle - 0.5 * all;
     for entry in entries {

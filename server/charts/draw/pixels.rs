@@ -53,7 +53,7 @@ pub fn png(svg: &str, go_on: impl Fn() -> bool) -> Result<Vec<u8>, NoPixels> {
     written(size.width(), size.height(), &pixels.take_demultiplied()).map_err(|_| NoPixels::Unfit)
 }
 
-/// As [`resvg::render`], node by node.
+/// Same as [`resvg::render`], node by node.
 fn draw(group: &Group, pixels: &mut PixmapMut<'_>, check: &impl Fn() -> Result<(), NoPixels>) -> Result<(), NoPixels> {
     for node in group.children() {
         check()?;

@@ -2,7 +2,7 @@
 
 use crate::charts::draw::colour::{BLUE, INK, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::{Frame, Point};
-use crate::charts::draw::legend::{Sample, legend};
+use crate::charts::draw::legend::{LegendSample, legend};
 use crate::charts::draw::marks::{hollow, line, listed, readable_line};
 use crate::charts::draw::number::significant;
 use crate::charts::draw::panel::{Axis, Panel};
@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// A place on the branch where stability changes.
 #[derive(Clone, Copy, Debug)]
-pub struct Change {
+pub struct StabilityChange {
     /// Parameter and largest |θ|.
     pub at: (f64, f64),
     /// Kind of the change.
@@ -36,10 +36,10 @@ pub struct Branches<'a> {
     pub unit: &'a str,
     /// Requested range of the parameter.
     pub ends: (f64, f64),
-    /// Parameter, largest |θ|, and stability; none at a change.
+    /// Parameter, largest |θ|, and stability; `None` at a change.
     pub points: &'a [(f64, f64, Option<bool>)],
     /// Changes of stability.
-    pub changes: &'a [Change],
+    pub changes: &'a [StabilityChange],
     /// κ_c, if the parameter is κ.
     pub critical: Option<f64>,
 }
@@ -104,9 +104,9 @@ pub fn branches(drawn: &Branches<'_>) -> String {
     }
     panel.edge(&mut svg);
     let entries = [
-        (Sample::Line { colour: BLUE, dashes: None }, "stable"),
-        (Sample::Line { colour: VERMILION, dashes: Some("6 4") }, "unstable"),
-        (Sample::Hollow(INK), "stability changes"),
+        (LegendSample::Line { colour: BLUE, dashes: None }, "stable"),
+        (LegendSample::Line { colour: VERMILION, dashes: Some("6 4") }, "unstable"),
+        (LegendSample::Hollow(INK), "stability changes"),
     ];
     legend(&mut svg, 386.0, top + ROOM - 22.0, &entries);
     svg.finish()

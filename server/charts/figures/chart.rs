@@ -2,7 +2,7 @@
 
 use crate::charts::draw::colour::{BLUE, GREEN, ORANGE, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::{Frame, Point};
-use crate::charts::draw::legend::{Sample, legend};
+use crate::charts::draw::legend::{LegendSample, legend};
 use crate::charts::draw::marks::{dots, line, ring};
 use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
@@ -25,16 +25,16 @@ pub struct Chart {
 #[derive(Clone, Debug)]
 pub struct Plot {
     /// Axis along x.
-    pub x: Side,
+    pub x: ChartAxis,
     /// Axis along y.
-    pub y: Side,
+    pub y: ChartAxis,
     /// The curves.
     pub curves: Vec<Curve>,
 }
 
 /// An axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Side {
+pub struct ChartAxis {
     /// Name in words.
     pub name: &'static str,
     /// Symbol in formulas.
@@ -52,15 +52,15 @@ pub struct Side {
 pub struct Curve {
     /// Label in the legend. Empty if another curve has it.
     pub label: &'static str,
-    /// Look of the curve.
-    pub look: Look,
+    /// Style of the curve.
+    pub style: CurveStyle,
     /// x and y. Points that are NaN or outside the panel are left out.
     pub points: Vec<(f64, f64)>,
 }
 
-/// The look of a curve. Colour and kind of line carry the same information.
+/// The style of a curve. Colour and kind of line carry the same information.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Look {
+pub enum CurveStyle {
     /// The truth: a full line.
     Truth,
     /// The truth, as dots.
@@ -89,16 +89,16 @@ enum Mark {
 
 impl Mark {
     /// The mark in a legend.
-    fn sample(self) -> Sample {
+    fn sample(self) -> LegendSample {
         match self {
-            Self::Line { colour, dashes } => Sample::Line { colour, dashes },
-            Self::Dots { radius, colour } => Sample::Dot { radius, colour },
-            Self::Rings(colour) => Sample::Ring(colour),
+            Self::Line { colour, dashes } => LegendSample::Line { colour, dashes },
+            Self::Dots { radius, colour } => LegendSample::Dot { radius, colour },
+            Self::Rings(colour) => LegendSample::Ring(colour),
         }
     }
 }
 
-impl Look {
+impl CurveStyle {
     fn mark(self) -> Mark {
         let full = |colour| Mark::Line { colour, dashes: None };
         let dashed = |colour, dashes| Mark::Line { colour, dashes: Some(dashes) };
@@ -115,7 +115,7 @@ impl Look {
     }
 }
 
-impl Side {
+impl ChartAxis {
     /// A linear axis around all points.
     pub const fn new(name: &'static str, symbol: &'static str, unit: &'static str) -> Self {
         Self { name, symbol, unit, logarithmic: false, ends: None }
@@ -158,7 +158,7 @@ pub fn chart(drawn: &Chart) -> String {
     let two = drawn.plots.len() > 1;
     let (width, across) = if two { (960.0, 350.0) } else { (720.0, 580.0) };
     let Sheet { mut svg, top } = Sheet::new(width, ROOM, words);
-    let mut entries: Vec<(Sample, &str)> = Vec::new();
+    let mut entries: Vec<(LegendSample, &str)> = Vec::new();
     for (n, plot) in drawn.plots.iter().enumerate() {
         let frame = Frame { left: 104.0 + 480.0 * n as f64, top: top + 6.0, width: across, height: 332.0 };
         let points = || plot.curves.iter().flat_map(|curve| curve.points.iter().copied());
@@ -171,15 +171,15 @@ pub fn chart(drawn: &Chart) -> String {
                 .filter(|place| inside(x.range, place.0) && inside(y.range, place.1))
                 .map(|place| panel.at(place.0, place.1))
                 .collect();
-            let thickness = if matches!(curve.look, Look::Beside | Look::Limit) { 1.6 } else { 2.4 };
-            match curve.look.mark() {
+            let thickness = if matches!(curve.style, CurveStyle::Beside | CurveStyle::Limit) { 1.6 } else { 2.4 };
+            match curve.style.mark() {
                 Mark::Line { .. } if drawn.is_empty() => {}
                 Mark::Line { colour, dashes } => line(&mut svg, &drawn, colour, thickness, dashes),
                 Mark::Dots { radius, colour } => dots(&mut svg, drawn.into_iter(), radius, colour),
                 Mark::Rings(colour) => drawn.into_iter().for_each(|point| ring(&mut svg, point, 4.5, colour)),
             }
             if !curve.label.is_empty() {
-                entries.push((curve.look.mark().sample(), curve.label));
+                entries.push((curve.style.mark().sample(), curve.label));
             }
         }
         panel.edge(&mut svg);

@@ -3,7 +3,7 @@
 
 use crate::charts::draw::colour::{AXIS, BLUE, INK, PALE_BLUE, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::Frame;
-use crate::charts::draw::legend::{Sample, legend};
+use crate::charts::draw::legend::{LegendSample, legend};
 use crate::charts::draw::marks::{arrow, band, disc, dots, hollow, line, listed, readable_line};
 use crate::charts::draw::number::significant;
 use crate::charts::draw::panel::{Axis, Panel};
@@ -46,10 +46,10 @@ pub fn closed_loop(law: &Loop<'_>) -> String {
     draw_circle(law, &mut svg, Frame { top: top + CIRCLE.top, ..CIRCLE });
     draw_modulus(law, &mut svg, Frame { top: top + MODULUS.top, ..MODULUS });
     let entries = [
-        (Sample::Disc(INK), "with the law"),
-        (Sample::Hollow(INK), "without it"),
-        (Sample::Dot { radius: 2.0, colour: BLUE }, "gain scaled, stable"),
-        (Sample::Dot { radius: 2.0, colour: VERMILION }, "gain scaled, not stable"),
+        (LegendSample::Disc(INK), "with the law"),
+        (LegendSample::Hollow(INK), "without it"),
+        (LegendSample::Dot { radius: 2.0, colour: BLUE }, "gain scaled, stable"),
+        (LegendSample::Dot { radius: 2.0, colour: VERMILION }, "gain scaled, not stable"),
     ];
     legend(&mut svg, 480.0, top + ROOM - 22.0, &entries);
     svg.finish()

@@ -2,7 +2,7 @@
 
 use crate::charts::draw::colour::{AXIS, BLUE, INK, ORANGE, PALE_BLUE, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::{Frame, Point};
-use crate::charts::draw::legend::{Sample, legend};
+use crate::charts::draw::legend::{LegendSample, legend};
 use crate::charts::draw::marks::{arrow, band, disc, hollow, line};
 use crate::charts::draw::number::significant;
 use crate::charts::draw::panel::{Axis, Panel};
@@ -71,12 +71,12 @@ pub fn eigenvalues(judged: &Eigenvalues<'_>) -> String {
     let own = if spectrum.residue.is_some() { "this scene: angle pair" } else { "this scene: angle" };
     let others = if spectrum.residue.is_some() { "drift and energy" } else { "energy" };
     let entries = [
-        (Sample::Disc(INK), own),
-        (Sample::Hollow(INK), others),
-        (Sample::Line { colour: ORANGE, dashes: DASHES }, "κ too small"),
-        (Sample::Line { colour: BLUE, dashes: None }, "stable κ"),
-        (Sample::Line { colour: VERMILION, dashes: DASHES }, "κ too large"),
-        (Sample::Arrow(SOFT_INK), "growing κ"),
+        (LegendSample::Disc(INK), own),
+        (LegendSample::Hollow(INK), others),
+        (LegendSample::Line { colour: ORANGE, dashes: DASHES }, "κ too small"),
+        (LegendSample::Line { colour: BLUE, dashes: None }, "stable κ"),
+        (LegendSample::Line { colour: VERMILION, dashes: DASHES }, "κ too large"),
+        (LegendSample::Arrow(SOFT_INK), "growing κ"),
     ];
     legend(&mut svg, 480.0, top + ROOM - 22.0, &entries);
     svg.finish()

@@ -2,7 +2,7 @@
 
 use crate::charts::draw::colour::{BLUE, GREEN, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::Frame;
-use crate::charts::draw::legend::{Sample, legend};
+use crate::charts::draw::legend::{LegendSample, legend};
 use crate::charts::draw::marks::{dots, ring, square};
 use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
@@ -42,13 +42,13 @@ pub fn phase_planes(run: &PhasePlanes<'_>) -> String {
     let mut planes = Vec::new();
     if let Some(theta_dot) = run.theta_dot {
         planes.push(Plane {
-            x: Side { name: "angle", symbol: "θ", unit: "rad", values: run.theta },
-            y: Side { name: "angular velocity", symbol: "θ̇", unit: "rad/s", values: theta_dot },
+            x: PlaneAxis { name: "angle", symbol: "θ", unit: "rad", values: run.theta },
+            y: PlaneAxis { name: "angular velocity", symbol: "θ̇", unit: "rad/s", values: theta_dot },
         });
     }
     planes.push(Plane {
-        x: Side { name: "horizontal velocity", symbol: "ẋ", unit: "m/s", values: run.x_dot },
-        y: Side { name: "vertical velocity", symbol: "ẏ", unit: "m/s", values: run.y_dot },
+        x: PlaneAxis { name: "horizontal velocity", symbol: "ẋ", unit: "m/s", values: run.x_dot },
+        y: PlaneAxis { name: "vertical velocity", symbol: "ẏ", unit: "m/s", values: run.y_dot },
     });
     let left_out = planes.iter().map(Plane::not_finite).max().unwrap_or(0);
 
@@ -84,9 +84,9 @@ pub fn phase_planes(run: &PhasePlanes<'_>) -> String {
     }
     let last = format!("last (n = {impacts})");
     let entries = [
-        (Sample::Dot { radius: radius.max(2.2), colour: BLUE }, "impact"),
-        (Sample::Ring(GREEN), "first (n = 1)"),
-        (Sample::Square(VERMILION), last.as_str()),
+        (LegendSample::Dot { radius: radius.max(2.2), colour: BLUE }, "impact"),
+        (LegendSample::Ring(GREEN), "first (n = 1)"),
+        (LegendSample::Square(VERMILION), last.as_str()),
     ];
     let entries = match impacts {
         0 => &entries[..0],
@@ -98,14 +98,14 @@ pub fn phase_planes(run: &PhasePlanes<'_>) -> String {
 }
 
 /// The values along one axis.
-struct Side<'a> {
+struct PlaneAxis<'a> {
     name: &'a str,
     symbol: &'a str,
     unit: &'a str,
     values: &'a [f64],
 }
 
-impl Side<'_> {
+impl PlaneAxis<'_> {
     fn axis(&self) -> Axis<'_> {
         let range = Range::around(self.values.iter().copied());
         Axis { name: self.name, symbol: self.symbol, unit: self.unit, range }
@@ -113,8 +113,8 @@ impl Side<'_> {
 }
 
 struct Plane<'a> {
-    x: Side<'a>,
-    y: Side<'a>,
+    x: PlaneAxis<'a>,
+    y: PlaneAxis<'a>,
 }
 
 impl Plane<'_> {

@@ -3,7 +3,7 @@
 
 use crate::charts::draw::colour::{BLUE, GREEN, INK, LIGHT_GREEN, PALE_BLUE, PALE_GREEN, SOFT_INK};
 use crate::charts::draw::geometry::{Frame, Point};
-use crate::charts::draw::legend::{Sample, legend};
+use crate::charts::draw::legend::{LegendSample, legend};
 use crate::charts::draw::marks::{area, line, readable_line};
 use crate::charts::draw::panel::{Axis, Panel, TICK_SIZE};
 use crate::charts::draw::scale::{Range, ticks};
@@ -65,11 +65,11 @@ pub fn survival_curve(drawn: &SurvivalCurve<'_>) -> String {
     draw_survival(&mut svg, Frame { top: top + UPPER.top, ..UPPER }, x, drawn.curve);
     draw_angles(&mut svg, Frame { top: top + LOWER.top, ..LOWER }, x, drawn.angles);
     let entries = [
-        (Sample::Line { colour: BLUE, dashes: None }, "still going"),
-        (Sample::Area(PALE_BLUE), "95 % interval"),
-        (Sample::Line { colour: GREEN, dashes: None }, "median |θ|"),
-        (Sample::Area(LIGHT_GREEN), "25 to 75 %"),
-        (Sample::Area(PALE_GREEN), "5 to 95 %"),
+        (LegendSample::Line { colour: BLUE, dashes: None }, "still going"),
+        (LegendSample::Area(PALE_BLUE), "95 % interval"),
+        (LegendSample::Line { colour: GREEN, dashes: None }, "median |θ|"),
+        (LegendSample::Area(LIGHT_GREEN), "25 to 75 %"),
+        (LegendSample::Area(PALE_GREEN), "5 to 95 %"),
     ];
     legend(&mut svg, 360.0, top + ROOM - 22.0, &entries);
     svg.finish()

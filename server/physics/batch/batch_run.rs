@@ -17,7 +17,7 @@ use crate::run::rules::Rules;
 pub struct RunStart {
     /// Body that bounces.
     pub rod: Rod,
-    /// When it ends.
+    /// Rules that end it.
     pub rules: Rules,
     /// Just before its first contact.
     pub state: State,
@@ -25,7 +25,7 @@ pub struct RunStart {
 
 /// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RunEnd {
+pub struct LaneRunEnd {
     /// Contacts, the last included.
     pub impacts: u64,
     /// The name of the ending, as [`EndingKind::name`].
@@ -47,7 +47,7 @@ impl RunStart {
 pub fn run_batch(
     impacts: u64,
     mut next: impl FnMut() -> Option<(usize, RunStart)>,
-    done: impl FnMut(usize, RunEnd),
+    done: impl FnMut(usize, LaneRunEnd),
     go_on: impl FnMut() -> bool,
 ) {
     let next = || next().map(|(number, start)| (number, start, ()));
@@ -59,14 +59,14 @@ pub fn run_batch_with_friction(
     (law, slide): (RestitutionLaw, Slide),
     impacts: u64,
     next: impl FnMut() -> Option<(usize, RunStart, f64)>,
-    done: impl FnMut(usize, RunEnd),
+    done: impl FnMut(usize, LaneRunEnd),
     go_on: impl FnMut() -> bool,
 ) {
     dispatch(BatchRun { surface: Rough::new(law, slide), impacts, next, done, go_on });
 }
 
 /// [`run_batch`] over all of `starts`: their ends, in the same order. None once `go_on` said `false`.
-pub fn run_all(impacts: u64, starts: &[RunStart], go_on: &mut dyn FnMut() -> bool) -> Option<Vec<RunEnd>> {
+pub fn run_all(impacts: u64, starts: &[RunStart], go_on: &mut dyn FnMut() -> bool) -> Option<Vec<LaneRunEnd>> {
     let mut ends = vec![None; starts.len()];
     let mut starts = starts.iter().copied().enumerate();
     run_batch(impacts, || starts.next(), |number, end| ends[number] = Some(end), go_on);
@@ -78,7 +78,7 @@ pub fn run_batch_on(
     path: InstructionSet,
     impacts: u64,
     mut next: impl FnMut() -> Option<(usize, RunStart)>,
-    done: impl FnMut(usize, RunEnd),
+    done: impl FnMut(usize, LaneRunEnd),
     go_on: impl FnMut() -> bool,
 ) {
     let next = || next().map(|(number, start)| (number, start, ()));
@@ -91,7 +91,7 @@ pub fn run_batch_with_friction_on(
     (law, slide): (RestitutionLaw, Slide),
     impacts: u64,
     next: impl FnMut() -> Option<(usize, RunStart, f64)>,
-    done: impl FnMut(usize, RunEnd),
+    done: impl FnMut(usize, LaneRunEnd),
     go_on: impl FnMut() -> bool,
 ) {
     dispatch_on(path, BatchRun { surface: Rough::new(law, slide), impacts, next, done, go_on });
@@ -112,7 +112,7 @@ impl<S, Next, Done, GoOn> Kernel for BatchRun<S, Next, Done, GoOn>
 where
     S: Surface,
     Next: FnMut() -> Option<(usize, RunStart, S::Of)>,
-    Done: FnMut(usize, RunEnd),
+    Done: FnMut(usize, LaneRunEnd),
     GoOn: FnMut() -> bool,
 {
     type Output = ();
@@ -240,8 +240,8 @@ impl<S: Surface> LaneRuns<S> {
         self.outcome[lane] = EndingKind::Completed;
     }
 
-    fn end(&self, lane: usize) -> RunEnd {
-        RunEnd {
+    fn end(&self, lane: usize) -> LaneRunEnd {
+        LaneRunEnd {
             impacts: self.turn - self.first[lane],
             outcome: self.outcome[lane],
             max_theta: self.moving.max_theta[lane],

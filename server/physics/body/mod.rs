@@ -63,9 +63,9 @@ pub struct PreImpact {
     pub x: f64,
     /// Angle and velocities just before it.
     pub state: State,
-    /// As in [`Arrival`], m.
+    /// Same as in [`Arrival`], m.
     pub clearance: f64,
-    /// As in [`Arrival`].
+    /// Same as in [`Arrival`].
     pub plan: Option<PlannedTableMotion>,
 }
 
@@ -77,7 +77,7 @@ impl PreImpact {
     }
 }
 
-/// Why a flight ends without a contact.
+/// Reason for which a flight ends without a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoContact {
     /// The contact time passed its work limit.
@@ -110,7 +110,7 @@ pub trait Body: Copy {
     /// The first contact; at t = 0 if it is on the table already and does not rise.
     ///
     /// # Errors
-    /// Why there is none; likewise in [`Body::fly`].
+    /// The reason if there is none; likewise in [`Body::fly`].
     fn fall(&self, release: &Release) -> Result<Arrival, NoContact>;
 
     /// The strike at a contact.
@@ -134,7 +134,7 @@ pub trait Body: Copy {
     /// The flight after the strike of a contact.
     ///
     /// # Errors
-    /// As [`Body::fall`].
+    /// Same as [`Body::fall`].
     fn fly(&self, from: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact>;
 
     /// l, m: how far the contact point is from the centre of gravity.

@@ -1,7 +1,7 @@
 //! The point mass of the paper's opening example, eq. (3) to (5): a body without an angle, on a table that tilts by κ
 //! times the angle of its velocity.
 //!
-//! A body of its own, never a cheaper rung of a rod: a rod's table follows the rod's angle. Its arithmetic is that of a
+//! A body of its own, never a cheaper level of a rod: a rod's table follows the rod's angle. Its arithmetic is that of a
 //! rod whose contact point is its centre of gravity.
 
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release};

@@ -43,7 +43,7 @@ impl Rod {
     /// Length of the flight after a strike, s, and the state at its end.
     ///
     /// # Errors
-    /// As [`Rod::fall`].
+    /// Same as [`Rod::fall`].
     #[inline(always)]
     pub fn fly(&self, strike: &Strike) -> Result<(f64, State), TooManyPieces> {
         let flight = self.flight(strike);

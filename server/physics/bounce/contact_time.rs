@@ -1,4 +1,4 @@
-//! When a flight ends: the first time at which the contact point comes down to y = 0, found with a certificate and
+//! End of a flight: the first time at which the contact point comes down to y = 0, found with a certificate and
 //! without sampling. The same for any point of the body, from above or below.
 //!
 //! For l θ̇² ≤ G the gap is concave, and Newton's method converges to its one root from the right. For a faster spin the flight is
@@ -36,7 +36,7 @@ pub fn first_contact(flight: &Flight) -> Result<f64, TooManyPieces> {
     look_for_contact(flight, Uncounted)
 }
 
-/// When a point first comes *down* through y = 0, s from the start of its flight; none where it never does.
+/// Time at which a point first comes *down* through y = 0, s from the start of its flight; `None` if it never does.
 ///
 /// It may start at any height. From below (h₀ < 0, or h₀ = 0 moving down) it has to rise through y = 0 first; one that
 /// rises no further than to y = 0 does not come down through it.
@@ -50,7 +50,7 @@ pub fn first_descent(flight: &Flight) -> Result<Option<f64>, TooManyPieces> {
 /// [`first_descent`], if it is up to a time `limit`, s: what lies beyond costs nothing.
 ///
 /// # Errors
-/// As [`first_descent`].
+/// Same as [`first_descent`].
 pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, TooManyPieces> {
     let start = flight.gap(0.0);
     let rises = start.slope > 0.0 || (start.slope == 0.0 && start.bend > 0.0);
@@ -156,7 +156,7 @@ fn latest_contact(flight: &Flight) -> f64 {
     passes(flight, room(flight)).1
 }
 
-/// The time before which the centre of gravity is lower than y = −l; none where it stays so.
+/// The time before which the centre of gravity is lower than y = −l; `None` if it stays so.
 fn earliest_contact(flight: &Flight) -> Option<f64> {
     let (room, y_dot) = (room(flight), flight.start.y_dot);
     if room >= 0.0 {
@@ -173,7 +173,7 @@ fn room(flight: &Flight) -> f64 {
     flight.clearance + flight.contact_distance * rise
 }
 
-/// When the centre of gravity was and will be `drop`, m, lower than at the start, s: the roots of ½Gt² − ẏt − d, neither from a
+/// Times at which the centre of gravity was and will be `drop`, m, lower than at the start, s: the roots of ½Gt² − ẏt − d, neither from a
 /// difference, which would leave a fall in little gravity few digits.
 fn passes(flight: &Flight, drop: f64) -> (f64, f64) {
     let y_dot = flight.start.y_dot;
@@ -209,10 +209,10 @@ fn newton(flight: &Flight, eye: impl EvaluationCounter, mut t: f64, mut gap: Gap
     t
 }
 
-/// The last root of a gap that is concave from `from` to `t` and at or below zero there, where it is `gap`; none if it is
+/// The last root of a gap that is concave from `from` to `t` and at or below zero there, where it is `gap`; `None` if it is
 /// below zero all the way.
 ///
-/// As [`newton`], which never passes the last root: passing the top proves that there is none, and so does passing `from`,
+/// Same as [`newton`], which never passes the last root: passing the top proves that there is none, and so does passing `from`,
 /// since the tangent lies above the gap.
 fn last_root(flight: &Flight, eye: impl EvaluationCounter, from: f64, mut t: f64, mut gap: Gap) -> Option<f64> {
     for steps in 0..MAX_STEPS {

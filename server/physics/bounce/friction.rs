@@ -28,7 +28,7 @@ pub enum RestitutionLaw {
 pub enum Slide {
     /// It does not.
     None,
-    /// As fast as the contact point just before.
+    /// Moves as fast as the contact point just before.
     Matched,
 }
 
@@ -111,7 +111,7 @@ impl<N: Number> Mobility<N> {
 impl Friction {
     /// Routh's impulse at velocities relative to the table just before, along it and along its normal, the latter < 0.
     ///
-    /// As P_n grows, v_n goes from v_n0 with one slope up to where the sliding ends, and with another beyond. As long as it
+    /// v_n grows with P_n from v_n0, with one slope up to the end of sliding, and with another beyond. As long as it
     /// slides, all laws are the same.
     #[inline(always)]
     pub fn impulse<N: Number>(
@@ -266,7 +266,7 @@ impl Friction {
     }
 }
 
-/// As [`Strike::rise_rounding`], of a strike with friction. Where the contact sticks, the velocity that is left of it is a difference
+/// Same as [`Strike::rise_rounding`], of a strike with friction. Where the contact sticks, the velocity that is left of it is a difference
 /// of terms that are 1 + l²/ρ² times as large.
 #[inline(always)]
 pub(crate) fn rise_rounding<N: Number>(rod: &Rod<N>, before: &State<N>, strike: &Strike<N>, unit: f64) -> f64 {

@@ -6,7 +6,7 @@
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::periodic_orbits::problem::{OrbitFailure, OrbitProblem};
-use crate::scene::{Kind, Name, Scene, Value};
+use crate::scene::{FieldKind, Name, Scene, Value};
 use nalgebra::SVector;
 
 /// θ, ẋ, ẏ, θ̇ over their scales, and the parameter's share of its range.
@@ -82,8 +82,8 @@ impl<'a> ParameterPath<'a> {
 fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, OrbitFailure> {
     let mut draft = scene.draft();
     let value = match name.row().kind {
-        Kind::Number { .. } => Value::Number(value),
-        Kind::Integer { .. } | Kind::Choice(_) | Kind::Flag => {
+        FieldKind::Number { .. } => Value::Number(value),
+        FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag => {
             return Err(OrbitFailure::Scene(format!("{} is not a number", name.row().path)));
         }
     };

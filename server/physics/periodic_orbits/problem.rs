@@ -16,7 +16,7 @@ pub(super) const SOLVED: f64 = 1e-11;
 pub struct OrbitProblem {
     /// The rod.
     pub rod: Rod,
-    /// Energy per unit mass that orbits must have, ½|v|² + Gy at a contact, m²/s²; none where feedback sets it.
+    /// Energy per unit mass that orbits must have, ½|v|² + Gy at a contact, m²/s²; `None` if feedback sets it.
     pub energy: Option<f64>,
     /// V of the upright bounce, m/s: the scale of velocities.
     pub speed: f64,

@@ -8,7 +8,7 @@ use crate::numbers::trig;
 use crate::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};
 use crate::periodic_orbits::problem::OrbitFailure;
 
-/// The orbit through an angle, rad, at the energy that it has; none where V² would not be positive.
+/// The orbit through an angle, rad, at the energy that it has; `None` if V² would not be positive.
 pub fn symmetric(rod: &Rod, theta: f64) -> Option<State> {
     let (_, cos) = trig::sin_cos(rod.tilt_gain * theta);
     let (sin, _) = trig::sin_cos((rod.tilt_gain - 1.0) * theta);

@@ -64,7 +64,7 @@ pub struct ErrorEstimate {
 }
 
 /// The last contact, of the first `impacts`, up to which the map in doubles is within `tolerance` of the exact run (m/s,
-/// as [`ErrorEstimate::bound`]). None where it is over all of them, or to the end of the run.
+/// as [`ErrorEstimate::bound`]). `None` if it is over all of them, or to the end of the run.
 ///
 /// `go_on` is asked now and then; a `false` gives none too.
 pub fn predictable_impacts(

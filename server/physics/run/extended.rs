@@ -4,7 +4,7 @@
 //! parameters, from the fields of the scene on. Which root of a flight is the next contact is decided in doubles, with the
 //! certificate of [`crate::bounce::contact_time`]; the root is then lifted by Newton's iteration.
 
-use crate::body::{NoContact, Release};
+use crate::body::{NoContact, Release, Touch};
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::Friction;
@@ -19,7 +19,8 @@ use crate::numbers::trig;
 use crate::run::ending::Ending;
 use crate::run::orbit::{Contact, ContactByContact, visit_contacts};
 use crate::run::rules;
-use crate::run::rules::{Check, Checked, FlightTimes, Rules};
+use crate::run::rules::{Checked, FlightTimes, Rules};
+use crate::table::actuator_load::ActuatorLoad;
 
 /// Most Newton steps of a lift: one does, except where the rod grazes the table.
 const MAX_STEPS: u32 = 64;
@@ -98,7 +99,7 @@ impl ExtendedOrbit {
         &self.state
     }
 
-    /// When the coming contact is, s after release.
+    /// Time of the coming contact, s after release.
     pub fn t(&self) -> DoubleDouble {
         self.t
     }
@@ -144,7 +145,7 @@ impl ExtendedOrbit {
             flight_time: None,
             ending: None,
         };
-        let mut here = Here { orbit: self, state, strike, speed_squared: 0.0, flight_time: None };
+        let mut here = ExtendedAtContact { orbit: self, state, strike, speed_squared: 0.0, flight_time: None };
         if let Some(ending) = rules::before_strike(&mut here) {
             contact.ending = Some(ending);
             return contact;
@@ -184,17 +185,54 @@ impl ExtendedOrbit {
 }
 
 /// A run with 31 digits at a contact.
-struct Here<'a> {
+struct ExtendedAtContact<'a> {
     orbit: &'a mut ExtendedOrbit,
     state: State<DoubleDouble>,
     strike: Strike<DoubleDouble>,
-    /// As [`rules::speed_squared`], from the strike on.
+    /// Same as [`rules::speed_squared`], from the strike on.
     speed_squared: f64,
-    /// Length of the flight, s, from its end on; none where it passed its work limit.
+    /// Length of the flight, s, from its end on; `None` if it passed its work limit.
     flight_time: Option<DoubleDouble>,
 }
 
-impl Here<'_> {
+impl Checked for ExtendedAtContact<'_> {
+    fn rules(&self) -> &Rules {
+        &self.orbit.rules
+    }
+
+    fn t(&self) -> f64 {
+        self.orbit.t.to_f64()
+    }
+
+    // No scene with further vertices or with limits is run with 31 digits (`crate::run::method`).
+    fn touch(&self) -> Option<Touch> {
+        None
+    }
+
+    fn load(&mut self) -> ActuatorLoad {
+        ActuatorLoad::default()
+    }
+
+    fn theta(&self) -> f64 {
+        self.state.theta.to_f64()
+    }
+
+    fn push(&self) -> f64 {
+        self.strike.push.to_f64()
+    }
+
+    fn approach(&self) -> f64 {
+        self.strike.approach.to_f64()
+    }
+
+    fn speed_squared(&self) -> f64 {
+        self.speed_squared
+    }
+
+    fn contact_rise(&self) -> f64 {
+        self.strike.contact_rise.to_f64()
+    }
+
     fn rise_rounding(&self) -> f64 {
         match self.orbit.friction {
             None => self.strike.rise_rounding(self.state.y_dot, ROUNDING),
@@ -205,36 +243,22 @@ impl Here<'_> {
     fn rebound(&self) -> Rebound {
         self.strike.rebound(self.orbit.rod.contact_distance, self.rise_rounding())
     }
-}
 
-impl Checked for Here<'_> {
-    #[inline(always)]
-    fn ending_by(&mut self, check: Check) -> Option<Ending> {
-        let (rules, t) = (self.orbit.rules, self.orbit.t);
-        match check {
-            // No scene with further vertices or with limits is run with 31 digits (`crate::run::method`).
-            Check::OtherVertex | Check::BeyondLimits => None,
-            Check::Toppled => rules::toppled(self.state.theta.to_f64(), rules.topple_angle),
-            Check::Separating => rules::separating(self.strike.push.to_f64(), self.strike.approach.to_f64()),
-            Check::TooFast => rules::too_fast(self.speed_squared),
-            Check::NotRising => {
-                let (rise, rounding) = (self.strike.contact_rise.to_f64(), self.rise_rounding());
-                rules::not_rising(rise, rounding, rules.settles, t.to_f64(), || self.rebound())
-            }
-            Check::NoContact => {
-                let none = NoContact::TooManyPieces;
-                let ending = none.ending(self.strike.contact_rise.to_f64(), self.speed_squared.sqrt());
-                self.flight_time.is_none().then_some(ending)
-            }
-            Check::ShortFlight => {
-                let flight_time = self.flight_time.filter(|_| rules.settles)?.to_f64();
-                let mut flights = self.orbit.flights;
-                let after = |rest: f64| (t + DoubleDouble::from(rest)).to_f64();
-                let ending = flights.short_flight(flight_time, || self.rebound(), after);
-                self.orbit.flights = flights;
-                ending
-            }
-        }
+    fn no_contact(&self) -> Option<NoContact> {
+        self.flight_time.is_none().then_some(NoContact::TooManyPieces)
+    }
+
+    /// Infinite without a next contact.
+    fn flight_time(&self) -> f64 {
+        self.flight_time.map_or(f64::INFINITY, DoubleDouble::to_f64)
+    }
+
+    fn flights(&mut self) -> &mut FlightTimes {
+        &mut self.orbit.flights
+    }
+
+    fn time_after(&self, seconds: f64) -> f64 {
+        (self.orbit.t + DoubleDouble::from(seconds)).to_f64()
     }
 }
 
@@ -256,7 +280,7 @@ pub fn in_doubles(state: &State<DoubleDouble>) -> State {
     state.map(DoubleDouble::to_f64)
 }
 
-/// One bounce from a state just before a contact: the length of the flight, s, and the state at its end. None where there is
+/// One bounce from a state just before a contact: the length of the flight, s, and the state at its end. `None` if there is
 /// no strike or no next contact.
 pub fn bounce(rod: &Rod<DoubleDouble>, state: &State<DoubleDouble>) -> Option<(DoubleDouble, State<DoubleDouble>)> {
     let strike = rod.strike(state);

@@ -4,7 +4,8 @@
 //! A pure function: costs come from a table and not from a clock, so that the same question always gets the same answer.
 //! The bound of a method says whether it is accurate enough.
 
-use crate::body::{Body, PreImpact};
+use crate::body::{Body, NoContact, PreImpact, Touch};
+use crate::bounce::rebound::Rebound;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::numbers::double_double::DoubleDouble;
@@ -14,12 +15,13 @@ use crate::run::error_estimate::ErrorEstimate;
 use crate::run::linear_solution::LinearSolution;
 use crate::run::orbit::Contact;
 use crate::run::rules;
-use crate::run::rules::{Check, Checked};
+use crate::run::rules::{Checked, FlightTimes, Rules};
 use crate::run::{extended, orbit};
 use crate::scene::Scene;
 use crate::scene::model::ModelLevel;
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::{AngleClass, linear_verdict};
+use crate::table::actuator_load::ActuatorLoad;
 
 /// Method by which a run is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +81,7 @@ pub struct MethodChoice {
     pub cost_us: f64,
     /// The next dearer one that applies and its cost, if there is one.
     pub next: Option<(RunMethod, f64)>,
-    /// Why, in a sentence.
+    /// Reason, in a sentence.
     pub reason: String,
 }
 
@@ -185,7 +187,7 @@ fn reach(
 /// stop it by returning `false`, and then there is no ending.
 ///
 /// # Errors
-/// Why the method does not apply, in a sentence.
+/// Reason for which the method does not apply, in a sentence.
 pub fn run_by(
     scene: &Scene,
     method: RunMethod,
@@ -212,7 +214,7 @@ pub fn run_by(
         RunMethod::Map => {
             let mut orbit = match scene.orbit() {
                 Ok(orbit) => orbit,
-                Err(none) => return Ok(Some(none.ending(0.0, 0.0))),
+                Err(no_contact) => return Ok(Some(no_contact.ending(0.0, 0.0))),
             };
             let mut estimate = ErrorEstimate::of_scene(scene, orbit.t());
             Ok(orbit::run(&mut orbit, impacts, |contact| {
@@ -251,24 +253,74 @@ pub fn run_by(
 struct LinearContact {
     state: State,
     strike: Strike,
-    topple_angle: f64,
+    contact_distance: f64,
+    rules: Rules,
+    flights: FlightTimes,
 }
 
 impl Checked for LinearContact {
-    fn ending_by(&mut self, check: Check) -> Option<Ending> {
-        let Self { state, strike, topple_angle } = self;
-        match check {
-            // Refused by `run_by`.
-            Check::OtherVertex | Check::BeyondLimits => None,
-            Check::Toppled => rules::toppled(state.theta, *topple_angle),
-            Check::Separating => rules::separating(strike.push, strike.approach),
-            Check::NotRising => {
-                let rises = strike.rises(state.y_dot, f64::EPSILON);
-                (!rises).then(|| Ending::Sinking { contact_rise: strike.contact_rise.min(0.0) })
-            }
-            // The closed form has a next contact after every strike, and its flights do not shrink to nothing.
-            Check::TooFast | Check::NoContact | Check::ShortFlight => None,
-        }
+    fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
+    // The only use of the time would be the end of a run that settles, and the closed form has none.
+    fn t(&self) -> f64 {
+        0.0
+    }
+
+    fn time_after(&self, seconds: f64) -> f64 {
+        seconds
+    }
+
+    // `run_by` refuses scenes with further vertices or with limits.
+    fn touch(&self) -> Option<Touch> {
+        None
+    }
+
+    fn load(&mut self) -> ActuatorLoad {
+        ActuatorLoad::default()
+    }
+
+    fn theta(&self) -> f64 {
+        self.state.theta
+    }
+
+    fn push(&self) -> f64 {
+        self.strike.push
+    }
+
+    fn approach(&self) -> f64 {
+        self.strike.approach
+    }
+
+    /// The closed form has no limit of speed.
+    fn speed_squared(&self) -> f64 {
+        0.0
+    }
+
+    fn contact_rise(&self) -> f64 {
+        self.strike.contact_rise
+    }
+
+    fn rise_rounding(&self) -> f64 {
+        self.strike.rise_rounding(self.state.y_dot, f64::EPSILON)
+    }
+
+    fn rebound(&self) -> Rebound {
+        self.strike.rebound(self.contact_distance, self.rise_rounding())
+    }
+
+    // The closed form has a next contact after every strike, and its flights do not shrink to nothing.
+    fn no_contact(&self) -> Option<NoContact> {
+        None
+    }
+
+    fn flight_time(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    fn flights(&mut self) -> &mut FlightTimes {
+        &mut self.flights
     }
 }
 
@@ -286,7 +338,13 @@ fn run_linear(
         next = solution.impact(n + 1);
         let State { theta, .. } = here.state;
         let strike = body.strike(&PreImpact::at(n, here.x, here.state));
-        let mut at = LinearContact { state: here.state, strike, topple_angle: scene.topple_angle };
+        let mut at = LinearContact {
+            state: here.state,
+            strike,
+            contact_distance: body.contact_distance(),
+            rules: Rules { topple_angle: scene.topple_angle, ..Rules::BARE_MAP },
+            flights: FlightTimes::default(),
+        };
         let ending = rules::before_strike(&mut at)
             .or_else(|| rules::after_strike(&mut at))
             .or_else(|| rules::after_flight(&mut at))

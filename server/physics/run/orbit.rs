@@ -2,7 +2,7 @@
 //!
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
-use crate::body::{Arrival, Body, Kick, NoContact, PreImpact, Release};
+use crate::body::{Arrival, Body, Kick, NoContact, PreImpact, Release, Touch};
 use crate::bounce::rebound::Rebound;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -10,8 +10,8 @@ use crate::bounce::table_motion::PlannedTableMotion;
 use crate::numbers::dispatch::{Kernel, dispatch};
 use crate::run::ending::Ending;
 use crate::run::rules;
-use crate::run::rules::{Check, Checked, FlightTimes, Rules};
-use crate::table::actuator_load::Pose;
+use crate::run::rules::{Checked, FlightTimes, Rules};
+use crate::table::actuator_load::{ActuatorLoad, Pose};
 
 /// One contact of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Contact<N = f64> {
     pub alpha: N,
     /// The strike, unless the run ended before it.
     pub strike: Option<Strike<N>>,
-    /// Time to the next contact, s; none where the run ended.
+    /// Time to the next contact, s; `None` if the run ended.
     pub flight_time: Option<N>,
     /// Ending of the run, if it ended here.
     pub ending: Option<Ending>,
@@ -78,7 +78,7 @@ impl<B: Body> Orbit<B> {
     /// A run from its release.
     ///
     /// # Errors
-    /// Why there is not even a first contact.
+    /// The reason if there is not even a first contact.
     pub fn new(body: B, rules: Rules, release: &Release) -> Result<Self, NoContact> {
         let Arrival { t, state, clearance, plan } = body.fall(release)?;
         let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
@@ -117,7 +117,7 @@ impl<B: Body> Orbit<B> {
         &self.state
     }
 
-    /// When the coming contact is, s after release.
+    /// Time of the coming contact, s after release.
     pub fn t(&self) -> f64 {
         self.t.value
     }
@@ -184,8 +184,14 @@ impl<B: Body> Orbit<B> {
             flight_time: None,
             ending: None,
         };
-        let mut here =
-            Here { orbit: self, coming: &coming, strike, speed_squared: 0.0, no_contact: None, flight_time: 0.0 };
+        let mut here = OrbitAtContact {
+            orbit: self,
+            coming: &coming,
+            strike,
+            speed_squared: 0.0,
+            no_contact: None,
+            flight_time: 0.0,
+        };
         if let Some(ending) = rules::before_strike(&mut here) {
             contact.ending = Some(ending);
             return contact;
@@ -199,7 +205,7 @@ impl<B: Body> Orbit<B> {
         let flight = here.orbit.body.fly(&coming, &here.strike);
         match flight {
             Ok(arrival) => here.flight_time = arrival.t,
-            Err(none) => here.no_contact = Some(none),
+            Err(no_contact) => here.no_contact = Some(no_contact),
         }
         if let Some(ending) = rules::after_flight(&mut here) {
             contact.ending = Some(ending);
@@ -230,11 +236,11 @@ impl<B: Body> Orbit<B> {
 }
 
 /// An orbit at a contact.
-struct Here<'a, B> {
+struct OrbitAtContact<'a, B> {
     orbit: &'a mut Orbit<B>,
     coming: &'a PreImpact,
     strike: Strike,
-    /// As [`rules::speed_squared`], from the strike on.
+    /// Same as [`rules::speed_squared`], from the strike on.
     speed_squared: f64,
     /// Reason for which the flight meets no table, if there is one.
     no_contact: Option<NoContact>,
@@ -242,7 +248,7 @@ struct Here<'a, B> {
     flight_time: f64,
 }
 
-impl<B: Body> Here<'_, B> {
+impl<B: Body> OrbitAtContact<'_, B> {
     /// The strike, onto the energy that the run should have, and what disturbs it.
     #[inline(always)]
     fn be_struck(&mut self, disturb: impl FnOnce(&mut Orbit<B>, &mut Strike)) {
@@ -257,38 +263,81 @@ impl<B: Body> Here<'_, B> {
     }
 }
 
-impl<B: Body> Checked for Here<'_, B> {
+impl<B: Body> Checked for OrbitAtContact<'_, B> {
     #[inline(always)]
-    fn ending_by(&mut self, check: Check) -> Option<Ending> {
-        let Self { orbit, coming, strike, .. } = self;
-        match check {
-            Check::OtherVertex => rules::other_vertex(orbit.body.touches(coming, strike)),
-            Check::Toppled => rules::toppled(coming.state.theta, orbit.rules.topple_angle),
-            Check::BeyondLimits => {
-                let limits = orbit.rules.limits.as_ref()?;
-                let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
-                let load = pose.demand(orbit.last.replace(pose).map(|last| (last, orbit.flights.last)));
-                limits.exceeded(&load).map(Ending::BeyondLimits)
-            }
-            Check::Separating => rules::separating(strike.push, strike.approach),
-            Check::TooFast => rules::too_fast(self.speed_squared),
-            Check::NotRising => {
-                let rounding = orbit.body.rise_rounding(&coming.state, strike);
-                let rebound = || orbit.rebound(coming.state, *strike);
-                rules::not_rising(strike.contact_rise, rounding, orbit.rules.settles, orbit.t.value, rebound)
-            }
-            Check::NoContact => self.no_contact.map(|none| none.ending(strike.contact_rise, self.speed_squared.sqrt())),
-            Check::ShortFlight => {
-                if !orbit.rules.settles {
-                    return None;
-                }
-                let mut flights = orbit.flights;
-                let rebound = || orbit.rebound(coming.state, *strike);
-                let ending = flights.short_flight(self.flight_time, rebound, |rest| orbit.t.value + rest);
-                orbit.flights = flights;
-                ending
-            }
-        }
+    fn rules(&self) -> &Rules {
+        &self.orbit.rules
+    }
+
+    #[inline(always)]
+    fn t(&self) -> f64 {
+        self.orbit.t.value
+    }
+
+    #[inline(always)]
+    fn touch(&self) -> Option<Touch> {
+        self.orbit.body.touches(self.coming, &self.strike)
+    }
+
+    #[inline(always)]
+    fn theta(&self) -> f64 {
+        self.coming.state.theta
+    }
+
+    #[inline(always)]
+    fn load(&mut self) -> ActuatorLoad {
+        let pose = Pose { alpha: self.strike.alpha, velocity: self.strike.table_velocity };
+        pose.load(self.orbit.last.replace(pose).map(|last| (last, self.orbit.flights.last)))
+    }
+
+    #[inline(always)]
+    fn push(&self) -> f64 {
+        self.strike.push
+    }
+
+    #[inline(always)]
+    fn approach(&self) -> f64 {
+        self.strike.approach
+    }
+
+    #[inline(always)]
+    fn speed_squared(&self) -> f64 {
+        self.speed_squared
+    }
+
+    #[inline(always)]
+    fn contact_rise(&self) -> f64 {
+        self.strike.contact_rise
+    }
+
+    #[inline(always)]
+    fn rise_rounding(&self) -> f64 {
+        self.orbit.body.rise_rounding(&self.coming.state, &self.strike)
+    }
+
+    #[inline(always)]
+    fn rebound(&self) -> Rebound {
+        self.orbit.rebound(self.coming.state, self.strike)
+    }
+
+    #[inline(always)]
+    fn no_contact(&self) -> Option<NoContact> {
+        self.no_contact
+    }
+
+    #[inline(always)]
+    fn flight_time(&self) -> f64 {
+        self.flight_time
+    }
+
+    #[inline(always)]
+    fn flights(&mut self) -> &mut FlightTimes {
+        &mut self.orbit.flights
+    }
+
+    #[inline(always)]
+    fn time_after(&self, seconds: f64) -> f64 {
+        self.orbit.t.value + seconds
     }
 }
 
@@ -299,7 +348,7 @@ pub(crate) struct LaneRunState {
     pub(crate) state: State,
     /// Energy that the run should have there, m²/s².
     pub(crate) energy: f64,
-    /// As in [`FlightTimes`], s.
+    /// Same as in [`FlightTimes`], s.
     pub(crate) first_flight: f64,
 }
 

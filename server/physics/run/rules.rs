@@ -1,15 +1,16 @@
 //! The rules of a run: every reason to end it and the order in which they are checked, written once.
 //!
 //! Runs in doubles ([`crate::run::orbit`]), with 31 digits ([`crate::run::extended`]), of the linear solution
-//! ([`crate::run::method`]) and of general simulation methods differ in their numbers and flights. Each says in [`Checked`] how it
-//! makes each [`Check`]; lanes ([`crate::batch`]) say it in [`CheckedByMask`]. A new reason to end a run is a new check, and the
-//! compiler then asks all of them for it. The table of `docs/physics.md`, section 5, is in the same order.
+//! ([`crate::run::method`]) and of general simulation methods differ in their numbers and flights. Each gives the quantities of
+//! [`Checked`]; [`ending_by`] makes each [`Check`] with them. Lanes ([`crate::batch`]) give a [`LaneContact`]. A new reason to end a run is
+//! a new check, and the compiler then asks for its formula here, for single runs and for lanes. If the formula needs a new quantity, the
+//! compiler asks each kind of run for it. The table of `docs/physics.md`, section 5, is in the same order.
 
-use crate::body::Touch;
+use crate::body::{NoContact, Touch};
 use crate::bounce::rebound::Rebound;
 use crate::run::ending::Ending;
 use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
-use crate::table::actuator_load::ActuatorLimits;
+use crate::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 
 /// Fastest speed, m/s, of the centre of gravity or of the contact point about it, that a run may reach: beyond it
 /// doubles no longer resolve a flight, and only a wrong energy feedback gets there.
@@ -48,7 +49,7 @@ macro_rules! checks {
             #[inline(always)]
             pub fn $phase(contact: &mut impl Checked) -> Option<Ending> {
                 $(
-                    let ending = contact.ending_by(Check::$check);
+                    let ending = ending_by(contact, Check::$check);
                     if ending.is_some() {
                         return ending;
                     }
@@ -57,14 +58,10 @@ macro_rules! checks {
             }
         )*
 
-        /// Many runs at a contact, side by side: the checks as masks.
-        pub(crate) trait CheckedByMask {
-            /// Tells whether the run surely goes on past a check; false where that is not sure.
-            fn passes(&self, check: Check) -> bool;
-
+        impl LaneContact {
             /// Tells whether the run surely goes on past all checks.
             #[inline(always)]
-            fn passes_all(&self) -> bool {
+            pub(crate) fn passes_all(&self) -> bool {
                 true $($(& self.passes(Check::$check))*)*
             }
         }
@@ -99,10 +96,145 @@ checks! {
     }
 }
 
-/// One run at a contact, with what it knows of it so far.
+/// One run at a contact. The checks of a phase use only quantities that are known by then.
 pub trait Checked {
-    /// The ending of the run by a check, if it holds.
-    fn ending_by(&mut self, check: Check) -> Option<Ending>;
+    /// The rules of the run.
+    fn rules(&self) -> &Rules;
+
+    /// Time of the contact, s.
+    fn t(&self) -> f64;
+
+    /// Another vertex that is below the line of the tilted table, if there is one.
+    fn touch(&self) -> Option<Touch>;
+
+    /// θ at the contact, rad.
+    fn theta(&self) -> f64;
+
+    /// Load of the strike on the table. Only runs with limits are asked for it, once at each contact.
+    fn load(&mut self) -> ActuatorLoad;
+
+    /// Same as in [`crate::bounce::strike::Strike`], m/s.
+    fn push(&self) -> f64;
+
+    /// Velocity of the contact point relative to the table along its normal, m/s.
+    fn approach(&self) -> f64;
+
+    /// Same as [`speed_squared`], after the strike.
+    fn speed_squared(&self) -> f64;
+
+    /// Vertical velocity of the contact point after the strike, m/s.
+    fn contact_rise(&self) -> f64;
+
+    /// Size of a rise that is rounding, m/s.
+    fn rise_rounding(&self) -> f64;
+
+    /// Rebound of the contact point from the strike.
+    fn rebound(&self) -> Rebound;
+
+    /// Reason for which the flight meets no table, if there is one.
+    fn no_contact(&self) -> Option<NoContact>;
+
+    /// Length of the flight, s.
+    fn flight_time(&self) -> f64;
+
+    /// Lengths of the flights by which the run is judged.
+    fn flights(&mut self) -> &mut FlightTimes;
+
+    /// The time so many seconds after the contact, s.
+    fn time_after(&self, seconds: f64) -> f64;
+}
+
+/// The ending of a run by a check, if it holds.
+#[inline(always)]
+fn ending_by(contact: &mut impl Checked, check: Check) -> Option<Ending> {
+    match check {
+        Check::OtherVertex => contact.touch().map(Ending::OtherVertex),
+        Check::Toppled => {
+            let (theta, limit) = (contact.theta(), contact.rules().topple_angle);
+            (theta.abs() >= limit).then_some(Ending::Toppled { theta, limit })
+        }
+        Check::BeyondLimits => {
+            contact.rules().limits.as_ref()?;
+            let load = contact.load();
+            contact.rules().limits.as_ref()?.exceeded(&load).map(Ending::BeyondLimits)
+        }
+        Check::Separating => (contact.push() >= 0.0).then(|| Ending::Separating { approach: contact.approach() }),
+        Check::TooFast => {
+            let squared = contact.speed_squared();
+            let is_too_fast = squared.is_nan() || squared > SPEED_LIMIT * SPEED_LIMIT;
+            is_too_fast.then(|| Ending::Diverged { speed: squared.sqrt() })
+        }
+        Check::NotRising => {
+            let rises = contact.contact_rise() > contact.rise_rounding();
+            if rises { None } else { Some(stay(&contact.rebound(), contact.rules().settles, contact.t())) }
+        }
+        Check::NoContact => contact
+            .no_contact()
+            .map(|no_contact| no_contact.ending(contact.contact_rise(), contact.speed_squared().sqrt())),
+        Check::ShortFlight => {
+            if !contact.rules().settles {
+                return None;
+            }
+            let mut flights = *contact.flights();
+            let ending = flights.short_flight(contact);
+            *contact.flights() = flights;
+            ending
+        }
+    }
+}
+
+/// The run in a lane at a contact. Each loop over the lanes knows a part of it; the rest is as in [`LaneContact::GOES_ON`].
+#[derive(Clone, Copy)]
+pub(crate) struct LaneContact {
+    /// |θ|, rad.
+    pub(crate) size: f64,
+    pub(crate) topple_angle: f64,
+    /// Same as in [`crate::bounce::strike::Strike`], m/s.
+    pub(crate) push: f64,
+    /// Velocities after the strike, m/s.
+    pub(crate) x_dot: f64,
+    pub(crate) y_dot: f64,
+    pub(crate) contact_rise: f64,
+    /// A faster rise is more than rounding, m/s.
+    pub(crate) sure_rise: f64,
+    /// True once the time of flight is found.
+    pub(crate) found: bool,
+    /// s.
+    pub(crate) flight_time: f64,
+    /// First flight of a run that can settle, s; 0 of others.
+    pub(crate) first_flight: f64,
+}
+
+impl LaneContact {
+    /// A contact at which no run ends.
+    pub(crate) const GOES_ON: Self = Self {
+        size: 0.0,
+        topple_angle: 1.0,
+        push: -1.0,
+        x_dot: 0.0,
+        y_dot: 0.0,
+        contact_rise: 1.0,
+        sure_rise: 0.0,
+        found: true,
+        flight_time: 1.0,
+        first_flight: 0.0,
+    };
+
+    /// Tells whether the run surely goes on past a check. Any other run is set apart, and the map itself decides; so a check may be too
+    /// cautious here but never too bold. No comparison holds for a value that is not a number.
+    #[inline(always)]
+    fn passes(&self, check: Check) -> bool {
+        match check {
+            // Lanes hold rods on tables without limits.
+            Check::OtherVertex | Check::BeyondLimits => true,
+            Check::Toppled => self.size < self.topple_angle,
+            Check::Separating => self.push < 0.0,
+            Check::TooFast => (self.x_dot.abs() <= 0.5 * SPEED_LIMIT) & (self.y_dot.abs() <= 0.5 * SPEED_LIMIT),
+            Check::NotRising => self.contact_rise > self.sure_rise,
+            Check::NoContact => self.found,
+            Check::ShortFlight => self.flight_time >= SETTLED_SHARE * self.first_flight,
+        }
+    }
 }
 
 /// [`Ending::Completed`] at the contact with the last number asked for; checked when nothing else has ended the run.
@@ -111,49 +243,10 @@ pub fn completed(n: u64, impacts: u64) -> Option<Ending> {
     (n >= impacts).then_some(Ending::Completed)
 }
 
-/// The ending by [`Check::OtherVertex`].
-#[inline(always)]
-pub fn other_vertex(touch: Option<Touch>) -> Option<Ending> {
-    touch.map(Ending::OtherVertex)
-}
-
-/// The ending by [`Check::Toppled`] at θ, rad.
-#[inline(always)]
-pub fn toppled(theta: f64, topple_angle: f64) -> Option<Ending> {
-    (theta.abs() >= topple_angle).then_some(Ending::Toppled { theta, limit: topple_angle })
-}
-
-/// The ending by [`Check::Separating`]: `push` and `approach` as in [`crate::bounce::strike::Strike`], m/s.
-#[inline(always)]
-pub fn separating(push: f64, approach: f64) -> Option<Ending> {
-    (push >= 0.0).then_some(Ending::Separating { approach })
-}
-
 /// ẋ² + ẏ² + l²θ̇² after a strike, m²/s²; `spin` is lθ̇.
 #[inline(always)]
 pub fn speed_squared(x_dot: f64, y_dot: f64, spin: f64) -> f64 {
     x_dot * x_dot + y_dot * y_dot + spin * spin
-}
-
-/// The ending by [`Check::TooFast`].
-#[inline(always)]
-pub fn too_fast(speed_squared: f64) -> Option<Ending> {
-    let is_too_fast = speed_squared.is_nan() || speed_squared > SPEED_LIMIT * SPEED_LIMIT;
-    is_too_fast.then(|| Ending::Diverged { speed: speed_squared.sqrt() })
-}
-
-/// The ending by [`Check::NotRising`] of a strike at time `t`, s, after which the contact point rises by `contact_rise`, m/s;
-/// a rise up to `rounding` is none.
-#[inline(always)]
-pub fn not_rising(
-    contact_rise: f64,
-    rounding: f64,
-    settles: bool,
-    t: f64,
-    rebound: impl FnOnce() -> Rebound,
-) -> Option<Ending> {
-    let rises = contact_rise > rounding;
-    if rises { None } else { Some(stay(&rebound(), settles, t)) }
 }
 
 /// Lengths of the flights by which a run that can settle is judged, s; 0 until there is one.
@@ -166,21 +259,16 @@ pub struct FlightTimes {
 }
 
 impl FlightTimes {
-    /// The ending by [`Check::ShortFlight`] of a run that can settle. `after` gives the time so many seconds after the contact at
-    /// which the flight began.
+    /// The ending by [`Check::ShortFlight`] of a run that can settle.
     #[inline(always)]
-    pub fn short_flight(
-        &mut self,
-        flight_time: f64,
-        rebound: impl FnOnce() -> Rebound,
-        after: impl FnOnce(f64) -> f64,
-    ) -> Option<Ending> {
+    fn short_flight(&mut self, contact: &impl Checked) -> Option<Ending> {
+        let flight_time = contact.flight_time();
         if self.first == 0.0 {
             self.first = flight_time;
         }
         let is_short = flight_time < SETTLED_SHARE * self.first;
-        (is_short && rebound().is_slow()).then(|| {
-            let settle_time = after(time_to_rest(flight_time, self.last));
+        (is_short && contact.rebound().is_slow()).then(|| {
+            let settle_time = contact.time_after(time_to_rest(flight_time, self.last));
             Ending::Settled { flight_time, settle_time }
         })
     }

@@ -1,4 +1,4 @@
-//! When bounces have died out (Zeno): the flights have shrunk to nothing beside the first, and the contact point is at rest.
+//! End of bounces that have died out (Zeno): the flights have shrunk to nothing beside the first, and the contact point is at rest.
 //!
 //! Not here: who looks at it. The map, the map with 31 digits and the general methods all do.
 

@@ -54,7 +54,7 @@ impl fmt::Display for Value {
 
 /// Values that a field takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum FieldKind {
     /// A finite number from `minimum` to `maximum`, both included.
     Number {
         /// Least value.
@@ -83,7 +83,7 @@ pub struct Field {
     /// Unit, "1" for a pure number.
     pub unit: &'static str,
     /// Values it takes.
-    pub kind: Kind,
+    pub kind: FieldKind,
     /// Value in a scene that does not say the field. None: the field stays absent, or is required.
     pub default: Option<Value>,
     /// Tells whether a scene has to say the field, unless something else takes its place (a point mass, a polygon, state feedback).
@@ -93,20 +93,20 @@ pub struct Field {
 }
 
 impl Field {
-    const fn new(path: &'static str, unit: &'static str, kind: Kind) -> Self {
+    const fn new(path: &'static str, unit: &'static str, kind: FieldKind) -> Self {
         Self { name: FIRST, path, unit, kind, default: None, required: false, live: false }
     }
 
     const fn number(path: &'static str, unit: &'static str, minimum: f64, maximum: f64) -> Self {
-        Self::new(path, unit, Kind::Number { minimum, maximum })
+        Self::new(path, unit, FieldKind::Number { minimum, maximum })
     }
 
     const fn integer(path: &'static str, maximum: u64) -> Self {
-        Self::new(path, "1", Kind::Integer { maximum })
+        Self::new(path, "1", FieldKind::Integer { maximum })
     }
 
     const fn choice(path: &'static str, words: &'static [&'static str]) -> Self {
-        Self::new(path, "1", Kind::Choice(words))
+        Self::new(path, "1", FieldKind::Choice(words))
     }
 
     const fn default(self, number: f64) -> Self {
@@ -139,20 +139,20 @@ impl Field {
     pub fn limits(&self) -> String {
         let unit = if self.unit == "1" { "(no unit)" } else { self.unit };
         match self.kind {
-            Kind::Number { minimum, maximum } => format!("from {minimum} to {maximum} {unit}"),
-            Kind::Integer { maximum } => format!("a whole number from 0 to {maximum}"),
-            Kind::Choice(words) => format!("one of {}", words.join(", ")),
-            Kind::Flag => "true".to_owned(),
+            FieldKind::Number { minimum, maximum } => format!("from {minimum} to {maximum} {unit}"),
+            FieldKind::Integer { maximum } => format!("a whole number from 0 to {maximum}"),
+            FieldKind::Choice(words) => format!("one of {}", words.join(", ")),
+            FieldKind::Flag => "true".to_owned(),
         }
     }
 
     /// Tells whether a value is of the field's kind and within its range. A number that is not finite never is.
     pub fn admits(&self, value: Value) -> bool {
         match (self.kind, value) {
-            (Kind::Number { minimum, maximum }, Value::Number(number)) => (minimum..=maximum).contains(&number),
-            (Kind::Integer { maximum }, Value::Integer(number)) => number <= maximum,
-            (Kind::Choice(words), Value::Choice(word)) => words.contains(&word),
-            (Kind::Flag, Value::Flag(flag)) => flag,
+            (FieldKind::Number { minimum, maximum }, Value::Number(number)) => (minimum..=maximum).contains(&number),
+            (FieldKind::Integer { maximum }, Value::Integer(number)) => number <= maximum,
+            (FieldKind::Choice(words), Value::Choice(word)) => words.contains(&word),
+            (FieldKind::Flag, Value::Flag(flag)) => flag,
             _ => false,
         }
     }
@@ -179,7 +179,7 @@ const LARGEST_EXACT: u64 = (1 << 53) - 1;
 fields! {
     ContactDistance => Field::number("body.contact_distance", "m", 1e-3, 10.0).required(),
     RadiusOfGyration => Field::number("body.radius_of_gyration", "m", 1e-3, 10.0).required(),
-    PointMass => Field::new("body.point", "1", Kind::Flag),
+    PointMass => Field::new("body.point", "1", FieldKind::Flag),
     ContactVertex => Field::integer("body.contact_vertex", MAX_VERTICES as u64 - 1),
     Gravity => Field::number("gravity", "m/s²", 0.1, 100.0).default(9.81),
     Incline => Field::number("incline", "rad", 0.01, FRAC_PI_2).default(FRAC_PI_2),

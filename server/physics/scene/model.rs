@@ -51,7 +51,7 @@ impl ModelLevel {
     }
 
     /// Cost of an impact, ns of one core as it was when this table was measured (AMD EPYC, Zen 4, 3.0 GHz; `cargo bench --bench
-    /// bounce rungs`). Fixed, so that the same question gets the same answer.
+    /// bounce levels`). Fixed, so that the same question gets the same answer.
     pub fn cost_ns(self) -> f64 {
         match self {
             Self::Point => 135.0,
@@ -94,7 +94,7 @@ impl Model {
         match self {
             Self::Rod(rod) => rod,
             Self::Point(point) => point.parameters(),
-            Self::General(rig) => &rig.rod,
+            Self::General(general) => &general.rod,
         }
     }
 
@@ -102,7 +102,7 @@ impl Model {
     pub fn friction(&self) -> Option<Friction> {
         match self {
             Self::Rod(_) | Self::Point(_) => None,
-            Self::General(rig) => rig.friction,
+            Self::General(general) => general.friction,
         }
     }
 
@@ -110,7 +110,7 @@ impl Model {
     pub fn feedback(&self) -> Option<[f64; 4]> {
         match self {
             Self::Rod(_) | Self::Point(_) => None,
-            Self::General(rig) => match rig.steering {
+            Self::General(general) => match general.steering {
                 Steering::TiltGain => None,
                 Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) => Some([x, theta, x_dot, theta_dot]),
             },
@@ -190,7 +190,7 @@ impl Scene {
         }
     }
 
-    /// When its runs end.
+    /// Rules that end its runs.
     pub fn rules(&self) -> Rules {
         Rules {
             topple_angle: match self.body {
@@ -273,7 +273,7 @@ impl Scene {
     /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.
     ///
     /// # Errors
-    /// As [`Scene::orbit`].
+    /// Same as [`Scene::orbit`].
     pub fn orbit_of(&self, run: u64) -> Result<Orbit<Model>, NoContact> {
         let noise = self.noise.map(|noise| Noise { run, ..noise });
         Orbit::new(self.model_of(noise, self.outline), self.rules(), &self.release)

@@ -30,10 +30,10 @@ pub struct LevelRun {
     pub ending: Ending,
     /// Contacts until then.
     pub impacts: u64,
-    /// When, s.
+    /// Time of the last contact, s.
     pub t: f64,
     /// The most that it asked of the table.
-    pub demand: ActuatorLoad,
+    pub load: ActuatorLoad,
     /// Change against the next lower one that applies.
     pub change: Option<LevelChange>,
 }
@@ -71,7 +71,7 @@ pub struct LargestDifference {
 }
 
 impl LargestDifference {
-    fn look(&mut self, n: u64, difference: f64) {
+    fn include(&mut self, n: u64, difference: f64) {
         if difference.abs() > self.value {
             *self = Self { value: difference.abs(), impact: n };
         }
@@ -94,11 +94,11 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
     for (level, requirement) in levels(scene) {
         let reduced = at_level(scene, level);
         let method = if level == ModelLevel::Linear { RunMethod::Linear } else { RunMethod::Map };
-        let (mut course, mut meter) = (Vec::new(), LoadTracker::default());
+        let (mut course, mut tracker) = (Vec::new(), LoadTracker::default());
         let run = run_by(&reduced, method, impacts, |impact| {
             let contact = &impact.contact;
             if let Some(strike) = &contact.strike {
-                meter.track(strike, contact.flight_time);
+                tracker.track(strike, contact.flight_time);
             }
             course.push(ComparedContact { t: contact.t, x: contact.x, state: contact.state });
             !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
@@ -114,7 +114,7 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
                     ending,
                     impacts: course.len() as u64,
                     t: course.last().map_or(0.0, |here| here.t),
-                    demand: meter.most,
+                    load: tracker.most,
                     change,
                 };
                 below = Some((course, ending));
@@ -168,14 +168,14 @@ fn change(below: &[ComparedContact], above: &[ComparedContact], rho: f64, same_e
             other.state.y_dot - one.state.y_dot,
             other.state.theta_dot - one.state.theta_dot,
         ];
-        change.t.look(n, other.t - one.t);
-        change.x.look(n, other.x - one.x);
-        change.theta.look(n, theta);
-        change.x_dot.look(n, x_dot);
-        change.y_dot.look(n, y_dot);
-        change.theta_dot.look(n, theta_dot);
+        change.t.include(n, other.t - one.t);
+        change.x.include(n, other.x - one.x);
+        change.theta.include(n, theta);
+        change.x_dot.include(n, x_dot);
+        change.y_dot.include(n, y_dot);
+        change.theta_dot.include(n, theta_dot);
         for difference in [rho * theta, x_dot, y_dot, rho * theta_dot] {
-            change.state.look(n, difference);
+            change.state.include(n, difference);
         }
     }
     change

@@ -3,7 +3,7 @@
 //! A scan in lanes and a search of its edges. Not a map over two fields, and no proof: between two angles of the scan a
 //! narrow hole stays unseen.
 
-use crate::batch::batch_run::{RunEnd, RunStart, run_batch, run_batch_with_friction};
+use crate::batch::batch_run::{LaneRunEnd, RunStart, run_batch, run_batch_with_friction};
 use crate::body::Release;
 use crate::bounce::friction::Friction;
 use crate::bounce::state::State;
@@ -93,7 +93,7 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
         let mut survivors = vec![false; angles.len()];
         let mut stopped = false;
         let mut starts = angles.iter().enumerate().filter_map(|(index, theta)| Some((index, start(*theta)?)));
-        let done = |index: usize, end: RunEnd| {
+        let done = |index: usize, end: LaneRunEnd| {
             survivors[index] = end.outcome == EndingKind::Completed;
             bounces.set(bounces.get() + end.impacts);
         };

@@ -7,7 +7,7 @@ use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, lent_by_table};
 
-/// The rungs above the plain rod that can be judged linearly.
+/// The levels above the plain rod that can be judged linearly.
 pub const LINEARLY_JUDGED: [ModelLevel; 3] = [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::Friction];
 
 /// The upright bounce in place that a scene is to be balanced on.
@@ -22,7 +22,7 @@ pub struct FixedPoint {
 }
 
 /// c = ẋ − κρ²θ̇/((κ − 1)l), or ẋ − (κρ² + l²)θ̇/((κ − 1)l) where a matched contact sticks: the mean horizontal speed of a balanced
-/// run, m/s. None where κ = 1, which drifts off in angle instead, where friction holds the contact, and for a point mass, whose
+/// run, m/s. `None` if κ = 1, which drifts off in angle instead, where friction holds the contact, and for a point mass, whose
 /// drift dies out.
 pub fn drift_speed(scene: &Scene) -> Option<f64> {
     let regime = contact_regime(&scene.model());

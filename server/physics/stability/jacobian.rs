@@ -47,7 +47,7 @@ pub struct Linearization {
 pub struct OneSidedDerivative {
     /// Contact mode on that side.
     pub contact_mode: ContactMode,
-    /// As [`Linearization::matrix`].
+    /// Same as [`Linearization::matrix`].
     pub matrix: DMatrix<f64>,
 }
 
@@ -80,7 +80,7 @@ pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearizati
 /// [`jacobian`] from a horizontal position x, m. The derivative depends on x only if the table feeds it back.
 ///
 /// # Errors
-/// As [`jacobian`].
+/// Same as [`jacobian`].
 pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
     let smooth = |matrix| vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }];
     let size = state_order(model).len();
@@ -90,15 +90,15 @@ pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<
         // The derivative with noise is not derived; NaN marks it as unknown.
         Model::General(GeneralBody { noise: Some(_), .. }) => Some(smooth(DMatrix::from_element(size, size, f64::NAN))),
         // The outline of a polygon ends runs and changes no bounce.
-        Model::General(rig) if size == 5 => rig_jacobians::<5>(rig, *x, state),
-        Model::General(rig) => rig_jacobians::<4>(rig, *x, state),
+        Model::General(general) if size == 5 => general_jacobians::<5>(general, *x, state),
+        Model::General(general) => general_jacobians::<4>(general, *x, state),
     })
 }
 
 /// The derivative by central differences with a step of `step` m/s (m for ρθ) in each component.
 ///
 /// # Errors
-/// As [`jacobian`], also for the runs that start one step aside.
+/// Same as [`jacobian`], also for the runs that start one step aside.
 pub fn finite_difference(model: &Model, start: &State, period: u64, step: f64) -> Result<Linearization, Box<Contact>> {
     finite_difference_at(model, 0.0, start, period, step)
 }
@@ -106,7 +106,7 @@ pub fn finite_difference(model: &Model, start: &State, period: u64, step: f64) -
 /// [`finite_difference`] from a horizontal position x, m.
 ///
 /// # Errors
-/// As [`finite_difference`].
+/// Same as [`finite_difference`].
 pub fn finite_difference_at(
     model: &Model,
     x: f64,
@@ -208,14 +208,14 @@ fn rod_jacobian(rod: &Rod, state: &State) -> Option<DMatrix<f64>> {
 ///
 /// An impact without sliding, v_t = 0, is smooth if friction holds the contact: the impulse depends on the sliding only through its
 /// end, and in the same way from both sides.
-fn rig_jacobians<const K: usize>(rig: &GeneralBody, x: f64, state: &State) -> Option<Vec<OneSidedDerivative>> {
-    let rod = &rig.rod;
+fn general_jacobians<const K: usize>(general: &GeneralBody, x: f64, state: &State) -> Option<Vec<OneSidedDerivative>> {
+    let rod = &general.rod;
     let lifted: Rod<Dual<K>> = rod.lift();
     let (start, leverage) = (along_all(rod, state), lifted.leverage());
     let place = if K > 4 { Dual::along(x, 4, 1.0) } else { Dual::from_f64(x) };
-    let tilt = rig.steering.tilt(&lifted, place, &start);
-    let plain = rig.steering.tilt(rod, x, state);
-    let Some(friction) = &rig.friction else {
+    let tilt = general.steering.tilt(&lifted, place, &start);
+    let plain = general.steering.tilt(rod, x, state);
+    let Some(friction) = &general.friction else {
         let root = first_contact(&rod.flight(&rod.strike_with(state, &plain, rod.leverage()))).ok()?;
         let matrix = after_flight(&lifted, place, &lifted.strike_with(&start, &tilt, leverage), root);
         return Some(vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }]);

@@ -46,7 +46,7 @@ impl AngleClass {
 pub struct LinearVerdict {
     /// Motion of the angle.
     pub class: AngleClass,
-    /// R = (κ − 1)V²l/(Gρ²), with ρ² + l² for ρ² where a matched contact sticks; none for a point mass, and where the contact sticks to
+    /// R = (κ − 1)V²l/(Gρ²), with ρ² + l² for ρ² where a matched contact sticks; `None` for a point mass, and where the contact sticks to
     /// a table that only tilts.
     pub residue: Option<f64>,
     /// σ, rad per bounce, cos σ = 1 − 2R; where it is elliptic or parabolic.

@@ -47,7 +47,7 @@ pub struct LyapunovCoefficient {
 }
 
 impl LyapunovCoefficient {
-    /// 1/(2ℓA₀²), contacts after which a swing like this release's has left; none where it does not leave.
+    /// 1/(2ℓA₀²), contacts after which a swing like this release's has left; `None` if it does not leave.
     pub fn escape_impacts(&self) -> Option<u64> {
         let contacts = 0.5 / (self.coefficient * self.amplitude * self.amplitude);
         // A cast keeps to the range of the type.

@@ -83,24 +83,27 @@ pub fn margins_over_tolerances(scene: &Scene, tolerances: &Tolerances) -> Result
         return Err("margins over tolerances are of a tilt gain; the table has state feedback".to_owned());
     }
     let lower = linear_verdict(scene, &find_fixed_point(scene)?).lower_tilt_gain;
-    let extreme = |of: fn(&Looked) -> f64| search(low, high, |at| Ok(of(&look(scene, at)?)));
-    let (critical, worst) = extreme(|looked| looked.critical)?;
-    let (most, _) = extreme(|looked| -looked.critical)?;
-    let span = |of: fn(&Looked) -> f64, negative: fn(&Looked) -> f64| {
+    let extreme = |of: fn(&BounceProperties) -> f64| search(low, high, |at| Ok(of(&bounce_properties(scene, at)?)));
+    let (critical, worst) = extreme(|found| found.critical)?;
+    let (most, _) = extreme(|found| -found.critical)?;
+    let span = |of: fn(&BounceProperties) -> f64, negative: fn(&BounceProperties) -> f64| {
         Ok::<_, String>(ValueRange { least: extreme(of)?.0, most: -extreme(negative)?.0 })
     };
-    let energy_eigenvalue = span(|looked| looked.energy, |looked| -looked.energy)?;
+    let energy_eigenvalue = span(|found| found.energy, |found| -found.energy)?;
     let kappa = scene.tilt_gain;
     Ok(ToleranceMargins {
         critical_tilt_gain: ValueRange { least: critical, most: -most },
         worst: SampledBody { contact_distance: worst[0], radius_of_gyration: worst[1], restitution: worst[2] },
-        apex_height: span(|looked| looked.apex, |looked| -looked.apex)?,
+        apex_height: span(|found| found.apex, |found| -found.apex)?,
         energy_eigenvalue,
         holds: kappa > lower && kappa < critical && energy_eigenvalue.least > -1.0 && energy_eigenvalue.most <= 1.0,
     })
 }
 
-fn look(scene: &Scene, [contact_distance, radius_of_gyration, restitution]: [f64; 3]) -> Result<Looked, String> {
+fn bounce_properties(
+    scene: &Scene,
+    [contact_distance, radius_of_gyration, restitution]: [f64; 3],
+) -> Result<BounceProperties, String> {
     let mut draft = scene.draft();
     let told = scene.assumed_restitution();
     let mut values = vec![
@@ -123,10 +126,14 @@ fn look(scene: &Scene, [contact_distance, radius_of_gyration, restitution]: [f64
     };
     let fixed_point = find_fixed_point(&scene).map_err(of)?;
     let linear = linear_verdict(&scene, &fixed_point);
-    Ok(Looked { critical: linear.critical_tilt_gain, apex: fixed_point.apex_height, energy: linear.energy_eigenvalue })
+    Ok(BounceProperties {
+        critical: linear.critical_tilt_gain,
+        apex: fixed_point.apex_height,
+        energy: linear.energy_eigenvalue,
+    })
 }
 
-struct Looked {
+struct BounceProperties {
     critical: f64,
     apex: f64,
     energy: f64,

@@ -18,29 +18,29 @@ pub struct NonlinearRun {
     /// Largest |θ| at a contact, rad.
     pub max_theta: f64,
     /// Largest load of the run on the table's actuators.
-    pub demand: ActuatorLoad,
+    pub load: ActuatorLoad,
 }
 
 /// Runs the scene for up to `impacts` contacts. `go_on` is called at intervals; `None` once it returns `false`.
 pub fn run_nonlinear(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<NonlinearRun> {
     let mut orbit = match scene.orbit() {
         Ok(orbit) => orbit,
-        Err(none) => {
-            let (ending, t) = (none.ending(0.0, 0.0), 0.0);
+        Err(no_contact) => {
+            let (ending, t) = (no_contact.ending(0.0, 0.0), 0.0);
             let max_theta = scene.start().theta.abs();
-            return Some(NonlinearRun { ending, impacts: 0, t, max_theta, demand: ActuatorLoad::default() });
+            return Some(NonlinearRun { ending, impacts: 0, t, max_theta, load: ActuatorLoad::default() });
         }
     };
     let mut max_theta: f64 = 0.0;
     let mut t = 0.0;
-    let mut meter = LoadTracker::default();
+    let mut tracker = LoadTracker::default();
     let ending = run(&mut orbit, impacts, |contact| {
         if let Some(strike) = &contact.strike {
-            meter.track(strike, contact.flight_time);
+            tracker.track(strike, contact.flight_time);
         }
         max_theta = max_theta.max(contact.state.theta.abs());
         t = contact.t;
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;
-    Some(NonlinearRun { ending, impacts: orbit.contacts(), t, max_theta, demand: meter.most })
+    Some(NonlinearRun { ending, impacts: orbit.contacts(), t, max_theta, load: tracker.most })
 }

@@ -139,7 +139,7 @@ impl UprightBounce {
         DMatrix::from_fn(size, size, |row, n| columns[n][row])
     }
 
-    /// The eigenvalues of the odd components on or above the real axis, largest modulus first; none if the iteration does not
+    /// The eigenvalues of the odd components on or above the real axis, largest modulus first; `None` if the iteration does not
     /// converge.
     pub fn odd_eigenvalues(&self) -> Option<Vec<Complex<f64>>> {
         let mut values = eigenvalues(&self.odd_derivative())?;
@@ -236,7 +236,7 @@ impl UprightBounce {
 /// A complex direction of the odd components.
 type Direction = DVector<Complex<f64>>;
 
-/// The right eigenvector of an eigenvalue, and the left one with left·right = 1 (no conjugate); none where it is double.
+/// The right eigenvector of an eigenvalue, and the left one with left·right = 1 (no conjugate); `None` if it is double.
 fn eigenvectors(matrix: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<(Direction, Direction)> {
     let right = null_vector(matrix, eigenvalue)?;
     let left = null_vector(&matrix.transpose(), eigenvalue)?;

@@ -65,7 +65,7 @@ pub struct Assessment {
     pub decided_by: DecidedBy,
     /// True if the linear analysis and the run agree.
     pub agree: bool,
-    /// Why, in a sentence with numbers.
+    /// Reason, in a sentence with numbers.
     pub reason: String,
 }
 

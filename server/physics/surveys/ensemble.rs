@@ -33,9 +33,9 @@ pub struct Ensemble {
 /// End of one run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunEnd {
-    /// Contacts, the last included; 0 where there was not even a first one.
+    /// Contacts, the last included; 0 if there was not even a first one.
     pub impacts: u64,
-    /// Why.
+    /// Kind of its ending.
     pub outcome: EndingKind,
 }
 
@@ -68,7 +68,7 @@ impl Ensemble {
         (0..count).map(|index| 1 + index * (self.impacts - 1) / count.saturating_sub(1).max(1)).collect()
     }
 
-    /// Some of the runs, counted from 0; none if `go_on` said `false`, which is asked every hundred contacts.
+    /// Some of the runs, counted from 0; `None` if `go_on` said `false`, which is asked every hundred contacts.
     pub fn runs(&self, numbers: Range<u64>, go_on: &mut dyn FnMut() -> bool) -> Option<EnsembleRuns> {
         let watched = self.watched();
         let mut found = EnsembleRuns { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
@@ -79,8 +79,8 @@ impl Ensemble {
             }
             let mut orbit = match self.scene.orbit_of(number) {
                 Ok(orbit) => orbit,
-                Err(none) => {
-                    found.ends.push(RunEnd { impacts: 0, outcome: none.ending(0.0, 0.0).into() });
+                Err(no_contact) => {
+                    found.ends.push(RunEnd { impacts: 0, outcome: no_contact.ending(0.0, 0.0).into() });
                     continue;
                 }
             };
@@ -143,13 +143,13 @@ impl EnsembleRuns {
     }
 }
 
-/// The first contact after which no more than half of the runs go on; none where more than half outlast them all.
+/// The first contact after which no more than half of the runs go on; `None` if more than half outlast them all.
 pub fn median_impacts(curve: &[SurvivalPoint]) -> Option<u64> {
     curve.iter().position(|point| point.share <= 0.5).map(|place| place as u64 + 1)
 }
 
 /// In how many contacts half of the runs end that have come to the second half of the curve: ln 2 over their rate there, that
-/// of a run that ends with the same probability at each contact. None where none ends there.
+/// of a run that ends with the same probability at each contact. `None` if no run ends there.
 pub fn late_half_life(curve: &[SurvivalPoint]) -> Option<f64> {
     let late = &curve[curve.len() / 2..];
     let ended: u64 = late.iter().map(|point| point.ended).sum();
@@ -173,7 +173,7 @@ pub fn wilson_interval(successes: u64, trials: u64) -> (f64, f64) {
 }
 
 /// The quantiles of some values at [`SHARES`], on straight lines between the sorted ones (number 7 of Hyndman and Fan 1996,
-/// what R and NumPy take); none without values, which come sorted.
+/// what R and NumPy take); `None` without values, which come sorted.
 pub fn quantiles(values: &[f64]) -> Option<[f64; SHARES.len()]> {
     let last = values.len().checked_sub(1)?;
     Some(SHARES.map(|share| {

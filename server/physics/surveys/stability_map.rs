@@ -2,7 +2,7 @@
 //!
 //! Not here: threads and drawing.
 
-use crate::batch::batch_run::{RunEnd, RunStart, run_batch, run_batch_with_friction};
+use crate::batch::batch_run::{LaneRunEnd, RunStart, run_batch, run_batch_with_friction};
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::run::cancellation::CancellationCheck;
@@ -170,7 +170,7 @@ impl StabilityMap {
         Some(cells)
     }
 
-    fn cell(&self, end: &RunEnd) -> MapCell {
+    fn cell(&self, end: &LaneRunEnd) -> MapCell {
         let value = if self.quantity == MapQuantity::MaxTheta { end.max_theta } else { end.impacts as f64 };
         MapCell { value: Some(value), outcome: Some(end.outcome) }
     }
@@ -257,18 +257,20 @@ fn start_of(scene: &Scene) -> Option<(RunStart, Option<Friction>)> {
 }
 
 /// Runs a scene outside lanes; `None` once cancelled. The run of a body that never meets the table ends with 0 impacts.
-fn run_alone(scene: &Scene, impacts: u64, looks: &mut CancellationCheck<'_>) -> Option<RunEnd> {
+fn run_alone(scene: &Scene, impacts: u64, looks: &mut CancellationCheck<'_>) -> Option<LaneRunEnd> {
     if !looks.begin() {
         return None;
     }
     let mut orbit = match scene.orbit() {
         Ok(orbit) => orbit,
-        Err(none) => return Some(RunEnd { impacts: 0, outcome: none.ending(0.0, 0.0).into(), max_theta: 0.0 }),
+        Err(no_contact) => {
+            return Some(LaneRunEnd { impacts: 0, outcome: no_contact.ending(0.0, 0.0).into(), max_theta: 0.0 });
+        }
     };
     let mut max_theta: f64 = 0.0;
     let ending = run(&mut orbit, impacts, |contact| {
         max_theta = max_theta.max(contact.state.theta.abs());
         looks.contact()
     })?;
-    Some(RunEnd { impacts: orbit.contacts(), outcome: ending.into(), max_theta })
+    Some(LaneRunEnd { impacts: orbit.contacts(), outcome: ending.into(), max_theta })
 }

@@ -47,7 +47,7 @@ pub struct LimitViolation {
 impl Pose {
     /// Load of this strike, after the last one and the flight between them, s, if there was one.
     #[inline(never)]
-    pub fn demand(&self, last: Option<(Self, f64)>) -> ActuatorLoad {
+    pub fn load(&self, last: Option<(Self, f64)>) -> ActuatorLoad {
         let (x, y) = self.velocity;
         let (tilt_rate, stroke) = last.map_or((0.0, 0.0), |(last, time)| {
             // The least flights are so short that this would be infinite.
@@ -90,7 +90,7 @@ impl LoadTracker {
     #[inline(always)]
     pub fn track(&mut self, strike: &Strike, flight_time: Option<f64>) {
         let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
-        self.most = self.most.or(pose.demand(self.last));
+        self.most = self.most.or(pose.load(self.last));
         self.last = flight_time.map(|time| (pose, time));
     }
 }
@@ -116,10 +116,10 @@ impl ActuatorLoad {
         ]
     }
 
-    /// The first of these limits that `demand` goes beyond.
+    /// The first of these limits that `load` goes beyond.
     #[inline(never)]
-    pub fn exceeded(&self, demand: &ActuatorLoad) -> Option<LimitViolation> {
-        let pairs = demand.quantities().into_iter().zip(self.quantities());
+    pub fn exceeded(&self, load: &ActuatorLoad) -> Option<LimitViolation> {
+        let pairs = load.quantities().into_iter().zip(self.quantities());
         pairs
             .filter(|((_, value, _), (_, limit, _))| value > limit)
             .map(|((quantity, value, unit), (_, limit, _))| LimitViolation { quantity, value, limit, unit })
@@ -156,19 +156,19 @@ mod tests {
     #[test]
     fn no_flight_is_too_short_for_a_tilt_rate() {
         let pose = |alpha| Pose { alpha, velocity: (0.0, 0.1) };
-        assert_eq!(pose(0.3).demand(Some((pose(0.1), 1e-20))).tilt_rate, (0.3 - 0.1) / 1e-20);
+        assert_eq!(pose(0.3).load(Some((pose(0.1), 1e-20))).tilt_rate, (0.3 - 0.1) / 1e-20);
         for time in [f64::from_bits(1), 0.0] {
-            assert_eq!(pose(0.3).demand(Some((pose(0.1), time))).tilt_rate, f64::MAX);
+            assert_eq!(pose(0.3).load(Some((pose(0.1), time))).tilt_rate, f64::MAX);
         }
     }
 
     #[test]
     fn the_first_limit_passed_is_named() {
         let limits = ActuatorLimits { tilt: 0.3, tilt_rate: f64::INFINITY, speed: 1.0, stroke: 0.1 };
-        let demand = ActuatorLoad { tilt: 0.2, tilt_rate: 50.0, speed: 1.5, stroke: 0.2 };
-        let excess = limits.exceeded(&demand).unwrap();
+        let load = ActuatorLoad { tilt: 0.2, tilt_rate: 50.0, speed: 1.5, stroke: 0.2 };
+        let excess = limits.exceeded(&load).unwrap();
         assert_eq!((excess.quantity, excess.value, excess.limit, excess.unit), ("speed", 1.5, 1.0, "m/s"));
-        assert_eq!(limits.exceeded(&ActuatorLoad { speed: 1.0, ..demand }).unwrap().quantity, "stroke");
+        assert_eq!(limits.exceeded(&ActuatorLoad { speed: 1.0, ..load }).unwrap().quantity, "stroke");
         assert_eq!(limits.exceeded(&ActuatorLoad::default()), None);
     }
 }

@@ -33,7 +33,7 @@ fn exact(scene: &Scene, impacts: u64) -> Exact {
     Exact { states, ending: ending.unwrap().name(), rho, is_point: scene.model().contact_distance() == 0.0 }
 }
 
-/// The largest error of a method's states; none where it ends otherwise or does not apply.
+/// The largest error of a method's states; `None` if it ends otherwise or does not apply.
 fn error(scene: &Scene, method: RunMethod, impacts: u64, exact: &Exact) -> Option<f64> {
     let (mut worst, mut made) = (0.0_f64, 0);
     let ending: Ending = run_by(scene, method, impacts, |impact| {
@@ -60,7 +60,7 @@ const TOLERANCES: [f64; 7] = [1e-2, 1e-3, 1e-4, 1e-6, 1e-9, 1e-12, 1e-20];
 fn the_choice_holds_and_is_nearly_always_the_cheapest() {
     let (mut chosen, mut cheapest, mut refused) = ([0; 3], 0, 0);
     for kind in scenes::KINDS {
-        let mut source = random::Random(31);
+        let mut source = random::Random::new(31);
         for run in 0..112 {
             let scene = scenes::scene(&mut source, kind);
             let impacts = [20, 100, 400, 2000][run % 4];

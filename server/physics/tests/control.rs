@@ -133,7 +133,7 @@ fn the_derivative_by_duals_is_the_closed_loop() {
 
 #[test]
 fn the_derivative_by_duals_is_that_of_the_bounce_anywhere() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for regime in REGIMES {
         let mut compared = 0;
         for _ in 0..300 {
@@ -237,7 +237,7 @@ fn a_mode_that_no_weight_sees_is_not_called_stable() {
 
 #[test]
 fn margins_are_where_eigenvalues_cross_the_circle() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     for regime in REGIMES {
         for _ in 0..50 {
             let rod = rod(random.between(0.0, 1.0));
@@ -262,7 +262,7 @@ fn margins_are_where_eigenvalues_cross_the_circle() {
 
 #[test]
 fn whatever_the_rod_and_the_weights_a_law_is_good_or_there_is_none() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let mut found = 0;
     for _ in 0..20_000 {
         let mut rod = rod(1.0);

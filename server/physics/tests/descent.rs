@@ -1,4 +1,4 @@
-//! When a point comes down through y = 0: against dense sampling with bisection, and where the answer is known.
+//! Times at which a point comes down through y = 0: against dense sampling with bisection, and where the answer is known.
 
 use equipoise_physics::bounce::contact_time::{first_contact, first_descent, first_descent_before};
 use equipoise_physics::bounce::flight::Flight;

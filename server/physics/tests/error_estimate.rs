@@ -61,7 +61,7 @@ const RUNS: usize = 115;
 #[test]
 fn bounds_hold_over_random_scenes() {
     for kind in scenes::KINDS {
-        let mut source = random::Random(2026);
+        let mut source = random::Random::new(2026);
         let (mut worst, mut all) = (0.0_f64, Vec::new());
         for _ in 0..RUNS {
             let scene = scenes::scene(&mut source, kind);
@@ -79,7 +79,7 @@ fn bounds_hold_over_random_scenes() {
 /// A table that turns far for a small angle: the rounding of α itself.
 #[test]
 fn bounds_hold_over_large_tilt_gains() {
-    let mut source = random::Random(2029);
+    let mut source = random::Random::new(2029);
     let (mut worst, mut all) = (0.0_f64, Vec::new());
     for _ in 0..20 * RUNS {
         let mut draft = scenes::scene(&mut source, scenes::Kind::Regular).draft();
@@ -99,7 +99,7 @@ fn bounds_hold_over_random_scenes_with_friction() {
     use scenes::Kind::{Chaotic, Feedback, Grazing, Regular, Small, Spinning, Still};
     for kind in [Regular, Small, Chaotic, Spinning, Still, Feedback, Grazing] {
         for slide in ["matched", "none"] {
-            let mut source = random::Random(2028);
+            let mut source = random::Random::new(2028);
             let (mut worst, mut all) = (0.0_f64, Vec::new());
             for run in 0..RUNS {
                 let mut draft = scenes::scene(&mut source, kind).draft();
@@ -153,7 +153,7 @@ fn twins(scene: &Scene) -> [Scene; 2] {
 #[test]
 fn bounds_with_31_digits_hold_between_twins() {
     for kind in [scenes::Kind::Regular, scenes::Kind::Chaotic, scenes::Kind::Still] {
-        let mut source = random::Random(2027);
+        let mut source = random::Random::new(2027);
         let (mut worst, mut ratios, mut lost) = (0.0_f64, Vec::new(), 0);
         // Chaotic ones that stay up: the paper's body beyond its soft boundary.
         let paper = reference::frictionless().into_iter().find(|(name, ..)| name == "case-1").unwrap().1;

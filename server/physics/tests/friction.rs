@@ -50,7 +50,7 @@ fn the_worked_example_has_its_energies() {
 
 #[test]
 fn poisson_and_stronge_never_gain_energy_and_newton_does() {
-    let mut random = random::Random(7);
+    let mut random = random::Random::new(7);
     let mut gains = [0; 3];
     let mut seen = Vec::new();
     let mut impacts = 0;

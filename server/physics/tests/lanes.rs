@@ -1,7 +1,7 @@
 //! Lanes and one orbit alone are the same: outcome, number of contacts and largest angle, bit for bit, over random rods.
 
 use equipoise_physics::batch::batch_run::{
-    RunEnd, RunStart, run_batch, run_batch_on, run_batch_with_friction, run_batch_with_friction_on,
+    LaneRunEnd, RunStart, run_batch, run_batch_on, run_batch_with_friction, run_batch_with_friction_on,
 };
 use equipoise_physics::body::Body;
 use equipoise_physics::body::general::GeneralBody;
@@ -42,18 +42,18 @@ prop_compose! {
     }
 }
 
-fn alone(start: &RunStart, impacts: u64) -> RunEnd {
+fn alone(start: &RunStart, impacts: u64) -> LaneRunEnd {
     alone_as(start.rod, start, impacts)
 }
 
-fn alone_as(body: impl Body, start: &RunStart, impacts: u64) -> RunEnd {
+fn alone_as(body: impl Body, start: &RunStart, impacts: u64) -> LaneRunEnd {
     let mut orbit = Orbit::at(body, start.rules, start.state);
     let mut max_theta: f64 = 0.0;
     let ending = run(&mut orbit, impacts, |contact| {
         max_theta = max_theta.max(contact.state.theta.abs());
         true
     });
-    RunEnd { impacts: orbit.contacts(), outcome: ending.unwrap().into(), max_theta }
+    LaneRunEnd { impacts: orbit.contacts(), outcome: ending.unwrap().into(), max_theta }
 }
 
 proptest! {
@@ -81,8 +81,8 @@ proptest! {
         run_batch_with_friction((law, slide), impacts, || next.next(), |number, end| ends[number] = Some(end), || true);
         for ((start, coefficient), end) in starts.iter().zip(ends) {
             let friction = Some(Friction { coefficient: *coefficient, law, slide });
-            let rig = GeneralBody { rod: start.rod, steering: Steering::TiltGain, friction, noise: None, outline: None };
-            prop_assert_eq!(end, Some(alone_as(rig, start, impacts)), "{:?} {:?}", start, friction);
+            let general = GeneralBody { rod: start.rod, steering: Steering::TiltGain, friction, noise: None, outline: None };
+            prop_assert_eq!(end, Some(alone_as(general, start, impacts)), "{:?} {:?}", start, friction);
         }
     }
 }
@@ -137,7 +137,7 @@ fn every_kind_of_instructions_gives_the_same_bits() {
     assert!(tried > 0);
 }
 
-fn hash(ends: &[Option<RunEnd>]) -> u64 {
+fn hash(ends: &[Option<LaneRunEnd>]) -> u64 {
     let words = ends.iter().flatten().flat_map(|end| [end.impacts, end.outcome as u64, end.max_theta.to_bits()]);
     words
         .flat_map(u64::to_le_bytes)

@@ -108,7 +108,7 @@ fn median(values: &mut [f64]) -> f64 {
 #[test]
 fn bounds_hold_over_small_angles() {
     for kind in KINDS {
-        let mut source = Random(2026);
+        let mut source = Random::new(2026);
         let (mut worst, mut states, mut times) = (0.0_f64, Vec::new(), Vec::new());
         for _ in 0..RUNS {
             let scene = scene(&mut source, kind);
@@ -131,7 +131,7 @@ fn bounds_hold_over_small_angles() {
 #[test]
 fn the_closed_form_is_the_power_of_the_matrix() {
     for kind in KINDS {
-        let mut source = Random(1);
+        let mut source = Random::new(1);
         for _ in 0..40 {
             let scene = scene(&mut source, kind);
             let Ok(solution) = LinearSolution::of_scene(&scene) else { continue };
@@ -203,7 +203,7 @@ fn wide(random: &mut Random, number: usize) -> Option<Scene> {
 
 #[test]
 fn bounds_hold_over_scenes_of_all_sizes() {
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     let (mut compared, mut failed) = (0, Vec::new());
     for number in 0..6000 {
         let Some(scene) = wide(&mut random, number) else { continue };

@@ -40,7 +40,7 @@ fn no_body_in_the_box_is_beyond_what_is_said() {
     ]);
     let tolerances = Tolerances { contact_distance: 0.004, radius_of_gyration: 0.003, restitution: 0.05 };
     let margins = margins_over_tolerances(&scene, &tolerances).unwrap();
-    let mut random = random::Random(3);
+    let mut random = random::Random::new(3);
     for _ in 0..500 {
         let mut draft = scene.draft();
         for (name, middle, off) in [

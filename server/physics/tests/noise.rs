@@ -20,7 +20,7 @@ fn ends(scene: &Scene, runs: u64, impacts: u64) -> Vec<(u64, &'static str)> {
                 let ending = run(&mut orbit, impacts, |_| true).unwrap();
                 (orbit.contacts(), ending.name())
             }
-            Err(none) => (0, none.ending(0.0, 0.0).name()),
+            Err(no_contact) => (0, no_contact.ending(0.0, 0.0).name()),
         })
         .collect()
 }

@@ -103,7 +103,7 @@ fn random_values(random: &mut Random, stuck: bool) -> Vec<(Name, f64)> {
 
 #[test]
 fn the_coefficient_is_its_closed_form() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let (mut repelling, mut attracting) = (0, 0);
     for _ in 0..500 {
         let scene = scene(&random_values(&mut random, false));
@@ -183,7 +183,7 @@ fn runs_grow_and_shrink_by_it() {
 
 #[test]
 fn matched_friction_has_it_too() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for _ in 0..12 {
         let mut values = random_values(&mut random, true);
         values.extend([(Name::Friction, 0.8), (Name::Theta, 0.01)]);
@@ -276,7 +276,7 @@ fn a_law_just_beyond_its_margin_settles_on_the_swing_that_it_says() {
 
 #[test]
 fn soft_and_hard_laws_do_what_they_are_called() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let (mut soft, mut hard) = (0, 0);
     for _ in 0..60 {
         let length = random.between(0.05, 0.5);
@@ -328,7 +328,7 @@ fn the_margins_of_a_stable_law_have_both_their_ends() {
 
 #[test]
 fn beyond_its_upper_end_the_energy_gain_flips_to_two_heights() {
-    let mut random = Random(17);
+    let mut random = Random::new(17);
     for _ in 0..40 {
         let mut values = random_values(&mut random, false);
         let upper = {
@@ -393,7 +393,7 @@ fn the_angle_on_two_heights_is_judged_over_both() {
 
 #[test]
 fn the_odd_derivative_is_that_of_the_jacobian() {
-    let mut random = Random(23);
+    let mut random = Random::new(23);
     for slide in ["none", "matched"] {
         for _ in 0..20 {
             let mut values = random_values(&mut random, slide == "matched");

@@ -5,7 +5,7 @@ use equipoise_physics::body::polygon::{FARTHEST, LENGTHS, MAX_VERTICES, Outline,
 use equipoise_physics::bounce::flight::Flight;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::trig;
-use equipoise_physics::scene::{Kind, Name};
+use equipoise_physics::scene::{FieldKind, Name};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
@@ -330,7 +330,7 @@ fn the_contact_is_the_lowest_unless_another_is_said() {
 fn lengths_are_those_of_a_rod() {
     for name in [Name::ContactDistance, Name::RadiusOfGyration] {
         let (minimum, maximum) = (*LENGTHS.start(), *LENGTHS.end());
-        assert_eq!(name.row().kind, Kind::Number { minimum, maximum });
+        assert_eq!(name.row().kind, FieldKind::Number { minimum, maximum });
     }
     assert_eq!(FARTHEST, *LENGTHS.end());
 }

@@ -35,7 +35,7 @@ fn pair(places: &[[f64; 2]], numbers: &[(Name, f64)]) -> (Scene, Scene) {
 fn runs(scene: &Scene, impacts: u64) -> (Vec<[u64; 5]>, Ending) {
     let mut orbit = match scene.orbit() {
         Ok(orbit) => orbit,
-        Err(none) => return (Vec::new(), none.ending(0.0, 0.0)),
+        Err(no_contact) => return (Vec::new(), no_contact.ending(0.0, 0.0)),
     };
     let mut seen = Vec::new();
     let ending = run(&mut orbit, impacts, |contact| {
@@ -129,7 +129,7 @@ fn a_kicked_polygon_is_looked_at_too() {
 }
 
 #[test]
-fn the_ladder_leaves_the_other_vertices_out_below_the_last_rung() {
+fn the_ladder_leaves_the_other_vertices_out_below_the_last_level() {
     let numbers = [(Name::Height, 0.1), (Name::TiltGain, 1.3), (Name::Theta, 0.3)];
     let (polygon, rod) = pair(&WIDE, &numbers);
     assert_eq!(polygon.as_rod(), rod);

@@ -27,7 +27,7 @@ struct RoughRod {
 }
 
 impl RoughRod {
-    fn rig(&self) -> GeneralBody {
+    fn general(&self) -> GeneralBody {
         GeneralBody {
             rod: self.rod,
             steering: Steering::TiltGain,
@@ -38,7 +38,7 @@ impl RoughRod {
     }
 
     fn strike(&self, state: &State) -> Strike {
-        self.rig().strike(&PreImpact::at(1, 0.0, *state))
+        self.general().strike(&PreImpact::at(1, 0.0, *state))
     }
 }
 
@@ -95,12 +95,12 @@ fn calm(linearization: &Linearization) -> bool {
 
 #[test]
 fn derivatives_are_those_of_differences_in_every_mode_and_law() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let mut seen = Vec::new();
     let mut worst: f64 = 0.0;
     for round in 0..6000 {
         let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
-        let (model, start) = (Model::General(rough.rig()), state(&mut random));
+        let (model, start) = (Model::General(rough.general()), state(&mut random));
         let period = 1 + round as u64 % 2;
         let Ok(exact) = jacobian(&model, &start, period) else { continue };
         assert!(exact.one_sided.is_empty(), "{rough:?} {start:?}");
@@ -138,10 +138,10 @@ fn derivatives_are_those_of_differences_in_every_mode_and_law() {
 #[test]
 fn the_mirror_commutes_with_the_derivative() {
     let mirror = DMatrix::from_diagonal(&nalgebra::DVector::from_row_slice(&[-1.0, -1.0, 1.0, -1.0]));
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     for round in 0..300 {
         let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
-        let (model, start) = (Model::General(rough.rig()), state(&mut random));
+        let (model, start) = (Model::General(rough.general()), state(&mut random));
         let image = State { theta: -start.theta, x_dot: -start.x_dot, theta_dot: -start.theta_dot, ..start };
         let (Ok(one), Ok(other)) = (jacobian(&model, &start, 1), jacobian(&model, &image, 1)) else { continue };
         assert_eq!(&mirror * one.matrix * &mirror, other.matrix);
@@ -152,7 +152,7 @@ fn the_mirror_commutes_with_the_derivative() {
 /// The derivative by differences to one side only, extrapolated.
 fn one_sided_difference(rough: &RoughRod, state: &State, column: usize, step: f64) -> [f64; 4] {
     let end = |step: f64| {
-        let mut orbit = Orbit::at(rough.rig(), Rules::BARE_MAP, shifted(rough, state, column, step));
+        let mut orbit = Orbit::at(rough.general(), Rules::BARE_MAP, shifted(rough, state, column, step));
         orbit.advance();
         let State { theta, x_dot, y_dot, theta_dot } = *orbit.state();
         let rho = rough.rod.radius_of_gyration;
@@ -210,7 +210,7 @@ fn look(
     modes: &[ContactMode],
     counts: &mut Vec<((RestitutionLaw, Vec<ContactMode>), u32)>,
 ) {
-    let Ok(linearization) = jacobian(&Model::General(rough.rig()), state, 1) else { return };
+    let Ok(linearization) = jacobian(&Model::General(rough.general()), state, 1) else { return };
     let sides: Vec<&DMatrix<f64>> = if linearization.one_sided.is_empty() {
         vec![&linearization.matrix]
     } else {
@@ -246,7 +246,7 @@ fn assert_seen(counts: &[((RestitutionLaw, Vec<ContactMode>), u32)], modes: &[Co
 
 #[test]
 fn where_the_sliding_ends_with_the_impact_both_sides_are_told() {
-    let (mut random, mut counts) = (Random(11), Vec::new());
+    let (mut random, mut counts) = (Random::new(11), Vec::new());
     for round in 0..6000 {
         let rough = model(&mut random, LAWS[round % 3], Slide::None);
         let start = state(&mut random);
@@ -280,7 +280,7 @@ fn at_rest(rough: &RoughRod, state: &State) -> bool {
 
 #[test]
 fn a_contact_at_rest_is_a_kink_only_outside_the_stick_cone() {
-    let (mut random, mut counts) = (Random(12), Vec::new());
+    let (mut random, mut counts) = (Random::new(12), Vec::new());
     for round in 0..6000 {
         let mut rough = model(&mut random, LAWS[round % 3], Slide::None);
         rough.friction.coefficient *= if round % 2 == 0 { 0.2 } else { 1.0 };
@@ -298,7 +298,7 @@ fn a_contact_at_rest_is_a_kink_only_outside_the_stick_cone() {
 
 #[test]
 fn the_edge_of_the_stick_cone_is_a_kink() {
-    let (mut random, mut counts) = (Random(13), Vec::new());
+    let (mut random, mut counts) = (Random::new(13), Vec::new());
     for round in 0..6000 {
         let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
         let start = state(&mut random);
@@ -318,7 +318,7 @@ fn the_edge_of_the_stick_cone_is_a_kink() {
 
 #[test]
 fn the_end_of_compression_is_a_kink_for_poisson_alone() {
-    let (mut random, mut counts) = (Random(14), Vec::new());
+    let (mut random, mut counts) = (Random::new(14), Vec::new());
     for round in 0..6000 {
         let rough = model(&mut random, LAWS[round % 3], Slide::None);
         // The same approach γ v_nc/(1 + e) without restitution: the impact ends where compression does.
@@ -353,7 +353,7 @@ fn the_end_of_compression_is_a_kink_for_poisson_alone() {
 
 #[test]
 fn at_the_fixed_point_it_has_a_closed_form() {
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     for round in 0..60 {
         let mut rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
         rough.friction.coefficient = random.between(0.01, 1.0);
@@ -362,7 +362,7 @@ fn at_the_fixed_point_it_has_a_closed_form() {
         // The wanted energy is that of this bounce.
         rough.rod.target_energy = g * l + 0.5 * v * v;
         let state = State { theta: 0.0, x_dot: 0.0, y_dot: -v, theta_dot: 0.0 };
-        let ours = jacobian(&Model::General(rough.rig()), &state, 1).unwrap();
+        let ours = jacobian(&Model::General(rough.general()), &state, 1).unwrap();
         assert!(ours.one_sided.is_empty() && ours.contact_mode == ContactMode::Stick);
         let (k, tau) = (rho * rho + l * l, 2.0 * v / g);
         // ẋ and θ̇ after the strike, by θ, ẋ and θ̇.

@@ -89,7 +89,7 @@ fn draft(numbers: &[(Name, f64)], choices: &[(Name, &'static str)]) -> Draft {
 
 #[test]
 fn contacts_with_friction_come_to_rest_where_the_equations_do() {
-    let mut random = Random(13);
+    let mut random = Random::new(13);
     let (mut rested, mut stopped, mut others) = (0, 0, 0);
     for number in 0..8000 {
         let l = random.between(0.05, 0.6);
@@ -196,7 +196,7 @@ fn a_sticking_contact_keeps_cos_2_alpha() {
 /// there and then. Where the contact slides down a tilted table, it is driven down at a speed.
 #[test]
 fn restitution_0_on_a_still_table_is_a_dead_stop() {
-    let mut random = Random(0);
+    let mut random = Random::new(0);
     let mut kinds = [0, 0, 0];
     for number in 0..3000 {
         let l = random.between(0.02, 1.0);
@@ -245,7 +245,7 @@ fn restitution_0_on_a_still_table_is_a_dead_stop() {
 /// A strike that leaves the contact point all but grazing y = 0, at a speed: a short flight, and the run goes on.
 #[test]
 fn a_graze_is_not_rest() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let mut grazes = 0;
     for number in 0..400 {
         let l = random.between(0.1, 0.5);
@@ -316,7 +316,7 @@ fn a_graze_is_not_rest() {
 /// Rises that doubles cannot tell from 0: with 31 digits every flight still has its own length.
 #[test]
 fn no_flight_of_31_digits_is_negative() {
-    let mut random = Random(77);
+    let mut random = Random::new(77);
     let mut short = 0;
     for number in 0..2000 {
         let l = random.between(0.05, 0.6);

@@ -6,12 +6,14 @@ use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Value};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::SplitMix64;
 
 const IMPACTS: u64 = 20_000;
 const COLUMNS: usize = 121;
 const ROWS: usize = 101;
 
-fn region() -> StabilityMap {
+fn map() -> StabilityMap {
     let mut scene = Draft::default();
     for (name, value) in
         [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 0.094_280_904_158_206_35), (Name::Height, 0.2)]
@@ -28,21 +30,21 @@ fn region() -> StabilityMap {
 }
 
 /// The largest θ₀ of a column up to which all survive.
-fn outline(region: &StabilityMap, survives: impl Fn(usize, usize) -> bool, tilt_gain: f64) -> f64 {
+fn outline(map: &StabilityMap, survives: impl Fn(usize, usize) -> bool, tilt_gain: f64) -> f64 {
     let column = ((tilt_gain - 1.0) / 0.6 * (COLUMNS - 1) as f64).round() as usize;
-    (0..ROWS).take_while(|&row| survives(column, row)).last().map_or(0.0, |row| region.y.value(row))
+    (0..ROWS).take_while(|&row| survives(column, row)).last().map_or(0.0, |row| map.y.value(row))
 }
 
 #[test]
 fn the_map_of_the_papers_body_is_true() {
-    let region = region();
-    let cells: Vec<MapCell> = region.cells(0..ROWS * COLUMNS, &mut || true).unwrap();
+    let map = map();
+    let cells: Vec<MapCell> = map.cells(0..ROWS * COLUMNS, &mut || true).unwrap();
     let at = |column: usize, row: usize| cells[row * COLUMNS + column];
     let survives = |column, row| at(column, row).value == Some(IMPACTS as f64);
 
-    // Shape of the surviving region: dents just beyond the resonances of order 4 (R = 1/2, κ = 1.25) and 3 (R = 3/4, κ = 1.375),
+    // Shape of the surviving map: dents just beyond the resonances of order 4 (R = 1/2, κ = 1.25) and 3 (R = 3/4, κ = 1.375),
     // and a tongue of small angles beyond κ_c = 1.5, where the linear verdict is unstable.
-    let outline = |tilt_gain| outline(&region, survives, tilt_gain);
+    let outline = |tilt_gain| outline(&map, survives, tilt_gain);
     let shape = [1.1, 1.235, 1.265, 1.35, 1.375, 1.41, 1.445, 1.49, 1.51, 1.525, 1.56].map(outline);
     println!("θ₀ survived at κ = 1.1, 1.235, 1.265, 1.35, 1.375, 1.41, 1.445, 1.49, 1.51, 1.525, 1.56: {shape:.3?}");
     let [wide, before_4, dent_4, between, before_3, dent_3, after_3, inside, tongue, tip, outside] = shape;
@@ -52,27 +54,23 @@ fn the_map_of_the_papers_body_is_true() {
 
     // Cell by cell, by the map alone with another rounding: nothing holds its energy. Left out are edges, where a neighbour's
     // fate is another, since there a run hangs on its last digit.
-    let mut state = 1_u64;
-    let mut random = |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % below
-    };
+    let mut random = SplitMix64::seed_from_u64(1);
     let (mut compared, mut edges, mut others) = (0, 0, Vec::new());
     for _ in 0..2000 {
-        let (column, row) = (random(COLUMNS), random(ROWS));
+        let (column, row) = (random.random_range(..COLUMNS), random.random_range(..ROWS));
         let around = |middle: usize, count: usize| middle.saturating_sub(1)..=(middle + 1).min(count - 1);
         let fate = survives(column, row);
         if around(column, COLUMNS).any(|column| around(row, ROWS).any(|row| survives(column, row) != fate)) {
             edges += 1;
             continue;
         }
-        let scene = region.scene(column, row).unwrap();
+        let scene = map.scene(column, row).unwrap();
         let rules = Rules { holds_energy: false, ..scene.rules() };
         let mut orbit = Orbit::new(scene.model(), rules, scene.release()).unwrap();
         let ending = run(&mut orbit, IMPACTS, |_| true).unwrap();
         compared += 1;
         if (ending == Ending::Completed) != fate {
-            others.push((region.x.value(column), region.y.value(row), at(column, row), ending));
+            others.push((map.x.value(column), map.y.value(row), at(column, row), ending));
         }
     }
     println!("{compared} cells compared, {edges} on edges left out, {} of another fate: {others:?}", others.len());

@@ -244,7 +244,7 @@ fn balance(scene: &Scene, rod: &Rod, before: &State, found: &Strike) {
     zero("restitution", restored, speeds, &of);
 }
 
-/// A scene of a rod; none if the input contradicts itself.
+/// A scene of a rod; `None` if the input contradicts itself.
 fn scene(numbers: &Numbers, law: &'static str) -> Option<Scene> {
     let mut draft = Draft::default();
     let still = numbers.choice("still", 2) == 1;

@@ -11,7 +11,7 @@ const NAMES: &[&str] = &["preset", "scene", "body", "type", "value", "impact", "
 /// Longest sentence about one field, characters. It quotes a part of the input, and known names in full.
 const LONGEST: usize = 1500;
 
-/// Panics unless this is a proper answer to `sent`, a request of some bytes; none if the request is not one JSON value.
+/// Panics unless this is a proper answer to `sent`, a request of some bytes; `None` if the request is not one JSON value.
 pub(crate) fn hold(problem: &Problem, sent: Option<&Value>, bytes: usize) {
     let (status, errors) = (problem.status().as_u16(), problem.errors());
     assert!(status == 400 || status == 422, "{problem:?}");

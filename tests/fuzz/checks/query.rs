@@ -3,7 +3,7 @@
 use equipoise::api::scene::scene_to_json;
 use equipoise::http::request::query;
 use equipoise::http::{Problem, Source};
-use equipoise_physics::scene::{Kind, VERTICES, field};
+use equipoise_physics::scene::{FieldKind, VERTICES, field};
 use serde_json::{Map, Number, Value};
 
 use super::{problem, scene};
@@ -82,8 +82,8 @@ fn in_json(path: &str, value: &Value) -> Value {
             let row = path.strip_prefix("scene.").and_then(field);
             let read = match (row, row.map(|row| row.kind)) {
                 (Some(_), _) if text == "null" => Some(Value::Null),
-                (_, Some(Kind::Number { .. } | Kind::Integer { .. })) => as_number(),
-                (_, Some(Kind::Flag)) => text.parse().ok().map(Value::Bool),
+                (_, Some(FieldKind::Number { .. } | FieldKind::Integer { .. })) => as_number(),
+                (_, Some(FieldKind::Flag)) => text.parse().ok().map(Value::Bool),
                 (None, _) if path.strip_prefix("scene.") == Some(VERTICES) => as_number(),
                 _ => None,
             };

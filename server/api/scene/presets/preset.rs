@@ -18,7 +18,7 @@ pub struct Preset {
     pub(super) title: &'static str,
     pub(super) shows: &'static str,
     pub(super) scene: &'static [(Name, FieldValue)],
-    /// Vertices of a polygon, m; none for other bodies.
+    /// Vertices of a polygon, m; `None` for other bodies.
     pub(super) vertices: &'static [[f64; 2]],
     pub(super) printed: &'static [Printed],
     /// The answer, once it has been computed.

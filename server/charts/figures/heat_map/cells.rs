@@ -19,14 +19,14 @@ const HATCHING: f64 = 8.0;
 
 /// One side of the cells.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Side {
+pub(crate) struct GridSide {
     /// Number of cells.
     pub(crate) count: usize,
     /// True if they run from the right or from the top.
     pub(crate) reversed: bool,
 }
 
-impl Side {
+impl GridSide {
     /// Number of cells that are drawn.
     pub(crate) fn drawn(self) -> usize {
         self.count.min(MOST)
@@ -40,7 +40,7 @@ impl Side {
 }
 
 /// The drawn cells: rows from below, a value for each cell.
-pub(crate) struct Cells {
+pub(crate) struct CellGrid {
     columns: usize,
     rows: usize,
     values: Vec<Option<f64>>,
@@ -53,17 +53,17 @@ pub(crate) struct Cells {
 struct Bin {
     sum: f64,
     count: u32,
-    kind: Option<Kind>,
+    kind: Option<CellOutcome>,
     mixed: bool,
 }
 
-/// The outcome of a cell with a value; none without a value.
-type Kind = Option<u8>;
+/// The outcome of a cell with a value; `None` without a value.
+type CellOutcome = Option<u8>;
 
-impl Cells {
+impl CellGrid {
     /// Puts the cells into bins row by row and takes the mean of the finite values in each bin. `outcomes` are any numbers in the order
     /// of the values; missing ones count as equal.
-    pub(crate) fn binned(values: &[Option<f64>], outcomes: &[u8], x: Side, y: Side) -> Self {
+    pub(crate) fn binned(values: &[Option<f64>], outcomes: &[u8], x: GridSide, y: GridSide) -> Self {
         let (columns, rows) = (x.drawn(), y.drawn());
         let mut bins = vec![Bin::default(); columns * rows];
         for (row, values) in values.chunks(x.count.max(1)).take(y.count).enumerate() {
@@ -191,12 +191,12 @@ impl Runs {
 mod tests {
     use super::*;
 
-    const ALONG: Side = Side { count: 4, reversed: false };
+    const ALONG: GridSide = GridSide { count: 4, reversed: false };
 
     #[test]
     fn runs_of_one_colour_are_one_rectangle() {
         let values = [0.0, 0.0, 9.0, 0.0, 9.0, 9.0, 9.0, 9.0].map(Some);
-        let cells = Cells::binned(&values, &[], ALONG, Side { count: 2, reversed: false });
+        let cells = CellGrid::binned(&values, &[], ALONG, GridSide { count: 2, reversed: false });
         let mut svg = Svg::new(1.0, 1.0, "", "");
         cells.draw(&mut svg, Frame { left: 0.0, top: 0.0, width: 8.0, height: 8.0 }, |value| value as usize);
         let text = svg.finish();
@@ -208,35 +208,36 @@ mod tests {
     #[test]
     fn bins_hold_the_mean_of_what_has_a_value() {
         let values: Vec<_> = (0..2 * MOST).map(|n| (n != 0).then_some(n as f64)).collect();
-        let x = Side { count: 2 * MOST, reversed: false };
-        let cells = Cells::binned(&values, &[], x, Side { count: 1, reversed: false });
+        let x = GridSide { count: 2 * MOST, reversed: false };
+        let cells = CellGrid::binned(&values, &[], x, GridSide { count: 1, reversed: false });
         assert_eq!((cells.values[0], cells.values[1], cells.values[MOST - 1]), (Some(1.0), Some(2.5), Some(1022.5)));
-        let back = Cells::binned(&values, &[], Side { reversed: true, ..x }, Side { count: 1, reversed: true });
+        let back =
+            CellGrid::binned(&values, &[], GridSide { reversed: true, ..x }, GridSide { count: 1, reversed: true });
         assert_eq!(back.values[MOST - 1], Some(1.0));
-        let odd = Side { count: MOST + 1, reversed: false };
-        assert!(!Cells::binned(&values[1..MOST + 2], &[], odd, Side { count: 1, reversed: false }).any_empty());
+        let odd = GridSide { count: MOST + 1, reversed: false };
+        assert!(!CellGrid::binned(&values[1..MOST + 2], &[], odd, GridSide { count: 1, reversed: false }).any_empty());
     }
 
     #[test]
     fn bins_of_different_kinds_are_counted() {
-        let (x, y) = (Side { count: 2 * MOST, reversed: false }, Side { count: 1, reversed: false });
+        let (x, y) = (GridSide { count: 2 * MOST, reversed: false }, GridSide { count: 1, reversed: false });
         let values = vec![Some(1.0); 2 * MOST];
         let mut outcomes = vec![0; 2 * MOST];
-        assert_eq!(Cells::binned(&values, &outcomes, x, y).mixed, 0);
+        assert_eq!(CellGrid::binned(&values, &outcomes, x, y).mixed, 0);
         // Two bins of one kind, one of two.
         outcomes[4..7].fill(1);
-        assert_eq!(Cells::binned(&values, &outcomes, x, y).mixed, 1);
+        assert_eq!(CellGrid::binned(&values, &outcomes, x, y).mixed, 1);
         // A cell without a value beside one with, whatever its outcome; and two without.
         let holes: Vec<_> = (0..2 * MOST).map(|n| (![8, 10, 11].contains(&n)).then_some(1.0)).collect();
-        assert_eq!(Cells::binned(&holes, &outcomes, x, y).mixed, 2);
-        let shown = Side { count: MOST, reversed: false };
-        assert_eq!(Cells::binned(&holes, &outcomes, shown, y).mixed, 0);
+        assert_eq!(CellGrid::binned(&holes, &outcomes, x, y).mixed, 2);
+        let shown = GridSide { count: MOST, reversed: false };
+        assert_eq!(CellGrid::binned(&holes, &outcomes, shown, y).mixed, 0);
     }
 
     #[test]
     fn too_few_and_too_many_values_are_taken_as_they_come() {
-        assert!(Cells::binned(&[Some(1.0); 3], &[], ALONG, ALONG).any_empty());
-        assert_eq!(Cells::binned(&[Some(1.0); 99], &[], ALONG, ALONG).values, [Some(1.0); 16]);
-        assert!(Cells::binned(&[Some(1.0)], &[], Side { count: 0, reversed: true }, ALONG).values.is_empty());
+        assert!(CellGrid::binned(&[Some(1.0); 3], &[], ALONG, ALONG).any_empty());
+        assert_eq!(CellGrid::binned(&[Some(1.0); 99], &[], ALONG, ALONG).values, [Some(1.0); 16]);
+        assert!(CellGrid::binned(&[Some(1.0)], &[], GridSide { count: 0, reversed: true }, ALONG).values.is_empty());
     }
 }

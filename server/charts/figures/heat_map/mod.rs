@@ -7,7 +7,7 @@ pub mod cividis;
 
 use crate::charts::draw::colour::{AXIS, INK, SOFT_INK};
 use crate::charts::draw::geometry::{Frame, Point};
-use crate::charts::draw::legend::{Sample, legend};
+use crate::charts::draw::legend::{LegendSample, legend};
 use crate::charts::draw::marks::{cased, line};
 use crate::charts::draw::number::significant;
 use crate::charts::draw::panel::{Axis, Panel, TICK_SIZE, TITLE_SIZE, title};
@@ -15,7 +15,7 @@ use crate::charts::draw::scale::{Range, Scale, Ticks, ticks};
 use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Anchor, Svg, Type, fixed};
 use crate::charts::draw::text::{Span, width};
-use crate::charts::figures::heat_map::cells::{Cells, MOST, Side};
+use crate::charts::figures::heat_map::cells::{CellGrid, GridSide, MOST};
 use crate::charts::figures::heat_map::cividis::{COLOURS, colour};
 
 /// Highest number of segments of the boundary that are drawn.
@@ -35,7 +35,7 @@ pub struct HeatMap<'a> {
     pub x: HeatAxis<'a>,
     /// The field along y.
     pub y: HeatAxis<'a>,
-    /// Values row by row, the first row at `y.from`. None where the fields make no valid scene.
+    /// Values row by row, the first row at `y.from`. `None` if the fields make no valid scene.
     pub values: &'a [Option<f64>],
     /// Number of the outcome of each cell's run. Empty without runs.
     pub outcomes: &'a [u8],
@@ -89,8 +89,8 @@ impl HeatAxis<'_> {
         Axis { name: self.name, symbol: self.symbol, unit: self.unit, range }
     }
 
-    fn side(&self) -> Side {
-        Side { count: self.count, reversed: self.count > 1 && self.from > self.to }
+    fn side(&self) -> GridSide {
+        GridSide { count: self.count, reversed: self.count > 1 && self.from > self.to }
     }
 }
 
@@ -102,7 +102,7 @@ pub fn heat_map(map: &HeatMap<'_>) -> String {
     const WIDTH: f64 = 784.0;
     const ROOM: f64 = 598.0;
     const SIDE: f64 = MOST as f64;
-    let cells = Cells::binned(map.values, map.outcomes, map.x.side(), map.y.side());
+    let cells = CellGrid::binned(map.values, map.outcomes, map.x.side(), map.y.side());
     let bar = Bar::new(map);
     let caption = caption(map, &bar, cells.mixed);
     let description = format!(
@@ -135,13 +135,13 @@ pub fn heat_map(map: &HeatMap<'_>) -> String {
         let path = boundary::path(&segments, frame);
         if !path.is_empty() {
             cased(&mut svg, &path, dashes);
-            entries.push((Sample::Cased { dashes }, meaning));
+            entries.push((LegendSample::Cased { dashes }, meaning));
         }
     }
     panel.edge(&mut svg);
     bar.draw(&mut svg, Frame { left: frame.left + SIDE + 28.0, width: 18.0, ..frame }, map);
     if cells.any_empty() {
-        entries.push((Sample::Hatched, "no such scene"));
+        entries.push((LegendSample::Hatched, "no such scene"));
     }
     legend(&mut svg, 0.5 * WIDTH, top + ROOM - 22.0, &entries);
     svg.finish()

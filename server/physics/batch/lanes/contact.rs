@@ -3,7 +3,6 @@
 //! Each has a loop of its own over the lanes, so that the one without pays nothing for the other. Not here: where the table
 //! is then, and the flight after ([`super::step`]).
 
-use super::checks::SURE_RISE;
 use super::number::Lane;
 use super::state::{Lanes, Moving, Rods, Scratch, WIDTH};
 use crate::body::general::GeneralBody;
@@ -12,6 +11,9 @@ use crate::run::ending::Ending;
 use crate::run::orbit::LaneRunState;
 use crate::run::rules::Rules;
 use crate::table::control_law::Steering;
+
+/// A contact point that rises faster does so by more than rounding ([`crate::bounce::strike::Strike::rises`]), at any speed up to the limit, m/s.
+const SURE_RISE: f64 = 1e-8;
 
 /// A kind of contact.
 pub(crate) trait Surface {
@@ -61,7 +63,7 @@ impl Surface for Smooth {
     }
 }
 
-/// As [`SURE_RISE`], for a contact with friction and l = 0: 1 + l²/ρ² times as much for others ([`crate::bounce::friction::rise_rounding`]).
+/// Same as [`SURE_RISE`], for a contact with friction and l = 0: 1 + l²/ρ² times as much for others ([`crate::bounce::friction::rise_rounding`]).
 const ROUGH_SURE_RISE: f64 = 10.0 * SURE_RISE;
 
 /// With friction, of one law and one way to slide in all lanes.
@@ -127,13 +129,13 @@ impl Surface for Rough {
 
     fn contact(&self, rods: &Rods, lane: usize, midst: LaneRunState) -> Result<LaneRunState, Ending> {
         let friction = Friction { coefficient: self.coefficient[lane], law: self.law, slide: self.slide };
-        let rig = GeneralBody {
+        let general = GeneralBody {
             rod: rods.rod(lane),
             steering: Steering::TiltGain,
             friction: Some(friction),
             noise: None,
             outline: None,
         };
-        midst.advance(rig, rods.rules(lane))
+        midst.advance(general, rods.rules(lane))
     }
 }

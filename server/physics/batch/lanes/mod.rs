@@ -3,7 +3,6 @@
 //!
 //! Not here: runs that end, and bounces that are not common ([`crate::batch::batch_run`]).
 
-mod checks;
 mod contact;
 mod number;
 mod state;

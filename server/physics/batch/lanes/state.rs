@@ -1,13 +1,12 @@
 //! The rods in the lanes, the state of their runs, and what the parts of a bounce hand on.
 
-use super::checks::LaneContact;
 use super::number::Lane;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::tilt::Tilt;
 use crate::run::orbit::LaneRunState;
-use crate::run::rules::{CheckedByMask, Rules};
+use crate::run::rules::{LaneContact, Rules};
 
 /// Number of rods that bounce side by side: two vectors of eight, or four of four, which the CPU overlaps.
 pub(crate) const WIDTH: usize = 16;
@@ -146,7 +145,7 @@ impl Rods {
         self.first_flight[lane] != 0.0
     }
 
-    /// When the run in a lane ends.
+    /// Rules that end the run in a lane.
     pub(super) fn rules(&self, lane: usize) -> Rules {
         Rules { topple_angle: self.topple_angle[lane], settles: self.settles(lane), holds_energy: false, limits: None }
     }

@@ -3,7 +3,6 @@
 //! In several short loops: a bounce is one long chain of operations, each waiting for the last, and the CPU overlaps the
 //! chains of neighbours only where they fit into its window together.
 
-use super::checks::LaneContact;
 use super::contact::Surface;
 use super::number::{Lane, Near};
 use super::state::{Moving, Rods, Scratch, WIDTH};
@@ -11,7 +10,7 @@ use crate::bounce::contact_time;
 use crate::bounce::contact_time::NewtonStep;
 use crate::bounce::flight::Flight;
 use crate::bounce::state::State;
-use crate::run::rules::CheckedByMask;
+use crate::run::rules::LaneContact;
 
 /// Most Newton steps of a common bounce: nearly all take one, few two.
 const STEPS: u32 = 3;

@@ -1,9 +1,9 @@
-//! Why vertices are no body, in words with numbers, limits and units.
+//! Reasons for which vertices are no body, in words with numbers, limits and units.
 
 use super::bounds::{FARTHEST, LENGTHS, MAX_VERTICES};
 use std::fmt;
 
-/// Why vertices are no body. Vertices are counted from 0; edge i goes from vertex i to the next.
+/// Reason for which vertices are no body. Vertices are counted from 0; edge i goes from vertex i to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PolygonError {
     /// Fewer than three vertices: how many.

@@ -139,7 +139,7 @@ impl DoubleDouble {
 }
 
 impl fmt::Display for DoubleDouble {
-    /// As [`DoubleDouble::to_decimal`].
+    /// Same as [`DoubleDouble::to_decimal`].
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.to_decimal().as_str())
     }

@@ -34,7 +34,7 @@ pub(super) fn quick_digits(high: f64, low: f64) -> Option<(i128, i32)> {
     Some((signed(high, of_high)?.checked_add(signed(low, of_low)?)?, exponent))
 }
 
-/// |value| in units of 10^−power, cut to a whole number and rounded half to even. None where 192 bits of the power do not tell, or
+/// |value| in units of 10^−power, cut to a whole number and rounded half to even. `None` if 192 bits of the power do not tell, or
 /// where it is too many for 37 digits and a bit.
 fn scaled(value: f64, power: i32) -> Option<(u128, u128)> {
     const HALF: u128 = 1 << 127;

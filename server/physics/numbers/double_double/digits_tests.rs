@@ -1,6 +1,9 @@
 //! Digits and texts against plain arithmetic with whole numbers of any size, and against the standard library.
 
 use super::DoubleDouble;
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::SplitMix64;
+
 use super::digits::{DIGITS, digits, exponent, in_units, quick_digits};
 
 /// Texts by plain arithmetic with whole numbers of any size.
@@ -117,13 +120,8 @@ mod exact {
 
 /// Numbers of all sizes, subnormal and largest ones too, many of them beside powers of ten and half-way between two digits.
 fn numbers(count: usize) -> impl Iterator<Item = DoubleDouble> {
-    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut random = move || {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        seed
-    };
+    let mut source = SplitMix64::seed_from_u64(1);
+    let mut random = move || source.random::<u64>();
     let size = |bits: u64| match bits % 4 {
         // Any double; one near 1; a power of ten and its neighbours; one of few bits.
         0 => f64::from_bits(bits),

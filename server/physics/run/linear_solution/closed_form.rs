@@ -23,7 +23,7 @@ pub struct LinearSolution {
     pub(super) class: AngleClass,
     /// Rotation or growth per bounce, rad or 1.
     pub(super) exponent: f64,
-    /// Eigenvalue of ẏ; none where the energy is exact.
+    /// Eigenvalue of ẏ; `None` if the energy is exact.
     pub(super) energy_eigenvalue: Option<f64>,
     /// Just before the first impact.
     pub(super) start: State,
@@ -36,7 +36,7 @@ pub struct LinearSolution {
 /// The linear state just before one impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearImpact {
-    /// When, s after release.
+    /// Time, s after release.
     pub t: f64,
     /// Horizontal place of the centre of gravity, m.
     pub x: f64,

@@ -24,7 +24,7 @@ impl LinearSolution {
     /// The linear solution of the run of a scene.
     ///
     /// # Errors
-    /// Why there is none, in a sentence.
+    /// The reason if there is none, in a sentence.
     pub fn of_scene(scene: &Scene) -> Result<Self, String> {
         if let Some(error) = scene.beyond(&[]) {
             return Err(error.detail);

@@ -1,25 +1,25 @@
 //! Random numbers from a seed.
 
-/// A generator of the splitmix family (G. L. Steele, D. Lea and C. H. Flood, 2014).
-pub(crate) struct Random(pub(crate) u64);
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::SplitMix64;
+
+/// A source of random numbers.
+pub(crate) struct Random(SplitMix64);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(SplitMix64::seed_from_u64(seed))
     }
 
     /// Uniform between two numbers.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        low + (high - low) * self.0.random::<f64>()
     }
 
     /// Uniform in its logarithm, of either sign.
+    #[allow(dead_code, reason = "not every test that shares this file draws sizes")]
     pub(crate) fn size(&mut self, low: f64, high: f64) -> f64 {
         let size = self.between(low.ln(), high.ln()).exp();
-        if self.next() & 1 == 0 { size } else { -size }
+        if self.0.random() { size } else { -size }
     }
 }

@@ -1,6 +1,6 @@
 //! The reference runs of `tests/reference`, as scenes.
 
-use equipoise_physics::scene::{Draft, FIELDS, Kind, Scene, Value};
+use equipoise_physics::scene::{Draft, FIELDS, FieldKind, Scene, Value};
 use serde_json::Value as Json;
 use std::path::{Path, PathBuf};
 
@@ -33,10 +33,10 @@ fn draft(scene: &Json) -> Option<Draft> {
         let pointer = format!("/{}", row.path.replace('.', "/"));
         let Some(json) = scene.pointer(&pointer) else { continue };
         let value = match row.kind {
-            Kind::Number { .. } => Value::Number(json.as_f64().unwrap()),
-            Kind::Integer { .. } => Value::Integer(json.as_u64().unwrap()),
-            Kind::Choice(words) => Value::Choice(words.iter().find(|word| Some(**word) == json.as_str()).unwrap()),
-            Kind::Flag => Value::Flag(json.as_bool().unwrap()),
+            FieldKind::Number { .. } => Value::Number(json.as_f64().unwrap()),
+            FieldKind::Integer { .. } => Value::Integer(json.as_u64().unwrap()),
+            FieldKind::Choice(words) => Value::Choice(words.iter().find(|word| Some(**word) == json.as_str()).unwrap()),
+            FieldKind::Flag => Value::Flag(json.as_bool().unwrap()),
         };
         draft.set(row.name, Some(value)).ok()?;
     }

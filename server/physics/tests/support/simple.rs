@@ -18,7 +18,7 @@ const G: f64 = 9.81;
 
 impl Simple {
     /// The velocities after a strike, by the impulse as its normal part grows: v_t and v_n are followed through every change of
-    /// their slopes. None where the table could only pull.
+    /// their slopes. `None` if the table could only pull.
     fn strike(&self) -> Option<[f64; 3]> {
         let Self { l, rho, e, .. } = *self;
         let [theta, x_dot, y_dot, theta_dot] = self.state;
@@ -114,7 +114,7 @@ impl Simple {
         high
     }
 
-    /// When the run has come to rest after `t`, s; none where it does anything else, or nothing for 3000 contacts.
+    /// Time at which the run comes to rest after `t`, s; `None` if it ends otherwise, or not within 3000 contacts.
     pub(crate) fn rest(mut self, mut t: f64) -> Option<(f64, f64)> {
         let (mut first, mut last) = (0.0, 0.0);
         for contact in 0..3000 {

@@ -5,14 +5,14 @@ use serde::Serialize;
 
 /// The largest tilt, rad, tilt rate, rad/s, speed, m/s, and stroke, m, that a run asks of the table.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub struct DemandAnswer {
+pub struct LoadAnswer {
     tilt: f64,
     tilt_rate: f64,
     speed: f64,
     stroke: f64,
 }
 
-impl From<ActuatorLoad> for DemandAnswer {
+impl From<ActuatorLoad> for LoadAnswer {
     fn from(ActuatorLoad { tilt, tilt_rate, speed, stroke }: ActuatorLoad) -> Self {
         Self { tilt, tilt_rate, speed, stroke }
     }
