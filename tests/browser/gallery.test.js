@@ -29,8 +29,48 @@ test('nothing of the gallery is loaded before it comes near', async () => {
   clean();
 });
 
+/** Unfolds every case. */
+const unfold = (page) =>
+  page.locator('article details').evaluateAll((all) => {
+    for (const details of all) details.open = true;
+  });
+
+test('every case is a line of its own at first, all of them within a screen', async () => {
+  const { page, clean } = await open();
+  const all = await failures();
+  const lines = page.locator('article summary');
+  assert.equal(await lines.count(), all.length);
+  assert.equal(await page.locator('article .says').filter({ visible: true }).count(), 0);
+  for (const [index, { title, method, says }] of all.entries()) {
+    const text = letters(await lines.nth(index).innerText());
+    const wrong = says.filter(({ right }) => !right).length;
+    for (const words of [title, method, `${wrong} of ${says.length} wrong`])
+      assert.ok(text.includes(letters(words)), `${title}: ${words}`);
+  }
+  assert.ok((await page.locator('.failures').boundingBox()).height < 800);
+  clean();
+});
+
+test('a link opens one case, and the address says which is open', async () => {
+  const all = await failures();
+  const { page, clean } = await stage.page(`?preset=case-1&gallery.case=${all[2].name}`);
+  const wanted = page.locator(`details[data-case="${all[2].name}"]`);
+  await wanted.locator('.truth').waitFor();
+  assert.equal(await page.locator('article details[open]').count(), 1);
+  await page.locator('article summary').first().focus();
+  await page.keyboard.press('Enter');
+  await page.waitForFunction((name) => location.search.includes(`gallery.case=${name}`), all[0].name);
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => !location.search.includes('gallery.case'));
+  clean();
+  const gone = await stage.page('?preset=case-1&gallery.case=nonsense');
+  await gone.page.locator('#gallery-body', { hasText: 'the case “nonsense”' }).waitFor();
+  gone.clean();
+});
+
 test('every case has its card, with right and wrong in words', async () => {
   const { page, clean } = await open();
+  await unfold(page);
   const all = await failures();
   const cards = page.locator('article');
   assert.equal(await cards.count(), all.length);
@@ -62,6 +102,7 @@ test('every case has its card, with right and wrong in words', async () => {
 for (const colorScheme of ['light', 'dark']) {
   test(`the pictures are there, ${colorScheme}`, async () => {
     const { page, clean } = await open({ colorScheme });
+    await unfold(page);
     for (const image of await page.locator('article img').all()) {
       await image.scrollIntoViewIfNeeded();
       await image.evaluate((element) => element.decode());
@@ -81,6 +122,7 @@ test('a card loads its scene and runs it, and Back returns', async () => {
   const { page, clean } = await open();
   const all = await failures();
   const index = all.findIndex(({ scene }) => scene.table.tilt_gain !== 1.1);
+  await page.locator('article summary').nth(index).click();
   await page.locator('article').nth(index).getByRole('button', { name: 'Load and run' }).click();
   await reachImpact(page, 1);
   const { scene } = all[index];

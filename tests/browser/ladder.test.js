@@ -26,12 +26,14 @@ for (const preset of ['triangle-polygon', 'case-4', 'point-mass']) {
   test(`${preset}: every rung with what forced it, what it changed and whether it was needed`, async () => {
     const { page, clean } = await open(`?preset=${preset}`);
     const { rungs, enough } = await asked(page);
+    const { fields } = await (await fetch(`${stage.url}v1/fields`)).json();
     const shown = await rows(page);
     assert.equal(shown.length, rungs.length);
     for (const [index, { name, forced, outcome, change, needed, cost_ns_per_impact: cost }] of rungs.entries()) {
       const [model, field, time, end, , most, verdictOf] = shown[index].map(plain);
       assert.equal(model, name.replaceAll('_', ' ') + (name === enough ? ' enough' : ''));
-      assert.ok(forced ? field.startsWith(forced.field) : field === '–', field);
+      const title = fields.find(({ path }) => path === forced?.field)?.title ?? 'Vertices';
+      assert.ok(forced ? field.startsWith(plain(title)) : field === '–', field);
       assert.equal(Number(time), cost);
       assert.ok(!outcome || end === `${outcome.kind.replaceAll('_', ' ')}, ${outcome.impacts}`, end);
       if (change?.state.difference != null)

@@ -133,7 +133,7 @@ test('its settings are in the address, and what is broken of them is dropped in 
   await page.fill('#precision-impacts', '100');
   await page.selectOption('#precision-axis', 'evaluations');
   await page.waitForFunction(() => location.search.includes('evaluations'));
-  assert.equal(new URL(page.url()).search, '?preset=case-1&precision.axis=evaluations');
+  assert.equal(new URL(page.url()).search, '?preset=case-1&tab=accuracy&precision.axis=evaluations');
   clean();
   const broken = await open('?preset=case-1&precision.impacts=0&precision.axis=luck');
   const words = await broken.page.locator('#notices').innerText();

@@ -292,7 +292,7 @@ const PANELS = {
     await page.click('#design-start');
     await page.locator('#design-sheet svg').waitFor();
   },
-  branch: (page) => page.locator('.changes').first().waitFor(),
+  branch: (page) => page.locator('#branch-body svg.figure').waitFor(),
   precision: (page) => measure(page),
   paper: (page) => page.locator('#paper-body td').first().waitFor(),
   calls: (page) => page.locator('#calls-body code').first().waitFor(),

@@ -230,7 +230,7 @@ test('its settings are in the address, and what is broken of them is dropped in 
   await page.waitForFunction(() => !location.search.includes('survival.model'));
   assert.equal(
     new URL(page.url()).search,
-    '?preset=case-1&survival.runs=300&survival.impacts=50&survival.timing_sd=0.0125',
+    '?preset=case-1&tab=noise&survival.runs=300&survival.impacts=50&survival.timing_sd=0.0125',
   );
   clean();
   const broken = await open(

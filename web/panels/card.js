@@ -2,6 +2,9 @@
 
 import { enlarger } from '../export/enlarge-button.js';
 import { h, retryButton } from '../dom/elements.js';
+import { styles } from '../dom/styles.js';
+
+export { styles };
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 /** @typedef {import('contract').Preset} Case */
@@ -44,27 +47,6 @@ import { h, retryButton } from '../dom/elements.js';
  * @property {string[]} [shared] style sheets that it shares with other panels
  * @property {() => Promise<Module>} load
  */
-
-/** The style sheets that are loaded or on their way. @type {Map<string, Promise<void>>} */
-const sheets = new Map();
-
-/** Loads a style sheet once; one that failed can be asked for again. @param {string} path */
-export function styles(path) {
-  const sheet = sheets.get(path) ?? appendSheet(path);
-  sheets.set(path, sheet);
-  return sheet;
-}
-
-/** @param {string} path @returns {Promise<void>} */
-function appendSheet(path) {
-  return new Promise((resolve, reject) => {
-    const failed = () => {
-      sheets.delete(path);
-      reject(new Error(path));
-    };
-    document.head.append(h('link', { rel: 'stylesheet', href: path, load: () => resolve(), error: failed }));
-  });
-}
 
 /**
  * A card for a panel and, once its code and its styles are there, the panel. What fails to load can be asked for again.

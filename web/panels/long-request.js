@@ -22,6 +22,8 @@ export class LongRequest {
   /** @type {AbortController | null} */
   #under = null;
   #answered = false;
+  /** How long the newest answer took, s. */
+  took = 0;
 
   /**
    * @param {string} name what the ids of all of it begin with
@@ -71,6 +73,7 @@ export class LongRequest {
     this.#under?.abort();
     this.#busy(under);
     this.say(`${this.#doing}…`);
+    const begun_ms = performance.now();
     let answer = null;
     try {
       const response = await fetch(`${path}&format=progress`, { signal });
@@ -82,6 +85,7 @@ export class LongRequest {
       }
       if (!answer) throw new TypeError('no end');
       this.#answered = true;
+      this.took = (performance.now() - begun_ms) / 1000;
       return answer;
     } catch (error) {
       if (signal.aborted) return null;

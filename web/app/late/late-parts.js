@@ -5,7 +5,7 @@ import { copy } from '../../dom/clipboard.js';
 import { byId } from '../../dom/elements.js';
 import { brokenLinkNotice, clearNotice } from '../../dom/notices.js';
 import { enlarger } from '../../export/enlarge-button.js';
-import { styles } from '../../panels/card.js';
+import { styles } from '../../dom/styles.js';
 import { Panels } from '../../panels/panels.js';
 import { bringTimeline } from '../../timeline/bring.js';
 import { bringShell } from '../../workbench/shell.js';

@@ -7,7 +7,7 @@ import { byId, h } from '../../dom/elements.js';
 import { invalidate } from '../surface.js';
 import { listen } from './plot-pointer.js';
 import { notice } from '../../dom/notices.js';
-import { styles } from '../../panels/card.js';
+import { styles } from '../../dom/styles.js';
 
 /**
  * @typedef {object} InteractionParts

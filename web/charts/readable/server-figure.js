@@ -27,6 +27,12 @@ export function figureOf(text) {
   for (const name of ['role', 'width', 'height']) figure.removeAttribute(name);
   figure.setAttribute('aria-hidden', 'true');
   for (const element of figure.querySelectorAll(':scope > :is(title, desc)')) element.remove();
+  // The page has words of its own around the charts, and paper.
+  const { charts } = figure.dataset;
+  if (charts) {
+    figure.setAttribute('viewBox', charts);
+    figure.querySelector(':scope > rect')?.remove();
+  }
   return figure;
 }
 

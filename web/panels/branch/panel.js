@@ -6,7 +6,9 @@ import { LatestRequest } from '../../api/latest-request.js';
 import { Problem, get, wordsOf } from '../../api/client.js';
 import { actions } from '../../export/save-actions.js';
 import { h, retryButton } from '../../dom/elements.js';
-import { marked, prose, symbol } from '../../dom/typeset.js';
+import { explained, term } from '../../dom/glossary.js';
+import { marked, prose } from '../../dom/typeset.js';
+import { shownUnit, shownValue } from '../../dom/units.js';
 import { debounce } from '../../dom/debounce.js';
 import { number, quantity } from '../../dom/numbers.js';
 
@@ -18,6 +20,18 @@ const GAIN = 'table.tilt_gain';
 const SHOWN = 0.4;
 /** The orbit from which the branch is followed, rad: small, so that it is near κ_c. */
 const BEGIN = 0.02;
+
+/** The answer first, by the kind of the boundary. @type {Record<string, string>} */
+const HEADLINES = {
+  soft: 'Just beyond its largest tilt gain this body still holds on, in a small swing.',
+  hard: 'Beyond its largest tilt gain nothing holds this body: it falls.',
+  other: 'Where balance is lost, orbits of two bounces branch off.',
+};
+/** @type {Record<string, string>} */
+const MEANINGS = {
+  soft: 'They branch off beyond it and hold what falls: a {soft|soft boundary}',
+  hard: 'They lie below it and are unstable, so what leaves upright is thrown out: a {hard|hard boundary}',
+};
 
 /** @type {import('../card.js').Module['mount']} */
 export const mount = (root) => new Branch(root);
@@ -112,36 +126,36 @@ class Branch {
    * @param {number} critical
    */
   #draw(path, figure, changes, { boundary }, critical) {
-    /** @type {Record<string, string>} */
-    const meanings = {
-      soft: 'They branch off beyond it and hold what falls: a soft boundary',
-      hard: 'They lie below it and are unstable, so what leaves upright is thrown out: a hard boundary',
-    };
-    const words = meanings[boundary?.kind ?? ''];
+    const kind = boundary?.kind ?? '';
+    const words = MEANINGS[kind];
     this.#root.replaceChildren(
+      h(
+        'p',
+        { class: 'answer', role: 'status' },
+        h('strong', {}, HEADLINES[kind] ?? HEADLINES.other),
+        ' At ',
+        term('kappa-critical'),
+        ` = ${number(critical, 5)} the upright bounce gives birth to `,
+        term('orbit', 'orbits'),
+        ' that swing from side to side. ',
+        ...(words ? [...explained(words), ` (C = ${number(boundary?.coefficient, 3)}).`] : []),
+      ),
       readable(figure, critical),
       h(
-        'div',
+        'details',
         {},
-        h(
-          'p',
-          {},
-          'At ',
-          symbol('κ_c'),
-          ` = ${number(critical, 5)} the upright bounce gives birth to orbits that swing from side to side. `,
-          words ? `${words} (C = ${number(boundary?.coefficient, 3)}).` : '',
-        ),
+        h('summary', {}, `Changes along the branch (${changes.length})`),
         table(
-          'Where the branch changes',
-          ['Change', 'κ', 'θ / rad', 'R'],
+          'Changes along the branch',
+          ['Change', term('kappa'), shownUnit('θ / rad'), term('residue')],
           h('tbody', {}, ...changes.map(rowOf)),
           'changes',
         ),
-        h(
-          'p',
-          { class: 'actions' },
-          ...actions({ id: 'branch', title: 'Orbits of period 2', path, formats: ['svg', 'png', 'csv', 'json'] }),
-        ),
+      ),
+      h(
+        'p',
+        { class: 'actions' },
+        ...actions({ id: 'branch', title: 'Orbits of period 2', path, formats: ['svg', 'png', 'csv', 'json'] }),
       ),
     );
   }
@@ -162,7 +176,7 @@ const readable = (figure, critical) =>
 const rowOf = ({ kind, parameter, theta, residue, detail }) =>
   row(
     [kind.replaceAll('_', ' '), h('span', { class: 'muted' }, ...prose(detail))],
-    [number(parameter, 5), quantity(tiny(theta), '1'), number(tiny(residue), 3)],
+    [number(parameter, 5), number(shownValue(tiny(theta), 'rad')), number(tiny(residue), 3)],
   );
 
 /** Zero for a value that is rounding. @param {number} value */

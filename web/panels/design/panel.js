@@ -5,6 +5,7 @@ import { entries, row, table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
 import { get, wordsOf } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
+import { term } from '../../dom/glossary.js';
 import { marked, prose, symbol } from '../../dom/typeset.js';
 import { actions } from '../../export/save-actions.js';
 import { number, parse, quantity } from '../../dom/numbers.js';
@@ -55,6 +56,19 @@ class DesignPanel {
   );
   #told = h('div', { class: 'design-told', id: 'design-told', role: 'status' });
   #sheet = h('div', { class: 'design-sheet', id: 'design-sheet', hidden: true });
+  #run = h(
+    'button',
+    {
+      type: 'button',
+      id: 'design-run',
+      class: 'primary',
+      hidden: true,
+      click: () => this.#designed && this.#page.play(this.#designed),
+    },
+    'Run with this law',
+  );
+  /** The scene with the law of the sheet. @type {Scene | null} */
+  #designed = null;
   #latest = new LatestRequest();
 
   /**
@@ -87,16 +101,21 @@ class DesignPanel {
           },
         },
         h(
+          'div',
+          { class: 'design-act' },
+          h('button', { type: 'submit', id: 'design-start', class: 'primary' }, 'Design'),
+          this.#run,
+          this.#told,
+        ),
+        h(
           'fieldset',
           {},
-          h('legend', {}, 'Weights, squared deviations'),
+          h('legend', {}, 'Weights of squared deviations (', term('lqr', 'LQR'), ')'),
           ...STATES.map(([name, sign, value]) => row(name, sign, value)),
           row('input', 'α', INPUT),
+          h('p', { class: 'design-row' }, h('label', { for: 'design-contact' }, 'Contact'), this.#contact),
         ),
         this.#error,
-        h('p', { class: 'design-row' }, h('label', { for: 'design-contact' }, 'Contact'), this.#contact),
-        h('p', { class: 'buttons' }, h('button', { type: 'submit', id: 'design-start' }, 'Design')),
-        this.#told,
       ),
       this.#sheet,
     );
@@ -134,7 +153,15 @@ class DesignPanel {
   /** The scene of the page is another one. */
   sceneChanged() {
     this.#latest.cancel();
-    if (!this.#sheet.hidden) this.#told.replaceChildren('The scene has changed since; design anew for it.');
+    if (this.#sheet.hidden) return;
+    this.#told.replaceChildren('The scene has changed since; design anew for it.');
+    this.#stale(true);
+  }
+
+  /** A law for another scene is dimmed, and not offered to run. @param {boolean} stale */
+  #stale(stale) {
+    this.#sheet.classList.toggle('stale', stale);
+    this.#run.hidden = stale;
   }
 
   /** The request; null where something typed is wrong, which is marked. */
@@ -169,7 +196,7 @@ class DesignPanel {
       if (!signal.aborted) this.#show(answer, figure, path);
     } catch (error) {
       if (signal.aborted) return;
-      this.#sheet.hidden = true;
+      this.#sheet.hidden = this.#run.hidden = true;
       this.#told.replaceChildren(...marked(wordsOf(error)));
     }
   }
@@ -202,15 +229,15 @@ class DesignPanel {
             `gain of ${sign}`,
           ]),
       ),
-      ['max |λ|', number(radius, 5), 'spectral radius of the closed loop'],
+      [term('spectral-radius'), number(radius), 'largest factor per bounce'],
       ['decade', decade === null ? '–' : number(decade), 'bounces to a tenth'],
       [
-        'margin',
+        term('gain-margin', 'margin'),
         margin ? `${number(margin.lower)} to ${number(margin.upper)}` : '–',
         'factors on the whole gain that still hold',
       ],
       ['contact', contact, 'that the law is for'],
-      ['residual', number(answer.residual, 2), 'of the Riccati equation'],
+      [term('riccati', 'residual'), number(answer.residual, 2), 'of the Riccati equation'],
     ];
     const region = (/** @type {string} */ name, /** @type {string | null | undefined} */ address) =>
       address && h('a', { href: `${here(address)}&format=svg` }, name);
@@ -221,28 +248,14 @@ class DesignPanel {
       words: ({ factor, modulus }) => `gain × ${number(Number(factor))}   max |λ| ${number(Number(modulus), 5)}`,
       hint: 'With keys: left and right scale the gain, page up and page down by a tenth of the way.',
     });
+    this.#designed = scene;
+    this.#stale(false);
     this.#sheet.replaceChildren(
       reader,
       h(
         'div',
         {},
         h('dl', { class: 'numbers', id: 'design-gains' }, ...entries(rows)),
-        h(
-          'p',
-          { class: 'buttons' },
-          h(
-            'button',
-            { type: 'button', id: 'design-run', class: 'primary', click: () => this.#page.play(scene) },
-            'Put it into the scene and run',
-          ),
-        ),
-        table(
-          'Eigenvalues',
-          ['λ of the closed loop', '|λ|', 'λ without a law', '|λ|'],
-          eigenvalueRows(eigenvalues, open),
-          'eigenvalues',
-        ),
-        ...notes.map((note) => h('p', { class: 'muted small' }, ...prose(note[0].toUpperCase() + note.slice(1)), '.')),
         (regions?.designed || regions?.proportional) &&
           h(
             'p',
@@ -250,6 +263,26 @@ class DesignPanel {
             'What it survives: ',
             region('with the law', regions.designed),
             region('with the tilt gain', regions.proportional),
+          ),
+        h(
+          'details',
+          {},
+          h('summary', {}, 'Eigenvalues'),
+          table(
+            'Eigenvalues',
+            ['λ of the closed loop', '|λ|', 'λ without a law', '|λ|'],
+            eigenvalueRows(eigenvalues, open),
+            'eigenvalues',
+          ),
+        ),
+        notes.length > 0 &&
+          h(
+            'details',
+            {},
+            h('summary', {}, 'Notes'),
+            ...notes.map((note) =>
+              h('p', { class: 'muted small' }, ...prose(note[0].toUpperCase() + note.slice(1)), '.'),
+            ),
           ),
         h(
           'p',

@@ -49,65 +49,145 @@ function row({ method, verdict, value, unit, right, detail }) {
   );
 }
 
-/** @param {Failure} failure @param {(failure: Failure) => void} play */
-function card(failure, play) {
+/**
+ * A case in one line, which unfolds.
+ * @param {Failure} failure
+ * @param {(failure: Failure) => void} play
+ * @param {(details: HTMLDetailsElement) => void} toggled
+ */
+function card(failure, play, toggled) {
   const { name, title, method, why, says, truth, ask, picture } = failure;
   const heading = `failure-${name}`;
+  const wrong = says.filter(({ right }) => !right).length;
   return h(
     'article',
     { class: 'failure', 'aria-labelledby': heading },
-    h('h3', { id: heading }, ...marked(title)),
-    h('p', { class: 'muted' }, 'The usual method: ', ...marked(method), '.'),
-    h('ul', { class: 'says', 'aria-label': 'What each method says' }, ...says.map(row)),
     h(
-      'p',
-      { class: 'truth' },
-      h('strong', {}, 'In truth: ', ...marked(truth.verdict), '. '),
-      ...sentence(truth.detail),
-    ),
-    h('p', {}, ...marked(why)),
-    h(
-      'a',
-      { class: 'picture', href: `${here(picture)}`, tabindex: 0 },
-      h('img', {
-        src: here(picture),
-        loading: 'lazy',
-        width: 720,
-        height: 542,
-        alt: `Picture: ${title}. It opens by itself.`,
-      }),
-    ),
-    h(
-      'p',
-      { class: 'actions' },
-      h('button', { type: 'button', 'aria-describedby': heading, click: () => play(failure) }, 'Load and run'),
-      h('a', { href: here(ask), 'aria-label': `Ask the server: ${title}` }, 'Ask the server'),
+      'details',
+      {
+        'data-case': name,
+        toggle: (/** @type {Event} */ event) => toggled(/** @type {HTMLDetailsElement} */ (event.currentTarget)),
+      },
+      h(
+        'summary',
+        {},
+        h('h3', { id: heading }, ...marked(title)),
+        h('span', { class: 'muted' }, ...marked(begun(method))),
+        h('span', { class: 'chip wrong' }, `${wrong} of ${says.length} wrong`),
+      ),
+      h(
+        'div',
+        { class: 'failure-body' },
+        h(
+          'div',
+          {},
+          h(
+            'p',
+            { class: 'truth' },
+            h('strong', {}, 'In truth: ', ...marked(truth.verdict), '. '),
+            ...sentence(truth.detail),
+          ),
+          h('ul', { class: 'says', 'aria-label': 'What each method says' }, ...says.map(row)),
+          h('p', {}, ...marked(why)),
+          h(
+            'p',
+            { class: 'actions' },
+            h('button', { type: 'button', 'aria-describedby': heading, click: () => play(failure) }, 'Load and run'),
+            h('a', { href: here(ask), 'aria-label': `Ask the server: ${title}` }, 'Ask the server'),
+          ),
+        ),
+        h(
+          'a',
+          { class: 'picture', href: `${here(picture)}`, tabindex: 0 },
+          h('img', {
+            src: here(picture),
+            loading: 'lazy',
+            width: 720,
+            height: 542,
+            alt: `Picture: ${title}. It opens by itself.`,
+          }),
+        ),
+      ),
     ),
   );
 }
 
 /** @type {import('../card.js').Module['mount']} */
-export function mount(root, { play }) {
-  void show(root, ({ scene }) => play(scene));
-  return {};
-}
+export const mount = (root, page) => new Gallery(root, page);
 
-/** @param {HTMLElement} root @param {(failure: Failure) => void} play */
-async function show(root, play) {
-  const told = h('p', { class: 'muted', role: 'status' }, 'Every method is being asked…');
-  root.replaceChildren(told);
-  try {
-    const { failures } = await get('v1/failures');
-    root.replaceChildren(
-      h('div', { class: 'failures' }, ...failures.map((/** @type {Failure} */ failure) => card(failure, play))),
-      h(
-        'p',
-        { class: 'actions' },
-        ...actions({ id: 'gallery', title: 'Where usual methods fail', path: 'v1/failures?', formats: ['json'] }),
-      ),
-    );
-  } catch (error) {
-    told.textContent = wordsOf(error);
-    root.append(retryButton(() => void show(root, play)));
+class Gallery {
+  #root;
+  #page;
+  /** The case that is unfolded, and in the address. */
+  #open = '';
+  #listed = false;
+
+  /**
+   * @param {HTMLElement} root
+   * @param {import('../card.js').PanelPage} page
+   */
+  constructor(root, page) {
+    this.#root = root;
+    this.#page = page;
+    void this.#show();
+  }
+
+  /** The panel's part of the address. */
+  query() {
+    return new URLSearchParams(this.#open ? [['gallery.case', this.#open]] : []);
+  }
+
+  /** @param {URLSearchParams} link */
+  restore(link) {
+    this.#open = link.get('gallery.case') ?? '';
+    return this.#listed ? this.#unfold() : [];
+  }
+
+  /** Opens the case of the address alone; the words about one that is not there. */
+  #unfold() {
+    const wanted = this.#open;
+    const all = /** @type {NodeListOf<HTMLDetailsElement>} */ (this.#root.querySelectorAll('details[data-case]'));
+    for (const details of all) details.open = details.dataset.case === wanted;
+    const found = [...all].find(({ open }) => open);
+    found?.scrollIntoView({ block: 'nearest' });
+    if (found || !wanted) return [];
+    this.#open = '';
+    return [`the case “${wanted.slice(0, 40)}”, which is not among those here`];
+  }
+
+  async #show() {
+    const told = h('p', { class: 'muted', role: 'status' }, 'Every method is being asked…');
+    this.#root.replaceChildren(told);
+    try {
+      const { failures } = await get('v1/failures');
+      const play = (/** @type {Failure} */ { scene }) => this.#page.play(scene);
+      this.#root.replaceChildren(
+        h(
+          'div',
+          { class: 'failures' },
+          ...failures.map((/** @type {Failure} */ failure) => card(failure, play, (details) => this.#toggled(details))),
+        ),
+        h(
+          'p',
+          { class: 'actions' },
+          ...actions({ id: 'gallery', title: 'Where usual methods fail', path: 'v1/failures?', formats: ['json'] }),
+        ),
+      );
+      this.#listed = true;
+      const [gone] = this.#unfold();
+      if (gone) this.#root.prepend(h('p', { class: 'muted', role: 'status' }, `Dropped of the link: ${gone}.`));
+    } catch (error) {
+      told.textContent = wordsOf(error);
+      this.#root.append(retryButton(() => void this.#show()));
+    }
+  }
+
+  /** @param {HTMLDetailsElement} details */
+  #toggled({ open, dataset }) {
+    const name = dataset.case ?? '';
+    const before = this.#open;
+    if (open) this.#open = name;
+    else if (this.#open === name) this.#open = '';
+    if (this.#open !== before) this.#page.changed();
   }
 }

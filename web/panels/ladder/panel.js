@@ -4,7 +4,7 @@ import { table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
 import { MOST_IMPACTS, get, wordsOf } from '../../api/client.js';
 import { h, retryButton } from '../../dom/elements.js';
-import { marked, prose } from '../../dom/typeset.js';
+import { inWords, marked, prose } from '../../dom/typeset.js';
 import { debounce } from '../../dom/debounce.js';
 import { actions } from '../../export/save-actions.js';
 import { number, parse, quantity } from '../../dom/numbers.js';
@@ -83,6 +83,7 @@ class Ladder {
       this.#links,
     );
     root.append(
+      this.#told,
       h(
         'form',
         {
@@ -103,7 +104,6 @@ class Ladder {
         ),
         this.#error,
       ),
-      this.#told,
       this.#sheet,
     );
     new IntersectionObserver(
@@ -193,7 +193,7 @@ class Ladder {
   #show({ rungs, enough, reason }, path) {
     this.#sheet.hidden = false;
     this.#told.replaceChildren(
-      h('strong', {}, `Enough: ${words(enough)}. `),
+      h('strong', {}, `Enough for this scene: ${words(enough)}. `),
       ...prose(reason[0].toUpperCase() + reason.slice(1)),
       '.',
     );
@@ -215,10 +215,7 @@ class Ladder {
             'td',
             {},
             ...(forced
-              ? [
-                  h('code', {}, forced.field),
-                  h('span', { class: 'muted' }, ...prose(forced.detail.replace(/\s+/g, ' '))),
-                ]
+              ? [this.#title(forced.field), h('span', { class: 'muted' }, ...prose(forced.detail.replace(/\s+/g, ' ')))]
               : ['–']),
           ),
           h('td', {}, number(cost)),
@@ -244,6 +241,11 @@ class Ladder {
     this.#links.replaceChildren(
       ...actions({ id: 'ladder', title: 'Which model does it need', path, formats: ['csv', 'json'] }),
     );
+  }
+
+  /** The title of a field, in place of its path. @param {string} path */
+  #title(path) {
+    return this.#page.fields.find((field) => field.path === path)?.title ?? inWords(path);
   }
 
   /** @param {NonNullable<Rung['change']>} change */

@@ -56,7 +56,7 @@ class PrecisionPanel {
   );
   #task = new LongRequest(
     'precision',
-    h('button', { type: 'submit', id: 'precision-measure' }, 'Measure'),
+    h('button', { type: 'submit', id: 'precision-measure', class: 'primary' }, 'Measure'),
     'Measuring',
     'parts',
   );
@@ -103,6 +103,7 @@ class PrecisionPanel {
         this.#front,
         ' The dotted line is the rounding of one number. With keys: left and right go from point to point, up and down from method to method.',
       ),
+      h('details', {}, h('summary', {}, 'Methods'), this.#methods),
       h('details', {}, h('summary', {}, 'Numbers'), table('Numbers: speed against accuracy', head, this.#body)),
       h('details', {}, h('summary', {}, 'How it was measured'), this.#notes),
       this.#links,
@@ -127,11 +128,12 @@ class PrecisionPanel {
           this.#task.buttons,
           this.#task.told,
         ),
-        this.#methods,
       ),
       this.#sheet,
     );
-    this.#task.say('It runs the scene by eleven methods with all their settings, which takes the server some seconds.');
+    this.#task.say(
+      'Eleven methods with all their settings, one after the other: about three seconds, longer while the server has other work.',
+    );
     this.#reader.box.classList.add('figure-box');
     this.#reader.read({
       nearest: (event) => this.#plot?.nearest(event) ?? null,
@@ -170,7 +172,10 @@ class PrecisionPanel {
   /** The scene of the page is another one. */
   sceneChanged() {
     if (this.#task.active) this.#task.stop('The scene has changed; measure again.');
-    else if (this.#shown) this.#task.say('The scene has changed since.');
+    else if (this.#shown) {
+      this.#task.say('The scene has changed since.');
+      this.#sheet.classList.add('stale');
+    }
   }
 
   /** @param {string} words about the number of contacts */
@@ -192,7 +197,10 @@ class PrecisionPanel {
     const {
       reference: { impacts: seen, outcome },
     } = this.#shown.answer;
-    this.#task.say(`Measured over ${number(seen)} impacts: ${outcome.replaceAll('_', ' ')}.`);
+    this.#task.say(
+      `Measured over ${number(seen)} impacts in ${number(this.#task.took, 2)} s: ${outcome.replaceAll('_', ' ')}.`,
+    );
+    this.#sheet.classList.remove('stale');
     this.#sheet.hidden = false;
     this.#show();
   }
@@ -216,9 +224,14 @@ class PrecisionPanel {
       ...methods.map(({ name, title: words, about }) =>
         h(
           'li',
-          { title: about },
+          {},
           this.#symbol(name),
-          h('span', {}, words, missing(name) && h('span', { class: 'muted' }, ...marked(missing(name)))),
+          h(
+            'span',
+            {},
+            words,
+            h('span', { class: 'muted' }, ...marked([about, missing(name)].filter(Boolean).join('; '))),
+          ),
         ),
       ),
     );

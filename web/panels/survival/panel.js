@@ -7,7 +7,8 @@ import { LongRequest } from '../long-request.js';
 import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked, prose } from '../../dom/typeset.js';
-import { number, parse, quantity } from '../../dom/numbers.js';
+import { term } from '../../dom/glossary.js';
+import { fixed, number, parse, quantity } from '../../dom/numbers.js';
 
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('contract').Ensemble} Ensemble */
@@ -33,6 +34,12 @@ const READINGS = { strike: 'It strikes early or late', plan: 'It carries out the
 /** @param {Name} name @param {number | null} value */
 const isRight = (name, value) =>
   value !== null && value > 0 && value <= TYPED[name].most && (TYPED[name].scale !== 1 || Number.isInteger(value));
+
+/** A share in whole per cent; near all or none with a decimal, so that no share but 0 and 1 reads as such. @param {number} share */
+const percent = (share) => {
+  const whole = Math.round(100 * share);
+  return (whole === 0 || whole === 100) && share > 0 && share < 1 ? fixed(100 * share, 1) : fixed(whole, 0);
+};
 
 /** @param {Scene} scene */
 const hasNoise = ({ noise }) => (noise?.timing_sd ?? 0) > 0 || (noise?.angle_sd ?? 0) > 0;
@@ -61,11 +68,12 @@ class SurvivalPanel {
   #own = h('p', { class: 'muted', id: 'survival-noise' });
   #task = new LongRequest(
     'survival',
-    h('button', { type: 'submit', id: 'survival-start' }, 'Run them all'),
+    h('button', { type: 'submit', id: 'survival-start', class: 'primary' }, 'Run them all'),
     'Running',
     'runs',
   );
   #reader = new ChartReader('survival', 'Survival');
+  #headline = h('p', { class: 'answer', id: 'survival-headline' });
   #numbers = h('dl', { class: 'numbers', id: 'survival-numbers' });
   #body = h('tbody');
   #notes = h('div');
@@ -101,28 +109,37 @@ class SurvivalPanel {
     this.#offered.querySelector('label')?.replaceChildren(...marked('σ_t / ms'));
     const head = [
       'Contact',
-      'at risk',
+      term('at-risk', 'at risk'),
       'ended',
       'going on',
-      '95 % from',
+      term('wilson', '95 % from'),
       'to',
       ...QUANTILES.map((name) => `|θ| ${Number(name.slice(1))} %`),
     ];
     this.#sheet = h(
       'div',
       { class: 'survival-sheet', hidden: true },
-      this.#reader.box,
-      this.#reader.readout,
-      this.#reader.spoken,
+      this.#headline,
       h(
-        'p',
-        { class: 'muted small', id: 'survival-hint' },
-        'Above: the share of runs going on after each contact, in its 95 % interval. Below: |θ| of those that go on, its median, middle half and middle 90 %. With keys: left and right go from contact to contact, page up and page down by a tenth.',
+        'div',
+        { class: 'survival-chart' },
+        this.#reader.box,
+        this.#reader.readout,
+        this.#reader.spoken,
+        h(
+          'p',
+          { class: 'muted small', id: 'survival-hint' },
+          'Above: the share of runs going on after each contact. Below: |θ| of those that go on. With keys: left and right go from contact to contact, page up and page down by a tenth.',
+        ),
       ),
-      this.#numbers,
-      h('details', {}, h('summary', {}, 'Numbers'), table('Numbers: survival', head, this.#body)),
-      h('details', {}, h('summary', {}, 'How it was counted'), this.#notes),
-      this.#links,
+      h(
+        'div',
+        {},
+        this.#numbers,
+        h('details', {}, h('summary', {}, 'Numbers'), table('Numbers: survival', head, this.#body)),
+        h('details', {}, h('summary', {}, 'How it was counted'), this.#notes),
+        this.#links,
+      ),
     );
     root.append(
       h(
@@ -188,7 +205,17 @@ class SurvivalPanel {
   sceneChanged() {
     this.#offer();
     if (this.#task.active) this.#task.stop('The scene has changed; run them again.');
-    else if (this.#shown) this.#task.say('The scene has changed since.');
+    else if (this.#shown) {
+      this.#task.say('The scene has changed since.');
+      this.#stale(true);
+    }
+  }
+
+  /** Curves of another scene are dimmed, and the button offers to run anew. @param {boolean} stale */
+  #stale(stale) {
+    this.#sheet.classList.toggle('stale', stale);
+    const start = this.#task.buttons.querySelector('button');
+    if (start) start.textContent = stale ? 'Run again' : 'Run them all';
   }
 
   /** Noise to try with, where the scene has none. */
@@ -249,6 +276,7 @@ class SurvivalPanel {
     if (!answer) return;
     this.#shown = { answer: answer.end, path };
     this.#sheet.hidden = false;
+    this.#stale(false);
     this.#show();
     const figure = figureOf(answer.pictures.survival);
     this.#reader.box.replaceChildren(figure);
@@ -264,16 +292,25 @@ class SurvivalPanel {
     const ends = Object.entries(counts)
       .filter(([name, count]) => name !== 'completed' && count > 0)
       .map(([name, count]) => `${number(count, 6)} ${name.replaceAll('_', ' ')}`);
-    /** @type {[string, string, string][]} */
+    this.#headline.replaceChildren(
+      h('strong', { class: 'large' }, `${percent(survived.share)} %`),
+      ` last ${number(impacts, 7)} bounces, ${percent(survived.lower)} to ${percent(survived.upper)} % `,
+      term('wilson', 'with 95 % confidence'),
+      '.',
+    );
+    /** @type {[string | Node, string, string][]} */
     const rows = [
-      ['share', number(survived.share), `${number(survived.lower)} to ${number(survived.upper)} with 95 %`],
       [
-        'median',
+        term('median', 'median'),
         answer.median_impacts === null ? `> ${number(impacts, 7)}` : number(answer.median_impacts, 7),
         'contacts of a run',
       ],
       ['mean', `${survived.runs > 0 ? '≥ ' : ''}${number(answer.mean_impacts)}`, 'contacts of a run'],
-      ['half-life', answer.half_life === null ? '–' : number(answer.half_life), 'contacts, late in the runs'],
+      [
+        term('half-life', 'half-life'),
+        answer.half_life === null ? '–' : number(answer.half_life),
+        'contacts, late in the runs',
+      ],
       ['ends', ends.join(', ') || 'none', 'of those that did not last'],
     ];
     this.#numbers.replaceChildren(...entries(rows));
