@@ -88,9 +88,9 @@ export class MapControls {
         {},
         h('legend', {}, 'Shown'),
         h('p', { class: 'map-row' }, h('label', { for: 'map-quantity' }, 'Colour'), this.#quantity),
-        h('p', { class: 'map-row' }, h('label', { for: 'map-impacts' }, 'Contacts'), this.#impacts),
+        h('p', { class: 'map-row' }, h('label', { for: 'map-impacts' }, 'Bounces'), this.#impacts),
         this.#impactsError,
-        h('p', { class: 'map-row' }, h('label', { for: 'map-columns' }, 'Cells'), this.#columns),
+        h('p', { class: 'map-row' }, h('label', { for: 'map-columns' }, 'Finest'), this.#columns),
       ),
       h(
         'div',
@@ -265,7 +265,7 @@ export class MapControls {
     return elsewhere;
   }
 
-  /** @param {{arrived: number, rows: number} | null} progress null when no answer is awaited */
+  /** @param {{arrived: number, rows: number, columns: number} | null} progress null when no answer is awaited */
   busy(progress) {
     const ended = this.#cancel === document.activeElement && progress === null;
     this.#cancel.disabled = progress === null;
@@ -278,10 +278,10 @@ export class MapControls {
     this.count(progress);
   }
 
-  /** @param {{arrived: number, rows: number}} progress */
-  count({ arrived, rows }) {
+  /** @param {{arrived: number, rows: number, columns: number}} progress */
+  count({ arrived, rows, columns }) {
     this.#progress.value = arrived;
-    this.#count.textContent = `${arrived} / ${rows} rows`;
+    this.#count.textContent = `${arrived} / ${rows} rows of ${times(columns)}`;
   }
 
   /** @param {boolean} possible */

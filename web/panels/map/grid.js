@@ -1,8 +1,16 @@
 // The cells of a map as they arrive, row by row.
 
+import { classOf } from './classes.js';
 import { rowsOf } from './settings.js';
 
 /** @typedef {import('contract').Region['boundary']} Boundary */
+
+/** A run that ends within this share of its bounces falls early. */
+const EARLY = 0.25;
+/** A map has two values where no more than this share of its cells lies between. */
+const FEW = 0.08;
+/** Runs of fewer bounces are too short for two classes. */
+const LONG = 20;
 
 export class Grid {
   columns;
@@ -20,10 +28,14 @@ export class Grid {
   high = -Infinity;
   /** The number of cells of each outcome; null until the answer is whole. @type {Record<string, number> | null} */
   counts = null;
+  /** 1 for each outcome that has occurred. */
+  #seen = new Uint8Array(256);
   /** @type {string[]} */
   names;
   /** @type {Boundary} */
   boundary;
+  /** True when its runs last to the end or fall early, so that it has classes in place of a scale. */
+  classes = false;
 
   /**
    * @param {import('./settings.js').Settings} settings
@@ -38,6 +50,50 @@ export class Grid {
     this.#arrived = new Uint8Array(this.rows);
     this.names = outline.outcome_names;
     this.boundary = outline.boundary;
+  }
+
+  /** The value of a cell; NaN where there is none. @param {number} column @param {number} row */
+  value(column, row) {
+    return this.values[row * this.columns + column];
+  }
+
+  /** The name of its outcome. @param {number} column @param {number} row */
+  outcome(column, row) {
+    return this.names[this.outcomes[row * this.columns + column]] ?? 'none';
+  }
+
+  /** The cell around a point of the map; outside it the nearest. @param {number} x @param {number} y */
+  cellAround(x, y) {
+    /** @param {import('./settings.js').Side} side @param {number} value @param {number} count */
+    const place = ({ from, to }, value, count) =>
+      Math.min(count - 1, Math.max(0, Math.round(((value - from) / (to - from)) * (count - 1))));
+    return { column: place(this.settings.x, x, this.columns), row: place(this.settings.y, y, this.rows) };
+  }
+
+  /** Finds out whether two classes tell what the values do. */
+  judge() {
+    const { quantity, impacts } = this.settings;
+    let [all, between] = [0, 0];
+    for (const value of quantity === 'survival' ? this.values : []) {
+      if (Number.isNaN(value)) continue;
+      all += 1;
+      if (value < impacts && value > impacts * EARLY) between += 1;
+    }
+    this.classes = impacts >= LONG && between <= all * FEW;
+  }
+
+  /** True when some cell that arrived is of this class. @param {import('./classes.js').Class} kind */
+  holds(kind) {
+    return this.names.some((name, index) => this.#seen[index] === 1 && classOf(name) === kind);
+  }
+
+  /** Share of the cells of each class, the largest first. @returns {[import('./classes.js').Class, number][]} */
+  shares() {
+    /** @type {Map<import('./classes.js').Class, number>} */
+    const found = new Map();
+    for (const [name, count] of Object.entries(this.counts ?? {}))
+      if (count > 0) found.set(classOf(name), (found.get(classOf(name)) ?? 0) + count / (this.columns * this.rows));
+    return [...found].sort(([, a], [, b]) => b - a);
   }
 
   /** @param {import('contract').RegionLine} line */
@@ -57,6 +113,7 @@ export class Grid {
       this.high = Math.max(this.high, value);
     });
     this.outcomes.set(line.outcomes, from);
+    for (const outcome of line.outcomes) this.#seen[outcome] = 1;
     this.arrived += 1 - this.#arrived[line.row];
     this.#arrived[line.row] = 1;
   }

@@ -1,28 +1,25 @@
-// The panel of the stability map: asks for it, draws it as it arrives, lets one run any point of it or look closer.
+// The panel of the stability map: shows it finer and finer, lets one look at the run of any cell, release it, or look closer.
 
 import { MapControls } from './controls.js';
-import { Grid } from './grid.js';
+import { Inset } from './inset.js';
 import { MapPicture } from './picture.js';
-import { Problem, get, problemOf } from '../../api/client.js';
+import { MapWords } from './words.js';
+import { Problem } from '../../api/client.js';
+import { Refinement } from './refinement.js';
+import { UNITS } from '../../dom/units.js';
 import { playedAt } from '../../api/scene-fields.js';
 import { actions } from '../../export/save-actions.js';
-import { QUANTITIES, outlineQuery, readSettings, requestQuery, rowsOf, settingsQuery } from './settings.js';
+import { QUANTITIES, readSettings, requestQuery, rowsOf, settingsQuery } from './settings.js';
 import { h } from '../../dom/elements.js';
 import { debounce } from '../../dom/debounce.js';
-import { lines } from '../../api/ndjson.js';
 import { listen } from './pointer.js';
-import { number, quantity as withUnit, unbroken } from '../../dom/numbers.js';
+import { unbroken } from '../../dom/numbers.js';
 
-/** @typedef {import('../../api/scene-fields.js').Field} Field */
+/** @typedef {import('./grid.js').Grid} Grid */
 /** @typedef {import('./settings.js').Settings} Settings */
 /** @typedef {import('./picture.js').Cell} Cell */
 
 /** @typedef {import('../card.js').PanelPage} PanelPage */
-
-/** A map of more bounces than this waits until somebody asks for it: about a second of one core. */
-const UNASKED_BOUNCES = 1e8;
-/** Answers kept, to go back without asking again. */
-const KEPT = 8;
 
 /** @type {import('../card.js').Module['mount']} */
 export const mount = (root, page, link) => new MapPanel(root, page, link);
@@ -33,6 +30,9 @@ class MapPanel {
   #settings;
   #controls;
   #picture;
+  #words;
+  #inset;
+  #refinement;
   #box = h('div', {
     class: 'map-box',
     id: 'map-box',
@@ -48,16 +48,15 @@ class MapPanel {
   #notice = h('p', { class: 'error', id: 'map-notice' });
   #legend = h('p', { class: 'map-legend' });
   #links = h('p', { class: 'actions', id: 'map-links' });
+  #sampled = h('details', { toggle: () => this.#tabulate() }, h('summary', {}, 'Numbers'));
   /** The drawn cells. @type {Grid | null} */
   #grid = null;
+  /** The settings asked for last, with the finest columns wanted. @type {Settings} */
+  #target;
   /** The request made last, whatever became of it. */
   #asked = '';
-  /** @type {Map<string, Grid>} */
-  #kept = new Map();
   /** Views before this one. @type {Pick<Settings, 'x' | 'y'>[]} */
   #views = [];
-  /** @type {AbortController | null} */
-  #asking = null;
   #near = true;
 
   /**
@@ -68,6 +67,19 @@ class MapPanel {
   constructor(root, page, link) {
     this.#page = page;
     this.#settings = readSettings(link, page.fields).settings;
+    this.#target = this.#settings;
+    this.#words = new MapWords(page.fields);
+    this.#inset = new Inset(() => this.#unchoose());
+    this.#refinement = new Refinement({
+      show: (pass) => this.#show(pass),
+      row: () => this.#picture.redraw(),
+      busy: (progress) => this.#busy(progress),
+      whole: (grid, refused) => this.#finish(grid, refused),
+      waits: ({ columns }) =>
+        this.#controls.say([`${columns} × ${rowsOf(columns)} cells take a while: Compute asks for them.`], 'stale'),
+      failed: (error, pass) => this.#fail(error, pass),
+      wanted: () => this.#near,
+    });
     this.#controls = new MapControls(page.fields, this.#settings, {
       changed: (settings) => this.#set(settings),
       compute: () => void this.#ask(),
@@ -80,29 +92,35 @@ class MapPanel {
       h(
         'div',
         { class: 'map-sheet' },
-        this.#box,
+        h('div', { class: 'map-stage' }, this.#box, this.#inset.element),
         this.#readout,
         this.#spoken,
         this.#legend,
         h(
           'p',
           { class: 'muted small', id: 'map-hint' },
-          'Click a point to run it; drag a rectangle to look closer, Escape goes back. With keys: arrows move, Enter runs, + looks closer.',
+          'Click a cell to see its run; drag a rectangle to look closer, Escape goes back. With keys: arrows move, Enter shows the run and a second Enter releases it, + looks closer.',
         ),
+        this.#sampled,
         this.#links,
       ),
     );
-    this.#picture = new MapPicture(this.#box, this.#settings, this.#names(this.#settings));
+    this.#picture = new MapPicture(this.#box, this.#settings, this.#words.axes(this.#settings));
     listen(this.#box, this.#picture, {
       point: (cell, byKey) => this.#read(cell, byKey),
-      take: (cell) => this.#launch(cell),
+      take: (cell, byKey) => this.#choose(cell, byKey),
       select: (from, to) => this.#closer(from, to),
       begin: () => this.#cellOfScene() ?? { column: this.#picture.columns >> 1, row: this.#picture.rows >> 1 },
     });
     root.addEventListener('keydown', (event) => {
       // In a list it closes the list.
       if (event.key === 'Escape' && !event.defaultPrevented && !(event.target instanceof HTMLSelectElement))
-        this.#back();
+        this.#leave();
+    });
+    document.addEventListener(UNITS, () => {
+      this.#inset.close();
+      this.#tabulate();
+      this.#read(this.#picture.cursor, false);
     });
     new IntersectionObserver(
       (entries) => {
@@ -135,6 +153,7 @@ class MapPanel {
   /** The scene of the page is another one. */
   sceneChanged() {
     this.#mark();
+    this.#inset.close();
     this.#refreshSoon();
   }
 
@@ -143,12 +162,7 @@ class MapPanel {
   /** Asks if what there is answers another request. */
   #refresh() {
     const request = this.#request();
-    if (!this.#near || String(request) === this.#asked) return;
-    const { columns, impacts, quantity } = this.#settings;
-    const bounces = QUANTITIES[quantity].runs ? columns * rowsOf(columns) * impacts : 0;
-    if (request && bounces > UNASKED_BOUNCES && this.#asked !== '')
-      this.#controls.say(['The scene has changed since.'], 'stale');
-    else void this.#ask();
+    if (this.#near && String(request) !== this.#asked) void this.#ask(this.#asked !== '');
   }
 
   #request() {
@@ -156,78 +170,50 @@ class MapPanel {
     return scene && requestQuery(this.#settings, scene);
   }
 
-  async #ask() {
-    this.#asking?.abort();
-    this.#asking = null;
-    this.#controls.busy(null);
-    const request = this.#request();
-    this.#asked = String(request);
-    if (!request)
+  async #ask(unasked = false) {
+    const scene = this.#page.query();
+    this.#asked = String(this.#request());
+    if (!scene) {
+      this.#refinement.cancel();
       return this.#controls.say(['A parameter of the scene is not a number; it is marked among them.'], 'wrong');
-    const kept = this.#kept.get(this.#asked);
-    if (kept) return this.#finish(kept, request);
-    const asking = new AbortController();
-    this.#asking = asking;
-    const { signal } = asking;
-    const settings = structuredClone(this.#settings);
-    const rows = rowsOf(settings.columns);
-    let arrived = 0;
-    this.#controls.busy({ arrived, rows });
-    this.#controls.say([]);
-    try {
-      const grid = new Grid(settings, await get(`v1/regions?${outlineQuery(request)}`, signal));
-      const response = await fetch(`v1/regions?${request}&format=ndjson`, { signal });
-      if (!response.ok || !response.body) throw await problemOf(response);
-      for await (const line of lines(response.body)) {
-        if (signal.aborted) return;
-        grid.take(line);
-        ({ arrived } = grid);
-        // The cells of before stay until there are new ones.
-        if (this.#grid !== grid) this.#show(grid, request);
-        this.#picture.redraw();
-        this.#controls.busy({ arrived, rows });
-      }
-      if (!grid.counts) throw new Problem('', 'The answer was cut off.', [], 0);
-      this.#kept.set(String(request), grid);
-      for (const key of this.#kept.keys()) if (this.#kept.size > KEPT) this.#kept.delete(key);
-      this.#finish(grid, request);
-    } catch (error) {
-      if (signal.aborted) return;
-      const problem = error instanceof Problem ? error : null;
-      const elsewhere = this.#controls.blame(problem?.errors ?? []);
-      const words = problem
-        ? problem.errors.length === 0
-          ? problem.message
-          : elsewhere.join(' ')
-        : 'The server does not answer.';
-      this.#controls.say(
-        [
-          arrived > 0
-            ? `${words} ${arrived} of ${rows} rows are there.`
-            : words || 'There is no such map; see what is marked.',
-        ],
-        'wrong',
-      );
-    } finally {
-      if (this.#asking === asking) {
-        this.#asking = null;
-        this.#controls.busy(null);
-      }
     }
+    this.#controls.say([]);
+    const settings = structuredClone(this.#settings);
+    this.#target = settings;
+    const seen = await this.#refinement.ask(settings, scene, unasked);
+    // It goes on when it is seen again.
+    if (!seen) this.#asked = '';
+  }
+
+  /** @param {{arrived: number, rows: number, columns: number} | null} progress */
+  #busy(progress) {
+    this.#controls.busy(progress);
+    this.#box.setAttribute('aria-busy', String(progress !== null));
+  }
+
+  /** @param {unknown} error @param {{arrived: number, rows: number}} pass */
+  #fail(error, { arrived, rows }) {
+    const problem = error instanceof Problem ? error : null;
+    const elsewhere = this.#controls.blame(problem?.errors ?? []);
+    const words = problem
+      ? problem.errors.length === 0
+        ? problem.message
+        : elsewhere.join(' ')
+      : 'The server does not answer.';
+    const there = arrived > 0 ? `${words} ${arrived} of ${rows} rows are there.` : words;
+    this.#controls.say([there || 'There is no such map; see what is marked.'], 'wrong');
   }
 
   #cancel() {
-    if (!this.#asking) return;
-    this.#asking.abort();
-    this.#asking = null;
-    this.#controls.busy(null);
+    if (!this.#refinement.active) return;
+    this.#refinement.cancel();
     this.#controls.say(['Cancelled.'], 'stale');
   }
 
-  /** @param {Grid} grid @param {URLSearchParams} request */
-  #show(grid, request) {
+  /** @param {import('./refinement.js').Pass} pass */
+  #show({ grid, request, under }) {
     this.#grid = grid;
-    this.#picture.show(grid.settings, this.#names(grid.settings), grid);
+    this.#picture.show(this.#target, this.#words.axes(grid.settings), grid, under);
     this.#mark();
     this.#links.replaceChildren(
       ...actions({
@@ -248,63 +234,32 @@ class MapPanel {
         grid.lacks && swatch('none', QUANTITIES[grid.settings.quantity].runs ? 'no such scene' : 'no fixed point'),
       ].filter((one) => one !== false),
     );
+    if (!this.#picture.cursor) this.#read(null, false);
   }
 
-  /** @param {Grid} grid whole @param {URLSearchParams} request */
-  #finish(grid, request) {
-    this.#show(grid, request);
-    const total = grid.columns * grid.rows;
-    const { quantity, x, y } = grid.settings;
-    const counts = Object.entries(grid.counts ?? {})
-      .filter(([, count]) => count > 0)
-      .sort(([, a], [, b]) => b - a)
-      .map(([name, count]) => `${number(count, 7)} ${name === 'none' ? 'no such scene' : name.replaceAll('_', ' ')}`);
-    const { low, high } = grid.scale;
-    this.#controls.count({ arrived: grid.arrived, rows: grid.rows });
-    this.#controls.say([
-      QUANTITIES[quantity].runs
-        ? `${number(total, 7)} cells: ${counts.join(', ')}.`
-        : `${number(total, 7)} cells, from ${number(low)} to ${number(high)}.`,
-    ]);
-    this.#box.setAttribute(
-      'aria-label',
-      `Stability map. ${QUANTITIES[quantity].title} over ${this.#title(x.parameter)} from ${number(x.from)} to ${number(x.to)} and ${this.#title(y.parameter)} from ${number(y.from)} to ${number(y.to)}.`,
-    );
+  /** @param {Grid} grid whole @param {Problem | null} refused */
+  #finish(grid, refused) {
+    this.#picture.redraw();
+    this.#controls.count({ arrived: grid.arrived, rows: grid.rows, columns: grid.columns });
+    const why = refused ? ` Finer than that the server refuses: ${refused.message}.` : '';
+    this.#controls.say([`${this.#words.told(grid)}${why}`]);
+    this.#box.setAttribute('aria-label', this.#words.label(grid));
     this.#read(this.#picture.cursor, false);
+    this.#tabulate();
   }
 
-  /** @param {string} path */
-  #field(path) {
-    return this.#page.fields.find((field) => field.path === path);
-  }
-
-  /** @param {string} path */
-  #title(path) {
-    return this.#field(path)?.title.toLowerCase() ?? path;
-  }
-
-  /** A symbol that can be printed in one line, else the title. @param {string} path */
-  #symbol(path) {
-    const symbol = this.#field(path)?.symbol;
-    return symbol && !symbol.includes('_') ? symbol : this.#title(path);
-  }
-
-  /** @param {Settings} settings */
-  #names({ x, y }) {
-    const [across, upwards] = [x, y].map(({ parameter }) => {
-      const field = this.#field(parameter);
-      const symbol = this.#symbol(parameter);
-      const title = this.#title(parameter);
-      return `${symbol === title ? title : `${title} ${symbol}`}${field?.unit && field.unit !== '1' ? ` (${field.unit})` : ''}`;
-    });
-    return { x: across, y: upwards };
+  /** The table of some cells, while it is open. */
+  #tabulate() {
+    if (!this.#grid?.counts || !(/** @type {HTMLDetailsElement} */ (this.#sampled).open)) return;
+    this.#sampled.lastElementChild?.matches('.table-box') && this.#sampled.lastElementChild.remove();
+    this.#sampled.append(this.#words.table(this.#grid));
   }
 
   #mark() {
     const scene = this.#page.scene();
     const { x, y } = this.#grid?.settings ?? this.#settings;
     const [across, upwards] = [x, y].map(({ parameter }) => {
-      const field = this.#field(parameter);
+      const field = this.#words.field(parameter);
       return field && playedAt(scene, field);
     });
     this.#picture.mark(typeof across === 'number' && typeof upwards === 'number' ? { x: across, y: upwards } : null);
@@ -324,55 +279,56 @@ class MapPanel {
       ? ''
       : !cell
         ? 'The scene lies outside of this map'
-        : `${pointed ? '' : 'The scene’s cell:   '}${this.#words(grid, cell)}`;
+        : `${pointed ? '' : 'The scene’s cell:   '}${this.#words.cell(grid, cell)}`;
     this.#readout.textContent = unbroken(words);
     if (byKey) this.#spoken.textContent = words;
   }
 
-  /** @param {Grid} grid @param {Cell} cell */
-  #words(grid, { column, row }) {
+  /** Shows the run of a cell; releases it where that is shown already. @param {Cell} cell @param {boolean} byKey */
+  #choose(cell, byKey) {
+    const grid = this.#grid;
+    if (!grid?.has(cell.row)) return;
     const { x, y, quantity, impacts } = grid.settings;
-    const place = [
-      [x, grid.x(column)],
-      [y, grid.y(row)],
-    ]
-      .map(([side, value]) => {
-        const { parameter, from, to } = /** @type {import('./settings.js').Side} */ (side);
-        // Enough digits to tell neighbours apart.
-        const digits = Math.max(
-          4,
-          Math.ceil(Math.log10((Math.max(Math.abs(from), Math.abs(to)) * grid.columns) / (to - from))) + 1,
-        );
-        return `${this.#symbol(parameter)} ${withUnit(Number(value), this.#field(parameter)?.unit ?? '', digits)}`;
-      })
-      .join('   ');
-    if (!grid.has(row)) return `${place}   not computed yet`;
-    const value = grid.values[row * grid.columns + column];
-    const outcome = grid.names[grid.outcomes[row * grid.columns + column]]?.replaceAll('_', ' ');
-    if (Number.isNaN(value)) return `${place}   ${QUANTITIES[quantity].runs ? 'no such scene' : 'no fixed point'}`;
-    if (quantity === 'survival')
-      return `${place}   ${number(value, 7)} of ${number(impacts, 7)} contacts survived   ${outcome}`;
-    if (quantity === 'max_theta') return `${place}   largest |θ| ${withUnit(value, 'rad')}   ${outcome}`;
-    return `${place}   ${quantity === 'residue' ? `R ${number(value)}` : `max |λ| ${number(value, 6)}`}`;
+    const values = { x: grid.x(cell.column), y: grid.y(cell.row) };
+    const { chosen } = this.#picture;
+    const again = this.#inset.open && chosen?.x === values.x && chosen.y === values.y;
+    if (again && byKey) return this.#launch(values);
+    const query = this.#page.query();
+    query?.set(`scene.${x.parameter}`, String(values.x));
+    query?.set(`scene.${y.parameter}`, String(values.y));
+    const value = grid.value(cell.column, cell.row);
+    const falls = quantity === 'survival' && value < impacts;
+    this.#picture.chosen = values;
+    this.#picture.point();
+    const words = this.#words.value(grid, cell);
+    void this.#inset.show(
+      {
+        place: this.#words.place(grid, cell),
+        value: words,
+        query,
+        ends: falls ? value : NaN,
+        release: () => this.#launch(values),
+      },
+      cell.column * 2 < grid.columns ? 'right' : 'left',
+    );
+    if (byKey) this.#spoken.textContent = `${words.join(', ')}. Enter releases it, Escape closes.`;
   }
 
-  /** @param {Cell} cell */
-  #launch({ column, row }) {
+  #unchoose() {
+    this.#picture.chosen = null;
+    this.#picture.point();
+  }
+
+  /** @param {{x: number, y: number}} values */
+  #launch(values) {
     const grid = this.#grid;
-    if (!grid?.has(row)) return;
-    if (QUANTITIES[grid.settings.quantity].runs && Number.isNaN(grid.values[row * grid.columns + column]))
-      return this.#controls.say(['There is no such scene to run.'], 'said');
+    if (!grid) return;
     const { x, y } = grid.settings;
-    this.#page.launch({ [x.parameter]: grid.x(column), [y.parameter]: grid.y(row) });
-    const [across, upwards] = [
-      [x, grid.x(column)],
-      [y, grid.y(row)],
-    ].map(([side, value]) => {
-      const { parameter } = /** @type {import('./settings.js').Side} */ (side);
-      return `${this.#title(parameter)} ${withUnit(Number(value), this.#field(parameter)?.unit ?? '')}`;
-    });
+    const cell = grid.cellAround(values.x, values.y);
+    this.#inset.close();
+    this.#page.launch({ [x.parameter]: values.x, [y.parameter]: values.y });
     this.#controls.say([
-      `Released with ${across}, ${upwards}. `,
+      `Released with ${this.#title(x, grid.x(cell.column), grid.columns)}, ${this.#title(y, grid.y(cell.row), grid.rows)}. `,
       h(
         'button',
         {
@@ -383,6 +339,11 @@ class MapPanel {
         'Show the run',
       ),
     ]);
+  }
+
+  /** @param {import('./settings.js').Side} side @param {number} value @param {number} count */
+  #title(side, value, count) {
+    return `${this.#words.title(side.parameter)} ${this.#words.rounded(side, value, count)}`;
   }
 
   /** @param {Settings} settings by the controls */
@@ -397,6 +358,7 @@ class MapPanel {
   }
 
   #turned() {
+    this.#inset.close();
     this.#controls.canGoBack(this.#views.length > 0);
     this.#page.changed();
     void this.#ask();
@@ -424,12 +386,19 @@ class MapPanel {
    * @param {number} high
    */
   #part({ parameter }, low, high) {
-    const field = this.#field(parameter);
+    const field = this.#words.field(parameter);
     const decimals = Math.min(15, Math.max(0, 3 - Math.floor(Math.log10(high - low))));
     const [from, to] = [low, high].map((value) =>
       Math.min(field?.maximum ?? Infinity, Math.max(field?.minimum ?? -Infinity, Number(value.toFixed(decimals)))),
     );
     return { parameter, from, to };
+  }
+
+  /** Closes the inset; without one goes back. */
+  #leave() {
+    if (!this.#inset.open) return this.#back();
+    this.#inset.close();
+    this.#box.focus({ preventScroll: true });
   }
 
   #back() {

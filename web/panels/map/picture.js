@@ -1,11 +1,13 @@
-// A map on its canvas: cells, colour bar, linear boundary, the scene’s mark.
+// A map on its canvas: cells, their classes or a colour bar, linear boundary, the marks of the scene and of a chosen cell.
 
 import { COLOURS, PIXELS } from '../../charts/cividis.js';
+import { CLASSES, blank, classOf, hatchingOf, pixelOf } from './classes.js';
 import { QUANTITIES, rowsOf } from './settings.js';
 import { SANS, SERIF, onThemeChange, theme } from '../../charts/theme.js';
 import { drawAxes, line, ticks, toX, toY } from '../../charts/axes.js';
 import { invalidate, surfaces } from '../../charts/surface.js';
 import { number } from '../../dom/numbers.js';
+import { percent } from './words.js';
 
 /** @typedef {import('./grid.js').Grid} Grid */
 /** @typedef {import('./settings.js').Settings} Settings */
@@ -15,10 +17,13 @@ import { number } from '../../dom/numbers.js';
 /** Room around the cells: for the numbers of the axes, and below for the colour bar. */
 const ROOM = { left: 52, right: 18, top: 24, bottom: 96 };
 const BAR = { below: 62, height: 12 };
+const SWATCH = { width: 22, height: 16 };
 
 export class MapPicture {
   /** @type {Grid | null} */
   #grid = null;
+  /** The coarser grid where that has no rows yet. @type {Grid | null} */
+  #under = null;
   /** @type {Settings} */
   #settings;
   #names;
@@ -26,10 +31,13 @@ export class MapPicture {
   #mark = null;
   /** @type {Cell | null} */
   cursor = null;
+  /** Values of the cell whose run is looked at. @type {{x: number, y: number} | null} */
+  chosen = null;
   /** @type {Box | null} */
   selection = null;
   #stale = true;
   #cells = document.createElement('canvas');
+  #sheet = document.createElement('canvas');
   #paper;
   #overlay;
 
@@ -46,17 +54,21 @@ export class MapPicture {
   }
 
   /**
-   * @param {Settings} settings
+   * @param {Settings} settings whose columns are the finest wanted
    * @param {{x: string, y: string}} names of the axes, with units
    * @param {Grid | null} grid
+   * @param {Grid | null} under
    */
-  show(settings, names, grid) {
+  show(settings, names, grid, under) {
+    const { cursor } = this;
+    const before = this.#grid;
     this.#settings = settings;
     this.#names = names;
     this.#grid = grid;
+    this.#under = under;
     this.selection = null;
-    // A cell of another size is another place.
-    if (this.cursor && (this.cursor.column >= this.columns || this.cursor.row >= this.rows)) this.cursor = null;
+    // In finer cells the cursor stays where it was.
+    if (cursor && before && grid) this.cursor = grid.cellAround(before.x(cursor.column), before.y(cursor.row));
     this.redraw();
   }
 
@@ -77,18 +89,18 @@ export class MapPicture {
   }
 
   get columns() {
-    return this.#settings.columns;
+    return this.#grid?.columns ?? this.#settings.columns;
   }
 
   get rows() {
-    return rowsOf(this.#settings.columns);
+    return rowsOf(this.columns);
   }
 
-  /** The frame of the cells. Each lies around its values, so the frame reaches half a cell beyond the ends. @returns {import('../../charts/axes.js').Frame} */
+  /** Half of a finest cell lies beyond the ends, so that the frame is the same for all passes. @returns {import('../../charts/axes.js').Frame} */
   get frame() {
     const { width, height } = this.#paper;
-    const { x, y } = this.#settings;
-    const [dx, dy] = [(x.to - x.from) / (this.columns - 1) / 2, (y.to - y.from) / (this.rows - 1) / 2];
+    const { x, y, columns } = this.#settings;
+    const [dx, dy] = [(x.to - x.from) / (columns - 1) / 2, (y.to - y.from) / (rowsOf(columns) - 1) / 2];
     return {
       left: ROOM.left,
       top: ROOM.top,
@@ -106,11 +118,23 @@ export class MapPicture {
    * @returns {Cell | null}
    */
   cellAt(px, py) {
-    const { left, top, width, height } = this.frame;
-    const { columns, rows } = this;
-    const column = Math.floor(((px - left) / width) * columns);
-    const row = Math.floor(((top + height - py) / height) * rows);
-    return column >= 0 && column < columns && row >= 0 && row < rows ? { column, row } : null;
+    const { left, top, width, height, x, y } = this.frame;
+    const [across, upwards] = [(px - left) / width, (top + height - py) / height];
+    if (!(across >= 0 && across < 1 && upwards >= 0 && upwards < 1) || !this.#grid) return null;
+    return this.#grid.cellAround(x.low + across * (x.high - x.low), y.low + upwards * (y.high - y.low));
+  }
+
+  /** The rectangle of some cells, px: from a first column and row up to a last. @param {Grid} grid @param {Cell} first @param {Cell} last @returns {Box} */
+  #boxOf(grid, first, last) {
+    const { frame } = this;
+    const { x, y } = grid.settings;
+    const [dx, dy] = [(x.to - x.from) / (grid.columns - 1) / 2, (y.to - y.from) / (grid.rows - 1) / 2];
+    return {
+      left: toX(frame, grid.x(first.column) - dx),
+      right: toX(frame, grid.x(last.column) + dx),
+      top: toY(frame, grid.y(last.row) + dy),
+      bottom: toY(frame, grid.y(first.row) - dy),
+    };
   }
 
   /** The cell of the scene, if it is on the map. */
@@ -120,6 +144,8 @@ export class MapPicture {
   }
 
   draw() {
+    // One that is hidden has no size.
+    if (this.#paper.width === 0) return false;
     if (this.#stale) this.#drawPaper();
     this.#stale = false;
     this.#drawOverlay();
@@ -134,59 +160,147 @@ export class MapPicture {
     context.clearRect(0, 0, width, height);
     drawAxes(context, frame, this.#names.x, this.#names.y);
     if (grid) {
-      const { low, high } = grid.scale;
-      const scale = COLOURS / (high - low);
-      const image = new ImageData(grid.columns, grid.rows);
-      const pixels = new Uint32Array(image.data.buffer);
-      const edge = (/** @type {number} */ row) => frame.top + frame.height * (1 - row / grid.rows);
-      context.fillStyle = this.#hatching();
-      for (let row = 0; row < grid.rows; row += 1) {
-        if (!grid.has(row)) continue;
-        context.fillRect(frame.left, edge(row + 1), frame.width, edge(row) - edge(row + 1));
-        for (let column = 0; column < grid.columns; column += 1) {
-          const value = grid.values[row * grid.columns + column];
-          if (Number.isNaN(value)) continue;
-          const share = high > low ? (value - low) * scale : COLOURS / 2;
-          pixels[(grid.rows - 1 - row) * grid.columns + column] =
-            PIXELS[Math.max(0, Math.min(COLOURS - 1, Math.floor(share)))];
-        }
-      }
-      this.#drawPixels(image, frame.left, frame.top, frame.width, frame.height);
+      context.save();
+      context.beginPath();
+      context.rect(frame.left, frame.top, frame.width, frame.height);
+      context.clip();
+      context.fillStyle = blank(context, colours);
+      for (const layer of [this.#under, grid]) if (layer) this.#drawCells(context, layer, this.#pixelOf(layer));
+      if (grid.classes) this.#hatch(grid);
+      context.restore();
       context.strokeStyle = colours.muted;
       context.lineWidth = 1;
       context.strokeRect(frame.left + 0.5, frame.top + 0.5, frame.width - 1, frame.height - 1);
       this.#drawBoundary(frame, grid);
     }
-    this.#drawBar(frame);
+    if (grid?.classes) this.#drawClasses(frame, grid);
+    else this.#drawBar(frame);
+  }
+
+  /** The colour of each cell; 0 where it has none. @param {Grid} layer @returns {(column: number, row: number) => number} */
+  #pixelOf(layer) {
+    if (layer.classes) {
+      const pixels = layer.names.map((name) => pixelOf(classOf(name)));
+      return (column, row) =>
+        Number.isNaN(layer.value(column, row)) ? 0 : pixels[layer.outcomes[row * layer.columns + column]];
+    }
+    const { low, high } = layer.scale;
+    const scale = COLOURS / (high - low);
+    return (column, row) => {
+      const value = layer.value(column, row);
+      if (Number.isNaN(value)) return 0;
+      const share = high > low ? (value - low) * scale : COLOURS / 2;
+      return PIXELS[Math.max(0, Math.min(COLOURS - 1, Math.floor(share)))];
+    };
+  }
+
+  /**
+   * The rows of a grid that have arrived, over what is there: its fill, and over that the colours of its cells.
+   * @param {CanvasRenderingContext2D} context
+   * @param {Grid} layer
+   * @param {(column: number, row: number) => number} pixelOf
+   */
+  #drawCells(context, layer, pixelOf) {
+    const image = new ImageData(layer.columns, layer.rows);
+    const pixels = new Uint32Array(image.data.buffer);
+    const last = { column: layer.columns - 1, row: layer.rows - 1 };
+    for (let row = 0; row < layer.rows; row += 1) {
+      if (!layer.has(row)) continue;
+      const { left, right, top, bottom } = this.#boxOf(layer, { column: 0, row }, { column: last.column, row });
+      context.clearRect(left, top, right - left, bottom - top);
+      context.fillRect(left, top, right - left, bottom - top);
+      for (let column = 0; column < layer.columns; column += 1)
+        pixels[(last.row - row) * layer.columns + column] = pixelOf(column, row);
+    }
+    const { left, right, top, bottom } = this.#boxOf(layer, { column: 0, row: 0 }, last);
+    this.#drawPixels(context, image, left, top, right - left, bottom - top);
+  }
+
+  /** Hatches the cells of each class that has lines. @param {Grid} grid */
+  #hatch(grid) {
+    const { context, canvas } = this.#paper;
+    const { frame } = this;
+    const ratio = canvas.width / Math.max(1, this.#paper.width);
+    this.#sheet.width = canvas.width;
+    this.#sheet.height = canvas.height;
+    const sheet = /** @type {CanvasRenderingContext2D} */ (this.#sheet.getContext('2d'));
+    sheet.setTransform(ratio, 0, 0, ratio, 0, 0);
+    for (const kind of /** @type {const} */ (['falls', 'settles'])) {
+      if (!grid.holds(kind) && !this.#under?.holds(kind)) continue;
+      sheet.globalCompositeOperation = 'source-over';
+      sheet.clearRect(0, 0, this.#paper.width, this.#paper.height);
+      sheet.fillStyle = 'transparent';
+      for (const layer of [this.#under, grid]) {
+        if (!layer) continue;
+        const marked = layer.names.map((name) => (classOf(name) === kind ? 0xff000000 : 0));
+        this.#drawCells(sheet, layer, (column, row) => marked[layer.outcomes[row * layer.columns + column]]);
+      }
+      sheet.globalCompositeOperation = 'source-in';
+      sheet.fillStyle = hatchingOf(sheet, kind) ?? 'transparent';
+      sheet.fillRect(frame.left, frame.top, frame.width, frame.height);
+      context.drawImage(this.#sheet, 0, 0, this.#paper.width, this.#paper.height);
+    }
+  }
+
+  /** The legend of the classes, where a colour bar would be. @param {import('../../charts/axes.js').Frame} frame @param {Grid} grid */
+  #drawClasses({ left, top, width, height }, grid) {
+    const { context } = this.#paper;
+    const colours = theme();
+    const y = top + height + BAR.below - 6;
+    const shares = new Map(grid.shares());
+    const kinds = /** @type {const} */ (['survives', 'falls', 'settles', 'none']).filter(
+      (kind) => shares.has(kind) || kind === 'survives' || kind === 'falls',
+    );
+    context.textAlign = 'left';
+    context.textBaseline = 'middle';
+    context.font = `12px ${SANS}`;
+    kinds.forEach((kind, index) => {
+      const x = left + (index * width) / kinds.length;
+      const { colour, name } = CLASSES[kind];
+      context.fillStyle = blank(context, colours);
+      context.fillRect(x, y, SWATCH.width, SWATCH.height);
+      if (colour !== null) {
+        this.#drawPixels(
+          context,
+          new ImageData(new Uint8ClampedArray(Uint32Array.of(pixelOf(kind)).buffer), 1, 1),
+          x,
+          y,
+          SWATCH.width,
+          SWATCH.height,
+        );
+        context.fillStyle = hatchingOf(context, kind) ?? 'transparent';
+        context.fillRect(x, y, SWATCH.width, SWATCH.height);
+      }
+      context.lineWidth = 1;
+      context.strokeStyle = colours.muted;
+      context.strokeRect(x + 0.5, y + 0.5, SWATCH.width - 1, SWATCH.height - 1);
+      context.fillStyle = colours.ink;
+      const share = shares.get(kind);
+      const words = share === undefined ? name : `${name} ${percent(share)}`;
+      context.fillText(
+        words,
+        x + SWATCH.width + 6,
+        y + SWATCH.height / 2 + 0.5,
+        width / kinds.length - SWATCH.width - 8,
+      );
+    });
   }
 
   /**
    * Pixels drawn large, with sharp edges.
+   * @param {CanvasRenderingContext2D} context
    * @param {ImageData} image
    * @param {number} left
    * @param {number} top
    * @param {number} width
    * @param {number} height
    */
-  #drawPixels(image, left, top, width, height) {
-    const { context } = this.#paper;
+  #drawPixels(context, image, left, top, width, height) {
     this.#cells.width = image.width;
     this.#cells.height = image.height;
     this.#cells.getContext('2d')?.putImageData(image, 0, 0);
     context.imageSmoothingEnabled = false;
     context.drawImage(this.#cells, left, top, width, height);
-  }
-
-  /** The pattern of cells without a value. */
-  #hatching() {
-    const colours = theme();
-    const tile = Object.assign(document.createElement('canvas'), { width: 8, height: 8 });
-    const context = /** @type {CanvasRenderingContext2D} */ (tile.getContext('2d'));
-    context.fillStyle = colours.faint;
-    context.fillRect(0, 0, 8, 8);
-    context.lineWidth = 1.5;
-    for (const shift of [-8, 0, 8]) line(context, colours.muted, shift, 8, shift + 8, 0);
-    return this.#paper.context.createPattern(tile, 'repeat') ?? colours.faint;
   }
 
   /**
@@ -232,6 +346,7 @@ export class MapPicture {
     context.textBaseline = 'bottom';
     context.fillText(unit ? `${title} (${unit})` : title, left, from - 5);
     this.#drawPixels(
+      context,
       new ImageData(new Uint8ClampedArray(PIXELS.slice().buffer), COLOURS, 1),
       left,
       from,
@@ -265,14 +380,9 @@ export class MapPicture {
     context.clip();
     if (this.#mark) this.#drawMark(toX(frame, this.#mark.x), toY(frame, this.#mark.y));
     const { cursor, selection } = this;
-    if (cursor && !selection) {
-      const [w, h] = [frame.width / this.columns, frame.height / this.rows];
-      // Around the cell, and never too small to be found.
-      const [wide, high] = [Math.max(w, 8), Math.max(h, 8)];
-      const x = frame.left + (cursor.column + 0.5) * w;
-      const y = frame.top + frame.height - (cursor.row + 0.5) * h;
-      this.#outline(x - wide / 2 - 1, y - high / 2 - 1, wide + 2, high + 2);
-    }
+    if (this.chosen && this.#grid)
+      this.#outlineCell(this.#grid, this.#grid.cellAround(this.chosen.x, this.chosen.y), 14);
+    if (cursor && !selection && this.#grid) this.#outlineCell(this.#grid, cursor, 8);
     if (selection) {
       const { left, top, right, bottom } = selection;
       context.fillStyle = 'rgb(255 255 255 / 0.25)';
@@ -280,6 +390,13 @@ export class MapPicture {
       this.#outline(left, top, right - left, bottom - top);
     }
     context.restore();
+  }
+
+  /** Around a cell, and never too small to be found. @param {Grid} grid @param {Cell} cell @param {number} least px */
+  #outlineCell(grid, cell, least) {
+    const { left, right, top, bottom } = this.#boxOf(grid, cell, cell);
+    const [wide, high] = [Math.max(right - left, least) + 2, Math.max(bottom - top, least) + 2];
+    this.#outline((left + right - wide) / 2, (top + bottom - high) / 2, wide, high);
   }
 
   /** @param {number} x @param {number} y @param {number} width @param {number} height */

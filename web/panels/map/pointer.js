@@ -6,7 +6,7 @@
 /**
  * @typedef {object} PointerActions
  * @property {(cell: Cell | null, byKey: boolean) => void} point
- * @property {(cell: Cell) => void} take
+ * @property {(cell: Cell, byKey: boolean) => void} take
  * @property {(from: {x: number, y: number}, to: {x: number, y: number}) => void} select values at two corners, low ends first
  * @property {() => Cell} begin where keys start from
  */
@@ -25,8 +25,6 @@ export function listen(box, picture, actions) {
   /** @type {{x: number, y: number, id: number} | null} */
   let pressed = null;
   let dragging = false;
-  /** The cell that a finger has tapped last. @type {Cell | null} */
-  let tapped = null;
 
   /** @param {PointerEvent} event */
   const place = (event) => {
@@ -78,10 +76,7 @@ export function listen(box, picture, actions) {
     release();
     if (cell) {
       point(cell, false);
-      // A finger cannot look before it acts: its first tap points, a second one there acts.
-      const again = tapped?.column === cell.column && tapped.row === cell.row;
-      tapped = again ? null : cell;
-      return event.pointerType === 'touch' && !again ? undefined : actions.take(cell);
+      return actions.take(cell, false);
     }
     if (!selection || selection.right - selection.left < THINNEST || selection.bottom - selection.top < THINNEST)
       return;
@@ -124,7 +119,7 @@ export function listen(box, picture, actions) {
           : cell,
         true,
       );
-    } else if (event.key === 'Enter' && picture.cursor) actions.take(cell);
+    } else if (event.key === 'Enter' && picture.cursor) actions.take(cell, true);
     else if (event.key === '+' || event.key === '=') closer(cell);
     else if (event.key === 'Escape' && pressed) release();
     else return;

@@ -12,18 +12,28 @@ export const DEFAULT = {
   y: { parameter: 'release.theta', from: 0, to: 0.5 },
   quantity: 'survival',
   impacts: 1000,
-  columns: 96,
+  columns: 384,
 };
 
 /** @type {Record<string, {title: string, unit: string, runs: boolean}>} */
 export const QUANTITIES = {
-  survival: { title: 'Contacts survived', unit: '', runs: true },
+  survival: { title: 'Bounces survived', unit: '', runs: true },
   max_theta: { title: 'Largest |θ|', unit: 'rad', runs: true },
   residue: { title: 'Residue R', unit: '', runs: false },
   spectral_radius: { title: 'Spectral radius', unit: '', runs: false },
 };
 
 export const COLUMNS = [48, 96, 192, 384];
+
+/** Columns that a map goes through until it is as fine as wanted. */
+const PASSES = [24, 96, 384];
+
+/** The columns of its passes, from coarse to fine. @param {number} finest */
+export const passesOf = (finest) => [...PASSES.filter((columns) => columns < finest), finest];
+
+/** Bounces of its runs. @param {Settings} settings */
+export const bouncesOf = ({ columns, impacts, quantity }) =>
+  QUANTITIES[quantity].runs ? columns * rowsOf(columns) * impacts : 0;
 
 /** @param {number} columns */
 export const rowsOf = (columns) => (columns * 2) / 3;
