@@ -1,6 +1,6 @@
 // The marks of impacts: their shapes and colours.
 
-import { theme } from './theme.js';
+import { presenting, theme } from './theme.js';
 
 /**
  * One impact: its colour and shape tell which parameters it was played with, so that neither is needed alone.
@@ -43,7 +43,7 @@ export const seriesColour = (series) => theme()[/** @type {'series-0'} */ (`seri
  * @param {boolean} many a dot among so many that it must be small
  */
 export function drawDot(context, series, x, y, look, many) {
-  const size = many ? 0.6 : 1;
+  const size = (many ? 0.6 : 1) * (presenting() ? 1.67 : 1);
   drawMark(context, series, x, y, size * { plain: 1.8, selected: 3, receded: 1.3 }[look]);
   context.fillStyle = seriesColour(series);
   context.globalAlpha = look === 'receded' ? 0.4 : 1;

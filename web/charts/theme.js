@@ -37,15 +37,17 @@ export function theme() {
 /** Calls when what is drawn looks another way: the scheme or the unit of angles has changed. @param {() => void} listener */
 export const onThemeChange = (listener) => void listeners.add(listener);
 
-// Units are drawn too.
-document.addEventListener(UNITS, () => {
-  for (const listener of listeners) listener();
-});
+/** True while a room looks on, from afar. */
+export const presenting = () => document.documentElement.classList.contains('presenting');
 
-matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+function changed() {
   colours = null;
   for (const listener of listeners) listener();
-});
+}
+// Units are drawn too, and a room sees larger dots.
+document.addEventListener(UNITS, changed);
+new MutationObserver(changed).observe(document.documentElement, { attributeFilter: ['class'] });
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', changed);
 
 export const SANS = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", Arial, sans-serif';
 // Other serif fonts of a system may lose the dot of θ̇ within the letter.

@@ -67,6 +67,7 @@ export async function bringLateParts(page) {
     typed: () => page.complete,
     query: () => typedQuery(page),
     measured: { bar: byId('measured-bar'), show: () => page.panels?.show('measured') },
+    follow: () => page.follow(false),
   });
   page.panels.join('brush', page.interaction);
   bringTracks(page);

@@ -20,6 +20,7 @@ import { styles } from '../../dom/styles.js';
  * @property {(values: Record<string, number>) => void} launch
  * @property {() => void} changed what the address says
  * @property {{bar: HTMLElement, show: () => void}} measured the place of a lab's own impacts
+ * @property {() => void} follow shows anew what belongs to the typed scene
  */
 
 const BY_POINTER = 'Drag over a plot to select impacts; click in a plane to place a release there.';
@@ -82,7 +83,8 @@ export class PlotInteraction {
       ...page,
       plots,
       say,
-      preview: (answer) => /** @type {any} */ (view).preview?.(answer),
+      // Without a ghost the scene shows the flights of what is typed.
+      preview: (answer) => (answer ? /** @type {any} */ (view).preview?.(answer) : page.follow()),
     });
     for (const plot of plots) {
       listen(plot, {

@@ -115,7 +115,7 @@ class MapPanel {
     root.addEventListener('keydown', (event) => {
       // In a list it closes the list.
       if (event.key === 'Escape' && !event.defaultPrevented && !(event.target instanceof HTMLSelectElement))
-        this.#leave();
+        if (this.#leave()) event.preventDefault();
     });
     document.addEventListener(UNITS, () => {
       this.#inset.close();
@@ -394,11 +394,15 @@ class MapPanel {
     return { parameter, from, to };
   }
 
-  /** Closes the inset; without one goes back. */
+  /** Closes the inset; without one cancels, or goes back. @returns {boolean} whether there was something to leave */
   #leave() {
-    if (!this.#inset.open) return this.#back();
-    this.#inset.close();
-    this.#box.focus({ preventScroll: true });
+    const some = this.#inset.open || this.#views.length > 0 || this.#refinement.active;
+    if (!this.#inset.open) this.#back();
+    else {
+      this.#inset.close();
+      this.#box.focus({ preventScroll: true });
+    }
+    return some;
   }
 
   #back() {
