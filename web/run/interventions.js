@@ -22,3 +22,13 @@ export function interventionsOf(query) {
   }
   return [...found.keys()].sort((a, b) => a - b).map((index) => /** @type {Intervention} */ (found.get(index)));
 }
+
+/** Interventions as a query. @param {Intervention[]} interventions */
+export const interventionQuery = (interventions) =>
+  new URLSearchParams(
+    interventions.flatMap(({ impact, set, kick }, index) => [
+      [`interventions.${index}.impact`, String(impact)],
+      ...Object.entries(set).map(([path, value]) => [`interventions.${index}.set.${path}`, String(value)]),
+      ...Object.entries(kick).map(([name, value]) => [`interventions.${index}.kick.${name}`, String(value)]),
+    ]),
+  );

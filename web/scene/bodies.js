@@ -7,6 +7,8 @@ import { contactDistance, corners } from '../physics/body.js';
 /** @typedef {CanvasRenderingContext2D} Context */
 /** @typedef {import('./camera.js').Scale} Scale */
 
+/** @typedef {'ink' | 'series-1' | 'series-2' | 'series-3' | 'measured'} RodColour */
+
 /**
  * The rod from its contact point through its centre of gravity, with marks at ±ρ: two half masses there would turn like it; or the
  * outline of a polygon.
@@ -14,15 +16,18 @@ import { contactDistance, corners } from '../physics/body.js';
  * @param {Scale} scale
  * @param {import('../api/scene-fields.js').Scene} scene
  * @param {import('../physics/flight.js').Pose} pose
+ * @param {{colour?: RodColour, opacity?: number}} [look]
  */
-export function drawRod(context, scale, scene, pose) {
+export function drawRod(context, scale, scene, pose, { colour = 'ink', opacity = 1 } = {}) {
   const colours = theme();
+  const ink = colours[colour];
   const l = contactDistance(scene);
   const rho = scene.body?.radius_of_gyration ?? 0;
   context.save();
+  context.globalAlpha = opacity;
   context.translate(scale.x(pose.x), scale.y(pose.y));
   if (l === 0) {
-    centre(context, 8);
+    centre(context, 8, ink);
     return context.restore();
   }
   // The canvas turns clockwise, θ counter-clockwise.
@@ -44,35 +49,37 @@ export function drawRod(context, scale, scene, pose) {
   context.closePath();
   context.fillStyle = colours.surface;
   context.fill();
-  context.globalAlpha = 0.16;
-  context.fillStyle = colours.ink;
+  context.globalAlpha = 0.16 * opacity;
+  context.fillStyle = ink;
   context.fill();
-  context.globalAlpha = 1;
+  context.globalAlpha = opacity;
   context.lineWidth = 1.5;
-  context.strokeStyle = colours.ink;
+  context.strokeStyle = ink;
   context.stroke();
   context.lineWidth = 1.5;
   for (const at of polygon ? [] : [-rho, rho]) {
-    if (at <= l) line(context, colours.ink, -half - 3, at * scale.metre, half + 3, at * scale.metre);
+    if (at <= l) line(context, ink, -half - 3, at * scale.metre, half + 3, at * scale.metre);
   }
   context.rotate(pose.theta);
-  centre(context, Math.max(6, half + 2));
+  centre(context, Math.max(6, half + 2), ink);
   context.restore();
   const [x, y] = [scale.x(pose.x + l * Math.sin(pose.theta)), scale.y(pose.y - l * Math.cos(pose.theta))];
   context.beginPath();
   context.arc(x, y, 3, 0, 2 * Math.PI);
-  context.fillStyle = colours.ink;
+  context.globalAlpha = opacity;
+  context.fillStyle = ink;
   context.fill();
+  context.globalAlpha = 1;
 }
 
-/** The sign for a centre of gravity: a circle in quarters. @param {Context} context @param {number} r */
-function centre(context, r) {
+/** The sign for a centre of gravity: a circle in quarters. @param {Context} context @param {number} r @param {string} ink */
+function centre(context, r, ink) {
   const colours = theme();
   context.beginPath();
   context.arc(0, 0, r, 0, 2 * Math.PI);
   context.fillStyle = colours.surface;
   context.fill();
-  context.fillStyle = colours.ink;
+  context.fillStyle = ink;
   for (const from of [0, Math.PI]) {
     context.beginPath();
     context.moveTo(0, 0);
@@ -81,7 +88,7 @@ function centre(context, r) {
     context.fill();
   }
   context.lineWidth = 1.5;
-  context.strokeStyle = colours.ink;
+  context.strokeStyle = ink;
   context.beginPath();
   context.arc(0, 0, r, 0, 2 * Math.PI);
   context.stroke();

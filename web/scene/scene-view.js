@@ -18,6 +18,8 @@ export class SceneView {
   layers;
   /** @type {import('./run-drawing.js').Under | null} */
   under = null;
+  /** The rods of other runs on this stage. @type {import('./other-rods.js').OtherRod[]} */
+  others = [];
   /** @type {import('./run-drawing.js').Parts} */
   #parts;
   /** The scene to draw while there is no run. @type {Scene | null} */
@@ -39,7 +41,15 @@ export class SceneView {
     box.setAttribute('aria-label', 'The scene');
     this.layers = surfaces(box, 1, () => this.redraw());
     const [surface] = this.layers;
-    this.#parts = { run, box, readout, surface, camera: new Camera(surface), under: () => this.under };
+    this.#parts = {
+      run,
+      box,
+      readout,
+      surface,
+      camera: new Camera(surface),
+      under: () => this.under,
+      others: () => this.others,
+    };
     onThemeChange(() => this.redraw());
     new IntersectionObserver(([entry]) => {
       this.#seen = entry.isIntersecting;

@@ -1,8 +1,12 @@
 // Brings the time line and what belongs to it.
 
+import { sceneQuery } from '../api/scene-query.js';
+import { GAIN } from '../app/page.js';
 import { byId } from '../dom/elements.js';
 import { styles } from '../panels/card.js';
 import { RunSliders } from '../run/sliders.js';
+import { Fork } from './fork.js';
+import { Others } from './others.js';
 import { Timeline } from './timeline.js';
 
 /** @param {import('../app/page.js').Page} page */
@@ -10,5 +14,18 @@ export async function bringTimeline(page) {
   await styles('timeline/timeline.css').catch(() => {});
   const { run, view, plots, controls, fields } = page;
   controls.join(new RunSliders(byId('controls'), controls.actions));
-  page.timeline = new Timeline(byId('timeline'), { run, view, plots, controls, fields, speed: () => page.speed });
+  const root = byId('timeline');
+  const timeline = new Timeline(root, { run, view, plots, controls, fields, speed: () => page.speed });
+  page.timeline = timeline;
+  const others = new Others(view, plots);
+  const field = fields.find(({ path }) => path === GAIN);
+  if (field)
+    new Fork(root, timeline.words, {
+      run,
+      timeline,
+      others,
+      field,
+      release: () => sceneQuery(run.released ?? {}, page.chosen, fields),
+      critical: () => page.judged?.answer.linear?.tilt_gain?.critical ?? null,
+    });
 }

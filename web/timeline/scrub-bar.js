@@ -144,7 +144,7 @@ export class ScrubBar {
     }
     if (this.fork !== null && this.fork >= begin) {
       context.lineWidth = 2;
-      line(context, colours['series-3'], x(this.fork), y - 9, x(this.fork), y + 9);
+      line(context, colours.measured, x(this.fork), y - 9, x(this.fork), y + 9);
     }
     for (const { t, kind } of this.marks) drawMoment(context, kind, x(t), y - 8);
     context.beginPath();

@@ -1,0 +1,119 @@
+// “What if from here”: a second run with another tilt gain parts from the run at the shown impact.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, ink, reachImpact, reachPhase, slide, speedUp } from './stage.js';
+
+const stage = await Stage.open();
+
+/** A paused run whose fifth impact is shown. */
+async function atFifth(query = '?preset=case-1') {
+  const opened = await stage.page(query);
+  const { page } = opened;
+  await page.locator('#scrub').waitFor();
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 14);
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  await page.locator('#scrub').focus();
+  await page.keyboard.press('Home');
+  for (let n = 1; n <= 5; n += 1) await page.keyboard.press('ArrowRight');
+  await page.locator('#timeline-told', { hasText: /n\s5\s/ }).waitFor();
+  return opened;
+}
+
+/** The answer of the server to a fork at the fifth impact. */
+const forked = async (gain) =>
+  (
+    await fetch(
+      `${stage.url}v1/trajectories?preset=case-1&interventions.0.impact=6&interventions.0.set.table.tilt_gain=${gain}&impacts=305`,
+    )
+  ).json();
+
+test('a fork asks for the run with another gain from here on, and tells how it ends', async () => {
+  const { page, clean } = await atFifth();
+  const asked = [];
+  page.on('request', (request) => {
+    if (request.url().includes('/v1/trajectories')) asked.push(new URL(request.url()).searchParams);
+  });
+  const before = await ink(page, '#plane-angle', '--measured');
+  await page.click('#fork');
+  const told = page.locator('#fork-told', { hasText: 'From impact 5' });
+  await told.waitFor();
+  // Beyond the critical gain of 1.5, since the run itself is below.
+  assert.ok(Number(await page.inputValue('#fork-gain')) > 1.5);
+  const [query] = asked;
+  assert.equal(query.get('preset'), 'case-1');
+  assert.equal(query.get('interventions.0.impact'), '6');
+  assert.equal(query.get('interventions.0.set.table.tilt_gain'), await page.inputValue('#fork-gain'));
+  await slide(page, '#fork-gain', 1.9);
+  const { outcome } = await forked(1.9);
+  assert.notEqual(outcome.kind, 'completed');
+  await page.locator('#fork-told', { hasText: `κ 1.9: fell at bounce ${outcome.impacts}` }).waitFor();
+  await slide(page, '#fork-gain', 1.3);
+  await page.locator('#fork-told', { hasText: 'κ 1.3: survives the next 300 bounces' }).waitFor();
+  assert.equal((await forked(1.3)).outcome.kind, 'completed');
+  await page.waitForFunction(() =>
+    /what if κ/.test(document.querySelector('#plane-angle [role=application]').ariaLabel),
+  );
+  assert.ok((await ink(page, '#plane-angle', '--measured')) > before + 20, 'its dots are in the plane');
+  clean();
+});
+
+test('both rods move on one clock, and a close takes the second one away', async () => {
+  const { page, clean } = await atFifth();
+  await page.click('#fork');
+  await page.locator('#fork-told', { hasText: 'From impact 5' }).waitFor();
+  // It plays by itself, so that they are seen to part.
+  await page.waitForFunction(() => /n\s([89]|1\d)\s/.test(document.querySelector('#timeline-told').textContent));
+  if ((await page.locator('#run').innerText()) === 'Pause') await page.click('#run');
+  const seen = () => ink(page, '#scene-frame', '--measured');
+  await page.locator('#scrub').focus();
+  await page.keyboard.press('Home');
+  for (let n = 1; n <= 9; n += 1) await page.keyboard.press('ArrowRight');
+  await page.locator('#timeline-told', { hasText: /n\s9\s/ }).waitFor();
+  const poses = await page.evaluate(async () => {
+    const canvas = document.querySelector('#scene-frame canvas');
+    await new Promise(requestAnimationFrame);
+    return canvas.toDataURL().length;
+  });
+  assert.ok(poses > 0);
+  await page.click('#fork-close');
+  assert.ok(await page.locator('#fork-box').isHidden());
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'fork');
+  assert.equal(await seen(), 0);
+  clean();
+});
+
+test('a run that fell goes on in its fork', async () => {
+  const { page, clean } = await stage.page('?preset=case-3&scene.release.theta=0.3', { reducedMotion: 'reduce' });
+  await page.locator('#scrub').waitFor();
+  await speedUp(page);
+  await page.click('#run');
+  await reachPhase(page, 'ended');
+  const end = Number(await page.locator('#scrub').getAttribute('aria-valuemax'));
+  await page.locator('#scrub').focus();
+  for (let back = 0; back < 2; back += 1) await page.keyboard.press('ArrowLeft');
+  await page.click('#fork');
+  await slide(page, '#fork-gain', 1.2);
+  await page.locator('#fork-told', { hasText: 'From impact 2 with κ 1.2: survives' }).waitFor();
+  await page.locator('#scrub').focus();
+  await page.keyboard.press('ArrowLeft');
+  await page.waitForFunction(
+    (t) => Number(document.querySelector('#scrub').getAttribute('aria-valuemax')) > t + 1,
+    end,
+  );
+  clean();
+});
+
+test('a table under state feedback has no gain to fork with', async () => {
+  const { page, clean } = await stage.page(
+    '?preset=case-1&scene.table.tilt_gain=null&scene.table.feedback.theta=-2.9&scene.table.feedback.x=0.3&scene.table.feedback.x_dot=0.36&scene.table.feedback.theta_dot=-0.25',
+  );
+  await page.locator('#scrub').waitFor();
+  await page.click('#run');
+  await reachImpact(page, 1);
+  assert.ok(await page.locator('#fork').isDisabled());
+  clean();
+});
