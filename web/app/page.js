@@ -31,6 +31,8 @@ export class Page {
   interaction = null;
   /** The time line over the run; it comes late as well. @type {import('../timeline/timeline.js').Timeline | null} */
   timeline = null;
+  /** Runs that stay as references. @type {import('../pins/pins.js').Pins | null} */
+  pins = null;
   /** The newest verdict. @type {import('../panels/card.js').Judged | null} */
   judged = null;
   /** True while the newest scene has no verdict because the server was away. */

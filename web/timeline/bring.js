@@ -28,4 +28,5 @@ export async function bringTimeline(page) {
       release: () => sceneQuery(run.released ?? {}, page.chosen, fields),
       critical: () => page.judged?.answer.linear?.tilt_gain?.critical ?? null,
     });
+  return others;
 }

@@ -37,6 +37,7 @@ export function bindingsOf(page) {
       },
     },
     { keys: [','], label: ',', name: 'Back to the strike before', act: () => void page.timeline?.step(-1) },
+    { keys: ['a'], label: 'a', name: 'Pin this run as a reference', act: () => page.pins?.pin() },
     { keys: ['n'], label: 'n', name: 'Back to now', act: () => page.timeline?.toNow() },
     { keys: ['r'], label: 'r', name: 'Restart from the release', act: () => restart(page) },
     {

@@ -7,6 +7,7 @@ import { brokenLinkNotice, clearNotice } from '../../dom/notices.js';
 import { enlarger } from '../../export/enlarge-button.js';
 import { styles } from '../../dom/styles.js';
 import { Panels } from '../../panels/panels.js';
+import { bringPins } from '../../pins/bring.js';
 import { bringTimeline } from '../../timeline/bring.js';
 import { bringShell } from '../../workbench/shell.js';
 import { updateAddress, updateAddressSoon } from '../address-bar.js';
@@ -31,7 +32,7 @@ export async function bringLateParts(page) {
   }
   const card = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
   card.querySelector('.card-head')?.append(enlarger(card, 'Scene', () => savesOf(page, 'scene', 'Scene', view)));
-  await bringTimeline(page);
+  const others = await bringTimeline(page);
   bringShell();
   listenToKeys(bindingsOf(page));
   byId('share').addEventListener('click', (event) => {
@@ -71,6 +72,7 @@ export async function bringLateParts(page) {
   });
   page.panels.join('brush', page.interaction);
   bringTracks(page);
+  page.panels.join('pin', await bringPins(page, others));
   page.panels.restore(page.panelLink);
   if (page.judged) page.panels.judged(page.judged);
 }
