@@ -89,10 +89,10 @@ export class Stage {
   /**
    * A page in a fresh browser profile, and what it did wrong so far.
    * @param {string} query
-   * @param {object} options of Playwright's context; `prepare`, which the page runs before its own code; another `path`, and the `sign`
-   * that it is there; `folded` settings
+   * @param {object} options of Playwright's context; `prepare`, which the page runs before its own code; `watch`, which sees the page before
+   * it loads; another `path`, and the `sign` that it is there; `folded` settings
    */
-  async page(query = '', { prepare, path = '', sign = '#case:enabled', folded = false, ...options } = {}) {
+  async page(query = '', { prepare, path = '', sign = '#case:enabled', watch, folded = false, ...options } = {}) {
     const context = await this.#browser.newContext({ viewport: { width: 1280, height: 860 }, ...options });
     this.#contexts.push(context);
     await context.grantPermissions(['clipboard-read', 'clipboard-write']);
@@ -127,6 +127,7 @@ export class Stage {
           'World',
         ]);
       });
+    watch?.(page);
     if (prepare) await page.addInitScript(prepare);
     await page.goto(this.url + path + query);
     await page.locator(sign).first().waitFor();
