@@ -17,7 +17,7 @@ export function enlarge(card, title, saves) {
   const dialog = h(
     'dialog',
     // The focus is on none of its buttons, so that the keys of the run act here as well.
-    { class: 'large', 'aria-label': title, autofocus: true },
+    { class: 'large', 'aria-label': title, tabindex: -1 },
     h(
       'form',
       { method: 'dialog', class: 'large-head' },
@@ -34,4 +34,5 @@ export function enlarge(card, title, saves) {
     /** @type {HTMLElement | null} */ (card.querySelector('button.enlarge'))?.focus();
   });
   dialog.showModal();
+  dialog.focus();
 }

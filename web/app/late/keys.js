@@ -46,7 +46,7 @@ export function listenToKeys(keys) {
     const target = event.target instanceof Element ? event.target : null;
     // Letters belong to where one types, and Space to whatever it presses.
     if (target?.closest('input:not([type=range]):not([type=checkbox]), select, textarea, [contenteditable]')) return;
-    if (event.key === ' ' && target?.closest('button, a, summary, input, [tabindex]')) return;
+    if (event.key === ' ' && target?.closest('button, a, summary, input, [tabindex]:not(dialog)')) return;
     const found = all.find(({ keys: known }) => known.includes(event.key));
     if (!found) return;
     event.preventDefault();
