@@ -71,7 +71,8 @@ export const toY = ({ top, height, y }, value) => top + height - ((value - y.low
 
 /** Ticks that are round in the unit that is shown, and their numbers. @param {Range} range @param {number} count @param {string} name */
 function shownTicks({ low, high }, count, name) {
-  const factor = shownFactor(name.split(' / ')[1] ?? null);
+  const [, unit = null] = /(?: \/ | \()([^()]+)\)?$/.exec(name) ?? [];
+  const factor = shownFactor(unit);
   return ticks({ low: low * factor, high: high * factor }, count).map((told) => ({ told, value: told / factor }));
 }
 

@@ -4,6 +4,7 @@ import { aim } from '../form/slider-range.js';
 import { h } from '../dom/elements.js';
 import { steady } from '../form/steady-slider.js';
 import { symbol } from '../dom/typeset.js';
+import { UNITS, shownUnit, shownValue } from '../dom/units.js';
 import { fixed, number, parse } from '../dom/numbers.js';
 import { FASTEST, SLOWEST } from './speed.js';
 
@@ -96,11 +97,11 @@ export class RunSliders {
     this.#kick.addEventListener('click', () => this.kick());
     this.#kickBy.setAttribute('aria-describedby', 'kick-error');
     this.#kickWhat.addEventListener('change', () => {
-      const chosen = KICKS[this.#kickWhat.selectedIndex];
-      this.#kickBy.value = chosen.usual;
-      this.#kickUnit.textContent = chosen.unit;
       this.#kickError.textContent = '';
+      this.#showKick();
     });
+    document.addEventListener(UNITS, () => this.#showKick());
+    this.#showKick();
     this.#gainBox = h(
       'div',
       { class: 'control wide' },
@@ -126,6 +127,13 @@ export class RunSliders {
       ),
     );
     this.setSpeed(1);
+  }
+
+  /** Shows how much a kick changes, in the unit of angles of the page. */
+  #showKick() {
+    const { usual, unit } = KICKS[this.#kickWhat.selectedIndex];
+    this.#kickBy.value = String(Number(shownValue(Number(usual), unit).toPrecision(2)));
+    this.#kickUnit.textContent = shownUnit(unit);
   }
 
   #gained(/** @type {boolean} */ final) {

@@ -3,7 +3,8 @@
 import { COLUMNS, QUANTITIES, rowsOf, sidesOf } from './settings.js';
 import { MOST_IMPACTS } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
-import { number, parse, unitAfter } from '../../dom/numbers.js';
+import { number, parse, quantity, unitAfter } from '../../dom/numbers.js';
+import { UNITS, shownValue } from '../../dom/units.js';
 import { sliderRange } from '../../form/slider-range.js';
 
 /** @typedef {import('../../api/scene-fields.js').Field} Field */
@@ -101,6 +102,7 @@ export class MapControls {
       ),
     );
     this.show(settings);
+    document.addEventListener(UNITS, () => this.show(this.#settings));
   }
 
   /** @param {Name} name @param {string} title */
@@ -179,9 +181,9 @@ export class MapControls {
     this.#actions.changed(settings);
   }
 
-  /** @param {HTMLInputElement} input @param {number} value */
-  #put(input, value) {
-    input.value = String(Number(value.toPrecision(8)));
+  /** @param {HTMLInputElement} input @param {number} value @param {string} unit */
+  #put(input, value, unit) {
+    input.value = String(Number(shownValue(value, unit).toPrecision(8)));
     // Keeps the exact value of the rounded text until it is edited.
     input.dataset.text = input.value;
     input.dataset.value = String(value);
@@ -193,11 +195,10 @@ export class MapControls {
     for (const name of /** @type {const} */ (['x', 'y'])) {
       const { field, from, to, unit } = this.#sides[name];
       field.value = settings[name].parameter;
-      this.#put(from, settings[name].from);
-      this.#put(to, settings[name].to);
-      unit.textContent = unitAfter(
-        this.#fields.find(({ path }) => path === settings[name].parameter)?.unit ?? '',
-      ).trim();
+      const si = this.#fields.find(({ path }) => path === settings[name].parameter)?.unit ?? '';
+      this.#put(from, settings[name].from, si);
+      this.#put(to, settings[name].to, si);
+      unit.textContent = unitAfter(si).trim();
     }
     this.#quantity.value = settings.quantity;
     this.#impacts.value = String(settings.impacts);
@@ -222,7 +223,7 @@ export class MapControls {
         else settings[name][end] = value;
       }
       if (errors.length === 0 && settings[name].from >= settings[name].to)
-        errors.push({ pointer: `/${name}/from`, detail: `It must be below ${number(settings[name].to, 8)}.` });
+        errors.push({ pointer: `/${name}/from`, detail: `It must be below ${quantity(settings[name].to, unit, 8)}.` });
     }
     const impacts = parse(this.#impacts.value, null);
     if (impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS)
