@@ -1,6 +1,15 @@
 // Tables of numbers that scroll in their box, and lists of named numbers.
 
 import { h } from './elements.js';
+import { UNITS, shownUnit } from './units.js';
+
+/** A name with its unit, in the unit of angles that the page shows. @param {string} name as in `θ / rad` */
+const named = (name) => (/\brad\b/.test(name) ? h('span', { 'data-named': name }, shownUnit(name)) : name);
+
+document.addEventListener(UNITS, () => {
+  for (const element of document.querySelectorAll('[data-named]'))
+    element.textContent = shownUnit(element.getAttribute('data-named') ?? '');
+});
 
 /**
  * @param {string} label for those who do not see it
@@ -15,7 +24,11 @@ export const table = (label, head, body, kind) =>
     h(
       'table',
       { class: kind },
-      h('thead', {}, h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, name)))),
+      h(
+        'thead',
+        {},
+        h('tr', {}, ...head.map((name) => h('th', { scope: 'col' }, typeof name === 'string' ? named(name) : name))),
+      ),
       body,
     ),
   );

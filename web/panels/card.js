@@ -32,6 +32,7 @@ export { styles };
  * @property {() => void} [ask] what waits for a press of a button in the page
  * @property {(judged: Judged) => void} [judged]
  * @property {() => void} [played] what the plots show may be another run
+ * @property {() => void} [retell] shows the same in another unit of angles
  * @property {() => URLSearchParams} [query] its part of the page’s address, where it differs from the usual
  * @property {(link: URLSearchParams) => string[]} [restore] from that part; what was dropped of it, in words
  */

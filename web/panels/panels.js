@@ -111,6 +111,11 @@ export class Panels {
     for (const panel of this.#seen()) panel.played?.();
   }
 
+  /** Shows the same in another unit of angles. */
+  retell() {
+    for (const panel of this.#mounted.values()) panel.retell?.();
+  }
+
   sceneChanged() {
     for (const panel of this.#seen()) panel.sceneChanged?.();
   }

@@ -72,6 +72,7 @@ function offerUnits(page) {
   document.addEventListener(UNITS, () => {
     show();
     page.verdict?.retell();
+    page.panels?.retell();
     page.view.redraw();
     updateAddress(page);
   });

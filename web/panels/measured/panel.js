@@ -9,11 +9,13 @@ import { drawResiduals } from './residual-chart.js';
 import { h } from '../../dom/elements.js';
 import { invalidate } from '../../charts/surface.js';
 import { number, parse } from '../../dom/numbers.js';
+import { shownFactor, shownUnit } from '../../dom/units.js';
 import { onThemeChange } from '../../charts/theme.js';
 import { svg } from '../../charts/svg.js';
 
 /** @typedef {import('./read.js').Measured} Measured */
 /** @typedef {import('./compare.js').Compared} Compared */
+/** @typedef {import('./compare.js').Residual} Residual */
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
 /** @typedef {{run: import('../../run/run.js').Run, plots: import('../../charts/impacts/impact-plot.js').ImpactPlot[], typed: () => Scene | null}} MeasuredParts */
 
@@ -25,6 +27,15 @@ const NAMES = {
   y_dot: ['ẏ', 'm/s'],
   theta_dot: ['θ̇', 'rad/s'],
 };
+/** Name and shown unit of a quantity. @param {Compared} quantity */
+const nameOf = (quantity) => NAMES[quantity].map(shownUnit).join(' / ');
+
+/** Residuals in the units that are shown. @param {Residual} one @returns {Residual} */
+const asShown = (one) => ({
+  ...one,
+  theta: one.theta * shownFactor('rad'),
+  theta_dot: one.theta_dot * shownFactor('rad/s'),
+});
 /** Time between two comparisons during a run, ms. */
 const PACE_MS = 300;
 /** More rows than these are no reading. */
@@ -213,7 +224,7 @@ export class MeasuredPanel {
   }
 
   #compare() {
-    const all = residuals(this.#impacts, this.#run.impacts);
+    const all = residuals(this.#impacts, this.#run.impacts).map(asShown);
     const found = sums(all);
     const [measured, both] = [this.#impacts.length, all.length];
     this.#tell(
@@ -230,15 +241,15 @@ export class MeasuredPanel {
     drawResiduals(
       this.#box,
       all,
-      found.map(({ quantity }) => [quantity, NAMES[quantity].join(' / ')]),
+      found.map(({ quantity }) => [quantity, nameOf(quantity)]),
     );
     this.#box.setAttribute(
       'aria-label',
-      `Residuals of ${both} impacts. ${found.map(({ quantity, rms }) => `${NAMES[quantity][0]}: RMS ${number(rms)} ${NAMES[quantity][1]}`).join('; ')}`,
+      `Residuals of ${both} impacts. ${found.map(({ quantity, rms }) => `${NAMES[quantity][0]}: RMS ${number(rms)} ${shownUnit(NAMES[quantity][1])}`).join('; ')}`,
     );
     this.#sums.replaceChildren(
       ...found.map(({ quantity, rms, largest, at }) =>
-        row(NAMES[quantity].join(' / '), [number(rms), number(largest), number(at, 7)]),
+        row(nameOf(quantity), [number(rms), number(largest), number(at, 7)]),
       ),
     );
     if (this.#numbers.open)
