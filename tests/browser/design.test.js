@@ -87,7 +87,7 @@ for (const preset of ['case-1', 'triangle-polygon']) {
 }
 
 test('a link keeps noise and limits, and the form wants one law or the other', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
+  const { page, wrongs } = await stage.page('?preset=case-1');
   for (const [path, text] of [
     ['noise-timing_sd', '0.002'],
     ['table-limits-tilt', '0.6'],
@@ -118,7 +118,11 @@ test('a link keeps noise and limits, and the form wants one law or the other', a
   await page.click('#run');
   await page.locator('#field-table-tilt_gain-error', { hasText: 'needed' }).waitFor();
   second.clean();
-  clean();
+  // Between two fields both laws are there, which the server refuses.
+  assert.deepEqual(
+    wrongs.filter((wrong) => !/422/.test(wrong)),
+    [],
+  );
 });
 
 test('what is wrong is said, and a body without an angle has no law', async () => {

@@ -36,7 +36,7 @@ export class TrackMap {
   /**
    * @param {Field} field
    * @param {Track[]} tracks of sliders of this field, which show the same
-   * @param {() => URLSearchParams | null} scene as typed; null while some of it is no value
+   * @param {() => URLSearchParams | null} scene as typed; null while some of it is no value, and for one without this field
    */
   constructor(field, tracks, scene) {
     this.#field = field;
@@ -70,7 +70,8 @@ export class TrackMap {
 
   async #ask() {
     const request = this.#request();
-    if (request === null || request === this.#asked) return;
+    if (request === this.#asked) return;
+    if (request === null) return this.#forget();
     this.#asked = request;
     const { range } = this.#tracks[0];
     const signal = this.#latest.next();
@@ -85,9 +86,14 @@ export class TrackMap {
     } catch {
       if (signal.aborted) return;
       // A scene without such runs has no map; a server that was away is asked again with the next change.
-      this.#asked = '';
-      for (const track of this.#tracks) track.know(null);
+      this.#forget();
     }
+  }
+
+  #forget() {
+    this.#latest.cancel();
+    this.#asked = '';
+    for (const track of this.#tracks) track.know(null);
   }
 
   /** The row in words. @param {(boolean | null)[]} survived @param {{from: number, to: number}} range */

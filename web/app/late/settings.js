@@ -35,12 +35,13 @@ export function bringTracks(page) {
     return row instanceof NumberRow && row.track ? [row.track] : [];
   };
   const gains = [...trackOf(GAIN), new Track(byId('gain', HTMLInputElement))];
-  const maps = /** @type {const} */ ([
-    [GAIN, gains],
-    [ANGLE, trackOf(ANGLE)],
-  ]).flatMap(([path, tracks]) => {
+  // A table with a state feedback has no tilt gain, and a point has no angle.
+  const maps = [
+    { path: GAIN, tracks: gains, has: () => !page.typed?.table?.feedback },
+    { path: ANGLE, tracks: trackOf(ANGLE), has: () => !page.typed?.body?.point },
+  ].flatMap(({ path, tracks, has }) => {
     const field = fields.find((one) => one.path === path);
-    return field && tracks.length > 0 ? [new TrackMap(field, tracks, () => typedQuery(page))] : [];
+    return field && tracks.length > 0 ? [new TrackMap(field, tracks, () => (has() ? typedQuery(page) : null))] : [];
   });
   const sceneChanged = () => {
     for (const map of maps) map.renew();
