@@ -64,6 +64,10 @@ export class Pins {
       struck: () => this.#parting.redraw(),
       cleared: () => this.#parting.forget(),
     });
+    document.addEventListener('units', () => {
+      this.sceneChanged();
+      this.#parting.redraw();
+    });
     this.#show();
   }
 

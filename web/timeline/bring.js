@@ -20,7 +20,7 @@ export async function bringTimeline(page) {
   const others = new Others(view, plots);
   const field = fields.find(({ path }) => path === GAIN);
   if (field)
-    new Fork(root, timeline.words, {
+    new Fork(root, /** @type {HTMLElement} */ (byId('kick').parentElement), {
       run,
       timeline,
       others,

@@ -38,8 +38,6 @@ export class Timeline {
   #told = h('output', { id: 'timeline-told', class: 'told', 'aria-live': 'off' });
   #from = h('span', { id: 'timeline-from', class: 'muted' });
   #moments = h('p', { id: 'timeline-moments', class: 'unseen' });
-  /** The line of the time shown. */
-  words = h('div', { class: 'timeline-words' }, this.#told, this.#from);
   /** The impact that the plots mark. @type {number | null} */
   #marked = null;
   #told_ms = -Infinity;
@@ -55,7 +53,11 @@ export class Timeline {
     this.bar = new ScrubBar(run, this.playback);
     this.bar.element.setAttribute('aria-describedby', this.#moments.id);
     root.querySelector('#step')?.before(this.#back);
-    root.append(h('div', { class: 'scrubbing' }, this.bar.element, this.#now), this.words, this.#moments);
+    root.append(
+      h('div', { class: 'scrubbing' }, this.bar.element, this.#now),
+      h('p', { class: 'timeline-words' }, this.#told, this.#from),
+      this.#moments,
+    );
     this.#now.addEventListener('click', () => {
       if (this.playback.active) this.toNow();
       else if (this.#fell) this.replayFall();
