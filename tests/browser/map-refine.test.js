@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { gate } from './slow-network.js';
-import { Stage, openPanel } from './stage.js';
+import { Stage, openPanel, openTab } from './stage.js';
 
 // A server with less work for one map than usual, so that a refusal costs no minute.
 process.env.EQUIPOISE_REGION_WORK = '30000000';
@@ -77,6 +77,25 @@ test('a pass under way can be cancelled, and what was there stays', async () => 
   });
   await page.click('#map-compute');
   await whole(page);
+  clean();
+});
+
+test('when its tab is closed the map stops, and goes on when it is opened again', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&map.columns=96', { prepare: gate });
+  const asked = passes(page);
+  await page.evaluate(() => {
+    globalThis.linesLet = 20;
+  });
+  await openPanel(page, 'map');
+  await page.locator('.map-progress', { hasText: '20 / 64 rows of 96 × 64' }).waitFor();
+  await openTab(page, 'run');
+  await page.waitForFunction(() => globalThis.aborted > 0);
+  await page.evaluate(() => {
+    globalThis.linesLet = Infinity;
+  });
+  await openPanel(page, 'map');
+  await whole(page);
+  assert.deepEqual(asked, [24, 96, 96], 'a pass that was whole is kept');
   clean();
 });
 

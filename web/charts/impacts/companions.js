@@ -200,7 +200,9 @@ export class Companions {
     }
     context.lineWidth = 1;
     context.strokeStyle = colour;
+    context.globalAlpha = 0.7;
     context.stroke();
+    context.globalAlpha = 1;
   }
 
   /** Places of the preview where the run has no dot of its own yet. */

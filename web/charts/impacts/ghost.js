@@ -2,7 +2,7 @@
 
 import { Problem, get } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
-import { styles } from '../../panels/card.js';
+import { styles } from '../../dom/styles.js';
 
 /** @typedef {import('./impact-plot.js').ImpactPlot} ImpactPlot */
 

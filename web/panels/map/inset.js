@@ -75,6 +75,8 @@ export class Inset {
     this.#chosen = chosen;
     this.element.hidden = false;
     this.element.classList.toggle('right', side === 'right');
+    // On a phone it stands below the map.
+    this.element.scrollIntoView({ block: 'nearest' });
     this.#heading.textContent = place.join('   ');
     const [headline, ...rest] = value;
     this.#words.replaceChildren(h('strong', {}, sentence(headline)), rest.length > 0 ? `: ${rest.join(', ')}` : '');

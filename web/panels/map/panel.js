@@ -124,11 +124,20 @@ class MapPanel {
     });
     new IntersectionObserver(
       (entries) => {
-        this.#near = entries.some(({ isIntersecting }) => isIntersecting);
-        if (this.#near) this.#refresh();
+        const { isIntersecting, boundingClientRect } = entries[entries.length - 1];
+        this.#near = isIntersecting;
+        if (isIntersecting) this.#refresh();
+        else if (boundingClientRect.width === 0) this.#leaveOff();
       },
       { rootMargin: '100px 0px' },
     ).observe(root);
+  }
+
+  /** Its tab is closed: the work stops, and goes on when it is opened again. */
+  #leaveOff() {
+    if (!this.#refinement.active) return;
+    this.#refinement.cancel();
+    this.#asked = '';
   }
 
   /** The map’s part of the page’s address. */
