@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, impacts, numbers, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, impacts, numbers, openPanel, reachImpact, reachPhase, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -64,4 +64,80 @@ test('the choice is remembered, a link keeps it, and another reader’s choice s
   await other.page.locator('#units', { hasText: 'rad' }).waitFor();
   clean();
   other.clean();
+});
+
+test('an angle may be typed in degrees at any time, and a field that is not edited keeps its value exactly', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2345678901234567');
+  await verdict(page);
+  const theta = page.locator('#field-release-theta');
+  const typed = () => page.evaluate(() => Number(new URLSearchParams(location.search).get('scene.release.theta')));
+  const reach = (value) =>
+    page.waitForFunction(
+      (wanted) => Number(new URLSearchParams(location.search).get('scene.release.theta')) === wanted,
+      value,
+    );
+  // There and back without an edit, with the focus in the field too.
+  await page.click('#units');
+  assert.equal(await theta.inputValue(), '13.44');
+  await theta.focus();
+  assert.match(await theta.inputValue(), /^13\.4397\d{8,}$/);
+  await theta.blur();
+  await page.click('#units');
+  assert.equal(await typed(), 0.2345678901234567);
+  for (const [text, value] of [
+    ['20°', 20 * (Math.PI / 180)],
+    ['-7.5 deg', -7.5 * (Math.PI / 180)],
+    ['0,25 rad', 0.25],
+  ]) {
+    await theta.fill(text);
+    await reach(value);
+  }
+  await page.click('#units');
+  for (const [text, value] of [
+    ['20', 20 * (Math.PI / 180)],
+    ['0.3 rad', 0.3],
+    ['10 degrees', 10 * (Math.PI / 180)],
+  ]) {
+    // The value of the case is not in the address.
+    if (value === 0.3) continue;
+    await theta.fill(text);
+    await reach(value);
+  }
+  await theta.blur();
+  assert.equal(await theta.inputValue(), '10', '10° come back as they were typed');
+  await theta.focus();
+  await page.keyboard.press('ArrowUp');
+  await reach(10.5 / (180 / Math.PI));
+  assert.equal(await theta.inputValue(), '10.5');
+  clean();
+});
+
+test('the ends of the map and the spin of a kick are in the unit that is shown', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&angles=deg');
+  await verdict(page);
+  await openPanel(page, 'map');
+  await page.locator('#map-y-to').waitFor();
+  assert.equal(Number(await page.inputValue('#map-y-to')).toFixed(4), ((0.5 * 180) / Math.PI).toFixed(4));
+  await page.fill('#map-y-to', '30');
+  await page.locator('#map-y-to').blur();
+  await page.waitForFunction(() => /map\.y\.to=0\.5235987/.test(location.search));
+  assert.equal(new URL(page.url()).searchParams.get('map.y.from'), '0');
+  await page.click('#units');
+  assert.equal(Number(await page.inputValue('#map-y-to')).toFixed(6), (Math.PI / 6).toFixed(6));
+  clean();
+});
+
+test('the server’s sentences name fields by their titles, and no unit is no words', async () => {
+  const { page, clean } = await stage.page(
+    '?preset=case-1&scene.noise.timing_sd=0.01&scene.noise.model=strike&scene.table.limits.tilt_rate=3',
+  );
+  await verdict(page);
+  await page.locator('#verdict-more').waitFor();
+  const text = await page.locator('main').evaluate((main) => main.textContent);
+  assert.match(text, /[Tt]iming noise is 0\.01/);
+  assert.doesNotMatch(text, /timing_sd|tilt_gain|contact_distance| is null|\(no unit\)/);
+  clean();
+  await page.fill('#field-release-height', '0.01');
+  await page.locator('#field-release-height-error').filter({ hasText: /\d/ }).waitFor();
+  assert.doesNotMatch(await page.locator('#field-release-height-error').innerText(), /_|`/);
 });

@@ -4,6 +4,7 @@ import { pathOf } from '../api/scene-fields.js';
 import { invalidate } from '../charts/surface.js';
 import { h } from '../dom/elements.js';
 import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
+import { inWords } from '../dom/typeset.js';
 import { updateAddressSoon } from './address-bar.js';
 import { sendChanges } from './run-actions.js';
 import { showRun, showThisRun } from './run-state.js';
@@ -32,15 +33,16 @@ export const watcherOf = (page) => ({
   refused: (problem) => {
     clearNotice('connection');
     const elsewhere = page.form?.blame(problem.errors) ?? [];
-    const words = [problem.message, ...elsewhere, 'Its scene is kept; Run releases it anew.'].join(' ');
+    const words = [inWords(problem.message), ...elsewhere, 'Its scene is kept; Run releases it anew.'].join(' ');
     notice('run', [h('strong', {}, 'The server did not take this run. '), words], { caution: true });
     updateAddressSoon(page);
   },
   problem: ({ title, detail, errors }) => {
     const own = errors.filter(({ pointer }) => page.fields.some((field) => field.path === pathOf(pointer)));
-    const others = errors.filter((error) => !own.includes(error)).map((error) => error.detail);
-    const words = [...(page.form?.blame(own) ?? []), ...others].join(' ') || (errors.length > 0 ? '' : detail || title);
-    if (page.lastSent === 'kick') page.controls.blameKick(words || detail);
+    const others = errors.filter((error) => !own.includes(error)).map((error) => inWords(error.detail));
+    const words =
+      [...(page.form?.blame(own) ?? []), ...others].join(' ') || (errors.length > 0 ? '' : inWords(detail || title));
+    if (page.lastSent === 'kick') page.controls.blameKick(words || inWords(detail));
     else if (words) notice('message', [words], { caution: true });
   },
 });

@@ -3,6 +3,7 @@
 import { MARGIN, drawAxes, line, ticks, toX, toY } from './axes.js';
 import { SANS, SERIF, theme } from './theme.js';
 import { fixed, number } from '../dom/numbers.js';
+import { inWords } from '../dom/typeset.js';
 
 /** @typedef {import('contract').Stability} Stability */
 /** @typedef {{lower: number, critical: number, at: (gain: number) => number}} Residue of every gain */
@@ -103,7 +104,7 @@ export function drawEigenvalues(surface, answer, gain) {
 /** @param {Stability | null} answer @param {number | null} gain @param {Residue | null} residue */
 function wordsOf(answer, gain, residue) {
   const { linear } = answer ?? {};
-  if (!linear) return answer?.notes[0] ?? '';
+  if (!linear) return inWords(answer?.notes[0] ?? '');
   if (!residue || gain === null) return `spectral radius ${number(linear.spectral_radius)}`;
   const at = residue.at(gain);
   const turn =

@@ -30,7 +30,7 @@ const titles = new Map();
 export function knowTitles(fields) {
   for (const { path, title } of fields) {
     // A symbol keeps its case: gain of θ; a word does not: tilt gain.
-    const words = `${title.slice(0, 1).toLowerCase()}${title.slice(1)}`;
+    const words = lower(title);
     const last = path.slice(path.lastIndexOf('.') + 1);
     if (path.includes('.')) titles.set(path, words);
     if (last.includes('_') && !path.startsWith('table.feedback.')) titles.set(last, titles.get(last) ?? words);
@@ -57,7 +57,7 @@ export function inWords(text) {
     .replaceAll('`', '')
     .replace(/ ?\((?:no unit|null takes a preset's back)\)/g, '')
     .replace(/(^|; )(\w+(?:(?:, | and )\w+)*) (?:is|are) null: /gi, (_, before, names) => {
-      const words = names.replace(/\w+/g, inOwnWords);
+      const words = names.replace(/\w+/g, (/** @type {string} */ name) => lower(inOwnWords(name)));
       return before ? `; no ${words}: ` : `No ${words}: `;
     })
     .replace(/\b[a-z]+(?:_[a-z]+)*(?:\.[a-z]+(?:_[a-z]+)*)+\b|\b[a-z]+(?:_[a-z]+)+\b/gi, inOwnWords);
@@ -67,9 +67,12 @@ export function inWords(text) {
   );
 }
 
+/** @param {string} words */
+const lower = (words) => words.slice(0, 1).toLowerCase() + words.slice(1);
+
 /** @param {string} name */
 function inOwnWords(name) {
-  const key = name.slice(0, 1).toLowerCase() + name.slice(1);
+  const key = lower(name);
   const words = QUANTITIES[key] ?? titles.get(key);
   if (words === undefined) return name.replaceAll('_', ' ');
   return key === name ? words : capitalized(words);

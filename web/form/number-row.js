@@ -3,7 +3,7 @@
 import { debounce } from '../dom/debounce.js';
 import { h } from '../dom/elements.js';
 import { number, parse, quantity, unitAfter } from '../dom/numbers.js';
-import { angles, isAngle, shownFactor, shownValue } from '../dom/units.js';
+import { angles, shownFactor, shownValue } from '../dom/units.js';
 import { dragLabel } from './label-drag.js';
 import { Row } from './row.js';
 import { aim, firstValue, shownRange, sliderStep } from './slider-range.js';
@@ -124,7 +124,7 @@ export class NumberRow extends Row {
       const [from, to] = shownRange(field, this.#number);
       words.splice(-1, 0, `Slider: ${number(from)} to ${number(to)}${unitAfter(field.unit)}.`);
     }
-    if (isAngle(field.unit) && !field.unit?.startsWith('/'))
+    if (field.unit === 'rad')
       words.push(
         angles() === 'deg'
           ? '“0.35 rad” and “pi/9” may be typed as well.'

@@ -62,6 +62,11 @@ class Branch {
     this.#soon();
   }
 
+  retell() {
+    this.#shown = '';
+    this.#soon();
+  }
+
   #soon = debounce(300, () => {
     if (this.#near) void this.#refresh();
   });

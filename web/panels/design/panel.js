@@ -186,6 +186,10 @@ class DesignPanel {
     return request;
   }
 
+  retell() {
+    if (!this.#sheet.hidden) void this.ask();
+  }
+
   async ask() {
     const request = this.#request();
     if (!request) return;

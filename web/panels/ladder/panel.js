@@ -166,6 +166,12 @@ class Ladder {
     return request;
   }
 
+  retell() {
+    if (this.#shown === '') return;
+    this.#shown = '';
+    void this.#refresh();
+  }
+
   async #refresh() {
     const request = this.#request();
     if (!request) return;

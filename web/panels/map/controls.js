@@ -4,6 +4,7 @@ import { COLUMNS, QUANTITIES, rowsOf, sidesOf } from './settings.js';
 import { MOST_IMPACTS } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
 import { number, parse, quantity, unitAfter } from '../../dom/numbers.js';
+import { inWords } from '../../dom/typeset.js';
 import { UNITS, shownValue } from '../../dom/units.js';
 import { sliderRange } from '../../form/slider-range.js';
 
@@ -252,7 +253,9 @@ export class MapControls {
     this.#impactsError.textContent = '';
     /** @type {string[]} */
     const elsewhere = [];
-    for (const { pointer, detail } of errors) {
+    for (const error of errors) {
+      const { pointer } = error;
+      const detail = inWords(error.detail);
       const [, place, end] = pointer.split('/');
       if (place === 'x' || place === 'y') {
         const side = this.#sides[place];

@@ -7,6 +7,7 @@ import { LongRequest } from '../long-request.js';
 import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked, prose } from '../../dom/typeset.js';
+import { shownValue } from '../../dom/units.js';
 import { term } from '../../dom/glossary.js';
 import { fixed, number, parse, quantity } from '../../dom/numbers.js';
 
@@ -114,7 +115,7 @@ class SurvivalPanel {
       'going on',
       term('wilson', '95 % from'),
       'to',
-      ...QUANTILES.map((name) => `|θ| ${Number(name.slice(1))} %`),
+      ...QUANTILES.map((name) => `|θ| ${Number(name.slice(1))} % / rad`),
     ];
     this.#sheet = h(
       'div',
@@ -199,6 +200,11 @@ class SurvivalPanel {
       dropped.push(`survival.model “${model.slice(0, 40)}”: it must be ${Object.keys(READINGS).join(' or ')}`);
     this.#reading.value = Object.hasOwn(READINGS, model) ? model : 'strike';
     return dropped;
+  }
+
+  retell() {
+    this.#offer();
+    if (!this.#sheet.classList.contains('stale')) this.#show();
   }
 
   /** The scene of the page is another one. */
@@ -323,7 +329,7 @@ class SurvivalPanel {
           number(survival.survival[at]),
           number(survival.lower[at]),
           number(survival.upper[at]),
-          ...QUANTILES.map((name) => number(quantiles[name][index])),
+          ...QUANTILES.map((name) => number(shown(quantiles[name][index]))),
         ];
         return row(number(contact, 7), cells);
       }),
@@ -343,6 +349,9 @@ class SurvivalPanel {
     );
   }
 }
+
+/** An angle as a number in the shown unit. @param {number | null} angle */
+const shown = (angle) => angle && shownValue(angle, 'rad');
 
 /** @param {Ensemble} answer @param {number} contact */
 function wordsAt({ survival, quantiles }, contact) {
