@@ -19,6 +19,7 @@ const page = new Page(watcherOf, (page) => ({
   restart: () => restart(page),
   speed: (value) => setSpeed(page, value),
   gain: (value, final) => {
+    page.history?.edit(GAIN, final);
     page.put(GAIN, value);
     edited(page, GAIN, final);
   },
@@ -79,6 +80,9 @@ function offerCases() {
   });
 }
 
-addEventListener('popstate', () => restore(page, location.search));
+addEventListener('popstate', () => {
+  page.history?.record('the way back');
+  restore(page, location.search);
+});
 showRun(page);
 void begin();

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, numbers, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+import { Stage, changedRun, numbers, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -19,7 +19,8 @@ test('a link restores parameters, interventions and the same impacts in another 
   await first.page.click('#run');
   await reachPhase(first.page, 'paused');
   await first.page.waitForFunction(() => /clock\.\d+\.speed=0/.test(location.search));
-  await first.page.click('#share');
+  await first.page.click('#share-open');
+  await first.page.click('#share-live');
   const link = await first.page.evaluate(() => navigator.clipboard.readText());
   assert.equal(link, first.page.url());
   const second = await stage.page(new URL(link).search);
@@ -30,6 +31,33 @@ test('a link restores parameters, interventions and the same impacts in another 
   assert.equal(await second.page.inputValue('#field-release-theta'), '0.2');
   assert.equal(await second.page.inputValue('#field-table-tilt_gain'), '1.2');
   assert.equal(await second.page.locator('#notices').innerText(), '');
+  first.clean();
+  second.clean();
+});
+
+test('Copy link replays from the release, with kicks and changes at their impacts', async () => {
+  const first = await changedRun(stage);
+  const told = await first.page.evaluate(() => Object.fromEntries(new URLSearchParams(location.search)));
+  await first.page.click('#share');
+  const link = await first.page.evaluate(() => navigator.clipboard.readText());
+  assert.doesNotMatch(link, /epoch|clock/);
+  const second = await stage.page(new URL(link).search);
+  assert.equal(await second.page.locator('#notices').innerText(), '');
+  await reachImpact(second.page, 1);
+  await reachPhase(second.page, 'running');
+  await second.page.waitForFunction(() => /epoch/.test(location.search));
+  const replayed = await second.page.evaluate(() => Object.fromEntries(new URLSearchParams(location.search)));
+  assert.notEqual(replayed.epoch, told.epoch, 'it is released now');
+  const deeds = (query) => Object.entries(query).filter(([key]) => key.startsWith('interventions.'));
+  assert.ok(deeds(told).length >= 4);
+  assert.deepEqual(deeds(replayed), deeds(told));
+  await reachImpact(second.page, 12);
+  await second.page.click('#run');
+  await reachPhase(second.page, 'paused');
+  const rows = async (page) =>
+    new Map((await numbers(page, 'plane-angle')).map(([n, , theta, spin]) => [n, [theta, spin]]));
+  const [one, other] = [await rows(first.page), await rows(second.page)];
+  for (let n = 1; n <= 12; n += 1) assert.deepEqual(other.get(String(n)), one.get(String(n)), `impact ${n}`);
   first.clean();
   second.clean();
 });

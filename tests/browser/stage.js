@@ -90,9 +90,12 @@ export class Stage {
    * A page in a fresh browser profile, and what it did wrong so far.
    * @param {string} query
    * @param {object} options of Playwright's context; `prepare`, which the page runs before its own code; `watch`, which sees the page before
-   * it loads; another `path`, and the `sign` that it is there; `folded` settings
+   * it loads; another `path`, and the `sign` that it is there; `folded` settings; `autorun`, to let it run by itself
    */
-  async page(query = '', { prepare, path = '', sign = '#case:enabled', watch, folded = false, ...options } = {}) {
+  async page(
+    query = '',
+    { prepare, path = '', sign = '#case:enabled', watch, folded = false, autorun = false, ...options } = {},
+  ) {
     const context = await this.#browser.newContext({ viewport: { width: 1280, height: 860 }, ...options });
     this.#contexts.push(context);
     await context.grantPermissions(['clipboard-read', 'clipboard-write']);
@@ -126,6 +129,15 @@ export class Stage {
           'Noise',
           'World',
         ]);
+      });
+    // Most tests begin with a page at rest.
+    if (!autorun)
+      await page.addInitScript(() => {
+        try {
+          localStorage.setItem('equipoise.autorun', 'off');
+        } catch {
+          /* a page that may not store anything */
+        }
       });
     watch?.(page);
     if (prepare) await page.addInitScript(prepare);

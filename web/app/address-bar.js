@@ -3,30 +3,61 @@
 import { sceneQuery } from '../api/scene-query.js';
 import { debounce } from '../dom/debounce.js';
 import { keepAngles } from '../dom/units.js';
-import { typedQuery } from './queries.js';
+import { playedQuery, typedQuery } from './queries.js';
 
 /** @typedef {import('./page.js').Page} Page */
 
-/** @param {Page} page */
-export function updateAddress(page) {
+/**
+ * The query of the page: its run with epoch and clock, or its typed scene, and what the panels show; null while there is no such scene.
+ * @param {Page} page
+ * @param {boolean} live true to name the run
+ */
+function pageQuery(page, live) {
   const { run, chosen, fields, speed } = page;
-  const query = run.released ? sceneQuery(run.released, chosen, fields) : typedQuery(page);
-  if (!query) return;
-  if (run.released) {
+  const named = live ? run.released : null;
+  const query = named ? sceneQuery(named, chosen, fields) : typedQuery(page);
+  if (!query) return null;
+  if (named) {
     // The server spells the scene out; the name of the case says it shorter and for people.
     for (const [key, value] of run.query) if (key !== 'preset' && !key.startsWith('scene.')) query.set(key, value);
   } else if (speed !== 1) query.set('speed', String(speed));
-  for (const [key, value] of page.panelQuery) query.set(key, value);
+  return withPanels(page, query);
+}
+
+/** @param {Page} page @param {URLSearchParams} query */
+function withPanels({ panelQuery }, query) {
+  for (const [key, value] of panelQuery) query.set(key, value);
   keepAngles(query);
+  return query;
+}
+
+/** True for a run that nobody has acted on. @param {URLSearchParams} run */
+const untouched = (run) => ![...run.keys()].some((key) => /^(interventions|clock)\./.test(key));
+
+/** @param {Page} page */
+export function updateAddress(page) {
+  const query = pageQuery(page, !(page.byItself && untouched(page.run.query)));
+  if (!query) return;
   history.replaceState(null, '', `?${query}`);
   page.panels?.played();
 }
 
+/** @param {URLSearchParams | null} query */
+const whole = (query) => new URL(query ? `?${query}` : '', location.href).href;
+
+/** The address that replays the run from its release, with all that was done to it. @param {Page} page */
+export function replayAddress(page) {
+  const query = playedQuery(page);
+  if (query && page.speed !== 1) query.set('speed', String(page.speed));
+  return whole(query && withPanels(page, query));
+}
+
+/** The address that joins the run where it is by now. @param {Page} page */
+export const liveAddress = (page) => whole(pageQuery(page, true));
+
 export const updateAddressSoon = debounce(150, updateAddress);
 
 /** A new entry of the history, with the panels' part of the address. @param {Page} page @param {Iterable<string[]>} query */
-export function pushAddress({ panelQuery }, query) {
-  const whole = new URLSearchParams([...query, ...panelQuery]);
-  keepAngles(whole);
-  history.pushState(null, '', `?${whole}`);
+export function pushAddress(page, query) {
+  history.pushState(null, '', `?${withPanels(page, new URLSearchParams([...query]))}`);
 }

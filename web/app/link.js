@@ -18,7 +18,7 @@ const PANEL_KEYS =
  * @property {string | null} preset
  * @property {Scene} changes to the preset, or the whole scene without one
  * @property {number} speed
- * @property {URLSearchParams | null} run epoch, interventions and clock of a run to join
+ * @property {URLSearchParams | null} run interventions of a run to release, with epoch and clock of one to join
  * @property {URLSearchParams} panels what the panels show, read where each is drawn
  * @property {string[]} dropped what could not be kept, in words
  */
@@ -76,9 +76,11 @@ export function readLink(search, fields, cases) {
     delete link.changes.body.vertices;
     dropScene('the vertices, which are not whole');
   }
-  if (run.has('epoch') && !whole) link.dropped.push('the run itself, since its scene is not whole');
-  else if (run.has('epoch')) link.run = joined(run, fields, link.dropped);
-  else if ([...run.keys()].length > 0) link.dropped.push('the interventions, which belong to a run without a start');
+  if (run.size > 0 && !whole) link.dropped.push('the run itself, since its scene is not whole');
+  else if (run.size > 0) {
+    const kept = wholeRun(run, fields, link.dropped);
+    if (kept.size > 0) link.run = kept;
+  }
   return link;
 }
 
@@ -131,8 +133,10 @@ function readField(path, text, fields, changes) {
  * @param {Field[]} fields
  * @param {string[]} dropped
  */
-function joined(run, fields, dropped) {
-  const kept = new URLSearchParams({ epoch: /** @type {string} */ (run.get('epoch')) });
+function wholeRun(run, fields, dropped) {
+  const kept = new URLSearchParams();
+  const epoch = run.get('epoch');
+  if (epoch !== null) kept.set('epoch', epoch);
   const interventions = interventionsOf(run);
   const whole = interventions.filter(
     ({ impact, set, kick }) =>
@@ -153,8 +157,15 @@ function joined(run, fields, dropped) {
   const marks = [
     ...new Set([...run.keys()].filter((key) => key.startsWith('clock.')).map((key) => Number(key.split('.')[1]))),
   ].sort((a, b) => a - b);
-  const complete = marks.filter((mark) => ['wall', 'run', 'speed'].every((part) => run.has(`clock.${mark}.${part}`)));
-  if (complete.length < marks.length) dropped.push('a pause or a change of speed, which is not whole');
+  const complete = marks.filter(
+    (mark) => epoch !== null && ['wall', 'run', 'speed'].every((part) => run.has(`clock.${mark}.${part}`)),
+  );
+  if (complete.length < marks.length)
+    dropped.push(
+      epoch === null
+        ? 'a pause or a change of speed, which belongs to a run with a start'
+        : 'a pause or a change of speed, which is not whole',
+    );
   complete.forEach((mark, index) => {
     for (const part of ['wall', 'run', 'speed'])
       kept.set(`clock.${index}.${part}`, /** @type {string} */ (run.get(`clock.${mark}.${part}`)));

@@ -11,6 +11,15 @@ import { TypedScene } from './typed/typed-scene.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
+/**
+ * The page at a moment.
+ * @typedef {object} State
+ * @property {Scene} scene
+ * @property {Scene} releasedAs
+ * @property {import('contract').Preset | null} chosen
+ * @property {string | null} run the query that replays it
+ */
+
 /** The field that has a slider of its own beside the scene. */
 export const GAIN = 'table.tilt_gain';
 
@@ -33,6 +42,12 @@ export class Page {
   timeline = null;
   /** Runs that stay as references. @type {import('../pins/pins.js').Pins | null} */
   pins = null;
+  /** Undo and redo; it comes after the first plot. @type {{record: (words: string) => void, edit: (path: string, final: boolean) => void} | null} */
+  history = null;
+  /** True for a run that began without being asked for: the address names its scene only, until somebody acts on it. */
+  byItself = false;
+  /** An address without a run was opened. */
+  opened = () => {};
   /** The newest verdict. @type {import('../panels/card.js').Judged | null} */
   judged = null;
   /** True while the newest scene has no verdict because the server was away. */

@@ -18,6 +18,7 @@ export function start(page) {
   }
   query.set('speed', String(page.speed));
   page.releasedAs = page.typed ?? {};
+  page.byItself = false;
   clearNotice('run');
   page.lastSent = 'other';
   run.start(query);
@@ -28,8 +29,10 @@ export function toggle(page) {
   const { run } = page;
   if (page.timeline?.toggle()) return;
   page.lastSent = 'other';
-  if (run.phase === 'idle' || run.phase === 'ended') start(page);
-  else if (run.active) run.toggle();
+  if (run.phase === 'idle' || run.phase === 'ended') {
+    page.history?.record('the release');
+    start(page);
+  } else if (run.active) run.toggle();
 }
 
 /** @param {Page} page */
@@ -44,6 +47,7 @@ export function restart(page) {
   const { run } = page;
   page.lastSent = 'other';
   if (run.phase === 'idle') return;
+  page.history?.record('the restart');
   page.timeline?.toNow();
   if (!run.active || unplayed(page).length > 0) start(page);
   else run.restart();
@@ -52,6 +56,7 @@ export function restart(page) {
 /** @param {Page} page @param {Record<string, number>} velocities */
 export function kick(page, velocities) {
   page.lastSent = 'kick';
+  page.history?.record('the kick');
   page.timeline?.toNow();
   page.run.kick(velocities);
 }

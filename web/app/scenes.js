@@ -37,15 +37,19 @@ function present(page, scene) {
 export function choose(page, one) {
   const { run } = page;
   const going = run.phase !== 'idle';
+  const { byItself } = page;
+  page.history?.record('the choice of a case');
   page.chosen = one;
   pushAddress(page, [['preset', one.name]]);
   run.reset();
   present(page, one.scene);
   if (going) start(page);
+  page.byItself = byItself;
 }
 
 /** Releases the typed scene with these values in it; the way back leads to the run before. @param {Page} page @param {Record<string, number>} values */
 export function launch(page, values) {
+  page.history?.record('the release');
   updateAddress(page);
   history.pushState(null, '', location.href);
   for (const [path, value] of Object.entries(values)) page.put(path, value);
@@ -59,6 +63,7 @@ export function launch(page, values) {
 
 /** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene */
 export function play(page, scene) {
+  page.history?.record('the release');
   page.chosen = caseOf(page, scene);
   pushAddress(page, sceneQuery(scene, page.chosen, page.fields));
   page.run.reset();
@@ -67,6 +72,9 @@ export function play(page, scene) {
   page.chooser.focus({ preventScroll: true });
   scrollTo(0, 0);
 }
+
+/** Counts what is to be done: what waits for its turn is void when there is more. */
+let turn = 0;
 
 /** Shows the scene of an address, and joins its run. @param {Page} page @param {string} search */
 export function restore(page, search) {
@@ -81,7 +89,12 @@ export function restore(page, search) {
   if (link.dropped.length > 0) brokenLinkNotice('link', link.dropped);
   else clearNotice('link');
   const scene = merged(page.chosen?.scene ?? {}, link.changes);
-  if (!link.run) return present(page, scene);
+  page.byItself = false;
+  turn += 1;
+  if (!link.run) {
+    present(page, scene);
+    return page.opened();
+  }
   const query = sceneQuery(scene, page.chosen, fields);
   for (const [key, value] of link.run) query.set(key, value);
   query.set('speed', String(page.speed));
@@ -90,5 +103,41 @@ export function restore(page, search) {
   }
   present(page, scene);
   page.releasedAs = page.typed ?? {};
+  if (link.run.has('epoch')) run.start(query);
+  else whenSeen(() => run.start(query));
+}
+
+/** Acts now, or once a hidden tab is looked at, if nothing else is to be done by then. @param {() => void} act */
+export function whenSeen(act) {
+  turn += 1;
+  const mine = turn;
+  if (!document.hidden) return act();
+  document.addEventListener(
+    'visibilitychange',
+    () => {
+      if (mine === turn) act();
+    },
+    { once: true },
+  );
+}
+
+/** Brings back an earlier state. A run that goes on is replayed at the place where it is. @param {Page} page @param {import('./page.js').State} state */
+export function restoreState(page, { scene, releasedAs, chosen, run: wanted }) {
+  const { run } = page;
+  const before = run.phase === 'idle' ? null : new URLSearchParams(run.query);
+  page.chosen = chosen;
+  present(page, scene);
+  page.releasedAs = releasedAs;
+  if (wanted === null) {
+    if (before) run.reset();
+    return;
+  }
+  const query = new URLSearchParams(wanted);
+  if (before && before.get('epoch') === query.get('epoch')) {
+    const own = (/** @type {URLSearchParams} */ params) => [...params].filter(([key]) => !key.startsWith('clock.'));
+    if (String(own(before)) === String(own(query))) return;
+    for (const key of [...query.keys()]) if (key.startsWith('clock.')) query.delete(key);
+    for (const [key, value] of before) if (key.startsWith('clock.')) query.set(key, value);
+  }
   run.start(query);
 }

@@ -80,6 +80,8 @@ export function bindingsOf(page) {
       },
     },
     { keys: ['p'], label: 'p', name: 'Present: scene, one plane and headline', act: () => byId('present').click() },
+    // Undo listens by itself, since it works while single keys are off.
+    { keys: [], label: 'Ctrl Z', name: 'Undo; with Shift redo', act: () => {} },
     { keys: ['s'], label: 's', name: 'Copy the link', act: () => byId('share').click() },
     {
       keys: ['e'],

@@ -2,7 +2,7 @@
 
 import { PlotInteraction } from '../../charts/impacts/plot-interaction.js';
 import { copy } from '../../dom/clipboard.js';
-import { byId } from '../../dom/elements.js';
+import { byId, h } from '../../dom/elements.js';
 import { brokenLinkNotice, clearNotice } from '../../dom/notices.js';
 import { enlarger } from '../../export/enlarge-button.js';
 import { styles } from '../../dom/styles.js';
@@ -10,7 +10,9 @@ import { Panels } from '../../panels/panels.js';
 import { bringPins } from '../../pins/bring.js';
 import { bringTimeline } from '../../timeline/bring.js';
 import { bringShell } from '../../workbench/shell.js';
-import { updateAddress, updateAddressSoon } from '../address-bar.js';
+import { liveAddress, replayAddress, updateAddress, updateAddressSoon } from '../address-bar.js';
+import { beginAutorun } from '../autorun.js';
+import { History } from '../history.js';
 import { playedQuery, typedQuery } from '../queries.js';
 import { launch, play } from '../scenes.js';
 import { bindingsOf } from './key-bindings.js';
@@ -20,6 +22,8 @@ import { bringSettings, bringTracks } from './settings.js';
 
 /** @param {import('../page.js').Page} page */
 export async function bringLateParts(page) {
+  page.history = new History(page);
+  beginAutorun(page);
   // Form, and buttons that save and enlarge, come with their styles, or without them where those do not load.
   await Promise.all(
     ['workbench/shell.css', 'workbench/present.css', 'form/form.css', 'app/app.css', 'export/export.css'].map(styles),
@@ -35,10 +39,15 @@ export async function bringLateParts(page) {
   const others = await bringTimeline(page);
   bringShell();
   listenToKeys(bindingsOf(page));
-  byId('share').addEventListener('click', (event) => {
-    updateAddress(page);
-    void copy(/** @type {HTMLElement} */ (event.currentTarget), location.href);
-  });
+  const copyLink =
+    (/** @type {(page: import('../page.js').Page) => string} */ address) => (/** @type {Event} */ event) => {
+      updateAddress(page);
+      void copy(/** @type {HTMLElement} */ (event.currentTarget), address(page));
+    };
+  byId('share').addEventListener('click', copyLink(replayAddress));
+  byId('share-menu').append(
+    h('button', { type: 'button', id: 'share-live', click: copyLink(liveAddress) }, 'Copy link to join live'),
+  );
   const actions = {
     fields,
     launch: (/** @type {Record<string, number>} */ values) => launch(page, values),

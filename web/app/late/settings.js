@@ -16,6 +16,7 @@ import { edited } from '../typed/edits.js';
 /** @param {import('../page.js').Page} page */
 export function bringSettings(page) {
   const form = new Form(byId('parameters'), page.fields, (path, final) => {
+    page.history?.edit(path, final);
     page.take();
     edited(page, path, final);
   });

@@ -1,0 +1,146 @@
+// Undo and redo of each kind of edit, beside the browser's own history.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, changedRun, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+const ready = (page) => page.locator('#undo:not([hidden])').waitFor();
+const address = (page) => page.evaluate(() => Object.fromEntries(new URLSearchParams(location.search)));
+const holds = (page, condition, argument) => page.waitForFunction(condition, argument);
+
+/** A drag of a slider: many moves, then it is let go. */
+const drag = (page, selector, values) =>
+  page.locator(selector).evaluate((slider, all) => {
+    slider.dispatchEvent(new PointerEvent('pointerdown', { bubbles: true }));
+    for (const value of all) {
+      slider.value = String(value);
+      slider.dispatchEvent(new Event('input', { bubbles: true }));
+    }
+    slider.dispatchEvent(new Event('change', { bubbles: true }));
+  }, values);
+
+test('a drag of a slider is one entry, undone by button and by keys, and redone', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await ready(page);
+  assert.ok(await page.locator('#undo').isDisabled());
+  await drag(page, '#gain', [1.15, 1.2, 1.25, 1.3]);
+  await drag(page, '#gain', [1.4, 1.45]);
+  await page.click('#undo');
+  assert.equal(await page.inputValue('#gain'), '1.3');
+  assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.3');
+  assert.equal(await page.locator('#undone').innerText(), 'Undone: tilt gain is 1.3 again.');
+  await page.locator('#gain').focus();
+  await page.keyboard.press('Control+z');
+  assert.equal(await page.inputValue('#gain'), '1.1');
+  await holds(page, () => !/tilt_gain/.test(location.search));
+  assert.ok(await page.locator('#undo').isDisabled());
+  await page.keyboard.press('Control+Shift+z');
+  assert.equal(await page.inputValue('#gain'), '1.3');
+  await page.keyboard.press('Control+y');
+  assert.equal(await page.inputValue('#gain'), '1.45');
+  assert.ok(await page.locator('#redo').isDisabled());
+  await holds(page, () => /tilt_gain=1\.45/.test(location.search));
+  await verdict(page);
+  clean();
+});
+
+test('a kick and a live change are undone: the run is replayed without them, where it is', async () => {
+  const { page, clean } = await changedRun(stage);
+  const before = await address(page);
+  const n = await page.locator('#plane-angle .readout').innerText();
+  await page.keyboard.press('Control+z');
+  assert.equal(await page.locator('#undone').innerText(), 'Undone: the kick.');
+  await holds(page, () => !/kick/.test(location.search));
+  await reachPhase(page, 'paused');
+  const without = await address(page);
+  assert.equal(without.epoch, before.epoch, 'the same release');
+  assert.equal(without['interventions.0.set.table.tilt_gain'], '1.2', 'the change stays');
+  const clock = (query) => Object.entries(query).filter(([key]) => key.startsWith('clock.'));
+  assert.deepEqual(clock(without), clock(before), 'the same place');
+  await page.keyboard.press('Control+z');
+  await holds(page, () => !/interventions/.test(location.search));
+  assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.1');
+  await page.click('#redo');
+  await page.click('#redo');
+  await holds(page, () => /kick/.test(location.search) && /tilt_gain=1\.2/.test(location.search));
+  await reachPhase(page, 'paused');
+  const again = await address(page);
+  assert.deepEqual(again, before);
+  await holds(page, (words) => document.querySelector('#plane-angle .readout').innerText === words, n);
+  clean();
+});
+
+test('a case chosen is undone, and the way back of the browser stays', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2');
+  await ready(page);
+  await page.selectOption('#case', 'case-3');
+  await page.selectOption('#case', 'case-4');
+  await page.click('#undo');
+  assert.equal(await page.inputValue('#case'), 'case-3');
+  await page.click('#undo');
+  assert.equal(await page.inputValue('#case'), 'case-1');
+  assert.equal(await page.inputValue('#field-release-theta'), '0.2');
+  assert.match(page.url(), /preset=case-1&scene\.release\.theta=0\.2/);
+  await page.goBack();
+  await holds(page, () => /preset=case-3/.test(location.search));
+  await holds(page, () => document.querySelector('#case').value === 'case-3');
+  await page.goBack();
+  await holds(page, () => document.querySelector('#field-release-theta').value === '0.2');
+  clean();
+});
+
+test('a new release is undone: the run before comes back', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await ready(page);
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 3);
+  await holds(page, () => /epoch/.test(location.search));
+  const { epoch } = await address(page);
+  await page.locator('#field-release-theta').fill('0.1');
+  await page.locator('#field-release-theta').press('Tab');
+  await page.click('#restart');
+  await holds(page, (old) => new URLSearchParams(location.search).get('epoch') !== old, epoch);
+  await page.click('#undo');
+  await holds(page, (old) => new URLSearchParams(location.search).get('epoch') === old, epoch);
+  await reachImpact(page, 4);
+  assert.equal(await page.inputValue('#field-release-theta'), '0.1', 'the edit before the restart stays');
+  await page.click('#undo');
+  assert.equal(await page.inputValue('#field-release-theta'), '0.3');
+  clean();
+});
+
+test('a release from a plane is undone', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await ready(page);
+  await page.click('#run');
+  await reachImpact(page, 3);
+  await page.locator('#plane-angle .canvas-box').focus();
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('Enter');
+  await holds(
+    page,
+    () => document.querySelector('#field-release-theta').value !== '0.3' || /Release/.test(document.body.innerText),
+  );
+  const offered = page.getByRole('button', { name: 'Release here' });
+  if (await offered.count()) await offered.first().click();
+  await holds(page, () => /scene\.release/.test(location.search));
+  await page.locator('#undo:enabled').click();
+  await holds(page, () => !/scene\.release/.test(location.search));
+  assert.equal(await page.inputValue('#field-release-theta'), '0.3');
+  clean();
+});
+
+test('a text being edited keeps the browser’s own undo', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await ready(page);
+  await slide(page, '#gain', 1.2);
+  const field = page.locator('#field-gravity');
+  await field.fill('5');
+  await page.keyboard.press('Control+z');
+  assert.equal(await page.inputValue('#gain'), '1.2', 'the page’s own undo does not act');
+  assert.equal(await page.locator('#undone').textContent(), '');
+  clean();
+});
