@@ -112,7 +112,7 @@ const LINKS = [
   { link: 'preset=case-1&scene.table.wobble=3&scene.gravity=5', values: { 'field-gravity': '5' }, dropped: /wobble/ },
   { link: 'preset=case-2&epoch=yesterday', values: { case: 'case-2' }, dropped: /yesterday/, phase: 'idle' },
   { link: 'preset=case-1&clock.0.wall=5', values: { case: 'case-1' }, dropped: /pause/, phase: 'idle' },
-  { link: 'preset=case-1&map.columns=47&map.impacts=100', values: { 'map-impacts': '100' }, dropped: /resolution/ },
+  { link: 'preset=case-1&map.quantity=beauty&map.impacts=100', values: { 'map-impacts': '100' }, dropped: /beauty/ },
   {
     link: 'preset=case-1&scene.body.vertices.0.0=1&scene.release.theta=0.1',
     values: { 'field-release-theta': '0.1' },
@@ -121,7 +121,7 @@ const LINKS = [
 ];
 
 /** The value of a control, as a hand would have set it. */
-const valueOf = (page, id) =>
+const contentOf = (page, id) =>
   page.locator(`#${id}`).evaluate((control) => (control.type === 'checkbox' ? control.checked : control.value));
 
 test('there are thirty of them', () => assert.ok(LINKS.length >= 30, `${LINKS.length}`));
@@ -141,7 +141,7 @@ for (const { link, values = {}, address, dropped, phase } of LINKS)
           [id, value],
           { timeout: 10_000 },
         )
-        .catch(async () => assert.equal(await valueOf(page, id), value, id));
+        .catch(async () => assert.equal(await contentOf(page, id), value, id));
     }
     if (phase === 'running' || phase === 'paused') await reachImpact(page, 2);
     if (phase) await reachPhase(page, phase);
