@@ -4,7 +4,7 @@ import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, ink, reachImpact, reachPhase, speedUp } from './stage.js';
+import { Stage, ink, openTab, reachImpact, reachPhase, speedUp } from './stage.js';
 
 const stage = await Stage.open();
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
@@ -104,7 +104,9 @@ test('what the server computes has no residual, and a file that is dropped goes 
   assert.match(await page.locator('#measured-chip').innerText(), /measured \(12\)/);
   for (const id of ['plane-angle', 'plane-velocity', 'energy'])
     assert.ok((await ink(page, `#${id}`, '--measured')) > before + 40, `diamonds in ${id}`);
-  assert.match(await page.locator('#measured-remarks').innerText(), /Not used: x_m, alpha_rad/);
+  assert.equal(await page.locator('#measured-remarks').innerText(), '', 'what is not used is folded');
+  await page.locator('#measured-columns summary').click();
+  assert.match(await page.locator('#measured-unused').innerText(), /Not used: x_m, alpha_rad/);
   await page.locator('#measured-remove').focus();
   await page.keyboard.press('Enter');
   await page.locator('.measured').waitFor({ state: 'hidden' });
@@ -178,6 +180,51 @@ test('units, decimal commas, other names and missing columns are understood', as
   clean();
 });
 
+test('columns that are not known by their names are picked, with their units', async () => {
+  const { page, clean } = await paused();
+  const answer = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${COUNT}`)).json()).impacts;
+  const rows = answer.t.map((t, index) =>
+    [index, t * 1e3, (answer.theta[index] * 180) / Math.PI, answer.y_dot[index]].join(','),
+  );
+  await drop(page, 'odd.csv', ['row,camera,lean,fall', ...rows].join('\n'));
+  await told(page, /names none of the columns/);
+  assert.ok(await page.locator('#measured-columns').evaluate(({ open }) => open), 'the picker is offered');
+  const pick = (name, value) => page.getByLabel(name, { exact: true }).selectOption(value);
+  await pick('lean: is', 'theta');
+  await told(page, /All 12/);
+  assert.ok((await sums(page)).θ.rms > 1, 'degrees taken for radians');
+  await page.getByLabel('lean: unit').focus();
+  await pick('lean: unit', 'deg');
+  await page.waitForFunction(() => document.activeElement.getAttribute('aria-label') === 'lean: unit');
+  await pick('camera: is', 't');
+  await pick('camera: unit', 'ms');
+  await pick('fall: is', 'y_dot');
+  await page.waitForFunction(() => document.querySelectorAll('.measured-sheet table tbody tr').length >= 3);
+  const found = await sums(page);
+  assert.deepEqual(Object.keys(found), ['t', 'θ', 'ẏ']);
+  for (const { rms } of Object.values(found)) assert.ok(rms < 1e-12, JSON.stringify(found));
+  assert.match(await page.locator('#measured-columns summary').innerText(), /3 used, 1 not used/);
+  await pick('fall: is', '');
+  await page.waitForFunction(() => !document.querySelector('.measured-sheet table').textContent.includes('ẏ'));
+  clean();
+});
+
+test('an example is a click away', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await openTab(page, 'measured');
+  await page.click('#measured-example');
+  await told(page, /Nothing is simulated yet/);
+  await speedUp(page);
+  await page.click('#run');
+  await told(page, /All 24 measured impacts are simulated/);
+  const found = await sums(page);
+  assert.deepEqual(Object.keys(found), ['t', 'θ', 'ẋ', 'ẏ', 'θ̇']);
+  // As large as the errors that were put in: a camera's.
+  assert.ok(found.θ.rms > 1e-4 && found.θ.rms < 0.01, JSON.stringify(found));
+  assert.ok(found.t.rms > 1e-5 && found.t.rms < 0.002, JSON.stringify(found));
+  clean();
+});
+
 test('a run that is not there yet is said, and the comparison follows it', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
   await page.locator('#measured-load').waitFor({ state: 'attached' });
@@ -218,6 +265,8 @@ for (const [name, text, words] of [
     await drop(page, 'odd.csv', text);
     await page.locator('.measured').waitFor();
     await page.waitForFunction(() => /\w/.test(document.querySelector('#measured-told').textContent));
+    for (const summary of await page.locator('#measured-columns:not([open]):not([hidden]) > summary').all())
+      await summary.click();
     assert.match(await page.locator('.measured').innerText(), words);
     clean();
   });
@@ -229,6 +278,7 @@ for (const [colorScheme, width] of [
 ]) {
   test(`with a selection and measured impacts axe finds nothing and nothing is too wide: ${colorScheme}, ${width} px`, async () => {
     const { page, clean } = await paused({ colorScheme, viewport: { width, height: 800 } });
+    await openTab(page, 'measured');
     await drop(
       page,
       'a-very-long-name-of-a-file-from-the-rig-of-the-laboratory-on-the-third-floor.csv',
@@ -238,7 +288,7 @@ for (const [colorScheme, width] of [
     await page.locator('#plane-angle .canvas-box').focus();
     await page.keyboard.press('End');
     await page.keyboard.press('Shift+ArrowLeft');
-    await page.locator('#brush-told', { hasText: '2 of' }).waitFor();
+    await page.locator('#brush-told', { hasText: '2 of' }).waitFor({ state: 'attached' });
     await page.locator('.measured-sheet summary').click();
     await page.fill('#measured-first', 'x');
     await page.locator('#measured-first').blur();

@@ -54,6 +54,18 @@ export class PlotInteraction {
       this.#file.value = '';
     },
   });
+  #example = h(
+    'button',
+    {
+      type: 'button',
+      id: 'measured-example',
+      click: async () => {
+        const { EXAMPLE } = await import('../../panels/measured/example.js');
+        void this.#take(new File([EXAMPLE], 'an example of case 1'));
+      },
+    },
+    'Show an example',
+  );
   #hint = h('p', { class: 'unseen', id: 'impacts-hint' }, BY_KEYS);
   // Spoken when keys move or a selection is made; a pointer's way over a chart is not.
   #spoken = h('p', { class: 'unseen', role: 'status', id: 'impacts-spoken' });
@@ -74,7 +86,7 @@ export class PlotInteraction {
     this.#selection = selection;
     selection.changed = () => this.#selected();
     bar.append(this.#told, this.#clear, this.#hint, this.#spoken);
-    page.measured.bar.append(h('p', {}, MEASURED), this.#load, this.#file);
+    page.measured.bar.append(h('p', {}, MEASURED), this.#load, this.#file, this.#example);
     view.under = (surface, scale, scene) => drawContacts(surface, scale, scene, impacts, selection);
     const say = (/** @type {string} */ words) => {
       this.#spoken.textContent = words;

@@ -1,6 +1,7 @@
 // A lab's own impacts over the simulated ones, and how far the two are apart. What is loaded stays in this page.
 
 import { row, table } from '../../dom/tables.js';
+import { ColumnPicker } from './columns.js';
 import { COMPARED, residuals, sums } from './compare.js';
 import { LIMIT_BYTES, Unreadable, read } from './read.js';
 import { contactDistance } from '../../physics/body.js';
@@ -54,6 +55,9 @@ export class MeasuredPanel {
   #chip = h('span', { class: 'chip measured-chip', id: 'measured-chip', hidden: true });
   #name = h('h3', { id: 'measured-title' }, 'Measured impacts');
   #told = h('p', { id: 'measured-told', role: 'status' });
+  /** The file as text, to read it again with other columns. */
+  #file = { name: '', text: '' };
+  #columns = new ColumnPicker((picks) => this.#take(picks));
   #remarks = h('ul', { class: 'measured-remarks', id: 'measured-remarks' });
   #first = h('input', {
     type: 'text',
@@ -112,6 +116,7 @@ export class MeasuredPanel {
       ),
       this.#told,
       this.#remarks,
+      this.#columns.element,
       this.#offset,
       this.#error,
       this.#sheet,
@@ -125,22 +130,42 @@ export class MeasuredPanel {
   /** Shows what is in a file, or says why not. @param {File} file */
   async take(file) {
     this.#panel.hidden = false;
+    const large = file.size > LIMIT_BYTES;
+    const text = large ? null : await file.text().catch(() => null);
+    if (text !== null) {
+      this.#file = { name: file.name, text };
+      return this.#take(new Map());
+    }
+    const size = `The file has ${number(file.size / 1e6, 3)} MB; at most ${LIMIT_BYTES / 1e6} MB are read.`;
+    this.#refuse(file.name, large ? size : 'The file could not be read.', []);
+  }
+
+  /** Nothing of a file can be shown. @param {string} name @param {string} why @param {import('./read.js').Head[]} heads */
+  #refuse(name, why, heads) {
+    this.#clear();
     this.#remarks.replaceChildren();
+    this.#columns.show(heads, '');
+    this.#columns.element.open = heads.length > 0;
+    this.#told.textContent = `${name}: ${why}`;
+  }
+
+  /** Reads the file. @param {import('./read.js').Picks} picks what its columns are */
+  #take(picks) {
+    const { name, text } = this.#file;
     /** @type {import('./read.js').Reading} */
     let reading;
     try {
-      if (file.size > LIMIT_BYTES)
-        throw new Unreadable(
-          `The file has ${number(file.size / 1e6, 3)} MB; at most ${LIMIT_BYTES / 1e6} MB are read.`,
-        );
-      reading = read(await file.text());
+      reading = read(text, picks);
     } catch (error) {
-      this.#clear();
-      this.#told.textContent = `${file.name}: ${error instanceof Unreadable ? error.message : 'The file could not be read.'}`;
-      return;
+      const known = error instanceof Unreadable;
+      return this.#refuse(name, known ? error.message : 'The file could not be read.', known ? error.heads : []);
     }
-    this.#name.textContent = `Measured impacts: ${file.name}`;
-    this.#remarks.replaceChildren(...reading.remarks.map((words) => h('li', {}, words)));
+    this.#name.textContent = `Measured impacts: ${name}`;
+    const unused = reading.remarks.filter((words) => words.startsWith('Not used:'));
+    this.#remarks.replaceChildren(
+      ...reading.remarks.filter((words) => !unused.includes(words)).map((words) => h('li', {}, words)),
+    );
+    this.#columns.show(reading.heads, unused.join(' '));
     this.#read = reading.impacts;
     this.#first.value = String(reading.impacts[0].n);
     this.#chip.replaceChildren(
@@ -153,7 +178,7 @@ export class MeasuredPanel {
     );
     this.#chip.hidden = this.#offset.hidden = false;
     this.#number();
-    this.#panel.scrollIntoView({ block: 'nearest' });
+    if (picks.size === 0) this.#panel.scrollIntoView({ block: 'nearest' });
   }
 
   #clear() {

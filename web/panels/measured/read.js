@@ -10,11 +10,18 @@ export const QUANTITIES = /** @type {const} */ (['n', 't', 'theta', 'x_dot', 'y_
  * @typedef {object} Reading
  * @property {Measured[]} impacts
  * @property {Quantity[]} columns that there are
+ * @property {Head[]} heads all columns of the file
  * @property {string[]} remarks what was left out, in words
  */
 
+/** A column of a file and what it is taken for. @typedef {{head: string, quantity: Quantity | null, unit: string}} Head */
+/** What the reader says that a column is, by its place; `null` leaves it out. @typedef {Map<number, {quantity: Quantity | null, unit: string}>} Picks */
+
 /** A file with nothing in it to show; its message is for people. */
-export class Unreadable extends Error {}
+export class Unreadable extends Error {
+  /** Columns that the reader may tell about. @type {Head[]} */
+  heads = [];
+}
 
 /** Files larger than this are no table of impacts that a page can draw. */
 export const LIMIT_BYTES = 4_000_000;
@@ -55,6 +62,8 @@ const UNITS = {
   'm/s': { 'm/s': 1, 'cm/s': 1e-2, 'mm/s': 1e-3 },
   'rad/s': { 'rad/s': 1, 'mrad/s': 1e-3, 'deg/s': TURN, '°/s': TURN, rpm: Math.PI / 30 },
 };
+/** Units that a quantity may have. @param {Quantity} quantity */
+export const unitsOf = (quantity) => Object.keys(UNITS[MEASURE[quantity]]);
 /** @type {Record<Quantity, keyof typeof UNITS>} */
 const MEASURE = { n: '1', t: 's', theta: 'rad', x_dot: 'm/s', y_dot: 'm/s', theta_dot: 'rad/s' };
 
@@ -131,9 +140,10 @@ function* records(text, between) {
 
 /**
  * @param {string} text
+ * @param {Picks} [picks] what the reader says about columns
  * @returns {Reading}
  */
-export function read(text) {
+export function read(text, picks = new Map()) {
   const lines = text.replace(/^\ufeff/, '').replace(/\r\n?/g, '\n');
   const opening = lines.split('\n', 20).find((one) => one.trim() !== '' && !/^\s*#/.test(one)) ?? '';
   const between = ['\t', ';', ','].find((mark) => opening.includes(mark)) ?? ',';
@@ -143,16 +153,20 @@ export function read(text) {
   const remarks = [];
   /** @type {Measured[]} */
   const impacts = [];
+  /** @type {Head[]} */
+  let heads = [];
   let bad = 0;
   for (const { line, cells } of records(lines, between)) {
     const comment = cells[0].startsWith('#');
     if (!columns) {
       if (comment) cells[0] = cells[0].slice(1);
-      const found = header(cells, remarks);
+      heads = headsOf(cells, picks);
+      const found = header(heads, remarks);
       if (found.length > 0) columns = found;
       else if (!comment)
-        throw new Unreadable(
+        throw unreadable(
           `The first line names none of the columns n, t, theta, x_dot, y_dot and theta_dot. It is “${shown(cells.join(' '))}”.`,
+          heads,
         );
       else remarks.length = 0;
       continue;
@@ -185,7 +199,7 @@ export function read(text) {
   if (bad > REMARKS) remarks.push(`${bad - REMARKS} more lines are left out.`);
   if (!columns) throw new Unreadable('The file is empty.');
   if (impacts.length === 0)
-    throw new Unreadable(`No line after the first has an impact in it. ${remarks.join(' ')}`.trim());
+    throw unreadable(`No line after the first has an impact in it. ${remarks.join(' ')}`.trim(), heads);
   const numbered =
     columns.some(({ quantity }) => quantity === 'n') &&
     impacts.every(({ n }, index) => Number.isFinite(n) && (index === 0 || n > impacts[index - 1].n));
@@ -194,11 +208,25 @@ export function read(text) {
       remarks.push('The impacts are numbered by their lines: the numbers in the file do not rise from line to line.');
     for (const [index, impact] of impacts.entries()) impact.n = index + 1;
   }
-  return { impacts, columns: columns.map(({ quantity }) => quantity), remarks };
+  return { impacts, columns: columns.map(({ quantity }) => quantity), heads, remarks };
 }
 
+/** @param {string} words @param {Head[]} heads */
+function unreadable(words, heads) {
+  const error = new Unreadable(words);
+  error.heads = heads;
+  return error;
+}
+
+/** @param {string[]} cells of the first line @param {Picks} picks @returns {Head[]} */
+const headsOf = (cells, picks) =>
+  cells.map((head, place) => {
+    const { quantity = null, unit } = columnOf(head);
+    return { head, quantity, unit, ...picks.get(place) };
+  });
+
 /**
- * @param {string[]} heads
+ * @param {Head[]} heads
  * @param {string[]} remarks
  */
 function header(heads, remarks) {
@@ -206,8 +234,7 @@ function header(heads, remarks) {
   const columns = [];
   /** @type {string[]} */
   const unknown = [];
-  for (const [place, head] of heads.entries()) {
-    const { quantity, unit } = columnOf(head);
+  for (const [place, { head, quantity, unit }] of heads.entries()) {
     if (!quantity) {
       unknown.push(head);
       continue;
