@@ -187,6 +187,34 @@ test('runs to compare with have their own symbols and colours, and a legend', as
   clean();
 });
 
+test('before a run the planes show the impacts to come of what is typed; the run puts its dots in their place', async () => {
+  const { page, clean } = await open('?preset=case-1');
+  const rings = () => above(page, 'plane-angle', '--muted');
+  while ((await rings()) < 400) await page.waitForTimeout(50);
+  assert.equal(await ink(page, '#plane-angle', '--series-0'), 0);
+  const all = await rings();
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 90);
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  const left = await rings();
+  assert.ok(left < 0.75 * all, `${left} of ${all}`);
+  assert.ok((await ink(page, '#plane-angle', '--series-0')) > 200);
+  clean();
+});
+
+test('dots are larger while they are presented', async () => {
+  const { page, clean } = await open();
+  await bench(page);
+  await page.evaluate(() => globalThis.strike(60));
+  const before = await ink(page, '#own', '--series-0');
+  await page.evaluate(() => document.documentElement.classList.add('presenting'));
+  await settled(page);
+  assert.ok((await ink(page, '#own', '--series-0')) > 1.8 * before);
+  clean();
+});
+
 async function boxOf(page, id) {
   const box = page.locator(`#${id} .canvas-box`);
   await box.scrollIntoViewIfNeeded();

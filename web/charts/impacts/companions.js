@@ -71,7 +71,7 @@ export class Companions {
   /** The marks in words, for those who do not see them. */
   get words() {
     return [
-      ...(this.#count > 0 ? [`Rings: the next ${this.#count} impacts of this setting`] : []),
+      ...(this.#count > 0 ? [`Rings: the next ${this.#count} impacts of a fresh release of this setting`] : []),
       ...this.references.map(({ label }) => `Also the dots of ${label}`),
       ...(this.ghost ? ['A release is offered'] : []),
     ];
@@ -243,7 +243,8 @@ export class Companions {
       x += 11 + context.measureText(words).width + 10;
     };
     if (count > 0) {
-      const words = this.ghost ? `next ${count} if released here` : `next ${count} impacts`;
+      const fresh = this.#impacts.end > 0 ? 'a fresh release' : `next ${count} impacts`;
+      const words = this.ghost ? `next ${count} if released here` : fresh;
       entry(
         (at) => {
           context.beginPath();
