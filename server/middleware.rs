@@ -29,7 +29,7 @@ use crate::{BUILD, limits};
 
 /// Surrounds a router with middleware, from the outside in:
 ///
-/// 1. `identify` gives each request its id, peer and span, and each answer its common headers, and writes the access log.
+/// 1. `identify` gives each request its id, peer, origin and span, and each answer its common headers, and writes the access log.
 /// 2. `check_address` refuses requests for other servers or in an unsupported form. It comes before CORS, which would permit pages
 ///    of a foreign name.
 /// 3. CORS, if origins are allowed. It comes before the token, which a browser does not send in a preflight.
@@ -70,12 +70,17 @@ struct EdgeConfig {
 }
 
 impl EdgeConfig {
+    /// Tells whether the connection comes from a trusted proxy.
+    fn is_from_proxy(&self, request: &Request) -> bool {
+        // Compares the whole address: an IPv6 peer is a network.
+        let from = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(from)| from.ip());
+        from.is_some_and(|from| self.config.trust_proxy.iter().any(|proxies| proxies.has(from)))
+    }
+
     /// The client: the peer of the connection or, behind a trusted proxy, the one that the proxy names.
     fn peer(&self, request: &Request) -> Peer {
         let peer = peer(request.extensions());
-        // Compares the whole address: an IPv6 peer is a network.
-        let from = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(from)| from.ip());
-        if !from.is_some_and(|from| self.config.trust_proxy.iter().any(|proxies| proxies.has(from))) {
+        if !self.is_from_proxy(request) {
             return peer;
         }
         // The last entry is the one that the proxy has seen. Anyone can send the entries before it.
@@ -107,6 +112,9 @@ async fn identify(State(edge): State<Arc<EdgeConfig>>, mut request: Request, nex
     let begin = Instant::now();
     let peer = edge.peer(&request);
     request.extensions_mut().insert(peer);
+    if let Some(origin) = host::PublicOrigin::of(request.headers(), edge.is_from_proxy(&request)) {
+        request.extensions_mut().insert(origin);
+    }
     let logged = edge.config.access_log.then(|| (request.method().clone(), request.uri().clone()));
     let context = RequestContext::new(request.headers(), edge.base.clone());
     let mut response = match strip_base(request.uri_mut(), &edge.base) {

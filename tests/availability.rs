@@ -57,7 +57,7 @@ fn asked(scene: &Value, beside: &Value) -> Value {
 async fn every_resource_refuses_what_the_contract_lists_and_takes_the_rest() {
     let server = Server::start();
     let resources = resources();
-    assert_eq!(resources.len(), 9);
+    assert_eq!(resources.len(), 10);
     for (resource, operation, beside) in resources {
         let refused: BTreeSet<&str> =
             operation["x-refuses"].as_array().into_iter().flatten().map(|part| part.as_str().unwrap()).collect();

@@ -17,7 +17,7 @@ pub(crate) struct Request {
 }
 
 /// The resources that take a scene.
-pub(crate) const RESOURCES: [&str; 9] = [
+pub(crate) const RESOURCES: [&str; 10] = [
     "trajectories",
     "jacobians",
     "stability",
@@ -27,6 +27,7 @@ pub(crate) const RESOURCES: [&str; 9] = [
     "controllers",
     "ladder",
     "precision",
+    "previews",
 ];
 
 const PRESETS: [&str; 15] = [
@@ -244,6 +245,11 @@ impl Draw {
                 set("impacts", json!(self.count(1000)));
                 let names = ["map", "map_free", "linear", "extended"];
                 set("methods", json!([self.one_of(&names)]));
+                formats.extend(pictures);
+            }
+            "previews" => {
+                set("impacts", json!(self.count(10_000)));
+                formats = vec!["application/json"];
                 formats.extend(pictures);
             }
             "controllers" => {

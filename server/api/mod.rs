@@ -15,6 +15,7 @@ pub mod ops;
 mod paper;
 pub mod periodic_orbits;
 pub mod precision;
+pub mod previews;
 pub mod regions;
 pub mod resource;
 pub mod scene;
@@ -30,13 +31,14 @@ pub use crate::api::app::App;
 use crate::api::resource::Endpoint;
 
 /// Resources that compute an answer: each at `/v1/<name>`, and for many requests at once at `/v1/batches/<name>`.
-const COMPUTED: [Endpoint; 9] = [
+const COMPUTED: [Endpoint; 10] = [
     Endpoint::of::<controllers::Controllers>(),
     Endpoint::of::<ensembles::Ensembles>(),
     Endpoint::of::<jacobians::Jacobians>(),
     Endpoint::of::<ladder::Ladder>(),
     Endpoint::of::<periodic_orbits::PeriodicOrbits>(),
     Endpoint::of::<precision::Precision>(),
+    Endpoint::of::<previews::Previews>(),
     Endpoint::of::<regions::Regions>(),
     Endpoint::of::<stability::Stability>(),
     Endpoint::of::<trajectories::Trajectories>(),

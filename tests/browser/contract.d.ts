@@ -47,6 +47,8 @@ export interface components {
         "ladder.impacts": number;
         /** @default 0.001 */
         "ladder.tolerance": number;
+        /** @default 1000 */
+        "previews.impacts": number;
         /** @default 100 */
         "trajectories.impacts": number;
         /**
@@ -224,6 +226,21 @@ export interface components {
             scene?: components["schemas"]["ScenePatch"] | null;
             impacts?: components["schemas"]["ladder.impacts"] | null;
             tolerance?: components["schemas"]["ladder.tolerance"] | null;
+        };
+        PreviewRequest: {
+            preset?: components["schemas"]["PresetName"] | null;
+            scene?: components["schemas"]["ScenePatch"] | null;
+            impacts?: components["schemas"]["previews.impacts"] | null;
+            /** @default [] */
+            interventions: {
+                impact: number;
+                set?: components["schemas"]["LiveFields"] | null;
+                kick?: {
+                    x_dot?: number | null;
+                    y_dot?: number | null;
+                    theta_dot?: number | null;
+                } | null;
+            }[] | null;
         };
         TrajectoryRequest: {
             preset?: components["schemas"]["PresetName"] | null;
@@ -824,6 +841,12 @@ export interface components {
                 enough: components["schemas"]["Rung"];
                 reason: string;
             };
+        };
+        Preview: {
+            scene: components["schemas"]["Scene"];
+            title: string;
+            text: string;
+            outcome: components["schemas"]["Outcome"];
         };
         Trajectory: {
             scene: components["schemas"]["Scene"];
@@ -1584,6 +1607,7 @@ export type SceneNoiseSeed = components['schemas']['scene.noise.seed'];
 export type SceneNoiseRun = components['schemas']['scene.noise.run'];
 export type LadderImpacts = components['schemas']['ladder.impacts'];
 export type LadderTolerance = components['schemas']['ladder.tolerance'];
+export type PreviewsImpacts = components['schemas']['previews.impacts'];
 export type TrajectoriesImpacts = components['schemas']['trajectories.impacts'];
 export type TrajectoriesMethod = components['schemas']['trajectories.method'];
 export type TrajectoriesTolerance = components['schemas']['trajectories.tolerance'];
@@ -1624,6 +1648,7 @@ export type Vertices = components['schemas']['Vertices'];
 export type ScenePatch = components['schemas']['ScenePatch'];
 export type Scene = components['schemas']['Scene'];
 export type LadderRequest = components['schemas']['LadderRequest'];
+export type PreviewRequest = components['schemas']['PreviewRequest'];
 export type TrajectoryRequest = components['schemas']['TrajectoryRequest'];
 export type LiveFields = components['schemas']['LiveFields'];
 export type JacobianRequest = components['schemas']['JacobianRequest'];
@@ -1678,6 +1703,7 @@ export type RungChange = components['schemas']['RungChange'];
 export type LargestDifference = components['schemas']['LargestDifference'];
 export type BatchLine = components['schemas']['BatchLine'];
 export type LadderLine = components['schemas']['LadderLine'];
+export type Preview = components['schemas']['Preview'];
 export type Trajectory = components['schemas']['Trajectory'];
 export type Demand = components['schemas']['Demand'];
 export type NearestVertex = components['schemas']['NearestVertex'];

@@ -2,6 +2,7 @@
 
 pub mod contract;
 pub mod health;
+pub mod link_preview;
 pub mod metrics;
 pub mod page;
 pub mod scrape;

@@ -5,13 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axum::Router;
-use axum::extract::State;
-use axum::http::{HeaderMap, HeaderValue, header};
+use axum::extract::{Request, State};
+use axum::http::{HeaderValue, header};
 use axum::response::Redirect;
 use axum::routing::{MethodRouter, get};
 use tower_http::set_header::SetResponseHeaderLayer;
 
 use crate::api::app::App;
+use crate::api::ops::link_preview;
 use crate::http::Problem;
 use crate::http::response::static_asset::StaticAsset;
 
@@ -19,6 +20,9 @@ include!(concat!(env!("OUT_DIR"), "/assets.rs"));
 
 /// The page of one panel, served under every panel name. Its script picks the panel. Its links are relative to the parent folder.
 const EMBED: &str = "embed/index.html";
+
+/// The page itself, which gets a link preview.
+const PAGE: &str = "index.html";
 
 /// Content security policy of the panel page. Any site may frame it, because it has no secret and changes no state.
 const EMBED_POLICY: HeaderValue =
@@ -33,7 +37,7 @@ pub fn routes(web: Option<&Path>) -> Router<App> {
     embedded.chain(new).fold(Router::new(), |router, (name, bytes)| {
         let handler = file(name.clone(), bytes);
         match name.as_str() {
-            "index.html" => router.route("/", handler.clone()),
+            PAGE => router.route("/", handler.clone()),
             "docs/index.html" => {
                 router.route("/docs", handler.clone()).route("/docs/", get(async || Redirect::permanent("../docs")))
             }
@@ -48,12 +52,23 @@ pub fn routes(web: Option<&Path>) -> Router<App> {
 fn file(name: String, bytes: &'static [u8]) -> MethodRouter<App> {
     let embed = name == EMBED;
     let fixed = Arc::new(StaticAsset::new(media_type(&name), bytes));
-    let handler = get(async move |State(app): State<App>, headers: HeaderMap| match &app.config.web {
-        None => fixed.answer(&headers),
-        Some(folder) => match tokio::task::block_in_place(|| std::fs::read(folder.join(&name))) {
-            Ok(bytes) => StaticAsset::new(media_type(&name), bytes).answer(&headers),
-            Err(error) => Err(Problem::not_found(format!("{name}: {error}"))),
-        },
+    let handler = get(async move |State(app): State<App>, request: Request| {
+        let media_type = media_type(&name);
+        let read = app.config.web.as_ref().map(|folder| {
+            let read = tokio::task::block_in_place(|| std::fs::read(folder.join(&name)));
+            read.map_err(|error| Problem::not_found(format!("{name}: {error}")))
+        });
+        let read = read.transpose()?;
+        if name == PAGE {
+            let (parts, _) = request.into_parts();
+            let html = read.as_deref().unwrap_or(bytes);
+            let html = link_preview::with_tags(html, &link_preview::tags(&app, &parts).await);
+            return StaticAsset::new(media_type, html).answer(&parts.headers);
+        }
+        match read {
+            None => fixed.answer(request.headers()),
+            Some(bytes) => StaticAsset::new(media_type, bytes).answer(request.headers()),
+        }
     });
     if embed {
         handler.layer(SetResponseHeaderLayer::overriding(header::CONTENT_SECURITY_POLICY, EMBED_POLICY))

@@ -9,6 +9,9 @@ use serde::Serialize;
 /// The outcome of a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct Outcome {
+    /// The ending.
+    #[serde(skip)]
+    pub ending: EndingKind,
     /// Name of the ending.
     pub kind: &'static str,
     /// Number of contacts, with the last.
@@ -99,6 +102,7 @@ impl Outcome {
         };
         let settle_time = if let Ending::Settled { settle_time, .. } = ending { Some(settle_time) } else { None };
         Self {
+            ending: ending.into(),
             kind: ending.name(),
             impacts,
             t,
@@ -109,6 +113,26 @@ impl Outcome {
             unit: decided.map(|(.., unit)| unit),
             settle_time,
         }
+    }
+}
+
+/// Headline of a run that ended at contact `impacts`, in plain words.
+pub fn headline(ending: EndingKind, impacts: u64) -> String {
+    let (verb, reason) = match ending {
+        EndingKind::Completed => return format!("Keeps balance for {impacts} bounces"),
+        EndingKind::Toppled => ("Falls", "it had tipped over"),
+        EndingKind::Separating => ("Falls", "its foot was leaving the table already"),
+        EndingKind::Sinking => ("Falls", "the table struck too steeply"),
+        EndingKind::Settled => ("Comes to rest", "its bounces died out"),
+        EndingKind::Diverged => ("Cannot be followed", "it became too fast to compute"),
+        EndingKind::OtherVertex => ("Falls", "another corner touched the table"),
+        EndingKind::Missed => ("Falls", "it never met the table again"),
+        EndingKind::BeyondLimits => ("Falls", "the strike asks more of the table than its limits allow"),
+    };
+    if impacts == 0 {
+        format!("{verb} before its first bounce: {reason}")
+    } else {
+        format!("{verb} at bounce {impacts}: {reason}")
     }
 }
 

@@ -1,6 +1,7 @@
 //! Figures: one file for each kind of picture, and the names that callers use.
 
 pub mod branches;
+pub mod card;
 pub mod chart;
 pub mod closed_loop;
 pub mod eigenvalues;
@@ -10,6 +11,7 @@ pub mod speed_accuracy;
 pub mod survival;
 
 pub use branches::{Branches, StabilityChange, branches};
+pub use card::{CARD_SIZE, Card, CardPlane, FirstContact, PlacedBody, card};
 pub use chart::{Chart, ChartAxis, Curve, CurveStyle, Plot, chart};
 pub use closed_loop::{Loop, closed_loop};
 pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalues};

@@ -74,6 +74,31 @@ fn name_of(host: &str) -> Option<String> {
     (is_fine && is_port).then(|| plain(name))
 }
 
+/// Scheme, name and port by which clients reach this server, as in `https://lab.example:8443`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PublicOrigin(String);
+
+impl PublicOrigin {
+    /// The origin of a request: `Host` over HTTP, or what a trusted proxy says in `X-Forwarded-Host` and `X-Forwarded-Proto`. `None` if the
+    /// request does not name a host.
+    pub fn of(headers: &HeaderMap, from_proxy: bool) -> Option<Self> {
+        // The last entry is the one that the proxy has added. Anyone can send the entries before it.
+        let last = |name: &str| headers.get_all(name).into_iter().next_back()?.to_str().ok()?.rsplit(',').next();
+        let forwarded = |name: &str| last(name).filter(|_| from_proxy).map(str::trim);
+        let named = forwarded("x-forwarded-host").filter(|host| name_of(host).is_some());
+        let host = named.or_else(|| headers.get(header::HOST)?.to_str().ok())?;
+        name_of(host)?;
+        let is_secure = forwarded("x-forwarded-proto").is_some_and(|scheme| scheme.eq_ignore_ascii_case("https"));
+        Some(Self(format!("{}://{}", if is_secure { "https" } else { "http" }, host.to_ascii_lowercase())))
+    }
+}
+
+impl Display for PublicOrigin {
+    fn fmt(&self, formatter: &mut Formatter) -> fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
 /// Refuses a request for a name that is not this server's: 421 (RFC 9110, section 15.5.20). Names of the machine itself, addresses
 /// and `allowed` names are answered.
 ///
@@ -102,7 +127,7 @@ fn is_local(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use axum::http::HeaderValue;
+    use axum::http::{HeaderName, HeaderValue};
 
     fn headers(hosts: &[&str]) -> HeaderMap {
         hosts.iter().map(|host| (header::HOST, HeaderValue::from_str(host).unwrap())).collect()
@@ -172,6 +197,29 @@ mod tests {
         // In absolute form, as clients send it to a proxy.
         assert!(check("http://evil.example/", "localhost").is_err());
         assert!(check_name(&"/".parse().unwrap(), &HeaderMap::new(), &[]).is_ok());
+    }
+
+    #[test]
+    fn the_public_origin_is_that_of_the_host_or_of_a_trusted_proxy() {
+        let origin = |from_proxy: bool, pairs: &[(&'static str, &str)]| {
+            let headers = pairs
+                .iter()
+                .map(|(name, value)| (HeaderName::from_static(name), HeaderValue::from_str(value).unwrap()));
+            PublicOrigin::of(&headers.collect(), from_proxy).map(|origin| origin.to_string())
+        };
+        let forwarded =
+            [("host", "inner:8080"), ("x-forwarded-host", "a, Lab.example"), ("x-forwarded-proto", "http,HTTPS")];
+        assert_eq!(origin(false, &forwarded).as_deref(), Some("http://inner:8080"));
+        assert_eq!(origin(true, &forwarded).as_deref(), Some("https://lab.example"));
+        assert_eq!(
+            origin(true, &[("host", "[::1]:80"), ("x-forwarded-proto", "gopher")]).as_deref(),
+            Some("http://[::1]:80")
+        );
+        assert_eq!(origin(true, &[("host", "lab"), ("x-forwarded-host", "\"><b")]).as_deref(), Some("http://lab"));
+        for host in ["\"><script>", "a b", "u@a", "a/b", "http://a", ""] {
+            assert_eq!(origin(false, &[("host", host)]), None, "{host}");
+        }
+        assert_eq!(origin(true, &[]), None);
     }
 
     #[test]

@@ -19,6 +19,7 @@ import { bindingsOf } from './key-bindings.js';
 import { listenToKeys } from './keys.js';
 import { savesOf } from './saves.js';
 import { bringSettings, bringTracks } from './settings.js';
+import { bringShare } from './share.js';
 
 /** @param {import('../page.js').Page} page */
 export async function bringLateParts(page) {
@@ -38,6 +39,7 @@ export async function bringLateParts(page) {
   card.querySelector('.card-head')?.append(enlarger(card, 'Scene', () => savesOf(page, 'scene', 'Scene', view)));
   const others = await bringTimeline(page);
   bringShell();
+  bringShare(page);
   listenToKeys(bindingsOf(page));
   const copyLink =
     (/** @type {(page: import('../page.js').Page) => string} */ address) => (/** @type {Event} */ event) => {

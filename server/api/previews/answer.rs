@@ -1,0 +1,147 @@
+//! The answer of `previews`: the outcome of a run in plain words, and what its picture shows.
+
+use equipoise_physics::body::Body;
+use equipoise_physics::numbers::trig::sin_cos;
+use equipoise_physics::run::cancellation::CHECK_INTERVAL;
+use equipoise_physics::run::orbit::Contact;
+use equipoise_physics::scene::{Name, Scene};
+use serde::Serialize;
+
+use crate::api::previews::request::PreviewRequest;
+use crate::api::scene::{Resolved, has_angle};
+use crate::api::shared::outcome::{Outcome, headline};
+use crate::charts::{FirstContact, PlacedBody, significant};
+use crate::runs::playback::Playback;
+use crate::runs::run::Run;
+
+/// Number of flights in the picture.
+const FLIGHTS: usize = 5;
+
+/// Points on the path of each flight.
+const POINTS: usize = 16;
+
+/// Answer of `/v1/previews`.
+#[derive(Debug, Serialize)]
+pub struct PreviewAnswer<'a> {
+    /// The scene.
+    pub scene: Resolved<'a>,
+    /// The outcome in plain words.
+    pub title: String,
+    /// Body, table and release in a sentence.
+    pub text: String,
+    /// The outcome of the run.
+    pub outcome: Outcome,
+    #[serde(skip)]
+    pub(super) drawing: Drawing,
+}
+
+/// The parts of a run that its picture shows.
+#[derive(Debug, Default)]
+pub(super) struct Drawing {
+    /// The centre of gravity on the first flights, m.
+    pub(super) path: Vec<(f64, f64)>,
+    /// The body at the release.
+    pub(super) release: PlacedBody,
+    /// The first contact, if there is one.
+    pub(super) contact: Option<FirstContact>,
+    /// The states just before the contacts: (θ, θ̇), or (ẋ, ẏ) of a point mass.
+    pub(super) states: Vec<(f64, f64)>,
+}
+
+impl<'a> PreviewAnswer<'a> {
+    /// Computes the run. `None` once `go_on` returns false.
+    pub fn compute(request: &'a PreviewRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
+        let PreviewRequest { run, impacts } = request;
+        let scene = run.scene();
+        let mut playback = Playback::new(run, *impacts);
+        let mut drawing = Drawing::new(scene);
+        while let Some(n) = playback.next_n() {
+            if n.is_multiple_of(CHECK_INTERVAL) && !go_on() {
+                return None;
+            }
+            let (contact, _) = playback.advance(run);
+            drawing.add(&contact, playback.body().contact_height(&contact.state), scene);
+        }
+        let outcome = playback.outcome().cloned()?;
+        let title = headline(outcome.ending, outcome.impacts);
+        Some(Self { scene: Resolved(scene), title, text: text(run), outcome, drawing })
+    }
+}
+
+impl Drawing {
+    fn new(scene: &Scene) -> Self {
+        let release = scene.release();
+        let release = place(scene, (release.x, release.height), sin_cos(release.state.theta));
+        Self { release, ..Self::default() }
+    }
+
+    /// Adds a contact, at which the centre of gravity is at this height above the contact point, m.
+    fn add(&mut self, contact: &Contact, height: f64, scene: &Scene) {
+        let state = &contact.state;
+        self.states.push(if has_angle(scene) { (state.theta, state.theta_dot) } else { (state.x_dot, state.y_dot) });
+        let y = height + contact.clearance;
+        if self.contact.is_none() {
+            let turn = sin_cos(if has_angle(scene) { state.theta } else { 0.0 });
+            let length = if has_angle(scene) { scene.model().contact_distance() } else { 0.0 };
+            let (sin_alpha, cos_alpha) = sin_cos(contact.alpha);
+            self.contact = Some(FirstContact {
+                body: place(scene, (contact.x, y), turn),
+                foot: (contact.x + length * turn.0, contact.clearance),
+                table: (cos_alpha, sin_alpha),
+            });
+            let start = scene.release();
+            self.fly((start.x, start.height), (start.state.x_dot, start.state.y_dot), contact.t, scene.gravity());
+        }
+        if let (Some(strike), Some(time)) = (contact.strike, contact.flight_time)
+            && self.path.len() < (FLIGHTS + 1) * POINTS
+        {
+            self.fly((contact.x, y), (strike.after.x_dot, strike.after.y_dot), time, scene.gravity());
+        }
+    }
+
+    fn fly(&mut self, (x, y): (f64, f64), (x_dot, y_dot): (f64, f64), time: f64, gravity: f64) {
+        self.path.extend((0..POINTS).map(|n| {
+            let t = time * n as f64 / (POINTS - 1) as f64;
+            (x + x_dot * t, y + t * (y_dot - 0.5 * gravity * t))
+        }));
+    }
+}
+
+/// The body with its centre of gravity at a place, turned by an angle of this sine and cosine.
+fn place(scene: &Scene, centre: (f64, f64), (sin, cos): (f64, f64)) -> PlacedBody {
+    let turned = |x: f64, y: f64| (centre.0 + x * cos - y * sin, centre.1 + x * sin + y * cos);
+    let rod = scene.number(Name::ContactDistance).zip(scene.number(Name::RadiusOfGyration));
+    let outline = match (scene.outline(), rod) {
+        (Some(outline), _) => outline.vertices().iter().map(|[x, y]| turned(*x, *y)).collect(),
+        (None, Some((length, rho))) => vec![turned(0.0, -length), turned(0.0, length.max(rho))],
+        (None, None) => vec![centre],
+    };
+    PlacedBody { centre, outline }
+}
+
+/// Describes body, table and release.
+fn text(run: &Run) -> String {
+    let scene = run.scene();
+    let three = |value: f64| significant(value, 3);
+    let body = match (has_angle(scene), scene.outline()) {
+        (false, _) => "A point mass",
+        (true, None) => "A rod",
+        (true, Some(_)) => "A polygon",
+    };
+    let table = match scene.number(Name::TiltGain) {
+        Some(gain) => format!("κ = {}", significant(gain, 4)),
+        None => "state feedback".to_owned(),
+    };
+    let release = scene.release();
+    let mut text = format!("{body} on a table with {table}, released from {} m", three(release.height));
+    if has_angle(scene) && release.state.theta != 0.0 {
+        text.push_str(&format!(" at {}°", three(release.state.theta.to_degrees())));
+    }
+    match run.interventions().len() {
+        0 => {}
+        1 => text.push_str(", with one change or kick on the way"),
+        count => text.push_str(&format!(", with {count} changes and kicks on the way")),
+    }
+    text.push('.');
+    text
+}

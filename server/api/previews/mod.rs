@@ -1,0 +1,29 @@
+//! `/v1/previews`: a run in a headline and a picture, as programs show them beside a link to the page.
+
+pub mod answer;
+pub mod picture;
+pub mod request;
+
+use crate::api::formats::{FigureFormat, WriteAnswer};
+use crate::api::previews::answer::PreviewAnswer;
+use crate::api::previews::request::PreviewRequest;
+use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
+use crate::compute::Cancelled;
+
+/// The resource.
+#[derive(Debug)]
+pub enum Previews {}
+
+impl ComputedResource for Previews {
+    const NAME: &'static str = "previews";
+    type Format = FigureFormat;
+    type Request = PreviewRequest;
+    const WORK: Work<Self> = Work::Pure {
+        canonical: CanonicalRequest::canonical,
+        compute: |request, format, slice, bounces| {
+            let answer = PreviewAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
+            bounces.inc_by(answer.outcome.impacts);
+            format.write(&answer, slice)
+        },
+    };
+}

@@ -1,0 +1,95 @@
+// A clip of the scene: its canvas is recorded for some seconds and saved as a video. Loaded when a clip is asked for.
+
+import { theme } from '../charts/theme.js';
+import { h } from '../dom/elements.js';
+import { clearNotice, notice } from '../dom/notices.js';
+import { download } from './capture.js';
+
+/** Length of a clip, s, and its frames each second. */
+const SECONDS = 8;
+const FRAMES = 30;
+
+/** Bits each second: enough for thin lines to stay sharp. */
+const BITS = 6_000_000;
+
+/** Media types with their file names, the most widely played first. @type {[type: string, extension: string][]} */
+const KINDS = [
+  ['video/mp4;codecs=avc1.42E01F', 'mp4'],
+  ['video/webm;codecs=vp9', 'webm'],
+  ['video/webm', 'webm'],
+];
+
+let busy = false;
+
+/**
+ * Records the view from now on and saves the clip.
+ * @param {import('./capture.js').Layered} view
+ * @param {HTMLElement} head of the view's card, where the progress is shown
+ */
+export async function saveClip({ layers }, head) {
+  if (busy) return;
+  busy = true;
+  try {
+    const clip = await record(layers, head);
+    clearNotice('clip');
+    if (clip) download(clip.blob, `equipoise-scene.${clip.extension}`);
+    else notice('clip', ['The browser recorded no picture.'], { caution: true });
+  } catch {
+    notice('clip', ['This browser cannot record the scene.'], { caution: true });
+  } finally {
+    busy = false;
+  }
+}
+
+/** @param {import('../charts/surface.js').Surface[]} layers @param {HTMLElement} head */
+async function record(layers, head) {
+  const [type, extension] = KINDS.find(([type]) => MediaRecorder.isTypeSupported(type)) ?? ['', 'webm'];
+  const { canvas } = layers[0];
+  // Some encoders take even sizes only.
+  const [width, height] = [canvas.width, canvas.height].map((length) => length - (length % 2));
+  const sheet = h('canvas', { width, height });
+  const context = /** @type {CanvasRenderingContext2D} */ (sheet.getContext('2d', { alpha: false }));
+  const recorder = new MediaRecorder(sheet.captureStream(FRAMES), {
+    ...(type && { mimeType: type }),
+    videoBitsPerSecond: BITS,
+  });
+  /** @type {Blob[]} */
+  const parts = [];
+  recorder.addEventListener('dataavailable', ({ data }) => parts.push(data));
+  const stopped = new Promise((resolve, reject) => {
+    recorder.addEventListener('stop', resolve);
+    recorder.addEventListener('error', reject);
+  });
+  const stop = () => {
+    if (recorder.state !== 'inactive') recorder.stop();
+  };
+
+  const bar = h('progress', { max: SECONDS, value: 0, 'aria-label': 'Recorded' });
+  const line = h('p', { class: 'clip' }, 'Clip ', bar, h('button', { type: 'button', click: stop }, 'Stop and save'));
+  head.prepend(line);
+  const begin = performance.now();
+  let frame = 0;
+  const copyFrame = () => {
+    context.fillStyle = theme().surface;
+    context.fillRect(0, 0, width, height);
+    for (const layer of layers) context.drawImage(layer.canvas, 0, 0, width, height);
+    bar.value = (performance.now() - begin) / 1000;
+    frame = requestAnimationFrame(copyFrame);
+  };
+  // A hidden page draws nothing.
+  document.addEventListener('visibilitychange', stop);
+  const end = setTimeout(stop, 1000 * SECONDS);
+  copyFrame();
+  try {
+    recorder.start();
+    await stopped;
+  } finally {
+    line.remove();
+    cancelAnimationFrame(frame);
+    clearTimeout(end);
+    document.removeEventListener('visibilitychange', stop);
+    for (const track of recorder.stream.getTracks()) track.stop();
+  }
+  const blob = new Blob(parts, { type: recorder.mimeType || type });
+  return blob.size > 0 ? { blob, extension } : null;
+}
