@@ -74,6 +74,8 @@ const verdicts = new Follower(async (page, signal, newest) => {
     page.unjudged = false;
     page.form?.blame([]);
     circle.show(answer);
+    page.view.learn(answer.derived);
+    page.plots[2].redraw();
     circle.figure.element.classList.remove('stale');
     // The slider may have gone on.
     const gain = valueAt(page.typed ?? {}, GAIN);

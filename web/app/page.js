@@ -81,7 +81,7 @@ export class Page {
     this.plots = [
       anglePlane(impacts),
       velocityPlane(impacts),
-      energyPlot(impacts, () => this.run.scene ?? this.typed ?? null),
+      energyPlot(impacts, () => this.run.scene ?? this.view.drawn),
     ];
     this.controls = new RunControls(byId('timeline'), actionsOf(this));
     const [angle, velocity, energy] = this.plots.map(({ figure }) => figure.element);

@@ -19,7 +19,7 @@ export function sceneChanged(page, another = false) {
     if (page.chosen) choose(page, page.chosen);
   });
   page.form?.compare(page.chosen?.scene ?? null);
-  page.view.draft(page.typed ?? {});
+  page.view.draft(page.typed ?? {}, page.chosen?.derived);
   page.plots[2].redraw();
   page.panels?.sceneChanged();
   page.follow(another);

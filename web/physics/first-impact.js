@@ -12,6 +12,9 @@ const TOUCHING_M = 1e-9;
 /** Steps to search a flight for an earlier contact: more than any that comes down at more than a graze. */
 const STEPS = 2000;
 
+/** The reason while lengths and gravity of the scene are not known. */
+const UNANSWERED = 'the server has not answered for this scene yet';
+
 /** @param {string} words @returns {Start} */
 const refused = (words) => ({ values: null, words });
 
@@ -27,6 +30,7 @@ export function angleStart(scene, theta, theta_dot) {
   if (scene.body?.point) return refused('a point mass has no spin');
   const { height = 0, y_dot = 0 } = scene.release ?? {};
   const gravity = effectiveGravity(scene);
+  if (!(gravity > 0)) return refused(UNANSWERED);
   const square = y_dot ** 2 + 2 * gravity * (height - contactDistance(scene) * Math.cos(theta));
   const T = (y_dot + Math.sqrt(square)) / gravity;
   if (!(T > 0)) return refused(`out of reach: released at ${number(height)}\u202fm`);
@@ -44,6 +48,7 @@ export function angleStart(scene, theta, theta_dot) {
 export function velocityStart(scene, x_dot, y_dot) {
   const { y_dot: risen = 0, theta = 0, theta_dot = 0 } = scene.release ?? {};
   const gravity = effectiveGravity(scene);
+  if (!(gravity > 0)) return refused(UNANSWERED);
   const T = (risen - y_dot) / gravity;
   if (!(T > 0)) return refused(`out of reach: needs ẏ < ${number(risen)}`);
   const height = contactDistance(scene) * Math.cos(theta + theta_dot * T) + (y_dot ** 2 - risen ** 2) / (2 * gravity);

@@ -1,6 +1,6 @@
 // The body on its flight between two impacts, in closed form.
 
-import { contactDistance } from './body.js';
+import { contactDistance, derivedOf } from './body.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
@@ -21,8 +21,8 @@ import { contactDistance } from './body.js';
  * @property {number} duration s; 0 when there is no flight
  */
 
-/** @param {Scene} scene */
-export const effectiveGravity = (scene) => (scene.gravity ?? 9.81) * Math.sin(scene.incline ?? Math.PI / 2);
+/** Gravity in the plane, m/s². @param {Scene} scene */
+export const effectiveGravity = (scene) => derivedOf(scene).gravity;
 
 /**
  * The flight after an impact.

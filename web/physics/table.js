@@ -1,10 +1,6 @@
-// The table at the next strike, and on its way between two strikes.
+// The table at a strike, and on its way between two strikes.
 
-import { effectiveGravity, poseOn } from './flight.js';
 import { contactDistance } from './body.js';
-
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('./flight.js').Arc} Arc */
 
 /**
  * @typedef {object} Strike the table as it meets the rod
@@ -16,64 +12,37 @@ import { contactDistance } from './body.js';
  */
 
 /**
- * The tilt the table will have when it meets this state: α = κθ, or −K·state with feedback.
- * @param {Scene} scene
- * @param {{x: number, theta: number, x_dot: number, y_dot: number, theta_dot: number}} state
- * @returns {number}
- */
-function tilt(scene, state) {
-  const { tilt_gain = 0, feedback } = scene.table ?? {};
-  if (feedback) {
-    return -(
-      (feedback.x ?? 0) * state.x +
-      (feedback.theta ?? 0) * state.theta +
-      (feedback.x_dot ?? 0) * state.x_dot +
-      (feedback.theta_dot ?? 0) * state.theta_dot
-    );
-  }
-  const angle = contactDistance(scene) === 0 ? Math.atan2(state.x_dot, -state.y_dot) : state.theta;
-  return tilt_gain * angle;
-}
-
-/**
- * The strike at the end of a flight, before the server has told of it.
- * @param {Arc} arc
- * @param {Scene} scene
+ * The table as it met the rod at an impact.
+ * @param {import('../run/impacts.js').Impact} impact
+ * @param {import('../api/scene-fields.js').Scene} scene
  * @returns {Strike}
  */
-export function strikeAfter(arc, scene) {
-  const gravity = effectiveGravity(scene);
-  const end = poseOn(arc, arc.t + arc.duration, scene);
-  const state = {
-    x: end.x,
-    theta: end.theta,
-    x_dot: arc.x_dot,
-    y_dot: arc.y_dot - gravity * arc.duration,
-    theta_dot: arc.theta_dot,
-  };
-  const alpha = tilt(scene, state);
+export function strikeOf(impact, scene) {
   const l = contactDistance(scene);
-  let speed = 0;
-  if (scene.table?.strike !== 'still') {
-    // The table makes up the loss, and a little more or less for the wanted height: eq. (25), (28).
-    const e = scene.table?.assumed_restitution ?? scene.contact?.restitution ?? 1;
-    const normal =
-      -Math.sin(alpha) * state.x_dot +
-      Math.cos(alpha) * state.y_dot +
-      l * state.theta_dot * Math.sin(end.theta - alpha);
-    const lack =
-      (scene.table?.energy_gain ?? 0) *
-      (gravity * (scene.table?.target_height ?? 0) - gravity * l * Math.cos(end.theta) - state.y_dot ** 2 / 2);
-    speed = -((1 - e) / (1 + e) + lack) * normal;
-  }
   return {
-    t: arc.t + arc.duration,
-    x: end.x + l * Math.sin(end.theta),
-    y: end.y - l * Math.cos(end.theta),
-    alpha,
-    speed,
+    t: impact.t,
+    x: impact.x + (l && l * Math.sin(impact.theta)),
+    y: impact.clearance || 0,
+    alpha: impact.alpha,
+    speed: Number.isNaN(impact.table_speed) ? 0 : impact.table_speed,
   };
 }
+
+/** A vector's part along the normal of a table. @param {{x: number, y: number}} vector @param {number} alpha tilt of the table, rad */
+export const alongNormal = ({ x, y }, alpha) => y * Math.cos(alpha) - x * Math.sin(alpha);
+
+/**
+ * The table at a strike that the server foresees.
+ * @param {NonNullable<import('contract').LiveNextStrike>} strike
+ * @returns {Strike}
+ */
+export const strikeToCome = ({ t, x, y, alpha, table_velocity: velocity }) => ({
+  t,
+  x,
+  y,
+  alpha,
+  speed: velocity ? alongNormal(velocity, alpha) : 0,
+});
 
 /**
  * The table between two strikes. The model knows it only at a strike; the way between is the smoothest one that meets both:

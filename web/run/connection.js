@@ -74,7 +74,8 @@ export class Connection {
       case 'hello':
         if (this.#epoch && message.epoch !== this.#epoch) run.clear();
         this.#epoch = message.epoch;
-        run.released = message.scene;
+        run.released = { ...message.scene, derived: message.derived };
+        run.nextStrike = message.first_strike;
         run.fall = {
           ...message.release,
           theta_dot: message.release.theta_dot ?? 0,
@@ -86,13 +87,14 @@ export class Connection {
         run.watcher.lost(NaN);
         break;
       case 'ack':
+        run.nextStrike = message.next_strike;
         this.#read(message);
         break;
       case 'impact':
-        this.#take([fromMessage(message)]);
+        this.#take([fromMessage(message)], message.next_strike);
         break;
       case 'impacts':
-        this.#take(fromColumns(message.columns));
+        this.#take(fromColumns(message.columns), message.next_strike);
         break;
       case 'gap':
         run.impacts.missing += message.to - message.from + 1;
@@ -119,9 +121,10 @@ export class Connection {
     this.#expect();
   }
 
-  /** @param {Impact[]} fresh */
-  #take(fresh) {
+  /** @param {Impact[]} fresh @param {import('contract').LiveNextStrike} next */
+  #take(fresh, next) {
     const run = this.#run;
+    run.nextStrike = next;
     const known = run.impacts.last?.n ?? 0;
     for (const impact of fresh) {
       if (impact.n <= known) continue;

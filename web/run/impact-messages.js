@@ -1,5 +1,7 @@
 // Impacts of the live stream, alone or in columns, as rows of the page's table.
 
+import { alongNormal } from '../physics/table.js';
+
 /** @typedef {import('./impacts.js').Impact} Impact */
 /** @typedef {import('contract').LiveImpacts['columns']} Columns */
 /** @typedef {{[name in keyof Columns]: Columns[name][number]}} FlatImpact one row of the columns */
@@ -34,7 +36,7 @@ function impactOf(flat) {
     flight_time: real(flat.flight_time),
     energy: real(flat.energy),
     contact_speed: real(flat.contact_speed),
-    table_speed: x === null || y === null ? NaN : y * Math.cos(alpha) - x * Math.sin(alpha),
+    table_speed: x === null || y === null ? NaN : alongNormal({ x, y }, alpha),
     mode: modeOf(flat.contact_mode),
     clearance: real(flat.clearance),
     series: 0,

@@ -29,6 +29,8 @@ export class RunState {
   released = null;
   /** The flight from the release to the first impact. @type {import('../physics/flight.js').Arc | null} */
   fall = null;
+  /** The strike after the newest impact, as the server foresees it. @type {import('contract').LiveNextStrike} */
+  nextStrike = null;
   /** @type {import('contract').Outcome | null} */
   outcome = null;
   /** @type {import('./interventions.js').Intervention[]} */
@@ -65,6 +67,7 @@ export class RunState {
     this.scene = null;
     this.released = null;
     this.fall = null;
+    this.nextStrike = null;
     this.watcher.cleared();
   }
 
@@ -110,6 +113,7 @@ export class RunState {
   /** Brings the scene up to date with impacts and interventions. */
   rebuild() {
     this.scene = this.#sceneAt((this.impacts.last?.n ?? 0) + 1);
+    if (this.scene && this.nextStrike) this.scene.derived.target = this.nextStrike.target;
   }
 
   /** The scene in force at an impact, or null before the server has greeted. @param {number} n */

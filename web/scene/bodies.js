@@ -2,7 +2,7 @@
 
 import { line } from '../charts/axes.js';
 import { theme } from '../charts/theme.js';
-import { contactDistance, corners } from '../physics/body.js';
+import { contactDistance, derivedOf } from '../physics/body.js';
 
 /** @typedef {CanvasRenderingContext2D} Context */
 /** @typedef {import('./camera.js').Scale} Scale */
@@ -22,7 +22,7 @@ export function drawRod(context, scale, scene, pose, { colour = 'ink', opacity =
   const colours = theme();
   const ink = colours[colour];
   const l = contactDistance(scene);
-  const rho = scene.body?.radius_of_gyration ?? 0;
+  const { radius_of_gyration: rho, outline } = derivedOf(scene);
   context.save();
   context.globalAlpha = opacity;
   context.translate(scale.x(pose.x), scale.y(pose.y));
@@ -33,12 +33,11 @@ export function drawRod(context, scale, scene, pose, { colour = 'ink', opacity =
   // The canvas turns clockwise, θ counter-clockwise.
   context.rotate(-pose.theta);
   const bottom = l * scale.metre;
-  const top = -Math.max(l, rho) * scale.metre;
+  const top = -Math.max(l, rho ?? 0) * scale.metre;
   const half = Math.max(2.5, Math.min(6, 0.0075 * scale.metre));
-  const polygon = corners(scene);
   context.beginPath();
-  if (polygon) {
-    for (const [x, y] of polygon) context.lineTo(x * scale.metre, -y * scale.metre);
+  if (outline) {
+    for (const [x, y] of outline) context.lineTo(x * scale.metre, -y * scale.metre);
   } else {
     context.moveTo(0, bottom);
     context.lineTo(half, bottom - 2.4 * half);
@@ -57,7 +56,7 @@ export function drawRod(context, scale, scene, pose, { colour = 'ink', opacity =
   context.strokeStyle = ink;
   context.stroke();
   context.lineWidth = 1.5;
-  for (const at of polygon ? [] : [-rho, rho]) {
+  for (const at of outline || rho === null ? [] : [-rho, rho]) {
     if (at <= l) line(context, ink, -half - 3, at * scale.metre, half + 3, at * scale.metre);
   }
   context.rotate(pose.theta);

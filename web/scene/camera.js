@@ -1,6 +1,6 @@
 // The part of the world that the scene shows: its height, its middle and the pixels of a metre.
 
-import { contactDistance, corners } from '../physics/body.js';
+import { contactDistance, derivedOf } from '../physics/body.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {{x: (x: number) => number, y: (y: number) => number, metre: number, right: number}} Scale metres to pixels, and the right end of the picture */
@@ -28,9 +28,10 @@ export class Camera {
 
   /** Makes room for the highest point of the body on a flight; the height never shrinks in a run. @param {Scene} scene @param {number} apex */
   contain(scene, apex) {
-    const reach = Math.max(0, ...(corners(scene) ?? []).map(([x, y]) => Math.hypot(x, y)));
-    const above = scene.body?.point ? 0.03 : Math.max(contactDistance(scene), scene.body?.radius_of_gyration ?? reach);
-    const wanted = (Math.max(apex, scene.table?.target_height ?? 0) + above) * 1.08;
+    const { contact_distance: l, radius_of_gyration: rho, outline, target } = derivedOf(scene);
+    const reach = outline ? Math.max(...outline.map(([x, y]) => Math.hypot(x, y))) : (rho ?? 0);
+    const above = l > 0 ? Math.max(l, reach) : 0.03;
+    const wanted = (Math.max(apex, target?.height ?? 0) + above) * 1.08;
     if (wanted > this.#top && Number.isFinite(wanted)) this.#top = wanted;
   }
 

@@ -3,7 +3,7 @@
 import { line, roundStep } from '../charts/axes.js';
 import { SANS, theme } from '../charts/theme.js';
 import { number } from '../dom/numbers.js';
-import { effectiveGravity } from '../physics/flight.js';
+import { derivedOf } from '../physics/body.js';
 
 /** @typedef {import('../charts/surface.js').Surface} Surface */
 /** @typedef {import('./camera.js').Camera} Camera */
@@ -77,16 +77,17 @@ function drawScaleBar(context, width, metre) {
 /** The gravity of the plane, and the height that the table steers for. @param {Surface} surface @param {Camera} camera @param {import('../api/scene-fields.js').Scene} scene */
 export function drawTarget({ context, width }, { scale }, scene) {
   const colours = theme();
-  const { energy_gain: gain, target_height: height } = scene.table ?? {};
+  const { gravity, target } = derivedOf(scene);
+  if (gravity === 0) return;
   context.font = `11px ${SANS}`;
   context.textAlign = 'left';
   context.textBaseline = 'top';
   context.fillStyle = colours.muted;
-  const incline = scene.incline ?? Math.PI / 2;
-  const plane = Math.abs(incline - Math.PI / 2) > 1e-9 ? `plane at ${number((incline * 180) / Math.PI)}°, ` : '';
-  context.fillText(`${plane}G = ${number(effectiveGravity(scene))}\u202fm/s²`, 44, 10);
-  if (!gain || !height) return;
-  const y = Math.round(scale.y(height)) + 0.5;
+  const { incline } = scene;
+  const plane = incline && gravity < scene.gravity ? `plane at ${number((incline * 180) / Math.PI)}°, ` : '';
+  context.fillText(`${plane}G = ${number(gravity)}\u202fm/s²`, 44, 10);
+  if (!target) return;
+  const y = Math.round(scale.y(target.height)) + 0.5;
   context.setLineDash([5, 4]);
   context.lineWidth = 1;
   line(context, colours.good, 0, y, width, y);
@@ -94,5 +95,5 @@ export function drawTarget({ context, width }, { scale }, scene) {
   context.fillStyle = colours.good;
   context.textAlign = 'right';
   context.textBaseline = 'bottom';
-  context.fillText(`target y* = ${number(height)}\u202fm`, width - 8, y - 2);
+  context.fillText(`target y* = ${number(target.height)}\u202fm`, width - 8, y - 2);
 }

@@ -4,7 +4,7 @@ import { theme } from '../charts/theme.js';
 import { fixed, fixedQuantity, unbroken } from '../dom/numbers.js';
 import { contactDistance } from '../physics/body.js';
 import { effectiveGravity, poseOn } from '../physics/flight.js';
-import { strikeAfter, tableBetween } from '../physics/table.js';
+import { strikeOf, strikeToCome, tableBetween } from '../physics/table.js';
 import { MODES } from '../run/impact-messages.js';
 import { drawRod, drawTable } from './bodies.js';
 import { drawOthers } from './other-rods.js';
@@ -55,8 +55,8 @@ export class RunDrawing {
     drawTarget(surface, camera, scene);
     under()?.(surface, scale, scene);
     this.#drawTrail(scene, place, t);
-    const last = strikeOf(impact, scene) ?? firstTable(arc, scene);
-    const next = arc.duration > 0 ? strikeAfter(arc, scene) : last;
+    const last = impact ? strikeOf(impact, scene) : firstTable(arc, scene);
+    const next = this.#strikeAfter(place, scene) ?? last;
     drawTable(context, scale, tableBetween(last, next, t), camera.halfTable(scene), camera.floor);
     drawOthers(context, scale, others(), t);
     drawRod(context, scale, scene, pose);
@@ -64,6 +64,19 @@ export class RunDrawing {
     if (impact && strength > 0) drawStrike(context, scale, impact, last, strength);
     drawRulers(surface, camera);
     this.#say(now_ms, now, pose, impact);
+  }
+
+  /**
+   * The strike at the end of the flight from an impact, or from the release.
+   * @param {number | null} place
+   * @param {Scene} scene
+   * @returns {Strike | null}
+   */
+  #strikeAfter(place, scene) {
+    const { impacts, nextStrike } = this.#parts.run;
+    const after = place === null ? impacts.begin : place + 1;
+    if (after < impacts.end) return strikeOf(impacts.row(after), scene);
+    return nextStrike?.n === (impacts.last?.n ?? 0) + 1 ? strikeToCome(nextStrike) : null;
   }
 
   /**
@@ -153,19 +166,6 @@ const firstTable = (arc, scene) => ({
   alpha: 0,
   speed: 0,
 });
-
-/** @param {Impact | null} impact @param {Scene} scene @returns {Strike | null} */
-function strikeOf(impact, scene) {
-  if (!impact) return null;
-  const l = contactDistance(scene);
-  return {
-    t: impact.t,
-    x: impact.x + (l && l * Math.sin(impact.theta)),
-    y: impact.clearance || 0,
-    alpha: impact.alpha,
-    speed: Number.isNaN(impact.table_speed) ? 0 : impact.table_speed,
-  };
-}
 
 /**
  * Describes the newest contact; empty for a frictionless strike at y = 0.

@@ -7,10 +7,12 @@ import { fixed, fixedQuantity, number, quantity } from '../dom/numbers.js';
 import { contactDistance } from '../physics/body.js';
 import { drawRod, drawTable } from './bodies.js';
 import { Camera } from './camera.js';
+import { drawable } from './drawable.js';
 import { drawGrid, drawRulers, drawTarget } from './rulers.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('../run/run.js').Run} Run */
+/** @typedef {import('contract').Derived} Derived */
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
@@ -24,6 +26,10 @@ export class SceneView {
   #parts;
   /** The scene to draw while there is no run. @type {Scene | null} */
   #draft = null;
+  /** What follows from it by the last answer. @type {Derived | null} */
+  #known = null;
+  /** The case whose word was taken for it. @type {Derived | null} */
+  #ofCase = null;
   /** Flights in between are drawn unless motion is unwanted. */
   #moving = !stillness.matches;
   /** Draws runs, once a run has begun. @type {import('./run-drawing.js').RunDrawing | null} */
@@ -83,9 +89,26 @@ export class SceneView {
     });
   }
 
-  /** @param {Scene | null} scene */
-  draft(scene) {
+  /** The typed scene with what is known to follow from it. @returns {Scene} */
+  get drawn() {
+    return drawable(this.#draft ?? {}, this.#known);
+  }
+
+  /**
+   * @param {Scene | null} scene
+   * @param {Derived | null} ofCase what follows from the case that it began with: holds until the server answers for the scene itself
+   */
+  draft(scene, ofCase = null) {
     this.#draft = scene;
+    if (ofCase && ofCase !== this.#ofCase) this.#known = ofCase;
+    this.#ofCase = ofCase;
+    if (this.#parts.run.phase === 'idle') this.#parts.camera.forget();
+    this.redraw();
+  }
+
+  /** Takes the server's word for what follows from the typed scene. @param {Derived} derived */
+  learn(derived) {
+    this.#known = derived;
     if (this.#parts.run.phase === 'idle') this.#parts.camera.forget();
     this.redraw();
   }
@@ -107,7 +130,7 @@ export class SceneView {
     const live = run.phase !== 'idle' && run.scene !== null;
     if (live && this.#drawing) this.#drawing.draw(now_ms, this.#moving);
     else if (live) this.#loadDrawing();
-    else if (this.#draft) this.#drawRelease(this.#draft);
+    else if (this.#draft) this.#drawRelease(this.drawn);
     else drawGrid(surface, camera);
     return live && this.#drawing !== null && run.pace > 0 && this.#moving && this.#seen;
   }

@@ -2,22 +2,19 @@
 
 import { ImpactPlot } from './impact-plot.js';
 import { fixed, number } from '../../dom/numbers.js';
-import { effectiveGravity } from '../../physics/flight.js';
+import { derivedOf } from '../../physics/body.js';
 
 /**
  * @param {import('../../run/impacts.js').Impacts} impacts
- * @param {() => import('../../api/scene-fields.js').Scene | null} scene
+ * @param {() => import('../../api/scene-fields.js').Scene | null} scene with what follows from it
  */
 export function energyPlot(impacts, scene) {
   /** The wanted energy G·y* with energy feedback; the first energy where a bounce keeps it. */
   const levels = () => {
     const now = scene();
     if (!now) return [];
-    const { energy_gain: gain, target_height: height } = now.table ?? {};
-    if (gain && height) {
-      const value = effectiveGravity(now) * height;
-      return [{ value, name: `target G y* = ${number(value)} m²/s²` }];
-    }
+    const { target } = derivedOf(now);
+    if (target) return [{ value: target.energy, name: `target G y* = ${number(target.energy)} m²/s²` }];
     const first = impacts.end > 0 ? impacts.at('energy', impacts.begin) : NaN;
     return Number.isFinite(first) && now.table?.strike !== 'still'
       ? [{ value: first, name: `released with ${number(first)} m²/s²` }]

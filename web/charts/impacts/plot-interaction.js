@@ -21,6 +21,7 @@ import { styles } from '../../dom/styles.js';
  * @property {() => void} changed what the address says
  * @property {{bar: HTMLElement, show: () => void}} measured the place of a lab's own impacts
  * @property {() => void} follow shows anew what belongs to the typed scene
+ * @property {() => import('../../api/scene-fields.js').Scene} drawn the typed scene with what follows from it
  */
 
 const BY_POINTER = 'Drag over a plot to select impacts; click in a plane to place a release there.';

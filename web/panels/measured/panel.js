@@ -4,8 +4,7 @@ import { row, table } from '../../dom/tables.js';
 import { ColumnPicker } from './columns.js';
 import { COMPARED, residuals, sums } from './compare.js';
 import { LIMIT_BYTES, Unreadable, read } from './read.js';
-import { contactDistance } from '../../physics/body.js';
-import { effectiveGravity } from '../../physics/flight.js';
+import { derivedOf } from '../../physics/body.js';
 import { drawResiduals } from './residual-chart.js';
 import { h } from '../../dom/elements.js';
 import { invalidate } from '../../charts/surface.js';
@@ -18,7 +17,7 @@ import { svg } from '../../charts/svg.js';
 /** @typedef {import('./compare.js').Compared} Compared */
 /** @typedef {import('./compare.js').Residual} Residual */
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
-/** @typedef {{run: import('../../run/run.js').Run, plots: import('../../charts/impacts/impact-plot.js').ImpactPlot[], typed: () => Scene | null}} MeasuredParts */
+/** @typedef {{run: import('../../run/run.js').Run, plots: import('../../charts/impacts/impact-plot.js').ImpactPlot[], drawn: () => Scene}} MeasuredParts */
 
 /** @type {Record<Compared, [string, string]>} */
 const NAMES = {
@@ -225,10 +224,9 @@ export class MeasuredPanel {
 
   /** The measured points over the plots, where they can be computed. */
   #lay() {
-    const scene = this.#run.scene ?? this.#page.typed() ?? {};
-    const l = contactDistance(scene);
-    const rho = scene.body?.radius_of_gyration ?? (scene.body?.point ? 0 : NaN);
-    const gravity = effectiveGravity(scene);
+    const scene = this.#run.scene ?? this.#page.drawn();
+    const { contact_distance: l, radius_of_gyration, gravity } = derivedOf(scene);
+    const rho = radius_of_gyration ?? 0;
     const key = JSON.stringify([l, rho, gravity]);
     if (key === this.#laid) return;
     this.#laid = key;
