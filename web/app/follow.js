@@ -111,7 +111,7 @@ const previews = new Follower(async (page, signal) => {
 /** @param {Page} page @param {import('contract').Trajectory} answer */
 function preview(page, answer) {
   for (const plot of page.plots) /** @type {any} */ (plot).preview?.(answer.impacts);
-  /** @type {any} */ (page.view).preview?.(answer);
+  page.view.preview(answer).catch(() => {});
 }
 
 /** Keeps the last verdict, dimmed, beside the reason why there is no newer one. @param {Page} page @param {string} words @param {string} label @param {() => void} act */

@@ -4,10 +4,23 @@
 /** @typedef {import('contract').Derived} Derived */
 
 /** Quantities of a scene that the server has not answered for. @type {Derived} */
-export const UNKNOWN = { gravity: 0, contact_distance: 0, radius_of_gyration: null, outline: null, target: null };
+const UNKNOWN = { gravity: 0, contact_distance: 0, radius_of_gyration: null, outline: null, target: null };
 
 /** @param {Scene} scene to draw @returns {Derived} */
 export const derivedOf = (scene) => scene.derived ?? UNKNOWN;
 
 /** Centre of gravity to contact point, m; 0 for a point mass. @param {Scene} scene */
 export const contactDistance = (scene) => derivedOf(scene).contact_distance;
+
+/**
+ * A typed scene to draw, before the server has answered for it and after.
+ * @param {Scene} scene
+ * @param {Derived | null} derived as the server said last, maybe for a scene that was typed before this one
+ * @returns {Scene}
+ */
+export function drawable(scene, derived) {
+  const { contact_distance: l, radius_of_gyration: rho } = scene.body ?? {};
+  // The lengths of a rod are fields, so they need no answer.
+  const rod = l > 0 && rho > 0 ? { contact_distance: l, radius_of_gyration: rho, outline: null } : {};
+  return { ...scene, derived: { ...UNKNOWN, ...derived, ...rod } };
+}

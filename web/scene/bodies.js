@@ -10,6 +10,17 @@ import { contactDistance, derivedOf } from '../physics/body.js';
 /** @typedef {'ink' | 'series-1' | 'series-2' | 'series-3' | 'measured'} RodColour */
 
 /**
+ * @typedef {object} Drawn what was drawn, for parts that go with it
+ * @property {import('../api/scene-fields.js').Scene} scene
+ * @property {import('../physics/flight.js').Pose} pose
+ * @property {{x: number, y: number, alpha: number}} table
+ * @property {boolean} struck the marks of a strike are there
+ * @property {number} half of the table's width, m
+ * @property {Scale} scale
+ * @property {number} zoom CSS px in one of the scale's
+ */
+
+/**
  * The rod from its contact point through its centre of gravity, with marks at ±ρ: two half masses there would turn like it; or the
  * outline of a polygon.
  * @param {Context} context

@@ -9,19 +9,19 @@ import { MODES } from '../run/impact-messages.js';
 import { drawRod, drawTable } from './bodies.js';
 import { drawOthers } from './other-rods.js';
 import { drawGrid, drawRulers, drawTarget } from './rulers.js';
-import { drawStrike } from './strike-marks.js';
+import { drawStrike, tellStrike } from './strike-marks.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('../charts/surface.js').Surface} Surface */
 /** @typedef {(surface: Surface, scale: import('./camera.js').Scale, scene: Scene) => void} Under draws marks on the floor */
-/** @typedef {{run: import('../run/run.js').Run, box: HTMLElement, readout: HTMLElement, surface: Surface, camera: import('./camera.js').Camera, under: () => Under | null, others: () => import('./other-rods.js').OtherRod[]}} Parts */
+/** @typedef {{run: import('../run/run.js').Run, box: HTMLElement, readout: HTMLElement, surface: Surface, camera: import('./camera.js').Camera, under: () => Under | null, others: () => import('./other-rods.js').OtherRod[], drew: (drawn: Pick<import('./bodies.js').Drawn, 'scene' | 'pose' | 'table' | 'struck'>) => void}} Parts */
 /** @typedef {import('../run/impacts.js').Impact} Impact */
 /** @typedef {import('../physics/flight.js').Arc} Arc */
 /** @typedef {import('../physics/table.js').Strike} Strike */
 
 /** Time for which the marks of a strike are visible, in wall time. */
 const GLOW_S = 0.28;
-const TRAIL_FLIGHTS = 3;
+const TRAIL_FLIGHTS = 5;
 
 export class RunDrawing {
   #parts;
@@ -35,7 +35,7 @@ export class RunDrawing {
 
   /** @param {number} now_ms @param {boolean} moving flights are drawn, not only strikes */
   draw(now_ms, moving) {
-    const { run, surface, camera, under, others } = this.#parts;
+    const { run, surface, camera, under, others, drew } = this.#parts;
     const { context } = surface;
     const since_s = Math.min(0.1, (now_ms - this.#drawn_ms) / 1000);
     this.#drawn_ms = now_ms;
@@ -57,11 +57,14 @@ export class RunDrawing {
     this.#drawTrail(scene, place, t);
     const last = impact ? strikeOf(impact, scene) : firstTable(arc, scene);
     const next = this.#strikeAfter(place, scene) ?? last;
-    drawTable(context, scale, tableBetween(last, next, t), camera.halfTable(scene), camera.floor);
+    const table = tableBetween(last, next, t);
+    drawTable(context, scale, table, camera.halfTable(scene), camera.floor);
     drawOthers(context, scale, others(), t);
     drawRod(context, scale, scene, pose);
     const strength = impact ? this.#glow(now, impact.t, moving) : 0;
     if (impact && strength > 0) drawStrike(context, scale, impact, last, strength);
+    if (impact) tellStrike(context, scale, impact);
+    drew({ scene, pose, table, struck: strength > 0 });
     drawRulers(surface, camera);
     this.#say(now_ms, now, pose, impact);
   }

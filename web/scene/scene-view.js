@@ -4,15 +4,15 @@ import { surfaces, invalidate } from '../charts/surface.js';
 import { onThemeChange } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
 import { fixed, fixedQuantity, number, quantity } from '../dom/numbers.js';
-import { contactDistance } from '../physics/body.js';
+import { contactDistance, drawable } from '../physics/body.js';
 import { drawRod, drawTable } from './bodies.js';
 import { Camera } from './camera.js';
-import { drawable } from './drawable.js';
 import { drawGrid, drawRulers, drawTarget } from './rulers.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('../run/run.js').Run} Run */
 /** @typedef {import('contract').Derived} Derived */
+/** @typedef {import('./bodies.js').Drawn} Drawn */
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
@@ -22,8 +22,12 @@ export class SceneView {
   under = null;
   /** The rods of other runs on this stage. @type {import('./other-rods.js').OtherRod[]} */
   others = [];
+  /** Parts that go with the drawn body; some draw over it. @type {((drawn: Drawn) => void)[]} */
+  followers = [];
   /** @type {import('./run-drawing.js').Parts} */
   #parts;
+  /** The pose in a hand, and words on it. @type {{pose: import('../physics/flight.js').Pose, words: string} | null} */
+  #held = null;
   /** The scene to draw while there is no run. @type {Scene | null} */
   #draft = null;
   /** What follows from it by the last answer. @type {Derived | null} */
@@ -34,6 +38,8 @@ export class SceneView {
   #moving = !stillness.matches;
   /** Draws runs, once a run has begun. @type {import('./run-drawing.js').RunDrawing | null} */
   #drawing = null;
+  /** Draws the first flights of the typed scene, once they are known. @type {((scale: import('./camera.js').Scale) => void) | null} */
+  #preview = null;
   /** Scrolled out of sight, it costs nothing. */
   #seen = true;
 
@@ -55,6 +61,7 @@ export class SceneView {
       camera: new Camera(surface),
       under: () => this.under,
       others: () => this.others,
+      drew: (drawn) => this.#drew(drawn),
     };
     onThemeChange(() => this.redraw());
     new IntersectionObserver(([entry]) => {
@@ -113,6 +120,30 @@ export class SceneView {
     this.redraw();
   }
 
+  /** Shows where the typed scene will fly. @param {import('contract').Trajectory} answer */
+  async preview(answer) {
+    const { drawPreview, firstFlights } = await import('./preview.js');
+    const flights = firstFlights(answer);
+    this.#preview = (scale) => drawPreview(this.#parts.surface.context, scale, flights);
+    this.learn(answer.derived);
+  }
+
+  /**
+   * Draws the typed scene in this pose, whatever runs; null ends that.
+   * @param {import('../physics/flight.js').Pose | null} pose
+   */
+  hold(pose, words = '') {
+    this.#held = pose && { pose, words };
+    this.redraw();
+  }
+
+  /** @param {Omit<Drawn, 'scale' | 'zoom' | 'half'>} drawn */
+  #drew(drawn) {
+    const { camera, surface } = this.#parts;
+    const all = { ...drawn, half: camera.halfTable(drawn.scene), scale: camera.scale, zoom: surface.zoom };
+    for (const follow of this.followers) follow(all);
+  }
+
   /** The camera and the scale start over with a new run. */
   reset() {
     this.#parts.camera.x = 0;
@@ -128,7 +159,8 @@ export class SceneView {
   draw(now_ms) {
     const { run, surface, camera } = this.#parts;
     const live = run.phase !== 'idle' && run.scene !== null;
-    if (live && this.#drawing) this.#drawing.draw(now_ms, this.#moving);
+    if (this.#held) this.#drawRelease(this.drawn, this.#held);
+    else if (live && this.#drawing) this.#drawing.draw(now_ms, this.#moving);
     else if (live) this.#loadDrawing();
     else if (this.#draft) this.#drawRelease(this.drawn);
     else drawGrid(surface, camera);
@@ -145,21 +177,30 @@ export class SceneView {
     );
   }
 
-  /** @param {Scene} scene */
-  #drawRelease(scene) {
+  /** @param {Scene} scene @param {{pose: import('../physics/flight.js').Pose, words: string} | null} held */
+  #drawRelease(scene, held = null) {
     const { box, readout, surface, camera } = this.#parts;
-    const { height = 0, theta = 0, x = 0 } = scene.release ?? {};
+    const { height = 0, theta: released = 0, x: place = 0 } = scene.release ?? {};
     const l = contactDistance(scene);
-    const y = Math.max(height, l * Math.cos(theta));
-    camera.contain(scene, y);
-    camera.x = x;
+    const { x, y, theta } = held?.pose ?? { x: place, y: Math.max(height, l * Math.cos(released)), theta: released };
+    // In a hand the body moves, and not the world.
+    if (!held) {
+      camera.contain(scene, y);
+      camera.x = x;
+    }
     drawGrid(surface, camera);
     const { scale } = camera;
     drawTarget(surface, camera, scene);
+    if (!held) this.#preview?.(scale);
     const table = { x: x + l * Math.sin(theta), y: 0, alpha: 0 };
     drawTable(surface.context, scale, table, camera.halfTable(scene), camera.floor);
     drawRod(surface.context, scale, scene, { x, y, theta });
+    this.#drew({ scene, pose: { x, y, theta }, table, struck: false });
     drawRulers(surface, camera);
+    if (held) {
+      readout.textContent = held.words;
+      return;
+    }
     readout.textContent = `Released at ${fixed(height, 3)} m, θ ${fixedQuantity(theta, 'rad', 3)}`;
     box.setAttribute(
       'aria-label',

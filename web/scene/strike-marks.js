@@ -16,6 +16,8 @@ const FRICTION_S = 0.2;
 const LEAST_PX = 26;
 // Over the table, on which it would not be seen.
 const RAISED_PX = 8;
+/** Top of the numbers, below the scale bar, px. */
+const LABEL_PX = 46;
 
 /**
  * Normal, impulse and its part along the table, which is friction, where rod and table met.
@@ -43,13 +45,9 @@ export function drawStrike(context, scale, impact, strike, strength) {
   context.textAlign = 'left';
   context.textBaseline = 'top';
   context.fillText('n', x + nx * reach + 5, y + ny * reach);
-  const dx = impact.x_dot_after - impact.x_dot;
-  const dy = impact.y_dot_after - impact.y_dot;
-  const impulse = Math.hypot(dx, dy);
+  const { dx, dy, along: impulse, friction, rubs } = impulseOf(impact);
   if (impulse > 0) {
     const length = Math.min(ARROW_S * impulse * scale.metre, y * 0.8);
-    const friction = dx * Math.cos(strike.alpha) + dy * Math.sin(strike.alpha);
-    const rubs = MODES[impact.mode] !== 'frictionless' && Math.abs(friction) > 1e-9 * impulse;
     // Beside the rod, so that the arrow is seen along its whole length, and not where friction points.
     const offset = (rubs ? friction : dx) > 0 ? -16 : 16;
     // A small one still shows which way it goes; its number is beside it.
@@ -61,24 +59,9 @@ export function drawStrike(context, scale, impact, strike, strength) {
       arrow(context, fx, fy, fx + Math.cos(strike.alpha) * along, fy - Math.sin(strike.alpha) * along, colours.good);
     if (length > 9)
       arrow(context, x + offset, y, x + offset + (dx / impulse) * length, y - (dy / impulse) * length, colours.strike);
-    context.font = `11px ${SANS}`;
+    context.font = `italic 12px ${SERIF}`;
     context.fillStyle = colours.strike;
-    const words = [`impulse per mass ${fixed(impulse, 2)}\u202fm/s`, `α ${fixedQuantity(strike.alpha, 'rad', 3)}`];
-    const widest = Math.max(...words.map((text) => context.measureText(text).width));
-    const left = offset > 0 ? x + offset * 1.6 : x + offset * 1.6 - widest;
-    const at = Math.max(34, Math.min(scale.right - widest - 6, left));
-    context.textAlign = 'left';
-    context.textBaseline = 'top';
-    context.fillText(words[0], at, y + 20);
-    context.fillText(words[1], at, y + 34);
-    if (rubs) {
-      // On the other side of the table's foot.
-      const told = `friction per mass ${fixed(friction, 2)}\u202fm/s`;
-      const width = context.measureText(told).width;
-      const start = offset > 0 ? x - offset * 1.6 - width : x - offset * 1.6;
-      context.fillStyle = colours.good;
-      context.fillText(told, Math.max(6, Math.min(scale.right - width - 6, start)), y + 20);
-    }
+    if (length > 9) context.fillText('P', x + offset + (dx / impulse) * length + 6, y - (dy / impulse) * length);
   }
   context.beginPath();
   context.arc(x, y, 4 + 10 * (1 - strength), 0, 2 * Math.PI);
@@ -86,6 +69,41 @@ export function drawStrike(context, scale, impact, strike, strength) {
   context.strokeStyle = colours.strike;
   context.stroke();
   context.restore();
+}
+
+/**
+ * The numbers of the newest strike, always at the same place.
+ * @param {Context} context
+ * @param {Scale} scale
+ * @param {import('../run/impacts.js').Impact} impact
+ */
+export function tellStrike(context, scale, impact) {
+  const colours = theme();
+  const { along, friction, rubs } = impulseOf(impact);
+  if (Number.isNaN(along)) return;
+  context.font = `11px ${SANS}`;
+  context.textAlign = 'right';
+  context.textBaseline = 'top';
+  const words = [
+    [colours.muted, `strike ${impact.n}`],
+    [colours.strike, `impulse per mass ${fixed(along, 2)}\u202fm/s`],
+    [colours.strike, `α ${fixedQuantity(impact.alpha, 'rad', 3)}`],
+    ...(rubs ? [[colours.good, `friction per mass ${fixed(friction, 2)}\u202fm/s`]] : []),
+  ];
+  words.forEach(([colour, text], index) => {
+    context.fillStyle = colour;
+    context.fillText(text, scale.right - 10, LABEL_PX + index * 15);
+  });
+}
+
+/** The impulse per mass of a strike, and its part along the table. @param {import('../run/impacts.js').Impact} impact */
+function impulseOf(impact) {
+  const dx = impact.x_dot_after - impact.x_dot;
+  const dy = impact.y_dot_after - impact.y_dot;
+  const along = Math.hypot(dx, dy);
+  const friction = dx * Math.cos(impact.alpha) + dy * Math.sin(impact.alpha);
+  const rubs = MODES[impact.mode] !== 'frictionless' && Math.abs(friction) > 1e-9 * along;
+  return { dx, dy, along, friction, rubs };
 }
 
 /** @param {Context} context @param {number} x0 @param {number} y0 @param {number} x1 @param {number} y1 @param {string} colour */

@@ -82,6 +82,7 @@ export function bindingsOf(page) {
     { keys: ['p'], label: 'p', name: 'Present: scene, one plane and headline', act: () => byId('present').click() },
     // Undo listens by itself, since it works while single keys are off.
     { keys: [], label: 'Ctrl Z', name: 'Undo; with Shift redo', act: () => {} },
+    { keys: ['l'], label: 'l', name: 'Show the symbols in the scene', act: () => byId('symbols').click() },
     { keys: ['s'], label: 's', name: 'Copy the link', act: () => byId('share').click() },
     {
       keys: ['e'],

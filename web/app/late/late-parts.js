@@ -8,6 +8,7 @@ import { enlarger } from '../../export/enlarge-button.js';
 import { styles } from '../../dom/styles.js';
 import { Panels } from '../../panels/panels.js';
 import { bringPins } from '../../pins/bring.js';
+import { bringSceneTools } from '../../scene/tools/bring.js';
 import { bringTimeline } from '../../timeline/bring.js';
 import { bringShell } from '../../workbench/shell.js';
 import { liveAddress, replayAddress, updateAddress, updateAddressSoon } from '../address-bar.js';
@@ -83,6 +84,8 @@ export async function bringLateParts(page) {
     follow: () => page.follow(false),
   });
   page.panels.join('brush', page.interaction);
+  await styles('scene/tools/tools.css').catch(() => {});
+  bringSceneTools({ ...actions, view, typed: () => page.complete });
   bringTracks(page);
   page.panels.join('pin', await bringPins(page, others));
   page.panels.restore(page.panelLink);

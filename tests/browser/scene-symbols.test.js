@@ -1,0 +1,109 @@
+// What the scene shows beside the rod: the symbols of Fig. 1, the first flights of a scene that is not released, and a body for any typed length.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, ink, reachImpact, reachPhase, verdict } from './stage.js';
+
+const stage = await Stage.open();
+const wake = (page) => page.locator('#grab').waitFor();
+
+/** Pixels of the scene that are not its ground. */
+const drawn = (page) =>
+  page.locator('#scene-frame canvas').evaluate((canvas) => {
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let count = 0;
+    for (let at = 3; at < data.length; at += 4) if (data[at] > 0) count += 1;
+    return count;
+  });
+
+test('symbols are drawn by the button and by a key, told in words, and remembered', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await wake(page);
+  const before = await ink(page, '#scene-frame', '--ink');
+  await page.click('#symbols');
+  await page
+    .locator('#symbols-words', { hasText: /l\s0\.1333\sm, ρ\s0\.0943\sm, θ\s0\.300/ })
+    .waitFor({ state: 'attached' });
+  assert.ok((await ink(page, '#scene-frame', '--ink')) > before + 100);
+  await page.locator('body').press('l');
+  assert.equal(await page.getAttribute('#symbols', 'aria-pressed'), 'false');
+  await page.waitForFunction(() => document.querySelector('#symbols-words').textContent === '');
+  await page.locator('body').press('l');
+  await page.reload();
+  await wake(page);
+  assert.equal(await page.getAttribute('#symbols', 'aria-pressed'), 'true');
+  // At a strike α and β belong to it.
+  await page.click('#run');
+  await reachPhase(page, 'running');
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  await page.click('#step');
+  await reachImpact(page, 1);
+  await page.locator('#symbols-words', { hasText: /α\s[−\d.]+/ }).waitFor({ state: 'attached' });
+  await page.click('#about-picture summary');
+  await page.locator('#about-picture dd', { hasText: 'radius of gyration' }).waitFor();
+  clean();
+});
+
+test('a point mass has an α and no length', async () => {
+  const { page, clean } = await stage.page('?preset=point-mass');
+  await wake(page);
+  await page.click('#symbols');
+  await page.locator('#symbols-words', { hasText: /scene: α\s0\.000\srad\.$/ }).waitFor({ state: 'attached' });
+  clean();
+});
+
+test('the first flights of the typed scene are a faint path, which follows a setting', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  // Over the level of the table, far from the rod, there is nothing but the grid and the path.
+  const left = () =>
+    page.locator('#scene-frame canvas').evaluate((canvas) => {
+      const { width, height } = canvas;
+      // A copy, since a canvas that is read often loses its speed.
+      const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+      copy.drawImage(canvas, 0, 0);
+      const { data } = copy.getImageData(0, 0, width / 2 - 60, height / 2);
+      const accent = document.createElement('canvas').getContext('2d');
+      accent.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--accent').trim();
+      accent.fillRect(0, 0, 1, 1);
+      const [r, g, b] = accent.getImageData(0, 0, 1, 1).data;
+      let sum = 0;
+      let across = 0;
+      for (let at = 0; at < data.length; at += 4) {
+        if (data[at + 3] < 30 || Math.abs(data[at] - r) + Math.abs(data[at + 1] - g) + Math.abs(data[at + 2] - b) > 40)
+          continue;
+        sum += 1;
+        across += (at / 4) % (width / 2 - 60);
+      }
+      return { sum, across: across / Math.max(1, sum) };
+    });
+  await page.waitForFunction(() => document.querySelector('#scene-readout').textContent.includes('Released'));
+  let path = await left();
+  for (let tries = 0; path.sum < 60 && tries < 100; tries += 1) {
+    await page.waitForTimeout(100);
+    path = await left();
+  }
+  assert.ok(path.sum >= 60, JSON.stringify(path));
+  await page.fill('#field-release-theta', '-0.3');
+  await page.locator('#field-release-theta').blur();
+  // Tilted to the other side it flies to the other side.
+  let other = await left();
+  for (let tries = 0; other.sum >= 60 && tries < 100; tries += 1) {
+    await page.waitForTimeout(100);
+    other = await left();
+  }
+  assert.ok(other.sum < 60, JSON.stringify(other));
+  clean();
+});
+
+test('with a length of 0 the scene still draws a body', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const before = await ink(page, '#scene-frame', '--ink');
+  await page.fill('#field-body-contact_distance', '0');
+  await page.locator('#field-body-contact_distance-error:not(:empty)').waitFor();
+  await page.waitForTimeout(300);
+  assert.ok((await ink(page, '#scene-frame', '--ink')) > before / 2);
+  assert.ok((await drawn(page)) > 0);
+});
