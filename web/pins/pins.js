@@ -5,6 +5,7 @@ import { valueAt } from '../api/scene-fields.js';
 import { h } from '../dom/elements.js';
 import { number, quantity } from '../dom/numbers.js';
 import { symbol } from '../dom/typeset.js';
+import { UNITS } from '../dom/units.js';
 import { endedAs } from '../panels/verdict/plain-words.js';
 import { Parting } from './parting.js';
 import { Pin, readPin } from './pin.js';
@@ -64,7 +65,7 @@ export class Pins {
       struck: () => this.#parting.redraw(),
       cleared: () => this.#parting.forget(),
     });
-    document.addEventListener('units', () => {
+    document.addEventListener(UNITS, () => {
       this.sceneChanged();
       this.#parting.redraw();
     });

@@ -70,7 +70,13 @@ export class Fork {
     });
     this.#gain.addEventListener('change', () => this.#want());
     parts.timeline.listeners.add(() => this.#offer());
-    parts.run.watch({ changed: () => this.#offer(), struck: () => {}, cleared: () => this.close(false) });
+    parts.run.watch({
+      changed: () => this.#offer(),
+      struck: () => {
+        if (this.#open.disabled) this.#offer();
+      },
+      cleared: () => this.close(false),
+    });
     this.#offer();
   }
 

@@ -149,6 +149,7 @@ export class Timeline {
   #struck() {
     const { run, fields } = this.#parts;
     if (run.interventions.length > this.bar.marks.length) this.bar.marks = marksOf(run, fields);
+    if (this.#back.disabled) this.#offer();
     invalidate(this.bar);
     invalidate(this);
   }
