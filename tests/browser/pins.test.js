@@ -169,3 +169,19 @@ test('two runs that differ by 0.001 rad are dropped together and seen to part', 
   assert.equal(await pin(page, 'A').locator('.rod').getAttribute('aria-pressed'), 'false');
   clean();
 });
+
+test('pins are undone and done again', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await page.click('#pin');
+  await computed(page, 'A');
+  await page.getByRole('button', { name: 'Remove A' }).click();
+  assert.equal(await page.locator('.pin').count(), 0);
+  await page.keyboard.press('Control+z');
+  await computed(page, 'A');
+  await page.waitForFunction(() => location.search.includes('pin.0.preset=case-1'));
+  await page.keyboard.press('Control+z');
+  await page.locator('.pin').waitFor({ state: 'detached' });
+  await page.keyboard.press('Control+y');
+  await computed(page, 'A');
+  clean();
+});

@@ -32,6 +32,7 @@ function withoutClock(query) {
 const alike = (one, other) =>
   JSON.stringify(one.scene) === JSON.stringify(other.scene) &&
   one.chosen === other.chosen &&
+  one.pins === other.pins &&
   withoutClock(one.run) === withoutClock(other.run);
 
 export class History {
@@ -82,8 +83,9 @@ export class History {
 
   /** @returns {State} */
   #now() {
-    const { typed = {}, releasedAs, chosen, run } = this.#page;
-    return { scene: typed, releasedAs, chosen, run: run.phase === 'idle' ? null : String(run.query) };
+    const { typed = {}, releasedAs, chosen, run, pins } = this.#page;
+    const played = run.phase === 'idle' ? null : String(run.query);
+    return { scene: typed, releasedAs, chosen, run: played, pins: String(pins?.query() ?? '') };
   }
 
   /** Keeps the page as it is before an edit. @param {string} words for what is done, as in “the kick” */
@@ -145,6 +147,7 @@ export class History {
     if (entry) {
       to.push({ state: now, edit: entry.edit });
       restoreState(this.#page, entry.state);
+      this.#page.pins?.restore(new URLSearchParams(entry.state.pins));
       // A run that is being replayed has its address when the server has answered.
       if (this.#page.run.phase !== 'connecting') updateAddress(this.#page);
     }

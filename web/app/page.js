@@ -18,6 +18,7 @@ import { TypedScene } from './typed/typed-scene.js';
  * @property {Scene} releasedAs
  * @property {import('contract').Preset | null} chosen
  * @property {string | null} run the query that replays it
+ * @property {string} pins the part of the address of the pinned runs
  */
 
 /** The field that has a slider of its own beside the scene. */

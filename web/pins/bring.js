@@ -33,7 +33,7 @@ export async function bringPins(page, others) {
       if (run.phase === 'idle') start(page);
       else restart(page);
     },
-    record: (label) => /** @type {any} */ (page).history?.record(label),
+    record: (label) => page.history?.record(label),
     changed: () => updateAddressSoon(page),
   });
   timeline?.listeners.add(() => pins.moved());

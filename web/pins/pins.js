@@ -233,7 +233,7 @@ export class Pins {
 
   /** @param {number} place */
   #remove(place) {
-    this.#page.record(`remove pin ${SLOTS[place].name}`);
+    this.#page.record(`the removal of pin ${SLOTS[place].name}`);
     this.#put(place, null);
     this.#page.changed();
     this.#pin.focus({ preventScroll: true });
@@ -252,7 +252,6 @@ export class Pins {
   #bringBack(place) {
     const pin = this.#pins[place];
     if (!pin) return;
-    this.#page.record(`bring back pin ${SLOTS[place].name}`);
     this.#page.bringBack(pin);
     this.#focus(place, 'back');
   }
@@ -262,7 +261,7 @@ export class Pins {
     const pin = this.#pins[place];
     const played = this.#page.played();
     if (!pin || !played || !this.#fits(played.query)) return;
-    this.#page.record(`swap with pin ${SLOTS[place].name}`);
+    this.#page.record(`the swap with pin ${SLOTS[place].name}`);
     this.#page.bringBack(pin);
     this.#put(place, new Pin(played.query, played.scene));
     this.#page.changed();
@@ -277,7 +276,6 @@ export class Pins {
     this.#pins.forEach((pin, index) => {
       if (pin) pin.staged = index === place;
     });
-    this.#page.record(`drop ${one} and ${other}`);
     if (first) this.#page.bringBack(first);
     else this.#page.drop();
     this.#show();
