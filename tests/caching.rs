@@ -6,7 +6,7 @@ use axum::http::Method;
 use serde_json::json;
 use support::Server;
 
-const TARGETS: [&str; 7] = [
+const TARGETS: [&str; 8] = [
     "/v1/trajectories?preset=case-1",
     "/v1/jacobians?preset=case-1",
     "/v1/stability?preset=case-1&impacts=100",
