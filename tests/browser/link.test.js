@@ -97,6 +97,7 @@ test('going back after a click in a plane restores the run before', async () => 
   await box.scrollIntoViewIfNeeded();
   const { width, height } = await box.boundingBox();
   await box.click({ position: { x: width * 0.6, y: height * 0.45 } });
+  await page.getByRole('button', { name: 'Release here' }).click();
   await page.waitForFunction((before) => {
     const now = new URLSearchParams(location.search);
     return now.get('epoch') && now.get('epoch') !== before && !/kick/.test(location.search);
