@@ -34,6 +34,9 @@ test('a drag by the middle moves the rod, and letting go releases it there', asy
   assert.ok((await field(page, 'release.x')) > 0.03);
   assert.equal(await field(page, 'release.theta'), 0);
   assert.match(page.url(), /scene\.release\.x=0\.0/);
+  await page.click('#undo');
+  await page.waitForFunction(() => document.querySelector('#field-release-height').value === '0.2');
+  assert.doesNotMatch(page.url(), /release\.x/);
   clean();
 });
 

@@ -63,7 +63,7 @@ export class RunDrawing {
     drawRod(context, scale, scene, pose);
     const strength = impact ? this.#glow(now, impact.t, moving) : 0;
     if (impact && strength > 0) drawStrike(context, scale, impact, last, strength);
-    if (impact) tellStrike(context, scale, impact);
+    if (impact) tellStrike(context, scale, impact, camera.floor);
     drew({ scene, pose, table, struck: strength > 0 });
     drawRulers(surface, camera);
     this.#say(now_ms, now, pose, impact);

@@ -131,8 +131,11 @@ export class SceneView {
   /**
    * Draws the typed scene in this pose, whatever runs; null ends that.
    * @param {import('../physics/flight.js').Pose | null} pose
+   * @param {string} [words] on it
+   * @param {boolean} [grows] the picture makes room for it; under a pointer it must not, since places would move
    */
-  hold(pose, words = '') {
+  hold(pose, words = '', grows = false) {
+    if (pose && grows) this.#parts.camera.contain(this.drawn, pose.y);
     this.#held = pose && { pose, words };
     this.redraw();
   }

@@ -16,8 +16,8 @@ const FRICTION_S = 0.2;
 const LEAST_PX = 26;
 // Over the table, on which it would not be seen.
 const RAISED_PX = 8;
-/** Top of the numbers, below the scale bar, px. */
-const LABEL_PX = 46;
+/** Height of a line of numbers, px. */
+const LINE_PX = 14;
 
 /**
  * Normal, impulse and its part along the table, which is friction, where rod and table met.
@@ -72,18 +72,19 @@ export function drawStrike(context, scale, impact, strike, strength) {
 }
 
 /**
- * The numbers of the newest strike, always at the same place.
+ * The numbers of the newest strike, always at the same place: at the right end, below the level of the table.
  * @param {Context} context
  * @param {Scale} scale
  * @param {import('../run/impacts.js').Impact} impact
+ * @param {number} floor px
  */
-export function tellStrike(context, scale, impact) {
+export function tellStrike(context, scale, impact, floor) {
   const colours = theme();
   const { along, friction, rubs } = impulseOf(impact);
   if (Number.isNaN(along)) return;
   context.font = `11px ${SANS}`;
   context.textAlign = 'right';
-  context.textBaseline = 'top';
+  context.textBaseline = 'bottom';
   const words = [
     [colours.muted, `strike ${impact.n}`],
     [colours.strike, `impulse per mass ${fixed(along, 2)}\u202fm/s`],
@@ -92,7 +93,7 @@ export function tellStrike(context, scale, impact) {
   ];
   words.forEach(([colour, text], index) => {
     context.fillStyle = colour;
-    context.fillText(text, scale.right - 10, LABEL_PX + index * 15);
+    context.fillText(text, scale.right - 10, floor - 3 - (words.length - 1 - index) * LINE_PX);
   });
 }
 

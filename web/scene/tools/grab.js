@@ -192,7 +192,9 @@ export class Grab {
     const lowest = lowestHeight(scene, theta);
     const y = within('release.height', Math.max(lowest, rounded(wanted.y, decimals)));
     this.#pose = { x: within('release.x', rounded(wanted.x, decimals)), y, theta };
-    this.#parts.view.hold(this.#pose, `Held ${this.#words()}. Let go to release it.`);
+    const byHand = this.#pressed !== null;
+    const rest = byHand ? 'Let go to release it.' : 'Enter releases it, Escape puts it back.';
+    this.#parts.view.hold(this.#pose, `Held ${this.#words()}. ${rest}`, !byHand);
   }
 
   #words() {

@@ -65,7 +65,8 @@ export function drawSymbols(context, { scene, pose, table, scale, half, struck }
     line(context, colours.muted, foot.x, foot.y, normal.x, normal.y);
     context.setLineDash([]);
     const reach = Math.max(l, (rho ?? 0) * scale.metre);
-    angle(context, 'θ', centre, 0, pose.theta, reach + 14);
+    // Within the picture.
+    angle(context, 'θ', centre, 0, pose.theta, Math.max(20, Math.min(reach + 14, centre.y - 22)));
     angle(context, 'β', foot, table.alpha, pose.theta, 0.5 * l);
     const side = pose.theta > 0 ? 1 : -1;
     dimension(context, 'l', centre, pose.theta, 0, -l, side);
