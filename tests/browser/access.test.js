@@ -4,7 +4,18 @@ import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, impacts, ink, loadAll, reachImpact, reachPhase, verdict } from './stage.js';
+import {
+  Stage,
+  impacts,
+  ink,
+  loadAll,
+  openPanel,
+  openSheet,
+  openTab,
+  reachImpact,
+  reachPhase,
+  verdict,
+} from './stage.js';
 
 const stage = await Stage.open();
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
@@ -35,18 +46,31 @@ for (const colorScheme of ['light', 'dark']) {
       await page.click('#run');
       await reachImpact(page, 3);
       await unfold(page);
+      await openSheet(page, 'settings');
       await page.locator('#field-release-theta').fill('?');
       await page.locator('#field-release-theta[aria-invalid=true]').waitFor();
       assert.deepEqual(await violations(page), [], 'running, with tables open and an error');
       await page.locator('#field-release-theta').fill('0.3');
-      await loadAll(page);
+      await openSheet(page, 'verdict-card');
+      assert.deepEqual(await violations(page), [], 'with the verdict');
+      await loadAll(page, async (panel) => assert.deepEqual(await violations(page), [], `with the panel ${panel}`));
+      for (const tab of ['run', 'measured']) {
+        await openTab(page, tab);
+        assert.deepEqual(await violations(page), [], `with the tab ${tab}`);
+      }
+      await openPanel(page, 'map');
       await page.fill('#map-x-from', '9');
       await page.locator('#map-x-from').blur();
-      assert.deepEqual(await violations(page), [], 'with all that loads later, and an error there');
+      assert.deepEqual(await violations(page), [], 'with an error in the map');
+      if (width === 320) {
+        await page.click('#tools-open');
+        assert.deepEqual(await violations(page), [], 'with the menu');
+      }
       await page.click('#keys-open');
       assert.deepEqual(await violations(page), [], 'with the dialog');
       await page.keyboard.press('Escape');
       for (const id of ['plane-velocity', 'map']) {
+        if (id === 'map') await openPanel(page, id);
         await page.click(`#${id} .enlarge`);
         await page.locator('dialog.large').waitFor();
         assert.deepEqual(await violations(page), [], `with ${id} at its largest`);
@@ -59,6 +83,10 @@ for (const colorScheme of ['light', 'dark']) {
         );
         await page.keyboard.press('Escape');
       }
+      await page.keyboard.press('p');
+      await page.locator('html.presenting').waitFor();
+      assert.deepEqual(await violations(page), [], 'before a room');
+      await page.keyboard.press('p');
       await stage.stopServer();
       await page.locator('.notice', { hasText: 'Connection lost' }).waitFor();
       assert.deepEqual(await violations(page), [], 'with the connection lost');
@@ -78,8 +106,11 @@ test('nothing is wider than 320 px', async () => {
   await reachImpact(page, 3);
   await unfold(page);
   assert.equal(await excess(), 0);
-  await loadAll(page);
-  assert.equal(await excess(), 0);
+  for (const id of ['settings', 'verdict-card']) {
+    await openSheet(page, id);
+    assert.equal(await page.locator(`#${id}`).evaluate((sheet) => sheet.scrollWidth - sheet.clientWidth), 0, id);
+  }
+  await loadAll(page, async (panel) => assert.equal(await excess(), 0, panel));
   clean();
 });
 
@@ -95,15 +126,23 @@ test('a whole session needs no pointer', async () => {
     'gain',
     'speed',
     'field-table-tilt_gain',
-    'map-box',
-    'map-compute',
     'field-release-theta',
+    'units',
+    'present',
+    'tab-run',
   ]);
-  for (let k = 0; k < 1000 && missing.size > 0; k += 1) {
-    await page.keyboard.press('Tab');
-    missing.delete(await page.evaluate(() => document.activeElement?.id ?? ''));
-  }
-  assert.deepEqual([...missing], [], 'Tab reaches all');
+  const tabThrough = async () => {
+    for (let k = 0; k < 1000 && missing.size > 0; k += 1) {
+      await page.keyboard.press('Tab');
+      missing.delete(await page.evaluate(() => document.activeElement?.id ?? ''));
+    }
+    assert.deepEqual([...missing], [], 'Tab reaches all');
+  };
+  await tabThrough();
+  await page.locator('#tab-run').focus();
+  await page.keyboard.press('ArrowRight');
+  for (const id of ['map-box', 'map-compute']) missing.add(id);
+  await tabThrough();
   await page.locator('#case').focus();
   await page.keyboard.press('ArrowDown');
   await page.waitForFunction(() => document.querySelector('#case').selectedIndex === 2);
@@ -134,6 +173,8 @@ test('a whole session needs no pointer', async () => {
   await page.locator('#map-box').focus();
   await page.keyboard.press('ArrowRight');
   await page.waitForFunction(() => /survived/.test(document.querySelector('#map-readout').textContent));
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => /Enter releases it/.test(document.querySelector('#map').textContent));
   await page.keyboard.press('Enter');
   await page.waitForFunction(() => /Released with/.test(document.querySelector('#map-body').textContent));
   // The shown map can be saved.

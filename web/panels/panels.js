@@ -63,6 +63,7 @@ export class Panels {
 
   /** Opens the tab with this panel. @param {string} id */
   show(id) {
+    document.dispatchEvent(new CustomEvent('show-part', { detail: 'studies' }));
     this.#tabs.choose(PANELS.find((entry) => entry.id === id)?.tab ?? id, true);
   }
 

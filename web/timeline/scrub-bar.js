@@ -18,7 +18,14 @@ const SEEN = 0.5;
 const LEAP = 10;
 
 export class ScrubBar {
-  element = h('div', { id: 'scrub', class: 'scrub', role: 'slider', tabindex: 0, 'aria-label': 'Time of the run' });
+  element = h('div', {
+    id: 'scrub',
+    class: 'scrub',
+    role: 'slider',
+    tabindex: 0,
+    'aria-label': 'Time of the run',
+    'aria-valuenow': 0,
+  });
   /** @type {Mark[]} */
   marks = [];
   /** The time at which another run parts from this one. @type {number | null} */

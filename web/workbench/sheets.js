@@ -26,14 +26,21 @@ export function sheets(bar) {
     );
     part.prepend(shut);
     button.disabled = false;
-    button.addEventListener('click', () => {
-      const other = open !== part;
+    const show = () => {
       close(false);
-      if (!other) return;
       open = part;
       part.classList.add('open');
       button.setAttribute('aria-expanded', 'true');
+    };
+    button.addEventListener('click', () => {
+      if (open === part) return close(false);
+      show();
       shut.focus({ preventScroll: true });
+    });
+    // Something in the part is to be seen, such as a tab that a key has opened.
+    document.addEventListener('show-part', (event) => {
+      const id = /** @type {CustomEvent<string>} */ (event).detail;
+      if (id === part.id && open !== part && button.offsetParent !== null) show();
     });
     part.addEventListener('keydown', (event) => {
       if (event.key !== 'Escape' || event.defaultPrevented || open !== part) return;

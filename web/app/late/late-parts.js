@@ -65,7 +65,10 @@ export async function bringLateParts(page) {
       scene: () => page.typed ?? {},
       chosen: () => page.chosen,
       played: () => playedQuery(page),
-      play: (scene) => play(page, scene),
+      play: (scene) => {
+        document.dispatchEvent(new Event('show-scene'));
+        play(page, scene);
+      },
     },
     (id, dropped) => {
       if (dropped.length > 0) brokenLinkNotice(`link-${id}`, dropped);
