@@ -20,7 +20,7 @@ export function recordedRun(answer, interventions) {
   const { outcome } = answer;
   const impacts = /** @type {Record<string, (number | null)[]>} */ (/** @type {unknown} */ (answer.impacts));
   const { release } = answer.scene;
-  run.released = { ...answer.scene, derived: /** @type {any} */ (answer).derived };
+  run.released = { ...answer.scene, derived: answer.derived };
   run.interventions = interventions;
   run.outcome = outcome;
   run.phase = 'ended';
