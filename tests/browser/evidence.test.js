@@ -120,6 +120,9 @@ test('the basin is measured when somebody asks, and belongs to its scene', async
 test('a basin that cannot be asked for can be asked for again', async () => {
   const { page } = await stage.page('?preset=case-1');
   await verdict(page);
+  // All of the page is there before the server goes.
+  await page.locator('#keys-list dt').first().waitFor({ state: 'attached' });
+  await page.waitForLoadState('networkidle');
   await stage.stopServer();
   await disclose(page);
   await page.click('#basin');
