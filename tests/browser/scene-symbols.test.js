@@ -1,10 +1,13 @@
 // What the scene shows beside the rod: the symbols of Fig. 1, the first flights of a scene that is not released, and a body for any typed length.
 
+import { createRequire } from 'node:module';
+import { readFileSync } from 'node:fs';
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Stage, ink, reachImpact, reachPhase, verdict } from './stage.js';
 
 const stage = await Stage.open();
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const wake = (page) => page.locator('#grab').waitFor();
 
 /** Pixels of the scene that are not its ground. */
@@ -107,4 +110,62 @@ test('with a length of 0 the scene still draws a body', async () => {
   await page.waitForTimeout(300);
   assert.ok((await ink(page, '#scene-frame', '--ink')) > before / 2);
   assert.ok((await drawn(page)) > 0);
+});
+
+for (const colorScheme of ['light', 'dark']) {
+  test(`axe finds nothing with the rod in hand and the symbols drawn, ${colorScheme}`, async () => {
+    const { page } = await stage.page('?preset=case-1', { colorScheme, viewport: { width: 320, height: 800 } });
+    await verdict(page);
+    await wake(page);
+    await page.click('#symbols');
+    await page.locator('#about-picture').evaluate((details) => {
+      details.open = true;
+    });
+    await page.focus('#grab');
+    await page.keyboard.press('ArrowUp');
+    await page.locator('#scene-readout', { hasText: 'Held' }).waitFor();
+    await page.evaluate(axe);
+    const found = await page.evaluate(async () => (await globalThis.axe.run(document)).violations);
+    assert.deepEqual(
+      found.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target).join(', ')}`),
+      [],
+    );
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= 320));
+  });
+}
+
+test('the numbers of a strike stand at one place', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&speed=0.1');
+  await page.click('#run');
+  await reachPhase(page, 'running');
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  for (const n of [1, 2, 3]) {
+    await page.click('#step');
+    await reachImpact(page, n);
+    await page.waitForFunction(
+      (wanted) =>
+        document.querySelector('#scene-readout').textContent.replace(/\s/g, ' ').includes(`impact ${wanted} `),
+      n,
+    );
+    // The right end below the level of the table, which has the right colour only there: the rod is in the middle.
+    const inked = await page.locator('#scene-frame canvas').evaluate((canvas) => {
+      const { width, height } = canvas;
+      const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+      copy.drawImage(canvas, 0, 0);
+      const probe = new OffscreenCanvas(1, 1).getContext('2d');
+      probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--strike').trim();
+      probe.fillRect(0, 0, 1, 1);
+      const [r, g, b] = probe.getImageData(0, 0, 1, 1).data;
+      const { data } = copy.getImageData(width - 190, height - 100, 190, 100);
+      let count = 0;
+      for (let at = 0; at < data.length; at += 4) {
+        const off = Math.abs(data[at] - r) + Math.abs(data[at + 1] - g) + Math.abs(data[at + 2] - b);
+        if (data[at + 3] > 150 && off < 60) count += 1;
+      }
+      return count;
+    });
+    assert.ok(inked > 30, `${n}: ${inked}`);
+  }
+  clean();
 });

@@ -14,7 +14,7 @@ import { drawStrike, tellStrike } from './strike-marks.js';
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('../charts/surface.js').Surface} Surface */
 /** @typedef {(surface: Surface, scale: import('./camera.js').Scale, scene: Scene) => void} Under draws marks on the floor */
-/** @typedef {{run: import('../run/run.js').Run, box: HTMLElement, readout: HTMLElement, surface: Surface, camera: import('./camera.js').Camera, under: () => Under | null, others: () => import('./other-rods.js').OtherRod[], drew: (drawn: Pick<import('./bodies.js').Drawn, 'scene' | 'pose' | 'table' | 'struck'>) => void}} Parts */
+/** @typedef {{run: import('../run/run.js').Run, readout: HTMLElement, surface: Surface, camera: import('./camera.js').Camera, under: () => Under | null, others: () => import('./other-rods.js').OtherRod[], drew: (drawn: Pick<import('./bodies.js').Drawn, 'scene' | 'pose' | 'table' | 'struck'>) => void}} Parts */
 /** @typedef {import('../run/impacts.js').Impact} Impact */
 /** @typedef {import('../physics/flight.js').Arc} Arc */
 /** @typedef {import('../physics/table.js').Strike} Strike */
@@ -105,7 +105,7 @@ export class RunDrawing {
    * @param {Impact | null} impact
    */
   #say(now_ms, t, pose, impact) {
-    const { run, readout, box } = this.#parts;
+    const { run, readout, surface } = this.#parts;
     const running = run.pace > 0;
     if (running && now_ms - this.#read_ms < 100) return;
     // More digits are legible while the picture stands still.
@@ -116,7 +116,7 @@ export class RunDrawing {
     );
     if (!running || now_ms - this.#read_ms > 2000 || this.#read_ms === -Infinity) {
       const contact = contactWords(impact, 3).replace(/ {3}/g, ', ');
-      box.setAttribute(
+      surface.canvas.setAttribute(
         'aria-label',
         `The rod and the table after impact ${n}: tilted by ${fixedQuantity(pose.theta, 'rad', 2)} at x = ${fixed(pose.x, 2)} m${contact}`,
       );

@@ -49,13 +49,13 @@ export class SceneView {
    * @param {Run} run
    */
   constructor(box, readout, run) {
-    box.setAttribute('role', 'img');
-    box.setAttribute('aria-label', 'The scene');
     this.layers = surfaces(box, 1, () => this.redraw());
     const [surface] = this.layers;
+    // Not the box, in which there may be controls.
+    surface.canvas.setAttribute('role', 'img');
+    surface.canvas.setAttribute('aria-label', 'The scene');
     this.#parts = {
       run,
-      box,
       readout,
       surface,
       camera: new Camera(surface),
@@ -182,7 +182,7 @@ export class SceneView {
 
   /** @param {Scene} scene @param {{pose: import('../physics/flight.js').Pose, words: string} | null} held */
   #drawRelease(scene, held = null) {
-    const { box, readout, surface, camera } = this.#parts;
+    const { readout, surface, camera } = this.#parts;
     const { height = 0, theta: released = 0, x: place = 0 } = scene.release ?? {};
     const l = contactDistance(scene);
     const { x, y, theta } = held?.pose ?? { x: place, y: Math.max(height, l * Math.cos(released)), theta: released };
@@ -205,7 +205,7 @@ export class SceneView {
       return;
     }
     readout.textContent = `Released at ${fixed(height, 3)} m, θ ${fixedQuantity(theta, 'rad', 3)}`;
-    box.setAttribute(
+    surface.canvas.setAttribute(
       'aria-label',
       `The scene before release: the centre of gravity ${number(height)} m high, tilted by ${quantity(theta, 'rad')}`,
     );
