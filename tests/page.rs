@@ -65,7 +65,7 @@ async fn the_page_tells_what_its_address_shows() {
     let target = image.strip_prefix("http://localhost").unwrap();
     let picture = server.get(target).await.expect(200);
     let reader = png::Decoder::new(std::io::Cursor::new(&picture.raw)).read_info().unwrap();
-    let said = ["og:image:width", "og:image:height"].map(|name| tag(page.text(), name).unwrap().parse().unwrap());
+    let said: [u32; 2] = ["og:image:width", "og:image:height"].map(|name| tag(page.text(), name).unwrap().parse().unwrap());
     assert_eq!([reader.info().width, reader.info().height], said);
     let json = server.get(&target.replace("format=png", "format=json")).await.expect(200).json();
     assert_eq!(json["title"], title);
