@@ -285,10 +285,8 @@ pub const PRECISION_REPEATS: usize = 301;
 /// Price of a preview besides its run, in bounces: the picture, about 6 ms.
 pub const PREVIEW_ANSWER_PRICE: u64 = 80_000;
 
-/// Most contacts of a preview, and their number by default. More dots do not show in a small picture.
+/// Most contacts of a preview. More dots do not show in a small picture.
 pub const PREVIEW_IMPACTS: u64 = 10_000;
-/// See [`PREVIEW_IMPACTS`].
-pub const DEFAULT_PREVIEW_IMPACTS: u64 = 1000;
 
 /// Pixels of one picture. The largest drawing has 0.9 million; a pixel takes four bytes, three times over.
 pub const PICTURE_PIXELS: u64 = 4_000_000;

@@ -65,7 +65,8 @@ async fn the_page_tells_what_its_address_shows() {
     let target = image.strip_prefix("http://localhost").unwrap();
     let picture = server.get(target).await.expect(200);
     let reader = png::Decoder::new(std::io::Cursor::new(&picture.raw)).read_info().unwrap();
-    let said: [u32; 2] = ["og:image:width", "og:image:height"].map(|name| tag(page.text(), name).unwrap().parse().unwrap());
+    let said: [u32; 2] =
+        ["og:image:width", "og:image:height"].map(|name| tag(page.text(), name).unwrap().parse().unwrap());
     assert_eq!([reader.info().width, reader.info().height], said);
     let json = server.get(&target.replace("format=png", "format=json")).await.expect(200).json();
     assert_eq!(json["title"], title);
@@ -89,7 +90,7 @@ async fn hostile_addresses_get_a_page_with_the_default_tags() {
     let server = Server::start();
     let default = server.get("/").await.expect(200);
     let long = format!("preset=case-1&scene.table.tilt_gain=1.{}", "1".repeat(8000));
-    let many: String = (0..3000).map(|n| format!("a{n}=&")).collect();
+    let many: String = (0..1100).map(|n| format!("a{n}=&")).collect();
     for query in [
         "preset=%22%3E%3Cscript%3Ealert(1)%3C/script%3E",
         "preset=case-1&scene.%22%3E%3Cb%3E=1",
@@ -150,7 +151,7 @@ async fn a_preview_costs_what_it_says_and_is_cached_like_all_answers() {
         "critical-hard",
         "case-1&scene.release.height=100&scene.release.x_dot=100",
         "case-1&scene.release.y_dot=100&scene.release.theta_dot=200",
-        "case-1&scene.body.contact_distance=0&scene.release.x=-1000",
+        "case-1&scene.body.contact_distance=0.001&scene.release.x=-1000",
         "case-1&scene.body.contact_distance=0.001&scene.body.radius_of_gyration=10&scene.release.height=0.001",
         "case-1&impacts=1",
     ] {

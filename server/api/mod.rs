@@ -19,6 +19,7 @@ pub mod previews;
 pub mod regions;
 pub mod resource;
 pub mod scene;
+pub mod scenes;
 pub mod shared;
 pub mod stability;
 pub mod trajectories;
@@ -53,7 +54,7 @@ pub fn all(web: Option<&Path>) -> Router<App> {
         .merge(ops::scrape::routes())
         .merge(failures::routes())
         .merge(paper::routes())
-        .merge(scene::routes())
+        .merge(scenes::routes())
         .merge(live::routes())
         .merge(batches::routes(&COMPUTED));
     COMPUTED.into_iter().map(Endpoint::routes).fold(others, Router::merge)

@@ -18,7 +18,8 @@ use serde::Serialize;
 
 use crate::api::app::App;
 use crate::api::paper::item::{Item, ItemAnswer};
-use crate::api::scene::{fixed, presets};
+use crate::api::scene::presets;
+use crate::api::scenes::fixed;
 use crate::http::{ApiRequest, Problem};
 
 /// Price of the checks, without the presets' values, in bounces.

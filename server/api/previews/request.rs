@@ -25,7 +25,7 @@ pub struct PreviewRequest {
 impl ResourceRequest for PreviewRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let run = read_run(reader);
-        let impacts = reader.integer("impacts", 1..=limits::PREVIEW_IMPACTS).unwrap_or(limits::DEFAULT_PREVIEW_IMPACTS);
+        let impacts = reader.integer("impacts", 1..=limits::PREVIEW_IMPACTS).unwrap_or(1000);
         Some(Self { run: run?, impacts })
     }
 

@@ -1,4 +1,4 @@
-//! `scenes` and `fields`: presets, the table of scene fields, and scenes read from requests and written to answers.
+//! Presets, the table of scene fields, and scenes read from requests and written to answers.
 
 pub mod derived;
 pub mod fields;
@@ -7,7 +7,6 @@ pub mod presets;
 pub mod price;
 pub(crate) mod quantity;
 pub mod read;
-mod routes;
 pub mod write;
 
 pub use derived::{Derived, EnergyTarget};
@@ -15,6 +14,4 @@ pub use fields::{explain, field_text};
 pub use merge::{build_scene, read_value};
 pub use price::{bounce_price, has_angle};
 pub use read::{read_draft, read_frictionless_scene, read_scene, read_scene_within};
-pub(crate) use routes::fixed;
-pub use routes::routes;
 pub use write::{Resolved, scene_to_json, scene_to_query, value_to_json};
