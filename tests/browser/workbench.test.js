@@ -239,11 +239,16 @@ test('on a phone one chart fills the width, and one swipes or taps to the next',
   await ready(page);
   const { width } = await inSight(page, '#plane-angle');
   assert.ok(width > 370);
+  /** The chart has come to rest in the middle of the page. */
+  const still = (id) =>
+    page.waitForFunction((name) => Math.abs(document.getElementById(name).getBoundingClientRect().left - 7.5) < 2, id);
   await page.locator('#chart-tabs button').nth(1).tap();
   await page.locator('#chart-tabs button:nth-child(2)[aria-current=true]').waitFor();
+  await still('plane-velocity');
   await inSight(page, '#plane-velocity');
   await page.locator('#charts').evaluate((charts) => charts.scrollBy({ left: charts.clientWidth }));
   await page.locator('#chart-tabs button:nth-child(3)[aria-current=true]').waitFor();
+  await still('circle');
   await inSight(page, '#circle');
   clean();
 });
