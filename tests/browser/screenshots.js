@@ -1,55 +1,91 @@
-// Pictures of the page in five states and both colour schemes, for docs/: `node tests/browser/screenshots.js`.
+// Pictures of the workbench for docs/: `node tests/browser/screenshots.js`.
 
-import { Stage, loadAll, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+import { Stage, openPanel, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
 
 const stage = await Stage.open(null);
 const docs = new URL('../../docs/', import.meta.url);
-const viewport = { width: 1200, height: 900 };
+const DESK = { width: 1280, height: 800 };
+const PHONE = { width: 390, height: 844 };
 
-/** What the page is brought to, and where it is looked at. @type {Record<string, (page: import('playwright-core').Page) => Promise<void>>} */
-const STATES = {
-  idle: async (page) => {
-    await verdict(page);
+/** A run of 140 impacts with a change in it, held. @param {import('playwright-core').Page} page */
+async function held(page) {
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, 60);
+  await slide(page, '#gain', 1.15);
+  await reachImpact(page, 140);
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+}
+
+/**
+ * Each picture: its colour schemes, the page it begins with, and what the page is brought to.
+ * @type {Record<string, {schemes: ('light' | 'dark')[], query?: string, size?: {width: number, height: number}, bring: (page: import('playwright-core').Page) => Promise<void>}>}
+ */
+const PICTURES = {
+  run: { schemes: ['light', 'dark'], bring: held },
+  time: {
+    schemes: ['light'],
+    query: '?preset=case-1',
+    bring: async (page) => {
+      await held(page);
+      await page.click('#pin');
+      await slide(page, '#gain', 1.3);
+      await page.click('#restart');
+      await reachPhase(page, 'running');
+      await reachImpact(page, 60);
+      await page.click('#run');
+      await reachPhase(page, 'paused');
+      await page.click('#pin');
+      for (let k = 0; k < 20; k += 1) await page.click('#step-back');
+      await page.click('#fork');
+      await page.locator('#fork-told', { hasText: /\w/ }).waitFor();
+      await page.waitForTimeout(1500);
+    },
   },
-  running: async (page) => {
-    await speedUp(page);
-    await page.click('#run');
-    await reachImpact(page, 60);
-    await slide(page, '#gain', 1.15);
-    await reachImpact(page, 140);
-    await page.click('#run');
-    await reachPhase(page, 'paused');
-    await page.click('#step');
-    await page.waitForTimeout(300);
+  map: {
+    schemes: ['light', 'dark'],
+    bring: async (page) => {
+      await openPanel(page, 'map');
+      await page.locator('.map-told', { hasText: 'cells:' }).waitFor();
+      await page.waitForTimeout(8000);
+      await page.locator('#map').scrollIntoViewIfNeeded();
+    },
   },
-  error: async (page) => {
-    await page.fill('#field-table-tilt_gain', '200');
-    await page.locator('#field-table-tilt_gain-error:not(:empty)').waitFor();
-    await page.fill('#field-release-theta', 'steep');
-    await page.locator('#field-release-theta').blur();
-    await page.locator('#field-release-theta-error:not(:empty)').waitFor();
-    await page.evaluate(() => document.querySelector('.parameters').scrollIntoView());
+  paper: {
+    schemes: ['dark'],
+    query: '?preset=case-1&tab=paper&reading.item=figure-5',
+    bring: async (page) => {
+      await page.locator('#reading-figure-5 svg.figure').waitFor();
+      await page.locator('#reading-speed > summary').click();
+      await page.locator('#reading').evaluate((panel) => panel.scrollIntoView());
+    },
   },
-  disconnected: async (page) => {
-    await page.click('#run');
-    await reachImpact(page, 4);
-    await stage.stopServer();
-    await page.locator('.countdown', { hasText: /\d s/ }).waitFor();
+  present: {
+    schemes: ['dark'],
+    bring: async (page) => {
+      await held(page);
+      await page.click('#present');
+      await page.waitForTimeout(800);
+    },
   },
-  map: async (page) => {
-    await loadAll(page);
-    await page.locator('.map-told', { hasText: 'cells:' }).waitFor();
-    await page.evaluate(() => document.querySelector('#map').scrollIntoView());
+  phone: {
+    schemes: ['light'],
+    size: PHONE,
+    bring: async (page) => {
+      await page.click('#run');
+      await reachImpact(page, 12);
+    },
   },
 };
 
-for (const colorScheme of ['light', 'dark']) {
-  for (const [state, bring] of Object.entries(STATES)) {
-    const { page } = await stage.page('?preset=case-1', { colorScheme, viewport });
+for (const [name, { schemes, query = '?preset=case-1', size = DESK, bring }] of Object.entries(PICTURES)) {
+  for (const colorScheme of schemes) {
+    const { page } = await stage.page(query, { colorScheme, viewport: size });
+    await verdict(page);
     await bring(page);
-    await page.screenshot({ path: new URL(`page-${state}-${colorScheme}.png`, docs).pathname });
+    await page.screenshot({ path: new URL(`page-${name}-${colorScheme}.png`, docs).pathname });
     await page.close();
-    if (state === 'disconnected') await stage.startServer();
   }
 }
 await stage.close();
