@@ -150,5 +150,6 @@ impl Item {
 fn agrees_in_print(printed: f64, computed: f64) -> bool {
     let text = printed.to_string();
     let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-    (printed - computed).abs() <= 0.500_000_1 * 10_f64.powi(-i32::try_from(decimals).unwrap_or(0))
+    let unit = (0..decimals).fold(1.0, |unit, _| unit / 10.0);
+    (printed - computed).abs() <= 0.500_000_1 * unit
 }

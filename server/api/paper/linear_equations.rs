@@ -5,7 +5,7 @@ use equipoise_physics::scene::Name;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::Value::Number;
 use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
-use equipoise_physics::stability::jacobian::jacobian;
+use equipoise_physics::stability::jacobian::{jacobian, modulus};
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::{DMatrix, DVector};
 
@@ -53,7 +53,8 @@ pub(super) const ITEMS: [Item; 6] = [
             let rod = scene.parameters::<f64>();
             let start = scene.start();
             let height = scene.number(Name::Height)?;
-            let speeds = start.x_dot.powi(2) + start.y_dot.powi(2) + (rod.radius_of_gyration * start.theta_dot).powi(2);
+            let spin = rod.radius_of_gyration * start.theta_dot;
+            let speeds = start.x_dot * start.x_dot + start.y_dot * start.y_dot + spin * spin;
             let (_, cosine) = equipoise_physics::numbers::trig::sin_cos(start.theta);
             let printed = -(2.0 * rod.gravity * (height - rod.contact_distance * cosine) + speeds).sqrt();
             Some(vec![Check::formula(["speed at the fixed point", "ẏ*", "m/s"], printed, -upright.speed)])
@@ -216,7 +217,7 @@ pub(super) const APPENDICES: [Item; 2] = [
         ask: ("jacobians", "at.impact=1"),
         checks: |scene| {
             let linear = linear_verdict(scene, &find_fixed_point(scene).ok()?);
-            let product: f64 = linear.eigenvalues.iter().map(|value| value.norm()).product();
+            let product: f64 = linear.eigenvalues.iter().copied().map(modulus).product();
             Some(vec![Check::formula(["product of the eigenvalues at the fixed point", "λ₃λ₄", "1"], 1.0, product)])
         },
         quoted: &[("case-1", Quantity::Determinant)],

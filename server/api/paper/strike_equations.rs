@@ -43,7 +43,8 @@ impl FirstContact {
     /// The unit vector of eq. (2).
     fn normal(&self) -> [f64; 3] {
         let (l, rho) = (self.rod.contact_distance, self.rod.radius_of_gyration);
-        let factor = rho / (rho * rho + (l * self.beta.0).powi(2)).sqrt();
+        let arm = l * self.beta.0;
+        let factor = rho / (rho * rho + arm * arm).sqrt();
         [-self.alpha.0, self.alpha.1, l / rho * self.beta.0].map(|part| factor * part)
     }
 
@@ -84,15 +85,20 @@ impl FirstContact {
         (l * self.beta.0, l * self.beta.1)
     }
 
+    /// ρ².
+    fn rho_squared(&self) -> f64 {
+        self.rod.radius_of_gyration * self.rod.radius_of_gyration
+    }
+
     /// ρ²(θ̇⁺ − θ̇⁻), the moment of the impulse.
     fn moment(&self) -> f64 {
-        self.rod.radius_of_gyration.powi(2) * (self.strike.after.theta_dot - self.before.theta_dot)
+        self.rho_squared() * (self.strike.after.theta_dot - self.before.theta_dot)
     }
 
     /// ρ²/(ρ² + l² sin²β).
     fn share(&self) -> f64 {
-        let rho2 = self.rod.radius_of_gyration.powi(2);
-        rho2 / (rho2 + self.arms().0.powi(2))
+        let (rho2, (arm, _)) = (self.rho_squared(), self.arms());
+        rho2 / (rho2 + arm * arm)
     }
 }
 
@@ -152,7 +158,7 @@ pub(super) const LOSSLESS: [Item; 4] = [
             (0..4).for_each(|_| {
                 orbit.advance();
             });
-            let printed = (1.0 - 2.0 * gain).powi(5) * start;
+            let printed = (0..5).fold(start, |angle, _| angle * (1.0 - 2.0 * gain));
             checks.push(Check::formula(["angle at contact 6", "θ₅", "rad"], printed, angle(orbit.state())));
             Some(checks)
         },
@@ -262,7 +268,7 @@ pub(super) const EXTENSIONS: [Item; 4] = [
             let first = FirstContact::of(scene)?;
             let Rod { gravity, contact_distance, restitution: e, .. } = first.rod;
             let target = gravity * scene.number(Name::TargetHeight)?;
-            let eta = gravity * contact_distance * first.theta.1 + 0.5 * first.before.y_dot.powi(2);
+            let eta = gravity * contact_distance * first.theta.1 + 0.5 * first.before.y_dot * first.before.y_dot;
             let factor = (1.0 - e) / (1.0 + e) + scene.number(Name::EnergyGain)? * (target - eta);
             let speed = -factor * first.in_table_frame(first.contact_velocity()).1;
             Some(vec![Check::formula(
@@ -314,7 +320,7 @@ pub(super) const IMPACT: [Item; 3] = [
             let before = first.in_table_frame((first.before.x_dot, first.before.y_dot));
             let then = first.in_table_frame((after.x_dot, after.y_dot));
             let (sine, cosine) = first.arms();
-            let rho2 = first.rod.radius_of_gyration.powi(2);
+            let rho2 = first.rho_squared();
             // Eq. (33) along the normal, beside (32) after the strike.
             let start = before.1 + first.before.theta_dot * sine;
             let printed =
