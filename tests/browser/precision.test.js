@@ -42,6 +42,7 @@ test('it is measured when somebody asks, and shows every point that has an error
   assert.equal(timed[right].error, Math.max(...timed.map(({ error }) => error)));
   assert.ok(timed[left].cost_ns_per_impact <= 1.2 * Math.min(...timed.map((point) => point.cost_ns_per_impact)));
   assert.equal(await page.locator('#precision-box [data-curve=front]').count(), 1);
+  await page.locator('.precision-sheet summary', { hasText: 'Methods' }).click();
   const listed = await page.locator('.methods li').allInnerTexts();
   assert.equal(listed.length, methods.length);
   for (const [index, { title }] of methods.entries()) assert.ok(listed[index].startsWith(title), listed[index]);
