@@ -47,6 +47,7 @@ fn checked(map: &HeatMap<'_>) -> String {
         "stroke-linejoin",
         "transform",
         "shape-rendering",
+        "data-charts",
     ];
     let picture = heat_map(map);
     let document = roxmltree::Document::parse(&picture).expect("XML");

@@ -26,6 +26,12 @@ pub(crate) fn sound(picture: &str) -> String {
             assert!(!attribute.value().contains("NaN") && !attribute.value().contains("inf"), "{attribute:?}");
         }
     }
+    // The part with the charts is inside of the sheet.
+    let numbers = |name: &str| -> Vec<f64> {
+        root.attribute(name).unwrap().split(' ').map(|number| number.parse().unwrap()).collect()
+    };
+    let (sheet, charts) = (numbers("viewBox"), numbers("data-charts"));
+    assert!(charts[0] == 0.0 && charts[2] == sheet[2] && charts[1] >= 0.0 && charts[1] + charts[3] <= sheet[3]);
     root.descendants().filter(roxmltree::Node::is_text).filter_map(|node| node.text()).collect::<Vec<_>>().join("|")
 }
 
@@ -96,6 +102,26 @@ fn eigenvalues_say_the_verdict_with_its_numbers() {
 }
 
 #[test]
+fn the_dial_has_the_circle_alone_with_a_scale_of_the_gain() {
+    let text = sound(&eigenvalue_dial(spectrum(&[(0.6, 0.8), (0.6, -0.8), (1.0, 0.0), (1.0, 0.0)])));
+    for wanted in ["Re ", "Im ", " = 1.5", "1.1", "1.2", "1.3", "1.4", "σ"] {
+        assert!(text.contains(wanted), "{wanted} is not in {text}");
+    }
+    assert!(!text.contains("|λ| = 1|") && !text.contains("modulus"), "{text}");
+    // With a feedback of the state no tilt gain balances: the eigenvalues stand alone.
+    let none = Spectrum {
+        tilt_gain: f64::NAN,
+        lower: f64::NAN,
+        critical: f64::NAN,
+        residue: None,
+        rotation: None,
+        ..spectrum(&[(0.3, 0.4)])
+    };
+    let text = sound(&eigenvalue_dial(none));
+    assert!(text.contains("No tilt gain balances.") && !text.contains("NaN"), "{text}");
+}
+
+#[test]
 fn without_a_fixed_point_the_picture_gives_the_reason() {
     let text = sound(&verdict(None));
     assert!(text.contains("it falls") && text.contains("no fixed point"), "{text}");
@@ -114,6 +140,7 @@ fn no_numbers_break_eigenvalues() {
                 Spectrum { eigenvalues: &[], residue: Some(a), ..spectrum(&[]) },
             ] {
                 sound(&verdict(Some(linear)));
+                sound(&eigenvalue_dial(linear));
             }
         }
     }

@@ -97,6 +97,8 @@ export interface components {
         "stability.impacts": number;
         /** @default false */
         "stability.basin": boolean;
+        /** @default false */
+        "stability.dial": boolean;
         "stability.tolerances.contact_distance": number;
         "stability.tolerances.radius_of_gyration": number;
         "stability.tolerances.restitution": number;
@@ -618,6 +620,7 @@ export interface components {
             scene?: components["schemas"]["ScenePatch"] | null;
             impacts?: components["schemas"]["stability.impacts"] | null;
             basin?: components["schemas"]["stability.basin"] | null;
+            dial?: components["schemas"]["stability.dial"] | null;
             tolerances?: components["schemas"]["Tolerances"] | null;
         };
         Tolerances: {
@@ -1242,6 +1245,7 @@ export interface components {
             scene: components["schemas"]["Scene"];
             derived: components["schemas"]["Derived"];
             margins?: components["schemas"]["Margins"];
+            dial?: string;
             model: components["schemas"]["Model"];
             verdict: null | ("stable in place" | "unstable") | string;
             /** @enum {unknown} */
@@ -1634,6 +1638,7 @@ export type PrecisionImpacts = components['schemas']['precision.impacts'];
 export type PrecisionAxis = components['schemas']['precision.axis'];
 export type StabilityImpacts = components['schemas']['stability.impacts'];
 export type StabilityBasin = components['schemas']['stability.basin'];
+export type StabilityDial = components['schemas']['stability.dial'];
 export type StabilityTolerancesContactDistance = components['schemas']['stability.tolerances.contact_distance'];
 export type StabilityTolerancesRadiusOfGyration = components['schemas']['stability.tolerances.radius_of_gyration'];
 export type StabilityTolerancesRestitution = components['schemas']['stability.tolerances.restitution'];

@@ -74,7 +74,7 @@ test('at 1280 × 860 scene, verdict, planes and eigenvalues are seen at once', a
     '#verdict',
     '#plane-angle canvas',
     '#plane-velocity canvas',
-    '#circle canvas',
+    '#circle svg.figure',
   ]) {
     const box = await page.locator(selector).first().boundingBox();
     assert.ok(box.y >= 0 && box.y + box.height <= 860, `${selector} ends at ${box.y + box.height} px`);

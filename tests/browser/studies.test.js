@@ -63,6 +63,12 @@ test('orbits begin with a sentence', async () => {
   assert.match(plain(await answer.innerText()), /^Just beyond its largest tilt gain .* κc = 1\.5 /);
   assert.ok((await answer.boundingBox()).y < (await figure.boundingBox()).y);
   assert.ok(await page.locator('.changes').isHidden(), 'the table is folded');
+  // The title of the server's sheet is outside of what the page shows of it.
+  const [top, title] = await figure.evaluate((svg) => [
+    svg.getBoundingClientRect().top,
+    svg.querySelector('text').getBoundingClientRect().bottom,
+  ]);
+  assert.ok(title <= top, `the title ends at ${title}, the picture begins at ${top}`);
   clean();
 });
 

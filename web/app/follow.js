@@ -1,11 +1,10 @@
 // Asks for the verdict and for a preview of the typed scene while it changes: one request of each kind at a time, always for the newest.
 
 import { Problem, get, server } from '../api/client.js';
-import { pathOf, valueAt } from '../api/scene-fields.js';
+import { pathOf } from '../api/scene-fields.js';
 import { byId } from '../dom/elements.js';
 import { debounce } from '../dom/debounce.js';
 import { Verdict } from '../panels/verdict/verdict.js';
-import { GAIN } from './page.js';
 import { typedQuery } from './queries.js';
 
 /** @typedef {import('./page.js').Page} Page */
@@ -69,7 +68,7 @@ const verdicts = new Follower(async (page, signal, newest) => {
     });
   }
   try {
-    const answer = await get(`v1/stability?${scene}`, signal);
+    const answer = await get(`v1/stability?${scene}&dial=true`, signal);
     if (signal.aborted) return;
     page.unjudged = false;
     page.form?.blame([]);
@@ -77,9 +76,6 @@ const verdicts = new Follower(async (page, signal, newest) => {
     page.view.learn(answer.derived);
     page.plots[2].redraw();
     circle.figure.element.classList.remove('stale');
-    // The slider may have gone on.
-    const gain = valueAt(page.typed ?? {}, GAIN);
-    if (typeof gain === 'number') circle.preview(gain);
     const judged = { answer, scene };
     page.judged = judged;
     await page.verdict?.show(answer, () => get(`v1/stability?${scene}&basin=true`), newest());

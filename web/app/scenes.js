@@ -54,9 +54,7 @@ export function launch(page, values) {
   history.pushState(null, '', location.href);
   for (const [path, value] of Object.entries(values)) page.put(path, value);
   page.run.reset();
-  const gain = valueAt(page.typed ?? {}, GAIN) ?? null;
-  page.controls.setGain(gain);
-  page.circle.preview(gain);
+  page.controls.setGain(valueAt(page.typed ?? {}, GAIN) ?? null);
   sceneChanged(page);
   start(page);
 }

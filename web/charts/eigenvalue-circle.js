@@ -1,21 +1,26 @@
-// The eigenvalues of one bounce on the unit circle, as a dial of the tilt gain.
+// The eigenvalues of one bounce on the unit circle, as a dial of the tilt gain: the server's picture with each answer.
 
 import { Figure } from './figure.js';
-import { onThemeChange } from './theme.js';
-import { fixed } from '../dom/numbers.js';
-import { invalidate, surfaces } from './surface.js';
+import { fixed, number } from '../dom/numbers.js';
 
 /** @typedef {import('contract').Stability} Stability */
 
+/** An answer in a line. @param {Stability | null} answer @param {(text: string) => string} inWords for sentences of the server */
+function wordsOf(answer, inWords) {
+  const { linear } = answer ?? {};
+  if (!linear) return inWords(answer?.notes[0] ?? '');
+  const { residue, rotation, spectral_radius: radius, tilt_gain: gain } = linear;
+  if (residue === null || gain === null) return `spectral radius ${number(radius)}`;
+  const turn = rotation === null ? `max |λ| ${fixed(radius, 3)}` : `σ ${fixed((rotation * 180) / Math.PI, 1)}°`;
+  return `κ ${fixed(gain.value, 3)}   R ${fixed(residue, 3)}   ${turn}`;
+}
+
 export class EigenvalueCircle {
   figure;
-  #surface;
   /** @type {Stability | null} */
   #answer = null;
-  /** The gain that is being set, before the server has answered for it. @type {number | null} */
-  #gain = null;
-  /** Comes with the first answer. @type {typeof import('./eigenvalue-drawing.js').drawEigenvalues | null} */
-  #drawing = null;
+  /** Come with the first answer. @type {{figureOf: typeof import('./readable/server-figure.js').figureOf, inWords: (text: string) => string} | null} */
+  #tools = null;
 
   constructor() {
     this.figure = new Figure(
@@ -33,44 +38,42 @@ export class EigenvalueCircle {
           ]),
       },
     );
-    this.layers = surfaces(this.figure.box, 1, () => this.redraw());
-    [this.#surface] = this.layers;
-    onThemeChange(() => this.redraw());
   }
 
-  redraw() {
-    invalidate(this);
-  }
-
-  /** @param {Stability | null} answer */
+  /** Shows an answer that has its dial. @param {Stability} answer */
   show(answer) {
     this.#answer = answer;
-    this.#gain = answer?.linear?.tilt_gain?.value ?? null;
-    invalidate(this);
+    if (this.#tools) this.#draw();
+    else void this.#load();
   }
 
-  /** @param {number} gain */
-  preview(gain) {
-    this.#gain = gain;
-    invalidate(this);
-  }
-
-  /** @param {number} now_ms */
-  draw(now_ms) {
-    if (!this.#drawing) {
-      if (this.#answer) void this.#load();
-      return false;
-    }
-    const words = this.#drawing(this.#surface, this.#answer, this.#gain);
+  #draw() {
+    if (!this.#tools) return;
+    const { figureOf, inWords } = this.#tools;
+    const words = wordsOf(this.#answer, inWords);
     this.figure.read(words);
-    this.figure.name(now_ms, () => `Eigenvalues of one bounce on the unit circle. ${words}`);
-    this.figure.list(now_ms);
-    return false;
+    this.figure.name(Infinity, () => `Eigenvalues of one bounce on the unit circle. ${words}`);
+    this.figure.list(Infinity);
+    const dial = this.#answer?.dial;
+    if (dial) this.figure.box.replaceChildren(figureOf(dial));
+    else this.figure.box.textContent = 'No linear map here';
   }
 
+  /** The code and the styles of the server's pictures, which nothing needs before the first plot. */
   async #load() {
-    const module = await import('./eigenvalue-drawing.js').catch(() => null);
-    if (module) this.#drawing = module.drawEigenvalues;
-    if (module) this.redraw();
+    const modules = await Promise.all([
+      import('./readable/server-figure.js'),
+      import('../dom/typeset.js'),
+      figureStyles(),
+    ]).catch(() => null);
+    if (!modules) return;
+    const [{ figureOf }, { inWords }] = modules;
+    this.#tools = { figureOf, inWords };
+    this.#draw();
   }
+}
+
+async function figureStyles() {
+  const { styles } = await import('../dom/styles.js');
+  await Promise.all(['charts/generated/figure-colours.css', 'charts/readable/server-figure.css'].map(styles));
 }

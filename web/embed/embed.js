@@ -101,7 +101,7 @@ function watch(name, query) {
 async function eigenvalues(query) {
   const circle = new EigenvalueCircle();
   main.append(circle.figure.element);
-  circle.show(await get(`v1/stability?${query}`));
+  circle.show(await get(`v1/stability?${query}&dial=true`));
 }
 
 async function begin() {

@@ -91,6 +91,8 @@ pub struct StabilityAnswer<'a> {
     basin: Option<Basin>,
     #[serde(skip_serializing_if = "Option::is_none")]
     margins: Option<MarginsAnswer>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dial: Option<String>,
     notes: Vec<String>,
     #[serde(skip)]
     bounces: u64,
@@ -142,7 +144,7 @@ impl LinearPart {
 impl<'a> StabilityAnswer<'a> {
     /// Judges a scene by its linear verdict and a run, and looks for its basin on request. None if `go_on` returned false.
     pub fn compute(request: &'a StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
-        let StabilityRequest { ref scene, impacts, basin, tolerances } = *request;
+        let StabilityRequest { ref scene, impacts, basin, dial, tolerances } = *request;
         let run = run_nonlinear(scene, impacts, &mut go_on)?;
         let mut notes = Vec::new();
         let mut answer = Self {
@@ -174,6 +176,7 @@ impl<'a> StabilityAnswer<'a> {
             margins: tolerances.map(|tolerances| {
                 MarginsAnswer::compute(scene, &tolerances, scene.number(Name::TiltGain).unwrap_or_default())
             }),
+            dial: None,
             notes: Vec::new(),
             bounces: run.impacts,
         };
@@ -272,6 +275,7 @@ impl<'a> StabilityAnswer<'a> {
             }
         }
         answer.notes = notes;
+        answer.dial = dial.then(|| answer.draw_dial()).flatten();
         Some(answer)
     }
 

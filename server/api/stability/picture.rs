@@ -6,7 +6,7 @@ use equipoise_physics::stability::contact_regime::contact_regime;
 use crate::api::formats::Pictured;
 use crate::api::shared::closed_loop::draw_closed_loop;
 use crate::api::stability::answer::StabilityAnswer;
-use crate::charts::{Eigenvalues, Spectrum, eigenvalues};
+use crate::charts::{Eigenvalues, Spectrum, eigenvalue_dial, eigenvalues};
 use crate::http::Problem;
 
 impl Pictured for StabilityAnswer<'_> {
@@ -17,23 +17,33 @@ impl Pictured for StabilityAnswer<'_> {
             let title = format!("Closed loop: {}", self.verdict.as_deref().unwrap_or("no verdict"));
             return Ok(draw_closed_loop(&title, &self.reason, &model, gain));
         }
-        let values: Vec<(f64, f64)> =
-            self.linear.iter().flat_map(|linear| &linear.eigenvalues).map(|value| (value.re, value.im)).collect();
+        let values = self.eigenvalues();
         Ok(eigenvalues(&Eigenvalues {
             title: &format!("Eigenvalues of a {}", self.model.name.replace('_', " ")),
             verdict: self.verdict.as_deref(),
             reason: &self.reason,
-            linear: self.linear.as_ref().and_then(|linear| {
-                let tilt_gain = linear.tilt_gain.as_ref()?;
-                Some(Spectrum {
-                    eigenvalues: &values,
-                    tilt_gain: tilt_gain.value,
-                    lower: tilt_gain.lower,
-                    critical: tilt_gain.critical,
-                    residue: linear.residue,
-                    rotation: linear.rotation,
-                })
-            }),
+            linear: self.spectrum(&values).filter(|spectrum| !spectrum.lower.is_nan()),
         }))
+    }
+}
+
+impl StabilityAnswer<'_> {
+    /// The eigenvalues on the unit circle alone; none without a linear analysis.
+    pub(super) fn draw_dial(&self) -> Option<String> {
+        let values = self.eigenvalues();
+        self.spectrum(&values).map(eigenvalue_dial)
+    }
+
+    fn eigenvalues(&self) -> Vec<(f64, f64)> {
+        self.linear.iter().flat_map(|linear| &linear.eigenvalues).map(|value| (value.re, value.im)).collect()
+    }
+
+    /// The linear analysis as it is drawn. Without a tilt gain that balances, its numbers are NaN, and there is no path to draw.
+    fn spectrum<'a>(&self, eigenvalues: &'a [(f64, f64)]) -> Option<Spectrum<'a>> {
+        let linear = self.linear.as_ref()?;
+        let [tilt_gain, lower, critical] =
+            linear.tilt_gain.as_ref().map_or([f64::NAN; 3], |gain| [gain.value, gain.lower, gain.critical]);
+        let (residue, rotation) = (linear.residue, linear.rotation);
+        Some(Spectrum { eigenvalues, tilt_gain, lower, critical, residue, rotation })
     }
 }

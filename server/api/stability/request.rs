@@ -22,6 +22,8 @@ pub struct StabilityRequest {
     pub impacts: u64,
     /// True if the basin is asked for.
     pub basin: bool,
+    /// True if the dial is asked for.
+    pub dial: bool,
     /// Tolerances of the body, if the margins are asked for.
     pub tolerances: Option<Tolerances>,
 }
@@ -37,8 +39,9 @@ impl ResourceRequest for StabilityRequest {
         let scene = read_scene(reader);
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(2000);
         let basin = reader.boolean("basin").unwrap_or(false);
+        let dial = reader.boolean("dial").unwrap_or(false);
         let tolerances = read_tolerances(reader);
-        Some(Self { scene: scene?, impacts, basin, tolerances })
+        Some(Self { scene: scene?, impacts, basin, dial, tolerances })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -49,7 +52,7 @@ impl ResourceRequest for StabilityRequest {
 impl CanonicalRequest for StabilityRequest {
     fn canonical(&self) -> Vec<u8> {
         let off = self.tolerances.map(|off| (off.contact_distance, off.radius_of_gyration, off.restitution));
-        write::canonical(&self.scene, &(self.impacts, self.basin, off))
+        write::canonical(&self.scene, &(self.impacts, self.basin, self.dial, off))
     }
 }
 
@@ -57,7 +60,7 @@ impl StabilityRequest {
     /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs
     /// cost a quarter in lanes.
     fn work(&self) -> u64 {
-        let Self { ref scene, impacts, basin, tolerances } = *self;
+        let Self { ref scene, impacts, basin, tolerances, .. } = *self;
         let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + impacts / 4) } else { 0 };
         let run = impacts * bounce_price(scene) + 4 * impacts.min(WATCHED);
         limits::ANSWER_PRICE + run + basin + if tolerances.is_some() { MARGINS_PRICE } else { 0 }

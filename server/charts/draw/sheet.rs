@@ -49,7 +49,7 @@ impl Sheet {
         let top = 22.0 + tall(&title, TITLE) + tall(&subtitle, SUBTITLE) + 18.0;
         let below = if caption.is_empty() { 8.0 } else { tall(&caption, CAPTION) + 16.0 };
         let height = top + room + below;
-        let mut svg = Svg::new(width, height, &given, &description);
+        let mut svg = Svg::new(width, height, [top, room], &given, &description);
         let paper = svg.tag("rect").number("x", 0.5).number("y", 0.5).number("width", width - 1.0);
         paper.number("height", height - 1.0).number("rx", 6.0).word("fill", PAPER).word("stroke", EDGE).end();
         let mut y = 22.0;

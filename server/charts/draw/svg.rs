@@ -59,10 +59,14 @@ impl Type {
 
 impl Svg {
     /// Opens a document of this size in px. Title and description are for readers who cannot see it.
-    pub(crate) fn new(width: f64, height: f64, title: &str, description: &str) -> Self {
+    ///
+    /// `charts` are the top and the height of the part with the charts: a page that has words of its own shows that part alone.
+    pub(crate) fn new(width: f64, height: f64, charts: [f64; 2], title: &str, description: &str) -> Self {
         let mut svg = Self { out: String::with_capacity(16 * 1024) };
         svg.out.push_str("<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\"");
         let _ = write!(svg.out, " width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\"", fixed(width), fixed(height));
+        let [top, tall] = charts.map(fixed);
+        let _ = write!(svg.out, " data-charts=\"0 {top} {} {tall}\"", fixed(width));
         svg.out.push_str(" font-family=\"");
         svg.escape(FONTS);
         svg.out.push_str("\">\n<title>");

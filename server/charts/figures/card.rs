@@ -74,7 +74,7 @@ pub fn card(card: &Card<'_>) -> String {
     /// Share of a line that bold text fills at most by the estimate of its width.
     const BOLD: f64 = 0.88;
     let (width, height) = CARD_SIZE;
-    let mut svg = Svg::new(width, height, card.title, card.text);
+    let mut svg = Svg::new(width, height, [0.0, height], card.title, card.text);
     let paper = svg.tag("rect").number("x", 0.0).number("y", 0.0).number("width", width).number("height", height);
     paper.word("fill", PAPER).end();
     let colour = if card.goes_on { GREEN } else { VERMILION };

@@ -6,7 +6,7 @@ use crate::charts::draw::legend::{LegendSample, legend};
 use crate::charts::draw::marks::{arrow, band, disc, hollow, line};
 use crate::charts::draw::number::significant;
 use crate::charts::draw::panel::{Axis, Panel};
-use crate::charts::draw::scale::Range;
+use crate::charts::draw::scale::{Range, ticks};
 use crate::charts::draw::sheet::{Sheet, Words};
 use crate::charts::draw::svg::{Anchor, Svg, Type};
 use crate::charts::draw::text::Span;
@@ -30,11 +30,11 @@ pub struct Eigenvalues<'a> {
 pub struct Spectrum<'a> {
     /// All eigenvalues, as (re, im).
     pub eigenvalues: &'a [(f64, f64)],
-    /// κ of the scene.
+    /// κ of the scene. NaN if no κ balances.
     pub tilt_gain: f64,
-    /// Smallest κ that balances.
+    /// Smallest κ that balances, or NaN.
     pub lower: f64,
-    /// κ_c, the largest κ that balances.
+    /// κ_c, the largest κ that balances, or NaN.
     pub critical: f64,
     /// Greene's residue. A point mass has none.
     pub residue: Option<f64>,
@@ -82,11 +82,25 @@ pub fn eigenvalues(judged: &Eigenvalues<'_>) -> String {
     svg.finish()
 }
 
+/// Draws the circle alone, without words around it, as a dial of κ for a page that has the verdict in its own words.
+pub fn eigenvalue_dial(spectrum: Spectrum<'_>) -> String {
+    const FRAME: Frame = Frame { left: 44.0, top: 6.0, width: 268.0, height: 190.0 };
+    // As small as the card of a page, where its text is to be read.
+    const WIDTH: f64 = 320.0;
+    const HEIGHT: f64 = 242.0;
+    let mut svg = Svg::new(WIDTH, HEIGHT, [0.0, HEIGHT], "Eigenvalues", &sentence(&spectrum));
+    View::new(spectrum).draw_circle(&mut svg, FRAME);
+    svg.finish()
+}
+
 /// κ, its interval, residue and rotation in words.
 fn sentence(spectrum: &Spectrum<'_>) -> String {
     let number = |value: f64| significant(value, 4);
     let (lower, critical) = (number(spectrum.lower), number(spectrum.critical));
-    let mut text = format!("κ = {}; stable κ: {lower} to κ_c = {critical}.", number(spectrum.tilt_gain));
+    let mut text = match spectrum.lower.is_nan() {
+        true => "No tilt gain balances.".to_owned(),
+        false => format!("κ = {}; stable κ: {lower} to κ_c = {critical}.", number(spectrum.tilt_gain)),
+    };
     if let Some(residue) = spectrum.residue {
         text.push_str(&format!(" Residue R = {} (stable: 0 to 1).", number(residue)));
     }
@@ -176,6 +190,7 @@ impl<'a> View<'a> {
             let look = Type::new(12.5, SOFT_INK);
             let lower = format!(" = {}", significant(self.spectrum.lower, 4));
             let critical = format!(" = {}", significant(self.spectrum.critical, 4));
+            self.draw_scale(svg, &panel, trail.law);
             let (start, end) = (place((1.0, 0.0)), place((-1.0, 0.0)));
             svg.text(start.0 + 9.0, start.1 + 24.0, look, &[Span::Symbol("κ"), Span::Plain(&lower)]);
             let spans = [Span::Symbol("κ"), Span::Below("c"), Span::Plain(&critical)];
@@ -183,6 +198,27 @@ impl<'a> View<'a> {
         }
         self.draw_marks(svg, &panel, range);
         panel.edge(svg);
+    }
+
+    /// Ticks of κ along the circle, which the angle's pair passes as κ grows.
+    fn draw_scale(&self, svg: &mut Svg, panel: &Panel, law: Law) {
+        let (lower, width) = (self.spectrum.lower, self.spectrum.critical - self.spectrum.lower);
+        if law != Law::Pair {
+            return;
+        }
+        let look = Type::new(11.5, SOFT_INK).anchored(Anchor::Middle);
+        for (kappa, label) in ticks(Range::new(lower, self.spectrum.critical), 6).marks {
+            let residue = (kappa - lower) / width;
+            // The ends have labels of their own.
+            if !(0.06..=0.94).contains(&residue) {
+                continue;
+            }
+            let [(re, im), _] = law.at(residue);
+            let at = |radius: f64| panel.at(radius * re, radius * im);
+            line(svg, &[at(0.96), at(1.04)], SOFT_INK, 1.5, None);
+            let (x, y) = at(1.17);
+            svg.text(x, y + 4.0, look, &[Span::Plain(&label)]);
+        }
     }
 
     /// The angle σ by which a small deviation turns at every bounce.

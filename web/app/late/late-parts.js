@@ -34,7 +34,9 @@ export async function bringLateParts(page) {
   const { plots, circle, view, fields, run } = page;
   for (const one of [...plots, circle]) {
     const { figure } = one;
-    figure.offer(enlarger(figure.element, figure.title, () => savesOf(page, figure.id, figure.title, one)));
+    // The eigenvalues are a picture of the server.
+    const view = one === circle ? undefined : /** @type {import('../../export/capture.js').Layered} */ (one);
+    figure.offer(enlarger(figure.element, figure.title, () => savesOf(page, figure.id, figure.title, view)));
   }
   const card = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
   card.querySelector('.card-head')?.append(enlarger(card, 'Scene', () => savesOf(page, 'scene', 'Scene', view)));

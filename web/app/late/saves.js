@@ -7,7 +7,7 @@ import { impactsPath, playedQuery, typedQuery } from '../queries.js';
  * @param {import('../page.js').Page} page
  * @param {string} id
  * @param {string} title
- * @param {import('../../export/capture.js').Layered} view
+ * @param {import('../../export/capture.js').Layered} [view] where the page draws it; else the server does
  * @returns {import('../../export/save-actions.js').Saves}
  */
 export function savesOf(page, id, title, view) {
@@ -15,5 +15,5 @@ export function savesOf(page, id, title, view) {
   updateAddress(page);
   const query = id === 'circle' ? (typedQuery(page) ?? playedQuery(page)) : null;
   const path = id === 'circle' ? query && `v1/stability?${query}` : impactsPath(page);
-  return { id, title, view, formats: ['csv', 'json'], path };
+  return { id, title, view, formats: view ? ['csv', 'json'] : ['svg', 'png', 'csv', 'json'], path };
 }

@@ -13,12 +13,9 @@ import { sceneChanged } from '../scenes.js';
  * @param {boolean} final true when a slider was let go or a text was left
  */
 export function edited(page, path, final) {
-  const { run, controls, circle, fields } = page;
+  const { run, controls, fields } = page;
   const value = valueAt(page.typed ?? {}, path);
-  if (path === GAIN && typeof value === 'number') {
-    controls.setGain(value);
-    circle.preview(value);
-  }
+  if (path === GAIN && typeof value === 'number') controls.setGain(value);
   if (final && run.active && fields.find((field) => field.path === path)?.live) sendChanges(page);
   sceneChanged(page);
   if (run.phase === 'idle') updateAddressSoon(page);

@@ -197,7 +197,7 @@ mod tests {
     fn runs_of_one_colour_are_one_rectangle() {
         let values = [0.0, 0.0, 9.0, 0.0, 9.0, 9.0, 9.0, 9.0].map(Some);
         let cells = CellGrid::binned(&values, &[], ALONG, GridSide { count: 2, reversed: false });
-        let mut svg = Svg::new(1.0, 1.0, "", "");
+        let mut svg = Svg::new(1.0, 1.0, [0.0, 1.0], "", "");
         cells.draw(&mut svg, Frame { left: 0.0, top: 0.0, width: 8.0, height: 8.0 }, |value| value as usize);
         let text = svg.finish();
         assert!(text.contains("d=\"m0 0h2v1h-2m3-1h1v1h-1\" fill=\"#00224e\""), "{text}");
