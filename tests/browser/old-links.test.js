@@ -152,7 +152,8 @@ for (const { link, values = {}, address, dropped, phase } of LINKS)
       assert.match(decodeURIComponent(page.url()), address);
     }
     const notices = page.locator('#notices');
-    if (dropped) await notices.filter({ hasText: dropped }).waitFor();
+    // The map names what it drops in its own place.
+    if (dropped) await page.locator('#notices, #map-body').filter({ hasText: dropped }).first().waitFor();
     else assert.equal(await notices.innerText(), '');
     clean();
   });
