@@ -73,7 +73,7 @@ for (const preset of ['case-1', 'triangle-polygon']) {
     await page.click('#share');
     const link = new URL(await page.evaluate(() => navigator.clipboard.readText()));
     assert.equal(Number(link.searchParams.get('scene.table.feedback.theta')), gain.theta);
-    const second = await stage.page(link.search);
+    const second = await stage.page(link.search, { autorun: true });
     await reachImpact(second.page, 3);
     assert.equal(await second.page.locator('#notices').innerText(), '');
     assert.equal(await second.page.inputValue('#field-table-tilt_gain'), '');
