@@ -21,7 +21,7 @@ const SIGNS = {
   survival: '#survival-told:has-text("outlast")',
   ladder: '.rungs td',
   design: '#design-sheet svg',
-  branch: '.changes',
+  branch: '#branch-body svg.figure',
   precision: '#precision-told:has-text("Measured over")',
   paper: '.paper',
   reading: '.reading-items',

@@ -30,7 +30,7 @@ const PICTURES = {
     bring: async (page) => {
       await held(page);
       await page.click('#pin');
-      await slide(page, '#gain', 1.3);
+      await slide(page, '#gain', 1.2);
       await page.click('#restart');
       await reachPhase(page, 'running');
       await reachImpact(page, 60);
