@@ -87,6 +87,7 @@ test('calls are told for a shell, Python and JavaScript, and the choice is in th
   const AsyncFunction = Object.getPrototypeOf(async () => {}).constructor;
   const answer = await new AsyncFunction(text.replace(/console\.log\((.*)\);$/, 'return $1;'))();
   assert.deepEqual(answer, await (await fetch(`${stage.url}v1/stability?preset=case-1`)).json());
+  await page.waitForFunction(() => location.search.includes('calls.language=javascript'));
   const second = await stage.page(new URL(page.url()).search);
   await second.page.locator('.call code', { hasText: 'URLSearchParams' }).first().waitFor();
   second.clean();

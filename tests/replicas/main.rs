@@ -58,7 +58,8 @@ fn kinds() -> Vec<Ask> {
         Ask { method: "HEAD", ..get("/v1/scenes") },
         get("/v1/fields"),
         get("/openapi.json").with("accept-encoding", "gzip"),
-        get("/"),
+        // Not the page: it names the address at which it was asked.
+        get("/docs"),
         get("/v1/stability?preset=case-1&impacts=-1").with("x-request-id", "wrong-1"),
         Ask::post("/v1/trajectories", r#"{"preset": "#).with("x-request-id", "wrong-2"),
     ]
