@@ -59,7 +59,7 @@ pub struct WorkCount {
 pub struct Simulation {
     /// The contacts that it saw.
     pub impacts: Vec<SimulatedImpact>,
-    /// Its ending.
+    /// Ending of the run.
     pub ending: SimulationEnding,
     /// Work that it took.
     pub work: WorkCount,

@@ -20,7 +20,7 @@ import {
 const stage = await Stage.open();
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
-/** What axe finds. @param {import('playwright-core').Page} page @param {string} [within] the part that is new since the last look */
+/** The findings of axe. @param {import('playwright-core').Page} page @param {string} [within] the part that is new since the last look */
 async function violations(page, within = 'html') {
   await page.evaluate(`globalThis.axe ?? (() => { ${axe} })()`);
   const { violations: found } = await page.evaluate((part) => globalThis.axe.run(part), within);

@@ -292,7 +292,7 @@ export async function openPanel(page, id) {
   await body.scrollIntoViewIfNeeded();
 }
 
-/** What each panel of the studies shows once it is whole, what is asked for included. */
+/** Brings each panel of the studies to its full content, answers on request included. */
 const PANELS = {
   map: (page) => page.locator('#map-links a').first().waitFor(),
   survival: async (page) => {

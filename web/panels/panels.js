@@ -11,7 +11,7 @@ import { PANELS, TABS } from './registry.js';
 export class Panels {
   /** @type {Map<string, Panel>} */
   #mounted = new Map();
-  /** What the panels of tabs that are not open have missed. @type {Set<string>} */
+  /** Panels in closed tabs that have not heard of a change. @type {Set<string>} */
   #missed = new Set();
   /** Loads the panels of a tab, until it was opened. @type {Map<string, (() => Promise<void>)[]>} */
   #waiting = new Map();

@@ -30,7 +30,7 @@ export class SceneView {
   #held = null;
   /** The scene to draw while there is no run. @type {Scene | null} */
   #draft = null;
-  /** What follows from it by the last answer. @type {Derived | null} */
+  /** Quantities that the server derived from it in the last answer. @type {Derived | null} */
   #known = null;
   /** The case whose word was taken for it. @type {Derived | null} */
   #ofCase = null;

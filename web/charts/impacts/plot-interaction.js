@@ -138,7 +138,7 @@ export class PlotInteraction {
     });
   }
 
-  /** What a click has offered was of the scene before. */
+  /** Drops an offered release, which belongs to the scene before. */
   sceneChanged() {
     this.#ghost.drop();
   }

@@ -133,7 +133,7 @@ class MapPanel {
     ).observe(root);
   }
 
-  /** Its tab is closed: the work stops, and goes on when it is opened again. */
+  /** Stops the work while the map's tab is closed; opening the tab goes on with it. */
   #leaveOff() {
     if (!this.#refinement.active) return;
     this.#refinement.cancel();

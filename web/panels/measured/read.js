@@ -15,7 +15,7 @@ export const QUANTITIES = /** @type {const} */ (['n', 't', 'theta', 'x_dot', 'y_
  */
 
 /** A column of a file and what it is taken for. @typedef {{head: string, quantity: Quantity | null, unit: string}} Head */
-/** What the reader says that a column is, by its place; `null` leaves it out. @typedef {Map<number, {quantity: Quantity | null, unit: string}>} Picks */
+/** Columns by their place, as the reader picked them; `null` leaves a column out. @typedef {Map<number, {quantity: Quantity | null, unit: string}>} Picks */
 
 /** A file with nothing in it to show; its message is for people. */
 export class Unreadable extends Error {

@@ -8,7 +8,7 @@ import { ItemView } from './item.js';
 /** @typedef {import('contract').PaperItem} PaperItem */
 
 const KINDS = { equation: 'Equations', table: 'Tables', figure: 'Figures', claim: 'Claims' };
-/** What may be shown: all, what differs, or one kind. @type {Record<string, (item: PaperItem) => boolean>} */
+/** The filters: all items, those that differ, or one kind. @type {Record<string, (item: PaperItem) => boolean>} */
 const FILTERS = {
   all: () => true,
   differs: ({ agrees }) => !agrees,

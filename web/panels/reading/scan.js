@@ -20,7 +20,7 @@ export class ScanPlace {
   #x = 0;
   #y = 0;
   #size = 1;
-  /** Where a drag began. @type {{x: number, y: number} | null} */
+  /** Last place of the pointer in a drag; null between drags. @type {{x: number, y: number} | null} */
   #held = null;
 
   /**

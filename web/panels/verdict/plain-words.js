@@ -18,7 +18,7 @@ const ENDINGS = {
 /** The reason of an ending. @param {string} kind */
 export const reasonOf = (kind) => ENDINGS[kind] ?? kind.replaceAll('_', ' ');
 
-/** What a run did in the end, as in “fell at bounce 11”. @param {string} kind @param {number} impacts */
+/** The ending of a run in words, as in “fell at bounce 11”. @param {string} kind @param {number} impacts */
 export function endedAs(kind, impacts) {
   const at = `at bounce ${number(impacts, 8)}`;
   if (kind === 'completed') return `survived ${number(impacts, 8)} bounces`;

@@ -9,7 +9,7 @@ const LABEL = () => h('p', { class: 'line-label' }, 'This setting');
 
 export class Verdict {
   #root;
-  /** What carries the verdict, after the line on the run. */
+  /** The evidence, below the line on the run. */
   #more = h('div', { id: 'verdict-more' });
   /** The answer to show, once its code is loaded. @type {Stability | null} */
   #newest = null;
