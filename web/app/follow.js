@@ -106,7 +106,9 @@ const previews = new Follower(async (page, signal) => {
 
 /** @param {Page} page @param {import('contract').Trajectory} answer */
 function preview(page, answer) {
-  for (const plot of page.plots) /** @type {any} */ (plot).preview?.(answer.impacts);
+  // Only `extended` writes numbers as text.
+  const columns = /** @type {any} */ (answer.impacts);
+  for (const plot of page.plots) plot.preview(columns);
   page.view.preview(answer).catch(() => {});
 }
 

@@ -97,7 +97,7 @@ export class PlotInteraction {
       plots,
       say,
       // Without a ghost the scene shows the flights of what is typed.
-      preview: (answer) => (answer ? /** @type {any} */ (view).preview?.(answer) : page.follow()),
+      preview: (answer) => (answer ? void view.preview(answer) : page.follow()),
     });
     for (const plot of plots) {
       listen(plot, {
