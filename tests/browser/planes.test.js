@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, ink, reachImpact, reachPhase, speedUp } from './stage.js';
+import { inkOf, Stage, ink, reachImpact, reachPhase, speedUp } from './stage.js';
 
 const stage = await Stage.open();
 const spoken = (page, words) => page.locator('#impacts-spoken', { hasText: words }).waitFor({ state: 'attached' });
@@ -10,26 +10,7 @@ const spoken = (page, words) => page.locator('#impacts-spoken', { hasText: words
 /** How many pixels of a plot's upper canvas have a colour of the style sheet, within the frame of its axes. */
 async function above(page, id, property) {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  return page
-    .locator(`#${id} canvas`)
-    .nth(1)
-    .evaluate((canvas, name) => {
-      const probe = document.createElement('canvas').getContext('2d');
-      probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-      probe.fillRect(0, 0, 1, 1);
-      const [r, g, b] = probe.getImageData(0, 0, 1, 1).data;
-      const copy = Object.assign(document.createElement('canvas'), {
-        width: canvas.width,
-        height: canvas.height,
-      }).getContext('2d', { willReadFrequently: true });
-      copy.drawImage(canvas, 0, 0);
-      const { data } = copy.getImageData(45, 25, canvas.width - 54, canvas.height - 62);
-      let count = 0;
-      for (let i = 0; i < data.length; i += 4)
-        if (data[i + 3] > 90 && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 40)
-          count += 1;
-      return count;
-    }, property);
+  return inkOf(page.locator(`#${id} canvas`).nth(1), property, { margins: [45, 25, 54, 62], opacity: 90 });
 }
 
 /** The page with its plots reachable, as the parts of the page reach them. */

@@ -204,27 +204,32 @@ export const reachPhase = (page, phase) => page.locator(`#run-state[data-phase=$
 /** How many pixels of a canvas have (nearly) the colour of the style sheet's property. */
 export async function ink(page, selector, property) {
   await showChart(page, selector.slice(1));
-  return page
-    .locator(`${selector} canvas`)
-    .first()
-    .evaluate((canvas, name) => {
+  return inkOf(page.locator(`${selector} canvas`).first(), property);
+}
+
+/** The same of one canvas, within margins (left, top, and both sides together across and down) and above an opacity. */
+export function inkOf(canvas, property, { margins = [0, 0, 0, 0], opacity = 200 } = {}) {
+  return canvas.evaluate(
+    (element, [name, least, x, y, narrower, shorter]) => {
       const probe = document.createElement('canvas').getContext('2d');
       probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
       probe.fillRect(0, 0, 1, 1);
       const [r, g, b] = probe.getImageData(0, 0, 1, 1).data;
+      const { width, height } = element;
       // Read from a copy: reading the page's own canvas would change how the browser keeps it.
-      const copy = Object.assign(document.createElement('canvas'), {
-        width: canvas.width,
-        height: canvas.height,
-      }).getContext('2d', { willReadFrequently: true });
-      copy.drawImage(canvas, 0, 0);
-      const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+      const copy = Object.assign(document.createElement('canvas'), { width, height }).getContext('2d', {
+        willReadFrequently: true,
+      });
+      copy.drawImage(element, 0, 0);
+      const { data } = copy.getImageData(x, y, width - narrower, height - shorter);
       let count = 0;
       for (let i = 0; i < data.length; i += 4)
-        if (data[i + 3] > 200 && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 40)
+        if (data[i + 3] > least && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 40)
           count += 1;
       return count;
-    }, property);
+    },
+    [property, opacity, ...margins],
+  );
 }
 
 /** Switches to a chart that shares its place with another. */
