@@ -20,5 +20,5 @@ with socket.create_server(("127.0.0.1", 0)) as listener:
     turn = 0
     while True:
         turn += 1
-        # Each connection is a little longer, so that a long event passes in the end.
-        threading.Thread(target=serve, args=(listener.accept()[0], most + 97 * turn), daemon=True).start()
+        # Each connection is longer, so that an event with all impacts since the last cut passes in the end.
+        threading.Thread(target=serve, args=(listener.accept()[0], most + 997 * turn), daemon=True).start()
