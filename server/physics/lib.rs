@@ -6,11 +6,12 @@
 //! From the ground up: [`numbers`] are kinds of arithmetic; [`bounce`] is one strike and one flight; [`table`] steers and what it
 //! is asked for; [`body`] is any body that bounces; [`run`] goes from contact to contact and ends; [`scene`] is the set of values a user
 //! may give, with the smallest model that is exact for it; [`batch`] runs many scenes at once. On these stand the analyses:
-//! [`stability`], [`control`], [`periodic_orbits`] and [`surveys`].
+//! [`stability`], [`control`], [`periodic_orbits`], [`surveys`] and [`catching`].
 
 pub mod batch;
 pub mod body;
 pub mod bounce;
+pub mod catching;
 pub mod control;
 pub mod numbers;
 pub mod periodic_orbits;

@@ -207,7 +207,7 @@ impl Friction {
         rod: &Rod<N>,
         before: &State<N>,
         tilt: &Tilt<N>,
-        plan: Option<&PlannedTableMotion>,
+        plan: Option<&PlannedTableMotion<N>>,
         leverage: N,
         decide: impl FnMut(Decision) -> bool,
     ) -> Strike<N> {
@@ -217,7 +217,7 @@ impl Friction {
         let (across, along) = (rod.contact_distance * sin_beta, rod.contact_distance * tilt.cos_beta());
         let velocity = tangential_velocity(rod, before, tilt);
         if let Some(plan) = plan {
-            let speed = N::from_f64(plan.normal_velocity);
+            let speed = plan.normal_velocity;
             strike.approach = strike.normal_velocity - speed;
             strike.push = (one + rod.restitution) * strike.approach;
             strike.table_velocity = (-(speed * sin_alpha), speed * cos_alpha);
@@ -227,7 +227,7 @@ impl Friction {
             // Set, not computed: a difference of rounding would slide.
             (Slide::Matched, None) => (velocity, zero),
             (Slide::Matched, Some(plan)) => {
-                let speed = N::from_f64(plan.tangential_velocity);
+                let speed = plan.tangential_velocity;
                 (speed, velocity - speed)
             }
         };
@@ -280,7 +280,7 @@ pub(crate) fn rise_rounding<N: Number>(rod: &Rod<N>, before: &State<N>, strike: 
 
 /// Velocity of the contact point along the table, m/s.
 #[inline(always)]
-fn tangential_velocity<N: Number>(rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
+pub(crate) fn tangential_velocity<N: Number>(rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
     let along = rod.contact_distance * tilt.cos_beta();
     tilt.cos_alpha * before.x_dot + tilt.sin_alpha * before.y_dot + along * before.theta_dot
 }

@@ -2,11 +2,11 @@
 
 /// A table that moves as it was planned before the contact, whatever it then meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlannedTableMotion {
+pub struct PlannedTableMotion<N = f64> {
     /// α, rad.
-    pub alpha: f64,
+    pub alpha: N,
     /// The table's velocity along its normal, m/s.
-    pub normal_velocity: f64,
+    pub normal_velocity: N,
     /// The table's velocity along itself, m/s.
-    pub tangential_velocity: f64,
+    pub tangential_velocity: N,
 }
