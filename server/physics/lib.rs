@@ -12,6 +12,7 @@ pub mod batch;
 pub mod body;
 pub mod bounce;
 pub mod catching;
+pub mod contact;
 pub mod control;
 pub mod numbers;
 pub mod periodic_orbits;

@@ -1,0 +1,102 @@
+//! The question: a body on the table, the law of the table, and how long to follow them.
+
+use crate::body::polygon::Outline;
+use crate::bounce::friction::{Friction, Slide};
+use crate::bounce::rod::Rod;
+use crate::table::actuator_load::ActuatorLimits;
+use crate::table::control_law::{Gains, Steering};
+
+/// The body as a lasting contact begins. The contact point is on the table, and as fast as the table vertically.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactStart {
+    /// Time of the run, s.
+    pub t: f64,
+    /// Horizontal place of the centre of gravity, m.
+    pub x: f64,
+    /// Angle, rad.
+    pub theta: f64,
+    /// Horizontal velocity of the centre of gravity, m/s.
+    pub x_dot: f64,
+    /// Angular velocity, rad/s.
+    pub theta_dot: f64,
+    /// Vertical velocity of the table's surface at the contact, m/s, up positive: negative where a table meets the body at its own
+    /// speed and brakes it.
+    pub table_speed: f64,
+}
+
+/// Law of the table during the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HoldLaw {
+    /// α = κθ.
+    TiltGain(f64),
+    /// α = −K·(x, θ, ẋ, θ̇).
+    Feedback(Gains),
+    /// A level table whose surface moves along x with the acceleration a = −K·(x, θ, ẋ, θ̇), m/s²: it balances a contact that sticks.
+    CartPole(Gains),
+    /// A level table at rest. A polygon rocks on it until an edge rests.
+    Level,
+}
+
+/// Friction of the contact and motion of the table along itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Touching {
+    /// No friction.
+    Frictionless,
+    /// Friction μ on a table that moves along itself with the contact point, as at strikes with [`Slide::Matched`].
+    Matched(f64),
+    /// Friction μ on a table that does not move along itself: the contact slides, sticks and slides again.
+    Coulomb(f64),
+}
+
+impl Touching {
+    /// Contact of a scene with this friction, if it has any.
+    pub fn new(friction: Option<Friction>) -> Self {
+        match friction {
+            None => Self::Frictionless,
+            Some(Friction { coefficient: 0.0, .. }) => Self::Frictionless,
+            Some(Friction { coefficient, slide: Slide::Matched, .. }) => Self::Matched(coefficient),
+            Some(Friction { coefficient, slide: Slide::None, .. }) => Self::Coulomb(coefficient),
+        }
+    }
+
+    /// μ.
+    pub fn coefficient(self) -> f64 {
+        match self {
+            Self::Frictionless => 0.0,
+            Self::Matched(coefficient) | Self::Coulomb(coefficient) => coefficient,
+        }
+    }
+}
+
+impl HoldLaw {
+    /// The law of a scene's own table: its steering with the rod's κ.
+    pub fn of(steering: Steering, rod: &Rod) -> Self {
+        match steering {
+            Steering::TiltGain => Self::TiltGain(rod.tilt_gain),
+            Steering::Feedback(gains) => Self::Feedback(gains),
+        }
+    }
+}
+
+/// A body in contact, and how long to follow it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HoldRequest {
+    /// l, ρ and G; nothing else of it counts.
+    pub rod: Rod,
+    /// Friction.
+    pub touching: Touching,
+    /// Vertices of a polygon.
+    pub outline: Option<Outline>,
+    /// Law of the table.
+    pub law: HoldLaw,
+    /// Beginning of the contact.
+    pub start: ContactStart,
+    /// Deceleration of a table that moves vertically at the beginning, m/s²; until it stands.
+    pub brake: Option<f64>,
+    /// Time in contact, s; at most [`super::LONGEST_HOLD`].
+    pub duration: f64,
+    /// |θ| that counts as toppled, rad.
+    pub topple_angle: f64,
+    /// Limits of the table, if it has any.
+    pub limits: Option<ActuatorLimits>,
+}
