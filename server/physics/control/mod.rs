@@ -5,6 +5,7 @@
 //! here: to first order it moves independently of the angle ([`crate::stability::linear_verdict`]).
 
 pub mod bounce_model;
+pub mod care;
 pub mod lqr;
 pub mod margin;
 pub mod riccati;

@@ -35,9 +35,25 @@ pub fn solve<const N: usize>(
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
-    let identity = SMatrix::<f64, N, N>::identity();
     let weights = SMatrix::from_diagonal(state);
-    let (mut power, mut reach, mut cost) = (*a, b * b.transpose() / input, weights);
+    let (cost, iterations) = double(*a, b * b.transpose() / input, weights)?;
+    let cost = refined(a, b, &weights, input, &cost);
+    let gain = gain(a, b, input, &cost);
+    let next = a.transpose() * cost * (a - b * gain) + weights;
+    let residual = (next - cost).norm() / cost.norm().max(f64::MIN_POSITIVE);
+    Some(RiccatiSolution { cost, gain, residual, iterations })
+}
+
+/// Structured doubling from A, B R⁻¹Bᵀ and Q: the stabilizing P and the number of doublings. `None` if it does not converge.
+pub(crate) fn double<const N: usize>(
+    mut power: SMatrix<f64, N, N>,
+    mut reach: SMatrix<f64, N, N>,
+    mut cost: SMatrix<f64, N, N>,
+) -> Option<(SMatrix<f64, N, N>, u32)>
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>>,
+{
+    let identity = SMatrix::<f64, N, N>::identity();
     for iterations in 1..=DOUBLINGS {
         let factors = (identity + reach * cost).lu();
         let (onward, spread) = (factors.solve(&power)?, factors.solve(&reach)?);
@@ -50,15 +66,7 @@ where
             return None;
         }
         if step <= f64::EPSILON * size {
-            let cost = refined(a, b, &weights, input, &cost);
-            let gain = gain(a, b, input, &cost);
-            let next = a.transpose() * cost * (a - b * gain) + weights;
-            return Some(RiccatiSolution {
-                cost,
-                gain,
-                residual: (next - cost).norm() / cost.norm().max(f64::MIN_POSITIVE),
-                iterations,
-            });
+            return Some((cost, iterations));
         }
     }
     None
@@ -97,7 +105,7 @@ fn refined<const N: usize>(
     *cost
 }
 
-fn symmetric<const N: usize>(matrix: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+pub(crate) fn symmetric<const N: usize>(matrix: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
     (matrix + matrix.transpose()) * 0.5
 }
 
