@@ -37,6 +37,12 @@ pub struct GeneralBody {
     pub outline: Option<Outline>,
 }
 
+/// Chooses the motion of a guided table, contact by contact.
+pub trait Guide {
+    /// Motion for the contact that the table foresees, with an error of the sensed angle (rad); `None` if it will not strike.
+    fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion>;
+}
+
 /// A contact without friction, for a table that moves as planned.
 const SMOOTH: Friction = Friction { coefficient: 0.0, law: RestitutionLaw::Poisson, slide: Slide::None };
 
@@ -62,9 +68,17 @@ impl GeneralBody {
         self.noise.map_or(NoiseSample { timing: 0.0, angle: 0.0 }, |noise| noise.draw(n))
     }
 
-    /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`.
-    fn arrive(&self, flight: &Flight, t: f64, n: u64, x: f64) -> Result<Arrival, NoContact> {
-        let arrival = self.meet_timed(flight, t, n, x)?;
+    /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`. A guided table asks `guide`
+    /// for its motion.
+    fn arrive(
+        &self,
+        flight: &Flight,
+        t: f64,
+        n: u64,
+        x: f64,
+        guide: Option<&mut dyn Guide>,
+    ) -> Result<Arrival, NoContact> {
+        let arrival = self.meet_timed(flight, t, n, x, guide)?;
         if let Some(outline) = &self.outline
             && let Some(touch) = outline.first_touch(flight, t.min(arrival.t))?
         {
@@ -74,42 +88,62 @@ impl GeneralBody {
     }
 
     /// End of a flight at a table that strikes about the time `t`, when the contact point is at y = 0.
-    fn meet_timed(&self, flight: &Flight, t: f64, n: u64, x: f64) -> Result<Arrival, NoContact> {
-        let Some(noise) = self.noise else { return Ok((t, flight.end(t)).into()) };
-        let NoiseSample { timing, angle } = noise.draw(n);
+    fn meet_timed(
+        &self,
+        flight: &Flight,
+        t: f64,
+        n: u64,
+        x: f64,
+        guide: Option<&mut dyn Guide>,
+    ) -> Result<Arrival, NoContact> {
+        let NoiseSample { timing, angle } = self.draw(n);
         let struck = if timing == 0.0 { t } else { (t + timing).max(LEAST_FLIGHT) };
         let state = flight.end(struck);
-        match noise.model {
-            NoiseModel::Strike => {
-                let clearance = if timing == 0.0 { 0.0 } else { flight.gap(struck).value };
-                Ok(Arrival { t: struck, state, clearance, plan: None })
+        let clearance = if timing == 0.0 { 0.0 } else { flight.gap(struck).value };
+        let seen = PreImpact { clearance, ..PreImpact::at(n, x + state.x_dot * struck, state) };
+        let is_guided = guide.is_some();
+        let guided = guide.and_then(|guide| guide.motion(&seen, angle));
+        match self.noise.map(|noise| noise.model) {
+            None | Some(NoiseModel::Strike) => Ok(Arrival { t: struck, state, clearance, plan: guided }),
+            // A guide that does not plan follows the body.
+            Some(NoiseModel::Plan) if is_guided && guided.is_none() => Ok((t, flight.end(t)).into()),
+            Some(NoiseModel::Plan) => {
+                let plan = guided.unwrap_or_else(|| self.own_motion(&seen, angle));
+                match self.meet(flight, struck, &state, plan) {
+                    // Released onto the table: it is on the plane, whatever was planned for later.
+                    Err(NoContact::Missed) if t == 0.0 => Ok((LEAST_FLIGHT, flight.end(LEAST_FLIGHT)).into()),
+                    met => met,
+                }
             }
-            NoiseModel::Plan => match self.meet(flight, struck, &state, x + state.x_dot * struck, angle) {
-                // Released onto the table: it is on the plane, whatever was planned for later.
-                Err(NoContact::Missed) if t == 0.0 => Ok((LEAST_FLIGHT, flight.end(LEAST_FLIGHT)).into()),
-                met => met,
-            },
         }
     }
 
-    /// End of a flight at the table that was set out to strike at time `struck` the state `seen` at `x`, with its contact at
-    /// y = 0: a plane that moves along its normal.
-    ///
-    /// Seen from the plane, the body flies as over a level table: with β for θ, and gravity's part along the normal.
-    fn meet(&self, flight: &Flight, struck: f64, seen: &State, x: f64, error: f64) -> Result<Arrival, NoContact> {
-        let tilt = self.tilt(x, seen, error);
+    /// Motion of a table that follows its own law, for the contact that it foresees.
+    fn own_motion(&self, seen: &PreImpact, error: f64) -> PlannedTableMotion {
+        let tilt = self.tilt(seen.x, &seen.state, error);
         let Tilt { alpha, sin_alpha, cos_alpha, .. } = tilt;
-        let (table_x, table_y) = self.rod.strike_with(seen, &tilt, self.rod.leverage()).table_velocity;
-        let plan = PlannedTableMotion {
+        let (table_x, table_y) = self.rod.strike_with(&seen.state, &tilt, self.rod.leverage()).table_velocity;
+        PlannedTableMotion {
             alpha,
             normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
-            tangential_velocity: self.friction.map_or(0.0, |friction| friction.table_speed(&self.rod, seen, &tilt)),
-        };
+            tangential_velocity: self
+                .friction
+                .map_or(0.0, |friction| friction.table_speed(&self.rod, &seen.state, &tilt)),
+        }
+    }
+
+    /// End of a flight at the table that was set out to strike at time `struck` the state `seen`, with its contact at y = 0: a plane
+    /// that moves along its normal.
+    ///
+    /// Seen from the plane, the body flies as over a level table: with β for θ, and gravity's part along the normal.
+    fn meet(&self, flight: &Flight, struck: f64, seen: &State, plan: PlannedTableMotion) -> Result<Arrival, NoContact> {
+        let alpha = plan.alpha;
+        let Tilt { sin_theta, sin_alpha, cos_alpha, .. } = Tilt::new(seen.theta, alpha, seen.theta - alpha);
         let length = flight.contact_distance;
         let State { theta, x_dot, y_dot, theta_dot } = flight.start;
         let (sin, cos) = flight.sin_cos_theta;
         // The contact point at the start of the flight, from the planned one at the planned time.
-        let across = length * (sin - tilt.sin_theta) - x_dot * struck;
+        let across = length * (sin - sin_theta) - x_dot * struck;
         let above = flight.clearance * cos_alpha - sin_alpha * across + plan.normal_velocity * struck;
         let relative = Flight {
             start: State {
@@ -133,12 +167,39 @@ impl GeneralBody {
     fn flight(&self, from: &PreImpact, strike: &Strike) -> Flight {
         Flight { clearance: from.clearance, ..self.rod.flight(strike) }
     }
+
+    /// [`Body::fall`] to the table of a guide, or to the body's own without one.
+    ///
+    /// # Errors
+    /// Same as [`Body::fall`].
+    pub fn fall_to(&self, release: &Release, guide: Option<&mut dyn Guide>) -> Result<Arrival, NoContact> {
+        let (t, _) = self.rod.fall(release)?;
+        self.arrive(&self.rod.flight_from(release), t, 1, release.x, guide)
+    }
+
+    /// [`Body::fly`] to the table of a guide, or to the body's own without one.
+    ///
+    /// # Errors
+    /// Same as [`Body::fly`].
+    pub fn fly_to(
+        &self,
+        from: &PreImpact,
+        strike: &Strike,
+        guide: Option<&mut dyn Guide>,
+    ) -> Result<Arrival, NoContact> {
+        let flight = self.flight(from, strike);
+        let t = if flight.clearance < 0.0 {
+            first_descent(&flight)?.ok_or(NoContact::Sinking)?
+        } else {
+            first_contact(&flight)?
+        };
+        self.arrive(&flight, t, from.n + 1, from.x, guide)
+    }
 }
 
 impl Body for GeneralBody {
     fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
-        let (t, _) = self.rod.fall(release)?;
-        self.arrive(&self.rod.flight_from(release), t, 1, release.x)
+        self.fall_to(release, None)
     }
 
     // Out of the loop of the plain rod, which shares its code with this one; likewise below.
@@ -179,13 +240,7 @@ impl Body for GeneralBody {
 
     #[inline(never)]
     fn fly(&self, from: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact> {
-        let flight = self.flight(from, strike);
-        let t = if flight.clearance < 0.0 {
-            first_descent(&flight)?.ok_or(NoContact::Sinking)?
-        } else {
-            first_contact(&flight)?
-        };
-        self.arrive(&flight, t, from.n + 1, from.x)
+        self.fly_to(from, strike, None)
     }
 
     fn contact_distance(&self) -> f64 {

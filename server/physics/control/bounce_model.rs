@@ -46,16 +46,21 @@ impl ClosedLoop {
 
 impl BounceModel {
     /// The model of a rod that bounces upright at `speed` V > 0 (m/s) on a table that makes up the loss.
-    ///
-    /// To first order the normal impulse is 2V for every e and every law of restitution. With friction the contact therefore ends in
-    /// sticking: the impulse P_t along the table takes the relative velocity ẋ + lθ̇ − Vα of the contact point to 0. On a table that
-    /// moves along with it ([`ContactRegime::VelocityMatched`]) this velocity is 0 already.
     pub fn new(rod: &Rod, speed: f64, regime: ContactRegime) -> Self {
+        Self::with_ratio(rod, speed, 1.0, regime)
+    }
+
+    /// The model of one bounce that comes down at `speed` v > 0 (m/s) and rises at `ratio` r times v: flight time 2rv/G.
+    ///
+    /// To first order the normal impulse is (1 + r)v for every e and every law of restitution. With friction the contact therefore ends
+    /// in sticking: the impulse P_t along the table takes the relative velocity ẋ + lθ̇ − vα of the contact point to 0. On a table that
+    /// moves along with it ([`ContactRegime::VelocityMatched`]) this velocity is 0 already.
+    pub fn with_ratio(rod: &Rod, speed: f64, ratio: f64, regime: ContactRegime) -> Self {
         let (l, rho_squared) = (rod.contact_distance, rod.radius_of_gyration * rod.radius_of_gyration);
         // A sticking contact turns the rod about the contact point.
         let about_contact = rho_squared + l * l;
         let (light, heavy) = (rho_squared / about_contact, l * l / about_contact);
-        let kick = 2.0 * speed;
+        let kick = (1.0 + ratio) * speed;
         // Derivatives of ẋ⁺ and θ̇⁺ by (θ, ẋ, θ̇) and by α.
         let (x_dot, theta_dot) = match regime {
             ContactRegime::Frictionless => {
@@ -68,10 +73,14 @@ impl BounceModel {
             }
             ContactRegime::Sticking => {
                 let lever = l / about_contact;
-                (([-kick * heavy, heavy, -light * l], -speed * light), ([kick * lever, -lever, light], -speed * lever))
+                let tilted = kick - speed;
+                (
+                    ([-kick * heavy, heavy, -light * l], -tilted * light),
+                    ([kick * lever, -lever, light], -tilted * lever),
+                )
             }
         };
-        let flight_time = kick / rod.gravity;
+        let flight_time = 2.0 * ratio * speed / rod.gravity;
         let velocity = |([theta, x_dot, theta_dot], _): ([f64; 3], f64)| RowVector4::new(0.0, theta, x_dot, theta_dot);
         let (x_row, theta_row) = (velocity(x_dot), velocity(theta_dot));
         let a = Matrix4::from_rows(&[

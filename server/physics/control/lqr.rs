@@ -1,8 +1,10 @@
 //! The linear-quadratic regulator (LQR): the gain that is optimal for given weights on the state and on the tilt.
 
 use crate::control::bounce_model::{BounceModel, STABLE};
+use crate::control::care;
 use crate::control::riccati;
-use nalgebra::{Matrix3, Vector3};
+use crate::control::riccati::RiccatiSolution;
+use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
 
 /// Largest residual of the Riccati equation at which its solution still has trustworthy digits.
 pub const RESIDUAL: f64 = 1e-8;
@@ -36,23 +38,58 @@ pub enum DesignFailure {
 /// # Errors
 /// [`DesignFailure`].
 pub fn design_lqr(model: &BounceModel, state: [f64; 4], input: f64) -> Result<LqrDesign, DesignFailure> {
+    let design = gain(model, state, input)?;
+    let spectral_radius =
+        model.closed_loop(design.gain, state[0] != 0.0).map_or(f64::NAN, |closed| closed.spectral_radius);
+    if spectral_radius <= STABLE { Ok(design) } else { Err(DesignFailure::Unseen(spectral_radius)) }
+}
+
+/// [`design_lqr`] without the eigenvalues of the closed loop: for weights that see every mode.
+///
+/// # Errors
+/// [`DesignFailure::Diverging`] and [`DesignFailure::Inaccurate`].
+pub(crate) fn gain(model: &BounceModel, state: [f64; 4], input: f64) -> Result<LqrDesign, DesignFailure> {
+    design(&model.a, &model.b, state, riccati::solve, riccati::solve, input)
+}
+
+/// The law α = −K·s that minimizes the integral of sᵀ diag(`state`) s + `input` α² for ṡ = As + Bα, s as in
+/// [`crate::control::bounce_model::STATE`].
+///
+/// # Errors
+/// As for [`gain`].
+pub(crate) fn design_continuous(
+    a: &Matrix4<f64>,
+    b: &Vector4<f64>,
+    state: [f64; 4],
+    input: f64,
+) -> Result<LqrDesign, DesignFailure> {
+    design(a, b, state, care::solve, care::solve, input)
+}
+
+/// A solver of a Riccati equation with N states: A, B, the weights on the states and on the input.
+type Solver<const N: usize> =
+    fn(&SMatrix<f64, N, N>, &SVector<f64, N>, &SVector<f64, N>, f64) -> Option<RiccatiSolution<N>>;
+
+/// The law by a solver for all four states, or for three if x has no weight.
+fn design(
+    a: &Matrix4<f64>,
+    b: &Vector4<f64>,
+    state: [f64; 4],
+    all: Solver<4>,
+    without_x: Solver<3>,
+    input: f64,
+) -> Result<LqrDesign, DesignFailure> {
     let (gain, residual, iterations) = if state[0] == 0.0 {
-        let (a, b): (Matrix3<f64>, Vector3<f64>) =
-            (model.a.fixed_view::<3, 3>(1, 1).into(), model.b.fixed_rows::<3>(1).into());
-        let found = riccati::solve(&a, &b, &Vector3::new(state[1], state[2], state[3]), input);
+        let (a, b): (Matrix3<f64>, Vector3<f64>) = (a.fixed_view::<3, 3>(1, 1).into(), b.fixed_rows::<3>(1).into());
+        let found = without_x(&a, &b, &Vector3::new(state[1], state[2], state[3]), input);
         let found = found.ok_or(DesignFailure::Diverging)?;
         ([0.0, found.gain[0], found.gain[1], found.gain[2]], found.residual, found.iterations)
     } else {
-        let found = riccati::solve(&model.a, &model.b, &state.into(), input).ok_or(DesignFailure::Diverging)?;
+        let found = all(a, b, &state.into(), input).ok_or(DesignFailure::Diverging)?;
         (found.gain.into(), found.residual, found.iterations)
     };
     if residual.is_nan() || residual > RESIDUAL {
         return Err(DesignFailure::Inaccurate(residual));
     }
-    let spectral_radius = model.closed_loop(gain, state[0] != 0.0).map_or(f64::NAN, |it| it.spectral_radius);
-    if spectral_radius <= STABLE {
-        Ok(LqrDesign { gain, residual, iterations })
-    } else {
-        Err(DesignFailure::Unseen(spectral_radius))
-    }
+    Ok(LqrDesign { gain, residual, iterations })
 }

@@ -1,0 +1,303 @@
+//! A catch as data: its strikes, its hold, what it asks of the table, and how it ends.
+
+use super::settings::{Approach, CatchSettings};
+use crate::body::Touch;
+use crate::bounce::state::State;
+use crate::bounce::strike::ContactMode;
+use crate::control::lqr::DesignFailure;
+use crate::table::actuator_load::{ActuatorLoad, LimitViolation};
+
+/// One strike of a catch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CatchStrike {
+    /// Number of the contact, from 1.
+    pub n: u64,
+    /// Time of the run, s.
+    pub t: f64,
+    /// Horizontal place of the centre of gravity, m.
+    pub x: f64,
+    /// Angle and velocities just before it.
+    pub state: State,
+    /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
+    pub clearance: f64,
+    /// α, tilt of the table, rad.
+    pub alpha: f64,
+    /// w, velocity of the table along its normal, m/s, up positive.
+    pub table_velocity: f64,
+    /// Velocity of the table in x and y, m/s.
+    pub table_velocity_xy: (f64, f64),
+    /// P_n per unit mass, m/s.
+    pub impulse_normal: f64,
+    /// P_t per unit mass, m/s.
+    pub impulse_tangential: f64,
+    /// Mode of the contact along the table.
+    pub contact_mode: ContactMode,
+    /// Height ratio ẏ_c⁺/|ẏ_c| that it reached.
+    pub ratio: f64,
+    /// ẏ_c just before, m/s.
+    pub contact_speed: f64,
+    /// Time to the next contact, s; `None` after the last strike.
+    pub flight_time: Option<f64>,
+    /// Angle and velocities just after it.
+    pub after: State,
+}
+
+/// Reason for which a body fell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fall {
+    /// |θ| reached the topple angle; both in rad.
+    Toppled {
+        /// θ then.
+        theta: f64,
+        /// The topple angle.
+        limit: f64,
+    },
+    /// Another vertex than the one that bounces met the table.
+    OtherVertex(Touch),
+}
+
+/// Reason for which a body was not caught although it did not fall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Escape {
+    /// The table never meets the body: a planned table is missed.
+    Missed,
+    /// The contact point does not approach the table, by this relative velocity along its normal, m/s.
+    Separating(f64),
+    /// A strike at this tilt (rad) pushes the contact point down: no speed of the table can reach the height ratio.
+    NoLift(f64),
+    /// No gain is known at this contact speed, m/s.
+    NoLaw(f64),
+    /// No plan reaches rest from this contact.
+    NoPlan,
+    /// A speed (m/s) passed the largest that a run may reach.
+    Diverged(f64),
+    /// The strikes did not end by this number.
+    TooManyStrikes(u64),
+    /// The contact was lost at this time, s: no force of the table keeps it.
+    ContactLost(f64),
+    /// The hold passed its work limit at this time, s.
+    HoldTooLong(f64),
+}
+
+/// Outcome of a catch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CatchOutcome {
+    /// The body stayed in contact for all the time that was followed.
+    Held,
+    /// A polygon lies on the edge between these two vertices.
+    RestsOnEdge {
+        /// Indices in the order in which the vertices were given.
+        vertices: [usize; 2],
+    },
+    /// It fell at this time, s.
+    Fell {
+        /// s.
+        t: f64,
+        /// Reason.
+        fall: Fall,
+    },
+    /// The contact slipped at this time: it needs more friction than there is.
+    Slipped {
+        /// s.
+        t: f64,
+        /// |F_t|/F_n that would be needed.
+        needed: f64,
+    },
+    /// The table would have to go beyond one of its limits at this time.
+    BeyondLimits {
+        /// s.
+        t: f64,
+        /// Limit.
+        violation: LimitViolation,
+    },
+    /// It was not caught, and did not fall, up to this time.
+    NotCaught {
+        /// s.
+        t: f64,
+        /// Reason.
+        escape: Escape,
+    },
+}
+
+/// Outcomes by name, without their numbers. Their order is that of counts and of codes in maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum CatchOutcomeKind {
+    /// [`CatchOutcome::Held`].
+    Held,
+    /// [`CatchOutcome::RestsOnEdge`].
+    RestsOnEdge,
+    /// [`CatchOutcome::Fell`].
+    Fell,
+    /// [`CatchOutcome::Slipped`].
+    Slipped,
+    /// [`CatchOutcome::BeyondLimits`].
+    BeyondLimits,
+    /// [`CatchOutcome::NotCaught`].
+    NotCaught,
+}
+
+impl CatchOutcomeKind {
+    /// All of them, each at the place of its number.
+    pub const ALL: [Self; 6] =
+        [Self::Held, Self::RestsOnEdge, Self::Fell, Self::Slipped, Self::BeyondLimits, Self::NotCaught];
+
+    /// Name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Held => "held",
+            Self::RestsOnEdge => "rests_on_edge",
+            Self::Fell => "fell",
+            Self::Slipped => "slipped",
+            Self::BeyondLimits => "beyond_limits",
+            Self::NotCaught => "not_caught",
+        }
+    }
+}
+
+impl CatchOutcome {
+    /// The outcome without its numbers.
+    pub fn kind(&self) -> CatchOutcomeKind {
+        match self {
+            Self::Held => CatchOutcomeKind::Held,
+            Self::RestsOnEdge { .. } => CatchOutcomeKind::RestsOnEdge,
+            Self::Fell { .. } => CatchOutcomeKind::Fell,
+            Self::Slipped { .. } => CatchOutcomeKind::Slipped,
+            Self::BeyondLimits { .. } => CatchOutcomeKind::BeyondLimits,
+            Self::NotCaught { .. } => CatchOutcomeKind::NotCaught,
+        }
+    }
+
+    /// True if the body came to stay on the table: upright, or on an edge.
+    pub fn is_caught(&self) -> bool {
+        matches!(self.kind(), CatchOutcomeKind::Held | CatchOutcomeKind::RestsOnEdge)
+    }
+}
+
+/// Reach of a lasting contact.
+///
+/// To first order a contact without friction has θ̈ = (Gl/ρ²)(θ − α), so its growing part u = θ + θ̇ρ/√(Gl) follows u̇ = (√(Gl)/ρ)(u − α): a
+/// table that tilts up to α_max turns it back for |u| < α_max only. A contact that sticks has ρ² + l² in place of ρ² and a/G ≤ μ, the
+/// acceleration that friction transmits, in place of α.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// |u| as the contact begins, rad.
+    pub theta: f64,
+    /// Largest |u| that can be turned back, rad.
+    pub limit: f64,
+}
+
+/// Times of the run from which the body stays upright and in place up to the end, s; `None` if it does not get there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct UprightWithin {
+    /// |θ| ≤ 1 mrad.
+    pub theta_1mrad: Option<f64>,
+    /// |x| ≤ 1 mm.
+    pub x_1mm: Option<f64>,
+}
+
+/// Demands of a catch on the table, over strikes and hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CatchDemand {
+    /// Largest tilt, tilt rate, speed and stroke.
+    pub load: ActuatorLoad,
+    /// Way of the table along x in contact, m.
+    pub travel: f64,
+    /// Friction that a contact without slip needs.
+    pub least_friction: f64,
+    /// Largest force along the normal in contact, per unit mass, m/s².
+    pub most_normal_force: f64,
+}
+
+/// A fact about a catch that is told beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CatchNote {
+    /// The energy feedback of the scene with its target would not catch: it slows down as 2/(aGt), a = (1 + e)κ_E/2, and passes
+    /// [`super::settings::HOLD_SPEED`] only after `time`, s.
+    EnergyFeedbackNeverSettles {
+        /// s.
+        time: f64,
+    },
+    /// The scene's table does not move along itself; the table of a catch moves along with a contact that has friction.
+    MovesAlongItself,
+    /// The table believes a restitution that is wrong, so that the first strike reached a ratio other than the one aimed for.
+    WrongBelief {
+        /// Height ratio aimed for.
+        aimed: f64,
+        /// Height ratio reached.
+        reached: f64,
+    },
+    /// The contact began at this vertical velocity of the contact point (m/s); the table moved along with it and braked.
+    RodeAlong {
+        /// m/s.
+        speed: f64,
+    },
+    /// The body was still turning as the contact began, rad/s: the bounces had ended, its motion had not.
+    StillTurning {
+        /// rad/s.
+        theta_dot: f64,
+    },
+    /// The plan could not be made again at this contact; the strikes from there on are those of `bounce_down`.
+    PlanGivenUp {
+        /// Number of the contact.
+        n: u64,
+    },
+    /// The contact began outside its [`Reach`].
+    OutOfReach(Reach),
+    /// At the end of the hold the body was not within 1 mrad of upright.
+    NotYetUpright {
+        /// θ then, rad.
+        theta: f64,
+    },
+}
+
+/// A strategy that was compared with the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// The strategy with its numbers.
+    pub approach: Approach,
+    /// Its demand, up to its end.
+    pub demand: CatchDemand,
+    /// Beginning of its lasting contact, s.
+    pub contact_from: Option<f64>,
+    /// Its outcome. One that is not caught rules it out.
+    pub outcome: CatchOutcome,
+    /// True for the one that was taken.
+    pub taken: bool,
+}
+
+/// A catch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Catch {
+    /// Settings that were asked for.
+    pub settings: CatchSettings,
+    /// The strategy that was used, with its numbers.
+    pub approach: Approach,
+    /// The strategies that were compared, if none was asked for.
+    pub candidates: Vec<Candidate>,
+    /// Strikes.
+    pub strikes: Vec<CatchStrike>,
+    /// Beginning of the lasting contact, s.
+    pub contact_from: Option<f64>,
+    /// Times from which it stays upright.
+    pub upright_within: UprightWithin,
+    /// Demands on the table.
+    pub demand: CatchDemand,
+    /// Reach, if there was a lasting contact.
+    pub reach: Option<Reach>,
+    /// Facts beside it.
+    pub notes: Vec<CatchNote>,
+    /// Outcome.
+    pub outcome: CatchOutcome,
+}
+
+/// Reason for which there is no catch to tell of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CatchFailure {
+    /// A point mass has no angle to hold.
+    Point,
+    /// The weights give no law in contact.
+    NoLaw(DesignFailure),
+    /// The caller stopped it.
+    Stopped,
+}

@@ -1,0 +1,141 @@
+//! Settings of a catch: the strategy, and the numbers of each.
+
+use std::ops::RangeInclusive;
+
+/// Contact speed after a strike, m/s, below which the table stays with the body: the lasting contact begins.
+pub const HOLD_SPEED: f64 = 5e-3;
+
+/// Height ratios that may be asked for. Below, one strike stops the body and no flight is left to steer in; above, the strikes do not end.
+pub const RATIOS: RangeInclusive<f64> = 0.05..=0.98;
+
+/// Height ratios of a plan; at 1 all strikes but the last keep the height.
+pub const PLAN_RATIOS: RangeInclusive<f64> = 0.05..=1.0;
+
+/// Height ratio of [`Strategy::BounceDown`] if none is asked for.
+pub const DEFAULT_RATIO: f64 = 0.5;
+
+/// Strikes of a plan before its stop, if no number is asked for.
+pub const DEFAULT_STRIKES: u32 = 8;
+
+/// Height ratio of a plan if none is asked for.
+pub const DEFAULT_PLAN_RATIO: f64 = 0.8;
+
+/// Most strikes of a catch. From 44 m/s down to [`HOLD_SPEED`] the largest of [`RATIOS`] takes 450.
+pub const MOST_STRIKES: u64 = 1000;
+
+/// Decelerations of the table, m/s², that may be asked for.
+pub const BRAKES: RangeInclusive<f64> = 0.01..=1e4;
+
+/// Weights on (x, θ, ẋ, θ̇) if none are asked for.
+pub const DEFAULT_STATE_WEIGHTS: [f64; 4] = [1.0, 10.0, 0.1, 0.1];
+
+/// Weight on the tilt if none is asked for.
+pub const DEFAULT_INPUT_WEIGHT: f64 = 10.0;
+
+/// Time in contact that is followed, s, if none is asked for.
+pub const DEFAULT_HOLD: f64 = 6.0;
+
+/// Strategy of a catch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Strategy {
+    /// Strikes that take a share of the speed each, tilted by a gain that is scheduled on the contact speed.
+    BounceDown,
+    /// Strikes with the least tilts that bring the body to rest, and a stop.
+    Plan,
+    /// No strike: the table meets the body at its own speed and brakes.
+    Brake,
+}
+
+impl Strategy {
+    /// All of them, in the order in which [`super::catch`] tries them.
+    pub const ALL: [Self; 3] = [Self::BounceDown, Self::Plan, Self::Brake];
+
+    /// Name in requests and answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::BounceDown => "bounce_down",
+            Self::Plan => "plan",
+            Self::Brake => "brake",
+        }
+    }
+}
+
+/// Settings of a catch; `None` leaves the choice to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CatchSettings {
+    /// Strategy; `None` compares them all.
+    pub strategy: Option<Strategy>,
+    /// Height ratio ẏ_c⁺/|ẏ_c| of a strike, in [`RATIOS`], of a plan in [`PLAN_RATIOS`].
+    pub ratio: Option<f64>,
+    /// Strikes of a plan before its stop.
+    pub strikes: Option<u32>,
+    /// Deceleration of the table in contact, m/s², in [`BRAKES`]; by default G.
+    pub brake: Option<f64>,
+    /// Weights on (x, θ, ẋ, θ̇), as for state feedback.
+    pub state_weights: [f64; 4],
+    /// Weight on the tilt.
+    pub input_weight: f64,
+    /// Time in contact that is followed, s.
+    pub hold: f64,
+}
+
+impl Default for CatchSettings {
+    fn default() -> Self {
+        Self {
+            strategy: None,
+            ratio: None,
+            strikes: None,
+            brake: None,
+            state_weights: DEFAULT_STATE_WEIGHTS,
+            input_weight: DEFAULT_INPUT_WEIGHT,
+            hold: DEFAULT_HOLD,
+        }
+    }
+}
+
+/// A strategy with its numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Approach {
+    /// [`Strategy::BounceDown`].
+    BounceDown {
+        /// Height ratio.
+        ratio: f64,
+    },
+    /// [`Strategy::Plan`].
+    Plan {
+        /// Strikes before the stop.
+        strikes: u32,
+        /// Height ratio of these strikes.
+        ratio: f64,
+    },
+    /// [`Strategy::Brake`].
+    Brake {
+        /// Deceleration of the table, m/s².
+        deceleration: f64,
+    },
+}
+
+impl Approach {
+    /// The strategy.
+    pub fn strategy(&self) -> Strategy {
+        match self {
+            Self::BounceDown { .. } => Strategy::BounceDown,
+            Self::Plan { .. } => Strategy::Plan,
+            Self::Brake { .. } => Strategy::Brake,
+        }
+    }
+}
+
+impl CatchSettings {
+    /// The numbers of a strategy under gravity G (m/s²).
+    pub fn approach(&self, strategy: Strategy, gravity: f64) -> Approach {
+        match strategy {
+            Strategy::BounceDown => Approach::BounceDown { ratio: self.ratio.unwrap_or(DEFAULT_RATIO) },
+            Strategy::Plan => Approach::Plan {
+                strikes: self.strikes.unwrap_or(DEFAULT_STRIKES),
+                ratio: self.ratio.unwrap_or(DEFAULT_PLAN_RATIO),
+            },
+            Strategy::Brake => Approach::Brake { deceleration: self.brake.unwrap_or(gravity) },
+        }
+    }
+}

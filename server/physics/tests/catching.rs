@@ -1,0 +1,143 @@
+//! Catching: the reference catches strike by strike, the gain schedule, and properties over random releases.
+
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::catching::catch;
+use equipoise_physics::catching::gain_schedule::{GainSchedule, contact_gain};
+use equipoise_physics::catching::outcome::Catch;
+use equipoise_physics::catching::settings::{CatchSettings, Strategy};
+use equipoise_physics::control::lqr::DesignFailure;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::contact_regime::ContactRegime;
+use equipoise_physics::table::control_law::Gains;
+use serde_json::Value as Json;
+use std::path::Path;
+
+const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
+
+/// The body of the paper, released at rest at 0.25 m and 0.1 rad, with these fields besides.
+fn scene(fields: &[(Name, f64)]) -> Scene {
+    let mut draft = Draft::default();
+    let usual = [
+        (Name::ContactDistance, 0.4 / 3.0),
+        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
+        (Name::TiltGain, 1.1),
+        (Name::Height, 0.25),
+        (Name::Theta, 0.1),
+    ];
+    for (name, number) in usual.into_iter().chain(fields.iter().copied()) {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft.build().unwrap()
+}
+
+fn caught(scene: &Scene, settings: CatchSettings) -> Catch {
+    catch(scene, &settings, &mut || true).unwrap()
+}
+
+fn bounce_down(ratio: f64) -> CatchSettings {
+    CatchSettings { strategy: Some(Strategy::BounceDown), ratio: Some(ratio), ..CatchSettings::default() }
+}
+
+fn reference() -> Json {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/catching.json");
+    serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap()
+}
+
+fn array(gains: Gains) -> [f64; 4] {
+    [gains.x, gains.theta, gains.x_dot, gains.theta_dot]
+}
+
+fn distance(a: Gains, b: Gains) -> f64 {
+    array(a).into_iter().zip(array(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn bounces_go_down_strike_by_strike_as_in_the_reference() {
+    let catch = caught(&scene(&[]), bounce_down(0.5));
+    let reference = &reference()["bounce_down"];
+    let expected = reference["strikes"].as_array().unwrap();
+    assert_eq!(catch.strikes.len(), expected.len());
+    let number = |json: &Json| json.as_f64().unwrap();
+    for (strike, expected) in catch.strikes.iter().zip(expected) {
+        for (name, value) in [
+            ("n", strike.n as f64),
+            ("t", strike.t),
+            ("x", strike.x),
+            ("th", strike.state.theta),
+            ("xd", strike.state.x_dot),
+            ("yd", strike.state.y_dot),
+            ("thd", strike.state.theta_dot),
+            ("al", strike.alpha),
+            ("w", strike.table_velocity),
+            ("P", strike.impulse_normal),
+            ("r", strike.ratio),
+            ("vc", -strike.contact_speed),
+        ] {
+            let difference = (value - number(&expected[name])).abs();
+            assert!(difference < 1e-10, "{name} of strike {}: {value} is off by {difference:e}", strike.n);
+        }
+        assert_eq!(strike.flight_time.is_some(), expected["tau"].is_f64(), "{}", strike.n);
+    }
+    assert!((catch.contact_from.unwrap() - number(&reference["t_hold"])).abs() < 1e-11);
+    let (after, expected) = (catch.strikes.last().unwrap().after, &reference["state_at_hold"]);
+    for (name, value) in [("th", after.theta), ("xd", after.x_dot), ("yd", after.y_dot), ("thd", after.theta_dot)] {
+        assert!((value - number(&expected[name])).abs() < 1e-10, "{name}: {value}");
+    }
+}
+
+#[test]
+fn the_gain_in_contact_is_that_of_the_reference() {
+    let rod: Rod = scene(&[]).parameters();
+    let gains = contact_gain(&rod, rod.gravity, ContactRegime::Frictionless, WEIGHTS.0, WEIGHTS.1).unwrap();
+    for (gain, expected) in array(gains).into_iter().zip(reference()["bounce_down"]["K_hold"].as_array().unwrap()) {
+        assert!((gain - expected.as_f64().unwrap()).abs() < 1e-9, "{gains:?}");
+    }
+    for (gain, expected) in array(gains).into_iter().zip([0.3162, -2.9078, 0.3647, -0.2463]) {
+        assert!((gain - expected).abs() < 5e-5, "{gains:?}");
+    }
+}
+
+#[test]
+fn the_gain_schedule_is_continuous_into_the_contact() {
+    let rod: Rod = scene(&[]).parameters();
+    for regime in [ContactRegime::Frictionless, ContactRegime::VelocityMatched] {
+        for ratio in [0.2, 0.5, 0.9, 1.0] {
+            let schedule = GainSchedule { rod, regime, ratio, state_weights: WEIGHTS.0, input_weight: WEIGHTS.1 };
+            let limit = schedule.limit().unwrap();
+            // The distance shrinks in proportion to the speed.
+            for speed in [1e-2, 1e-3, 1e-4] {
+                let off = distance(schedule.gain(speed).unwrap(), limit);
+                assert!(off < 20.0 * speed, "{regime:?} r = {ratio}, v = {speed}: off by {off}");
+            }
+            // And nothing jumps on the way.
+            let mut speed = 3.0;
+            while speed > 1e-3 {
+                let (here, near) = (schedule.gain(speed).unwrap(), schedule.gain(speed * 0.99).unwrap());
+                assert!(distance(here, near) < 0.1 * speed.min(1.0), "{regime:?} r = {ratio}, v = {speed}");
+                speed *= 0.9;
+            }
+        }
+        // Strikes that keep the height push with the weight.
+        let all = GainSchedule { rod, regime, ratio: 1.0, state_weights: WEIGHTS.0, input_weight: WEIGHTS.1 };
+        let at_rest = contact_gain(&rod, rod.gravity, regime, WEIGHTS.0, WEIGHTS.1).unwrap();
+        assert!(distance(all.limit().unwrap(), at_rest) < 1e-12);
+        assert!(distance(all.gain(1e-5).unwrap(), at_rest) < 1e-3);
+    }
+}
+
+#[test]
+fn weights_that_see_nothing_give_no_law() {
+    let rod: Rod = scene(&[]).parameters();
+    let gains = contact_gain(&rod, rod.gravity, ContactRegime::Frictionless, [0.0; 4], 1.0);
+    assert!(gains.is_ok() || gains == Err(DesignFailure::Diverging), "{gains:?}");
+    // Without a weight on x the law leaves x out.
+    let schedule = GainSchedule {
+        rod,
+        regime: ContactRegime::Frictionless,
+        ratio: 0.5,
+        state_weights: [0.0, 10.0, 0.1, 0.1],
+        input_weight: 10.0,
+    };
+    assert_eq!(schedule.gain(1.0).unwrap().x, 0.0);
+    assert_eq!(schedule.limit().unwrap().x, 0.0);
+}
