@@ -7,6 +7,7 @@ mod angle_history;
 mod basin;
 mod boundary;
 mod case;
+mod catching;
 mod contact;
 mod derivative;
 mod eigenvalue;
@@ -17,7 +18,7 @@ mod steps;
 pub use case::{FailureCase, Findings, MethodClaim};
 
 /// All cases, in the order in which they are shown.
-pub const CASES: [FailureCase; 15] = [
+pub const CASES: [FailureCase; 17] = [
     boundary::SOFT,
     boundary::HARD,
     boundary::HARD_WITH_FEEDBACK,
@@ -33,6 +34,8 @@ pub const CASES: [FailureCase; 15] = [
     steps::ZENO,
     contact::TRIVIAL_ROOT,
     horizon::CHAOS,
+    catching::LOW_TARGET,
+    catching::CONTACT_GAIN,
 ];
 
 /// The case of this name.
