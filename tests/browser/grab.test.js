@@ -72,6 +72,30 @@ test('the table holds the rod up, and Escape puts it back', async () => {
   clean();
 });
 
+test('a rod in hand stays in the picture', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0');
+  const { middle } = await places(page);
+  const frame = await page.locator('#scene-frame').boundingBox();
+  await page.mouse.move(...middle);
+  await page.mouse.down();
+  await page.mouse.move(middle[0], frame.y - 60, { steps: 4 });
+  await readout(page, /Held/);
+  const held = (await places(page)).middle;
+  assert.ok(held[1] > frame.y, `${held[1]} px, the picture begins at ${frame.y} px`);
+  await page.mouse.move(frame.x + frame.width + 40, middle[1], { steps: 4 });
+  await page.waitForFunction(
+    (right) => {
+      const { x, width } = document.querySelector('#grab').getBoundingClientRect();
+      return x + width / 2 > right;
+    },
+    frame.x + frame.width * 0.9,
+  );
+  assert.ok((await places(page)).middle[0] < frame.x + frame.width);
+  await page.keyboard.press('Escape');
+  await page.mouse.up();
+  clean();
+});
+
 test('during a run the drag holds the picture, and letting go is a new release', async () => {
   const { page, clean } = await stage.page('?preset=case-1&speed=0.05');
   await wake(page);

@@ -69,6 +69,14 @@ export const toX = ({ left, width, x }, value) => left + ((value - x.low) / (x.h
 /** @param {Frame} frame @param {number} value */
 export const toY = ({ top, height, y }, value) => top + height - ((value - y.low) / (y.high - y.low)) * height;
 
+const NAME_FONT = `italic 13px ${SERIF}`;
+
+/** Width of the name of an axis, px. @param {CanvasRenderingContext2D} context @param {string} name */
+export function axisNameWidth(context, name) {
+  context.font = NAME_FONT;
+  return context.measureText(shownUnit(name)).width;
+}
+
 /** Ticks that are round in the unit that is shown, and their numbers. @param {Range} range @param {number} count @param {string} name */
 function shownTicks({ low, high }, count, name) {
   const [, unit = null] = /(?: \/ | \()([^()]+)\)?$/.exec(name) ?? [];
@@ -104,7 +112,7 @@ export function drawAxes(context, frame, xName, yName) {
   }
   context.strokeStyle = colours.line;
   context.strokeRect(left + 0.5, top + 0.5, width - 1, height - 1);
-  context.font = `italic 13px ${SERIF}`;
+  context.font = NAME_FONT;
   context.fillStyle = colours.ink;
   context.textBaseline = 'top';
   context.textAlign = 'right';

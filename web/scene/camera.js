@@ -61,7 +61,7 @@ export class Camera {
     const { width } = this.#surface;
     const { floor } = this;
     // Below the height of the contacts there is room for a tilted table and its foot.
-    const depth = Math.max(58, floor * 0.2);
+    const depth = Math.min(Math.max(58, floor * 0.2), floor * 0.3);
     const metre = Math.max(1e-9, (floor - depth - 6) / this.shown);
     return {
       x: (x) => width / 2 + (x - this.x) * metre,

@@ -27,6 +27,8 @@ export class RunDrawing {
   #parts;
   #drawn_ms = 0;
   #read_ms = -Infinity;
+  /** The end of the picture with the numbers of the newest strike. @type {'left' | 'right'} */
+  #numbersAt = 'right';
 
   /** @param {Parts} parts of the view */
   constructor(parts) {
@@ -63,7 +65,7 @@ export class RunDrawing {
     drawRod(context, scale, scene, pose);
     const strength = impact ? this.#glow(now, impact.t, moving) : 0;
     if (impact && strength > 0) drawStrike(context, scale, impact, last, strength);
-    if (impact) tellStrike(context, scale, impact, camera.floor);
+    if (impact) this.#numbersAt = tellStrike(context, scale, impact, camera.floor, scale.x(table.x), this.#numbersAt);
     drew({ scene, pose, table, struck: strength > 0 });
     drawRulers(surface, camera);
     this.#say(now_ms, now, pose, impact);

@@ -18,6 +18,11 @@ const LEAST_PX = 26;
 const RAISED_PX = 8;
 /** Height of a line of numbers, px. */
 const LINE_PX = 14;
+/** Width of a scene with no room for long lines beside the table’s stand, px. */
+const NARROW_PX = 400;
+/** From the numbers to the edge of the picture, and to the middle of the stand, px. */
+const EDGE_PX = 10;
+const STAND_PX = 32;
 
 /**
  * Normal, impulse and its part along the table, which is friction, where rod and table met.
@@ -72,29 +77,39 @@ export function drawStrike(context, scale, impact, strike, strength) {
 }
 
 /**
- * The numbers of the newest strike, always at the same place: at the right end, below the level of the table.
+ * The numbers of the newest strike, below the level of the table: at one end, until the stand of the table comes there.
  * @param {Context} context
  * @param {Scale} scale
  * @param {import('../run/impacts.js').Impact} impact
  * @param {number} floor px
+ * @param {number} stand its middle, px
+ * @param {'left' | 'right'} end at which the numbers were last
+ * @returns {'left' | 'right'}
  */
-export function tellStrike(context, scale, impact, floor) {
+export function tellStrike(context, scale, impact, floor, stand, end) {
   const colours = theme();
   const { along, friction, rubs } = impulseOf(impact);
-  if (Number.isNaN(along)) return;
+  if (Number.isNaN(along)) return end;
   context.font = `11px ${SANS}`;
-  context.textAlign = 'right';
   context.textBaseline = 'bottom';
+  const narrow = scale.right < NARROW_PX;
+  /** @param {string} name @param {number} value @param {string} colour */
+  const perMass = (name, value, colour) => [colour, `${name}${narrow ? '/' : ' per '}mass ${fixed(value, 2)}\u202fm/s`];
   const words = [
     [colours.muted, `strike ${impact.n}`],
-    [colours.strike, `impulse per mass ${fixed(along, 2)}\u202fm/s`],
     [colours.strike, `α ${fixedQuantity(impact.alpha, 'rad', 3)}`],
-    ...(rubs ? [[colours.good, `friction per mass ${fixed(friction, 2)}\u202fm/s`]] : []),
+    perMass('impulse', along, colours.strike),
+    ...(rubs ? [perMass('friction', friction, colours.good)] : []),
   ];
+  const room = Math.max(...words.map(([, text]) => context.measureText(text).width)) + EDGE_PX + STAND_PX;
+  const at = end === 'right' && stand > scale.right - room ? 'left' : end === 'left' && stand < room ? 'right' : end;
+  context.textAlign = at;
   words.forEach(([colour, text], index) => {
     context.fillStyle = colour;
-    context.fillText(text, scale.right - 10, floor - 3 - (words.length - 1 - index) * LINE_PX);
+    const x = at === 'right' ? scale.right - EDGE_PX : EDGE_PX;
+    context.fillText(text, x, floor - 3 - (words.length - 1 - index) * LINE_PX);
   });
+  return at;
 }
 
 /** The impulse per mass of a strike, and its part along the table. @param {import('../run/impacts.js').Impact} impact */

@@ -26,7 +26,8 @@ function menu(button, menu, show) {
     });
 }
 
-export function bringShell() {
+/** @param {() => void} changed another chart is shown @returns the switch, as far as the address knows it */
+export function bringShell(changed) {
   const tools = byId('tools');
   menu(byId('tools-open'), tools, (open) => tools.classList.toggle('open', open));
   const share = byId('share-menu');
@@ -44,6 +45,6 @@ export function bringShell() {
   present(button);
   button.disabled = false;
   sheets(byId('parts'));
-  chartSwitch(byId('other-charts'));
   chartTabs(byId('chart-tabs'), byId('charts'));
+  return chartSwitch(byId('other-charts'), changed);
 }

@@ -41,7 +41,7 @@ export async function bringLateParts(page) {
   const card = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card'));
   card.querySelector('.card-head')?.append(enlarger(card, 'Scene', () => savesOf(page, 'scene', 'Scene', view)));
   const others = await bringTimeline(page);
-  bringShell();
+  const chart = bringShell(() => updateAddressSoon(page));
   bringShare(page);
   listenToKeys(bindingsOf(page));
   const copyLink =
@@ -89,6 +89,7 @@ export async function bringLateParts(page) {
     follow: () => page.follow(false),
   });
   page.panels.join('brush', page.interaction);
+  page.panels.join('chart', chart);
   await styles('scene/tools/tools.css').catch(() => {});
   bringSceneTools({ ...actions, view, typed: () => page.complete });
   bringTracks(page);

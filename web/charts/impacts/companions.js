@@ -1,11 +1,11 @@
 // Marks beside the run's own dots: impacts to come, runs to compare with, measured points, a release that is only offered.
 
-import { include, line, toX, toY } from '../axes.js';
+import { axisNameWidth, include, line, toX, toY } from '../axes.js';
 import { SANS, theme } from '../theme.js';
 import { drawMark } from '../marks.js';
 
 /** @typedef {import('../axes.js').Range} Range */
-/** @typedef {{frame: import('../axes.js').Frame, meaning: Record<'x' | 'y', {column: import('../../run/impacts.js').Lasting}>}} Plot on which they are drawn */
+/** @typedef {{frame: import('../axes.js').Frame, meaning: Record<'x' | 'y', {column: import('../../run/impacts.js').Lasting, name: string}>}} Plot on which they are drawn */
 /** @typedef {Record<string, ArrayLike<number | null> | undefined>} Columns of impacts, as `/v1/trajectories` answers */
 
 /**
@@ -30,6 +30,9 @@ const SYMBOLS = '●■◆▲';
 const STAYS = 0.45;
 /** The radius of a ring, px. */
 const RING = 2.2;
+/** Width of a mark in the legend, and room after its words, px. */
+const MARK = 11;
+const APART = 10;
 /** Numbers of one run and of its preview differ by no more than this, of their size: they are the same bounce. */
 const SAME = 1e-9;
 
@@ -228,33 +231,35 @@ export class Companions {
 
   /** The names of the marks, left of the name of the axis. @param {CanvasRenderingContext2D} context @param {number} count of rings */
   #legend(context, count) {
-    const { frame } = this.#plot;
+    const { frame, meaning } = this.#plot;
     const colours = theme();
     const y = frame.top + frame.height + 27;
     let x = frame.left - 36;
+    const room = frame.left + frame.width - axisNameWidth(context, meaning.x.name) - x;
     context.font = `11px ${SANS}`;
     context.textAlign = 'left';
     context.textBaseline = 'middle';
+    const widthOf = (/** @type {string} */ words) => MARK + context.measureText(words).width + APART;
     /** @param {(x: number) => void} mark @param {string} words */
     const entry = (mark, words) => {
       mark(x + 4);
       context.fillStyle = colours.muted;
-      context.fillText(words, x + 11, y + 0.5);
-      x += 11 + context.measureText(words).width + 10;
+      context.fillText(words, x + MARK, y + 0.5);
+      x += widthOf(words);
     };
     if (count > 0) {
       const fresh = this.#impacts.end > 0 ? 'a fresh release' : `next ${count} impacts`;
       const words = this.ghost ? `next ${count} if released here` : fresh;
-      entry(
-        (at) => {
-          context.beginPath();
-          context.arc(at, y, RING + 0.6, 0, 2 * Math.PI);
-          context.lineWidth = 1;
-          context.strokeStyle = this.ghost ? colours.accent : colours.muted;
-          context.stroke();
-        },
-        frame.width < 190 ? `next ${count}` : words,
-      );
+      const left = this.references.reduce((rest, { label }) => rest - widthOf(label), room);
+      // The longest words that leave the name of the axis its place.
+      const fitting = [words, `next ${count}`, 'next'].find((one) => widthOf(one) <= left) ?? '';
+      entry((at) => {
+        context.beginPath();
+        context.arc(at, y, RING + 0.6, 0, 2 * Math.PI);
+        context.lineWidth = 1;
+        context.strokeStyle = this.ghost ? colours.accent : colours.muted;
+        context.stroke();
+      }, fitting);
     }
     for (const one of this.references)
       entry((at) => {

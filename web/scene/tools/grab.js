@@ -25,6 +25,8 @@ const SLIP = 4;
 const END = 0.5;
 /** An end nearer than this cannot be told from the centre, px. */
 const NEAR = 14;
+/** A pointer brings the centre of gravity no nearer to an edge of the picture, px. */
+const INSIDE = 14;
 /** Room for a finger around the rod, px. */
 const BROAD = 44;
 /** Decimals of a tilt by pointer. */
@@ -143,7 +145,15 @@ export class Grab {
   #drag(place, { x, y, from, tilts }) {
     const { scale } = /** @type {import('../bodies.js').Drawn} */ (this.#drawn);
     if (!tilts) {
-      this.#hold({ ...from, x: from.x + (place.x - x) / scale.metre, y: from.y - (place.y - y) / scale.metre });
+      // The picture does not move under a pointer, so the centre of gravity stays in it.
+      const within = (/** @type {number} */ px, /** @type {number} */ end) => Math.min(end, Math.max(INSIDE, px));
+      const right = within(scale.x(from.x) + place.x - x, scale.right - INSIDE);
+      const down = within(scale.y(from.y) + place.y - y, Infinity);
+      this.#hold({
+        ...from,
+        x: from.x + (right - scale.x(from.x)) / scale.metre,
+        y: from.y - (down - scale.y(from.y)) / scale.metre,
+      });
       return;
     }
     const about = (/** @type {number} */ px, /** @type {number} */ py) =>

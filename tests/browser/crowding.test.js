@@ -1,0 +1,151 @@
+// Words, numbers and controls keep clear of each other: in the planes, in the scene, in present mode and on a phone.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, reachImpact } from './stage.js';
+
+const stage = await Stage.open();
+const PINNED =
+  '?preset=case-1&pin.0.preset=case-1&pin.0.scene.table.tilt_gain=1.2&pin.1.preset=case-1&pin.1.scene.release.theta=0.2&pin.2.preset=case-2';
+
+/** Keeps the boxes of all words that a canvas shows. */
+function recordWords() {
+  globalThis.words = new Map();
+  const { fillText, clearRect } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.clearRect = function (...args) {
+    globalThis.words.set(this.canvas, []);
+    return clearRect.apply(this, args);
+  };
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
+    const { actualBoundingBoxLeft: left, actualBoundingBoxRight: right } = this.measureText(text);
+    const { actualBoundingBoxAscent: above, actualBoundingBoxDescent: below } = this.measureText(text);
+    const list = globalThis.words.get(this.canvas) ?? [];
+    list.push({ text, left: x - left, right: x + right, top: y - above, bottom: y + below });
+    globalThis.words.set(this.canvas, list);
+    return fillText.call(this, text, x, y, ...rest);
+  };
+}
+
+/** Pairs of words that overlap in a plane. */
+const overlaps = (page, id) =>
+  page.evaluate((plane) => {
+    const all = [...document.querySelectorAll(`#${plane} canvas`)].flatMap(
+      (canvas) => globalThis.words.get(canvas) ?? [],
+    );
+    return all.flatMap((one, index) =>
+      all
+        .slice(index + 1)
+        .filter(
+          (other) =>
+            one.left < other.right && other.left < one.right && one.top < other.bottom && other.top < one.bottom,
+        )
+        .map((other) => `${one.text} | ${other.text}`),
+    );
+  }, id);
+
+const drawn = (page) =>
+  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+for (const width of [1280, 1100, 390])
+  test(`the legend of a plane leaves the name of the axis its place, ${width} px wide`, async () => {
+    const { page, clean } = await stage.page(PINNED, { prepare: recordWords, viewport: { width, height: 844 } });
+    await page.waitForFunction(() => [...globalThis.words.values()].flat().some(({ text }) => text === 'C'));
+    await page.waitForFunction(() => [...globalThis.words.values()].flat().some(({ text }) => /^next/.test(text)));
+    await drawn(page);
+    assert.deepEqual(await overlaps(page, 'plane-angle'), []);
+    // A release that is offered has longer words.
+    const box = await page.locator('#plane-angle .canvas-box').boundingBox();
+    await page.mouse.click(box.x + box.width * 0.6, box.y + box.height * 0.4);
+    await page.locator('#plane-angle .ghost button').first().waitFor();
+    await drawn(page);
+    assert.deepEqual(await overlaps(page, 'plane-angle'), []);
+    clean();
+  });
+
+for (const width of [1280, 800, 390])
+  test(`the numbers of a strike stand beside the stand of the table while presented, ${width} px wide`, async () => {
+    const { page, clean } = await stage.page('?preset=case-1&speed=5', {
+      viewport: { width, height: 800 },
+      prepare: () => {
+        globalThis.met = new Set();
+        globalThis.told = 0;
+        let stand = null;
+        const { moveTo, fillText } = CanvasRenderingContext2D.prototype;
+        CanvasRenderingContext2D.prototype.moveTo = function (x, y) {
+          // The foot of the stand is the only line as broad, 44 px long.
+          if (this.lineWidth === 5) stand = { left: x, right: x + 44 };
+          return moveTo.call(this, x, y);
+        };
+        CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
+          if (/^(strike|impulse|α)/.test(text) && stand && this.canvas.closest('#scene-frame')) {
+            const { actualBoundingBoxLeft: left, actualBoundingBoxRight: right } = this.measureText(text);
+            globalThis.told += 1;
+            if (x - left < stand.right && stand.left < x + right) globalThis.met.add(text);
+          }
+          return fillText.call(this, text, x, y, ...rest);
+        };
+      },
+    });
+    await page.locator('#present:enabled').waitFor({ state: 'attached' });
+    await page.locator('body').press('p');
+    await page.locator('html.presenting').waitFor();
+    await page.click('#run');
+    await reachImpact(page, 80);
+    assert.ok((await page.evaluate(() => globalThis.told)) > 100);
+    assert.deepEqual(await page.evaluate(() => [...globalThis.met]), []);
+    clean();
+  });
+
+/** The middles of the rows in which controls stand, px. */
+const rows = (page, selector) =>
+  page.locator(selector).evaluateAll((controls) => [
+    ...new Set(
+      controls
+        .filter((control) => control.checkVisibility())
+        .map((control) => {
+          const { top, height } = control.getBoundingClientRect();
+          return Math.round((top + height / 2) / 8);
+        }),
+    ),
+  ]);
+
+for (const [width, height] of [
+  [1280, 800],
+  [800, 900],
+  [390, 844],
+  [320, 640],
+])
+  test(`controls of the run stand in single rows, and the scene keeps its height, presented ${width} px wide`, async () => {
+    const { page, clean } = await stage.page('?preset=case-1', { viewport: { width, height } });
+    await page.locator('#present:enabled').waitFor({ state: 'attached' });
+    assert.equal((await rows(page, '#step-back, #step, #restart')).length, 1);
+    assert.equal((await rows(page, '.directions button')).length, 1);
+    await page.locator('body').press('p');
+    await page.locator('html.presenting').waitFor();
+    await drawn(page);
+    assert.equal((await rows(page, '#step-back, #step, #restart, #to-now')).length, 1);
+    assert.equal((await rows(page, '.directions button')).length, 1);
+    // Speed, kicks and the fork: a row each at most.
+    const controls = await page.locator('#controls').boundingBox();
+    assert.ok(controls.height < 130, `${controls.height} px`);
+    const frame = await page.locator('#scene-frame').boundingBox();
+    assert.ok(frame.height > 0.25 * height, `${frame.height} px`);
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= width, `${wide} px`);
+    clean();
+  });
+
+test('targets of the head are 44 px high on a phone', async () => {
+  const { page, clean } = await stage.page('?preset=case-1', { viewport: { width: 390, height: 844 }, hasTouch: true });
+  await page.locator('#present:enabled').waitFor({ state: 'attached' });
+  await page.click('#tools-open');
+  const small = await page
+    .locator('.bar :is(button, select)')
+    .evaluateAll((targets) =>
+      targets
+        .filter((target) => target.checkVisibility() && target.getBoundingClientRect().height < 44)
+        .map(({ id }) => id),
+    );
+  assert.deepEqual(small, []);
+  clean();
+});
