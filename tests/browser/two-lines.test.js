@@ -15,7 +15,18 @@ test('the setting keeps balance in plain words, with the field’s term and the 
   assert.doesNotMatch(plain(await page.locator('#verdict-card').innerText()), /this run ended|_gain|\bnull\b/);
   await page.click('#run');
   await reachImpact(page, 2);
-  assert.match(await thisRun(page), /^This run\s+Bounce \d+\s*$/);
+  assert.match(await thisRun(page), /^This run\s+Bounce \d+\s+Angle/);
+  // Its place, which the words of an end take, tells how far it has gone.
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  const n = Number(/Bounce (\d+)/.exec(await thisRun(page))[1]);
+  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${n}`)).json();
+  const told = (value) => String(Number(value.toPrecision(3)));
+  const most = (values) => told(Math.max(...values.map(Math.abs)));
+  const words = await thisRun(page);
+  assert.ok(words.includes(`up to ${most(impacts.theta)} rad`), words);
+  assert.ok(words.includes(`up to ${most(impacts.alpha)} rad`), words);
+  assert.ok(words.includes(`${told(Math.min(...impacts.x))} to ${told(Math.max(...impacts.x))} m`), words);
   clean();
 });
 

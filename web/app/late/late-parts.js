@@ -6,6 +6,7 @@ import { byId, h } from '../../dom/elements.js';
 import { brokenLinkNotice, clearNotice } from '../../dom/notices.js';
 import { enlarger } from '../../export/enlarge-button.js';
 import { styles } from '../../dom/styles.js';
+import { bringImpacts } from '../../panels/impacts/bring.js';
 import { Panels } from '../../panels/panels.js';
 import { bringPins } from '../../pins/bring.js';
 import { bringSceneTools } from '../../scene/tools/bring.js';
@@ -20,7 +21,7 @@ import { bindingsOf } from './key-bindings.js';
 import { listenToKeys } from './keys.js';
 import { savesOf } from './saves.js';
 import { bringSettings, bringTracks } from './settings.js';
-import { bringShare } from './share.js';
+import { bringShare, csvPath } from './share.js';
 
 /** @param {import('../page.js').Page} page */
 export async function bringLateParts(page) {
@@ -93,6 +94,7 @@ export async function bringLateParts(page) {
   await styles('scene/tools/tools.css').catch(() => {});
   bringSceneTools({ ...actions, view, typed: () => page.complete });
   bringTracks(page);
+  void bringImpacts({ run, query: () => playedQuery(page), csv: () => csvPath(page) });
   page.panels.join('pin', await bringPins(page, others));
   page.panels.restore(page.panelLink);
   if (page.judged) page.panels.judged(page.judged);

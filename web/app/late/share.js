@@ -53,10 +53,13 @@ export function bringShare(page) {
     entry(
       'save-csv',
       'Impacts as CSV',
-      fetched(() => withFormat(impactsPath(page)), 'equipoise-impacts.csv'),
+      fetched(() => csvPath(page), 'equipoise-impacts.csv'),
     ),
   );
 }
 
-/** @param {string | null} path */
-const withFormat = (path) => path && `${path}&format=csv`;
+/** The call that gives the impacts of the plots as CSV. @param {import('../page.js').Page} page */
+export function csvPath(page) {
+  const path = impactsPath(page);
+  return path && `${path}&format=csv`;
+}

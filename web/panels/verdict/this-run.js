@@ -3,9 +3,14 @@
 import { h } from '../../dom/elements.js';
 import { number } from '../../dom/numbers.js';
 import { capitalized, prose } from '../../dom/typeset.js';
+import { UNITS } from '../../dom/units.js';
 import { endedAs, reasonOf } from './plain-words.js';
+import { RunExtent } from './run-extent.js';
 
 /** @typedef {import('../../run/run-state.js').RunState} RunState */
+
+/** Least time between two writings of the numbers of a run that goes on, ms. */
+const WRITTEN_MS = 250;
 
 const LABEL = () => h('p', { class: 'line-label' }, 'This run');
 
@@ -39,10 +44,18 @@ export class ThisRun {
   #detail = h('p', { class: 'muted' });
   #details = h('details', { class: 'run-details' }, h('summary', {}, 'Details'), this.#detail);
 
+  #extent = new RunExtent();
+  #written_ms = -Infinity;
+
   /** @param {HTMLElement} root */
   constructor(root) {
     this.#root = root;
-    root.replaceChildren(LABEL(), h('div', { id: 'outcome' }, this.#headline, this.#reason, this.#details));
+    root.replaceChildren(
+      LABEL(),
+      h('div', { id: 'outcome' }, this.#headline, this.#reason, this.#details),
+      this.#extent.element,
+    );
+    document.addEventListener(UNITS, () => this.#extent.write());
   }
 
   /** @param {RunState} run @param {import('../../api/scene-fields.js').Field[]} fields @returns {string} the run in a line */
@@ -54,6 +67,13 @@ export class ThisRun {
       this.#headline.replaceChildren(fact, ...after.map((deed) => h('span', { class: 'deed' }, `, after ${deed}`)));
     }
     const ended = phase === 'ended' && outcome !== null;
+    this.#extent.show(impacts);
+    const now_ms = performance.now();
+    // Numbers that change faster cannot be read.
+    if (phase !== 'running' || impacts.end === 0 || now_ms - this.#written_ms > WRITTEN_MS) {
+      this.#written_ms = now_ms;
+      this.#extent.write();
+    }
     const told = ended ? outcome.kind : `${phase} ${impacts.missing}`;
     if (this.#root.dataset.told === told) return words;
     this.#root.dataset.told = told;
@@ -61,6 +81,9 @@ export class ThisRun {
     const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} impacts were skipped over.` : '';
     this.#reason.textContent = ended ? `${capitalized(reasonOf(outcome.kind))}.` : skipped;
     this.#details.hidden = !ended;
+    // At an end the reason takes their place.
+    if (ended) this.#details.append(this.#extent.element);
+    else this.#root.append(this.#extent.element);
     this.#detail.replaceChildren(...prose(ended ? `${capitalized(outcome.detail)}. ${skipped}` : ''));
     return words;
   }

@@ -19,7 +19,7 @@ export function bringSceneTools({ view, ...parts }) {
   const box = byId('scene-frame');
   new Grab(box, { view, ...parts });
   offerSymbols(box, view);
-  byId('impacts-bar').before(aboutPicture());
+  byId('panel-run').append(aboutPicture());
 }
 
 /** @param {HTMLElement} box @param {import('../scene-view.js').SceneView} view */
