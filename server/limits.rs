@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use clap::builder::Resettable;
 use clap::{Args, Command, FromArgMatches};
+use equipoise_physics::contact::{LONGEST_HOLD, MOST_SAMPLES};
 
 use crate::flags::{seconds, within};
 use crate::memory;
@@ -206,6 +207,30 @@ pub const SPINNING_PRICE: u64 = 8;
 
 /// Price of designing a control law, in bounces: the picture follows the eigenvalues over more than a hundred gains, about 1.5 ms.
 pub const CONTROLLER_PRICE: u64 = 20_000;
+
+/// Longest time in contact after a catch, s: ten times the time in which the default weights bring a body to rest.
+pub const HOLD_TIME: f64 = LONGEST_HOLD;
+
+/// Rows of one hold: 140 kB of JSON. A canvas is no wider.
+pub const HOLD_SAMPLES: u64 = MOST_SAMPLES as u64;
+
+/// Most strikes of a planned catch before its stop. Each takes an unknown of the solver, and an error grows some 17 times a strike.
+pub const PLAN_STRIKES: u64 = 40;
+
+/// Price of a catch by bounces that die down, in bounces: about 1 ms.
+pub const CATCH_BOUNCE_DOWN_PRICE: u64 = 20_000;
+
+/// Price of a planned catch, in bounces: about 20 ms, with a new plan at each strike.
+pub const CATCH_PLAN_PRICE: u64 = 300_000;
+
+/// Price of a catch by a braking table, in bounces: about 1 ms.
+pub const CATCH_BRAKE_PRICE: u64 = 20_000;
+
+/// Price of each row of a hold, in bounces: computing and writing.
+pub const HOLD_SAMPLE_PRICE: u64 = 40;
+
+/// Price of a throw, in bounces: with friction a few thousand strikes of the search.
+pub const THROW_PRICE: u64 = 20_000;
 
 /// Samples of one flight. A canvas is no wider.
 pub const SAMPLES_PER_FLIGHT: u64 = 256;

@@ -38,7 +38,8 @@ fn resources() -> Vec<(&'static str, &'static Value, Value)> {
             "precision" => json!({"impacts": 2, "methods": ["map"]}),
             "periodic-orbits" => json!({"period": 1}),
             "ensembles" => json!({"runs": 2, "impacts": 5}),
-            "controllers" | "jacobians" => json!({}),
+            "catches" | "controllers" | "jacobians" => json!({}),
+            "throws" => json!({"apex": {"height": 0.3}}),
             _ => json!({"impacts": 5}),
         };
         (template, operation, beside)
@@ -57,7 +58,7 @@ fn asked(scene: &Value, beside: &Value) -> Value {
 async fn every_resource_refuses_what_the_contract_lists_and_takes_the_rest() {
     let server = Server::start();
     let resources = resources();
-    assert_eq!(resources.len(), 10);
+    assert_eq!(resources.len(), 12);
     for (resource, operation, beside) in resources {
         let refused: BTreeSet<&str> =
             operation["x-refuses"].as_array().into_iter().flatten().map(|part| part.as_str().unwrap()).collect();

@@ -17,7 +17,7 @@ pub(crate) struct Request {
 }
 
 /// The resources that take a scene.
-pub(crate) const RESOURCES: [&str; 10] = [
+pub(crate) const RESOURCES: [&str; 12] = [
     "trajectories",
     "jacobians",
     "stability",
@@ -28,6 +28,8 @@ pub(crate) const RESOURCES: [&str; 10] = [
     "ladder",
     "precision",
     "previews",
+    "catches",
+    "throws",
 ];
 
 const PRESETS: [&str; 15] = [
@@ -250,6 +252,20 @@ impl Draw {
             "previews" => {
                 set("impacts", json!(self.count(10_000)));
                 formats = vec!["application/json"];
+                formats.extend(pictures);
+            }
+            "catches" => {
+                let strategy = self.one_of(&["auto", "bounce_down", "plan", "brake"]);
+                set("strategy", json!(strategy));
+                set("hold", json!(0.1 + 59.9 * self.unit()));
+                set("hold_samples", json!(self.count(600) + 1));
+                formats.extend(pictures);
+            }
+            "throws" => {
+                set("apex", json!({"height": 2.0 * self.unit(), "theta": 6.0 * self.unit() - 3.0}));
+                if self.0.random_bool(0.5) {
+                    set("impact", json!(self.count(1000)));
+                }
                 formats.extend(pictures);
             }
             "controllers" => {

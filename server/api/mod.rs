@@ -4,6 +4,7 @@
 
 pub mod app;
 pub mod batches;
+pub mod catches;
 pub mod controllers;
 pub mod ensembles;
 pub mod failures;
@@ -22,6 +23,7 @@ pub mod scene;
 pub mod scenes;
 pub mod shared;
 pub mod stability;
+pub mod throws;
 pub mod trajectories;
 
 use std::path::Path;
@@ -32,7 +34,8 @@ pub use crate::api::app::App;
 use crate::api::resource::Endpoint;
 
 /// Resources that compute an answer: each at `/v1/<name>`, and for many requests at once at `/v1/batches/<name>`.
-const COMPUTED: [Endpoint; 10] = [
+const COMPUTED: [Endpoint; 12] = [
+    Endpoint::of::<catches::Catches>(),
     Endpoint::of::<controllers::Controllers>(),
     Endpoint::of::<ensembles::Ensembles>(),
     Endpoint::of::<jacobians::Jacobians>(),
@@ -42,6 +45,7 @@ const COMPUTED: [Endpoint; 10] = [
     Endpoint::of::<previews::Previews>(),
     Endpoint::of::<regions::Regions>(),
     Endpoint::of::<stability::Stability>(),
+    Endpoint::of::<throws::Throws>(),
     Endpoint::of::<trajectories::Trajectories>(),
 ];
 

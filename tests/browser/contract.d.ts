@@ -114,6 +114,22 @@ export interface components {
         "controllers.weights.state.theta_dot": number;
         /** @default 10 */
         "controllers.weights.input": number;
+        /**
+         * @default auto
+         * @enum {string}
+         */
+        "catches.strategy": "auto" | "bounce_down" | "plan" | "brake";
+        "catches.ratio": number;
+        "catches.strikes": number;
+        "catches.brake": number;
+        /** @default 6 */
+        "catches.hold": number;
+        /** @default 200 */
+        "catches.hold_samples": number;
+        "throws.impact": number;
+        "throws.apex.height": number;
+        /** @default 0 */
+        "throws.apex.theta": number;
         /** @enum {string} */
         PresetName: "case-1" | "case-2" | "case-2-figure" | "case-3" | "case-4" | "case-5" | "critical-soft" | "critical-hard" | "true-triangle" | "triangle-polygon" | "point-mass" | "still-lossy" | "case-1-noise" | "case-4-noise";
         Vertices: number[][];
@@ -613,6 +629,58 @@ export interface components {
                     theta_dot?: components["schemas"]["controllers.weights.state.theta_dot"] | null;
                 } | number[];
                 input?: components["schemas"]["controllers.weights.input"] | null;
+            } | null;
+        };
+        CatchRequest: {
+            preset?: components["schemas"]["PresetName"] | null;
+            scene?: components["schemas"]["ScenePatch"] | null;
+            strategy?: components["schemas"]["catches.strategy"] | null;
+            ratio?: components["schemas"]["catches.ratio"] | null;
+            strikes?: components["schemas"]["catches.strikes"] | null;
+            brake?: components["schemas"]["catches.brake"] | null;
+            weights?: {
+                state?: null | {
+                    x?: components["schemas"]["controllers.weights.state.x"] | null;
+                    theta?: components["schemas"]["controllers.weights.state.theta"] | null;
+                    x_dot?: components["schemas"]["controllers.weights.state.x_dot"] | null;
+                    theta_dot?: components["schemas"]["controllers.weights.state.theta_dot"] | null;
+                } | number[];
+                input?: components["schemas"]["controllers.weights.input"] | null;
+            } | null;
+            hold?: components["schemas"]["catches.hold"] | null;
+            hold_samples?: components["schemas"]["catches.hold_samples"] | null;
+        };
+        ThrowRequest: {
+            preset?: components["schemas"]["PresetName"] | null;
+            scene?: components["schemas"]["ScenePatch"] | null;
+            apex: {
+                height: components["schemas"]["throws.apex.height"];
+                theta?: components["schemas"]["throws.apex.theta"] | null;
+            };
+            impact?: components["schemas"]["throws.impact"] | null;
+            state?: {
+                x?: components["schemas"]["state.x"] | null;
+                theta?: components["schemas"]["state.theta"] | null;
+                x_dot?: components["schemas"]["state.x_dot"] | null;
+                y_dot?: components["schemas"]["state.y_dot"] | null;
+                theta_dot?: components["schemas"]["state.theta_dot"] | null;
+            } | null;
+            catch?: {
+                strategy?: components["schemas"]["catches.strategy"] | null;
+                ratio?: components["schemas"]["catches.ratio"] | null;
+                strikes?: components["schemas"]["catches.strikes"] | null;
+                brake?: components["schemas"]["catches.brake"] | null;
+                weights?: {
+                    state?: null | {
+                        x?: components["schemas"]["controllers.weights.state.x"] | null;
+                        theta?: components["schemas"]["controllers.weights.state.theta"] | null;
+                        x_dot?: components["schemas"]["controllers.weights.state.x_dot"] | null;
+                        theta_dot?: components["schemas"]["controllers.weights.state.theta_dot"] | null;
+                    } | number[];
+                    input?: components["schemas"]["controllers.weights.input"] | null;
+                } | null;
+                hold?: components["schemas"]["catches.hold"] | null;
+                hold_samples?: components["schemas"]["catches.hold_samples"] | null;
             } | null;
         };
         StabilityRequest: {
@@ -1166,6 +1234,236 @@ export interface components {
                 upper: number | null;
             };
         };
+        Strikes: {
+            n: number[];
+            t: components["schemas"]["Numbers"];
+            x: components["schemas"]["Numbers"];
+            theta: components["schemas"]["Numbers"];
+            x_dot: components["schemas"]["Numbers"];
+            y_dot: components["schemas"]["Numbers"];
+            theta_dot: components["schemas"]["Numbers"];
+            x_dot_after: components["schemas"]["Numbers"];
+            y_dot_after: components["schemas"]["Numbers"];
+            theta_dot_after: components["schemas"]["Numbers"];
+            alpha: components["schemas"]["Numbers"];
+            impulse_normal: components["schemas"]["Numbers"];
+            impulse_tangential: components["schemas"]["Numbers"];
+            contact_mode: ("frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null)[];
+            flight_time: components["schemas"]["NumbersOrNull"];
+            contact_speed: components["schemas"]["Numbers"];
+            clearance: components["schemas"]["Numbers"];
+            table_velocity: components["schemas"]["Numbers"];
+            ratio: components["schemas"]["Numbers"];
+        };
+        HoldSamples: {
+            t: components["schemas"]["Numbers"];
+            x: components["schemas"]["Numbers"];
+            theta: components["schemas"]["Numbers"];
+            x_dot: components["schemas"]["Numbers"];
+            theta_dot: components["schemas"]["Numbers"];
+            alpha: components["schemas"]["Numbers"];
+            normal_force: components["schemas"]["Numbers"];
+            tangential_force: components["schemas"]["Numbers"];
+            table_x: components["schemas"]["Numbers"];
+            table_y: components["schemas"]["Numbers"];
+            table_y_dot: components["schemas"]["Numbers"];
+        };
+        CatchOutcome: {
+            /** @enum {string} */
+            kind: "held" | "rests_on_edge" | "fell" | "slipped" | "beyond_limits" | "not_caught";
+            t: number;
+            detail: string;
+            quantity: string | null;
+            value: number | null;
+            limit: number | null;
+            unit: string | null;
+            vertices: number[] | null;
+        };
+        /** @enum {string} */
+        CatchStrategy: "bounce_down" | "plan" | "brake";
+        CatchDemand: {
+            tilt: number;
+            tilt_rate: number;
+            speed: number;
+            stroke: number;
+            travel: number;
+            normal_force: number;
+            friction: number | null;
+        };
+        CatchCandidate: {
+            strategy: components["schemas"]["CatchStrategy"];
+            ratio: number | null;
+            strikes: number | null;
+            brake: number | null;
+            taken: boolean;
+            outcome: components["schemas"]["CatchOutcome"];
+            contact_from: number | null;
+            demand: components["schemas"]["CatchDemand"];
+        };
+        CatchUsed: {
+            strategy: components["schemas"]["CatchStrategy"];
+            ratio: number | null;
+            strikes: number | null;
+            brake: number | null;
+            weights: {
+                state: {
+                    x: number;
+                    theta: number;
+                    x_dot: number;
+                    theta_dot: number;
+                };
+                input: number;
+            };
+            hold: number;
+            hold_samples: number;
+        };
+        CatchReason: {
+            name: components["schemas"]["CatchStrategy"];
+            reason: string;
+        };
+        UprightWithin: {
+            theta_1mrad: number | null;
+            x_1mm: number | null;
+        };
+        CatchReach: null | {
+            theta: number;
+            limit: number | null;
+        };
+        HoldErrorBound: number | null;
+        ContactFrom: number | null;
+        Catch: {
+            scene: components["schemas"]["Scene"];
+            derived: components["schemas"]["Derived"];
+            model: components["schemas"]["Model"];
+            settings: components["schemas"]["CatchUsed"];
+            strategy: components["schemas"]["CatchReason"];
+            candidates: components["schemas"]["CatchCandidate"][];
+            outcome: components["schemas"]["CatchOutcome"];
+            strikes: components["schemas"]["Strikes"];
+            hold: components["schemas"]["HoldSamples"];
+            error_bound: components["schemas"]["HoldErrorBound"];
+            contact_from: components["schemas"]["ContactFrom"];
+            upright_within: components["schemas"]["UprightWithin"];
+            demand: components["schemas"]["CatchDemand"];
+            reach: components["schemas"]["CatchReach"];
+            notes: components["schemas"]["Notes"];
+        };
+        CatchLine: {
+            /** @enum {string} */
+            phase: "strike" | "hold";
+            n: number | null;
+            t: number | null;
+            x: number | null;
+            theta: number | null;
+            x_dot: number | null;
+            y_dot: number | null;
+            theta_dot: number | null;
+            x_dot_after: number | null;
+            y_dot_after: number | null;
+            theta_dot_after: number | null;
+            alpha: number | null;
+            impulse_normal: number | null;
+            impulse_tangential: number | null;
+            /** @enum {unknown} */
+            contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null;
+            flight_time: number | null;
+            contact_speed: number | null;
+            clearance: number | null;
+            table_velocity: number | null;
+            ratio: number | null;
+            normal_force: number | null;
+            tangential_force: number | null;
+            table_x: number | null;
+            table_y: number | null;
+            table_y_dot: number | null;
+        } | {
+            end: {
+                outcome: components["schemas"]["CatchOutcome"];
+                settings: components["schemas"]["CatchUsed"];
+                strategy: components["schemas"]["CatchReason"];
+                error_bound: components["schemas"]["HoldErrorBound"];
+                contact_from: components["schemas"]["ContactFrom"];
+                upright_within: components["schemas"]["UprightWithin"];
+                demand: components["schemas"]["CatchDemand"];
+                reach: components["schemas"]["CatchReach"];
+                notes: components["schemas"]["Notes"];
+            };
+        };
+        ThrownState: {
+            x: number;
+            theta: number;
+            x_dot: number;
+            y_dot: number;
+            theta_dot: number;
+        };
+        Throw: {
+            scene: components["schemas"]["Scene"];
+            derived: components["schemas"]["Derived"];
+            model: components["schemas"]["Model"];
+            t: number;
+            before: components["schemas"]["ThrownState"];
+            alpha: number;
+            table_velocity: number;
+            table_velocity_tangential: number;
+            impulse_normal: number;
+            impulse_tangential: number;
+            /** @enum {string} */
+            contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through";
+            after: components["schemas"]["ThrownState"];
+            apex: {
+                t: number;
+                x: number;
+                y: number;
+                theta: number;
+            };
+            landing: null | {
+                t: number;
+                x: number;
+                theta: number;
+                x_dot: number;
+                y_dot: number;
+                theta_dot: number;
+            };
+            residual: number;
+            iterations: number;
+            demand: components["schemas"]["Demand"];
+            catch: components["schemas"]["Catch"] | null;
+            notes: components["schemas"]["Notes"];
+        };
+        ThrowLine: {
+            t: number;
+            x: number;
+            theta: number;
+            x_dot: number;
+            y_dot: number;
+            theta_dot: number;
+            alpha: number;
+            table_velocity: number;
+            table_velocity_tangential: number;
+            impulse_normal: number;
+            impulse_tangential: number;
+            /** @enum {string} */
+            contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through";
+            x_dot_after: number;
+            y_dot_after: number;
+            theta_dot_after: number;
+            apex_t: number;
+            apex_x: number;
+            apex_y: number;
+            apex_theta: number;
+            landing_t: number | null;
+            landing_x: number | null;
+            landing_theta: number | null;
+            residual: number;
+            /** @enum {unknown} */
+            caught: "held" | "rests_on_edge" | "fell" | "slipped" | "beyond_limits" | "not_caught" | null;
+        } | {
+            end: {
+                scene: components["schemas"]["Scene"];
+                demand: components["schemas"]["Demand"];
+                notes: components["schemas"]["Notes"];
+            };
+        };
         Controller: {
             scene: components["schemas"]["Scene"];
             model: components["schemas"]["Model"];
@@ -1648,6 +1946,15 @@ export type ControllersWeightsStateTheta = components['schemas']['controllers.we
 export type ControllersWeightsStateXDot = components['schemas']['controllers.weights.state.x_dot'];
 export type ControllersWeightsStateThetaDot = components['schemas']['controllers.weights.state.theta_dot'];
 export type ControllersWeightsInput = components['schemas']['controllers.weights.input'];
+export type CatchesStrategy = components['schemas']['catches.strategy'];
+export type CatchesRatio = components['schemas']['catches.ratio'];
+export type CatchesStrikes = components['schemas']['catches.strikes'];
+export type CatchesBrake = components['schemas']['catches.brake'];
+export type CatchesHold = components['schemas']['catches.hold'];
+export type CatchesHoldSamples = components['schemas']['catches.hold_samples'];
+export type ThrowsImpact = components['schemas']['throws.impact'];
+export type ThrowsApexHeight = components['schemas']['throws.apex.height'];
+export type ThrowsApexTheta = components['schemas']['throws.apex.theta'];
 export type PresetName = components['schemas']['PresetName'];
 export type Vertices = components['schemas']['Vertices'];
 export type ScenePatch = components['schemas']['ScenePatch'];
@@ -1680,6 +1987,8 @@ export type Precision = components['schemas']['Precision'];
 export type PrecisionLine = components['schemas']['PrecisionLine'];
 export type PeriodicOrbitsRequest = components['schemas']['PeriodicOrbitsRequest'];
 export type ControllerRequest = components['schemas']['ControllerRequest'];
+export type CatchRequest = components['schemas']['CatchRequest'];
+export type ThrowRequest = components['schemas']['ThrowRequest'];
 export type StabilityRequest = components['schemas']['StabilityRequest'];
 export type Tolerances = components['schemas']['Tolerances'];
 export type PlacedState = components['schemas']['PlacedState'];
@@ -1735,6 +2044,23 @@ export type MarginsBody = components['schemas']['MarginsBody'];
 export type Span = components['schemas']['Span'];
 export type StateGain = components['schemas']['StateGain'];
 export type JudgedLaw = components['schemas']['JudgedLaw'];
+export type Strikes = components['schemas']['Strikes'];
+export type HoldSamples = components['schemas']['HoldSamples'];
+export type CatchOutcome = components['schemas']['CatchOutcome'];
+export type CatchStrategy = components['schemas']['CatchStrategy'];
+export type CatchDemand = components['schemas']['CatchDemand'];
+export type CatchCandidate = components['schemas']['CatchCandidate'];
+export type CatchUsed = components['schemas']['CatchUsed'];
+export type CatchReason = components['schemas']['CatchReason'];
+export type UprightWithin = components['schemas']['UprightWithin'];
+export type CatchReach = components['schemas']['CatchReach'];
+export type HoldErrorBound = components['schemas']['HoldErrorBound'];
+export type ContactFrom = components['schemas']['ContactFrom'];
+export type Catch = components['schemas']['Catch'];
+export type CatchLine = components['schemas']['CatchLine'];
+export type ThrownState = components['schemas']['ThrownState'];
+export type Throw = components['schemas']['Throw'];
+export type ThrowLine = components['schemas']['ThrowLine'];
 export type Controller = components['schemas']['Controller'];
 export type ControllerLine = components['schemas']['ControllerLine'];
 export type Stability = components['schemas']['Stability'];

@@ -256,6 +256,47 @@ fn controllers_for_random_scenes() {
     hold(&resource("/v1/controllers", |_| 1), parameters, 40);
 }
 
+/// Settings of a catch, contradictions included.
+fn catch_settings() -> impl Strategy<Value = Value> {
+    let strategy = maybe(word(&["auto", "bounce_down", "plan", "brake"]));
+    let numbers = (prop::option::weighted(0.3, 0.05..1.0), prop::option::weighted(0.2, 1..12_u64));
+    let brake = prop::option::weighted(0.2, 1.0..50.0);
+    (strategy, numbers, brake, maybe(0.1..4.0), maybe(2..80_u64)).prop_map(
+        |(strategy, (ratio, strikes), brake, hold, samples)| {
+            object(vec![
+                ("strategy", strategy),
+                ("ratio", ratio.map(Value::from)),
+                ("strikes", strikes.map(Value::from)),
+                ("brake", brake.map(Value::from)),
+                ("hold", hold),
+                ("hold_samples", samples),
+            ])
+        },
+    )
+}
+
+#[test]
+fn catches_of_random_scenes() {
+    let rows = |json: &Value| length(&json["strikes"]) + length(&json["hold"]);
+    hold(&resource("/v1/catches", rows), catch_settings(), 60);
+}
+
+#[test]
+fn throws_of_random_scenes() {
+    let apex = (0.1..0.8, maybe(-7.0..7.0))
+        .prop_map(|(height, theta)| object(vec![("height", Some(json!(height))), ("theta", theta)]));
+    let parameters = (
+        apex,
+        prop::option::weighted(0.3, 1..20_u64),
+        prop::option::weighted(0.3, state()),
+        prop::option::weighted(0.3, catch_settings()),
+    )
+        .prop_map(|(apex, impact, state, catch)| {
+            object(vec![("apex", Some(apex)), ("impact", impact.map(Value::from)), ("state", state), ("catch", catch)])
+        });
+    hold(&resource("/v1/throws", |_| 1), parameters, 60);
+}
+
 #[test]
 fn ladders_of_random_scenes() {
     let parameters = (1..20_u64, maybe((-12.0..0.0).prop_map(|power| 10_f64.powf(power))))

@@ -11,39 +11,19 @@ use equipoise_physics::stability::fixed_point::{FixedPoint, bounce_in_place};
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use crate::api::controllers::request::{ControllerRequest, FEEDBACK, contact_name, set};
+use crate::api::controllers::request::{ControllerRequest, contact_name, set};
 use crate::api::formats::Tabular;
-use crate::api::scene::{explain, scene_to_json, scene_to_query};
+use crate::api::scene::{FEEDBACK, explain, scene_to_json, scene_to_query};
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::shared::weights::{ByState, Weights};
 use crate::charts::significant;
 
 /// Residue of the law α = κθ that the design is compared with if the scene has no κ. It is that of the paper's first case.
 const PROPORTIONAL: f64 = 0.2;
-
-/// A number for each component of the state.
-#[derive(Debug, Clone, Copy, Serialize)]
-struct ByState {
-    x: f64,
-    theta: f64,
-    x_dot: f64,
-    theta_dot: f64,
-}
-
-impl From<[f64; 4]> for ByState {
-    fn from([x, theta, x_dot, theta_dot]: [f64; 4]) -> Self {
-        Self { x, theta, x_dot, theta_dot }
-    }
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct Weights {
-    state: ByState,
-    input: f64,
-}
 
 #[derive(Debug, Clone, Serialize)]
 struct LinearModel {
@@ -150,7 +130,7 @@ impl ControllerAnswer {
         let mut answer = Self {
             scene: scene_to_json(&designed),
             model: ModelChoice::of(&designed),
-            weights: Weights { state: state.into(), input },
+            weights: Weights::new(state, input),
             state_order: &STATE[first..],
             linear: LinearModel {
                 a: (first..4).map(|row| (first..4).map(|column| model.a[(row, column)]).collect()).collect(),

@@ -1,23 +1,16 @@
 //! The request for `controllers`: a scene and the weights of its state feedback.
 
-use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{build_scene, read_draft};
+use crate::api::scene::{build_scene, complete_law, read_draft};
+use crate::api::shared::weights::read_weights;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits;
 use crate::limits::Limits;
-
-/// The fields of the gain, in the order of the state.
-pub(super) const FEEDBACK: [Name; 4] =
-    [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
-
-/// Default weights of state and tilt. They keep tilts so small that laws hold for large deviations.
-const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
 
 /// A request for a control law.
 #[derive(Debug, Clone, Copy)]
@@ -38,20 +31,10 @@ impl ResourceRequest for ControllerRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let draft = read_draft(reader);
         let sticks = reader.choice("contact", &[("frictionless", false), ("stick", true)]);
-        let (mut state, mut input) = WEIGHTS;
-        reader.within("weights", |weights| {
-            weights.numbers("state", &STATE, &(0.0..=1e6), &mut state);
-            input = weights.number("input", 1e-6..=1e6, "").unwrap_or(input);
-        });
+        let (state, input) = read_weights(reader);
         let mut draft = draft?;
-        let tilt_gain = match draft.get(Name::TiltGain) {
-            Some(Value::Number(kappa)) => Some(kappa),
-            _ => None,
-        };
         // The request is for a law, so the scene may have none.
-        if draft.get(Name::TiltGain).is_none() && FEEDBACK.iter().all(|&name| draft.get(name).is_none()) {
-            set(&mut draft, Name::TiltGain, Some(1.0));
-        }
+        let tilt_gain = complete_law(&mut draft);
         let pointer = reader.pointer_to("scene");
         let scene = build_scene(draft, &pointer, reader.errors())?;
         let regime = match sticks {

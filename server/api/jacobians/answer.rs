@@ -4,8 +4,6 @@ use std::borrow::Cow;
 
 use equipoise_physics::body::point::PointMass;
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::run::cancellation::CHECK_INTERVAL;
-use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian;
@@ -21,6 +19,7 @@ use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::refusal::Refusal;
+use crate::api::shared::state::run_to_impact;
 use crate::api::shared::table::{Cells, Column, Table};
 
 /// Step of the central differences, m/s (m for ρθ): rounding and truncation errors are about equal.
@@ -209,7 +208,7 @@ impl Tabular for JacobianAnswer<'_> {
 }
 
 /// The state at which to differentiate.
-fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64, State), Refusal> {
+fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, State), Refusal> {
     match at {
         At::FixedPoint => {
             let fixed_point =
@@ -227,21 +226,8 @@ fn place(scene: &Scene, at: At, mut go_on: impl FnMut() -> bool) -> Result<(f64,
             Ok((x, PointMass::state(x_dot, y_dot)))
         }
         At::Impact(impact) => {
-            let mut orbit = scene.orbit().map_err(|_| ("/at/impact", "the run has no contact".to_owned()))?;
-            let mut last = (orbit.x(), *orbit.state());
-            let ending = run(&mut orbit, impact, |contact| {
-                last = (contact.x, contact.state);
-                !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
-            });
-            let ending = ending.ok_or(Refusal::Cancelled)?;
-            if orbit.contacts() < impact {
-                let why = ending.name();
-                return Err(Refusal::At(
-                    "/at/impact",
-                    format!("impact is {impact}, but the run ends as `{why}` at contact {}", orbit.contacts()),
-                ));
-            }
-            Ok(last)
+            let (_, before) = run_to_impact(scene, impact, "/at/impact", go_on)?;
+            Ok((before.x, before.state))
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A chart of curves: the truth beside wrong results, in one panel or two, linear or logarithmic.
+//! A chart of curves, such as the truth beside wrong results: in one panel or in rows of two, linear or logarithmic.
 
 use crate::charts::draw::colour::{BLUE, GREEN, ORANGE, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::{Frame, Point};
@@ -8,7 +8,7 @@ use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
 use crate::charts::draw::sheet::{Sheet, Words};
 
-/// A picture of one panel or two.
+/// A picture of one panel, or of rows of two.
 #[derive(Clone, Debug)]
 pub struct Chart {
     /// Title in a few words.
@@ -151,16 +151,21 @@ impl ChartAxis {
 
 /// Draws a chart.
 pub fn chart(drawn: &Chart) -> String {
-    const ROOM: f64 = 424.0;
+    // Height of a panel, and from one row to the next.
+    let (height, pitch) = if drawn.plots.len() > 2 { (230.0, 312.0) } else { (332.0, 0.0) };
+    let rows = drawn.plots.len().div_ceil(2).max(1);
+    let room = height + 92.0 + pitch * (rows - 1) as f64;
     let description = format!("{}: {} {}", drawn.title, drawn.subtitle, drawn.caption);
     let words =
         Words { title: drawn.title, subtitle: &drawn.subtitle, caption: &drawn.caption, description: &description };
     let two = drawn.plots.len() > 1;
     let (width, across) = if two { (960.0, 350.0) } else { (720.0, 580.0) };
-    let Sheet { mut svg, top } = Sheet::new(width, ROOM, words);
+    let Sheet { mut svg, top } = Sheet::new(width, room, words);
     let mut entries: Vec<(LegendSample, &str)> = Vec::new();
     for (n, plot) in drawn.plots.iter().enumerate() {
-        let frame = Frame { left: 104.0 + 480.0 * n as f64, top: top + 6.0, width: across, height: 332.0 };
+        let (row, column) = ((n / 2) as f64, (n % 2) as f64);
+        let (left, top) = (104.0 + 480.0 * column, top + 6.0 + pitch * row);
+        let frame = Frame { left, top, width: across, height };
         let points = || plot.curves.iter().flat_map(|curve| curve.points.iter().copied());
         let (x, y) = (plot.x.axis(points().map(|point| point.0)), plot.y.axis(points().map(|point| point.1)));
         let panel = Panel::draw_scaled(&mut svg, frame, x, y, [plot.x.logarithmic, plot.y.logarithmic]);
@@ -184,6 +189,6 @@ pub fn chart(drawn: &Chart) -> String {
         }
         panel.edge(&mut svg);
     }
-    legend(&mut svg, 0.5 * width, top + ROOM - 22.0, &entries);
+    legend(&mut svg, 0.5 * width, top + room - 22.0, &entries);
     svg.finish()
 }

@@ -7,7 +7,6 @@ pub mod attempt;
 pub mod gain_schedule;
 pub mod guidance;
 pub mod outcome;
-pub mod plan;
 pub mod settings;
 pub mod throw;
 
@@ -94,6 +93,7 @@ fn catch_by(
         candidates: Vec::new(),
         strikes: descent.strikes,
         contact_from,
+        hold: None,
         upright_within: UprightWithin::default(),
         demand: CatchDemand { load: descent.load, ..CatchDemand::default() },
         reach: None,

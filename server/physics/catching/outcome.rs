@@ -4,6 +4,7 @@ use super::settings::{Approach, CatchSettings};
 use crate::body::Touch;
 use crate::bounce::state::State;
 use crate::bounce::strike::ContactMode;
+use crate::contact::Hold;
 use crate::control::lqr::DesignFailure;
 use crate::table::actuator_load::{ActuatorLoad, LimitViolation};
 
@@ -279,6 +280,8 @@ pub struct Catch {
     pub strikes: Vec<CatchStrike>,
     /// Beginning of the lasting contact, s.
     pub contact_from: Option<f64>,
+    /// The lasting contact.
+    pub hold: Option<Hold>,
     /// Times from which it stays upright.
     pub upright_within: UprightWithin,
     /// Demands on the table.

@@ -5,6 +5,5 @@ pub mod dispatch;
 pub mod double_double;
 pub mod dual;
 pub mod number;
-pub mod second_order;
 pub mod taylor;
 pub mod trig;

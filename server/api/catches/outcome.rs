@@ -1,0 +1,168 @@
+//! The outcome of a catch, and the facts beside it, in words and numbers.
+
+use equipoise_physics::body::Touch;
+use equipoise_physics::catching::outcome::{CatchNote, CatchOutcome, Escape, Fall, Reach};
+use equipoise_physics::run::rules::SPEED_LIMIT;
+use equipoise_physics::table::actuator_load::LimitViolation;
+use serde::Serialize;
+
+use crate::charts::significant;
+
+/// The outcome of a catch.
+#[derive(Debug, Clone, Serialize)]
+pub struct CatchOutcomeAnswer {
+    /// Name of the outcome.
+    pub kind: &'static str,
+    /// Time of the run at which it was decided, s.
+    pub t: f64,
+    /// A sentence with the numbers.
+    pub detail: String,
+    /// Quantity that decided it, if one did.
+    pub quantity: Option<&'static str>,
+    /// Value of the quantity.
+    pub value: Option<f64>,
+    /// Limit of the quantity.
+    pub limit: Option<f64>,
+    /// Unit of both.
+    pub unit: Option<&'static str>,
+    /// Vertices of the edge on which a polygon rests.
+    pub vertices: Option<[usize; 2]>,
+}
+
+/// A quantity that decided an outcome: name, value, limit and unit.
+type Decision = (&'static str, f64, f64, &'static str);
+
+impl CatchOutcomeAnswer {
+    /// The outcome of a catch whose contact began at `contact_from` and was followed up to `end`, s.
+    pub fn new(outcome: &CatchOutcome, contact_from: Option<f64>, end: f64, friction: f64) -> Self {
+        let from = contact_from.map_or_else(String::new, |t| format!(" from t = {t} s"));
+        let (t, detail, decided): (f64, String, Option<Decision>) = match *outcome {
+            CatchOutcome::Held => (end, format!("the body stays in contact{from} to t = {end} s"), None),
+            CatchOutcome::RestsOnEdge { vertices: [first, second] } => (
+                end,
+                format!("at t = {end} s, the body rests on the edge from vertex {first} to vertex {second}"),
+                None,
+            ),
+            CatchOutcome::Fell { t, fall: Fall::Toppled { theta, limit } } => (
+                t,
+                format!("at t = {t} s, the angle {theta} rad had reached topple_angle {limit} rad"),
+                Some(("theta", theta, limit, "rad")),
+            ),
+            CatchOutcome::Fell { t, fall: Fall::OtherVertex(Touch { vertex, .. }) } => {
+                (t, format!("at t = {t} s, vertex {vertex} of the body met the table"), None)
+            }
+            CatchOutcome::Slipped { t, needed } => (
+                t,
+                format!(
+                    "at t = {t} s, the contact slips: it needs a coefficient of friction of {needed}, and contact.friction is {friction}"
+                ),
+                Some(("friction", needed, friction, "")),
+            ),
+            CatchOutcome::BeyondLimits { t, violation: LimitViolation { quantity, value, limit, unit } } => (
+                t,
+                format!(
+                    "at t = {t} s, the catch asks for a {quantity} of {value} {unit}; table.limits.{quantity} is {limit} {unit}"
+                ),
+                Some((quantity, value, limit, unit)),
+            ),
+            CatchOutcome::NotCaught { t, escape } => escaped(t, escape),
+        };
+        Self {
+            kind: outcome.kind().name(),
+            t,
+            detail,
+            quantity: decided.map(|(quantity, ..)| quantity),
+            value: decided.map(|(_, value, ..)| value).filter(|value| value.is_finite()),
+            limit: decided.map(|(_, _, limit, _)| limit).filter(|limit| limit.is_finite()),
+            unit: decided.map(|(.., unit)| unit).filter(|unit| !unit.is_empty()),
+            vertices: match *outcome {
+                CatchOutcome::RestsOnEdge { vertices } => Some(vertices),
+                CatchOutcome::Held
+                | CatchOutcome::Fell { .. }
+                | CatchOutcome::Slipped { .. }
+                | CatchOutcome::BeyondLimits { .. }
+                | CatchOutcome::NotCaught { .. } => None,
+            },
+        }
+    }
+}
+
+/// The reason for which a body was not caught although it did not fall.
+fn escaped(t: f64, escape: Escape) -> (f64, String, Option<Decision>) {
+    let at = format!("at t = {t} s");
+    match escape {
+        Escape::Missed => (t, format!("after t = {t} s, the body never meets the table as it was planned"), None),
+        Escape::Separating(speed) => (
+            t,
+            format!("{at}, the contact point left the table at {speed} m/s along its normal: it could only pull"),
+            Some(("approach", speed, 0.0, "m/s")),
+        ),
+        Escape::NoLift(alpha) => {
+            (t, format!("{at}, a strike at a tilt of {alpha} rad pushes the contact point down, at any speed"), None)
+        }
+        Escape::NoLaw(speed) => (
+            t,
+            format!(
+                "{at}, no feedback is known for a contact speed of {speed} m/s: its Riccati equation was not solved"
+            ),
+            None,
+        ),
+        Escape::NoPlan => (t, format!("{at}, no plan was found that brings the body to rest"), None),
+        Escape::Diverged(speed) => (
+            t,
+            format!("{at}, the strike gave a speed of {speed} m/s, beyond what doubles resolve"),
+            Some(("speed", speed, SPEED_LIMIT, "m/s")),
+        ),
+        Escape::TooManyStrikes(strikes) => {
+            (t, format!("{at}, the bounces had not ended after {strikes} strikes, the most of one catch"), None)
+        }
+        Escape::ContactLost(lost) => {
+            (lost, format!("at t = {lost} s, the body leaves the table: only a pull would keep it there"), None)
+        }
+        Escape::HoldTooLong(end) => {
+            (end, format!("at t = {end} s, the motion in contact had taken the most steps of one catch"), None)
+        }
+    }
+}
+
+/// A fact about a catch, in a sentence.
+pub fn note_text(note: &CatchNote) -> String {
+    let three = |value: f64| significant(value, 3);
+    match *note {
+        CatchNote::EnergyFeedbackNeverSettles { time } => format!(
+            "the scene's own table would not catch: with table.energy_gain and this target the speed falls only as 1/t, and passes 5 mm/s after \
+             {} s",
+            three(time)
+        ),
+        CatchNote::MovesAlongItself => {
+            "the table of a catch moves along itself with a contact that has friction, as with table.slide `matched`; the scene's own table \
+             does not"
+                .to_owned()
+        }
+        CatchNote::WrongBelief { aimed, reached } => format!(
+            "the table's belief about restitution is wrong: the first strike aimed at a ratio of {} and reached {}",
+            three(aimed),
+            three(reached)
+        ),
+        CatchNote::RodeAlong { speed } => format!(
+            "the table met the contact point at its own speed of {} m/s, without an impulse, and braked in contact",
+            three(speed)
+        ),
+        CatchNote::StillTurning { theta_dot } => format!(
+            "as the contact began, the body still turned at {} rad/s: the bounces had ended, its motion had not",
+            three(theta_dot)
+        ),
+        CatchNote::PlanGivenUp { n } => format!(
+            "no new plan was found at contact {n}; the strikes from there on are those of bounce_down"
+        ),
+        CatchNote::OutOfReach(Reach { theta, limit }) => format!(
+            "the contact began out of reach: θ + θ̇ρ/√(Gl) was {} rad, and the table can turn back {} rad",
+            three(theta),
+            three(limit)
+        ),
+        CatchNote::NotYetUpright { theta } => format!(
+            "at the end of the hold the body was at {} rad, not within 1 mrad of upright; a longer `hold` shows the rest",
+            three(theta)
+        ),
+    }
+}

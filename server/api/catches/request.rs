@@ -1,0 +1,122 @@
+//! The request for `catches`: a scene, and the settings of the catch.
+
+use equipoise_physics::catching::settings::{BRAKES, CatchSettings, DEFAULT_HOLD, PLAN_RATIOS, RATIOS, Strategy};
+use equipoise_physics::scene::{Name, Scene};
+use serde::Serialize;
+
+use crate::api::resource::{CanonicalRequest, ResourceRequest};
+use crate::api::scene::{has_angle, read_scene_without_law};
+use crate::api::shared::weights::read_weights;
+use crate::api::shared::write;
+use crate::compute::{OverBudget, Price};
+use crate::http::Reader;
+use crate::limits;
+use crate::limits::Limits;
+
+/// Times in contact, s. A shorter one shows nothing.
+const HOLDS: std::ops::RangeInclusive<f64> = 0.1..=limits::HOLD_TIME;
+
+/// Default for the largest number of rows of the hold.
+const HOLD_SAMPLES: u64 = 200;
+
+/// Settings of a catch, with the size of its answer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CatchOptions {
+    /// Settings of the physics.
+    pub settings: CatchSettings,
+    /// Largest number of rows of the hold.
+    pub hold_samples: u64,
+}
+
+/// A request for a catch.
+#[derive(Debug, Clone, Copy)]
+pub struct CatchRequest {
+    /// The scene.
+    pub scene: Scene,
+    /// Settings of the catch.
+    pub options: CatchOptions,
+}
+
+impl CatchOptions {
+    /// Reads the settings from the fields of an object.
+    pub fn read(reader: &mut Reader<'_, '_>) -> Self {
+        let strategies = [
+            ("auto", None),
+            ("bounce_down", Some(Strategy::BounceDown)),
+            ("plan", Some(Strategy::Plan)),
+            ("brake", Some(Strategy::Brake)),
+        ];
+        let strategy = reader.choice("strategy", &strategies).flatten();
+        let ratio = reader.number("ratio", PLAN_RATIOS, "");
+        let strikes = reader.integer("strikes", 1..=limits::PLAN_STRIKES);
+        let brake = reader.number("brake", BRAKES, "m/s²");
+        let said = strategies.iter().find(|(_, known)| *known == strategy).map_or("auto", |(name, _)| name);
+        let mut only_for = |name: &'static str, known: &[Strategy], words: &str| {
+            if reader.has(name) && !strategy.is_some_and(|strategy| known.contains(&strategy)) {
+                reader.refuse(name, format!("{name} is for the strategy {words}, and strategy is {said}; leave {name} out or name that strategy"));
+            }
+        };
+        only_for("ratio", &[Strategy::BounceDown, Strategy::Plan], "bounce_down or plan");
+        only_for("strikes", &[Strategy::Plan], "plan");
+        only_for("brake", &[Strategy::Brake], "brake");
+        if let Some(ratio) = ratio.filter(|ratio| strategy == Some(Strategy::BounceDown) && !RATIOS.contains(ratio)) {
+            let (least, most) = (RATIOS.start(), RATIOS.end());
+            reader.refuse(
+                "ratio",
+                format!("ratio is {ratio}; for bounce_down it must be from {least} to {most} (no unit)"),
+            );
+        }
+        let (state_weights, input_weight) = read_weights(reader);
+        let hold = reader.number("hold", HOLDS, "s").unwrap_or(DEFAULT_HOLD);
+        let hold_samples = reader.integer("hold_samples", 2..=limits::HOLD_SAMPLES).unwrap_or(HOLD_SAMPLES);
+        let strikes = strikes.and_then(|strikes| u32::try_from(strikes).ok());
+        let settings = CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold };
+        Self { settings, hold_samples }
+    }
+
+    /// Everything that determines the answer.
+    pub fn canonical(&self) -> impl Serialize {
+        let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold } = self.settings;
+        (strategy.map(Strategy::name), ratio, strikes, brake, state_weights, input_weight, hold, self.hold_samples)
+    }
+
+    /// Price of the catch, in bounces.
+    pub fn price(&self) -> u64 {
+        let catch = match self.settings.strategy {
+            Some(Strategy::BounceDown) => limits::CATCH_BOUNCE_DOWN_PRICE,
+            Some(Strategy::Plan) => limits::CATCH_PLAN_PRICE,
+            Some(Strategy::Brake) => limits::CATCH_BRAKE_PRICE,
+            None => limits::CATCH_BOUNCE_DOWN_PRICE + limits::CATCH_PLAN_PRICE + limits::CATCH_BRAKE_PRICE,
+        };
+        catch + limits::HOLD_SAMPLE_PRICE * self.hold_samples
+    }
+}
+
+/// Reads the scene of a catch or a throw: every body with an angle.
+pub fn read_caught_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
+    let scene = read_scene_without_law(reader)?;
+    if has_angle(&scene) {
+        return Some(scene);
+    }
+    let pointer = format!("{}/{}", reader.pointer_to("scene"), Name::PointMass.row().path.replace('.', "/"));
+    reader.errors().push(pointer, "a point mass has no angle to bring to rest; give a rod or a polygon");
+    None
+}
+
+impl ResourceRequest for CatchRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let scene = read_caught_scene(reader);
+        let options = CatchOptions::read(reader);
+        Some(Self { scene: scene?, options })
+    }
+
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        Price::bounces(limits::ANSWER_PRICE + self.options.price()).within(&limits.of_work())
+    }
+}
+
+impl CanonicalRequest for CatchRequest {
+    fn canonical(&self) -> Vec<u8> {
+        write::canonical(&self.scene, &self.options.canonical())
+    }
+}
