@@ -1,5 +1,5 @@
-// Writes the tables that the page shares with the server's pictures, from the server's sources: the colours of maps, and those of
-// pictures. With --check it only says whether they are current.
+// Writes the tables that the page shares with the server, from the server's sources: the colours of maps and of pictures, and the words
+// for endings. With --check it only says whether they are current.
 
 import { readFileSync, writeFileSync } from 'node:fs';
 
@@ -50,13 +50,26 @@ function figureColours() {
   return `${note(path).replace('// ', '/* ').trimEnd()} */\n${rules.join('')}`;
 }
 
+/** The words for each ending but that of a run that goes through, from the headline of a run. */
+function endings() {
+  const path = 'server/api/shared/outcome.rs';
+  const arms = part(path, /pub fn headline\([^{]*\{([\s\S]*?)\n\}/);
+  const rows = [...arms.matchAll(/EndingKind::(\w+) => \("([^"]+)", "([^"]+)"\)/g)].map(([, variant, verb, reason]) => {
+    const kind = variant.replace(/\B[A-Z]/g, '_$&').toLowerCase();
+    return `  ${kind}: { verb: '${verb}', reason: '${reason}' },\n`;
+  });
+  if (rows.length < 8) throw new Error(`${path} has ${rows.length} endings with words`);
+  return `${note(path)}/** The verb of a headline and the reason, by the kind of an ending. @type {Record<string, {verb: string, reason: string}>} */\nexport const ENDINGS = {\n${rows.join('')}};\n`;
+}
+
 for (const [path, text] of [
+  ['web/run/generated/endings.js', endings()],
   ['web/charts/generated/cividis-table.js', cividis()],
   ['web/charts/generated/figure-colours.css', figureColours()],
 ]) {
   if (!process.argv.includes('--check')) writeFileSync(new URL(path, root), text);
   else if (read(path) !== text) {
-    console.error(`${path} is not what the server draws with: run node tests/browser/shared-tables.js`);
+    console.error(`${path} is not what the server has: run node tests/browser/shared-tables.js`);
     process.exitCode = 1;
   }
 }

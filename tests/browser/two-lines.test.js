@@ -116,3 +116,21 @@ test('one wrong field erases nothing: the last verdict stays, dimmed, and its me
     [],
   );
 });
+
+for (const query of [
+  'preset=case-1&scene.table.limits.tilt=0.1',
+  'preset=case-3',
+  'preset=case-1&scene.topple_angle=0.2',
+])
+  test(`an end has the words of the server's headline: ${query}`, async () => {
+    const { page, clean } = await stage.page(`?${query}&speed=10`);
+    await page.click('#run');
+    await reachPhase(page, 'ended');
+    const { title } = await (await fetch(`${stage.url}v1/previews?${query}&format=json`)).json();
+    const [, verb, bounce, reason] = /^(Falls|Comes to rest) at bounce (\d+): (.*)$/.exec(title);
+    const words = await thisRun(page);
+    const said = verb === 'Falls' ? 'Fell' : 'Came to rest';
+    assert.ok(words.includes(`${said} at bounce ${bounce}`), `${words} | ${title}`);
+    assert.ok(words.toLowerCase().includes(reason), `${words} | ${title}`);
+    clean();
+  });

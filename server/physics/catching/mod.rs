@@ -7,6 +7,7 @@ pub mod attempt;
 pub mod gain_schedule;
 pub mod guidance;
 pub mod outcome;
+pub mod plan;
 pub mod settings;
 pub mod throw;
 

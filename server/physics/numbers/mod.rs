@@ -5,5 +5,6 @@ pub mod dispatch;
 pub mod double_double;
 pub mod dual;
 pub mod number;
+pub mod second_order;
 pub mod taylor;
 pub mod trig;

@@ -1,0 +1,13 @@
+// Written by `node tests/browser/shared-tables.js` from server/api/shared/outcome.rs; not to be edited.
+
+/** The verb of a headline and the reason, by the kind of an ending. @type {Record<string, {verb: string, reason: string}>} */
+export const ENDINGS = {
+  toppled: { verb: 'Falls', reason: 'it had tipped over' },
+  separating: { verb: 'Falls', reason: 'its foot was leaving the table already' },
+  sinking: { verb: 'Falls', reason: 'the table struck too steeply' },
+  settled: { verb: 'Comes to rest', reason: 'its bounces died out' },
+  diverged: { verb: 'Cannot be followed', reason: 'it became too fast to compute' },
+  other_vertex: { verb: 'Falls', reason: 'another corner touched the table' },
+  missed: { verb: 'Falls', reason: 'it never met the table again' },
+  beyond_limits: { verb: 'Falls', reason: 'the strike asks more of the table than its limits allow' },
+};
