@@ -8,7 +8,6 @@
 //!
 //! A table that accelerates upwards at a has G + a in place of G.
 
-use crate::bounce::friction::Mobility;
 use crate::bounce::rod::Rod;
 use crate::numbers::number::Number;
 
@@ -79,12 +78,5 @@ impl<N: Number> ContactMotion<N> {
             x_ddot: cos_alpha * tangential - sin_alpha * normal,
             theta_ddot: leverage * (sin_beta * normal + cos_beta * tangential),
         }
-    }
-}
-
-impl<N: Number> Mobility<N> {
-    /// −C/A: F/N with which a force does not accelerate the contact point along the table.
-    pub fn sticking_share(&self) -> N {
-        -(self.cross / self.tangential)
     }
 }

@@ -89,6 +89,8 @@ pub struct HoldRequest {
     pub outline: Option<Outline>,
     /// Law of the table.
     pub law: HoldLaw,
+    /// Law of the table while it brakes, if it is another: the body then weighs G + a.
+    pub brake_law: Option<HoldLaw>,
     /// Beginning of the contact.
     pub start: ContactStart,
     /// Deceleration of a table that moves vertically at the beginning, m/s²; until it stands.

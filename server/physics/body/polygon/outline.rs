@@ -83,6 +83,11 @@ impl Outline {
         Ok(outline)
     }
 
+    /// Index of the contact vertex.
+    pub fn contact_vertex(&self) -> usize {
+        self.contact_vertex
+    }
+
     /// l, m.
     pub fn contact_distance(&self) -> f64 {
         self.contact_distance

@@ -1,0 +1,104 @@
+//! The equations of motion of a body in contact, for as long as the kind of contact stays the same.
+
+use crate::bounce::friction::Mobility;
+use crate::contact::force::{ContactMotion, Grip};
+use crate::contact::request::HoldLaw;
+use crate::contact::stance::Stance;
+use crate::numbers::number::Number;
+use crate::table::control_law::Gains;
+use differential_equations::ode::ODE;
+
+/// x, θ, ẋ, θ̇ of the centre of gravity: m, rad, m/s, rad/s.
+pub type Motion<N = f64> = [N; 4];
+
+/// Kind of contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Mode {
+    /// F = φN with a fixed φ: no friction, or sliding one way.
+    Sliding(f64),
+    /// On a table that moves along itself with the contact point: F does not accelerate that along the table, and is at most μN.
+    Matched(f64),
+    /// The contact point stays on one point of the table's surface.
+    Sticking,
+}
+
+/// The equations of one kind of contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Equations {
+    pub(super) stance: Stance,
+    pub(super) law: HoldLaw,
+    pub(super) mode: Mode,
+    /// G + a, m/s².
+    pub(super) gravity: f64,
+}
+
+impl HoldLaw {
+    /// α, rad.
+    pub(super) fn tilt<N: Number>(&self, motion: &Motion<N>) -> N {
+        match self {
+            Self::TiltGain(gain) => N::from_f64(*gain) * motion[1],
+            Self::Feedback(gains) => fed_back(gains, motion),
+            Self::CartPole(_) | Self::Level => N::from_f64(0.0),
+        }
+    }
+
+    /// Acceleration of the table's surface along x, m/s².
+    fn acceleration<N: Number>(&self, motion: &Motion<N>) -> N {
+        match self {
+            Self::CartPole(gains) => fed_back(gains, motion),
+            Self::TiltGain(_) | Self::Feedback(_) | Self::Level => N::from_f64(0.0),
+        }
+    }
+
+    /// α̇, rad/s, from the motion and its derivative.
+    pub(super) fn tilt_rate(&self, change: &Motion) -> f64 {
+        // The law is linear, so its rate is the law of the rates.
+        self.tilt(change)
+    }
+}
+
+/// −K·(x, θ, ẋ, θ̇).
+fn fed_back<N: Number>(gains: &Gains, &[x, theta, x_dot, theta_dot]: &Motion<N>) -> N {
+    let gain = |value: f64| N::from_f64(value);
+    -(gain(gains.x) * x + gain(gains.theta) * theta + gain(gains.x_dot) * x_dot + gain(gains.theta_dot) * theta_dot)
+}
+
+impl Equations {
+    /// Accelerations and the force of the table.
+    pub(super) fn accelerations<N: Number>(&self, motion: &Motion<N>) -> ContactMotion<N> {
+        let alpha = self.law.tilt(motion);
+        let theta = motion[1] + N::from_f64(self.stance.turn);
+        let rod = self.stance.rod.lift::<N>();
+        let grip = match self.mode {
+            Mode::Sliding(share) => Grip::Sliding(N::from_f64(share)),
+            Mode::Matched(friction) => {
+                let (sin_beta, cos_beta) = (theta - alpha).sincos();
+                let mobility = Mobility::new(&rod, sin_beta, cos_beta);
+                let share = -(mobility.cross / mobility.tangential);
+                let limited = share.to_f64().clamp(-friction, friction);
+                Grip::Sliding(if limited == share.to_f64() { share } else { N::from_f64(limited) })
+            }
+            Mode::Sticking => Grip::Sticking(self.law.acceleration(motion)),
+        };
+        ContactMotion::new(&rod, N::from_f64(self.gravity), [theta, motion[3], alpha], grip)
+    }
+
+    /// Velocity of the contact point along x, m/s.
+    pub(super) fn contact_speed(&self, motion: &Motion) -> f64 {
+        let (_, cos) = crate::numbers::trig::sin_cos(motion[1] + self.stance.turn);
+        motion[2] + self.stance.rod.contact_distance * cos * motion[3]
+    }
+
+    /// Place of the contact point along x, m.
+    pub(super) fn contact_place(&self, motion: &Motion) -> f64 {
+        let (sin, _) = crate::numbers::trig::sin_cos(motion[1] + self.stance.turn);
+        motion[0] + self.stance.rod.contact_distance * sin
+    }
+}
+
+impl ODE<f64, Motion> for Equations {
+    fn diff(&self, _: f64, motion: &Motion, change: &mut Motion) {
+        let ContactMotion { x_ddot, theta_ddot, .. } = self.accelerations(motion);
+        *change = [motion[2], motion[3], x_ddot, theta_ddot];
+    }
+}
