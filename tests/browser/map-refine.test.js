@@ -2,6 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { openMap, place, whole } from './map-steps.js';
 import { gate } from './slow-network.js';
 import { Stage, openPanel, openTab } from './stage.js';
 
@@ -9,17 +10,7 @@ import { Stage, openPanel, openTab } from './stage.js';
 process.env.EQUIPOISE_REGION_WORK = '30000000';
 const stage = await Stage.open();
 
-async function open(query, options) {
-  const opened = await stage.page(query, options);
-  await openPanel(opened.page, 'map');
-  await opened.page.locator('#map-box canvas').first().waitFor();
-  return opened;
-}
-
-async function whole(page) {
-  await page.locator('#map-told', { hasText: /cells[:,] \w/ }).waitFor();
-  await page.locator('#map-box[aria-busy=false]').waitFor();
-}
+const open = (query, options) => openMap(stage, query, options);
 
 /** The columns of the maps that the page asks for from now on. */
 function passes(page) {
@@ -29,11 +20,6 @@ function passes(page) {
     if (/v1\/regions/.test(request.url()) && query.get('format') === 'ndjson') asked.push(Number(query.get('x.count')));
   });
   return asked;
-}
-
-async function place(page, across, upwards) {
-  const box = await page.locator('#map-box').boundingBox();
-  return [box.x + 52 + (box.width - 52 - 18) * across, box.y + 24 + (box.height - 24 - 96) * (1 - upwards)];
 }
 
 const plain = (text) => text.replaceAll(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');

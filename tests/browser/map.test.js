@@ -3,23 +3,13 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { endedAs, reasonOf } from '../../web/panels/verdict/plain-words.js';
+import { openMap, place, whole } from './map-steps.js';
 import { gate } from './slow-network.js';
 import { PATIENCE_MS, Stage, openPanel, reachPhase, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
-/** Opens the page and goes down to the map. */
-async function open(query = '?preset=case-1&map.columns=96', options = {}) {
-  const opened = await stage.page(query, options);
-  await openPanel(opened.page, 'map');
-  await opened.page.locator('#map-box canvas').first().waitFor();
-  return opened;
-}
-
-async function whole(page) {
-  await page.locator('#map-told', { hasText: /cells[:,] \w/ }).waitFor();
-  await page.locator('#map-box[aria-busy=false]').waitFor();
-}
+const open = (query = '?preset=case-1&map.columns=96', options = {}) => openMap(stage, query, options);
 
 /** Waits until the map has answered anew after `act`. */
 async function anew(page, act) {
@@ -32,12 +22,6 @@ async function anew(page, act) {
 const readout = async (page) => (await page.locator('#map-readout').innerText()).replaceAll('\u2212', '-');
 const frames = (page) =>
   page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-
-/** Where the cells are on the screen: what the canvas leaves for axes and colour bar is known. */
-async function place(page, across, upwards) {
-  const box = await page.locator('#map-box').boundingBox();
-  return [box.x + 52 + (box.width - 52 - 18) * across, box.y + 24 + (box.height - 24 - 96) * (1 - upwards)];
-}
 
 /** The colour at a share of the map, as [r, g, b, a]. */
 async function colourAt(page, across, upwards) {

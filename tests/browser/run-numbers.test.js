@@ -2,20 +2,14 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, openTab, reachImpact, reachPhase, speedUp } from './stage.js';
+import { Stage, openTab, pausedRun } from './stage.js';
 
 const stage = await Stage.open();
 
 /** A run of at least so many impacts, paused; the tab of the run is open. */
 async function paused(query, impacts) {
-  const opened = await stage.page(query);
+  const opened = await pausedRun(stage, query, impacts);
   const { page } = opened;
-  await page.locator('#impacts').waitFor();
-  await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, impacts);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
   await openTab(page, 'run');
   await page.locator('#impacts').scrollIntoViewIfNeeded();
   await page.waitForFunction(() => document.querySelectorAll('#impacts tbody tr').length > 0);

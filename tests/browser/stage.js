@@ -329,6 +329,19 @@ export async function loadAll(page, look) {
   }
 }
 
+/** A run with at least so many impacts, paused. */
+export async function pausedRun(stage, query, n, options = {}) {
+  const opened = await stage.page(query, options);
+  const { page } = opened;
+  await page.locator('#scrub').waitFor();
+  await speedUp(page);
+  await page.click('#run');
+  await reachImpact(page, n);
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+  return opened;
+}
+
 /** A run with a change and a kick in it, paused. */
 export async function changedRun(stage) {
   const opened = await stage.page('?preset=case-1&scene.release.theta=0.2');

@@ -2,22 +2,12 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, impacts, reachImpact, reachPhase, slide, speedUp } from './stage.js';
+import { Stage, impacts, pausedRun, reachImpact, reachPhase, slide, speedUp } from './stage.js';
 
 const stage = await Stage.open();
 
 /** A paused run of case 1 with so many impacts. */
-async function paused(n, query = '?preset=case-1', options = {}) {
-  const opened = await stage.page(query, options);
-  const { page } = opened;
-  await page.locator('#scrub').waitFor();
-  await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, n);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
-  return opened;
-}
+const paused = (n, query = '?preset=case-1', options = {}) => pausedRun(stage, query, n, options);
 
 /** The drawn values, as the scene tells them. */
 async function drawn(page) {

@@ -26,7 +26,7 @@ export class Ghost {
   #release = h('button', { type: 'button', class: 'primary', id: 'ghost-release', click: () => this.release() });
   #element = h(
     'div',
-    { class: 'ghost', role: 'group', 'aria-label': 'Release offered' },
+    { class: 'slip ghost', role: 'group', 'aria-label': 'Release offered' },
     this.#words,
     this.#release,
     h('button', { type: 'button', class: 'ghost-drop', 'aria-label': 'Drop it', click: () => this.drop() }, '×'),

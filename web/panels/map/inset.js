@@ -49,7 +49,7 @@ export class Inset {
     );
     this.element = h(
       'section',
-      { class: 'map-inset', id: 'map-inset', 'aria-label': 'The run of the chosen cell', hidden: true },
+      { class: 'slip map-inset', id: 'map-inset', 'aria-label': 'The run of the chosen cell', hidden: true },
       h(
         'div',
         { class: 'map-inset-head' },
