@@ -147,6 +147,18 @@ fn folders_are_small() {
     none(faults.map(|(folder, count)| format!("{folder}: {count} files; at most {FILES}")).collect());
 }
 
+/// A file without its line would be no error, and its tests would not run.
+#[test]
+fn every_file_of_the_server_tests_is_in_the_test_program() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/server");
+    let listed = fs::read_to_string(folder.join("main.rs")).expect("a text file");
+    let files = fs::read_dir(folder).expect("a readable folder").map(|entry| entry.expect("a file").path());
+    let names = files.filter(|path| path.is_file()).map(|path| path.file_stem().expect("a name").to_owned());
+    let names = names.map(|name| name.into_string().expect("a name in UTF-8")).filter(|name| name != "main");
+    let faults = names.filter(|name| !listed.contains(&format!("\nmod {name};\n")));
+    none(faults.map(|name| format!("tests/server/main.rs: no `mod {name};`")).collect());
+}
+
 #[test]
 fn imports_go_downwards_only() {
     let mut faults = Vec::new();

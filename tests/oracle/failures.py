@@ -1,4 +1,4 @@
-"""References for cases of the failure gallery, with 60 digits, for tests/failures.rs.
+"""References for cases of the failure gallery, with 60 digits, for tests/server/failures.rs.
 
 Needs mpmath. Prints JSON: python3 tests/oracle/failures.py > tests/oracle/failures.json
 Written from the equations of the paper, not from the server's code.

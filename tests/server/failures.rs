@@ -1,9 +1,7 @@
 //! The failure gallery: on every case a common method is wrong. The truth is found here in another way than in the server.
 
-mod support;
-
+use crate::support::Server;
 use serde_json::Value;
-use support::Server;
 
 /// The cases by name.
 async fn gallery(server: &Server) -> Vec<Value> {
@@ -55,7 +53,7 @@ async fn every_case_is_found_by_its_name_with_its_picture_and_its_question() {
 #[tokio::test]
 async fn the_names_are_those_of_the_contract() {
     let names: Vec<Value> = gallery(&Server::start()).await.iter().map(|case| case["name"].clone()).collect();
-    assert_eq!(Value::from(names), support::contract::DOCUMENT["components"]["schemas"]["FailureName"]["enum"]);
+    assert_eq!(Value::from(names), crate::support::contract::DOCUMENT["components"]["schemas"]["FailureName"]["enum"]);
 }
 
 #[tokio::test]
@@ -246,7 +244,7 @@ async fn beyond_the_horizon_runs_part_and_their_distribution_stays() {
 }
 
 fn oracle() -> Value {
-    serde_json::from_str(include_str!("oracle/failures.json")).unwrap()
+    serde_json::from_str(include_str!("../oracle/failures.json")).unwrap()
 }
 
 fn digits(value: &Value) -> f64 {

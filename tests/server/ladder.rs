@@ -1,9 +1,7 @@
 //! The model hierarchy over HTTP: the smallest model for a scene, demands on the table, limits and noise.
 
-mod support;
-
+use crate::support::Server;
 use serde_json::{Value, json};
-use support::Server;
 
 #[tokio::test]
 async fn a_ladder_says_what_was_needed() {

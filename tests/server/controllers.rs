@@ -1,10 +1,8 @@
 //! Control laws: designed laws hold in runs, typed laws are judged, and impossible ones are refused with a reason.
 
-mod support;
-
+use crate::support::Server;
+use crate::support::contract::{self, DOCUMENT};
 use serde_json::{Value, json};
-use support::Server;
-use support::contract::{self, DOCUMENT};
 
 /// Place and angle at each contact of a run of `scene` from a release.
 async fn run(server: &Server, scene: &Value, release: Value, impacts: u64) -> (String, Vec<(f64, f64)>) {

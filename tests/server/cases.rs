@@ -1,9 +1,7 @@
 //! The paper's cases and all reference runs through the whole server: numbers and verdicts that follow from the physics.
 
-mod support;
-
+use crate::support::Server;
 use serde_json::{Value, json};
-use support::Server;
 
 fn close(value: &Value, expected: f64, tolerance: f64) {
     let number = value.as_f64().unwrap_or(f64::NAN);

@@ -1,15 +1,13 @@
 //! Access: the token, origins, host names, request ids, and a proxy in front.
 
-mod support;
-
 use std::net::SocketAddr;
 
+use crate::support::socket::{open, refused, start, start_with, try_open};
+use crate::support::{Answer, Server};
 use axum::http::Method;
 use clap::Parser;
 use equipoise::config::Config;
 use serde_json::json;
-use support::socket::{open, refused, start, start_with, try_open};
-use support::{Answer, Server};
 use tokio::io::{AsyncReadExt, AsyncWriteExt, copy_bidirectional};
 use tokio::net::{TcpListener, TcpStream};
 

@@ -2,17 +2,15 @@
 //!
 //! Wall-clock times are never asserted. The messages of a run are tested in `live.rs`.
 
-mod support;
-
 use std::net::SocketAddr;
 use std::time::Duration;
 
+use crate::support::contract;
+use crate::support::socket::{Row, SOON, held, impacts_in, now_ms, numbers, open, start};
 use equipoise::api::App;
 use equipoise::compute::Peer;
 use equipoise::limits;
 use serde_json::{Value, json};
-use support::contract;
-use support::socket::{Row, SOON, held, impacts_in, now_ms, numbers, open, start};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader};
 use tokio::net::TcpStream;
 use tokio::time::{sleep, timeout};

@@ -1,9 +1,7 @@
 //! Polygons: derived quantities, refusals, and the vertex that ends a run.
 
-mod support;
-
+use crate::support::Server;
 use serde_json::{Value, json};
-use support::Server;
 
 fn triangle() -> Value {
     json!([[0, 0], [0.05, 0.2], [-0.05, 0.2]])

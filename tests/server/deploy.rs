@@ -2,8 +2,6 @@
 //!
 //! `tests/replicas` runs nginx itself before replicas.
 
-mod support;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{BufRead, BufReader, Write, stdout};
@@ -11,10 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use crate::support::Server;
 use equipoise::limits;
 use equipoise::limits::Limits;
 use serde_json::Value;
-use support::Server;
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

@@ -1,9 +1,7 @@
 //! PNG pictures: the drawing of the SVG, with the same bytes everywhere, and an answer like any other.
 
-mod support;
-
+use crate::support::Server;
 use axum::http::Method;
-use support::Server;
 
 const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.6&x.to=1.4&x.count=8\
                    &y.parameter=release.theta&y.from=0.02&y.to=0.08&y.count=4&impacts=300";

@@ -1,11 +1,9 @@
 //! Speed against accuracy over HTTP: all methods are present, counts and errors are reproducible, and times are not cached.
 
-mod support;
-
+use crate::support::csv::Table;
+use crate::support::{Answer, Server};
 use axum::http::Method;
 use serde_json::{Value, json};
-use support::csv::Table;
-use support::{Answer, Server};
 
 const NAMES: [&str; 11] = [
     "map",

@@ -3,23 +3,18 @@
 //! The test frame holds every single answer to the contract, in every test of every file.
 //!
 //! The scene parts of `openapi.yaml` follow from the table of scene fields and from the presets. After a change of those,
-//! `UPDATE=1 cargo test --test contract scene_parts` rewrites them.
+//! `UPDATE=1 cargo test --test server scene_parts` rewrites them.
 
-#[path = "contract/docs.rs"]
 mod docs;
-#[path = "contract/endings.rs"]
 mod endings;
-#[path = "contract/scene.rs"]
 mod scene;
-mod support;
-
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use crate::support::Server;
+use crate::support::contract::{self, DOCUMENT};
 use axum::http::Method;
 use serde_json::{Value, json};
-use support::Server;
-use support::contract::{self, DOCUMENT};
 
 /// A path for a template.
 fn path(template: &str) -> String {
@@ -282,14 +277,14 @@ fn scene_parts_follow_from_the_table() {
     let differs = contract.lines().zip(wanted.lines()).position(|(written, wanted)| written != wanted);
     assert!(
         contract == wanted,
-        "openapi.yaml:{}: not what the tables of scene fields and endings give; UPDATE=1 cargo test --test contract scene_parts rewrites it",
+        "openapi.yaml:{}: not what the tables of scene fields and endings give; UPDATE=1 cargo test --test server scene_parts rewrites it",
         differs.map_or(0, |line| line + 1)
     );
 }
 
 #[test]
 fn the_documentation_has_units_and_defaults_of_the_table() {
-    assert_eq!(docs::differences(include_str!("../docs/physics.md")), Vec::<String>::new());
+    assert_eq!(docs::differences(include_str!("../../docs/physics.md")), Vec::<String>::new());
 }
 
 #[tokio::test]

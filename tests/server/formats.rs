@@ -1,10 +1,8 @@
 //! All formats carry the same numbers, are well-formed, and are chosen by the client.
 
-mod support;
-
+use crate::support::csv::Table;
+use crate::support::{Answer, Server};
 use serde_json::{Value, json};
-use support::csv::Table;
-use support::{Answer, Server};
 
 const COLUMNS: [(&str, &str); 18] = [
     ("n", "n"),

@@ -1,10 +1,8 @@
 //! The same request has the same bytes, and a client that has them gets 304 without any work.
 
-mod support;
-
+use crate::support::Server;
 use axum::http::Method;
 use serde_json::json;
-use support::Server;
 
 const TARGETS: [&str; 8] = [
     "/v1/trajectories?preset=case-1",

@@ -1,9 +1,7 @@
 //! Friction over HTTP: one-sided derivatives, verdicts with their reasons, regions.
 
-mod support;
-
+use crate::support::Server;
 use serde_json::{Value, json};
-use support::Server;
 
 #[tokio::test]
 async fn a_derivative_names_what_the_contact_does() {

@@ -1,13 +1,11 @@
 //! Methods of a run: the one requested, or the cheapest that holds the tolerance, with a true error estimate.
 
-mod support;
-
 use std::time::{Duration, Instant};
 
+use crate::support::socket::start;
+use crate::support::{Answer, Server};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use serde_json::{Value, json};
-use support::socket::start;
-use support::{Answer, Server};
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 

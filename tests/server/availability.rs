@@ -1,13 +1,11 @@
 //! Refusals and nulls that the contract promises for each resource, checked against the server.
 
-mod support;
-
 use std::collections::BTreeSet;
 
+use crate::support::Server;
+use crate::support::contract::{self, DOCUMENT};
 use axum::http::Method;
 use serde_json::{Value, json};
-use support::Server;
-use support::contract::{self, DOCUMENT};
 
 /// A part of a scene by its name in `x-refuses`, and a scene that has it.
 fn parts() -> Vec<(&'static str, Value)> {

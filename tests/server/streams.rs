@@ -1,16 +1,14 @@
 //! Answers that are streamed row by row, and their work when the reader hangs up or is slow.
 
-mod support;
-
 use std::io::Write;
 use std::time::{Duration, Instant};
 
+use crate::support::Server;
+use crate::support::socket::{SOON, start};
 use equipoise::api::App;
 use equipoise::router;
 use http_body_util::BodyExt;
 use serde_json::{Value, json};
-use support::Server;
-use support::socket::{SOON, start};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::timeout;

@@ -1,13 +1,11 @@
 //! Ensembles: the paper's cases with noise. Each run is the same on any number of threads, and each share has its interval.
 
-mod support;
-
 use std::time::{Duration, Instant};
 
+use crate::support::Server;
+use crate::support::csv::Table;
+use crate::support::socket::start;
 use serde_json::{Value, json};
-use support::Server;
-use support::csv::Table;
-use support::socket::start;
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 

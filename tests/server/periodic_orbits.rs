@@ -1,10 +1,8 @@
 //! Periodic orbits over HTTP: the orbit, its branch in every format, and refusals that say why.
 
-mod support;
-
+use crate::support::Server;
+use crate::support::csv::Table;
 use serde_json::{Value, json};
-use support::Server;
-use support::csv::Table;
 
 const SOFT: &str = "/v1/periodic-orbits?preset=case-1&family=symmetric&theta=0.05&sweep.parameter=table.tilt_gain\
                     &sweep.from=1.4&sweep.to=1.7&sweep.points=120";

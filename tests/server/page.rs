@@ -1,10 +1,8 @@
 //! The page's files, and its tags for link previews.
 
-mod support;
-
+use crate::support::Server;
 use clap::Parser;
 use equipoise::config::Config;
-use support::Server;
 
 fn config(arguments: &[&str]) -> Config {
     Config::parse_from([&["equipoise"], arguments].concat())

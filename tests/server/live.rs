@@ -2,16 +2,14 @@
 //!
 //! Order and content are asserted, never wall-clock times. Runs are fast to keep the tests short.
 
-mod support;
-
 use std::time::{Duration, Instant};
 
+use crate::support::Server;
+use crate::support::socket::{Row, SOON, now_ms, numbers, open, refused, start, try_open};
 use equipoise::compute::Peer;
 use equipoise::limits;
 use futures_util::SinkExt;
 use serde_json::{Value, json};
-use support::Server;
-use support::socket::{Row, SOON, now_ms, numbers, open, refused, start, try_open};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::timeout;

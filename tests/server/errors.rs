@@ -1,11 +1,9 @@
 //! Errors: the right status, one shape, all faults at once, each with a pointer into the JSON body, on GET and POST alike.
 
-mod support;
-
+use crate::support::Server;
+use crate::support::contract::{self, DOCUMENT};
 use axum::http::Method;
 use serde_json::{Value, json};
-use support::Server;
-use support::contract::{self, DOCUMENT};
 
 const COMPUTE: [&str; 5] = ["/v1/trajectories", "/v1/jacobians", "/v1/stability", "/v1/ensembles", "/v1/controllers"];
 

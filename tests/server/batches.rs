@@ -1,18 +1,16 @@
 //! Many requests in one body: each line is answered as if it had been posted alone, and its errors stand in its own line.
 
-mod support;
-
 use std::num::NonZeroUsize;
 use std::time::Duration;
 
+use crate::support::Server;
+use crate::support::contract;
 use axum::body::Body;
 use axum::http::{Method, Request};
 use equipoise::api::App;
 use equipoise::config::Config;
 use http_body_util::BodyExt;
 use serde_json::{Value, json};
-use support::Server;
-use support::contract;
 use tower::ServiceExt;
 
 const NDJSON: &[(&str, &str)] = &[("content-type", "application/x-ndjson")];

@@ -1,9 +1,7 @@
 //! Stability maps: each cell is the run of its own scene, tiles are bands of the whole map, and the number of threads does not matter.
 
-mod support;
-
+use crate::support::Server;
 use serde_json::{Value, json};
-use support::Server;
 
 /// Tilt gain and release angle as sides, for the paper's body.
 const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=14\

@@ -1,9 +1,7 @@
 //! The verdict beyond eigenvalues: rotation number, resonances, chaos, predictable impacts and the basin.
 
-mod support;
-
+use crate::support::Server;
 use serde_json::Value;
-use support::Server;
 
 async fn verdict(query: &str) -> Value {
     Server::start().get(&format!("/v1/stability?preset=case-1&{query}")).await.expect(200).json()

@@ -1,6 +1,6 @@
 //! The parts of `openapi.yaml` that follow from the table of scene fields, from the presets and from the endings of runs.
 //!
-//! `UPDATE=1 cargo test --test contract scene_parts` rewrites them: the blocks between `# >>>` and `# <<<`, and every list of
+//! `UPDATE=1 cargo test --test server scene_parts` rewrites them: the blocks between `# >>>` and `# <<<`, and every list of
 //! references to scene parameters. Everything else in the file is written by hand.
 
 use std::collections::BTreeSet;
@@ -11,7 +11,7 @@ use equipoise::api::scene::{field_text, presets};
 use equipoise_physics::body::polygon::{FARTHEST, MAX_VERTICES};
 use equipoise_physics::scene::{FIELDS, Field, FieldKind, Name, VERTICES, Value};
 
-use crate::endings;
+use super::endings;
 
 /// The contract with its scene parts written anew.
 pub(crate) fn rewritten(contract: &str) -> String {

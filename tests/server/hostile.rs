@@ -1,13 +1,11 @@
 //! Extreme and invalid scenes: each gets an answer or a 422, never a panic, a hang, NaN or infinity.
 
-mod support;
-
 use std::time::Duration;
 
+use crate::support::Server;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::SplitMix64;
 use serde_json::{Map, Value, json};
-use support::Server;
 
 const SCENES: u64 = 10_000;
 

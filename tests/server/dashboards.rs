@@ -2,16 +2,14 @@
 //!
 //! `tests/dashboards/run` runs the real programs, if they are installed.
 
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::support::csv::Table;
+use crate::support::{Answer, Server};
 use axum::http::Method;
 use equipoise::config::Config;
 use serde_json::{Map, Value, json};
-use support::csv::Table;
-use support::{Answer, Server};
 
 const EPOCH: u64 = 1_763_675_170_123;
 
