@@ -6,7 +6,7 @@ use axum::http::Method;
 const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.6&x.to=1.4&x.count=8\
                    &y.parameter=release.theta&y.from=0.02&y.to=0.08&y.count=4&impacts=300";
 
-const TARGETS: [&str; 7] = [
+const TARGETS: [&str; 9] = [
     MAP,
     "/v1/trajectories?preset=case-1",
     "/v1/stability?preset=case-4",
@@ -15,6 +15,8 @@ const TARGETS: [&str; 7] = [
      &sweep.to=1.7&sweep.points=20",
     "/v1/failures/order-three",
     "/v1/ensembles?preset=case-1-noise&runs=50",
+    "/v1/catches?preset=case-1&scene.release.theta=0.1&strategy=bounce_down",
+    "/v1/throws?preset=case-1&apex.height=0.3&apex.theta=0.1",
 ];
 
 fn formatted(target: &str, format: &str) -> String {

@@ -89,7 +89,7 @@ impl Pictured for CatchAnswer {
         let dots = |label, points| Curve { label, style: CurveStyle::BesideDots, points };
         let line = |label, points| Curve { label, style: CurveStyle::Beside, points };
         Ok(chart(&Chart {
-            title: "A catch",
+            title: "A falling body, caught and held by a table",
             subtitle: format!("{}: {}", self.outcome.kind, self.outcome.detail),
             caption: format!("Strategy {}: {}. {}", self.strategy.name, self.strategy.reason, self.notes.join("; ")),
             plots: vec![

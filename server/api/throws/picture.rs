@@ -46,7 +46,7 @@ impl Pictured for ThrowAnswer {
             ],
         };
         Ok(chart(&Chart {
-            title: "A throw",
+            title: "A throw to an apex of chosen height and angle",
             subtitle: format!(
                 "the table strikes at α = {} rad and {} m/s along its normal",
                 four(self.alpha),
