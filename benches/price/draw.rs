@@ -85,6 +85,10 @@ impl Draw {
             FieldKind::Integer { maximum } => json!(self.below(maximum)),
             FieldKind::Choice(words) => json!(self.one_of(words)),
             FieldKind::Flag => json!(true),
+            FieldKind::Numbers { minimum, maximum, most } => {
+                let count = 1 + self.below(most as u64);
+                (0..count).map(|_| json!(minimum + (maximum - minimum) * self.unit())).collect()
+            }
         }
     }
 

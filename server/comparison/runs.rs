@@ -196,7 +196,10 @@ impl<'a> Subject<'a> {
     fn rod_of_integrators(&self) -> Result<Rod, String> {
         match self.model {
             Model::Rod(rod) => Ok(rod),
-            Model::Point(_) | Model::General(_) => {
+            Model::General(_) => {
+                Err("general methods are compared on one target height, and program has several".to_owned())
+            }
+            Model::Point(_) => {
                 Err("general methods move a body with an angle of its own, and a point mass has none".to_owned())
             }
         }

@@ -42,7 +42,7 @@ impl NextStrike {
             alpha: strike.alpha,
             // + 0.0 turns −0, the velocity of a table at rest, into 0.
             table_velocity: (x.is_finite() && y.is_finite()).then_some(TableVelocity { x: x + 0.0, y: y + 0.0 }),
-            target: EnergyTarget::of(&scene),
+            target: EnergyTarget::of(&scene, coming.n),
         })
     }
 }
@@ -66,7 +66,7 @@ mod tests {
             if let Some(strike) = contact.strike {
                 assert_eq!((velocity.x, velocity.y), strike.table_velocity);
             }
-            assert_eq!(next.target, EnergyTarget::of(playback.scene()));
+            assert_eq!(next.target, EnergyTarget::of(playback.scene(), next.n));
         }
     }
 

@@ -4,7 +4,7 @@ use equipoise_physics::body::Kick;
 use equipoise_physics::scene::{FIELDS, Field, Name, Value as FieldValue, field};
 use serde_json::{Map, Value};
 
-use crate::api::scene::{has_angle, read_scene, read_value, value_to_json};
+use crate::api::scene::{has_angle, read_scene, read_value, value_to_query};
 use crate::http::request::reader::join;
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
@@ -163,7 +163,7 @@ pub fn intervention_parameters(run: &Run) -> Vec<(String, String)> {
         let prefix = format!("interventions.{index}");
         parameters.push((format!("{prefix}.impact"), intervention.impact.to_string()));
         for (name, value) in &intervention.set {
-            parameters.push((format!("{prefix}.set.{}", name.row().path), value_text(*value)));
+            parameters.extend(value_to_query(format!("{prefix}.set.{}", name.row().path), *value));
         }
         if let Some(kick) = intervention.kick {
             for (name, value) in [("x_dot", kick.x_dot), ("y_dot", kick.y_dot), ("theta_dot", kick.theta_dot)] {
@@ -180,11 +180,4 @@ pub fn intervention_parameters(run: &Run) -> Vec<(String, String)> {
 /// Shortest text that reads back to the same double.
 pub fn number_text(value: f64) -> String {
     Value::from(value).to_string()
-}
-
-fn value_text(value: FieldValue) -> String {
-    match value_to_json(value) {
-        Value::String(text) => text,
-        other => other.to_string(),
-    }
 }

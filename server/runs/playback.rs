@@ -113,7 +113,7 @@ impl Playback {
         let mut draft = self.scene.draft();
         for (name, value) in set {
             // A run holds only fields that can be set, so this does not fail.
-            let _ = draft.set(name, Some(value));
+            let _ = draft.replace(name, value);
         }
         if let Ok(scene) = draft.build() {
             self.orbit.replace(scene.running_model(), scene.rules());

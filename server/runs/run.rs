@@ -65,7 +65,7 @@ impl Run {
         let mut changed = self.clone();
         let set = &mut changed.entry(impact).map_err(|detail| vec![FieldError::at("", detail)])?.set;
         for (name, value) in changes {
-            set.retain(|(known, _)| known != name);
+            set.retain(|(known, _)| known != name && Some(*known) != name.other_way());
             set.push((*name, *value));
         }
         set.sort_by_key(|(name, _)| *name as usize);
@@ -134,7 +134,17 @@ impl Run {
 /// The scene with some fields changed.
 fn with(scene: &Scene, changes: &[(Name, Value)]) -> Result<Scene, Vec<FieldError>> {
     let mut draft = scene.draft();
-    let errors: Vec<_> = changes.iter().filter_map(|(name, value)| draft.set(*name, Some(*value)).err()).collect();
+    let mut errors: Vec<_> = changes.iter().filter_map(|(name, value)| draft.replace(*name, *value).err()).collect();
+    let other_way = |(name, _): &(Name, Value)| {
+        let other = name.other_way()?;
+        changes.iter().any(|(name, _)| *name == other).then_some((name.row(), other.row()))
+    };
+    if let Some((one, other)) = changes.iter().find_map(other_way) {
+        errors.push(FieldError::at(
+            one.path,
+            format!("{} and {} say the same thing; set one of them", one.key(), other.key()),
+        ));
+    }
     if errors.is_empty() { draft.build().map_err(explain) } else { Err(errors) }
 }
 

@@ -18,6 +18,11 @@ export interface components {
         "scene.table.energy_gain": number;
         "scene.table.target_height": number;
         /** @enum {string} */
+        "scene.table.energy_measure": "vertical" | "total";
+        /** @enum {string} */
+        "scene.table.energy_law": "proportional" | "one_strike";
+        "scene.table.program": number[];
+        /** @enum {string} */
         "scene.table.strike": "compensated" | "still";
         /** @enum {string} */
         "scene.table.slide": "none" | "matched";
@@ -131,7 +136,7 @@ export interface components {
         /** @default 0 */
         "throws.apex.theta": number;
         /** @enum {string} */
-        PresetName: "case-1" | "case-2" | "case-2-figure" | "case-3" | "case-4" | "case-5" | "critical-soft" | "critical-hard" | "true-triangle" | "triangle-polygon" | "point-mass" | "still-lossy" | "case-1-noise" | "case-4-noise";
+        PresetName: "case-1" | "case-2" | "case-2-figure" | "case-3" | "case-4" | "case-5" | "critical-soft" | "critical-hard" | "true-triangle" | "triangle-polygon" | "point-mass" | "still-lossy" | "case-1-noise" | "case-4-noise" | "case-4-total" | "juggling";
         Vertices: number[][];
         ScenePatch: {
             body?: {
@@ -152,6 +157,9 @@ export interface components {
                 tilt_gain?: components["schemas"]["scene.table.tilt_gain"] | null;
                 energy_gain?: components["schemas"]["scene.table.energy_gain"] | null;
                 target_height?: components["schemas"]["scene.table.target_height"] | null;
+                energy_measure?: components["schemas"]["scene.table.energy_measure"] | null;
+                energy_law?: components["schemas"]["scene.table.energy_law"] | null;
+                program?: components["schemas"]["scene.table.program"] | null;
                 strike?: components["schemas"]["scene.table.strike"] | null;
                 slide?: components["schemas"]["scene.table.slide"] | null;
                 feedback?: {
@@ -206,6 +214,9 @@ export interface components {
                 tilt_gain?: components["schemas"]["scene.table.tilt_gain"] | null;
                 energy_gain: components["schemas"]["scene.table.energy_gain"];
                 target_height?: components["schemas"]["scene.table.target_height"] | null;
+                energy_measure?: components["schemas"]["scene.table.energy_measure"];
+                energy_law?: components["schemas"]["scene.table.energy_law"];
+                program?: components["schemas"]["scene.table.program"];
                 strike: components["schemas"]["scene.table.strike"];
                 slide: components["schemas"]["scene.table.slide"];
                 feedback?: {
@@ -286,6 +297,9 @@ export interface components {
             "table.tilt_gain"?: components["schemas"]["scene.table.tilt_gain"];
             "table.energy_gain"?: components["schemas"]["scene.table.energy_gain"];
             "table.target_height"?: components["schemas"]["scene.table.target_height"];
+            "table.energy_measure"?: components["schemas"]["scene.table.energy_measure"];
+            "table.energy_law"?: components["schemas"]["scene.table.energy_law"];
+            "table.program"?: components["schemas"]["scene.table.program"];
             "table.strike"?: components["schemas"]["scene.table.strike"];
             "table.slide"?: components["schemas"]["scene.table.slide"];
             "table.feedback.x"?: components["schemas"]["scene.table.feedback.x"];
@@ -307,6 +321,9 @@ export interface components {
                 tilt_gain?: components["schemas"]["scene.table.tilt_gain"];
                 energy_gain?: components["schemas"]["scene.table.energy_gain"];
                 target_height?: components["schemas"]["scene.table.target_height"];
+                energy_measure?: components["schemas"]["scene.table.energy_measure"];
+                energy_law?: components["schemas"]["scene.table.energy_law"];
+                program?: components["schemas"]["scene.table.program"];
                 strike?: components["schemas"]["scene.table.strike"];
                 slide?: components["schemas"]["scene.table.slide"];
                 feedback?: {
@@ -794,7 +811,7 @@ export interface components {
             about: string;
             unit: string;
             /** @enum {string} */
-            kind: "number" | "integer" | "boolean" | "choice";
+            kind: "number" | "integer" | "boolean" | "choice" | "numbers";
             minimum: number | null;
             maximum: number | null;
             default: number | string | boolean | null;
@@ -1836,6 +1853,9 @@ export interface components {
             "table.tilt_gain"?: components["schemas"]["scene.table.tilt_gain"];
             "table.energy_gain"?: components["schemas"]["scene.table.energy_gain"];
             "table.target_height"?: components["schemas"]["scene.table.target_height"];
+            "table.energy_measure"?: components["schemas"]["scene.table.energy_measure"];
+            "table.energy_law"?: components["schemas"]["scene.table.energy_law"];
+            "table.program"?: components["schemas"]["scene.table.program"];
             "table.strike"?: components["schemas"]["scene.table.strike"];
             "table.slide"?: components["schemas"]["scene.table.slide"];
             "table.feedback.x"?: components["schemas"]["scene.table.feedback.x"];
@@ -1884,6 +1904,9 @@ export type SceneContactLaw = components['schemas']['scene.contact.law'];
 export type SceneTableTiltGain = components['schemas']['scene.table.tilt_gain'];
 export type SceneTableEnergyGain = components['schemas']['scene.table.energy_gain'];
 export type SceneTableTargetHeight = components['schemas']['scene.table.target_height'];
+export type SceneTableEnergyMeasure = components['schemas']['scene.table.energy_measure'];
+export type SceneTableEnergyLaw = components['schemas']['scene.table.energy_law'];
+export type SceneTableProgram = components['schemas']['scene.table.program'];
 export type SceneTableStrike = components['schemas']['scene.table.strike'];
 export type SceneTableSlide = components['schemas']['scene.table.slide'];
 export type SceneTableFeedbackX = components['schemas']['scene.table.feedback.x'];

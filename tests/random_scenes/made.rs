@@ -85,7 +85,9 @@ impl Made {
             }
         }
         let said = |name: Name| self.fields[name as usize].is_some();
-        let still = self.fields[Name::Strike as usize].is_some_and(|(share, _)| share >= 0.5);
+        let second = |name: Name| self.fields[name as usize].is_some_and(|(share, _)| share >= 0.5);
+        let still = second(Name::Strike);
+        let one_strike = second(Name::EnergyLaw) && !still;
         for row in &FIELDS {
             let group = row.group();
             let fits = match row.name {
@@ -95,7 +97,9 @@ impl Made {
                 Name::ContactDistance | Name::RadiusOfGyration => matches!(self.body, Body::Rod),
                 Name::ContactVertex => false,
                 Name::Theta | Name::ThetaDot | Name::Friction | Name::Slide | Name::Law if is_point => false,
-                Name::EnergyGain | Name::AssumedRestitution if still => false,
+                Name::EnergyGain | Name::AssumedRestitution | Name::EnergyLaw if still => false,
+                Name::EnergyGain | Name::EnergyMeasure | Name::Friction if one_strike => false,
+                Name::TargetHeight if said(Name::Program) => false,
                 Name::TiltGain => tilts == Tilts::Gain,
                 _ if row.path.starts_with("table.feedback.") => tilts == Tilts::Feedback,
                 // Limits of the table end a run soon, so few scenes have them.
@@ -103,15 +107,20 @@ impl Made {
                 _ => group != "noise" || (self.noisy && !is_point),
             };
             let needed = match row.name {
-                Name::TargetHeight => said(Name::EnergyGain) && !still,
+                Name::TargetHeight => one_strike || (said(Name::EnergyGain) && !still),
                 _ => row.required && !matches!(self.body, Body::Preset(_)),
             };
             if fits && (said(row.name) || needed) {
                 put(&mut scene, row.path, self.value(row.name));
             }
         }
-        if tilts == Tilts::Feedback && matches!(self.body, Body::Preset(_)) {
-            put(&mut scene, Name::TiltGain.row().path, Value::Null);
+        let takes_back = [
+            (Name::TiltGain, tilts == Tilts::Feedback),
+            (Name::TargetHeight, said(Name::Program)),
+            (Name::EnergyGain, one_strike),
+        ];
+        for (name, _) in takes_back.into_iter().filter(|(_, back)| *back && matches!(self.body, Body::Preset(_))) {
+            put(&mut scene, name.row().path, Value::Null);
         }
         if !matches!(self.body, Body::Preset(_)) {
             let length = scene.pointer("/body/contact_distance").and_then(Value::as_f64).unwrap_or(0.3);
@@ -133,6 +142,15 @@ impl Made {
             FieldKind::Integer { maximum } => json!((share * maximum as f64) as u64),
             FieldKind::Choice(words) => json!(words[((share * words.len() as f64) as usize).min(words.len() - 1)]),
             FieldKind::Flag => json!(true),
+            FieldKind::Numbers { minimum, maximum, most } => {
+                let (_, low, high) =
+                    USUAL.iter().find(|(usual, ..)| *usual == Name::TargetHeight).expect("it is there");
+                let (low, high) = if anything { (minimum, maximum) } else { (*low, *high) };
+                let count = 1 + (share * most as f64) as usize % most;
+                (0..count)
+                    .map(|n| json!((low + (high - low) * (share + 0.618 * n as f64).fract()).clamp(minimum, maximum)))
+                    .collect()
+            }
         }
     }
 }

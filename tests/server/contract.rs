@@ -242,10 +242,11 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
                 differences.push(format!("{path}: {what} is {table} in the table and {contract} in the contract"));
             }
         };
-        compare("minimum", &field["minimum"], schema.get("minimum"));
-        compare("maximum", &field["maximum"], schema.get("maximum"));
+        let numbers = if schema["type"] == "array" { &schema["items"] } else { schema };
+        compare("minimum", &field["minimum"], numbers.get("minimum"));
+        compare("maximum", &field["maximum"], numbers.get("maximum"));
         compare("default", &field["default"], schema.get("x-default"));
-        if schema.get("minimum").is_some() {
+        if numbers.get("minimum").is_some() {
             compare("unit", &field["unit"], schema.get("x-unit"));
         }
         if field["symbol"] != json!("") {
@@ -254,6 +255,7 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
         compare("choices", &field["choices"], schema.get("enum"));
         let kind = match schema["type"].as_str().unwrap() {
             "string" => "choice",
+            "array" => "numbers",
             other => other,
         };
         compare("kind", &field["kind"], Some(&json!(kind)));

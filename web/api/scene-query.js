@@ -31,6 +31,10 @@ export function merged(preset, changes) {
   return lay(base, changes);
 }
 
+/** A value as parameters: one for each number of a list. @param {string} name @param {unknown} value @returns {string[][]} */
+export const parameters = (name, value) =>
+  Array.isArray(value) ? value.flatMap((one, index) => parameters(`${name}.${index}`, one)) : [[name, String(value)]];
+
 /**
  * A scene as the shortest query that means it: the preset and what differs, `null` where a value is taken back, or all of it where the
  * body is another one.
@@ -54,12 +58,7 @@ export function sceneQuery(scene, preset, fields) {
     if (value === undefined && covered && playedAt(preset.scene, field) !== undefined)
       query.set(`scene.${field.path}`, 'null');
     if (value === undefined || same(value, covered ? playedAt(preset.scene, field) : field.default)) continue;
-    if (field.kind === 'vertices') {
-      for (const [index, place] of value.entries()) {
-        query.set(`scene.${field.path}.${index}.0`, String(place[0]));
-        query.set(`scene.${field.path}.${index}.1`, String(place[1]));
-      }
-    } else query.set(`scene.${field.path}`, String(value));
+    for (const [name, text] of parameters(`scene.${field.path}`, value)) query.set(name, text);
   }
   return query;
 }

@@ -1,7 +1,8 @@
 // Reads the page's address: scene and run in the words of `/v1/live`. Links grow old, so every part is checked.
 
 import { number, quantity } from '../dom/numbers.js';
-import { setAt } from '../api/scene-fields.js';
+import { setAt, valueAt } from '../api/scene-fields.js';
+import { parameters } from '../api/scene-query.js';
 import { interventionsOf } from '../run/interventions.js';
 import { FASTEST, SLOWEST } from '../run/speed.js';
 
@@ -61,7 +62,7 @@ export function readLink(search, fields, cases) {
     } else if (key === 'epoch') {
       if (Number.isFinite(value) && value >= 0) run.set(key, text);
       else link.dropped.push(`the start “${shown(text)}”, which is not a time in ms`);
-    } else if (/^(interventions\.\d+\.(impact|(set|kick)\.[a-z_.]+)|clock\.\d+\.(wall|run|speed))$/.test(key)) {
+    } else if (/^(interventions\.\d+\.(impact|(set|kick)\.[\w.]+)|clock\.\d+\.(wall|run|speed))$/.test(key)) {
       if (Number.isFinite(value) || isChoice(key, text, fields)) run.set(key, text);
       else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
     } else if (PANEL_KEYS.test(key)) {
@@ -101,7 +102,8 @@ const shown = (text) => (text.length > 40 ? `${text.slice(0, 40)}…` : text);
  * @returns {string | null} why it was not taken
  */
 function readField(path, text, fields, changes) {
-  const field = fields.find((one) => one.path === path);
+  const [, list, index] = /^(.+)\.(\d\d?)$/.exec(path) ?? [];
+  const field = fields.find((one) => one.path === (one.kind === 'numbers' && text !== 'null' ? list : path));
   if (!field) return `“scene.${shown(path)}”, which is no field of a scene`;
   /** @type {unknown} */
   let value = text;
@@ -109,7 +111,7 @@ function readField(path, text, fields, changes) {
     setAt(changes, path, null);
     return null;
   }
-  if (field.kind === 'number' || field.kind === 'integer') {
+  if (field.minimum !== null) {
     value = text.trim() === '' ? NaN : Number(text);
     const { minimum, maximum } = field;
     if (!Number.isFinite(value)) return `${field.title.toLowerCase()} “${shown(text)}”, which is not a number`;
@@ -123,7 +125,8 @@ function readField(path, text, fields, changes) {
   } else if (field.choices && !field.choices.includes(text)) {
     return `${field.title.toLowerCase()} “${shown(text)}”: it must be one of ${field.choices.join(', ')}`;
   }
-  setAt(changes, path, value);
+  if (index) setAt(changes, list, (valueAt(changes, list) ?? []).toSpliced(Number(index), 1, value));
+  else setAt(changes, path, value);
   return null;
 }
 
@@ -151,7 +154,8 @@ function wholeRun(run, fields, dropped) {
     );
   whole.forEach(({ impact, set, kick }, index) => {
     kept.set(`interventions.${index}.impact`, String(impact));
-    for (const [path, value] of Object.entries(set)) kept.set(`interventions.${index}.set.${path}`, String(value));
+    for (const [path, value] of Object.entries(set))
+      for (const [name, text] of parameters(`interventions.${index}.set.${path}`, value)) kept.set(name, text);
     for (const [name, value] of Object.entries(kick)) kept.set(`interventions.${index}.kick.${name}`, String(value));
   });
   const marks = [

@@ -6,14 +6,21 @@ import { inWords } from '../dom/typeset.js';
 import { UNITS } from '../dom/units.js';
 import { Group, grouped } from './groups.js';
 import { NumberRow } from './number-row.js';
-import { BooleanRow, ChoiceRow, VerticesRow } from './other-rows.js';
+import { BooleanRow, ChoiceRow, NumbersRow, VerticesRow } from './other-rows.js';
 import { SettingsBar } from './search.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('./row.js').Row} Row */
 
-const KINDS = { choice: ChoiceRow, boolean: BooleanRow, vertices: VerticesRow, number: NumberRow, integer: NumberRow };
+const KINDS = {
+  choice: ChoiceRow,
+  boolean: BooleanRow,
+  vertices: VerticesRow,
+  numbers: NumbersRow,
+  number: NumberRow,
+  integer: NumberRow,
+};
 
 export class Form {
   /** @type {Map<string, Row>} */

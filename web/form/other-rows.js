@@ -1,4 +1,4 @@
-// Rows of fields that are no numbers: a choice, yes or no, the vertices of a polygon.
+// Rows of fields that are no single numbers: a choice, yes or no, the vertices of a polygon, a list of numbers.
 
 import { h } from '../dom/elements.js';
 import { parse } from '../dom/numbers.js';
@@ -48,7 +48,7 @@ export class BooleanRow extends Row {
 export class VerticesRow extends Row {
   /** @param {Field} field @param {Host} host */
   constructor(field, host) {
-    const area = h('textarea', { rows: 3, spellcheck: 'false', placeholder: 'not set' });
+    const area = h('textarea', { rows: field.kind === 'numbers' ? 1 : 3, spellcheck: 'false', placeholder: 'not set' });
     super(field, host, area);
     this.head.after(area);
     for (const [event, final] of /** @type {const} */ ([
@@ -58,10 +58,15 @@ export class VerticesRow extends Row {
       area.addEventListener(event, () => this.#typed(final));
   }
 
+  /** @param {string} text */
+  meant(text) {
+    return places(text);
+  }
+
   /** @param {boolean} final */
   #typed(final) {
     const text = this.input.value;
-    const { value, problem } = text.trim() === '' ? { value: undefined, problem: null } : places(text);
+    const { value, problem } = text.trim() === '' ? { value: undefined, problem: null } : this.meant(text);
     // Half a polygon is no reason to throw it away: it stays, and the page keeps the last whole one.
     if (problem === null) return this.take(value, final);
     this.problem = problem;
@@ -74,17 +79,33 @@ export class VerticesRow extends Row {
   }
 }
 
+export class NumbersRow extends VerticesRow {
+  /** @param {string} text */
+  meant(text) {
+    const value = numbers(text, this.field.unit);
+    return value.includes(null)
+      ? { value: undefined, problem: `“${text.trim()}” is not a list of numbers, as in “0.2, 0.3”.` }
+      : { value, problem: null };
+  }
+
+  show() {
+    this.input.value = Array.isArray(this.value) ? this.value.join(', ') : '';
+  }
+}
+
+/** Numbers apart by commas, semicolons or blanks. @param {string} text @param {string} unit */
+const numbers = (text, unit) =>
+  text
+    .trim()
+    .split(/[\s,;]+/)
+    .map((part) => parse(part, unit));
+
 /** Vertices from lines of two numbers. @param {string} text @returns {{value: unknown, problem: string | null}} */
 function places(text) {
   const lines = text
     .trim()
     .split('\n')
-    .map((line) =>
-      line
-        .trim()
-        .split(/[\s,;]+/)
-        .map((part) => parse(part, 'm')),
-    );
+    .map((line) => numbers(line, 'm'));
   const wrong = lines.findIndex((place) => place.length !== 2 || place.includes(null));
   return wrong < 0
     ? { value: lines, problem: null }

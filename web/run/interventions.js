@@ -1,6 +1,8 @@
 // The interventions of a run in its query.
 
-/** @typedef {{impact: number, set: Record<string, number | string>, kick: Record<string, number>}} Intervention */
+import { parameters } from '../api/scene-query.js';
+
+/** @typedef {{impact: number, set: Record<string, number | string | number[]>, kick: Record<string, number>}} Intervention */
 
 /**
  * @param {URLSearchParams} query
@@ -10,13 +12,14 @@ export function interventionsOf(query) {
   /** @type {Map<number, Intervention>} */
   const found = new Map();
   for (const [key, text] of query) {
-    const match = /^interventions\.(\d+)\.(impact$|set\.|kick\.)(.*)$/.exec(key);
+    const match = /^interventions\.(\d+)\.(impact$|set\.|kick\.)(.*?)(\.\d+)?$/.exec(key);
     if (!match) continue;
     const index = Number(match[1]);
     const one = found.get(index) ?? { impact: 0, set: {}, kick: {} };
     found.set(index, one);
     const value = Number.isFinite(Number(text)) ? Number(text) : text;
     if (match[2] === 'impact') one.impact = Number(text);
+    else if (match[4]) one.set[match[3]] = [.../** @type {number[]} */ (one.set[match[3]] ?? []), Number(text)];
     else if (match[2] === 'set.') one.set[match[3]] = value;
     else one.kick[match[3]] = Number(text);
   }
@@ -28,7 +31,7 @@ export const interventionQuery = (interventions) =>
   new URLSearchParams(
     interventions.flatMap(({ impact, set, kick }, index) => [
       [`interventions.${index}.impact`, String(impact)],
-      ...Object.entries(set).map(([path, value]) => [`interventions.${index}.set.${path}`, String(value)]),
+      ...Object.entries(set).flatMap(([path, value]) => parameters(`interventions.${index}.set.${path}`, value)),
       ...Object.entries(kick).map(([name, value]) => [`interventions.${index}.kick.${name}`, String(value)]),
     ]),
   );

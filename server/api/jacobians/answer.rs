@@ -79,7 +79,10 @@ impl<'a> JacobianAnswer<'a> {
     /// The reason why there is no derivative.
     pub fn compute(request: &'a JacobianRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
         let JacobianRequest { ref scene, at, period, method } = *request;
-        let model = scene.model();
+        let model = match at {
+            At::Impact(impact) => scene.model().from_contact(impact),
+            At::FixedPoint | At::State(..) => scene.model(),
+        };
         let (x, state) = place(scene, at, go_on)?;
         let derivative = match method {
             Derivation::Exact => jacobian::jacobian_at(&model, x, &state, period),

@@ -48,6 +48,7 @@ impl ResourceRequest for PeriodicOrbitRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let scene = read_frictionless_scene(reader);
         let before = reader.errors().len();
+        let cycle = scene.as_ref().and_then(Scene::program).map_or(1, |program| program.heights().len() as u64);
         let period = reader.integer("period", 1..=limits::ORBIT_PERIOD);
         let guess = reader.within("guess", read_state);
         let family = reader.choice("family", &[("symmetric", ())]);
@@ -78,18 +79,31 @@ impl ResourceRequest for PeriodicOrbitRequest {
                 None
             }
             (Some(state), None, None) => Some(BranchStart::Near(state)),
-            (None, None, None) if period.unwrap_or(1) == 1 => Some(BranchStart::Upright),
+            (None, None, None) if period.unwrap_or(cycle) == cycle => Some(BranchStart::Upright),
             (None, None, None) if reader.errors().len() > before => None,
             (None, None, None) => {
-                reader.refuse_whole("give a guess, or family \"symmetric\" with theta; only period 1 needs neither");
+                reader.refuse_whole(format!(
+                    "give a guess, or family \"symmetric\" with theta; only period {cycle} needs neither"
+                ));
                 None
             }
         };
+        if let Some(period) = period.filter(|period| !period.is_multiple_of(cycle)) {
+            let detail =
+                format!("period is {period}; with a program of {cycle} heights it must be a multiple of {cycle}");
+            reader.refuse("period", detail);
+        }
+        if cycle > 1 && matches!(start, Some(BranchStart::Symmetric(_))) {
+            reader.refuse(
+                "family",
+                "family \"symmetric\" has bounces of one height, and scene.table.program has several",
+            );
+        }
         if reader.errors().len() > before {
             return None;
         }
         let start = start?;
-        let default = if start == BranchStart::Upright { 1 } else { 2 };
+        let default = if start == BranchStart::Upright || cycle > 1 { cycle } else { 2 };
         Some(Self { scene: scene?, period: period.unwrap_or(default), start, sweep })
     }
 

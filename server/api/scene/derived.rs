@@ -1,6 +1,6 @@
 //! Quantities that follow from a scene, as part of answers: what a client needs to draw the body and its flights.
 
-use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::scene::Scene;
 use serde::Serialize;
 
 use crate::api::scene::has_angle;
@@ -16,10 +16,11 @@ pub struct Derived {
     radius_of_gyration: Option<f64>,
     /// Vertices of a polygon about its centre of gravity at θ = 0, m.
     outline: Option<Vec<[f64; 2]>>,
+    /// Target of the first strike.
     target: Option<EnergyTarget>,
 }
 
-/// The bounce that energy feedback steers for, eq. (28).
+/// The bounce that energy feedback steers for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EnergyTarget {
     /// y*, height of the centre of gravity at the top, m.
@@ -37,17 +38,16 @@ impl Derived {
             contact_distance: rod.contact_distance,
             radius_of_gyration: has_angle(scene).then_some(rod.radius_of_gyration),
             outline: scene.outline().map(|outline| outline.vertices().to_vec()),
-            target: EnergyTarget::of(scene),
+            target: EnergyTarget::of(scene, 1),
         }
     }
 }
 
 impl EnergyTarget {
-    /// The target of a scene, if its table has an energy gain.
-    pub fn of(scene: &Scene) -> Option<Self> {
-        scene.number(Name::EnergyGain).filter(|gain| *gain != 0.0)?;
-        let height = scene.number(Name::TargetHeight)?;
-        Some(Self { height, energy: scene.parameters::<f64>().target_energy })
+    /// The target of strike `n` of a scene, if its table steers the energy.
+    pub fn of(scene: &Scene, n: u64) -> Option<Self> {
+        let height = scene.target_height(n)?;
+        Some(Self { height, energy: scene.gravity() * height })
     }
 }
 
@@ -55,6 +55,7 @@ impl EnergyTarget {
 mod tests {
     use super::*;
     use crate::api::scene::presets;
+    use equipoise_physics::scene::Name;
 
     fn of(preset: &str) -> Derived {
         Derived::of(&presets::find(preset).unwrap().draft().build().unwrap())

@@ -67,13 +67,27 @@ pub fn field_text(name: Name) -> FieldText {
             ..text("Tilt gain", "κ", "The table tilts by α = κθ")
         },
         Name::EnergyGain => FieldText {
-            detail: "A gain other than 0 needs `table.target_height`",
+            detail: "A gain other than 0 needs `table.target_height` or `table.program`",
             example: "0",
             ..text("Energy gain", "κ_E", "Gain of the feedback from missing energy to the table's speed")
         },
         Name::TargetHeight => FieldText {
             example: "0.25",
             ..text("Target height", "y*", "Height of the centre of gravity at the top of the wanted bounce; needed with an energy gain")
+        },
+        Name::EnergyMeasure => FieldText {
+            detail: "`vertical`, the default: η = ½ẏ² + G l cos θ (eq. 28). `total`: E = ½(ẋ² + ẏ² + ρ²θ̇²) + G l cos θ, with which a swing neither grows nor dies out by the feedback. It has no effect without an energy gain",
+            example: "total",
+            ..text("Energy measure", "", "Energy that the table measures and steers to G y*")
+        },
+        Name::EnergyLaw => FieldText {
+            detail: "`proportional`, the default: the strike grows with `table.energy_gain` times the missing energy. `one_strike`: each strike brings the total energy to the target, with no gain and without friction. A strike can take no more than the energy of the normal velocity; where that is too little the contact point stays on the table, and the run ends as `settled` or `sinking` unless the tilted table lifts it",
+            example: "proportional",
+            ..text("Energy law", "", "Law by which strikes bring the energy to its target")
+        },
+        Name::Program => FieldText {
+            detail: "Strike n takes the height number n, in a cycle, in place of `table.target_height`. A single bounce then does not repeat, so `stability` has no verdict; `periodic-orbits` has the orbit of a whole cycle",
+            ..text("Program", "", "Target heights, one for each strike, in a cycle: juggling")
         },
         Name::Strike => FieldText {
             detail: "`compensated`: the table makes up the energy that restitution loses. `still`: it does not move",
@@ -141,7 +155,7 @@ pub fn explain(errors: Vec<FieldError>) -> Vec<FieldError> {
             let detail = format!("{} is missing: {}, {}", row.key(), field_text(name).about, row.limits());
             FieldError { detail, ..error }
         }
-        FieldErrorKind::TwoTiltLaws => {
+        FieldErrorKind::TwoTiltLaws | FieldErrorKind::TwoTargets => {
             FieldError { detail: format!("{} (null takes a preset's back)", error.detail), ..error }
         }
         FieldErrorKind::Other => error,
@@ -187,6 +201,9 @@ impl FieldRow {
             FieldKind::Integer { maximum } => ("integer", Some(0.into()), Some(maximum.into()), None),
             FieldKind::Choice(choices) => ("choice", None, None, Some(choices)),
             FieldKind::Flag => ("boolean", None, None, None),
+            FieldKind::Numbers { minimum, maximum, .. } => {
+                ("numbers", Some(minimum.into()), Some(maximum.into()), None)
+            }
         };
         let FieldText { title, symbol, about, .. } = field_text(row.name);
         Self {

@@ -2,7 +2,9 @@
 
 use equipoise_physics::body::polygon::{FARTHEST, MAX_VERTICES, Vertices};
 use equipoise_physics::scene::{Draft, FIELDS, Field, FieldKind, Scene, VERTICES, Value as FieldValue, field};
+use equipoise_physics::table::program::HeightProgram;
 use serde_json::{Map, Value};
+use std::ops::RangeInclusive;
 
 use crate::api::scene::fields::explain;
 use crate::http::Errors;
@@ -157,8 +159,28 @@ pub fn read_value(row: &'static Field, value: &Value, source: Source) -> Result<
             let known: Vec<_> = words.iter().map(|word| (*word, *word)).collect();
             scalar::choice(value, &known).map(FieldValue::Choice).map(Some)
         }
+        (FieldKind::Numbers { minimum, maximum, most }, _) => {
+            read_numbers(row, value, source, &(minimum..=maximum), most).map(FieldValue::Numbers).map(Some)
+        }
         (FieldKind::Flag, _) => scalar::boolean(value, source).map(|flag| flag.then_some(FieldValue::Flag(true))),
     }
+}
+
+/// Reads a list of numbers.
+fn read_numbers(
+    row: &'static Field,
+    value: &Value,
+    source: Source,
+    range: &RangeInclusive<f64>,
+    most: usize,
+) -> Result<HeightProgram, String> {
+    let wrong = || format!("is {}; it must be {}", scalar::shown(value), row.limits());
+    let items = value.as_array().filter(|items| items.len() <= most).ok_or_else(wrong)?;
+    let number = |(index, item)| {
+        scalar::number_within(item, source, range, row.unit).map_err(|error| format!("at index {index} {error}"))
+    };
+    let numbers = items.iter().enumerate().map(number).collect::<Result<Vec<f64>, String>>()?;
+    HeightProgram::new(&numbers).ok_or_else(wrong)
 }
 
 /// Names that may stand in place of the last part of `path`.

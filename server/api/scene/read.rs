@@ -149,8 +149,8 @@ mod tests {
             ("/scene/table/tilt_gain", "tilt_gain is 5000; it must be from -100 to 100 (no unit)"),
             (
                 "/scene/table/tilt",
-                "unknown field `table.tilt`; known here: tilt_gain, energy_gain, target_height, strike, slide, feedback, \
-                 assumed_restitution, limits",
+                "unknown field `table.tilt`; known here: tilt_gain, energy_gain, target_height, energy_measure, \
+                 energy_law, program, strike, slide, feedback, assumed_restitution, limits",
             ),
             ("/scene/gravity", "gravity is \"9.81\"; it must be a number from 0.1 to 100 m/s², not text"),
             ("/scene/body/vertices", "vertices are 0; a polygon has from 3 to 32"),

@@ -1,6 +1,6 @@
 //! Writes a scene with all its defaults, as JSON or as dotted query parameters that read back to the same scene.
 
-use equipoise_physics::scene::{FIELDS, Scene, VERTICES, Value as FieldValue};
+use equipoise_physics::scene::{FIELDS, Field, Scene, VERTICES, Value as FieldValue};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
@@ -49,20 +49,28 @@ pub fn value_to_json(value: FieldValue) -> Value {
         FieldValue::Integer(number) => Value::from(number),
         FieldValue::Choice(word) => Value::from(word),
         FieldValue::Flag(flag) => Value::from(flag),
+        FieldValue::Numbers(list) => Value::from(list.heights()),
     }
 }
 
 /// The scene as dotted query parameters (`scene.table.tilt_gain`, `1.1`), which read back to the same scene.
 pub fn scene_to_query(scene: &Scene) -> Vec<(String, String)> {
-    let written = |value| match value_to_json(value) {
-        Value::String(text) => text,
-        other => other.to_string(),
-    };
     let places = scene.vertices().map_or(&[][..], |vertices| vertices.places());
     let vertices = places.iter().enumerate().flat_map(|(vertex, place)| {
         let name = move |axis: usize| format!("scene.{VERTICES}.{vertex}.{axis}");
-        [0, 1].map(|axis| (name(axis), written(FieldValue::Number(place[axis]))))
+        [0, 1].map(|axis| (name(axis), Value::from(place[axis]).to_string()))
     });
-    let values = FIELDS.iter().filter_map(|row| Some((format!("scene.{}", row.path), written(scene.value(row.name)?))));
-    values.chain(vertices).collect()
+    let value = |row: &'static Field| Some(value_to_query(format!("scene.{}", row.path), scene.value(row.name)?));
+    FIELDS.iter().filter_map(value).flatten().chain(vertices).collect()
+}
+
+/// The value of the field `name` as query parameters: one for each number of a list.
+pub fn value_to_query(name: String, value: FieldValue) -> Vec<(String, String)> {
+    match value_to_json(value) {
+        Value::String(text) => vec![(name, text)],
+        Value::Array(items) => {
+            items.iter().enumerate().map(|(index, item)| (format!("{name}.{index}"), item.to_string())).collect()
+        }
+        other => vec![(name, other.to_string())],
+    }
 }

@@ -36,9 +36,10 @@ pub(super) struct TiltGainAnswer {
 #[derive(Debug, Clone, Serialize)]
 struct EnergyGainAnswer {
     value: f64,
-    upper: f64,
+    /// None where the law of the energy has no gain.
+    upper: Option<f64>,
     eigenvalue: f64,
-    margin: f64,
+    margin: Option<f64>,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -118,6 +119,7 @@ impl LinearPart {
     fn new(scene: &Scene, linear: &LinearVerdict) -> Self {
         let kappa = scene.number(Name::TiltGain).unwrap_or_default();
         let energy_gain = scene.number(Name::EnergyGain).unwrap_or_default();
+        let upper = Some(linear.upper_energy_gain).filter(|upper| upper.is_finite());
         Self {
             class: linear.class.name(),
             residue: linear.residue,
@@ -133,9 +135,9 @@ impl LinearPart {
             }),
             energy_gain: EnergyGainAnswer {
                 value: energy_gain,
-                upper: linear.upper_energy_gain,
+                upper,
                 eigenvalue: linear.energy_eigenvalue,
-                margin: energy_gain.min(linear.upper_energy_gain - energy_gain),
+                margin: upper.map(|upper| energy_gain.min(upper - energy_gain)),
             },
         }
     }
@@ -315,7 +317,7 @@ impl Tabular for StabilityAnswer<'_> {
             number("tilt_gain_lower", "", tilt_gain.map(|it| it.lower)),
             number("tilt_gain_critical", "", tilt_gain.map(|it| it.critical)),
             number("energy_gain", "s2_per_m2", linear.map(|it| it.energy_gain.value)),
-            number("energy_gain_upper", "s2_per_m2", linear.map(|it| it.energy_gain.upper)),
+            number("energy_gain_upper", "s2_per_m2", linear.and_then(|it| it.energy_gain.upper)),
             number("boundary_coefficient", "", self.boundary.as_ref().map(|it| it.coefficient)),
             word("boundary_kind", self.boundary.as_ref().map(|it| it.kind)),
             number("drift_speed", "m_per_s", self.drift_speed),
@@ -326,7 +328,7 @@ impl Tabular for StabilityAnswer<'_> {
             number("tilt_gain_margin_below", "", tilt_gain.map(|it| it.margin_below)),
             number("tilt_gain_margin_above", "", tilt_gain.map(|it| it.margin_above)),
             number("energy_gain_eigenvalue", "", linear.map(|it| it.energy_gain.eigenvalue)),
-            number("energy_gain_margin", "s2_per_m2", linear.map(|it| it.energy_gain.margin)),
+            number("energy_gain_margin", "s2_per_m2", linear.and_then(|it| it.energy_gain.margin)),
             number("fixed_point_y_dot", "m_per_s", fixed_point.map(|it| it.y_dot)),
             number("fixed_point_flight_time", "s", fixed_point.map(|it| it.flight_time)),
             number("rotation_number_measured", "", rotation.and_then(|it| it.measured)),

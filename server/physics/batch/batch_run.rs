@@ -4,6 +4,7 @@
 //! rod at once, so that dead cells cost nothing; a bounce that is not a common one is done alone, by the map itself.
 
 use crate::batch::lanes::{Bounced, Far, Moving, Near, Rods, Rough, Scratch, Smooth, Surface, WIDTH, bounce_lanes};
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -43,15 +44,26 @@ impl RunStart {
 /// Runs of up to `impacts` contacts: `next` gives one after the other with a number of its own, `done` takes them as they
 /// end, in any order. `go_on` is asked every few thousand bounces; after a `false` no more are run.
 ///
-/// No table may be limited: lanes do not look.
+/// No table may be limited: lanes do not look. All have the energy feedback [`EnergyFeedback::Vertical`].
 pub fn run_batch(
+    impacts: u64,
+    next: impl FnMut() -> Option<(usize, RunStart)>,
+    done: impl FnMut(usize, LaneRunEnd),
+    go_on: impl FnMut() -> bool,
+) {
+    run_batch_with_feedback(EnergyFeedback::Vertical, impacts, next, done, go_on);
+}
+
+/// [`run_batch`] of tables with one energy feedback, whatever that of the rods is.
+pub fn run_batch_with_feedback(
+    feedback: EnergyFeedback,
     impacts: u64,
     mut next: impl FnMut() -> Option<(usize, RunStart)>,
     done: impl FnMut(usize, LaneRunEnd),
     go_on: impl FnMut() -> bool,
 ) {
     let next = || next().map(|(number, start)| (number, start, ()));
-    dispatch(BatchRun { surface: Smooth, impacts, next, done, go_on });
+    dispatch(BatchRun { surface: Smooth(feedback), impacts, next, done, go_on });
 }
 
 /// [`run_batch`] with friction of one law and one way to slide: `next` gives its coefficient too.
@@ -65,11 +77,13 @@ pub fn run_batch_with_friction(
     dispatch(BatchRun { surface: Rough::new(law, slide), impacts, next, done, go_on });
 }
 
-/// [`run_batch`] over all of `starts`: their ends, in the same order. None once `go_on` said `false`.
+/// [`run_batch_with_feedback`] over all of `starts`, with the feedback of the first: their ends, in the same order. None once `go_on`
+/// said `false`.
 pub fn run_all(impacts: u64, starts: &[RunStart], go_on: &mut dyn FnMut() -> bool) -> Option<Vec<LaneRunEnd>> {
+    let feedback = starts.first().map_or(EnergyFeedback::Vertical, |first| first.rod.energy_feedback);
     let mut ends = vec![None; starts.len()];
     let mut starts = starts.iter().copied().enumerate();
-    run_batch(impacts, || starts.next(), |number, end| ends[number] = Some(end), go_on);
+    run_batch_with_feedback(feedback, impacts, || starts.next(), |number, end| ends[number] = Some(end), go_on);
     ends.into_iter().collect()
 }
 
@@ -82,7 +96,7 @@ pub fn run_batch_on(
     go_on: impl FnMut() -> bool,
 ) {
     let next = || next().map(|(number, start)| (number, start, ()));
-    dispatch_on(path, BatchRun { surface: Smooth, impacts, next, done, go_on });
+    dispatch_on(path, BatchRun { surface: Smooth(EnergyFeedback::Vertical), impacts, next, done, go_on });
 }
 
 /// [`run_batch_with_friction`] with one kind of instructions.
@@ -193,7 +207,9 @@ const IDLE: RunStart = RunStart {
         tilt_gain: 1.0,
         strike_gain: 2.0,
         strike_gain_per_energy: 0.0,
-        target_energy: 0.0,
+        // Its own energy, so that no feedback changes it.
+        target_energy: 1.5,
+        energy_feedback: EnergyFeedback::Vertical,
     },
     rules: Rules { topple_angle: 1.0, settles: false, holds_energy: true, limits: None },
     state: State { theta: 0.0, x_dot: 0.0, y_dot: -1.0, theta_dot: 0.0 },

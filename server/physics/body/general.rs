@@ -18,6 +18,7 @@ use crate::bounce::tilt::Tilt;
 use crate::numbers::trig;
 use crate::table::control_law::Steering;
 use crate::table::noise::{Noise, NoiseModel, NoiseSample};
+use crate::table::program::HeightProgram;
 
 /// Least time, s, from one strike to the next: a table that is timed too early strikes then.
 pub const LEAST_FLIGHT: f64 = 1e-6;
@@ -29,6 +30,8 @@ pub struct GeneralBody {
     pub rod: Rod,
     /// Control law of the tilt.
     pub steering: Steering,
+    /// Target heights of its strikes, where they differ.
+    pub program: Option<HeightProgram>,
     /// Friction and a table that moves along itself.
     pub friction: Option<Friction>,
     /// Timing and sensing errors.
@@ -59,9 +62,15 @@ impl GeneralBody {
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
 
-    /// The rod as a table sees it whose contacts are not at y = 0: the energy of a bounce counts from there.
-    fn seen_at(&self, clearance: f64) -> Rod {
-        Rod { target_energy: self.rod.target_energy - self.rod.gravity * clearance, ..self.rod }
+    /// The rod at strike `n`.
+    pub(crate) fn at_strike(&self, n: u64) -> Rod {
+        self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
+    }
+
+    /// [`GeneralBody::at_strike`] as a table sees it whose contacts are not at y = 0: the energy of a bounce counts from there.
+    fn seen_at(&self, n: u64, clearance: f64) -> Rod {
+        let rod = self.at_strike(n);
+        Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod }
     }
 
     fn draw(&self, n: u64) -> NoiseSample {
@@ -122,7 +131,8 @@ impl GeneralBody {
     fn own_motion(&self, seen: &PreImpact, error: f64) -> PlannedTableMotion {
         let tilt = self.tilt(seen.x, &seen.state, error);
         let Tilt { alpha, sin_alpha, cos_alpha, .. } = tilt;
-        let (table_x, table_y) = self.rod.strike_with(&seen.state, &tilt, self.rod.leverage()).table_velocity;
+        let (table_x, table_y) =
+            self.at_strike(seen.n).strike_with(&seen.state, &tilt, self.rod.leverage()).table_velocity;
         PlannedTableMotion {
             alpha,
             normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
@@ -206,7 +216,7 @@ impl Body for GeneralBody {
     #[inline(never)]
     fn strike(&self, coming: &PreImpact) -> Strike {
         let PreImpact { n, x, state, clearance, plan } = coming;
-        let rod = self.seen_at(*clearance);
+        let rod = self.seen_at(*n, *clearance);
         let tilt = match plan {
             Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
             None => self.tilt(*x, state, self.draw(*n).angle),

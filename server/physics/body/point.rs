@@ -8,23 +8,37 @@ use crate::body::{Arrival, Body, NoContact, PreImpact, Release};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
+use crate::table::program::HeightProgram;
 
 /// A point mass. In its states `theta` is the angle of the velocity from straight down, counter-clockwise, and
 /// `theta_dot` is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointMass {
     rod: Rod,
+    /// Target heights of its strikes, where they differ.
+    pub(crate) program: Option<HeightProgram>,
 }
 
 impl PointMass {
     /// The point mass with the table, gravity and restitution of `rod`, whose own lengths drop out.
     pub fn new(rod: Rod) -> Self {
-        Self { rod: Rod { contact_distance: 0.0, radius_of_gyration: 1.0, ..rod } }
+        Self { rod: Rod { contact_distance: 0.0, radius_of_gyration: 1.0, ..rod }, program: None }
+    }
+
+    /// The same point mass on a table with this program.
+    #[must_use]
+    pub(crate) fn with_program(self, program: Option<HeightProgram>) -> Self {
+        Self { program, ..self }
     }
 
     /// Parameters, as those of a rod of no length.
     pub fn parameters(&self) -> &Rod {
         &self.rod
+    }
+
+    /// [`PointMass::parameters`] at strike `n`.
+    pub(crate) fn at_strike(&self, n: u64) -> Rod {
+        self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
     }
 
     /// The state with these velocities (m/s) just before a contact.
@@ -43,7 +57,7 @@ impl Body for PointMass {
     }
 
     fn strike(&self, coming: &PreImpact) -> Strike {
-        self.rod.strike(&coming.state)
+        self.at_strike(coming.n).strike(&coming.state)
     }
 
     fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {

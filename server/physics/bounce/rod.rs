@@ -1,13 +1,14 @@
 //! The rod and its table in numbers: lengths, gravity, gains; and the quantities that follow from them and a state.
 
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::state::State;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 
 /// A rod without friction on a table that tilts by α = κθ, with every way of striking it in one formula.
 ///
-/// The table's velocity along its normal is that of eq. (28), or zero. Either way the impulse is
-/// P = −γ v_nc / B with the *strike gain* γ = γ₀ + γ_E (η* − η): γ₀ = 2 where the table makes up the loss (then e
+/// The table's velocity along its normal is that of eq. (28), of one of the other laws of [`EnergyFeedback`], or zero. Either way the
+/// impulse is P = −γ v_nc / B with the *strike gain* γ = γ₀ + γ_E (η* − η): γ₀ = 2 where the table makes up the loss (then e
 /// drops out), γ₀ = 1 + e where it stands still, and γ_E = (1 + e) κ_E.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rod<N = f64> {
@@ -27,6 +28,8 @@ pub struct Rod<N = f64> {
     pub strike_gain_per_energy: N,
     /// η* = G y*, the wanted energy per unit mass, m²/s².
     pub target_energy: N,
+    /// Law from the energy before a strike to the strike gain.
+    pub energy_feedback: EnergyFeedback,
 }
 
 impl<N: Copy> Rod<N> {
@@ -42,6 +45,7 @@ impl<N: Copy> Rod<N> {
             strike_gain: function(self.strike_gain),
             strike_gain_per_energy: function(self.strike_gain_per_energy),
             target_energy: function(self.target_energy),
+            energy_feedback: self.energy_feedback,
         }
     }
 }
@@ -80,6 +84,7 @@ impl Rod<f64> {
             strike_gain: 2.0,
             strike_gain_per_energy: 0.0,
             target_energy: 0.0,
+            energy_feedback: EnergyFeedback::Vertical,
         }
     }
 

@@ -2,6 +2,7 @@
 //!
 //! Not here: when contacts happen ([`crate::bounce::contact_time`]) and whether a run goes on after one ([`crate::run::orbit`]).
 
+use crate::bounce::energy_feedback::MeasuredBounce;
 use crate::bounce::rebound::Rebound;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -89,15 +90,17 @@ impl<N: Number> Rod<N> {
         // Eq. (32) in the plane's axes.
         let arm = self.contact_distance * sin_beta;
         let normal_velocity = cos_alpha * y_dot - sin_alpha * x_dot + arm * theta_dot;
-        // η of eq. (28).
         let weight = self.gravity * self.contact_distance;
-        let bounce_energy = weight * cos_theta + half * y_dot * y_dot;
-        let gain = self.strike_gain + self.strike_gain_per_energy * (self.target_energy - bounce_energy);
+        let spin = self.radius_of_gyration * theta_dot;
+        let speed_squared = x_dot * x_dot + y_dot * y_dot + spin * spin;
         // B = 1 + l² sin²β / ρ², what the contact point weighs along the normal, eq. (33). Near upright it rounds to 1 and
         // the strike loses no digit, which a common factor ρ² would cost.
         let turn = arm * leverage;
+        let mobility = one + arm * turn;
+        let potential = weight * cos_theta;
+        let gain = self.gain(&MeasuredBounce { potential, y_dot, speed_squared, normal_velocity, mobility });
         let push = gain * normal_velocity;
-        let impulse = -push / (one + arm * turn);
+        let impulse = -push / mobility;
         let share = gain / (one + self.restitution);
         let table = normal_velocity * (one - share);
         let after = State {
@@ -106,8 +109,6 @@ impl<N: Number> Rod<N> {
             y_dot: y_dot + impulse * cos_alpha,
             theta_dot: theta_dot + impulse * turn,
         };
-        let spin = self.radius_of_gyration * theta_dot;
-        let speed_squared = x_dot * x_dot + y_dot * y_dot + spin * spin;
         Strike {
             after,
             alpha,

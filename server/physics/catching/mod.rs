@@ -110,6 +110,7 @@ fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
     let body = GeneralBody {
         rod: scene.parameters(),
         steering: Steering::TiltGain,
+        program: None,
         friction: friction.map(|friction| Friction { slide: Slide::Matched, ..friction }),
         noise: scene.noise,
         outline: scene.outline,

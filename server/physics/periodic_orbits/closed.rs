@@ -45,7 +45,8 @@ impl ClosedEquations {
     fn new(path: &ParameterPath<'_>, period: usize, place: &ScaledPoint) -> Result<Self, OrbitFailure> {
         let problem = path.problem(place[4])?;
         let (rates, energy_rate) = path.rates(place[4])?;
-        let rod: Rod<Five> = rod_with(|part| Dual::along(part(&problem.rod), 4, part(&rates)));
+        let rod: Rod<Five> =
+            rod_with(problem.rod.energy_feedback, |part| Dual::along(part(&problem.rod), 4, part(&rates)));
         let (speed, spin) = (path.start.speed, path.theta_dot);
         let start = path.state(place);
         let first = State {
@@ -59,8 +60,9 @@ impl ClosedEquations {
         for contact in 1..=period as u64 {
             let before = values(&state);
             states.push(before);
-            let (_, root) = advance(&problem.rod, before).map_err(|ending| OrbitFailure::Ends { contact, ending })?;
-            let flight: Flight<Five> = rod.flight(&rod.strike(&state));
+            let struck = problem.at_strike(&problem.rod, contact);
+            let (_, root) = advance(&struck, before).map_err(|ending| OrbitFailure::Ends { contact, ending })?;
+            let flight: Flight<Five> = rod.flight(&problem.at_strike(&rod, contact).strike(&state));
             let flight_time = flight.lift_root(root);
             state = flight.end(flight_time);
             x = x + state.x_dot * flight_time;

@@ -3,6 +3,7 @@
 //! The derivative of the rod's parameters by a field of the scene is a central difference, since one field may move several of them or
 //! one of them nonlinearly; it steers the iteration, and no answer depends on it.
 
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::periodic_orbits::problem::{OrbitFailure, OrbitProblem};
@@ -49,9 +50,10 @@ impl<'a> ParameterPath<'a> {
 
     /// Derivatives of rod and energy by the share.
     pub(super) fn rates(&self, share: f64) -> Result<(Rod, f64), OrbitFailure> {
+        let feedback = self.start.rod.energy_feedback;
         let still = |problem: &OrbitProblem| (problem.rod, problem.energy.unwrap_or(0.0));
         let Some((_, name)) = self.scene else {
-            return Ok((rod_with(|part| part(&self.start.rod) * 0.0), 0.0));
+            return Ok((rod_with(feedback, |part| part(&self.start.rod) * 0.0), 0.0));
         };
         let step = 1e-6;
         let inside = |share: f64| name.row().admits(Value::Number(self.parameter(share)));
@@ -59,7 +61,7 @@ impl<'a> ParameterPath<'a> {
         let behind = if inside(share - step) { share - step } else { share };
         let (high, low) = (still(&self.problem(ahead)?), still(&self.problem(behind)?));
         let per_share = 1.0 / (ahead - behind);
-        Ok((rod_with(|part| (part(&high.0) - part(&low.0)) * per_share), (high.1 - low.1) * per_share))
+        Ok((rod_with(feedback, |part| (part(&high.0) - part(&low.0)) * per_share), (high.1 - low.1) * per_share))
     }
 
     pub(super) fn place(&self, state: &State, share: f64) -> ScaledPoint {
@@ -83,7 +85,7 @@ fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, Orb
     let mut draft = scene.draft();
     let value = match name.row().kind {
         FieldKind::Number { .. } => Value::Number(value),
-        FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag => {
+        FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag | FieldKind::Numbers { .. } => {
             return Err(OrbitFailure::Scene(format!("{} is not a number", name.row().path)));
         }
     };
@@ -95,7 +97,7 @@ fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, Orb
 }
 
 /// A rod made of what `each` gives for each of its parameters.
-pub(super) fn rod_with<N>(each: impl Fn(fn(&Rod) -> f64) -> N) -> Rod<N> {
+pub(super) fn rod_with<N>(energy_feedback: EnergyFeedback, each: impl Fn(fn(&Rod) -> f64) -> N) -> Rod<N> {
     Rod {
         contact_distance: each(|rod| rod.contact_distance),
         radius_of_gyration: each(|rod| rod.radius_of_gyration),
@@ -105,5 +107,6 @@ pub(super) fn rod_with<N>(each: impl Fn(fn(&Rod) -> f64) -> N) -> Rod<N> {
         strike_gain: each(|rod| rod.strike_gain),
         strike_gain_per_energy: each(|rod| rod.strike_gain_per_energy),
         target_energy: each(|rod| rod.target_energy),
+        energy_feedback,
     }
 }

@@ -3,10 +3,12 @@
 
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
+use crate::numbers::number::Number;
 use crate::run::ending::Ending;
 use crate::scene::Scene;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::find_fixed_point;
+use crate::table::program::HeightProgram;
 
 /// Remainder of the equations, in parts of the scene's speed, up to which they count as solved.
 pub(super) const SOLVED: f64 = 1e-11;
@@ -22,6 +24,8 @@ pub struct OrbitProblem {
     pub speed: f64,
     /// |θ| at which a contact has toppled, rad.
     pub topple_angle: f64,
+    /// Target heights of the strikes, if they differ: periods are multiples of their number.
+    pub program: Option<HeightProgram>,
 }
 
 impl OrbitProblem {
@@ -33,23 +37,45 @@ impl OrbitProblem {
         if let Some(error) = scene.beyond(&[]) {
             return Err(error.detail);
         }
-        let Model::Rod(rod) = scene.model() else {
-            return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
+        let (rod, program) = match scene.model() {
+            Model::Rod(rod) => (rod, None),
+            // `beyond` has refused all else that such a body can have.
+            Model::General(general) => (general.rod, general.program),
+            Model::Point(_) => {
+                return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
+            }
         };
-        let speed = find_fixed_point(scene)?.speed;
+        let speed = match &program {
+            None => find_fixed_point(scene)?.speed,
+            Some(program) => speed_from(&rod, program)?,
+        };
         let energy = 0.5 * speed * speed + rod.gravity * rod.contact_distance;
         Ok(Self {
             rod,
-            energy: (rod.strike_gain_per_energy == 0.0).then_some(energy),
+            energy: (!scene.steers_energy()).then_some(energy),
             speed,
             topple_angle: scene.topple_angle,
+            program,
         })
     }
 
-    /// The upright bounce, which is the orbit of period 1.
+    /// A rod of the problem at strike `n` of an orbit.
+    pub(super) fn at_strike<N: Number>(&self, rod: &Rod<N>, n: u64) -> Rod<N> {
+        self.program.map_or(*rod, |program| program.applied(rod, n))
+    }
+
+    /// The upright bounce, which is the orbit of period 1; with a program, the bounce before its first strike.
     pub fn upright(&self) -> State {
         State { theta: 0.0, x_dot: 0.0, y_dot: -self.speed, theta_dot: 0.0 }
     }
+}
+
+/// Speed of an upright bounce, m/s, at the first strike of a program: it comes from the last height.
+fn speed_from(rod: &Rod, program: &HeightProgram) -> Result<f64, String> {
+    let height = program.at(program.heights().len() as u64);
+    let square = 2.0 * rod.gravity * (height - rod.contact_distance);
+    let too_low = || format!("the last height of program is {height} m, which is not above {} m", rod.contact_distance);
+    (square > 0.0).then(|| square.sqrt()).ok_or_else(too_low)
 }
 
 /// Reason for which there is no orbit.

@@ -2,6 +2,7 @@
 //!
 //! They branch off the upright bounce at κ_c; at a fixed energy as κ − κ_c ≈ a C θ².
 
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::trig;
@@ -64,6 +65,11 @@ fn excess(path: &ParameterPath<'_>, theta: f64, share: f64) -> Option<f64> {
     let state = symmetric(&problem.rod, theta)?;
     Some(match problem.energy {
         Some(energy) => problem.rod.energy(&state) - energy,
+        // At a strike gain of 2 a strike keeps the energy.
+        None if problem.rod.energy_feedback != EnergyFeedback::Vertical => {
+            let strike = problem.rod.strike(&state);
+            2.0 - strike.push / strike.normal_velocity
+        }
         None => {
             let (_, cos) = trig::sin_cos(theta);
             let bounce = problem.rod.gravity * problem.rod.contact_distance * cos + 0.5 * state.y_dot * state.y_dot;

@@ -19,6 +19,7 @@ use crate::run::extended;
 use crate::run::orbit::Contact;
 use crate::scene::Scene;
 use crate::scene::model::{Model, ModelLevel};
+use crate::table::program::HeightProgram;
 
 /// Standard deviations in a bound. Set on 28,000 random runs, none of which passed 0.8 of its bound;
 /// `tests/error_estimate.rs` holds it on others against runs with 31 digits.
@@ -48,6 +49,7 @@ type Number8 = Dual<DIRECTIONS>;
 #[derive(Clone, Copy, Debug)]
 pub struct ErrorEstimate {
     rod: Rod<Number8>,
+    program: Option<HeightProgram>,
     friction: Option<Friction>,
     is_point: bool,
     holds_energy: bool,
@@ -107,11 +109,8 @@ impl ErrorEstimate {
         let sloped = scene.incline != std::f64::consts::FRAC_PI_2;
         lifted.gravity.partials[OF_GRAVITY] = if sloped { 2.0 * unit * rod.gravity } else { 0.0 };
         lifted.radius_of_gyration.partials[OF_GYRATION] = 1.5 * unit * rod.radius_of_gyration;
-        if rod.strike_gain_per_energy != 0.0 {
-            let weight = rod.gravity * rod.contact_distance;
-            lifted.target_energy.partials[OF_GAIN] = unit * (2.0 * rod.target_energy.abs() + weight);
-            lifted.target_energy.partials[OF_GRAVITY] =
-                lifted.gravity.partials[OF_GRAVITY] * scene.target_height.unwrap_or(0.0);
+        if let Some(height) = scene.target_height {
+            lifted.target_energy = target_energy(&lifted, height, unit);
         }
         if rod.strike_gain != 2.0 {
             lifted.strike_gain.partials[OF_GAIN] = 2.0 * unit * rod.strike_gain;
@@ -121,6 +120,7 @@ impl ErrorEstimate {
         let start = release.state.map(exact);
         let mut estimate = Self {
             rod: lifted,
+            program: scene.program,
             friction: scene.contact_friction(),
             is_point: matches!(model, Model::Point(_)),
             holds_energy: scene.rules().holds_energy,
@@ -180,6 +180,9 @@ impl ErrorEstimate {
             return;
         }
         let State { theta, x_dot, y_dot, theta_dot } = *state;
+        if let Some(program) = &self.program {
+            self.rod.target_energy = target_energy(&self.rod, program.at(n), self.unit);
+        }
         self.rounding = self.unit * (1.0 + 2.0 * REPEATING * REPEATING * n as f64).sqrt();
         for (number, value) in [
             (&mut self.state.theta, theta),
@@ -338,6 +341,15 @@ impl ErrorEstimate {
                     .is_ok_and(|root| (root - t).abs() <= 4.0 * reach.abs() * t / speed + 1e-12 * t)
         })
     }
+}
+
+/// The energy of a target height, m, off by its rounding and that of the energy which it is compared with.
+fn target_energy(rod: &Rod<Number8>, height: f64, unit: f64) -> Number8 {
+    let mut energy = Number8::from_f64(rod.gravity.value * height);
+    let weight = rod.gravity.value * rod.contact_distance.value;
+    energy.partials[OF_GAIN] = unit * (2.0 * energy.value.abs() + weight);
+    energy.partials[OF_GRAVITY] = rod.gravity.partials[OF_GRAVITY] * height;
+    energy
 }
 
 /// The standard deviation of a number.

@@ -21,6 +21,7 @@ use crate::run::orbit::{Contact, ContactByContact, visit_contacts};
 use crate::run::rules;
 use crate::run::rules::{Checked, FlightTimes, Rules};
 use crate::table::actuator_load::ActuatorLoad;
+use crate::table::program::HeightProgram;
 
 /// Most Newton steps of a lift: one does, except where the rod grazes the table.
 const MAX_STEPS: u32 = 64;
@@ -35,6 +36,7 @@ pub type ExtendedContact = Contact<DoubleDouble>;
 #[derive(Clone, Copy, Debug)]
 pub struct ExtendedOrbit {
     rod: Rod<DoubleDouble>,
+    program: Option<HeightProgram>,
     friction: Option<Friction>,
     is_point: bool,
     rules: Rules,
@@ -53,6 +55,7 @@ impl ExtendedOrbit {
     /// [`TooManyPieces`], which the ranges of a scene exclude.
     pub fn new(
         rod: Rod<DoubleDouble>,
+        program: Option<HeightProgram>,
         friction: Option<Friction>,
         is_point: bool,
         rules: Rules,
@@ -61,6 +64,7 @@ impl ExtendedOrbit {
         let zero = DoubleDouble::from_f64(0.0);
         let mut orbit = Self {
             rod,
+            program,
             friction,
             is_point,
             rules,
@@ -130,9 +134,10 @@ impl ExtendedOrbit {
     pub fn advance(&mut self) -> ExtendedContact {
         self.n += 1;
         let Self { state, rules, .. } = *self;
+        let rod = self.program.map_or(self.rod, |program| program.applied(&self.rod, self.n));
         let strike = match self.friction {
-            None => self.rod.strike(&state),
-            Some(friction) => friction.strike_by_tilt_gain(&self.rod, &state),
+            None => rod.strike(&state),
+            Some(friction) => friction.strike_by_tilt_gain(&rod, &state),
         };
         let mut contact = ExtendedContact {
             n: self.n,

@@ -16,7 +16,7 @@ use crate::run::linear_solution::LinearSolution;
 use crate::run::orbit::Contact;
 use crate::run::rules;
 use crate::run::rules::{Checked, FlightTimes, Rules};
-use crate::run::{extended, orbit};
+use crate::run::{extended, linear_solution, orbit};
 use crate::scene::Scene;
 use crate::scene::model::ModelLevel;
 use crate::stability::fixed_point::find_fixed_point;
@@ -147,9 +147,11 @@ pub fn choose_method(
     Some(Err(NoMethod { horizon, detail }))
 }
 
-/// Tells whether small deviations circle: elsewhere the linear solution is soon off, and its bound costs as much as a run.
+/// Tells whether small deviations circle, on a table for which the linear solution is derived: elsewhere it is soon off, and its bound
+/// costs as much as a run.
 pub fn deviations_circle(scene: &Scene) -> bool {
-    scene.beyond(&[]).is_none()
+    linear_solution::is_derived(scene)
+        && scene.beyond(&[]).is_none()
         && find_fixed_point(scene).is_ok_and(|fixed_point| {
             let linear = linear_verdict(scene, &fixed_point);
             linear.class == AngleClass::Elliptic && linear.residue.is_some()
@@ -164,7 +166,9 @@ fn reach(
     go_on: &mut impl FnMut() -> bool,
 ) -> Option<MethodReach> {
     if method == RunMethod::Linear && !deviations_circle(scene) {
-        return Some(MethodReach::None("small deviations do not circle about a fixed point".to_owned()));
+        let circles = "small deviations do not circle about a fixed point";
+        let why = if linear_solution::is_derived(scene) { circles } else { linear_solution::NOT_DERIVED };
+        return Some(MethodReach::None(why.to_owned()));
     }
     let (mut largest, mut lost) = (0.0, None);
     let run = run_by(scene, method, impacts, |impact| {

@@ -7,12 +7,14 @@ use super::words::Alternative;
 use super::{BodyShape, Striking};
 use crate::body::Release;
 use crate::body::polygon::{FLUSH, Outline, PolygonError, Vertices};
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::bounce::state::State;
 use crate::numbers::trig;
 use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::{Noise, NoiseModel};
+use crate::table::program::HeightProgram;
 
 /// A scene in which every value is in its range and nothing contradicts anything else. Made by [`Draft::build`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,8 +39,11 @@ pub struct Scene {
     /// ê, if given.
     pub(crate) assumed_restitution: Option<f64>,
     pub(crate) energy_gain: f64,
-    /// Target height y*, m; only with an energy gain.
+    pub(crate) energy_feedback: EnergyFeedback,
+    /// Target height y* of the first strike, m; only where the table steers the energy.
     pub(crate) target_height: Option<f64>,
+    /// Target heights of all strikes, where they differ and the table steers the energy.
+    pub(crate) program: Option<HeightProgram>,
     pub(crate) strike: Striking,
     pub(crate) release: Release,
     pub(crate) topple_angle: f64,
@@ -98,6 +103,21 @@ impl Scene {
         self.draft.vertices()
     }
 
+    /// Tells whether the strikes of the table depend on the energy.
+    pub fn steers_energy(&self) -> bool {
+        self.target_height.is_some()
+    }
+
+    /// Target height of strike `n`, m, if the table steers the energy.
+    pub fn target_height(&self, n: u64) -> Option<f64> {
+        self.program.map_or(self.target_height, |program| Some(program.at(n)))
+    }
+
+    /// Target heights of the strikes, m, if the table steers the energy to more than one.
+    pub fn program(&self) -> Option<&HeightProgram> {
+        self.program.as_ref()
+    }
+
     /// G = g sin φ, gravity in the plane of motion, m/s².
     pub fn gravity(&self) -> f64 {
         self.gravity
@@ -119,7 +139,7 @@ const UNKNOWN: BodyShape = BodyShape::Rod { contact_distance: f64::NAN, radius_o
 
 impl Draft {
     /// A number that has to be there. Its absence is one of the errors, and NaN stands in until they are returned.
-    fn required(&self, name: Name, errors: &mut Vec<FieldError>) -> f64 {
+    pub(super) fn required(&self, name: Name, errors: &mut Vec<FieldError>) -> f64 {
         self.number(name).unwrap_or_else(|| {
             errors.push(FieldError::missing(name));
             f64::NAN
@@ -145,27 +165,16 @@ impl Draft {
     pub fn build(mut self) -> Result<Scene, Vec<FieldError>> {
         let mut errors = Vec::new();
         for row in &FIELDS {
-            let slot = &mut self.values[row.name as usize];
-            *slot = slot.or(row.default);
+            if let Some(default) = row.default {
+                self.fill(row.name, default);
+            }
         }
         let (body, outline) = self.body(&mut errors);
         let full_gravity = self.required(Name::Gravity, &mut errors);
         let incline = self.required(Name::Incline, &mut errors);
         let strike = self.chosen(Name::Strike, &mut errors);
-        let energy_gain = self.required(Name::EnergyGain, &mut errors);
-        if energy_gain != 0.0 {
-            if strike == Striking::Still {
-                let detail = "energy_gain moves the table and strike says `still`; leave one of them out".to_owned();
-                errors.push(FieldError::new(Name::EnergyGain, detail));
-            }
-            if self.get(Name::TargetHeight).is_none() {
-                let detail = format!(
-                    "target_height is missing: energy_gain {energy_gain} s²/m² needs the height it steers to; {}",
-                    Name::TargetHeight.row().limits()
-                );
-                errors.push(FieldError::new(Name::TargetHeight, detail));
-            }
-        }
+        let friction = self.required(Name::Friction, &mut errors);
+        let energy = self.energy_steering(strike, friction, &mut errors);
         let assumed_restitution = self.number(Name::AssumedRestitution);
         if strike == Striking::Still && assumed_restitution.is_some() {
             let detail =
@@ -173,7 +182,6 @@ impl Draft {
             errors.push(FieldError::new(Name::AssumedRestitution, detail));
         }
         let steering = self.steering(&mut errors);
-        let friction = self.required(Name::Friction, &mut errors);
         let slide = self.chosen(Name::Slide, &mut errors);
         let noise = self.noise(&mut errors);
         for (name, said) in [
@@ -201,8 +209,10 @@ impl Draft {
             steering,
             tilt_gain: self.number(Name::TiltGain).unwrap_or(0.0),
             assumed_restitution,
-            energy_gain,
-            target_height: if energy_gain == 0.0 { None } else { self.number(Name::TargetHeight) },
+            energy_gain: energy.gain,
+            energy_feedback: energy.feedback,
+            target_height: energy.target_height,
+            program: energy.program,
             strike,
             release: self.release(body, outline.as_ref(), &mut errors),
             topple_angle: self.required(Name::ToppleAngle, &mut errors),
@@ -228,7 +238,7 @@ impl Draft {
         }
         let [x, theta, x_dot, theta_dot] = names.map(|name| {
             let gain = self.number(name).unwrap_or(0.0);
-            self.values[name as usize] = Some(Value::Number(gain));
+            self.put(name, Some(Value::Number(gain)));
             gain
         });
         Steering::Feedback(Gains { x, theta, x_dot, theta_dot })
@@ -240,11 +250,12 @@ impl Draft {
         if timing_sd == 0.0 && angle_sd == 0.0 {
             return None;
         }
-        self.values[Name::NoiseModel as usize].get_or_insert(Value::Choice(NoiseModel::Strike.word()));
+        self.fill(Name::NoiseModel, Value::Choice(NoiseModel::Strike.word()));
         let model = self.chosen(Name::NoiseModel, errors);
         let [seed, run] = [Name::Seed, Name::NoiseRun].map(|name| {
-            match self.values[name as usize].get_or_insert(Value::Integer(0)) {
-                Value::Integer(number) => *number,
+            self.fill(name, Value::Integer(0));
+            match self.get(name) {
+                Some(Value::Integer(number)) => number,
                 _ => 0,
             }
         });
@@ -313,7 +324,7 @@ impl Draft {
             _ => vertices.lowest(),
         };
         let outline = contact_vertex.and_then(|vertex| {
-            self.values[Name::ContactVertex as usize] = Some(Value::Integer(vertex as u64));
+            self.put(Name::ContactVertex, Some(Value::Integer(vertex as u64)));
             Outline::new(vertices, vertex)
         });
         let path = |error: &PolygonError| match error.is_of_contact_vertex() {
@@ -340,7 +351,7 @@ impl Draft {
                             format!("a point mass has no {}; leave it out", name.row().key()),
                         ));
                     }
-                    self.values[name as usize] = None;
+                    self.put(name, None);
                 }
             }
             BodyShape::Rod { contact_distance, .. } => {

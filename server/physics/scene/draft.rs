@@ -3,20 +3,34 @@
 use super::error::FieldError;
 use super::fields::{FIELDS, Name, Value};
 use crate::body::polygon::Vertices;
+use crate::table::program::HeightProgram;
 
 /// Path of the vertices of a polygon.
 pub const VERTICES: &str = "body.vertices";
 
+/// A value as a draft keeps it: short, because scenes are copied often.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Slot {
+    Number(f64),
+    Integer(u64),
+    Choice(&'static str),
+    Flag(bool),
+    /// The list of the draft.
+    List,
+}
+
 /// Values of fields, one slot for each row of [`FIELDS`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draft {
-    pub(super) values: [Option<Value>; FIELDS.len()],
+    slots: [Option<Slot>; FIELDS.len()],
+    /// Value of the only field that is a list.
+    list: Option<HeightProgram>,
     pub(super) vertices: Option<Vertices>,
 }
 
 impl Default for Draft {
     fn default() -> Self {
-        Self { values: [None; FIELDS.len()], vertices: None }
+        Self { slots: [None; FIELDS.len()], list: None, vertices: None }
     }
 }
 
@@ -30,13 +44,56 @@ impl Draft {
         if let Some(value) = value.filter(|&value| !row.admits(value)) {
             return Err(FieldError::new(name, format!("{} is {value}; it must be {}", row.key(), row.limits())));
         }
-        self.values[name as usize] = value;
+        self.put(name, value);
         Ok(())
+    }
+
+    /// [`Draft::set`] in a run: the field takes the place of [`Name::other_way`].
+    ///
+    /// # Errors
+    /// Same as [`Draft::set`].
+    pub fn replace(&mut self, name: Name, value: Value) -> Result<(), FieldError> {
+        self.set(name, Some(value))?;
+        if let Some(other) = name.other_way() {
+            self.put(other, None);
+        }
+        Ok(())
+    }
+
+    /// Sets a value that the row admits, or clears it.
+    pub(super) fn put(&mut self, name: Name, value: Option<Value>) {
+        let slot = value.map(|value| match value {
+            Value::Number(number) => Slot::Number(number),
+            Value::Integer(number) => Slot::Integer(number),
+            Value::Choice(word) => Slot::Choice(word),
+            Value::Flag(flag) => Slot::Flag(flag),
+            Value::Numbers(list) => {
+                self.list = Some(list);
+                Slot::List
+            }
+        });
+        if self.slots[name as usize] == Some(Slot::List) && slot.is_none() {
+            self.list = None;
+        }
+        self.slots[name as usize] = slot;
+    }
+
+    /// Gives a field without a value this one.
+    pub(super) fn fill(&mut self, name: Name, value: Value) {
+        if self.slots[name as usize].is_none() {
+            self.put(name, Some(value));
+        }
     }
 
     /// Value of a field; after [`Draft::build`], with defaults.
     pub fn get(&self, name: Name) -> Option<Value> {
-        self.values[name as usize]
+        self.slots[name as usize].and_then(|slot| match slot {
+            Slot::Number(number) => Some(Value::Number(number)),
+            Slot::Integer(number) => Some(Value::Integer(number)),
+            Slot::Choice(word) => Some(Value::Choice(word)),
+            Slot::Flag(flag) => Some(Value::Flag(flag)),
+            Slot::List => self.list.map(Value::Numbers),
+        })
     }
 
     /// Sets the vertices of a polygon, or clears them with None.

@@ -20,6 +20,8 @@ pub enum FieldErrorKind {
     Missing(Name),
     /// Tilt gain and state feedback are both given.
     TwoTiltLaws,
+    /// A target height and a program of heights are both given.
+    TwoTargets,
     /// Any other: a value outside its range, or fields that contradict one another.
     Other,
 }

@@ -6,9 +6,11 @@
 //! The ranges are generous for a lab. The work of one flight does not depend on them ([`crate::bounce::contact_time::MAX_PIECES`]).
 
 use crate::body::polygon::MAX_VERTICES;
+use crate::bounce::energy_feedback::{EnergyLaw, EnergyMeasure};
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::scene::Striking;
 use crate::table::noise::NoiseModel;
+use crate::table::program::{HeightProgram, MOST_HEIGHTS};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
@@ -39,6 +41,8 @@ pub enum Value {
     Choice(&'static str),
     /// Yes or no.
     Flag(bool),
+    /// Finite numbers in the field's unit, at least one.
+    Numbers(HeightProgram),
 }
 
 impl fmt::Display for Value {
@@ -48,6 +52,7 @@ impl fmt::Display for Value {
             Self::Integer(number) => number.fmt(formatter),
             Self::Choice(word) => word.fmt(formatter),
             Self::Flag(flag) => flag.fmt(formatter),
+            Self::Numbers(list) => write!(formatter, "{:?}", list.heights()),
         }
     }
 }
@@ -71,6 +76,15 @@ pub enum FieldKind {
     Choice(&'static [&'static str]),
     /// true, or absent.
     Flag,
+    /// From 1 to `most` finite numbers from `minimum` to `maximum`, both included.
+    Numbers {
+        /// Least value.
+        minimum: f64,
+        /// Greatest value.
+        maximum: f64,
+        /// Greatest number of values.
+        most: usize,
+    },
 }
 
 /// One row of the table.
@@ -143,6 +157,9 @@ impl Field {
             FieldKind::Integer { maximum } => format!("a whole number from 0 to {maximum}"),
             FieldKind::Choice(words) => format!("one of {}", words.join(", ")),
             FieldKind::Flag => "true".to_owned(),
+            FieldKind::Numbers { minimum, maximum, most } => {
+                format!("an array of 1 to {most} numbers from {minimum} to {maximum} {unit}")
+            }
         }
     }
 
@@ -153,6 +170,10 @@ impl Field {
             (FieldKind::Integer { maximum }, Value::Integer(number)) => number <= maximum,
             (FieldKind::Choice(words), Value::Choice(word)) => words.contains(&word),
             (FieldKind::Flag, Value::Flag(flag)) => flag,
+            (FieldKind::Numbers { minimum, maximum, most }, Value::Numbers(list)) => {
+                let numbers = list.heights();
+                numbers.len() <= most && numbers.iter().all(|number| (minimum..=maximum).contains(number))
+            }
             _ => false,
         }
     }
@@ -164,6 +185,13 @@ pub fn field(path: &str) -> Option<&'static Field> {
 }
 
 impl Name {
+    /// The field that says the same in another way, if there is one: a scene has at most one of them.
+    pub fn other_way(self) -> Option<Self> {
+        let pair = [Self::TargetHeight, Self::Program];
+        let place = pair.iter().position(|name| *name == self)?;
+        Some(pair[1 - place])
+    }
+
     /// Row of the field.
     pub fn row(self) -> &'static Field {
         &FIELDS[self as usize]
@@ -175,6 +203,9 @@ const FIRST: Name = Name::ContactDistance;
 
 /// Largest integer that every JSON parser keeps exact.
 const LARGEST_EXACT: u64 = (1 << 53) - 1;
+
+/// Heights of a program: each in the range of a target height.
+const PROGRAM: FieldKind = FieldKind::Numbers { minimum: 1e-3, maximum: 100.0, most: MOST_HEIGHTS };
 
 fields! {
     ContactDistance => Field::number("body.contact_distance", "m", 1e-3, 10.0).required(),
@@ -189,6 +220,9 @@ fields! {
     TiltGain => Field::number("table.tilt_gain", "1", -100.0, 100.0).required().live(),
     EnergyGain => Field::number("table.energy_gain", "s²/m²", -100.0, 100.0).default(0.0).live(),
     TargetHeight => Field::number("table.target_height", "m", 1e-3, 100.0).live(),
+    EnergyMeasure => Field::choice("table.energy_measure", EnergyMeasure::WORDS).live(),
+    EnergyLaw => Field::choice("table.energy_law", EnergyLaw::WORDS).live(),
+    Program => Field::new("table.program", "m", PROGRAM).live(),
     Strike => Field::choice("table.strike", Striking::WORDS).default_word(Striking::Compensated.word()).live(),
     Slide => Field::choice("table.slide", Slide::WORDS).default_word(Slide::None.word()).live(),
     FeedbackX => Field::number("table.feedback.x", "rad/m", -1e4, 1e4).live(),

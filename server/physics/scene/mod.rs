@@ -4,6 +4,7 @@
 
 mod build;
 mod draft;
+mod energy;
 mod error;
 mod fields;
 pub mod model;

@@ -5,6 +5,7 @@ use crate::body::point::PointMass;
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::contact_time::TooManyPieces;
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -13,9 +14,11 @@ use crate::numbers::number::Number;
 use crate::run::extended;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
+use crate::scene::energy::energy_reason;
 use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
 use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::Noise;
+use crate::table::program::HeightProgram;
 
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -98,6 +101,27 @@ impl Model {
         }
     }
 
+    /// The same model whose contact 1 is contact `n` of this one: its program begins there.
+    #[must_use]
+    pub fn from_contact(mut self, n: u64) -> Self {
+        let program = match &mut self {
+            Self::Rod(_) => return self,
+            Self::Point(point) => &mut point.program,
+            Self::General(general) => &mut general.program,
+        };
+        *program = program.map(|program| program.from_strike(n));
+        self
+    }
+
+    /// Target heights of its strikes, if they differ.
+    pub fn program(&self) -> Option<&HeightProgram> {
+        match self {
+            Self::Rod(_) => None,
+            Self::Point(point) => point.program.as_ref(),
+            Self::General(general) => general.program.as_ref(),
+        }
+    }
+
     /// The friction of its contact; `None` without friction on a table that does not move along itself.
     pub fn friction(&self) -> Option<Friction> {
         match self {
@@ -122,8 +146,9 @@ impl Model {
         match *self {
             Self::Rod(rod) => Some((rod, None)),
             Self::General(GeneralBody {
-                rod,
+                rod: rod @ Rod { energy_feedback: EnergyFeedback::Vertical, .. },
                 steering: Steering::TiltGain,
+                program: None,
                 friction: Some(friction),
                 noise: None,
                 outline: None,
@@ -148,14 +173,16 @@ impl Scene {
 
     fn model_of(&self, noise: Option<Noise>, outline: Option<Outline>) -> Model {
         let rod = self.parameters();
+        let program = self.program;
         if self.body == BodyShape::Point {
-            return Model::Point(PointMass::new(rod));
+            return Model::Point(PointMass::new(rod).with_program(program));
         }
         let friction = self.contact_friction();
-        if friction.is_none() && self.steering == Steering::TiltGain && noise.is_none() && outline.is_none() {
+        let is_plain = self.steering == Steering::TiltGain && program.is_none();
+        if is_plain && friction.is_none() && noise.is_none() && outline.is_none() {
             return Model::Rod(rod);
         }
-        Model::General(GeneralBody { rod, steering: self.steering, friction, noise, outline })
+        Model::General(GeneralBody { rod, steering: self.steering, program, friction, noise, outline })
     }
 
     /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
@@ -187,6 +214,7 @@ impl Scene {
             },
             strike_gain_per_energy: one_and_restitution * number(self.energy_gain),
             target_energy: gravity * number(self.target_height.unwrap_or(0.0)),
+            energy_feedback: self.energy_feedback,
         }
     }
 
@@ -214,13 +242,13 @@ impl Scene {
             Striking::Still => self.restitution < 1.0,
             Striking::Compensated => self.assumed_restitution() > self.restitution,
         };
-        lost && self.energy_gain == 0.0
+        lost && !self.steers_energy()
     }
 
-    /// Tells whether the table takes no energy away. With an energy gain it does where a run has too much, and with a negative one where it
+    /// Tells whether the table takes no energy away. With energy feedback it does where a run has too much, and with a negative gain where it
     /// has too little, down to nothing.
     fn keeps_energy(&self) -> bool {
-        !self.is_lossy() && self.energy_gain == 0.0
+        !self.is_lossy() && !self.steers_energy()
     }
 
     /// The friction, if the contact has some or the table moves along itself.
@@ -267,7 +295,8 @@ impl Scene {
     /// [`TooManyPieces`], which the ranges of a scene exclude.
     pub fn extended_orbit(&self) -> Result<extended::ExtendedOrbit, TooManyPieces> {
         let is_point = self.body == BodyShape::Point;
-        extended::ExtendedOrbit::new(self.parameters(), self.contact_friction(), is_point, self.rules(), &self.release)
+        let friction = self.contact_friction();
+        extended::ExtendedOrbit::new(self.parameters(), self.program, friction, is_point, self.rules(), &self.release)
     }
 
     /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.
@@ -340,11 +369,8 @@ impl Scene {
         if let Some(requirement) = self.requirements().pop() {
             return requirement.detail;
         }
-        if self.energy_gain != 0.0 {
-            return format!(
-                "energy_gain is {} s²/m², so the table's speed depends on the energy (eq. 28)",
-                self.energy_gain
-            );
+        if self.steers_energy() {
+            return energy_reason(self);
         }
         let assumed = self.assumed_restitution();
         if self.strike == Striking::Still && e < 1.0 {

@@ -2,6 +2,7 @@
 //!
 //! Each list is a match without a wildcard: the compiler asks for the word of a new alternative.
 
+use crate::bounce::energy_feedback::{EnergyLaw, EnergyMeasure};
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::scene::Striking;
 use crate::table::noise::NoiseModel;
@@ -43,4 +44,6 @@ macro_rules! words {
 words!(RestitutionLaw: Poisson => "poisson", Newton => "newton", Stronge => "stronge");
 words!(Striking: Compensated => "compensated", Still => "still");
 words!(Slide: None => "none", Matched => "matched");
+words!(EnergyMeasure: Vertical => "vertical", Total => "total");
+words!(EnergyLaw: Proportional => "proportional", OneStrike => "one_strike");
 words!(NoiseModel: Strike => "strike", Plan => "plan");

@@ -3,13 +3,14 @@
 //! A scan in lanes and a search of its edges. Not a map over two fields, and no proof: between two angles of the scan a
 //! narrow hole stays unseen.
 
-use crate::batch::batch_run::{LaneRunEnd, RunStart, run_batch, run_batch_with_friction};
+use crate::batch::batch_run::{LaneRunEnd, RunStart, run_batch_with_feedback, run_batch_with_friction};
 use crate::body::Release;
+use crate::body::general::GeneralBody;
 use crate::bounce::friction::Friction;
 use crate::bounce::state::State;
 use crate::run::ending::EndingKind;
 use crate::scene::Scene;
-use crate::scene::model::ModelLevel;
+use crate::scene::model::{Model, ModelLevel};
 use std::cell::Cell;
 
 /// Angles of the rough scan, over all there are, and of the fine one, over those that matter.
@@ -70,7 +71,15 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
         ));
     }
     let Some((rod, friction)) = scene.model().in_lanes() else {
-        return Err(because("a point mass has no angle to be released at".to_owned()));
+        return Err(because(match scene.model() {
+            Model::Point(_) => "a point mass has no angle to be released at".to_owned(),
+            Model::General(GeneralBody { program: Some(_), .. }) => {
+                "it is looked for in lanes of rods, which have no program of heights".to_owned()
+            }
+            Model::Rod(_) | Model::General(_) => {
+                "it is looked for in lanes of rods, which with friction measure the vertical energy only".to_owned()
+            }
+        }));
     };
     if scene.is_lossy() {
         return Err(because("every bounce loses energy, so all runs end".to_owned()));
@@ -102,7 +111,7 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
             !stopped
         };
         match friction {
-            None => run_batch(impacts, || starts.next(), done, go_on),
+            None => run_batch_with_feedback(rod.energy_feedback, impacts, || starts.next(), done, go_on),
             Some(Friction { coefficient, law, slide }) => {
                 let next = || starts.next().map(|(index, start)| (index, start, coefficient));
                 run_batch_with_friction((law, slide), impacts, next, done, go_on);

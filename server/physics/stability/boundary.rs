@@ -1,6 +1,7 @@
 //! The upper end κ_c of the tilt gain: the coefficient that says whether stability is lost softly there, and the orbit of period 2
 //! that branches off.
 
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::numbers::trig;
 use crate::scene::model::Model;
@@ -34,9 +35,15 @@ fn frictionless_rod(model: &Model) -> Option<&Rod> {
     derived.then(|| model.rod())
 }
 
+/// Tells whether the table holds η in place of the energy. One that measures the total energy keeps the surface of the target energy,
+/// on which the map is that without losses.
+fn holds_height(rod: &Rod) -> bool {
+    rod.strike_gain_per_energy > 0.0 && rod.energy_feedback == EnergyFeedback::Vertical
+}
+
 /// The boundary coefficient C at κ_c, with a = κ_c − 1 and γ = Gl/V²: (1+a)²/2 + a²/6 − (1−a)γ, and with a positive
-/// energy gain, which holds η and not the energy, −(1+a)²/2 + a²/6 − γ. `None` for a point mass, with friction and with state
-/// feedback, for which it is not derived.
+/// energy gain that holds η and not the energy, −(1+a)²/2 + a²/6 − γ. `None` for a point mass, with friction, with state
+/// feedback, and where one strike brings the energy off its target by a wrong restitution, for which it is not derived.
 pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<BoundaryCoefficient> {
     let rod = frictionless_rod(model)?;
     let gamma = rod.gravity * rod.contact_distance / (fixed_point.speed * fixed_point.speed);
@@ -44,7 +51,10 @@ pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<B
     let a = gamma * lever * lever;
     let half_square = 0.5 * (1.0 + a) * (1.0 + a);
     let sixth = a * a / 6.0;
-    let holds_height = rod.strike_gain_per_energy > 0.0;
+    if rod.energy_feedback == EnergyFeedback::OneStrike && rod.strike_gain != 2.0 {
+        return None;
+    }
+    let holds_height = holds_height(rod);
     let coefficient = if holds_height { sixth - half_square - gamma } else { half_square + sixth - (1.0 - a) * gamma };
     Some(BoundaryCoefficient { coefficient })
 }
@@ -55,8 +65,8 @@ pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<B
 /// The states of the orbit are (±θ, ±V tan κθ, −V, ±Gθ/V) with V² = Gρ²θ cos κθ / (l sin((κ − 1)θ)); with energy feedback η is held in
 /// place of the energy. `None` also with friction and with state feedback, for which it is not derived.
 pub fn period_two_angle(model: &Model, topple_angle: f64, fixed_point: &FixedPoint) -> Option<f64> {
-    let &Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, strike_gain_per_energy, .. } =
-        frictionless_rod(model)?;
+    let rod = frictionless_rod(model)?;
+    let Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, .. } = *rod;
     let weight = gravity * contact_distance;
     // The energy of the orbit with angle θ above that of the fixed point; NaN if there is no such orbit.
     let excess = |theta: f64| {
@@ -67,7 +77,7 @@ pub fn period_two_angle(model: &Model, topple_angle: f64, fixed_point: &FixedPoi
         let speed_squared = gravity * rho_squared * theta * cos_alpha / (contact_distance * sin_beta);
         let slant = sin_alpha / cos_alpha;
         let aside = slant * slant * speed_squared + rho_squared * gravity * gravity * theta * theta / speed_squared;
-        let held = if strike_gain_per_energy > 0.0 { 0.0 } else { 0.5 * aside };
+        let held = if holds_height(rod) { 0.0 } else { 0.5 * aside };
         let speed = fixed_point.speed;
         if cos_alpha > 0.0 && speed_squared > 0.0 {
             0.5 * (speed_squared - speed * speed) + held - weight * versine

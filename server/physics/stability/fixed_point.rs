@@ -2,10 +2,12 @@
 //!
 //! Not here: how a small deviation from it moves ([`crate::stability::linear_verdict`]).
 
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, lent_by_table};
+use crate::table::program::HeightProgram;
 
 /// The levels above the plain rod that can be judged linearly.
 pub const LINEARLY_JUDGED: [ModelLevel; 3] = [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::Friction];
@@ -55,6 +57,9 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
     if model.feedback().is_some() {
         return bounce_in_place(scene);
     }
+    if let Some(program) = scene.program() {
+        return Err(no_single_bounce(program));
+    }
     if scene.is_lossy() {
         return Err(format!(
             "{}: every bounce loses energy, so no bounce repeats",
@@ -64,7 +69,7 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
             }
         ));
     }
-    if scene.energy_gain == 0.0 && scene.assumed_restitution() < scene.restitution {
+    if !scene.steers_energy() && scene.assumed_restitution() < scene.restitution {
         return Err(format!("{}: every bounce gains energy, so no bounce repeats", belief(scene)));
     }
     let (contact_distance, radius_of_gyration) = match scene.body {
@@ -74,6 +79,9 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
     let speed_squared = if let Some(height) = scene.target_height {
         let settled = height + height_error(scene);
         let room = settled - contact_distance;
+        if !settled.is_finite() {
+            return Err(format!("{}: every bounce gains energy, so no bounce repeats", belief(scene)));
+        }
         if room <= 0.0 {
             let why = if settled == height { String::new() } else { format!(", where {} holds it,", belief(scene)) };
             return Err(format!("target_height {settled} m{why} is not above contact_distance {contact_distance} m"));
@@ -109,12 +117,30 @@ fn belief(scene: &Scene) -> String {
     format!("the table believes restitution {} and meets {}", scene.assumed_restitution(), scene.restitution)
 }
 
+fn no_single_bounce(program: &HeightProgram) -> String {
+    let heights = program.heights();
+    format!(
+        "program has {} target heights in turn ({heights:?} m), so no bounce repeats after one strike; /v1/periodic-orbits has the orbit \
+         of period {}",
+        heights.len(),
+        heights.len()
+    )
+}
+
 /// Height above the target height at which the energy feedback comes to rest, m: the strike gain is 2 there for an assumed restitution
 /// ê, κ_E(η* − η) = 2(ê − e)/((1 + e)(1 + ê)). Nothing without feedback, or where ê is e.
+///
+/// With [`EnergyFeedback::OneStrike`] the speeds of upright bounces follow u ↦ (s − 1)u + s√C, s = (1 + e)/(1 + ê), C = 2G(y* − l). They
+/// come to rest at u² = C s²/(2 − s)²; at s = 2 nowhere, and the height is infinite.
 pub fn height_error(scene: &Scene) -> f64 {
     let (e, assumed) = (scene.restitution, scene.assumed_restitution());
-    if scene.energy_gain == 0.0 || e == assumed {
+    if !scene.steers_energy() || e == assumed {
         return 0.0;
+    }
+    if let (EnergyFeedback::OneStrike, Some(height)) = (scene.energy_feedback, scene.target_height) {
+        let contact_distance = scene.parameters::<f64>().contact_distance;
+        let share = (1.0 + e) / (1.0 + 2.0 * assumed - e);
+        return (share * share - 1.0) * (height - contact_distance);
     }
     2.0 * (e - assumed) / ((1.0 + e) * (1.0 + assumed) * scene.energy_gain * scene.gravity)
 }
@@ -129,9 +155,14 @@ pub fn bounce_in_place(scene: &Scene) -> Result<FixedPoint, String> {
     if scene.body() == BodyShape::Point {
         return Err("a point mass has no angle to feed back".to_owned());
     }
+    if let Some(program) = scene.program() {
+        return Err(no_single_bounce(program));
+    }
     let rod: Rod = scene.parameters();
     let weight = rod.gravity * rod.contact_distance;
-    let speed_squared = if rod.strike_gain_per_energy != 0.0 {
+    let speed_squared = if rod.energy_feedback == EnergyFeedback::OneStrike {
+        2.0 * (rod.target_energy + rod.gravity * height_error(scene) - weight)
+    } else if rod.strike_gain_per_energy != 0.0 {
         2.0 * (rod.target_energy + (rod.strike_gain - 2.0) / rod.strike_gain_per_energy - weight)
     } else if rod.strike_gain != 2.0 {
         return Err(format!(

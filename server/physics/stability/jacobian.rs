@@ -84,14 +84,14 @@ pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearizati
 pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
     let smooth = |matrix| vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }];
     let size = state_order(model).len();
-    along(model, x, start, period, |Contact { x, state, .. }| match model {
+    along(model, x, start, period, |Contact { n, x, state, .. }| match model {
         Model::Rod(rod) => rod_jacobian(rod, state).map(smooth),
-        Model::Point(point) => Some(smooth(point_jacobian(point, state))),
+        Model::Point(point) => Some(smooth(point_jacobian(&point.at_strike(*n), state))),
         // The derivative with noise is not derived; NaN marks it as unknown.
         Model::General(GeneralBody { noise: Some(_), .. }) => Some(smooth(DMatrix::from_element(size, size, f64::NAN))),
         // The outline of a polygon ends runs and changes no bounce.
-        Model::General(general) if size == 5 => general_jacobians::<5>(general, *x, state),
-        Model::General(general) => general_jacobians::<4>(general, *x, state),
+        Model::General(general) if size == 5 => general_jacobians::<5>(general, *n, *x, state),
+        Model::General(general) => general_jacobians::<4>(general, *n, *x, state),
     })
 }
 
@@ -208,8 +208,13 @@ fn rod_jacobian(rod: &Rod, state: &State) -> Option<DMatrix<f64>> {
 ///
 /// An impact without sliding, v_t = 0, is smooth if friction holds the contact: the impulse depends on the sliding only through its
 /// end, and in the same way from both sides.
-fn general_jacobians<const K: usize>(general: &GeneralBody, x: f64, state: &State) -> Option<Vec<OneSidedDerivative>> {
-    let rod = &general.rod;
+fn general_jacobians<const K: usize>(
+    general: &GeneralBody,
+    n: u64,
+    x: f64,
+    state: &State,
+) -> Option<Vec<OneSidedDerivative>> {
+    let rod = &general.at_strike(n);
     let lifted: Rod<Dual<K>> = rod.lift();
     let (start, leverage) = (along_all(rod, state), lifted.leverage());
     let place = if K > 4 { Dual::along(x, 4, 1.0) } else { Dual::from_f64(x) };
@@ -290,10 +295,10 @@ fn after_flight<const K: usize>(
     rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, place + t * end.x_dot])
 }
 
-fn point_jacobian(point: &PointMass, state: &State) -> DMatrix<f64> {
+fn point_jacobian(rod: &Rod, state: &State) -> DMatrix<f64> {
     let State { theta, x_dot, y_dot, .. } = *state;
     let speed_squared = x_dot * x_dot + y_dot * y_dot;
-    let lifted: Rod<Dual<2>> = point.parameters().lift();
+    let lifted: Rod<Dual<2>> = rod.lift();
     let strike = lifted.strike(&State {
         theta: Dual { value: theta, partials: [-y_dot / speed_squared, x_dot / speed_squared] },
         x_dot: Dual::along(x_dot, 0, 1.0),

@@ -4,6 +4,7 @@
 //! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
 //! off by the square root of rounding.
 
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::control::bounce_model::{BounceModel, ClosedLoop};
 use crate::numbers::trig;
 use crate::scene::model::Model;
@@ -57,9 +58,10 @@ pub struct LinearVerdict {
     pub lower_tilt_gain: f64,
     /// κ_c, greatest κ that balances: 1 + Gρ²/(V²l), eq. (18), for every e and κ_E, with ρ² as in the residue; −∞ where none does.
     pub critical_tilt_gain: f64,
-    /// Greatest κ_E that holds the energy, 2/((1 + e)V²), s²/m².
+    /// Greatest κ_E that holds the energy, 2/((1 + e)V²), s²/m²; infinite where the law of the energy has no gain.
     pub upper_energy_gain: f64,
-    /// 1 − (1 + e)κ_E V².
+    /// 1 − (1 + e)κ_E V², for either measure: both are ½V² + Gl + V δẏ to first order. (e − ê)/(1 + ê) where one strike brings the
+    /// energy to its target.
     pub energy_eigenvalue: f64,
     /// Closed loop of the state feedback, if the table has one.
     pub closed_loop: Option<ClosedLoop>,
@@ -92,8 +94,13 @@ impl LinearVerdict {
 pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict {
     let speed_squared = fixed_point.speed * fixed_point.speed;
     let loop_gain = (1.0 + scene.restitution) * speed_squared;
-    let energy_eigenvalue = 1.0 - scene.energy_gain * loop_gain;
-    let upper_energy_gain = 2.0 / loop_gain;
+    let (energy_eigenvalue, upper_energy_gain) = match scene.energy_feedback {
+        EnergyFeedback::Vertical | EnergyFeedback::Total => (1.0 - scene.energy_gain * loop_gain, 2.0 / loop_gain),
+        EnergyFeedback::OneStrike => {
+            let assumed = scene.assumed_restitution();
+            ((scene.restitution - assumed) / (1.0 + assumed), f64::INFINITY)
+        }
+    };
     let real = |value: f64| Complex::new(value, 0.0);
     let model = scene.model();
     if let Some(closed) = closed_loop(&model, fixed_point) {

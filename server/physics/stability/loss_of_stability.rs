@@ -103,7 +103,7 @@ pub fn losses(
             settles: None,
         });
     }
-    if linear.energy_eigenvalue < 1.0 {
+    if linear.energy_eigenvalue < 1.0 && linear.upper_energy_gain.is_finite() {
         found.push(energy_gain(scene, fixed_point, linear));
     }
     if linear.closed_loop.is_some() {

@@ -3,7 +3,7 @@
 //!
 //! The linear verdict calls such a bounce elliptic. With energy feedback (eq. 28) that is wrong either way: the loop holds
 //! η = Gl cos θ + ẏ²/2, which is not the energy; the swing modulates η at twice its own rotation, the table answers with a lag,
-//! and the modulated height pumps or damps the swing.
+//! and the modulated height pumps or damps the swing. A table that holds the energy itself does nothing of this: ℓ is 0.
 
 use crate::scene::Scene;
 use crate::stability::fixed_point::FixedPoint;

@@ -9,6 +9,7 @@
 //! only those of order 1, 2 and 4 matter. Not here: what is concluded from a coefficient ([`crate::stability::verdict`]).
 
 use crate::body::general::GeneralBody;
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, Slide, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -73,8 +74,11 @@ impl UprightBounce {
     pub fn of(model: &Model, fixed_point: &FixedPoint) -> Result<Self, String> {
         let (rod, steering, friction) = match *model {
             Model::Rod(rod) => (rod, Steering::TiltGain, None),
-            Model::General(GeneralBody { rod, steering, friction, noise: None, outline: _ }) => {
+            Model::General(GeneralBody { rod, steering, program: None, friction, noise: None, outline: _ }) => {
                 (rod, steering, friction)
+            }
+            Model::General(GeneralBody { noise: None, .. }) => {
+                return Err("it is not derived for a program of heights".to_owned());
             }
             Model::General(_) => return Err("it is not derived with noise".to_owned()),
             Model::Point(_) => return Err("a point mass has no angle of its own".to_owned()),
@@ -163,6 +167,7 @@ impl UprightBounce {
         self.friction.is_none_or(|friction| friction.coefficient == 0.0)
             && self.rod.strike_gain == 2.0
             && self.rod.strike_gain_per_energy == 0.0
+            && self.rod.energy_feedback != EnergyFeedback::OneStrike
     }
 
     /// The cubic coefficient of the direction that belongs to an eigenvalue λ on the unit circle, and the amplitude along it of a

@@ -96,7 +96,7 @@ impl Regularity {
     }
 }
 
-/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback or noise.
+/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback, noise or a program of heights.
 pub fn measure_regularity(
     mut orbit: Orbit<Model>,
     fixed_point: &FixedPoint,
@@ -105,9 +105,14 @@ pub fn measure_regularity(
 ) -> Option<Regularity> {
     let (rod, friction) = match orbit.body {
         Model::Rod(rod) => (rod, None),
-        Model::General(GeneralBody { rod, steering: Steering::TiltGain, friction, noise: None, outline: _ }) => {
-            (rod, friction)
-        }
+        Model::General(GeneralBody {
+            rod,
+            steering: Steering::TiltGain,
+            program: None,
+            friction,
+            noise: None,
+            outline: _,
+        }) => (rod, friction),
         Model::General(_) | Model::Point(_) => return None,
     };
     let undisturbed = orbit.state().theta == 0.0 && orbit.state().theta_dot == 0.0;

@@ -2,6 +2,7 @@
 //!
 //! Not here: how any of them comes about ([`crate::stability::linear_verdict`], [`crate::stability::lyapunov`], [`crate::stability::loss_of_stability`], [`crate::stability::regularity`]).
 
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::control::bounce_model::{ClosedLoop, STATE};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
@@ -176,6 +177,9 @@ pub fn assess(
                 "tilt_gain {kappa} is between {} and {critical}, so small deviations circle, and the run survived",
                 linear.lower_tilt_gain
             );
+            if higher.lyapunov.is_ok() {
+                reason += "; to third order a swing neither grows nor dies out, because the table holds the energy of the swing too";
+            }
             if let Some(ChaosIndicator { indicator, chaotic: true, impacts }) = chaos {
                 reason += &format!(
                     ", but it is chaotic (MEGNO {indicator} over {impacts} impacts, above {CHAOTIC}), so that it may still \
@@ -262,10 +266,13 @@ fn assess_swing(scene: &Scene, found: &LyapunovCoefficient, run: &NonlinearRun, 
         ),
         (false, _) => format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts),
     };
+    let law = match scene.energy_feedback {
+        EnergyFeedback::Vertical | EnergyFeedback::Total => format!("energy_gain {} s²/m²", scene.energy_gain),
+        EnergyFeedback::OneStrike => "energy_law `one_strike` and a wrong assumed_restitution".to_owned(),
+    };
     let reason = format!(
-        "with energy_gain {} s²/m² the angle circles in first order only: to third order the amplitude obeys dA/dn = ℓA³ with \
+        "with {law} the angle circles in first order only: to third order the amplitude obeys dA/dn = ℓA³ with \
          ℓ = {coefficient} per bounce and rad², so a swing of {amplitude} rad, as here, {course}; {outcome}",
-        scene.energy_gain
     );
     Assessment { verdict, decided_by: DecidedBy::Lyapunov, agree, reason }
 }

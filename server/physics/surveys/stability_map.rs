@@ -2,7 +2,7 @@
 //!
 //! Not here: threads and drawing.
 
-use crate::batch::batch_run::{LaneRunEnd, RunStart, run_batch, run_batch_with_friction};
+use crate::batch::batch_run::{LaneRunEnd, RunStart, run_batch_with_feedback, run_batch_with_friction};
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::run::cancellation::CancellationCheck;
@@ -136,7 +136,8 @@ impl StabilityMap {
             }
             None
         };
-        run_batch(
+        run_batch_with_feedback(
+            self.scene.energy_feedback(),
             self.impacts,
             start,
             |index, end| cells[index] = self.cell(&end),

@@ -1,10 +1,12 @@
 //! Lanes and one orbit alone are the same: outcome, number of contacts and largest angle, bit for bit, over random rods.
 
 use equipoise_physics::batch::batch_run::{
-    LaneRunEnd, RunStart, run_batch, run_batch_on, run_batch_with_friction, run_batch_with_friction_on,
+    LaneRunEnd, RunStart, run_batch, run_batch_on, run_batch_with_feedback, run_batch_with_friction,
+    run_batch_with_friction_on,
 };
 use equipoise_physics::body::Body;
 use equipoise_physics::body::general::GeneralBody;
+use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
@@ -35,6 +37,7 @@ prop_compose! {
                 strike_gain: if still { 1.0 + restitution } else { 2.0 },
                 strike_gain_per_energy: (1.0 + restitution) * energy_gain,
                 target_energy: 9.81 * length * above,
+                energy_feedback: EnergyFeedback::Vertical,
             },
             rules: Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles, holds_energy: !settles, limits: None },
             state: State { theta: theta * scale, x_dot: x_dot * scale, y_dot, theta_dot: theta_dot * scale },
@@ -70,6 +73,26 @@ proptest! {
     }
 
     #[test]
+    fn lanes_of_each_energy_feedback_are_orbits(
+        starts in prop::collection::vec(starts(), 1..60), impacts in 1..400_u64,
+        energy_feedback in prop_oneof![Just(EnergyFeedback::Total), Just(EnergyFeedback::OneStrike)],
+        believed in prop_oneof![Just(2.0), 1.5..2.3],
+    ) {
+        let steered = |start: RunStart| {
+            let strike_gain = if energy_feedback == EnergyFeedback::OneStrike { believed } else { start.rod.strike_gain };
+            let rod = Rod { energy_feedback, strike_gain, ..start.rod };
+            RunStart { rod, rules: Rules { settles: true, holds_energy: false, ..start.rules }, ..start }
+        };
+        let starts: Vec<_> = starts.into_iter().map(steered).collect();
+        let mut ends = vec![None; starts.len()];
+        let mut next = starts.iter().copied().enumerate();
+        run_batch_with_feedback(energy_feedback, impacts, || next.next(), |number, end| ends[number] = Some(end), || true);
+        for (start, end) in starts.iter().zip(ends) {
+            prop_assert_eq!(end, Some(alone(start, impacts)), "{:?}", start);
+        }
+    }
+
+    #[test]
     fn lanes_with_friction_are_orbits(
         starts in prop::collection::vec((starts(), 0.0..1.0), 1..60), impacts in 1..400_u64,
         law in prop_oneof![Just(RestitutionLaw::Poisson), Just(RestitutionLaw::Newton), Just(RestitutionLaw::Stronge)],
@@ -81,7 +104,7 @@ proptest! {
         run_batch_with_friction((law, slide), impacts, || next.next(), |number, end| ends[number] = Some(end), || true);
         for ((start, coefficient), end) in starts.iter().zip(ends) {
             let friction = Some(Friction { coefficient: *coefficient, law, slide });
-            let general = GeneralBody { rod: start.rod, steering: Steering::TiltGain, friction, noise: None, outline: None };
+            let general = GeneralBody { rod: start.rod, steering: Steering::TiltGain, program: None, friction, noise: None, outline: None };
             prop_assert_eq!(end, Some(alone_as(general, start, impacts)), "{:?} {:?}", start, friction);
         }
     }

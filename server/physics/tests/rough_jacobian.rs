@@ -3,6 +3,7 @@
 
 use equipoise_physics::body::general::GeneralBody;
 use equipoise_physics::body::{Body, PreImpact};
+use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
@@ -31,6 +32,7 @@ impl RoughRod {
         GeneralBody {
             rod: self.rod,
             steering: Steering::TiltGain,
+            program: None,
             friction: Some(self.friction),
             noise: None,
             outline: None,
@@ -59,6 +61,7 @@ fn model(random: &mut Random, law: RestitutionLaw, slide: Slide) -> RoughRod {
         strike_gain: 2.0,
         strike_gain_per_energy: (1.0 + restitution) * energy_gain,
         target_energy: 9.81 * 1.5 * length,
+        energy_feedback: EnergyFeedback::Vertical,
     };
     RoughRod { rod, friction: Friction { coefficient: random.size(0.01, 1.0).abs(), law, slide } }
 }

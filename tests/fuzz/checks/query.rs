@@ -82,7 +82,9 @@ fn in_json(path: &str, value: &Value) -> Value {
             let row = path.strip_prefix("scene.").and_then(field);
             let read = match (row, row.map(|row| row.kind)) {
                 (Some(_), _) if text == "null" => Some(Value::Null),
-                (_, Some(FieldKind::Number { .. } | FieldKind::Integer { .. })) => as_number(),
+                (_, Some(FieldKind::Number { .. } | FieldKind::Integer { .. } | FieldKind::Numbers { .. })) => {
+                    as_number()
+                }
                 (_, Some(FieldKind::Flag)) => text.parse().ok().map(Value::Bool),
                 (None, _) if path.strip_prefix("scene.") == Some(VERTICES) => as_number(),
                 _ => None,

@@ -45,7 +45,7 @@ fn has_default(row: &Field, meaning: &str) -> bool {
     let said = match row.default {
         Some(Value::Number(value)) => format!("default {}", number(value)),
         Some(Value::Choice(word)) => format!("`{word}` (default)"),
-        Some(Value::Integer(_) | Value::Flag(_)) | None => return true,
+        Some(Value::Integer(_) | Value::Flag(_) | Value::Numbers(_)) | None => return true,
     };
     !meaning.contains("default") || meaning.contains(&said)
 }

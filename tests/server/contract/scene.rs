@@ -107,6 +107,9 @@ fn range(row: &Field) -> String {
         None => None,
     };
     let range = match row.kind {
+        FieldKind::Numbers { minimum, maximum, most } => {
+            Some(format!("from 1 to {most} numbers, each from {} to {}{unit}", number(minimum), number(maximum)))
+        }
         FieldKind::Number { minimum, maximum } => {
             Some(format!("from {} to {}{unit}", number(minimum), number(maximum)))
         }
@@ -130,9 +133,25 @@ fn description(row: &Field, with_detail: bool) -> String {
     quoted(&all.join(" "))
 }
 
-/// A line of `components/parameters`.
+/// A line of `components/parameters`; a block for a list, each number of which is a parameter of its own.
 fn parameter(row: &Field) -> String {
     let Field { path, .. } = row;
+    if matches!(row.kind, FieldKind::Numbers { .. }) {
+        return format!(
+            "    scene.{path}:
+      name: scene.{path}
+      in: query
+      description: |
+        {}. {} Each number is a parameter of its own: `scene.{path}.0` is the first. Indices have no gaps.
+        The parameter itself is never sent by this bare name.
+      style: deepObject
+      explode: true
+      schema: {{ type: object }}
+",
+            field_text(row.name).about,
+            range(row)
+        );
+    }
     let example = match field_text(row.name).example {
         "" => String::new(),
         example => format!(", example: {example}"),
@@ -170,9 +189,12 @@ fn schema(row: &Field) -> String {
         FieldKind::Integer { maximum } => parts.push(format!("type: integer, minimum: 0, maximum: {maximum}")),
         FieldKind::Choice(words) => parts.push(format!("type: string, enum: [{}]", words.join(", "))),
         FieldKind::Flag => parts.push("type: boolean".to_owned()),
+        FieldKind::Numbers { minimum, maximum, most } => parts.push(format!(
+            "type: array, minItems: 1, maxItems: {most}, items: {{ type: number, minimum: {minimum}, maximum: {maximum} }}"
+        )),
     }
     parts.extend(row.default.map(|value| format!("x-default: {value}")));
-    if matches!(row.kind, FieldKind::Number { .. } | FieldKind::Integer { .. }) {
+    if matches!(row.kind, FieldKind::Number { .. } | FieldKind::Integer { .. } | FieldKind::Numbers { .. }) {
         parts.push(format!("x-unit: {}", quoted(row.unit)));
     }
     let symbol = field_text(row.name).symbol;

@@ -6,7 +6,9 @@
 use super::number::Lane;
 use super::state::{Lanes, Moving, Rods, Scratch, WIDTH};
 use crate::body::general::GeneralBody;
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
+use crate::bounce::rod::Rod;
 use crate::run::ending::Ending;
 use crate::run::orbit::LaneRunState;
 use crate::run::rules::Rules;
@@ -33,9 +35,32 @@ pub(crate) trait Surface {
     fn contact(&self, rods: &Rods, lane: usize, midst: LaneRunState) -> Result<LaneRunState, Ending>;
 }
 
-/// Without friction; rounding is kept off the energy, but not where a run can settle.
+/// Without friction, with one energy feedback in all lanes; rounding is kept off the energy, but not where a run can settle.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Smooth;
+pub(crate) struct Smooth(pub(crate) EnergyFeedback);
+
+impl Smooth {
+    /// The loop for one energy feedback, which is a constant in it.
+    #[inline(always)]
+    fn strike_by<L: Lane>(
+        energy_feedback: EnergyFeedback,
+        rods: &Rods,
+        moving: &Moving,
+        next: &mut Moving,
+        scratch: &mut Scratch,
+    ) {
+        let number = L::from_f64;
+        for lane in 0..WIDTH {
+            let rod = Rod { energy_feedback, ..rods.rod(lane).lift::<L>() };
+            let tilt = scratch.tilt::<L>(lane);
+            let mut strike = rod.strike_with(&moving.state(lane).map(number), &tilt, number(rods.leverage(lane)));
+            // A run that may settle holds no energy: its own energy leaves the strike uncorrected.
+            let held = if rods.settles(lane) { strike.energy } else { number(moving.energy[lane]) };
+            let energy = rod.hold_energy(&mut strike, held);
+            next.struck(lane, &strike, energy.to_f64(), SURE_RISE, scratch);
+        }
+    }
+}
 
 impl Surface for Smooth {
     type Of = ();
@@ -46,20 +71,21 @@ impl Surface for Smooth {
 
     #[inline(always)]
     fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) {
-        let number = L::from_f64;
-        for lane in 0..WIDTH {
-            let rod = rods.rod(lane).lift::<L>();
-            let tilt = scratch.tilt::<L>(lane);
-            let mut strike = rod.strike_with(&moving.state(lane).map(number), &tilt, number(rods.leverage(lane)));
-            // A run that may settle holds no energy: its own energy leaves the strike uncorrected.
-            let held = if rods.settles(lane) { strike.energy } else { number(moving.energy[lane]) };
-            let energy = rod.hold_energy(&mut strike, held);
-            next.struck(lane, &strike, energy.to_f64(), SURE_RISE, scratch);
+        macro_rules! by {
+            ($($feedback:ident),*) => {
+                match self.0 {
+                    $(EnergyFeedback::$feedback => {
+                        Self::strike_by::<L>(EnergyFeedback::$feedback, rods, moving, next, scratch);
+                    })*
+                }
+            };
         }
+        by!(Vertical, Total, OneStrike);
     }
 
     fn contact(&self, rods: &Rods, lane: usize, midst: LaneRunState) -> Result<LaneRunState, Ending> {
-        midst.advance(rods.rod(lane), Rules { holds_energy: !rods.settles(lane), ..rods.rules(lane) })
+        let rod = Rod { energy_feedback: self.0, ..rods.rod(lane) };
+        midst.advance(rod, Rules { holds_energy: !rods.settles(lane), ..rods.rules(lane) })
     }
 }
 
@@ -132,6 +158,7 @@ impl Surface for Rough {
         let general = GeneralBody {
             rod: rods.rod(lane),
             steering: Steering::TiltGain,
+            program: None,
             friction: Some(friction),
             noise: None,
             outline: None,

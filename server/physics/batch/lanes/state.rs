@@ -1,6 +1,7 @@
 //! The rods in the lanes, the state of their runs, and what the parts of a bounce hand on.
 
 use super::number::Lane;
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -112,7 +113,7 @@ impl Rods {
         self.first_flight[lane] = first_flight;
     }
 
-    /// The one in a lane.
+    /// The one in a lane, with the energy feedback of most: the kind of contact knows its own.
     #[inline(always)]
     pub(crate) fn rod(&self, lane: usize) -> Rod {
         Rod {
@@ -124,6 +125,7 @@ impl Rods {
             strike_gain: self.strike_gain[lane],
             strike_gain_per_energy: self.strike_gain_per_energy[lane],
             target_energy: self.target_energy[lane],
+            energy_feedback: EnergyFeedback::Vertical,
         }
     }
 

@@ -152,6 +152,7 @@ fn thrown_body(scene: &Scene) -> GeneralBody {
     GeneralBody {
         rod: scene.parameters(),
         steering: scene.steering,
+        program: None,
         friction: scene.contact_friction(),
         noise: None,
         outline: scene.outline,

@@ -13,12 +13,22 @@ mod left_out;
 pub use bound::SAFETY;
 pub use closed_form::{LinearImpact, LinearSolution};
 
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::run::extended;
 use crate::scene::Scene;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::{AngleClass, linear_verdict};
 use left_out::LeftOut;
+
+/// Reason for which it does not apply where [`is_derived`] says so.
+pub const NOT_DERIVED: &str =
+    "the bound on what it leaves out is derived for tables that steer the vertical energy or none";
+
+/// Tells whether the bound is derived for the energy feedback of a scene.
+pub fn is_derived(scene: &Scene) -> bool {
+    scene.energy_feedback == EnergyFeedback::Vertical || !scene.steers_energy()
+}
 
 impl LinearSolution {
     /// The linear solution of the run of a scene.
@@ -30,6 +40,9 @@ impl LinearSolution {
             return Err(error.detail);
         }
         let fixed_point = find_fixed_point(scene)?;
+        if !is_derived(scene) {
+            return Err(NOT_DERIVED.to_owned());
+        }
         let linear = linear_verdict(scene, &fixed_point);
         let (Model::Rod(rod), Some(residue)) = (scene.model(), linear.residue) else {
             return Err("a point mass has no angle; its eq. (5) is exact".to_owned());

@@ -1,6 +1,7 @@
 //! The reference runs of `tests/reference`, as scenes.
 
 use equipoise_physics::scene::{Draft, FIELDS, FieldKind, Scene, Value};
+use equipoise_physics::table::program::HeightProgram;
 use serde_json::Value as Json;
 use std::path::{Path, PathBuf};
 
@@ -37,6 +38,11 @@ fn draft(scene: &Json) -> Option<Draft> {
             FieldKind::Integer { .. } => Value::Integer(json.as_u64().unwrap()),
             FieldKind::Choice(words) => Value::Choice(words.iter().find(|word| Some(**word) == json.as_str()).unwrap()),
             FieldKind::Flag => Value::Flag(json.as_bool().unwrap()),
+            FieldKind::Numbers { .. } => {
+                let heights: Vec<f64> =
+                    json.as_array().unwrap().iter().map(|height| height.as_f64().unwrap()).collect();
+                Value::Numbers(HeightProgram::new(&heights).unwrap())
+            }
         };
         draft.set(row.name, Some(value)).ok()?;
     }

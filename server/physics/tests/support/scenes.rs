@@ -2,8 +2,10 @@
 
 use crate::random::Random;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::table::program::HeightProgram;
 
 /// Kind of a random scene, by its motion or body.
+#[allow(dead_code, reason = "not every test that shares this file draws every kind")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
     Regular,
@@ -16,9 +18,16 @@ pub(crate) enum Kind {
     Point,
     /// From the whole range of the fields.
     Wide,
+    /// With a gain on the total energy.
+    Total,
+    /// With the law that brings the energy to its target in one strike, by a belief that may be wrong.
+    OneStrike,
+    /// With alternating heights, one strike each.
+    Juggling,
 }
 
-pub(crate) const KINDS: [Kind; 9] = [
+#[allow(dead_code, reason = "as above")]
+pub(crate) const KINDS: [Kind; 12] = [
     Kind::Regular,
     Kind::Small,
     Kind::Chaotic,
@@ -28,6 +37,9 @@ pub(crate) const KINDS: [Kind; 9] = [
     Kind::Grazing,
     Kind::Point,
     Kind::Wide,
+    Kind::Total,
+    Kind::OneStrike,
+    Kind::Juggling,
 ];
 
 /// A scene of this kind.
@@ -49,7 +61,7 @@ pub(crate) fn scene(random: &mut Random, kind: Kind) -> Scene {
             _ => random.between(0.05, 0.95),
         };
         let (theta, theta_dot, x_dot) = match kind {
-            Kind::Regular | Kind::Still | Kind::Feedback => {
+            Kind::Regular | Kind::Still | Kind::Feedback | Kind::Total | Kind::OneStrike | Kind::Juggling => {
                 (random.size(0.003, 0.2), random.size(0.001, 0.5), random.size(0.001, 0.3))
             }
             Kind::Small => (random.size(1e-7, 1e-2), random.size(1e-7, 1e-2), random.size(1e-7, 1e-2)),
@@ -73,7 +85,23 @@ pub(crate) fn scene(random: &mut Random, kind: Kind) -> Scene {
             values.push((Name::Incline, random.between(0.2, 1.5)));
         }
         let mut draft = Draft::default();
-        if kind == Kind::Feedback {
+        if matches!(kind, Kind::OneStrike | Kind::Juggling) {
+            draft.set(Name::EnergyLaw, Some(Value::Choice("one_strike"))).unwrap();
+        }
+        if kind == Kind::OneStrike {
+            values.push((Name::TargetHeight, length + above * random.between(0.7, 1.5)));
+            if random.between(0.0, 1.0) < 0.5 {
+                values.push((Name::AssumedRestitution, random.between(0.2, 1.0)));
+            }
+        }
+        if kind == Kind::Juggling {
+            let heights: Vec<f64> = (0..3).map(|_| length + above * random.between(0.7, 1.5)).collect();
+            draft.set(Name::Program, HeightProgram::new(&heights).map(Value::Numbers)).unwrap();
+        }
+        if kind == Kind::Total {
+            draft.set(Name::EnergyMeasure, Some(Value::Choice("total"))).unwrap();
+        }
+        if matches!(kind, Kind::Feedback | Kind::Total) {
             // Around a share of its upper bound 2/((1 + e)V²), roughly.
             values.push((Name::EnergyGain, random.between(0.02, 0.8) / (2.0 * 9.81 * above)));
             values.push((Name::TargetHeight, length + above * random.between(0.7, 1.5)));

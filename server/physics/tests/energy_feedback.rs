@@ -1,0 +1,323 @@
+//! The laws by which a table steers the energy: vertical, total, in one strike, and with a program of heights.
+
+#[path = "support/random.rs"]
+mod random;
+#[path = "support/scenes.rs"]
+mod scenes;
+
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::periodic_orbits::{OrbitProblem, find};
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::error_estimate::ErrorEstimate;
+use equipoise_physics::run::extended;
+use equipoise_physics::run::orbit::run;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::boundary::boundary_coefficient;
+use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::jacobian::{finite_difference, jacobian};
+use equipoise_physics::stability::linear_verdict::linear_verdict;
+use equipoise_physics::stability::lyapunov::{SwingFate, lyapunov_coefficient};
+use equipoise_physics::table::program::HeightProgram;
+use random::Random;
+use scenes::Kind;
+
+fn scene(numbers: &[(Name, f64)], others: &[(Name, Value)]) -> Scene {
+    let mut draft = Draft::default();
+    let body = [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0)];
+    for &(name, number) in body.iter().chain(numbers) {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    for &(name, value) in others {
+        draft.set(name, Some(value)).unwrap();
+    }
+    draft.build().unwrap()
+}
+
+const TOTAL: (Name, Value) = (Name::EnergyMeasure, Value::Choice("total"));
+const ONE_STRIKE: (Name, Value) = (Name::EnergyLaw, Value::Choice("one_strike"));
+
+fn case_4(tilt_gain: f64, theta: f64, others: &[(Name, Value)]) -> Scene {
+    let numbers = [
+        (Name::Incline, std::f64::consts::FRAC_PI_4),
+        (Name::Restitution, 0.5),
+        (Name::EnergyGain, 0.165),
+        (Name::TargetHeight, 0.25),
+        (Name::Height, 0.25),
+        (Name::TiltGain, tilt_gain),
+        (Name::Theta, theta),
+    ];
+    scene(&numbers, others)
+}
+
+fn juggling(heights: &[f64], theta: f64) -> Scene {
+    let program = (Name::Program, Value::Numbers(HeightProgram::new(heights).unwrap()));
+    scene(&[(Name::TiltGain, 1.1), (Name::Height, 0.25), (Name::Theta, theta)], &[ONE_STRIKE, program])
+}
+
+/// ½|v|² + G l cos θ of a state after a strike, with the platform's own mathematics.
+fn energy(scene: &Scene, state: &State) -> f64 {
+    let rod = scene.parameters::<f64>();
+    let spin = rod.radius_of_gyration * state.theta_dot;
+    0.5 * (state.x_dot.powi(2) + state.y_dot.powi(2) + spin.powi(2))
+        + rod.gravity * rod.contact_distance * state.theta.cos()
+}
+
+#[test]
+fn one_strike_brings_the_energy_to_its_target() {
+    let mut random = Random::new(1);
+    let (mut struck, mut worst) = (0, 0.0_f64);
+    for _ in 0..2000 {
+        let scene = scenes::scene(&mut random, Kind::OneStrike);
+        let Some(contact) = scene.orbit().ok().map(|mut orbit| orbit.advance()) else { continue };
+        let Some(strike) =
+            contact.strike.filter(|_| scene.assumed_restitution() == scene.parameters::<f64>().restitution)
+        else {
+            continue;
+        };
+        let target = scene.parameters::<f64>().target_energy;
+        // A strike can take no more than the normal energy ½u² = −½v_nc P/γ at γ = 1.
+        if strike.impulse_normal / -strike.push < 0.0 || strike.push == strike.normal_velocity {
+            continue;
+        }
+        worst = worst.max((energy(&scene, &strike.after) / target - 1.0).abs());
+        struck += 1;
+    }
+    assert!(struck > 500, "{struck}");
+    assert!(worst <= 1e-14, "{worst:e}");
+}
+
+#[test]
+fn juggling_holds_the_energy_after_every_strike() {
+    let scene = juggling(&[0.2, 0.3], 0.02);
+    let gravity = scene.gravity();
+    let (mut worst, mut most) = (0.0_f64, 0.0_f64);
+    let ending = run(&mut scene.orbit().unwrap(), 3000, |contact| {
+        let target = gravity * if contact.n % 2 == 1 { 0.2 } else { 0.3 };
+        worst = worst.max((energy(&scene, &contact.strike.unwrap().after) / target - 1.0).abs());
+        most = most.max(contact.state.theta.abs());
+        true
+    });
+    assert_eq!(ending, Some(Ending::Completed));
+    assert!(worst <= 3e-15, "{worst:e}");
+    assert!(most < 0.1, "{most}");
+}
+
+/// A strike of r = 0 leaves the contact point at rest along the normal, with what the strike could not take.
+#[test]
+fn a_strike_takes_no_more_than_the_normal_energy() {
+    let low = |theta| {
+        let numbers = [(Name::TiltGain, 1.1), (Name::Height, 0.2), (Name::TargetHeight, 0.1), (Name::Theta, theta)];
+        scene(&numbers, &[ONE_STRIKE])
+    };
+    let upright = low(0.0).orbit().unwrap().advance();
+    assert!(matches!(upright.ending, Some(Ending::Settled { .. })), "{upright:?}");
+    assert_eq!(upright.strike.unwrap().after.y_dot, 0.0);
+    let mut orbit = low(0.3).orbit().unwrap();
+    let contact = orbit.advance();
+    let strike = contact.strike.unwrap();
+    assert_eq!(strike.push, strike.normal_velocity);
+    let rod = low(0.3).parameters::<f64>();
+    let (alpha, beta) = (strike.alpha, 0.3 - strike.alpha);
+    let left = alpha.cos() * strike.after.y_dot - alpha.sin() * strike.after.x_dot
+        + rod.contact_distance * beta.sin() * strike.after.theta_dot;
+    assert!(left.abs() <= 1e-15, "{left:e}");
+    assert!(matches!(contact.ending, Some(Ending::Sinking { .. })), "{contact:?}");
+}
+
+#[test]
+fn total_energy_neither_pumps_nor_damps_a_swing() {
+    for tilt_gain in [1.02, 1.05, 1.1, 1.15, 1.2, 1.25] {
+        for others in [&[TOTAL][..], &[ONE_STRIKE, (Name::EnergyGain, Value::Number(0.0))][..]] {
+            let scene = case_4(tilt_gain, 0.05, others);
+            let fixed_point = find_fixed_point(&scene).unwrap();
+            let linear = linear_verdict(&scene, &fixed_point);
+            let found = lyapunov_coefficient(&scene, &fixed_point, &linear).unwrap();
+            assert_eq!((found.coefficient, found.kind), (0.0, SwingFate::Neutral), "{tilt_gain}: {found:?}");
+        }
+        let scene = case_4(tilt_gain, 0.05, &[]);
+        let fixed_point = find_fixed_point(&scene).unwrap();
+        let linear = linear_verdict(&scene, &fixed_point);
+        let vertical = lyapunov_coefficient(&scene, &fixed_point, &linear).unwrap();
+        assert!(vertical.coefficient.abs() > 1e-3, "{tilt_gain}: {vertical:?}");
+    }
+}
+
+/// ℓ measured on runs: 1/A² would fall by 2ℓ a bounce.
+#[test]
+fn runs_on_the_total_energy_stay_where_vertical_ones_leave() {
+    let largest = |scene: &Scene| {
+        let (mut first, mut last) = (0.0_f64, 0.0_f64);
+        let ending = run(&mut scene.orbit().unwrap(), 20_000, |contact| {
+            let side = if contact.n <= 1000 { &mut first } else { &mut last };
+            if contact.n <= 1000 || contact.n > 19_000 {
+                *side = side.max(contact.state.theta.abs());
+            }
+            true
+        });
+        (ending.unwrap().name(), first, last)
+    };
+    for tilt_gain in [1.02, 1.05, 1.1, 1.2] {
+        let (ending, first, last) = largest(&case_4(tilt_gain, 0.05, &[TOTAL]));
+        assert_eq!(ending, "completed", "{tilt_gain}");
+        let measured = (1.0 / (first * first) - 1.0 / (last * last)) / (2.0 * 19_000.0);
+        assert!(measured.abs() <= 1e-8 / (0.05 * 0.05), "{tilt_gain}: {measured:e}, {first} to {last}");
+    }
+    assert_ne!(largest(&case_4(1.05, 0.05, &[])).0, "completed");
+}
+
+/// J₃₃ = 1 − (1 + e)κ_E V² for either measure, and (e − ê)/(1 + ê) for one strike; all else as without feedback.
+#[test]
+fn derivatives_are_those_of_the_closed_forms_and_of_finite_differences() {
+    let mut random = Random::new(2);
+    for kind in [Kind::Total, Kind::OneStrike] {
+        let mut compared = 0;
+        for _ in 0..400 {
+            let scene = scenes::scene(&mut random, kind);
+            let Ok(fixed_point) = find_fixed_point(&scene) else { continue };
+            let model = scene.model();
+            let upright = State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
+            let exact = jacobian(&model, &upright, 1).unwrap();
+            let eigenvalue = linear_verdict(&scene, &fixed_point).energy_eigenvalue;
+            assert!(
+                (exact.matrix[(2, 2)] - eigenvalue).abs() <= 1e-12,
+                "{kind:?}: {} {eigenvalue}",
+                exact.matrix[(2, 2)]
+            );
+            assert!((exact.end.y_dot / upright.y_dot - 1.0).abs() <= 1e-12, "{kind:?}: it comes back");
+            let Ok(mut orbit) = scene.orbit() else { continue };
+            for _ in 0..3 {
+                let state = *orbit.state();
+                let (Ok(exact), Ok(differences)) =
+                    (jacobian(&model, &state, 1), finite_difference(&model, &state, 1, 1e-6))
+                else {
+                    break;
+                };
+                // Near a graze derivatives grow without bound, and where r is 0 they have a kink.
+                let strike = orbit.foresee().1;
+                let blunt = strike.push / strike.normal_velocity > 1.2 && exact.contact_speed < -0.3;
+                let size = exact.matrix.amax();
+                if blunt && size < 20.0 {
+                    let off = (&exact.matrix - &differences.matrix).amax() / size;
+                    assert!(off <= 1e-6, "{kind:?}: {off:e}\n{}\n{}", exact.matrix, differences.matrix);
+                    compared += 1;
+                }
+                if orbit.advance().ending.is_some() {
+                    break;
+                }
+            }
+        }
+        assert!(compared > 200, "{kind:?}: {compared}");
+    }
+}
+
+/// On the surface of the target energy the map is that without losses, and so is the coefficient at κ_c.
+#[test]
+fn the_boundary_is_that_without_losses() {
+    let lossless =
+        scene(&[(Name::Incline, std::f64::consts::FRAC_PI_4), (Name::Height, 0.25), (Name::TiltGain, 1.1)], &[]);
+    let of =
+        |scene: &Scene| boundary_coefficient(&scene.model(), &find_fixed_point(scene).unwrap()).unwrap().coefficient;
+    let expected = of(&lossless);
+    for others in [&[TOTAL][..], &[ONE_STRIKE, (Name::EnergyGain, Value::Number(0.0))][..]] {
+        let found = of(&case_4(1.1, 0.0, others));
+        assert!((found - expected).abs() <= 1e-13, "{found} {expected}");
+    }
+    assert!(of(&case_4(1.1, 0.0, &[])) < 0.0);
+}
+
+#[test]
+fn a_wrong_belief_settles_where_the_closed_form_says() {
+    let mut random = Random::new(3);
+    let mut seen = 0;
+    for _ in 0..200 {
+        let (restitution, assumed) = (random.between(0.2, 1.0), random.between(0.2, 1.0));
+        let numbers = [
+            (Name::Restitution, restitution),
+            (Name::AssumedRestitution, assumed),
+            (Name::TargetHeight, 0.25),
+            (Name::Height, 0.3),
+            (Name::TiltGain, 1.1),
+        ];
+        let scene = scene(&numbers, &[ONE_STRIKE]);
+        let fixed_point = find_fixed_point(&scene).unwrap();
+        let mut orbit = scene.orbit().unwrap();
+        for _ in 0..200 {
+            orbit.advance();
+        }
+        assert!((orbit.state().y_dot + fixed_point.speed).abs() <= 1e-13, "{restitution} {assumed}");
+        seen += 1;
+    }
+    assert_eq!(seen, 200);
+}
+
+#[test]
+fn doubles_are_within_their_bound_of_31_digits() {
+    let mut random = Random::new(4);
+    for kind in [Kind::Total, Kind::OneStrike, Kind::Juggling] {
+        let mut compared = 0;
+        for _ in 0..150 {
+            let scene = scenes::scene(&mut random, kind);
+            let (Ok(mut orbit), Ok(mut exact)) = (scene.orbit(), scene.extended_orbit()) else { continue };
+            let mut estimate = ErrorEstimate::of_scene(&scene, orbit.t());
+            let rho = scene.parameters::<f64>().radius_of_gyration;
+            for _ in 0..100 {
+                let bound = estimate.bound();
+                if bound > 1e-6 {
+                    break;
+                }
+                let (ours, theirs) = (*orbit.state(), extended::in_doubles(exact.state()));
+                let off = [
+                    rho * (ours.theta - theirs.theta),
+                    ours.x_dot - theirs.x_dot,
+                    ours.y_dot - theirs.y_dot,
+                    rho * (ours.theta_dot - theirs.theta_dot),
+                ];
+                let error = off.into_iter().map(f64::abs).fold(0.0, f64::max);
+                assert!(error <= bound + 1e-15, "{kind:?}: {error:e} beyond {bound:e} at {}", orbit.contacts() + 1);
+                compared += 1;
+                let (contact, extended) = (orbit.advance(), exact.advance());
+                if contact.ending.is_some() || extended.ending.is_some() {
+                    assert_eq!(contact.ending.map(Ending::name), extended.ending.map(Ending::name), "{kind:?}");
+                    break;
+                }
+                estimate.pass(&contact);
+            }
+        }
+        assert!(compared > 2000, "{kind:?}: {compared}");
+    }
+}
+
+#[test]
+fn a_program_of_one_height_is_a_target_height() {
+    for (one, other) in [(juggling(&[0.3], 0.1), None), (juggling(&[0.3, 0.3, 0.3], 0.1), None::<f64>)] {
+        let target = scene(
+            &[(Name::TiltGain, 1.1), (Name::Height, 0.25), (Name::Theta, 0.1), (Name::TargetHeight, 0.3)],
+            &[ONE_STRIKE],
+        );
+        let (mut orbit, mut same) = (one.orbit().unwrap(), target.orbit().unwrap());
+        for _ in 0..100 {
+            assert_eq!(orbit.advance(), same.advance());
+        }
+        assert_eq!((one.model(), other), (target.model(), None));
+    }
+}
+
+#[test]
+fn juggling_is_a_periodic_orbit_of_a_whole_cycle() {
+    let heights = [0.2, 0.3, 0.24];
+    let scene = juggling(&heights, 0.0);
+    let problem = OrbitProblem::of(&scene).unwrap();
+    let orbit = find(&problem, 3, &problem.upright()).unwrap();
+    assert_eq!(orbit.least_period, 3);
+    let weight = 0.4 / 3.0;
+    for (n, state) in orbit.states.iter().enumerate() {
+        let before = heights[(n + 2) % 3];
+        let speed = (2.0 * scene.gravity() * (before - weight)).sqrt();
+        assert!((state.y_dot + speed).abs() <= 1e-12 && state.theta == 0.0, "{n}: {state:?} {speed}");
+    }
+    let product = jacobian(&scene.model(), &orbit.states[0], 3).unwrap().matrix;
+    assert!(product[(2, 2)].abs() <= 1e-12, "one strike forgets the energy: {product}");
+    assert_eq!(orbit.multipliers.stable, Some(true), "{:?}", orbit.multipliers);
+    let rotated = jacobian(&scene.model().from_contact(2), &orbit.states[1], 3).unwrap();
+    assert!((rotated.end.y_dot - orbit.states[1].y_dot).abs() <= 1e-12, "it comes back from contact 2 too");
+}
