@@ -107,7 +107,9 @@ fn escaped(t: f64, escape: Escape) -> (f64, String, Option<Decision>) {
             ),
             None,
         ),
-        Escape::NoPlan => (t, format!("{at}, no plan was found that brings the body to rest"), None),
+        Escape::NoPlan(failure) => {
+            (t, format!("{at}, no plan was found that brings the body to rest: {failure}"), None)
+        }
         Escape::Diverged(speed) => (
             t,
             format!("{at}, the strike gave a speed of {speed} m/s, beyond what doubles resolve"),

@@ -70,13 +70,23 @@ impl CatchOptions {
         let hold = reader.number("hold", HOLDS, "s").unwrap_or(DEFAULT_HOLD);
         let hold_samples = reader.integer("hold_samples", 2..=limits::HOLD_SAMPLES).unwrap_or(HOLD_SAMPLES);
         let strikes = strikes.and_then(|strikes| u32::try_from(strikes).ok());
-        let settings = CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold };
+        let settings = CatchSettings {
+            strategy,
+            ratio,
+            strikes,
+            brake,
+            state_weights,
+            input_weight,
+            hold,
+            ..CatchSettings::default()
+        };
+
         Self { settings, hold_samples }
     }
 
     /// Everything that determines the answer.
     pub fn canonical(&self) -> impl Serialize {
-        let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold } = self.settings;
+        let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold, .. } = self.settings;
         (strategy.map(Strategy::name), ratio, strikes, brake, state_weights, input_weight, hold, self.hold_samples)
     }
 

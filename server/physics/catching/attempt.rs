@@ -1,158 +1,154 @@
-//! One attempt at a catch with a given strategy: contact by contact, up to the lasting contact or the reason for which there is none.
+//! One attempt at a catch with a given strategy: its strikes and its lasting contact.
 
-use super::guidance::{Catcher, Guidance};
-use super::outcome::{CatchOutcome, CatchStrike, Escape, Fall};
-use super::settings::{HOLD_SPEED, MOST_STRIKES};
-use crate::body::general::GeneralBody;
-use crate::body::{Arrival, Body, NoContact, PreImpact};
-use crate::bounce::strike::Strike;
-use crate::run::rules::{Rules, SPEED_LIMIT, speed_squared};
-use crate::table::actuator_load::{ActuatorLoad, Pose};
+use super::descent::{ComingContact, Descent, DescentEnd, Touchdown};
+use super::gain_schedule::GainSchedule;
+use super::guidance::Catcher;
+use super::landing::{Landed, Landing};
+use super::outcome::{CatchDemand, CatchFailure, CatchNote, CatchOutcome, Escape, Fall};
+use super::settings::{Approach, CatchSettings, DEFAULT_RATIO};
+use crate::body::general::{GeneralBody, Guide};
+use crate::body::{Arrival, NoContact, PreImpact};
+use crate::bounce::friction::{Friction, Slide};
+use crate::bounce::rod::Rod;
+use crate::scene::Scene;
+use crate::stability::contact_regime::ContactRegime;
+use crate::table::control_law::Steering;
 
-/// A coming contact and its time.
+/// Start of a catch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ComingContact {
-    /// Time of the run, s.
-    pub t: f64,
-    /// The contact.
-    pub coming: PreImpact,
+pub(super) enum CatchStart {
+    /// The release of the scene.
+    Release,
+    /// A contact under way.
+    Contact(ComingContact),
 }
 
-/// Beginning of a lasting contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Touchdown {
-    /// The contact, and its time.
-    pub(super) at: ComingContact,
-    /// Vertical velocity of the contact point, m/s.
-    pub(super) speed: f64,
+/// An attempt.
+#[derive(Clone, Debug)]
+pub(super) struct Attempt {
+    pub(super) approach: Approach,
+    pub(super) descent: Descent,
+    pub(super) touchdown: Option<Touchdown>,
+    pub(super) landed: Option<Landed>,
+    /// Facts that the guide noticed.
+    pub(super) notes: Vec<CatchNote>,
+    pub(super) outcome: CatchOutcome,
 }
 
-/// Strikes of an attempt.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Descent {
-    pub(super) strikes: Vec<CatchStrike>,
-    pub(super) load: ActuatorLoad,
-}
-
-/// End of the strikes of an attempt.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum DescentEnd {
-    /// The lasting contact begins.
-    Touchdown(Touchdown),
-    /// It ends without one.
-    Ended(CatchOutcome),
-    /// The caller stopped it.
-    Stopped,
-}
-
-impl Descent {
-    /// Strikes from a coming contact on.
-    pub(super) fn go_down(
-        &mut self,
-        body: &GeneralBody,
-        rules: &Rules,
-        catcher: &mut Catcher,
-        mut now: ComingContact,
+impl Attempt {
+    /// Tries to catch the body of a scene.
+    ///
+    /// # Errors
+    /// [`CatchFailure`].
+    pub(super) fn new(
+        scene: &Scene,
+        settings: &CatchSettings,
+        approach: Approach,
+        start: CatchStart,
         go_on: &mut dyn FnMut() -> bool,
-    ) -> DescentEnd {
-        let mut last: Option<(Pose, f64)> = None;
-        for _ in 0..MOST_STRIKES {
-            if !go_on() {
-                return DescentEnd::Stopped;
+    ) -> Result<Self, CatchFailure> {
+        let rod: Rod = scene.parameters();
+        let rules = scene.rules();
+        let (body, regime) = guided_body(scene);
+        let landing = Landing {
+            body: &body,
+            rules: &rules,
+            regime,
+            settings,
+            deceleration: settings.brake.unwrap_or(rod.gravity),
+        };
+        // No law in contact, no catch: known before the first strike.
+        landing.law(rod.gravity).map_err(CatchFailure::NoLaw)?;
+        let ratio = match approach {
+            Approach::BounceDown { ratio } | Approach::Plan { ratio, .. } => ratio,
+            Approach::Brake { .. } => DEFAULT_RATIO,
+        };
+        let CatchSettings { state_weights, input_weight, .. } = *settings;
+        let schedule = GainSchedule { rod, regime, ratio, state_weights, input_weight };
+        let believed = Rod { restitution: scene.assumed_restitution(), ..rod };
+        let friction = body.friction.map_or(0.0, |friction| friction.coefficient);
+        let mut catcher = Catcher::new(believed, friction, approach, schedule, rules.limits.as_ref());
+        let mut descent = Descent::default();
+        let end = match first_contact(scene, &body, start, &mut catcher) {
+            Ok(first) => descent.go_down(&body, (&rules, settings.hold_speed), &mut catcher, first, go_on),
+            Err(outcome) => DescentEnd::Ended(outcome),
+        };
+        let notes = catcher.notes;
+        let (touchdown, landed, outcome) = match end {
+            DescentEnd::Touchdown(touchdown) => {
+                let landed = landing.land(&touchdown, go_on).map_err(CatchFailure::NoLaw)?;
+                let landed = landed.ok_or(CatchFailure::Stopped)?;
+                let outcome = landed.outcome;
+                (Some(touchdown), Some(landed), outcome)
             }
-            let ComingContact { t, coming } = now;
-            let theta = coming.state.theta;
-            if theta.abs() >= rules.topple_angle {
-                return fell(t, Fall::Toppled { theta, limit: rules.topple_angle });
-            }
-            match catcher.guidance {
-                Guidance::Strike { .. } => {}
-                Guidance::Touch => {
-                    let speed = body.rod.contact_speed(&coming.state);
-                    return DescentEnd::Touchdown(Touchdown { at: now, speed });
+            DescentEnd::Ended(outcome) => (None, None, outcome),
+            DescentEnd::Stopped => return Err(CatchFailure::Stopped),
+        };
+        Ok(Self { approach, descent, touchdown, landed, notes, outcome })
+    }
+
+    /// Beginning of the lasting contact, s.
+    pub(super) fn contact_from(&self) -> Option<f64> {
+        self.touchdown.map(|touchdown| touchdown.at.t)
+    }
+
+    /// Demand on the table.
+    pub(super) fn demand(&self) -> CatchDemand {
+        let demand = CatchDemand { load: self.descent.load, ..CatchDemand::default() };
+        self.landed.as_ref().map_or(demand, |Landed { hold, .. }| CatchDemand {
+            load: demand.load.or(hold.load),
+            travel: hold.travel,
+            least_friction: hold.least_friction,
+            most_normal_force: hold.samples.iter().map(|sample| sample.normal_force).fold(0.0, f64::max),
+        })
+    }
+}
+
+/// The body on a guided table, and its contact at strikes. A table that catches a body with friction moves along with its contact.
+fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
+    let friction = scene.contact_friction().filter(|friction| friction.coefficient != 0.0);
+    let regime = if friction.is_some() { ContactRegime::VelocityMatched } else { ContactRegime::Frictionless };
+    let body = GeneralBody {
+        rod: scene.parameters(),
+        steering: Steering::TiltGain,
+        program: None,
+        friction: friction.map(|friction| Friction { slide: Slide::Matched, ..friction }),
+        noise: scene.noise,
+        outline: scene.outline,
+    };
+    (body, regime)
+}
+
+/// The first contact, with the motion of the guided table.
+fn first_contact(
+    scene: &Scene,
+    body: &GeneralBody,
+    start: CatchStart,
+    catcher: &mut Catcher,
+) -> Result<ComingContact, CatchOutcome> {
+    match start {
+        CatchStart::Release => {
+            let release = scene.release();
+            match body.fall_to(release, Some(catcher)) {
+                Ok(Arrival { t, state, clearance, plan }) => {
+                    let x = release.x + state.x_dot * t;
+                    Ok(ComingContact { t, coming: PreImpact { n: 1, x, state, clearance, plan } })
                 }
-                Guidance::GiveUp(escape) => return escaped(t, escape),
-            }
-            let strike = body.strike(&coming);
-            if let Some(touch) = body.touches(&coming, &strike) {
-                return fell(t, Fall::OtherVertex(touch));
-            }
-            let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
-            let load = pose.load(last);
-            self.load = self.load.or(load);
-            if let Some(violation) = rules.limits.as_ref().and_then(|limits| limits.exceeded(&load)) {
-                return DescentEnd::Ended(CatchOutcome::BeyondLimits { t, violation });
-            }
-            if strike.push >= 0.0 {
-                return escaped(t, Escape::Separating(strike.approach));
-            }
-            self.strikes.push(record(body, &now, &strike));
-            let after = strike.after;
-            let squared = speed_squared(after.x_dot, after.y_dot, body.rod.contact_distance * after.theta_dot);
-            if squared.is_nan() || squared > SPEED_LIMIT * SPEED_LIMIT {
-                return escaped(t, Escape::Diverged(squared.sqrt()));
-            }
-            let stay = DescentEnd::Touchdown(Touchdown {
-                at: ComingContact { t, coming: PreImpact { state: after, plan: None, ..coming } },
-                speed: strike.contact_rise,
-            });
-            if strike.contact_rise < HOLD_SPEED {
-                return stay;
-            }
-            match body.fly_to(&coming, &strike, Some(catcher)) {
-                Ok(arrival) => {
-                    if let Some(strike) = self.strikes.last_mut() {
-                        strike.flight_time = Some(arrival.t);
-                    }
-                    last = Some((pose, arrival.t));
-                    now = now.after(&arrival);
-                }
-                // It does not come up to y = 0: the table follows it from here.
-                Err(NoContact::Sinking) => return stay,
-                Err(NoContact::Missed) => return escaped(t, Escape::Missed),
-                Err(NoContact::TooManyPieces) => return escaped(t, Escape::Diverged(squared.sqrt())),
-                Err(NoContact::OtherVertex(touch)) => return fell(t + touch.t, Fall::OtherVertex(touch)),
+                Err(no_contact) => Err(no_first_contact(no_contact)),
             }
         }
-        escaped(now.t, Escape::TooManyStrikes(MOST_STRIKES))
+        CatchStart::Contact(ComingContact { t, coming }) => {
+            let plan = catcher.motion(&coming, 0.0);
+            Ok(ComingContact { t, coming: PreImpact { plan, ..coming } })
+        }
     }
 }
 
-impl ComingContact {
-    /// The contact that ends the flight after this one.
-    pub(super) fn after(&self, arrival: &Arrival) -> Self {
-        let Arrival { t, state, clearance, plan } = *arrival;
-        let PreImpact { n, x, .. } = self.coming;
-        Self { t: self.t + t, coming: PreImpact { n: n + 1, x: x + state.x_dot * t, state, clearance, plan } }
-    }
-}
-
-fn fell(t: f64, fall: Fall) -> DescentEnd {
-    DescentEnd::Ended(CatchOutcome::Fell { t, fall })
-}
-
-fn escaped(t: f64, escape: Escape) -> DescentEnd {
-    DescentEnd::Ended(CatchOutcome::NotCaught { t, escape })
-}
-
-fn record(body: &GeneralBody, now: &ComingContact, strike: &Strike) -> CatchStrike {
-    let ComingContact { t, coming } = *now;
-    let contact_speed = body.rod.contact_speed(&coming.state);
-    CatchStrike {
-        n: coming.n,
-        t,
-        x: coming.x,
-        state: coming.state,
-        clearance: coming.clearance,
-        alpha: strike.alpha,
-        table_velocity: strike.normal_velocity - strike.approach,
-        table_velocity_xy: strike.table_velocity,
-        impulse_normal: strike.impulse_normal,
-        impulse_tangential: strike.impulse_tangential,
-        contact_mode: strike.mode,
-        ratio: strike.contact_rise / -contact_speed,
-        contact_speed,
-        flight_time: None,
-        after: strike.after,
+fn no_first_contact(no_contact: NoContact) -> CatchOutcome {
+    let escaped = |escape| CatchOutcome::NotCaught { t: 0.0, escape };
+    match no_contact {
+        NoContact::OtherVertex(touch) => CatchOutcome::Fell { t: touch.t, fall: Fall::OtherVertex(touch) },
+        NoContact::Missed | NoContact::Sinking => escaped(Escape::Missed),
+        NoContact::TooManyPieces => escaped(Escape::Diverged(f64::INFINITY)),
     }
 }

@@ -91,13 +91,18 @@ pub fn contact_gain(
 }
 
 /// K of a level table whose surface accelerates along x by a = −K·(x, θ, ẋ, θ̇), m/s², under a contact that sticks:
-/// (l² + ρ²)θ̈ = l(Gθ + a), ẍ = a − lθ̈. A table tilted by α that moves along with the contact does the same with a = −Gα.
+/// (l² + ρ²)θ̈ = l(push·θ + a), ẍ = a − lθ̈. A table tilted by α that moves along with the contact does the same with a = −push·α.
 ///
 /// # Errors
 /// [`DesignFailure`].
-pub fn cart_pole_gain(rod: &Rod, state_weights: [f64; 4], input_weight: f64) -> Result<Gains, DesignFailure> {
-    let tilt = contact_gain(rod, rod.gravity, ContactRegime::VelocityMatched, state_weights, input_weight)?;
-    Ok(gains([tilt.x, tilt.theta, tilt.x_dot, tilt.theta_dot].map(|gain| -(rod.gravity * gain))))
+pub fn cart_pole_gain(
+    rod: &Rod,
+    push: f64,
+    state_weights: [f64; 4],
+    input_weight: f64,
+) -> Result<Gains, DesignFailure> {
+    let tilt = contact_gain(rod, push, ContactRegime::VelocityMatched, state_weights, input_weight)?;
+    Ok(gains([tilt.x, tilt.theta, tilt.x_dot, tilt.theta_dot].map(|gain| -(push * gain))))
 }
 
 fn gains([x, theta, x_dot, theta_dot]: [f64; 4]) -> Gains {

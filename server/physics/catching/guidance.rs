@@ -3,12 +3,18 @@
 use super::aim::Aim;
 use super::gain_schedule::GainSchedule;
 use super::outcome::{CatchNote, Escape};
-use super::settings::Approach;
+use super::plan::{BouncingRod, NextStrike, PlanFailure, PlanProblem, Replanner};
+use super::settings::{Approach, DEFAULT_RATIO, MOST_PLANNED_TILT};
 use crate::body::PreImpact;
 use crate::body::general::Guide;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::table_motion::PlannedTableMotion;
+use crate::table::actuator_load::ActuatorLimits;
+use crate::table::control_law::Gains;
+
+/// Largest tilt of a strike by the gain schedule, rad. A steeper table turns a body more than it lifts it.
+const STEEPEST: f64 = 0.6;
 
 /// Decision of the table for a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +30,17 @@ pub enum Guidance {
     GiveUp(Escape),
 }
 
+/// State of a catch by a plan.
+#[derive(Clone, Debug)]
+enum Planning {
+    /// No contact has come yet.
+    NotBegun,
+    /// The plan is made again at each strike.
+    Under(Replanner),
+    /// The stop is done, or the plan was given up.
+    Over,
+}
+
 /// Guide of a catch. It decides contact by contact, from what it senses and believes.
 #[derive(Clone, Debug)]
 pub struct Catcher {
@@ -33,6 +50,10 @@ pub struct Catcher {
     friction: f64,
     approach: Approach,
     schedule: GainSchedule,
+    /// Largest tilt of a strike of a plan that is made again, rad.
+    most_tilt: f64,
+    /// State of a catch by a plan.
+    planning: Planning,
     /// The last decision.
     pub(super) guidance: Guidance,
     /// Facts noticed on the way.
@@ -41,19 +62,85 @@ pub struct Catcher {
 
 impl Catcher {
     /// A guide by `approach`, for a contact with friction μ, with a rod of the believed restitution.
-    pub(super) fn new(believed: Rod, friction: f64, approach: Approach, schedule: GainSchedule) -> Self {
-        Self { believed, friction, approach, schedule, guidance: Guidance::Touch, notes: Vec::new() }
+    pub(super) fn new(
+        believed: Rod,
+        friction: f64,
+        approach: Approach,
+        schedule: GainSchedule,
+        limits: Option<&ActuatorLimits>,
+    ) -> Self {
+        let most_tilt = limits.map_or(MOST_PLANNED_TILT, |limits| limits.tilt.min(MOST_PLANNED_TILT));
+        Self {
+            believed,
+            friction,
+            approach,
+            schedule,
+            most_tilt,
+            planning: Planning::NotBegun,
+            guidance: Guidance::Touch,
+            notes: Vec::new(),
+        }
     }
 
-    /// A strike of `ratio` at the tilt of the gain schedule; `error` of the sensed angle in rad.
-    fn bounce_down(&mut self, seen: &PreImpact, error: f64) -> Option<PlannedTableMotion> {
+    /// A strike of `ratio` at the tilt of the gain schedule.
+    fn bounce_down(&mut self, seen: &PreImpact, sensed: &State, ratio: f64) -> Option<PlannedTableMotion> {
+        let gains = self.gains(seen, ratio)?;
+        let alpha = gains.tilt(seen.x, sensed).clamp(-STEEPEST, STEEPEST);
+        self.aim(seen, alpha, ratio)
+    }
+
+    /// K at the contact speed.
+    fn gains(&mut self, seen: &PreImpact, ratio: f64) -> Option<Gains> {
         let speed = -self.believed.contact_speed(&seen.state);
-        let Ok(gains) = self.schedule.gain(speed) else {
+        let gains = GainSchedule { ratio, ..self.schedule }.gain(speed);
+        if gains.is_err() {
             self.guidance = Guidance::GiveUp(Escape::NoLaw(speed));
-            return None;
+        }
+        gains.ok()
+    }
+
+    /// The coming strike of a plan of `strikes` strikes of `ratio` and a stop; beyond the stop, a strike of the gain schedule.
+    fn planned(
+        &mut self,
+        seen: &PreImpact,
+        sensed: &State,
+        (strikes, ratio): (u32, f64),
+    ) -> Option<PlannedTableMotion> {
+        let coming = PreImpact { state: *sensed, ..*seen };
+        let most_tilt = self.most_tilt;
+        let (next, is_first) = match &mut self.planning {
+            Planning::Over => return self.bounce_down(seen, sensed, DEFAULT_RATIO),
+            Planning::Under(planner) => (planner.next(&coming), false),
+            Planning::NotBegun => (self.begin_plan(&coming, strikes, ratio), true),
         };
-        let sensed = State { theta: seen.state.theta + error, ..seen.state };
-        self.aim(seen, gains.tilt(seen.x, &sensed), self.schedule.ratio)
+        match next {
+            Ok(NextStrike { alpha, ratio }) if ratio > 0.0 && (is_first || alpha.abs() <= most_tilt) => {
+                self.aim(seen, alpha, ratio)
+            }
+            Ok(NextStrike { alpha, ratio }) if ratio == 0.0 => {
+                self.planning = Planning::Over;
+                // A strike without a flight has no gain of its own: it takes that of strikes that keep the height.
+                let gains = self.gains(seen, 1.0)?;
+                self.aim(seen, alpha + gains.tilt(seen.x, sensed), ratio)
+            }
+            Err(failure) if is_first => {
+                self.guidance = Guidance::GiveUp(Escape::NoPlan(failure));
+                None
+            }
+            Ok(_) | Err(_) => {
+                self.planning = Planning::Over;
+                self.notes.push(CatchNote::PlanGivenUp { n: seen.n });
+                self.bounce_down(seen, sensed, DEFAULT_RATIO)
+            }
+        }
+    }
+
+    fn begin_plan(&mut self, coming: &PreImpact, strikes: u32, ratio: f64) -> Result<NextStrike, PlanFailure> {
+        let body = BouncingRod { rod: self.believed, friction: self.friction };
+        let mut planner = Replanner::new(PlanProblem { body, strikes, ratio })?;
+        let next = planner.next(coming);
+        self.planning = Planning::Under(planner);
+        next
     }
 
     /// A strike at tilt `alpha` (rad) with the height ratio `ratio`.
@@ -76,8 +163,10 @@ impl Guide for Catcher {
             self.guidance = Guidance::Touch;
             return None;
         }
+        let sensed = State { theta: seen.state.theta + angle_error, ..seen.state };
         match self.approach {
-            Approach::BounceDown { .. } | Approach::Plan { .. } => self.bounce_down(seen, angle_error),
+            Approach::BounceDown { ratio } => self.bounce_down(seen, &sensed, ratio),
+            Approach::Plan { strikes, ratio } => self.planned(seen, &sensed, (strikes, ratio)),
             Approach::Brake { .. } => {
                 self.guidance = Guidance::Touch;
                 None

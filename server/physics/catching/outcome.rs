@@ -1,5 +1,6 @@
 //! A catch as data: its strikes, its hold, what it asks of the table, and how it ends.
 
+use super::plan::PlanFailure;
 use super::settings::{Approach, CatchSettings};
 use crate::body::Touch;
 use crate::bounce::state::State;
@@ -69,7 +70,7 @@ pub enum Escape {
     /// No gain is known at this contact speed, m/s.
     NoLaw(f64),
     /// No plan reaches rest from this contact.
-    NoPlan,
+    NoPlan(PlanFailure),
     /// A speed (m/s) passed the largest that a run may reach.
     Diverged(f64),
     /// The strikes did not end by this number.
@@ -213,7 +214,7 @@ pub struct CatchDemand {
 /// A fact about a catch that is told beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CatchNote {
-    /// The energy feedback of the scene with its target would not catch: it slows down as 2/(aGt), a = (1 + e)κ_E/2, and passes
+    /// The energy feedback of the scene with its target would not catch: it slows down as 2/(aGt), a = (1 + e)κ_E/2, and comes down to
     /// [`super::settings::HOLD_SPEED`] only after `time`, s.
     EnergyFeedbackNeverSettles {
         /// s.
@@ -238,7 +239,7 @@ pub enum CatchNote {
         /// rad/s.
         theta_dot: f64,
     },
-    /// The plan could not be made again at this contact; the strikes from there on are those of `bounce_down`.
+    /// The plan could not be made again at this contact, or not with tilts that a table can do; the strikes from there on are those of `bounce_down`.
     PlanGivenUp {
         /// Number of the contact.
         n: u64,

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-/// Contact speed after a strike, m/s, below which the table stays with the body: the lasting contact begins.
+/// Contact speed after a strike, m/s, below which the table stays with the body if nothing else is asked for: the lasting contact begins.
 pub const HOLD_SPEED: f64 = 5e-3;
 
 /// Height ratios that may be asked for. Below, one strike stops the body and no flight is left to steer in; above, the strikes do not end.
@@ -19,6 +19,9 @@ pub const DEFAULT_STRIKES: u32 = 8;
 
 /// Height ratio of a plan if none is asked for.
 pub const DEFAULT_PLAN_RATIO: f64 = 0.8;
+
+/// Largest tilt of a planned strike, rad. A plan that asks for more is given up: its last strikes are too slow for what is left to do.
+pub const MOST_PLANNED_TILT: f64 = 0.5;
 
 /// Most strikes of a catch. From 44 m/s down to [`HOLD_SPEED`] the largest of [`RATIOS`] takes 450.
 pub const MOST_STRIKES: u64 = 1000;
@@ -75,6 +78,8 @@ pub struct CatchSettings {
     pub state_weights: [f64; 4],
     /// Weight on the tilt.
     pub input_weight: f64,
+    /// Contact speed after a strike, m/s, below which the lasting contact begins.
+    pub hold_speed: f64,
     /// Time in contact that is followed, s.
     pub hold: f64,
 }
@@ -88,6 +93,7 @@ impl Default for CatchSettings {
             brake: None,
             state_weights: DEFAULT_STATE_WEIGHTS,
             input_weight: DEFAULT_INPUT_WEIGHT,
+            hold_speed: HOLD_SPEED,
             hold: DEFAULT_HOLD,
         }
     }

@@ -1,0 +1,152 @@
+//! Lasting contact of a catch: from the touchdown on, the table brakes if it moves, and holds the body upright. A polygon that it cannot hold
+//! upright is let down on an edge.
+
+use super::descent::Touchdown;
+use super::gain_schedule::{cart_pole_gain, contact_gain};
+use super::outcome::{CatchOutcome, Escape, Fall, Reach};
+use super::settings::CatchSettings;
+use crate::body::Touch;
+use crate::body::general::GeneralBody;
+use crate::bounce::rod::Rod;
+use crate::contact;
+use crate::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, Touching};
+use crate::control::lqr::DesignFailure;
+use crate::run::rules::Rules;
+use crate::stability::contact_regime::ContactRegime;
+use std::f64::consts::FRAC_PI_2;
+
+/// Speed of the contact point, m/s, that is rounding: the table stands.
+const AT_REST: f64 = 1e-9;
+
+/// The body and the laws of the table in lasting contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Landing<'a> {
+    pub(super) body: &'a GeneralBody,
+    pub(super) rules: &'a Rules,
+    pub(super) regime: ContactRegime,
+    pub(super) settings: &'a CatchSettings,
+    /// Deceleration of a table that moves along with the body, m/s².
+    pub(super) deceleration: f64,
+}
+
+/// End of a landing.
+#[derive(Clone, Debug)]
+pub(super) struct Landed {
+    pub(super) hold: Hold,
+    pub(super) reach: Reach,
+    pub(super) outcome: CatchOutcome,
+}
+
+impl Landing<'_> {
+    /// The law of the table while it pushes with `push`, m/s².
+    ///
+    /// # Errors
+    /// [`DesignFailure`].
+    pub(super) fn law(&self, push: f64) -> Result<HoldLaw, DesignFailure> {
+        let CatchSettings { state_weights, input_weight, .. } = *self.settings;
+        let rod = &self.body.rod;
+        Ok(match self.regime {
+            ContactRegime::Frictionless => {
+                HoldLaw::Feedback(contact_gain(rod, push, self.regime, state_weights, input_weight)?)
+            }
+            ContactRegime::VelocityMatched | ContactRegime::Sticking => {
+                HoldLaw::CartPole(cart_pole_gain(rod, push, state_weights, input_weight)?)
+            }
+        })
+    }
+
+    /// The lasting contact from a touchdown on; `None` if the caller stopped it.
+    ///
+    /// # Errors
+    /// [`DesignFailure`].
+    pub(super) fn land(
+        &self,
+        touchdown: &Touchdown,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Landed>, DesignFailure> {
+        let gravity = self.body.rod.gravity;
+        // A table that rises with the body and brakes harder would lose it.
+        let brake = if touchdown.speed > 0.0 { self.deceleration.min(0.5 * gravity) } else { self.deceleration };
+        let push = if touchdown.speed > 0.0 { gravity - brake } else { gravity + brake };
+        let start = start_of(touchdown);
+        let moves = touchdown.speed.abs() >= self.settings.hold_speed;
+        let brake_law = if moves { Some(self.law(push)?) } else { None };
+        let upright = HoldRequest { brake_law, ..self.request(start, self.law(gravity)?, brake) };
+        let mut hold = contact::hold(&upright, go_on);
+        if hold.ending == HoldEnding::Stopped {
+            return Ok(None);
+        }
+        let mut outcome = outcome(&hold, self.rules);
+        if !outcome.is_caught() && self.body.outline.is_some() {
+            let down = contact::hold(&self.request(start, HoldLaw::Level, brake), go_on);
+            match down.ending {
+                HoldEnding::RestsOnEdge { vertices } => {
+                    (hold, outcome) = (down, CatchOutcome::RestsOnEdge { vertices });
+                }
+                HoldEnding::Stopped => return Ok(None),
+                _ => {}
+            }
+        }
+        let push = if moves { push } else { gravity };
+        Ok(Some(Landed { hold, reach: self.reach(&start, push), outcome }))
+    }
+
+    fn request(&self, start: ContactStart, law: HoldLaw, brake: f64) -> HoldRequest {
+        HoldRequest {
+            rod: self.body.rod,
+            touching: Touching::new(self.body.friction),
+            outline: self.body.outline,
+            law,
+            brake_law: None,
+            start,
+            brake: (start.table_speed != 0.0).then_some(brake),
+            duration: self.settings.hold,
+            topple_angle: self.rules.topple_angle,
+            limits: self.rules.limits,
+        }
+    }
+
+    fn reach(&self, start: &ContactStart, push: f64) -> Reach {
+        let Rod { contact_distance: l, radius_of_gyration: rho, .. } = self.body.rod;
+        let (turning, limit) = match (self.regime, self.body.friction) {
+            (ContactRegime::Frictionless, _) | (_, None) => {
+                // Beyond a quarter turn a table pushes down.
+                (rho * rho, self.rules.limits.map_or(FRAC_PI_2, |limits| limits.tilt.min(FRAC_PI_2)))
+            }
+            (ContactRegime::VelocityMatched | ContactRegime::Sticking, Some(friction)) => {
+                (rho * rho + l * l, friction.coefficient)
+            }
+        };
+        let growth = (push * l / turning).sqrt();
+        Reach { theta: (start.theta + start.theta_dot / growth).abs(), limit }
+    }
+}
+
+fn start_of(touchdown: &Touchdown) -> ContactStart {
+    let Touchdown { at, speed } = touchdown;
+    ContactStart {
+        t: at.t,
+        x: at.coming.x,
+        theta: at.coming.state.theta,
+        x_dot: at.coming.state.x_dot,
+        theta_dot: at.coming.state.theta_dot,
+        table_speed: if speed.abs() < AT_REST { 0.0 } else { *speed },
+    }
+}
+
+/// Outcome of a catch by the ending of its lasting contact.
+fn outcome(hold: &Hold, rules: &Rules) -> CatchOutcome {
+    let t = hold.t_end;
+    let theta = hold.samples.last().map_or(0.0, |last| last.theta);
+    let escaped = |escape| CatchOutcome::NotCaught { t, escape };
+    match hold.ending {
+        HoldEnding::Completed => CatchOutcome::Held,
+        HoldEnding::RestsOnEdge { vertices } => CatchOutcome::RestsOnEdge { vertices },
+        HoldEnding::Slipped { needed } => CatchOutcome::Slipped { t, needed },
+        HoldEnding::BeyondLimits(violation) => CatchOutcome::BeyondLimits { t, violation },
+        HoldEnding::Toppled => CatchOutcome::Fell { t, fall: Fall::Toppled { theta, limit: rules.topple_angle } },
+        HoldEnding::OtherVertex(vertex) => CatchOutcome::Fell { t, fall: Fall::OtherVertex(Touch { vertex, t: 0.0 }) },
+        HoldEnding::ContactLost => escaped(Escape::ContactLost(t)),
+        HoldEnding::TooLong | HoldEnding::Stopped => escaped(Escape::HoldTooLong(t)),
+    }
+}

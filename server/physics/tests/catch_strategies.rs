@@ -1,0 +1,304 @@
+//! Catches as a whole: the figures of the reference by strategy, errors of the table, limits, polygons, and random releases.
+
+#[path = "support/random.rs"]
+mod random;
+
+use equipoise_physics::body::PreImpact;
+use equipoise_physics::bounce::friction::RestitutionLaw;
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::catching::descent::ComingContact;
+use equipoise_physics::catching::outcome::{
+    Catch, CatchFailure, CatchNote, CatchOutcome, CatchOutcomeKind, CatchStrike, Escape, Fall,
+};
+use equipoise_physics::catching::settings::{Approach, CatchSettings, Strategy};
+use equipoise_physics::catching::{catch, catch_from, catch_outcome};
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use random::Random;
+
+const LENGTH: f64 = 0.4 / 3.0;
+const RHO: f64 = std::f64::consts::SQRT_2 / 15.0;
+
+/// The body of the paper, released at rest at 0.25 m and 0.1 rad, with these fields besides.
+fn scene(fields: &[(Name, f64)]) -> Scene {
+    draft(fields).build().unwrap()
+}
+
+fn draft(fields: &[(Name, f64)]) -> Draft {
+    let mut draft = Draft::default();
+    let usual = [
+        (Name::ContactDistance, LENGTH),
+        (Name::RadiusOfGyration, RHO),
+        (Name::TiltGain, 1.1),
+        (Name::Height, 0.25),
+        (Name::Theta, 0.1),
+    ];
+    for (name, number) in usual.into_iter().chain(fields.iter().copied()) {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft
+}
+
+fn by(strategy: Strategy) -> CatchSettings {
+    CatchSettings { strategy: Some(strategy), ..CatchSettings::default() }
+}
+
+fn caught(scene: &Scene, settings: CatchSettings) -> Catch {
+    catch(scene, &settings, &mut || true).unwrap()
+}
+
+/// Asserts that a figure is the printed one, to half a unit of its last digit.
+fn printed(value: f64, figure: f64, unit: f64, what: &str) {
+    assert!((value - figure).abs() <= 0.5 * unit * (1.0 + 1e-9), "{what} is {value}, not {figure}");
+}
+
+fn table_speeds(catch: &Catch) -> (f64, f64) {
+    let speeds = || catch.strikes.iter().map(|strike| strike.table_velocity);
+    (speeds().fold(f64::INFINITY, f64::min), speeds().fold(f64::NEG_INFINITY, f64::max))
+}
+
+#[test]
+fn bounces_go_down_within_the_printed_figures() {
+    let fast = caught(&scene(&[]), by(Strategy::BounceDown));
+    assert_eq!((fast.outcome, fast.strikes.len()), (CatchOutcome::Held, 9));
+    printed(fast.contact_from.unwrap(), 0.464, 1e-3, "time in the air");
+    let (least, most) = table_speeds(&fast);
+    printed(least, -0.353, 1e-3, "fastest table");
+    printed(most, -0.009, 1e-3, "slowest table");
+    printed(fast.demand.load.tilt, 0.122, 1e-3, "tilt");
+    let least_theta = fast.strikes.iter().map(|strike| strike.state.theta).fold(0.0, f64::min);
+    printed(least_theta, -0.040, 1e-3, "least angle at a strike");
+    printed(fast.upright_within.theta_1mrad.unwrap(), 4.0, 0.1, "time to 1 mrad");
+    printed(fast.upright_within.x_1mm.unwrap(), 5.4, 0.1, "time to 1 mm");
+    // The 63 strikes of the slow one go down to 2 mm/s.
+    let slow = CatchSettings { ratio: Some(0.9), hold_speed: 2e-3, ..by(Strategy::BounceDown) };
+    let slow = caught(&scene(&[]), slow);
+    assert_eq!((slow.outcome, slow.strikes.len()), (CatchOutcome::Held, 63));
+    printed(slow.contact_from.unwrap(), 2.94, 1e-2, "time in the air");
+    printed(slow.demand.load.tilt, 0.112, 1e-3, "tilt");
+    assert!(slow.strikes.iter().all(|strike| strike.table_velocity.abs() < 0.0865));
+    assert!(slow.hold.unwrap().samples[0].theta.abs() < 1e-2);
+}
+
+#[test]
+fn plans_come_to_rest_within_the_printed_figures() {
+    for (strikes, ratio, time, speed, last, tilt) in
+        [(5, 1.0, 1.705, 0.026, -0.759, 0.157), (8, 0.8, 1.190, 0.148, -0.127, 0.215)]
+    {
+        let settings = CatchSettings { ratio: Some(ratio), strikes: Some(strikes), ..by(Strategy::Plan) };
+        let catch = caught(&scene(&[]), settings);
+        assert_eq!((catch.outcome, catch.strikes.len()), (CatchOutcome::Held, strikes as usize + 1));
+        printed(catch.contact_from.unwrap(), time, 1e-3, "time in the air");
+        printed(catch.demand.load.tilt, tilt, 1e-3, "tilt");
+        let (stop, strikes) = catch.strikes.split_last().unwrap();
+        printed(stop.table_velocity, last, 1e-3, "table at the stop");
+        let most = strikes.iter().map(|strike| strike.table_velocity.abs()).fold(0.0, f64::max);
+        printed(most, speed, 1e-3, "table before");
+        let State { theta, x_dot, theta_dot, .. } = stop.after;
+        for rest in [stop.x, theta, x_dot, theta_dot] {
+            assert!(rest.abs() < 1e-9, "{stop:?}");
+        }
+        assert_eq!(catch.upright_within.theta_1mrad, catch.contact_from);
+    }
+}
+
+#[test]
+fn a_table_that_brakes_needs_the_printed_stroke() {
+    let catch = caught(&scene(&[]), by(Strategy::Brake));
+    assert_eq!((catch.outcome, catch.strikes.len()), (CatchOutcome::Held, 0));
+    printed(catch.contact_from.unwrap(), 0.155, 1e-3, "time in the air");
+    printed(catch.demand.load.speed, 1.517, 1e-3, "table speed");
+    printed(catch.demand.load.stroke, 0.117, 1e-3, "stroke");
+    printed(catch.demand.load.tilt, 0.298, 1e-3, "tilt");
+    assert!(catch.hold.unwrap().most_theta <= 0.1);
+    // Stroke (h − l cos θ)G/a.
+    let gentle = caught(&scene(&[]), CatchSettings { brake: Some(4.0), ..by(Strategy::Brake) });
+    let expected = (0.25 - LENGTH * 0.1_f64.cos()) * 9.81 / 4.0;
+    assert!((gentle.demand.load.stroke - expected).abs() < 1e-6, "{}", gentle.demand.load.stroke);
+}
+
+#[test]
+fn a_catch_of_a_run_under_way_is_that_of_its_rest() {
+    let scene = scene(&[(Name::Friction, 0.4), (Name::Restitution, 0.7)]);
+    let whole = caught(&scene, by(Strategy::BounceDown));
+    for from in [0, 3] {
+        let CatchStrike { n, t, x, state, .. } = whole.strikes[from];
+        let coming = ComingContact { t, coming: PreImpact::at(n, x, state) };
+        let rest = catch_from(&scene, &by(Strategy::BounceDown), &coming, &mut || true).unwrap();
+        assert_eq!(rest.strikes, whole.strikes[from..]);
+        assert_eq!(rest.hold, whole.hold);
+    }
+}
+
+#[test]
+fn the_choice_is_the_first_that_the_limits_allow() {
+    let free = caught(&scene(&[]), CatchSettings::default());
+    assert_eq!(free.approach, Approach::BounceDown { ratio: 0.5 });
+    assert_eq!(free.candidates.len(), 5);
+    // A slow table has to be slow, or to follow a plan.
+    let slow = caught(&scene(&[(Name::SpeedLimit, 0.15)]), CatchSettings::default());
+    assert_eq!(slow.approach, Approach::BounceDown { ratio: 0.9 });
+    assert!(
+        matches!(slow.candidates[0].outcome, CatchOutcome::BeyondLimits { violation, .. } if violation.quantity == "speed")
+    );
+    // One that cannot tilt much catches nothing, and says what each strategy would need.
+    let stiff = caught(&scene(&[(Name::TiltLimit, 0.02)]), CatchSettings::default());
+    assert!(!stiff.outcome.is_caught());
+    for candidate in &stiff.candidates {
+        assert_eq!(candidate.outcome.kind(), CatchOutcomeKind::BeyondLimits, "{candidate:?}");
+        assert!(candidate.demand.load.tilt > 0.02, "{candidate:?}");
+    }
+    assert_eq!(stiff.candidates.iter().filter(|candidate| candidate.taken).count(), 1);
+}
+
+#[test]
+fn a_wrong_belief_is_caught_at_the_ratio_that_it_gives() {
+    for (actual, assumed, ratio) in [(0.6, 0.8, 0.5), (0.9, 0.7, 0.5), (0.3, 0.5, 0.2), (0.3, 0.6, 0.1)] {
+        let scene = scene(&[(Name::Restitution, actual), (Name::AssumedRestitution, assumed)]);
+        let catch = caught(&scene, CatchSettings { ratio: Some(ratio), ..by(Strategy::BounceDown) });
+        let expected = actual + (1.0 + actual) * (ratio - assumed) / (1.0 + assumed);
+        // At the height ratio itself where the normal one is the same: upright.
+        let first = &catch.strikes[0];
+        let normal = |velocity: &State| {
+            let beta = velocity.theta - first.alpha;
+            first.alpha.cos() * velocity.y_dot - first.alpha.sin() * velocity.x_dot
+                + LENGTH * beta.sin() * velocity.theta_dot
+        };
+        let aimed = -normal(&first.state) + first.table_velocity;
+        let reached = normal(&first.after) - first.table_velocity;
+        assert!((reached - actual * aimed).abs() < 1e-12, "{reached} {aimed}");
+        assert!((first.ratio - expected).abs() < 0.05, "{} {expected}", first.ratio);
+        assert_eq!(catch.outcome, CatchOutcome::Held, "{actual} {assumed} {ratio}");
+        assert!(catch.notes.iter().any(|note| matches!(note, CatchNote::WrongBelief { .. })), "{:?}", catch.notes);
+        let rode = catch.notes.iter().any(|note| matches!(note, CatchNote::RodeAlong { .. }));
+        assert_eq!(rode, catch.strikes.last().unwrap().ratio < 0.0);
+    }
+}
+
+#[test]
+fn every_strike_keeps_the_velocity_of_the_centre_of_percussion() {
+    let mut random = Random::new(16);
+    let mut strikes = 0;
+    for law in [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge] {
+        for friction in [0.0, 0.1, 0.6] {
+            for _ in 0..8 {
+                let mut draft = draft(&[
+                    (Name::Theta, random.between(-0.2, 0.2)),
+                    (Name::ThetaDot, random.between(-1.0, 1.0)),
+                    (Name::Restitution, random.between(0.3, 1.0)),
+                    (Name::Friction, friction),
+                ]);
+                draft.set(Name::Law, Some(Value::Choice(law.word()))).unwrap();
+                let catch = caught(&draft.build().unwrap(), by(Strategy::BounceDown));
+                for strike in &catch.strikes {
+                    let along = |state: &State| {
+                        let (sin, cos) = state.theta.sin_cos();
+                        state.x_dot * cos + state.y_dot * sin - RHO * RHO / LENGTH * state.theta_dot
+                    };
+                    let change = along(&strike.after) - along(&strike.state);
+                    assert!(change.abs() < 1e-13, "{law:?} μ = {friction}: {change}");
+                    strikes += 1;
+                }
+            }
+        }
+    }
+    assert!(strikes > 400, "{strikes}");
+}
+
+/// A random catch with angles to 0.3 rad, spins to 2 rad/s, e from 0.3 to 1 and a belief that is off by up to 0.2.
+fn random_release(random: &mut Random) -> [(Name, f64); 5] {
+    let restitution = random.between(0.3, 1.0);
+    [
+        (Name::Theta, random.between(-0.3, 0.3)),
+        (Name::ThetaDot, random.between(-2.0, 2.0)),
+        (Name::Restitution, restitution),
+        (Name::AssumedRestitution, (restitution + random.between(-0.2, 0.2)).clamp(0.0, 1.0)),
+        (Name::Height, random.between(0.16, 0.4)),
+    ]
+}
+
+#[test]
+fn most_random_releases_are_caught() {
+    let named = |strategy: Strategy| (strategy.name(), by(strategy));
+    for ((name, settings), runs, least) in [
+        (named(Strategy::BounceDown), 150, 0.75),
+        (named(Strategy::Brake), 100, 0.65),
+        (named(Strategy::Plan), 40, 0.35),
+        (("auto", CatchSettings::default()), 40, 0.8),
+    ] {
+        let mut random = Random::new(2026);
+        let mut held = 0;
+        for _ in 0..runs {
+            let catch = caught(&scene(&random_release(&mut random)), settings);
+            if catch.outcome != CatchOutcome::Held {
+                continue;
+            }
+            held += 1;
+            let hold = catch.hold.unwrap();
+            let end = hold.samples.last().unwrap();
+            assert!(end.theta.abs() < 0.1 && hold.samples.iter().all(|sample| sample.normal_force > 0.0));
+            assert!(hold.error_bound < 1e-6, "{}", hold.error_bound);
+        }
+        let share = f64::from(held) / f64::from(runs);
+        println!("{name}: {held} of {runs} caught");
+        assert!(share >= least, "{name}: {share}");
+    }
+}
+
+#[test]
+fn the_same_catch_has_the_same_bits() {
+    let fields = [(Name::TimingSd, 0.003), (Name::Friction, 0.5), (Name::ThetaDot, 0.4)];
+    let settings = by(Strategy::BounceDown);
+    let (first, again) = (caught(&scene(&fields), settings), caught(&scene(&fields), settings));
+    assert_eq!(format!("{first:?}"), format!("{again:?}"));
+    let (outcome, _) = catch_outcome(&scene(&fields), &settings, &mut || true).unwrap();
+    assert_eq!(outcome, first.outcome);
+}
+
+#[test]
+fn errors_of_timing_are_survived() {
+    for model in ["strike", "plan"] {
+        let mut held = 0;
+        for seed in 0..20 {
+            let mut draft = draft(&[(Name::TimingSd, 0.002), (Name::AngleSd, 0.002)]);
+            draft.set(Name::NoiseModel, Some(Value::Choice(model))).unwrap();
+            draft.set(Name::Seed, Some(Value::Integer(seed))).unwrap();
+            let catch = caught(&draft.build().unwrap(), by(Strategy::BounceDown));
+            held += i32::from(catch.outcome == CatchOutcome::Held);
+        }
+        println!("model {model}: {held} of 20 held");
+        assert!(held >= 14, "{model}: {held}");
+    }
+}
+
+#[test]
+fn a_body_that_lies_too_far_over_falls() {
+    let toppled = caught(
+        &scene(&[(Name::Theta, 1.2), (Name::ThetaDot, 6.0), (Name::ToppleAngle, 1.0)]),
+        by(Strategy::BounceDown),
+    );
+    assert!(matches!(toppled.outcome, CatchOutcome::Fell { fall: Fall::Toppled { .. }, .. }), "{:?}", toppled.outcome);
+    let far = caught(&scene(&[(Name::Theta, 1.3), (Name::ThetaDot, 1.0)]), by(Strategy::BounceDown));
+    assert!(!far.outcome.is_caught(), "{:?}", far.outcome);
+    let slow = caught(&scene(&[]), CatchSettings { hold_speed: 0.0, ..by(Strategy::BounceDown) });
+    assert!(
+        matches!(
+            slow.outcome,
+            CatchOutcome::NotCaught { escape: Escape::TooManyStrikes(_) | Escape::NoLaw(_), .. } | CatchOutcome::Held
+        ),
+        "{:?}",
+        slow.outcome
+    );
+}
+
+#[test]
+fn a_point_mass_and_a_caller_that_stops_get_no_catch() {
+    let stopped = catch(&scene(&[]), &CatchSettings::default(), &mut || false);
+    assert_eq!(stopped, Err(CatchFailure::Stopped));
+    let mut point = Draft::default();
+    point.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
+    for (name, number) in [(Name::TiltGain, 1.1), (Name::Height, 0.2)] {
+        point.set(name, Some(Value::Number(number))).unwrap();
+    }
+    let refused = catch(&point.build().unwrap(), &CatchSettings::default(), &mut || true);
+    assert_eq!(refused, Err(CatchFailure::Point));
+}
