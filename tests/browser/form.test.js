@@ -132,6 +132,7 @@ test('degrees, fractions of π and a decimal comma are understood', async () => 
 test('every field has a control with a name', async () => {
   const { page, clean } = await stage.page('');
   const { fields } = await (await fetch(`${stage.url}v1/fields`)).json();
+  await page.locator('#field-release-height').waitFor();
   for (const { path, title } of fields) {
     const control = page.locator(`#field-${path.replaceAll('.', '-')}`);
     assert.equal(await control.count(), 1, path);
@@ -148,6 +149,8 @@ test('the printed values stand beside the computed ones, with the reason where t
   const letters = (text) => text.replace(/[\s_*]/g, '').toLowerCase();
   await openPanel(page, 'paper');
   await page.locator('#paper tbody tr').first().waitFor();
+  const names = await page.locator('#paper th .name').allInnerTexts();
+  assert.ok(names.length > 0 && names.every((name) => !/[._]/.test(name)), `${names}`);
   const text = letters(await page.locator('#paper').innerText());
   for (const { why } of differing) assert.ok(text.includes(letters(why)), why);
   assert.ok((await page.locator('#paper tbody tr').count()) > 0);
@@ -224,4 +227,20 @@ test('a link whose vertices are not whole drops them', async () => {
   );
   assert.match(await page.locator('.notice').innerText(), /vertices, which are not whole/);
   clean();
+});
+
+test('an error has numbers that can be read, and its least value is accepted', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  const height = page.locator('#field-release-height');
+  await height.fill('0.1');
+  await height.press('Tab');
+  const error = page.locator('.field:has(#field-release-height) .error');
+  await error.filter({ hasText: 'at least' }).waitFor();
+  const words = await error.innerText();
+  assert.doesNotMatch(words, /\d\.\d{6,}/);
+  await height.fill(/at least ([\d.]+\d)/.exec(words)[1]);
+  await height.press('Tab');
+  await page.waitForFunction(() => /release\.height=/.test(location.search));
+  assert.match(await verdict(page), /./);
+  assert.notEqual(await height.getAttribute('aria-invalid'), 'true');
 });

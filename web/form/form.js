@@ -22,6 +22,18 @@ const KINDS = {
   integer: NumberRow,
 };
 
+/** Digits of numbers in errors. */
+const DIGITS = 4;
+
+/** A sentence with numbers no longer than one reads; one that is a least or a most value is still allowed. @param {string} text */
+const shortened = (text) =>
+  text.replace(/(at (?:least|most) )?(-?\d+\.\d{5,})(?![\d.e])/g, (_, bound = '', digits) => {
+    const value = Number(digits);
+    const step = 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) - DIGITS + 1);
+    const round = bound === 'at least ' ? Math.ceil : bound === 'at most ' ? Math.floor : Math.round;
+    return bound + String(Number((round(value / step) * step).toPrecision(DIGITS)));
+  });
+
 export class Form {
   /** @type {Map<string, Row>} */
   #rows = new Map();
@@ -201,7 +213,7 @@ export class Form {
       const row =
         this.#rows.get(path) ??
         rows.find((one) => one.field.path.startsWith(`${path}.`) || path.startsWith(`${one.field.path}.`));
-      if (row && path !== '') this.#blameRow(row, inWords(error.detail));
+      if (row && path !== '') this.#blameRow(row, inWords(shortened(error.detail)));
       else elsewhere.push(inWords(error.detail));
     }
     return elsewhere;

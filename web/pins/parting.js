@@ -5,6 +5,7 @@ import { invalidate, surfaces } from '../charts/surface.js';
 import { SANS, onThemeChange, theme } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
 import { number, quantity } from '../dom/numbers.js';
+import { shownFactor, shownUnit } from '../dom/units.js';
 import { poseOn } from '../physics/flight.js';
 
 /** @typedef {import('../run/run-state.js').RunState} RunState */
@@ -109,15 +110,17 @@ export class Parting {
     const colours = theme();
     context.clearRect(0, 0, width, height);
     let [low, high] = [Infinity, -Infinity];
+    // In the unit that is shown.
+    const shift = Math.log10(shownFactor('rad'));
     for (let place = this.#begun; place < this.#judged; place += 1) {
-      const value = this.#curve[place % STRIKES];
+      const value = this.#curve[place % STRIKES] + shift;
       if (value < low) low = value;
       if (value > high) high = value;
     }
     if (!(high >= low)) return;
     low = Math.floor(low);
     high = Math.max(low + 1, Math.ceil(high));
-    const left = 46;
+    const left = 64;
     const x = (/** @type {number} */ place) =>
       left + ((place - this.#begun) / Math.max(10, this.#judged - this.#begun)) * (width - left - 6);
     const y = (/** @type {number} */ value) => height - 5 - ((value - low) / (high - low)) * (height - 16);
@@ -131,10 +134,10 @@ export class Parting {
       context.fillText(number(10 ** value), left - 6, Math.max(6, y(value)));
     }
     context.textAlign = 'left';
-    context.fillText('|Δθ| / rad', left + 4, 6);
+    context.fillText(`|Δθ| / ${shownUnit('rad')}`, left + 4, 6);
     context.beginPath();
     for (let place = this.#begun; place < this.#judged; place += 1)
-      context.lineTo(x(place), y(this.#curve[place % STRIKES]));
+      context.lineTo(x(place), y(this.#curve[place % STRIKES] + shift));
     context.lineWidth = 1.5;
     context.strokeStyle = colours.accent;
     context.stroke();

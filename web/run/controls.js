@@ -98,7 +98,8 @@ export class RunControls {
     this.#step.disabled = !live;
     this.#restart.disabled = phase === 'idle' || !ready;
     this.#restart.classList.toggle('attention', waiting);
-    this.#restart.textContent = waiting ? 'Restart with changes' : 'Restart';
+    // Another width would move its neighbours.
+    this.#restart.title = this.#restart.ariaLabel = waiting ? 'Restart with changes' : 'Restart';
     this.#sliders?.show(live);
     if (this.#replay === null) return;
     this.#run.textContent = this.#replay === 'plays' ? 'Pause' : 'Play';

@@ -37,11 +37,12 @@ function show(root, chosen) {
   const rows = chosen.computed.flatMap((computed, index) => {
     const printed = chosen.printed[index];
     const differs = Boolean(computed.why) || !same(printed?.value ?? null, computed.value);
+    const words = computed.quantity.replaceAll(/[._]/g, ' ');
     const name = h(
       'th',
       { scope: 'row' },
-      computed.symbol ? symbol(computed.symbol) : computed.quantity,
-      h('span', { class: 'muted name' }, ...computed.quantity.split(/(?<=[._])/).flatMap((part) => [part, h('wbr')])),
+      computed.symbol ? symbol(computed.symbol) : words,
+      computed.symbol ? h('span', { class: 'muted name' }, words) : '',
     );
     const row = h(
       'tr',
