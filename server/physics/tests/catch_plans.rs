@@ -5,14 +5,17 @@
 mod random;
 
 use equipoise_physics::body::general::GeneralBody;
+use equipoise_physics::body::polygon::{Outline, Vertices};
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::catching::aim::Aim;
 use equipoise_physics::catching::plan::{
-    BouncingRod, CatchPlan, NextStrike, PlanFailure, PlanProblem, Replanner, plan_catch,
+    BouncingRod, CALM_TILT, CatchPlan, NextStrike, Obstacle, PlanFailure, PlanLimits, PlanProblem, Replanner,
+    StrikesReason, choose_plan, plan_catch, plan_within,
 };
+use equipoise_physics::table::actuator_load::ActuatorLimits;
 use equipoise_physics::table::control_law::Steering;
 use random::Random;
 use serde_json::Value as Json;
@@ -232,9 +235,71 @@ fn plans_that_cannot_be_say_why() {
     let failure = plan_catch(&problem(5, 0.9), &rising).unwrap_err();
     assert!(matches!(failure, PlanFailure::Blocked { strike: 1, .. }), "{failure}");
     let mut spinning = coming;
-    spinning.state.theta_dot = 60.0;
-    let failure = plan_catch(&problem(5, 0.9), &spinning).unwrap_err();
+    (spinning.state.theta, spinning.state.theta_dot) = (1.4, 30.0);
+    let failure = plan_catch(&problem(4, 0.7), &spinning).unwrap_err();
     assert!(failure.to_string().chars().any(|letter| letter.is_ascii_digit()), "{failure}");
+}
+
+const NO_LIMITS: PlanLimits = PlanLimits { table: None, outline: None };
+
+#[test]
+fn the_number_of_strikes_is_the_fewest_with_calm_tilts() {
+    let mut random = Random::new(17);
+    let (mut calm, mut least) = (0, 0);
+    for _ in 0..60 {
+        let coming = falling(&mut random, 0.3, 2.0);
+        let chosen = choose_plan(&problem(0, 0.8), &coming, &NO_LIMITS).unwrap();
+        let last = chosen.tried.last().unwrap();
+        match chosen.reason {
+            StrikesReason::FewestWithin(limit) => {
+                calm += 1;
+                assert!(limit == CALM_TILT && last.strikes == chosen.strikes && chosen.plan.load.tilt <= CALM_TILT);
+                let fewer = &chosen.tried[..chosen.tried.len() - 1];
+                assert!(fewer.iter().all(|tried| tried.tilt.is_none_or(|tilt| tilt > CALM_TILT)));
+            }
+            StrikesReason::LeastTilt(_) => {
+                least += 1;
+                assert!(chosen.tried.iter().all(|tried| tried.tilt.is_none_or(|tilt| tilt >= chosen.plan.load.tilt)));
+            }
+        }
+    }
+    assert!(calm > 5 && least > 5, "{calm} {least}");
+}
+
+#[test]
+fn limits_of_the_table_block_a_plan_at_their_strike() {
+    let coming = falling(&mut Random::new(18), 0.2, 1.0);
+    let plan = plan_catch(&problem(6, 0.9), &coming).unwrap();
+    let infinite = f64::INFINITY;
+    let table = ActuatorLimits { tilt: 0.999 * plan.load.tilt, tilt_rate: infinite, speed: infinite, stroke: infinite };
+    let limits = PlanLimits { table: Some(table), outline: None };
+    let Err(PlanFailure::Blocked { strike, obstacle: Obstacle::BeyondLimits(violation) }) =
+        plan_within(&problem(6, 0.9), &coming, &limits)
+    else {
+        panic!("the tilt is beyond its limit")
+    };
+    assert_eq!((violation.quantity, violation.value), ("tilt", plan.strikes[strike as usize - 1].alpha.abs()));
+    assert!(violation.value == plan.load.tilt);
+    let roomy = PlanLimits { table: Some(ActuatorLimits { tilt: plan.load.tilt, ..table }), outline: None };
+    assert_eq!(plan_within(&problem(6, 0.9), &coming, &roomy), Ok(plan));
+}
+
+#[test]
+fn another_corner_of_a_polygon_blocks_a_plan() {
+    // Corners that are nearly as low as the one it stands on: a tilt of some 0.1 rad brings them to the table.
+    let corners = [[0.0, 0.0], [0.1, 0.012], [0.1, 0.3], [-0.1, 0.3], [-0.1, 0.012]];
+    let outline = Outline::new(&Vertices::new(&corners).unwrap(), 0).unwrap();
+    let rod = Rod::lossless(outline.contact_distance(), outline.radius_of_gyration(), 1.1);
+    let problem = PlanProblem { body: BouncingRod { rod, friction: 0.0 }, strikes: 6, ratio: 0.9 };
+    let limits = PlanLimits { table: None, outline: Some(&outline) };
+    let coming = |theta: f64| PreImpact::at(1, 0.0, State { theta, x_dot: 0.0, y_dot: -1.5, theta_dot: 0.0 });
+    assert!(plan_within(&problem, &coming(0.02), &limits).is_ok());
+    let failure = plan_within(&problem, &coming(0.3), &limits).unwrap_err();
+    assert!(
+        matches!(failure, PlanFailure::Blocked { strike: 1, obstacle: Obstacle::OtherVertex(touch) } if touch.vertex == 4 || touch.vertex == 1),
+        "{failure}"
+    );
+    assert!(plan_catch(&problem, &coming(0.3)).is_ok());
 }
 
 /// A run with a table that believes `believed` and meets `body`, and plans at every strike or at the first one only, until the contact

@@ -1,7 +1,9 @@
 //! One bounce of a plan: the exact strike of a table that aims, and the exact flight to the next contact, with their derivatives.
 
 use super::failure::Obstacle;
-use crate::bounce::contact_time::{first_contact, first_descent};
+use crate::body::Touch;
+use crate::body::polygon::Outline;
+use crate::bounce::contact_time::{TooManyPieces, first_contact, first_descent};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::rod::Rod;
@@ -12,6 +14,7 @@ use crate::bounce::tilt::Tilt;
 use crate::catching::aim::Aim;
 use crate::numbers::number::Number;
 use crate::numbers::second_order::SecondOrder;
+use crate::numbers::trig;
 use crate::run::rules::SPEED_LIMIT;
 use nalgebra::{Matrix5, Matrix6, Vector5};
 
@@ -112,6 +115,25 @@ impl BouncingRod {
             None
         };
         found.filter(|t| t.is_finite()).ok_or(Obstacle::ContactLost)
+    }
+
+    /// Another vertex that touches the table at a strike of a body at `theta` (rad), or in the flight after it.
+    pub(super) fn touch(
+        &self,
+        outline: &Outline,
+        theta: f64,
+        strike: &Strike,
+        flight_time: Option<f64>,
+        clearance: f64,
+    ) -> Option<Obstacle> {
+        if let Some(below) = outline.below_table(trig::sin_cos(theta - strike.alpha)) {
+            return Some(Obstacle::OtherVertex(Touch { vertex: below.vertex, t: 0.0 }));
+        }
+        let flight = Flight { clearance, ..self.rod.flight(strike) };
+        match outline.first_touch(&flight, flight_time?) {
+            Ok(touch) => touch.map(Obstacle::OtherVertex),
+            Err(TooManyPieces) => Some(Obstacle::ContactLost),
+        }
     }
 
     /// Time of the flight from a node and the next node.

@@ -1,6 +1,8 @@
 //! Problem of a plan: the body, the strikes, and the limits of both.
 
 use super::bounce::BouncingRod;
+use crate::body::polygon::Outline;
+use crate::table::actuator_load::ActuatorLimits;
 
 /// Strikes of equal height ratio, and a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +13,15 @@ pub struct PlanProblem {
     pub strikes: u32,
     /// Height ratio of each of them, > 0.
     pub ratio: f64,
+}
+
+/// Limits beside the bounces themselves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlanLimits<'a> {
+    /// Limits of the table.
+    pub table: Option<ActuatorLimits>,
+    /// Outline of a polygon, of which no other vertex may touch the table.
+    pub outline: Option<&'a Outline>,
 }
 
 /// End of a plan.

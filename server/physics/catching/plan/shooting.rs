@@ -5,13 +5,14 @@
 //! linearized bounces and bring their end to x = θ = ẋ = θ̇ = 0, with the second derivatives of the bounces in what it minimizes: the steps are
 //! Newton's on the conditions of the minimum, which hold where they end. The first step starts from a body that bounces upright.
 
-use super::failure::PlanFailure;
+use super::failure::{Obstacle, PlanFailure};
 use super::problem::{END_WEIGHT, Goal, PlanProblem};
-use super::step::end_units;
+use super::step::{Step, end_units};
 use super::trajectory::{Linearization, Trajectory};
+use nalgebra::Vector4;
 
 /// Most steps.
-const MOST_STEPS: u32 = 100;
+const MOST_STEPS: u32 = 40;
 
 /// Most halvings of a step.
 const MOST_HALVINGS: u32 = 12;
@@ -51,51 +52,72 @@ pub(super) fn solve(
     let units = end_units(body);
     let mut trajectory = start;
     let mut linearization = trajectory.linearized(body, clearance, *ratio).map_err(blocked)?;
-    let mut price = 0.0_f64;
-    for steps in 0..MOST_STEPS {
+    for made in 0..MOST_STEPS {
         let residual = match goal {
             Goal::Rest => linearization.largest_gap.max(trajectory.end().amax()),
             Goal::NearRest { .. } => linearization.largest_gap,
         };
-        let not_converged = PlanFailure::NotConverged { strikes: *strikes, iterations: steps, residual };
-        let Some(step) = linearization.step(&trajectory, &units, goal) else { return Err(not_converged) };
-        let change = step.largest_change();
-        if residual <= CONVERGED && change <= SETTLED {
-            return Ok(Solution { trajectory, residual, steps });
+        let steps = linearization.steps(&trajectory, &units, goal);
+        let is_settled = steps.first().is_some_and(|step| step.largest_change() <= SETTLED);
+        if residual <= CONVERGED && is_settled {
+            return Ok(Solution { trajectory, residual, steps: made });
         }
-        price = price.max(2.0 * step.price);
-        let merit = |trajectory: &Trajectory, linearization: &Linearization| {
-            let end = match goal {
-                Goal::Rest => price * trajectory.end().abs().sum(),
-                Goal::NearRest { .. } => END_WEIGHT * trajectory.end().component_div(&units).norm_squared(),
-            };
-            let tilts = trajectory.tilts.iter().enumerate().map(|(place, tilt)| tilt - goal.free_tilt(place));
-            tilts.map(|tilt| tilt * tilt).sum::<f64>() + end + price * linearization.sum_of_gaps
-        };
-        let before = merit(&trajectory, &linearization);
+        let mut search = LineSearch { problem, goal, clearance, units: &units, obstacle: None };
+        let better = steps.iter().find_map(|step| search.better(&trajectory, &linearization, step));
+        match (better, search.obstacle) {
+            (Some(better), _) => (trajectory, linearization) = better,
+            (None, Some(reason)) => return Err(blocked(reason)),
+            (None, None) => {
+                return Err(PlanFailure::NotConverged { strikes: *strikes, iterations: made, residual });
+            }
+        }
+    }
+    Err(PlanFailure::NotConverged { strikes: *strikes, iterations: MOST_STEPS, residual: linearization.largest_gap })
+}
+
+/// Search along a step for a better trajectory.
+struct LineSearch<'a> {
+    problem: &'a PlanProblem,
+    goal: &'a Goal,
+    clearance: f64,
+    units: &'a Vector4<f64>,
+    /// The last reason for which a trajectory could not be.
+    obstacle: Option<(u32, Obstacle)>,
+}
+
+impl LineSearch<'_> {
+    /// The trajectory the largest share of a step on that is better; `None` if none is.
+    fn better(&mut self, from: &Trajectory, at: &Linearization, step: &Step) -> Option<(Trajectory, Linearization)> {
+        let PlanProblem { body, ratio, .. } = self.problem;
+        // More than what an error of a joint costs, so that joining is worth it.
+        let price = 2.0 * step.price;
+        let before = self.merit(from, at, price);
+        let is_near = step.largest_change() <= NEAR;
         let mut share = 1.0;
-        let mut taken = None;
-        let mut obstacle = None;
         for _ in 0..MOST_HALVINGS {
-            let next = step.taken(&trajectory, share);
+            let next = step.taken(from, share);
             if next.tilts.iter().all(|tilt| tilt.abs() <= LARGEST_TILT) {
-                match next.linearized(body, clearance, *ratio) {
-                    // Rounding decides which of two trajectories near the end is better.
-                    Ok(linearized) if change <= NEAR || merit(&next, &linearized) < before => {
-                        taken = Some((next, linearized));
-                        break;
+                match next.linearized(body, self.clearance, *ratio) {
+                    // Near the end rounding decides which is better.
+                    Ok(linearized) if is_near || self.merit(&next, &linearized, price) < before => {
+                        return Some((next, linearized));
                     }
                     Ok(_) => {}
-                    Err(reason) => obstacle = Some(reason),
+                    Err(reason) => self.obstacle = Some(reason),
                 }
             }
             share *= 0.5;
         }
-        match (taken, obstacle) {
-            (Some((next, linearized)), _) => (trajectory, linearization) = (next, linearized),
-            (None, Some(reason)) => return Err(blocked(reason)),
-            (None, None) => return Err(not_converged),
-        }
+        None
     }
-    Err(PlanFailure::NotConverged { strikes: *strikes, iterations: MOST_STEPS, residual: linearization.largest_gap })
+
+    /// Number that falls from step to step: Σα² and the price of errors.
+    fn merit(&self, trajectory: &Trajectory, linearization: &Linearization, price: f64) -> f64 {
+        let end = match self.goal {
+            Goal::Rest => price * trajectory.end().abs().sum(),
+            Goal::NearRest { .. } => END_WEIGHT * trajectory.end().component_div(self.units).norm_squared(),
+        };
+        let tilts = trajectory.tilts.iter().enumerate().map(|(place, tilt)| tilt - self.goal.free_tilt(place));
+        tilts.map(|tilt| tilt * tilt).sum::<f64>() + end + price * linearization.sum_of_gaps
+    }
 }

@@ -55,10 +55,11 @@ impl Linearization {
         gains
     }
 
-    /// The step to the least tilts with which the linearized bounces join and end as the goal says.
+    /// Steps to the least tilts with which the linearized bounces join and end as the goal says: Newton's, then the one without the
+    /// curvature of the bounces, which gets nearer from farther off.
     ///
-    /// Its unknowns are the parts v of δα = −K·δs + v: the nodes by the tilts alone would grow without bound along the bounces.
-    pub(super) fn step(&self, trajectory: &Trajectory, units: &Vector4<f64>, goal: &Goal) -> Option<Step> {
+    /// Their unknowns are the parts v of δα = −K·δs + v: the nodes by the tilts alone would grow without bound along the bounces.
+    pub(super) fn steps(&self, trajectory: &Trajectory, units: &Vector4<f64>, goal: &Goal) -> Vec<Step> {
         let count = self.bounces.len();
         let gains = self.steadying_gains(units);
         // Change of each node and tilt by the gaps alone, and by each v.
@@ -95,7 +96,7 @@ impl Linearization {
             Goal::Rest => constrained_minimum(hessian, slope, &reach, &wanted),
             Goal::NearRest { .. } => penalized_minimum(hessian, slope, &reach, &wanted),
         };
-        let plain = minimum(&hessian, &slope)?;
+        let Some(plain) = minimum(&hessian, &slope) else { return Vec::new() };
         let mut price = Vector5::zeros();
         price.fixed_rows_mut::<4>(0).copy_from(&plain.multipliers.component_div(units));
         let mut largest = 0.0_f64;
@@ -110,17 +111,20 @@ impl Linearization {
             let steady = bounce.by_node - bounce.by_tilt * gains[place];
             price = steady.transpose() * price - gains[place].transpose() * (2.0 * tilt);
         }
-        let change = minimum(&hessian, &slope).map_or(plain.change, |found| found.change);
-        let mut step = Step { nodes: vec![Vector5::zeros()], tilts: Vec::with_capacity(count), price: largest };
-        for (place, (moves, offset)) in moves.iter().zip(&offsets).enumerate() {
-            let moved = moves * &change + offset;
-            if place > 0 {
-                step.nodes.push(moved.fixed_rows::<5>(0).into_owned());
+        let step = |change: &DVector<f64>| {
+            let mut step = Step { nodes: vec![Vector5::zeros()], tilts: Vec::with_capacity(count), price: largest };
+            for (place, (moves, offset)) in moves.iter().zip(&offsets).enumerate() {
+                let moved = moves * change + offset;
+                if place > 0 {
+                    step.nodes.push(moved.fixed_rows::<5>(0).into_owned());
+                }
+                step.tilts.push(moved[5]);
             }
-            step.tilts.push(moved[5]);
-        }
-        step.nodes.push(node_by * change + node);
-        Some(step)
+            step.nodes.push(&node_by * change + node);
+            step
+        };
+        let newton = minimum(&hessian, &slope);
+        newton.iter().chain([&plain]).map(|minimum| step(&minimum.change)).collect()
     }
 }
 
