@@ -44,7 +44,7 @@ export class TableDemand {
     this.element = h(
       'div',
       { class: 'demand' },
-      table('Demand on the table', ['quantity', 'largest', 'limit', 'share'], this.#body),
+      table('Largest values and limits', ['quantity', 'largest', 'limit', 'share'], this.#body),
       this.#told,
     );
     this.retell();
