@@ -1,9 +1,8 @@
 // For everybody: keyboard alone, axe in both schemes, 320 px, colours that follow, motion that stops.
 
-import { createRequire } from 'node:module';
-import { readFileSync } from 'node:fs';
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { violations } from './axe.js';
 import {
   Stage,
   impacts,
@@ -18,16 +17,6 @@ import {
 } from './stage.js';
 
 const stage = await Stage.open();
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-
-/** The findings of axe. @param {import('playwright-core').Page} page @param {string} [within] the part that is new since the last look */
-async function violations(page, within = 'html') {
-  await page.evaluate(`globalThis.axe ?? (() => { ${axe} })()`);
-  const { violations: found } = await page.evaluate((part) => globalThis.axe.run(part), within);
-  return found.map(
-    ({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join('; ')}`,
-  );
-}
 
 /** Opens all that folds. */
 const unfold = (page) =>
@@ -35,67 +24,63 @@ const unfold = (page) =>
     for (const details of all) details.open = true;
   });
 
-for (const colorScheme of ['light', 'dark']) {
-  for (const width of [320, 800, 1280]) {
-    test(`axe finds nothing at ${width} px, ${colorScheme}`, async () => {
-      const { page } = await stage.page('?preset=case-4&colour=blue', {
-        colorScheme,
-        viewport: { width, height: 800 },
-      });
-      await verdict(page);
-      assert.deepEqual(await violations(page), [], 'idle, with a notice');
-      await page.click('#run');
-      await reachImpact(page, 3);
-      await unfold(page);
-      await openSheet(page, 'settings');
-      await page.locator('#field-release-theta').fill('?');
-      await page.locator('#field-release-theta[aria-invalid=true]').waitFor();
-      assert.deepEqual(await violations(page), [], 'running, with tables open and an error');
-      await page.locator('#field-release-theta').fill('0.3');
-      await openSheet(page, 'verdict-card');
-      assert.deepEqual(await violations(page, '#verdict-card'), [], 'with the verdict');
-      await loadAll(page, async (panel) =>
-        assert.deepEqual(await violations(page, '#studies'), [], `with the panel ${panel}`),
-      );
-      for (const tab of ['run', 'measured']) {
-        await openTab(page, tab);
-        assert.deepEqual(await violations(page, '#studies'), [], `with the tab ${tab}`);
-      }
-      await openPanel(page, 'map');
-      await page.fill('#map-x-from', '9');
-      await page.locator('#map-x-from').blur();
-      assert.deepEqual(await violations(page, '#studies'), [], 'with an error in the map');
-      if (width === 320) {
-        await page.click('#tools-open');
-        assert.deepEqual(await violations(page), [], 'with the menu');
-      }
-      await page.click('#keys-open');
-      assert.deepEqual(await violations(page), [], 'with the dialog');
-      await page.keyboard.press('Escape');
-      for (const id of ['plane-velocity', 'map']) {
-        if (id === 'map') await openPanel(page, id);
-        await page.click(`#${id} .enlarge`);
-        await page.locator('dialog.large').waitFor();
-        assert.deepEqual(await violations(page), [], `with ${id} at its largest`);
-        assert.equal(
-          await page.evaluate(
-            () =>
-              document.querySelector('dialog.large').scrollWidth - document.querySelector('dialog.large').clientWidth,
-          ),
-          0,
-        );
-        await page.keyboard.press('Escape');
-      }
-      await page.keyboard.press('p');
-      await page.locator('html.presenting').waitFor();
-      assert.deepEqual(await violations(page), [], 'before a room');
-      await page.keyboard.press('p');
-      await stage.stopServer();
-      await page.locator('.notice', { hasText: 'Connection lost' }).waitFor();
-      assert.deepEqual(await violations(page), [], 'with the connection lost');
-      await stage.startServer();
+for (const width of [320, 800, 1280]) {
+  test(`axe finds nothing at ${width} px in both schemes`, async () => {
+    const { page } = await stage.page('?preset=case-4&colour=blue', {
+      viewport: { width, height: 800 },
     });
-  }
+    await verdict(page);
+    assert.deepEqual(await violations(page), [], 'idle, with a notice');
+    await page.click('#run');
+    await reachImpact(page, 3);
+    await unfold(page);
+    await openSheet(page, 'settings');
+    await page.locator('#field-release-theta').fill('?');
+    await page.locator('#field-release-theta[aria-invalid=true]').waitFor();
+    assert.deepEqual(await violations(page), [], 'running, with tables open and an error');
+    await page.locator('#field-release-theta').fill('0.3');
+    await openSheet(page, 'verdict-card');
+    assert.deepEqual(await violations(page, '#verdict-card'), [], 'with the verdict');
+    await loadAll(page, async (panel) =>
+      assert.deepEqual(await violations(page, '#studies'), [], `with the panel ${panel}`),
+    );
+    for (const tab of ['run', 'measured']) {
+      await openTab(page, tab);
+      assert.deepEqual(await violations(page, '#studies'), [], `with the tab ${tab}`);
+    }
+    await openPanel(page, 'map');
+    await page.fill('#map-x-from', '9');
+    await page.locator('#map-x-from').blur();
+    assert.deepEqual(await violations(page, '#studies'), [], 'with an error in the map');
+    if (width === 320) {
+      await page.click('#tools-open');
+      assert.deepEqual(await violations(page), [], 'with the menu');
+    }
+    await page.click('#keys-open');
+    assert.deepEqual(await violations(page), [], 'with the dialog');
+    await page.keyboard.press('Escape');
+    for (const id of ['plane-velocity', 'map']) {
+      if (id === 'map') await openPanel(page, id);
+      await page.click(`#${id} .enlarge`);
+      await page.locator('dialog.large').waitFor();
+      assert.deepEqual(await violations(page), [], `with ${id} at its largest`);
+      assert.equal(
+        await page.evaluate(
+          () => document.querySelector('dialog.large').scrollWidth - document.querySelector('dialog.large').clientWidth,
+        ),
+        0,
+      );
+      await page.keyboard.press('Escape');
+    }
+    await page.keyboard.press('p');
+    await page.locator('html.presenting').waitFor();
+    assert.deepEqual(await violations(page), [], 'before a room');
+    await page.keyboard.press('p');
+    await stage.stopServer();
+    await page.locator('.notice', { hasText: 'Connection lost' }).waitFor();
+    assert.deepEqual(await violations(page), [], 'with the connection lost');
+    await stage.startServer();
+  });
 }
 
 test('nothing is wider than 320 px', async () => {

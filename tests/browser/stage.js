@@ -17,7 +17,7 @@ const FLAGS = [
   '--disable-sync',
 ];
 /** How long a condition may take before a test gives up; no test measures speed by it. */
-export const PATIENCE_MS = 60_000;
+export const PATIENCE_MS = 120_000;
 
 async function freePort() {
   const probe = createServer().listen(0, '127.0.0.1');
