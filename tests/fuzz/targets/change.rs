@@ -17,22 +17,22 @@ pub fn numbers(data: &mut [u8], size: usize, most: usize, seed: u32) -> usize {
         .filter_map(|line| line.split_once(' '))
         .filter_map(|(name, number)| Some((name.to_owned(), number.trim().parse().ok()?)))
         .collect();
-    if lines.is_empty() || random.random_range(..8) == 0 {
+    if lines.is_empty() || random.random_range(..8_u32) == 0 {
         return libfuzzer_sys::fuzzer_mutate(data, size, most);
     }
-    for _ in 0..=random.random_range(..3) {
+    for _ in 0..=random.random_range(..3_u32) {
         let (line, other) = (random.random_range(..lines.len()), random.random_range(..lines.len()));
         let number = lines[line].1;
-        lines[line].1 = match random.random_range(..10) {
+        lines[line].1 = match random.random_range(..10_u32) {
             0 => number.next_up(),
             1 => number.next_down(),
             2 => -number,
-            3 => number * 2.0_f64.powi(random.random_range(..21) as i32 - 10),
+            3 => number * 2.0_f64.powi(random.random_range(-10..=10)),
             4 => number * (1.0 + 1e-6 * random.random_range(-1.0..1.0)),
             5 => number * random.random_range(0.5..2.0),
             6 => SPECIAL[random.random_range(..SPECIAL.len())],
             7 => lines[other].1,
-            8 => 10.0_f64.powf(random.random_range(-9.0..4.0)) * random.random_range(-1.0..1.0).signum(),
+            8 => 10.0_f64.powf(random.random_range(-9.0..4.0)) * f64::signum(random.random_range(-1.0..1.0)),
             _ => number + random.random_range(-1.0..1.0),
         };
     }
