@@ -14,11 +14,12 @@ mod eigenvalue;
 mod horizon;
 mod scenes;
 mod steps;
+mod swing;
 
 pub use case::{FailureCase, Findings, MethodClaim};
 
 /// All cases, in the order in which they are shown.
-pub const CASES: [FailureCase; 17] = [
+pub const CASES: [FailureCase; 18] = [
     boundary::SOFT,
     boundary::HARD,
     boundary::HARD_WITH_FEEDBACK,
@@ -35,6 +36,7 @@ pub const CASES: [FailureCase; 17] = [
     contact::TRIVIAL_ROOT,
     horizon::CHAOS,
     catching::LOW_TARGET,
+    swing::SETTLED,
     catching::CONTACT_GAIN,
 ];
 

@@ -767,7 +767,7 @@ export interface components {
             failures: components["schemas"]["Failure"][];
         };
         /** @enum {string} */
-        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "contact-gain";
+        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain";
         Failure: {
             name: components["schemas"]["FailureName"];
             title: string;

@@ -432,3 +432,33 @@ async fn the_gain_of_the_contact_overshoots_at_the_first_strike() {
     let run = server.get(case["ask"].as_str().unwrap()).await.expect(200).json();
     assert_ne!(run["outcome"]["kind"], "settled", "{run}");
 }
+
+#[tokio::test]
+async fn the_swing_after_the_bounces_comes_back_to_its_angle() {
+    let case = case("settled-swing").await;
+    assert_eq!(case["truth"]["verdict"], "swings");
+    let settled = number(&says(&case, "bounces that die out")["value"]);
+    assert!((settled - 0.8278).abs() < 1e-4, "{settled}");
+    let begin = number(&says(&case, "forces")["value"]);
+    assert!((begin + 0.11361).abs() < 1e-5, "{begin}");
+    // A body at rest on a table at κθ, by small steps: N keeps the contact point at its height.
+    let (l, rho_squared, gravity, kappa) = (0.4 / 3.0, 2.0 / 225.0, 9.81, 1.1);
+    let turn = |theta: f64, spin: f64| {
+        let (alpha, beta) = (kappa * theta, theta - kappa * theta);
+        let push =
+            (gravity - l * spin * spin * theta.cos()) / (alpha.cos() + l * l / rho_squared * beta.sin() * theta.sin());
+        push * l / rho_squared * beta.sin()
+    };
+    let (mut theta, mut spin, mut most) = (begin, 0.0_f64, 0.0_f64);
+    let step = 1e-4;
+    for _ in 0..100_000 {
+        // Leapfrog: it keeps the reversibility of the motion.
+        let middle = theta + 0.5 * step * spin;
+        spin += step * turn(middle, spin);
+        theta = middle + 0.5 * step * spin;
+        most = most.max(theta);
+    }
+    assert!((most / -begin - 1.0).abs() < 1e-3, "it turns at {most} rad on the other side");
+    let late = number(&says(&case, "motion in contact")["value"]);
+    assert!((late / most - 1.0).abs() < 5e-3, "{late} {most}");
+}
