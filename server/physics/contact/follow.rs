@@ -49,8 +49,7 @@ pub(super) fn follow(request: &HoldRequest, tolerance: f64, go_on: &mut dyn FnMu
     for _ in 0..MOST_PIECES {
         let mode = course.mode();
         let equations = course.equations(mode);
-        let (_, stop) = TableFall::new(request, course.t - start.t);
-        let stands = start.t + stop;
+        let (_, stands) = TableFall::new(request, course.t);
         let until = if course.t < stands { end.min(stands) } else { end };
         let scenery = Scenery { request, equations, begin: course.t, origin, rising: course.rising };
         let first = scenery.look(0.0, &course.motion);
@@ -112,14 +111,14 @@ impl Course<'_> {
     }
 
     fn equations(&self, mode: Mode) -> Equations {
-        let (fall, _) = TableFall::new(self.request, self.t - self.request.start.t);
+        let (fall, _) = TableFall::new(self.request, self.t);
         let gravity = self.request.rod.gravity + fall.y_ddot;
         Equations { stance: self.stance, law: self.law(), mode, gravity }
     }
 
     /// The law of the table here.
     fn law(&self) -> HoldLaw {
-        let (fall, _) = TableFall::new(self.request, self.t - self.request.start.t);
+        let (fall, _) = TableFall::new(self.request, self.t);
         let braking = self.request.brake_law.filter(|_| fall.y_ddot != 0.0);
         braking.unwrap_or(self.request.law)
     }

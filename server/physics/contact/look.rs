@@ -3,7 +3,7 @@
 use crate::contact::equations::{Equations, Mode, Motion};
 use crate::contact::force::{ContactForce, ContactMotion};
 use crate::contact::record::HoldSample;
-use crate::contact::request::{HoldLaw, HoldRequest, Touching};
+use crate::contact::request::{ContactStart, HoldLaw, HoldRequest, Touching};
 use crate::numbers::trig;
 use crate::table::actuator_load::{ActuatorLoad, LimitViolation};
 
@@ -20,19 +20,22 @@ pub(super) struct TableFall {
 }
 
 impl TableFall {
-    /// The motion `elapsed` s after the beginning, and the time at which a braking table stands, s after it.
-    pub(super) fn new(request: &HoldRequest, elapsed: f64) -> (Self, f64) {
-        let speed = request.start.table_speed;
+    /// The motion at time `t` of the run, and the time at which a braking table stands, s. From that time on, exactly, it does not
+    /// brake: the difference of both times would be rounded.
+    pub(super) fn new(request: &HoldRequest, t: f64) -> (Self, f64) {
+        let ContactStart { t: begin, table_speed: speed, .. } = request.start;
+        let elapsed = t - begin;
         let Some(brake) = request.brake.filter(|brake| *brake > 0.0) else {
             return (Self { y: speed * elapsed, y_dot: speed, y_ddot: 0.0 }, f64::INFINITY);
         };
         let acceleration = -brake.copysign(speed);
         let stop = (speed / acceleration).abs();
-        if elapsed >= stop {
-            return (Self { y: 0.5 * speed * stop, y_dot: 0.0, y_ddot: 0.0 }, stop);
+        let stands = begin + stop;
+        if t >= stands {
+            return (Self { y: 0.5 * speed * stop, y_dot: 0.0, y_ddot: 0.0 }, stands);
         }
         let y = elapsed * (speed + 0.5 * acceleration * elapsed);
-        (Self { y, y_dot: speed + acceleration * elapsed, y_ddot: acceleration }, stop)
+        (Self { y, y_dot: speed + acceleration * elapsed, y_ddot: acceleration }, stands)
     }
 }
 
@@ -86,7 +89,7 @@ impl Scenery<'_> {
         let ContactForce { normal, tangential } = force;
         let alpha = self.equations.law.tilt(motion);
         let t = self.begin + t;
-        let (fall, _) = TableFall::new(self.request, t - self.request.start.t);
+        let (fall, _) = TableFall::new(self.request, t);
         let contact_speed = self.equations.contact_speed(motion);
         let moves_along =
             matches!(self.equations.mode, Mode::Matched(_)) || matches!(self.equations.law, HoldLaw::CartPole(_));

@@ -86,6 +86,20 @@ fn a_braking_table_needs_the_stroke_and_the_tilt_of_the_reference() {
     assert!(hold.samples.iter().all(|it| heavy(it) == (it.t < stands)));
 }
 
+/// The time of the stop is rounded, and the body weighs G after it at every one.
+#[test]
+fn a_table_that_has_braked_stands_at_every_time() {
+    let law = HoldLaw::Feedback(contact_gains(9.81));
+    for n in 0..200 {
+        let speed = if n % 2 == 0 { -3e-3 } else { 3e-3 };
+        let start = ContactStart { t: 0.1 + 0.003_7 * f64::from(n), table_speed: speed, ..AFTER_NINE_STRIKES };
+        let request = HoldRequest { brake: Some(4.9), duration: 0.5, ..request(law, start) };
+        let hold = held(&request);
+        let last = hold.samples.last().unwrap().normal_force;
+        assert!((last - 9.81).abs() < 0.1, "{n}: {last}");
+    }
+}
+
 /// K of sliding contact with the weights of the reference: ẍ = −Gα, θ̈ = (Gl/ρ²)(θ − α).
 fn contact_gains(gravity: f64) -> Gains {
     let rod = paper();
