@@ -20,6 +20,7 @@ use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::Table;
 use crate::api::shared::weights::Weights;
+use crate::charts::significant;
 
 /// A strategy with its numbers; those that it does not have are null.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -47,6 +48,7 @@ struct SettingsAnswer {
     #[serde(flatten)]
     approach: ApproachAnswer,
     weights: Weights,
+    hold_speed: f64,
     hold: f64,
     hold_samples: u64,
 }
@@ -154,6 +156,7 @@ impl CatchAnswer {
             settings: SettingsAnswer {
                 approach: caught.approach.into(),
                 weights: Weights::new(options.settings.state_weights, options.settings.input_weight),
+                hold_speed: options.settings.hold_speed,
                 hold: options.settings.hold,
                 hold_samples: options.hold_samples,
             },
@@ -207,13 +210,30 @@ fn reason(caught: &Catch) -> String {
     if caught.settings.strategy.is_some() {
         return "as asked for".to_owned();
     }
-    let ruled_out: Vec<&str> = caught
-        .candidates
+    let before: Vec<&Candidate> = caught.candidates.iter().take_while(|candidate| !candidate.taken).collect();
+    if !caught.outcome.is_caught() {
+        return "no strategy catches the body; this is the first that was tried".to_owned();
+    }
+    let order = "the first that catches the body, in an order from strategies that ask little of the table to those that ask much";
+    if before.is_empty() {
+        return order.to_owned();
+    }
+    let ruled_out: Vec<String> = before
         .iter()
-        .filter(|candidate| !candidate.outcome.is_caught())
-        .map(|candidate| candidate.approach.strategy().name())
+        .map(|candidate| format!("{} ends as {}", described(&candidate.approach), candidate.outcome.kind().name()))
         .collect();
-    format!("{ruled_out:?}")
+    format!("{order}; before it, {}", ruled_out.join(", "))
+}
+
+/// A strategy with its numbers, in words.
+fn described(approach: &Approach) -> String {
+    let three = |value: f64| significant(value, 3);
+    let name = approach.strategy().name();
+    match *approach {
+        Approach::BounceDown { ratio } => format!("{name} with ratio {}", three(ratio)),
+        Approach::Plan { strikes, ratio } => format!("{name} of {strikes} strikes with ratio {}", three(ratio)),
+        Approach::Brake { deceleration } => format!("{name} at {} m/s²", three(deceleration)),
+    }
 }
 
 impl Tabular for CatchAnswer {

@@ -1,6 +1,8 @@
 //! The request for `catches`: a scene, and the settings of the catch.
 
-use equipoise_physics::catching::settings::{BRAKES, CatchSettings, DEFAULT_HOLD, PLAN_RATIOS, RATIOS, Strategy};
+use equipoise_physics::catching::settings::{
+    BRAKES, CatchSettings, DEFAULT_HOLD, HOLD_SPEED, PLAN_RATIOS, RATIOS, Strategy,
+};
 use equipoise_physics::scene::{Name, Scene};
 use serde::Serialize;
 
@@ -12,6 +14,9 @@ use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits;
 use crate::limits::Limits;
+
+/// Contact speeds after a strike below which the lasting contact begins, m/s. At the lowest, the slowest ratio takes some 700 strikes.
+const HOLD_SPEEDS: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
 
 /// Times in contact, s. A shorter one shows nothing.
 const HOLDS: std::ops::RangeInclusive<f64> = 0.1..=limits::HOLD_TIME;
@@ -67,27 +72,20 @@ impl CatchOptions {
             );
         }
         let (state_weights, input_weight) = read_weights(reader);
+        let hold_speed = reader.number("hold_speed", HOLD_SPEEDS, "m/s").unwrap_or(HOLD_SPEED);
         let hold = reader.number("hold", HOLDS, "s").unwrap_or(DEFAULT_HOLD);
         let hold_samples = reader.integer("hold_samples", 2..=limits::HOLD_SAMPLES).unwrap_or(HOLD_SAMPLES);
         let strikes = strikes.and_then(|strikes| u32::try_from(strikes).ok());
-        let settings = CatchSettings {
-            strategy,
-            ratio,
-            strikes,
-            brake,
-            state_weights,
-            input_weight,
-            hold,
-            ..CatchSettings::default()
-        };
-
+        let settings = CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold_speed, hold };
         Self { settings, hold_samples }
     }
 
     /// Everything that determines the answer.
     pub fn canonical(&self) -> impl Serialize {
-        let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold, .. } = self.settings;
-        (strategy.map(Strategy::name), ratio, strikes, brake, state_weights, input_weight, hold, self.hold_samples)
+        let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold_speed, hold } =
+            self.settings;
+        let numbers = (ratio, strikes, brake, hold_speed, hold, self.hold_samples);
+        (strategy.map(Strategy::name), numbers, state_weights, input_weight)
     }
 
     /// Price of the catch, in bounces.
