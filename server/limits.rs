@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use clap::builder::Resettable;
 use clap::{Args, Command, FromArgMatches};
+use equipoise_physics::catching::plan::{FEWEST_STRIKES, MOST_STRIKES};
 use equipoise_physics::contact::{LONGEST_HOLD, MOST_SAMPLES};
 
 use crate::flags::{seconds, within};
@@ -214,8 +215,8 @@ pub const HOLD_TIME: f64 = LONGEST_HOLD;
 /// Rows of one hold: 140 kB of JSON. A canvas is no wider.
 pub const HOLD_SAMPLES: u64 = MOST_SAMPLES as u64;
 
-/// Most strikes of a planned catch before its stop. Each takes an unknown of the solver, and an error grows some 17 times a strike.
-pub const PLAN_STRIKES: u64 = 40;
+/// Strikes of a planned catch before its stop: four numbers are to vanish, and an error grows by up to 16 times a strike.
+pub const PLAN_STRIKES: RangeInclusive<u64> = FEWEST_STRIKES as u64..=MOST_STRIKES as u64;
 
 /// Price of a catch by bounces that die down, in bounces: about 1 ms.
 pub const CATCH_BOUNCE_DOWN_PRICE: u64 = 20_000;

@@ -259,7 +259,7 @@ fn controllers_for_random_scenes() {
 /// Settings of a catch, contradictions included.
 fn catch_settings() -> impl Strategy<Value = Value> {
     let strategy = maybe(word(&["auto", "bounce_down", "plan", "brake"]));
-    let numbers = (prop::option::weighted(0.3, 0.05..1.0), prop::option::weighted(0.2, 1..12_u64));
+    let numbers = (prop::option::weighted(0.3, 0.05..1.0), prop::option::weighted(0.2, 4..12_u64));
     let brake = prop::option::weighted(0.2, 1.0..50.0);
     (strategy, numbers, brake, maybe(0.1..4.0), maybe(2..80_u64)).prop_map(
         |(strategy, (ratio, strikes), brake, hold, samples)| {

@@ -56,7 +56,7 @@ static OF_STRIKES_ALONE: [CatchColumn<CatchStrike>; 2] = [
     own(
         "ratio",
         "",
-        "Vertical speed of the contact point just after the strike over that just before. 0 if it comes to rest.",
+        "Vertical speed of the contact point just after the strike over that just before: 0 if it comes to rest, below 0 if it goes on downwards.",
         Read::Number(|strike| strike.ratio + 0.0),
     ),
 ];

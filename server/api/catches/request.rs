@@ -53,7 +53,7 @@ impl CatchOptions {
         ];
         let strategy = reader.choice("strategy", &strategies).flatten();
         let ratio = reader.number("ratio", PLAN_RATIOS, "");
-        let strikes = reader.integer("strikes", 1..=limits::PLAN_STRIKES);
+        let strikes = reader.integer("strikes", limits::PLAN_STRIKES);
         let brake = reader.number("brake", BRAKES, "m/s²");
         let said = strategies.iter().find(|(_, known)| *known == strategy).map_or("auto", |(name, _)| name);
         let mut only_for = |name: &'static str, known: &[Strategy], words: &str| {
@@ -94,7 +94,7 @@ impl CatchOptions {
             Some(Strategy::BounceDown) => limits::CATCH_BOUNCE_DOWN_PRICE,
             Some(Strategy::Plan) => limits::CATCH_PLAN_PRICE,
             Some(Strategy::Brake) => limits::CATCH_BRAKE_PRICE,
-            None => limits::CATCH_BOUNCE_DOWN_PRICE + limits::CATCH_PLAN_PRICE + limits::CATCH_BRAKE_PRICE,
+            None => 2 * (limits::CATCH_BOUNCE_DOWN_PRICE + limits::CATCH_PLAN_PRICE) + limits::CATCH_BRAKE_PRICE,
         };
         catch + limits::HOLD_SAMPLE_PRICE * self.hold_samples
     }

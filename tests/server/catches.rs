@@ -1,0 +1,293 @@
+//! Catches: the known figures of each strategy, every format, and refusals that name the field.
+
+use crate::support::Server;
+use crate::support::contract::{self, DOCUMENT};
+use crate::support::csv::Table;
+use axum::http::Method;
+use serde_json::{Value, json};
+
+/// Case 1 released at 0.25 m and 0.1 rad: it meets the table at 1.517 m/s.
+const FALL: &str = "preset=case-1&scene.release.height=0.25&scene.release.theta=0.1";
+
+fn number(answer: &Value, pointer: &str) -> f64 {
+    answer.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} is no number: {answer}"))
+}
+
+fn numbers(column: &Value) -> Vec<f64> {
+    column.as_array().expect("a column").iter().map(|value| value.as_f64().expect("a number")).collect()
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| value.abs().max(most))
+}
+
+/// Asserts that a figure is the printed one, to half a unit of its last digit.
+#[track_caller]
+fn printed(value: f64, figure: f64, unit: f64) {
+    assert!((value - figure).abs() <= 0.5 * unit * (1.0 + 1e-9), "{value}, not {figure}");
+}
+
+async fn caught(server: &Server, query: &str) -> Value {
+    let answer = server.get(&format!("/v1/catches?{FALL}&{query}")).await.expect(200).json();
+    assert_eq!(answer["outcome"]["kind"], "held", "{query}: {}", answer["outcome"]);
+    answer
+}
+
+#[tokio::test]
+async fn bounces_die_down_within_the_printed_figures() {
+    let server = Server::start();
+    let fast = caught(&server, "strategy=bounce_down&ratio=0.5").await;
+    let speeds = numbers(&fast["strikes"]["table_velocity"]);
+    assert_eq!(speeds.len(), 9);
+    printed(number(&fast, "/contact_from"), 0.464, 1e-3);
+    printed(speeds[0], -0.353, 1e-3);
+    printed(*speeds.last().unwrap(), -0.009, 1e-3);
+    printed(number(&fast, "/demand/tilt"), 0.122, 1e-3);
+    printed(number(&fast, "/upright_within/theta_1mrad"), 4.0, 0.1);
+    printed(number(&fast, "/upright_within/x_1mm"), 5.4, 0.1);
+    let slow = caught(&server, "strategy=bounce_down&ratio=0.9&hold_speed=0.002").await;
+    assert_eq!(numbers(&slow["strikes"]["n"]).len(), 63);
+    printed(number(&slow, "/contact_from"), 2.94, 1e-2);
+    printed(number(&slow, "/demand/tilt"), 0.112, 1e-3);
+    assert!(largest(&numbers(&slow["strikes"]["table_velocity"])) < 0.0865, "{}", slow["strikes"]);
+}
+
+#[tokio::test]
+async fn plans_arrive_at_rest_within_the_printed_figures() {
+    let server = Server::start();
+    for (strikes, ratio, time, speed, last, tilt) in
+        [(5, 1.0, 1.705, 0.026, -0.759, 0.157), (8, 0.8, 1.190, 0.148, -0.127, 0.215)]
+    {
+        let plan = caught(&server, &format!("strategy=plan&ratio={ratio}&strikes={strikes}")).await;
+        let speeds = numbers(&plan["strikes"]["table_velocity"]);
+        assert_eq!(speeds.len(), strikes + 1);
+        printed(number(&plan, "/contact_from"), time, 1e-3);
+        printed(largest(&speeds[..strikes]), speed, 1e-3);
+        printed(speeds[strikes], last, 1e-3);
+        printed(number(&plan, "/demand/tilt"), tilt, 1e-3);
+        for name in ["x", "theta", "x_dot", "theta_dot"] {
+            assert!(largest(&numbers(&plan["hold"][name])) < 1e-8, "{name}: {}", plan["hold"][name]);
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_braking_table_needs_the_printed_stroke() {
+    let server = Server::start();
+    let brake = caught(&server, "strategy=brake").await;
+    assert_eq!(brake["strikes"]["n"], json!([]));
+    assert_eq!(brake["settings"]["brake"], 9.81);
+    printed(number(&brake, "/contact_from"), 0.155, 1e-3);
+    printed(number(&brake, "/demand/speed"), 1.517, 1e-3);
+    printed(number(&brake, "/demand/stroke"), 0.117, 1e-3);
+    printed(number(&brake, "/demand/tilt"), 0.298, 1e-3);
+    // N = m(G + a) upright, and a table that has come to rest 0.117 m lower.
+    assert!((number(&brake, "/demand/normal_force") / (2.0 * 9.81) - 1.0).abs() < 0.05, "{}", brake["demand"]);
+    printed(-*numbers(&brake["hold"]["table_y"]).last().unwrap(), 0.117, 1e-3);
+}
+
+#[tokio::test]
+async fn the_choice_is_told_with_what_rules_the_others_out() {
+    let server = Server::start();
+    let free = caught(&server, "").await;
+    assert_eq!(free["strategy"]["name"], "bounce_down");
+    assert_eq!(free["candidates"].as_array().unwrap().len(), 5);
+    let slow = caught(&server, "scene.table.limits.speed=0.15").await;
+    assert_eq!((&slow["settings"]["strategy"], &slow["settings"]["ratio"]), (&json!("bounce_down"), &json!(0.9)));
+    let reason = slow["strategy"]["reason"].as_str().unwrap();
+    assert!(reason.contains("bounce_down with ratio 0.5 ends as beyond_limits"), "{reason}");
+    let first = &slow["candidates"][0]["outcome"];
+    assert_eq!((&first["quantity"], &first["limit"], &first["unit"]), (&json!("speed"), &json!(0.15), &json!("m/s")));
+    // Asked for by its own name, the strategy is the same catch.
+    let named = caught(&server, "scene.table.limits.speed=0.15&strategy=bounce_down&ratio=0.9").await;
+    for part in ["strikes", "hold", "outcome", "demand", "settings"] {
+        assert_eq!(named[part], slow[part], "{part}");
+    }
+    assert_eq!((&named["candidates"], &named["strategy"]["reason"]), (&json!([]), &json!("as asked for")));
+    let stiff = server.get(&format!("/v1/catches?{FALL}&scene.table.limits.tilt=0.02")).await.expect(200).json();
+    assert_eq!(stiff["outcome"]["kind"], "beyond_limits");
+    assert!(stiff["strategy"]["reason"].as_str().unwrap().contains("no strategy catches"), "{}", stiff["strategy"]);
+}
+
+/// Between strikes there is a flight in closed form from the columns alone.
+#[tokio::test]
+async fn each_strike_follows_from_the_flight_after_the_last() {
+    let server = Server::start();
+    for scene in ["", "&scene.contact.restitution=0.6", "&scene.contact.friction=0.5&scene.table.slide=matched"] {
+        let answer = server.get(&format!("/v1/catches?{FALL}{scene}&strategy=bounce_down")).await.expect(200).json();
+        let strikes = &answer["strikes"];
+        let at = |name: &str, row: usize| strikes[name][row].as_f64().unwrap();
+        for row in 1..numbers(&strikes["n"]).len() {
+            let time = at("flight_time", row - 1);
+            let expected = [
+                ("t", at("t", row - 1) + time),
+                ("x", at("x", row - 1) + at("x_dot_after", row - 1) * time),
+                ("theta", at("theta", row - 1) + at("theta_dot_after", row - 1) * time),
+                ("x_dot", at("x_dot_after", row - 1)),
+                ("y_dot", at("y_dot_after", row - 1) - 9.81 * time),
+                ("theta_dot", at("theta_dot_after", row - 1)),
+            ];
+            for (name, expected) in expected {
+                assert!((at(name, row) - expected).abs() < 1e-12, "{scene} {name} {row}");
+            }
+        }
+    }
+}
+
+#[tokio::test]
+async fn laws_that_do_not_catch_are_told_of() {
+    let server = Server::start();
+    let target = "scene.table.energy_gain=0.4&scene.table.target_height=0.1334";
+    let answer = caught(&server, target).await;
+    let notes = answer["notes"].to_string();
+    assert!(notes.contains("the scene's own table would not catch"), "{notes}");
+    let wrong = "scene.contact.restitution=0.6&scene.table.assumed_restitution=0.8&strategy=bounce_down";
+    let notes = caught(&server, wrong).await["notes"].to_string();
+    assert!(notes.contains("belief about restitution is wrong"), "{notes}");
+}
+
+#[tokio::test]
+async fn rows_of_the_hold_are_as_many_as_asked_for_and_end_with_its_end() {
+    let server = Server::start();
+    let whole = caught(&server, "strategy=bounce_down&hold_samples=602").await;
+    for most in [2, 3, 50, 200, 601] {
+        let thin = caught(&server, &format!("strategy=bounce_down&hold_samples={most}")).await;
+        let t = numbers(&thin["hold"]["t"]);
+        assert!((2..=most).contains(&t.len()) && t.len() * 2 >= most, "{most}: {}", t.len());
+        assert_eq!(t[0], number(&thin, "/contact_from"));
+        let all = numbers(&whole["hold"]["t"]);
+        assert_eq!(t.last(), all.last());
+        assert!(t.iter().all(|t| all.contains(t)));
+    }
+    let longer = caught(&server, "strategy=bounce_down&hold=12").await;
+    let t = numbers(&longer["hold"]["t"]);
+    assert!((t.last().unwrap() - t[0] - 12.0).abs() < 1e-12);
+    assert!(number(&longer, "/error_bound") < 1e-9, "{}", longer["error_bound"]);
+}
+
+#[tokio::test]
+async fn the_same_catch_is_the_same_bytes_in_every_format() {
+    let body = json!({"preset": "case-1", "scene": {"release": {"height": 0.25, "theta": 0.1}}, "strategy": "bounce_down",
+        "weights": {"input": 8}, "hold": 3});
+    let query = format!("{FALL}&strategy=bounce_down&weights.input=8&hold=3");
+    let (server, other) = (Server::start(), Server::start());
+    for format in ["json", "csv", "ndjson", "svg", "png"] {
+        let target = format!("/v1/catches?{query}&format={format}");
+        let one = server.get(&target).await.expect(200);
+        let two = other.post(&format!("/v1/catches?format={format}"), &body).await.expect(200);
+        assert!(one.raw == two.raw && one.etag() == two.etag(), "{format}");
+        server.get_with(&target, &[("if-none-match", one.etag())]).await.expect(304);
+        server.head(&target).await.expect(200);
+    }
+    let answer = server.post("/v1/catches", &body).await.json();
+    let (strikes, hold) = (&answer["strikes"], &answer["hold"]);
+    let csv = Table::parse(server.post("/v1/catches?format=csv", &body).await.text()).unwrap();
+    let (struck, held) = (numbers(&strikes["t"]).len(), numbers(&hold["t"]).len());
+    assert_eq!(csv.column("phase"), [vec!["strike"; struck], vec!["hold"; held]].concat());
+    let cells = |name: &str| csv.column(name).iter().map(|cell| cell.parse::<f64>().ok()).collect::<Vec<_>>();
+    let both = |name: &str| {
+        let parts = [strikes, hold].into_iter().zip([struck, held]);
+        let each = parts.flat_map(|(part, rows)| {
+            (0..rows).map(|row| part.get(name).and_then(|column| column[row].as_f64())).collect::<Vec<_>>()
+        });
+        each.collect::<Vec<_>>()
+    };
+    for (header, name) in [
+        ("t_s", "t"),
+        ("theta_rad", "theta"),
+        ("alpha_rad", "alpha"),
+        ("y_dot_m_per_s", "y_dot"),
+        ("table_velocity_m_per_s", "table_velocity"),
+        ("normal_force_m_per_s2", "normal_force"),
+    ] {
+        assert_eq!(cells(header), both(name), "{name}");
+    }
+    let lines = server.post("/v1/catches?format=ndjson", &body).await;
+    let end: Value = serde_json::from_str(lines.text().lines().last().unwrap()).unwrap();
+    for part in ["outcome", "settings", "strategy", "demand", "reach", "contact_from", "upright_within", "notes"] {
+        assert_eq!(end["end"][part], answer[part], "{part}");
+    }
+}
+
+#[tokio::test]
+async fn requests_that_contradict_themselves_are_refused() {
+    let server = Server::start();
+    for (query, pointer, words) in [
+        ("strategy=drop", "/strategy", "\\\"auto\\\", \\\"bounce_down\\\", \\\"plan\\\" or \\\"brake\\\""),
+        ("ratio=0.5", "/ratio", "is for the strategy bounce_down or plan, and strategy is auto"),
+        ("strategy=brake&ratio=0.5", "/ratio", "and strategy is brake"),
+        ("strategy=bounce_down&ratio=1", "/ratio", "from 0.05 to 0.98 (no unit)"),
+        ("strategy=plan&ratio=1.2", "/ratio", "from 0.05 to 1"),
+        ("strikes=5", "/strikes", "is for the strategy plan, and strategy is auto"),
+        ("strategy=bounce_down&strikes=5", "/strikes", "is for the strategy plan, and strategy is bounce_down"),
+        ("strategy=plan&strikes=500", "/strikes", "from 4 to 40"),
+        ("strategy=plan&brake=5", "/brake", "is for the strategy brake, and strategy is plan"),
+        ("strategy=brake&brake=0", "/brake", "from 0.01 to 10000 m/s²"),
+        ("hold=0", "/hold", "from 0.1 to 60 s"),
+        ("hold=61", "/hold", "from 0.1 to 60 s"),
+        ("hold_samples=1", "/hold_samples", "from 2 to 602"),
+        ("hold_speed=1", "/hold_speed", "from 0.0001 to 0.1 m/s"),
+        ("weights.input=0", "/weights/input", "0.000001"),
+        ("impacts=5", "/impacts", "unknown field"),
+        ("scene.release.height=0", "/scene/release/height", "height"),
+    ] {
+        let answer = server.get(&format!("/v1/catches?preset=case-1&{query}")).await.expect(422);
+        assert_eq!(answer.pointers(), [pointer], "{query}: {}", answer.text());
+        assert!(answer.text().contains(words), "{query}: {}", answer.text());
+    }
+    for scene in ["preset=point-mass", "scene.body.point=true&scene.release.height=0.2"] {
+        let answer = server.get(&format!("/v1/catches?{scene}")).await.expect(422);
+        assert_eq!(answer.pointers(), ["/scene/body/point"], "{}", answer.text());
+    }
+    let schema = &DOCUMENT["components"]["schemas"]["CatchRequest"];
+    for body in [json!({"preset": "case-1", "hold": 61}), json!({"preset": "case-1", "strategy": "drop"})] {
+        assert!(!contract::faults(schema, &body).is_empty(), "{body}");
+    }
+    server.send(Method::DELETE, "/v1/catches", &[], "").await.expect(405);
+}
+
+#[tokio::test]
+async fn a_scene_needs_no_law_to_be_caught() {
+    let server = Server::start();
+    let body = json!({"contact_distance": 0.2, "radius_of_gyration": 0.1});
+    let scene = json!({"body": body, "release": {"height": 0.35, "theta": 0.05}});
+    let answer = server.post("/v1/catches", &json!({"scene": scene})).await.expect(200).json();
+    assert_eq!(answer["outcome"]["kind"], "held", "{}", answer["outcome"]);
+    // The law of the scene has no part in it.
+    let mut steep = scene.clone();
+    steep["table"] = json!({"tilt_gain": 7});
+    let other = server.post("/v1/catches", &json!({"scene": steep})).await.expect(200).json();
+    assert_eq!((&other["strikes"], &other["hold"]), (&answer["strikes"], &answer["hold"]));
+}
+
+#[tokio::test]
+async fn work_beyond_the_limit_is_refused_with_its_price() {
+    let mut config = equipoise::config::Config::default();
+    config.limits.work = 100_000;
+    let server = Server::with(&config);
+    let answer = server.get(&format!("/v1/catches?{FALL}&strategy=plan")).await.expect(422);
+    assert!(answer.text().contains("the limit is 100000 bounces"), "{}", answer.text());
+    server.get(&format!("/v1/catches?{FALL}&strategy=bounce_down")).await.expect(200);
+}
+
+#[tokio::test]
+async fn a_batch_catches_line_by_line() {
+    let lines = "{\"preset\": \"case-1\"}\n{\"preset\": \"point-mass\"}\n";
+    let headers = [("content-type", "application/x-ndjson")];
+    let answer = Server::start().send(Method::POST, "/v1/batches/catches", &headers, lines).await.expect(200);
+    let lines: Vec<Value> = answer.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(lines[0]["answer"]["strategy"]["name"], "bounce_down");
+    assert_eq!(lines[1]["problem"]["errors"][0]["pointer"], "/scene/body/point");
+}
+
+#[tokio::test]
+async fn the_requests_of_the_documentation_run() {
+    let server = Server::start();
+    let document = include_str!("../../docs/catching.md");
+    let targets: Vec<&str> =
+        document.split("http://127.0.0.1:8080").skip(1).map(|rest| rest.split('\'').next().unwrap()).collect();
+    assert!(targets.len() >= 6, "{targets:?}");
+    for target in targets {
+        server.get(target).await.expect(200);
+    }
+}
