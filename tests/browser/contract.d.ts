@@ -129,6 +129,8 @@ export interface components {
         "catches.brake": number;
         /** @default 6 */
         "catches.hold": number;
+        /** @default 0.005 */
+        "catches.hold_speed": number;
         /** @default 200 */
         "catches.hold_samples": number;
         "throws.impact": number;
@@ -665,6 +667,7 @@ export interface components {
                 input?: components["schemas"]["controllers.weights.input"] | null;
             } | null;
             hold?: components["schemas"]["catches.hold"] | null;
+            hold_speed?: components["schemas"]["catches.hold_speed"] | null;
             hold_samples?: components["schemas"]["catches.hold_samples"] | null;
         };
         ThrowRequest: {
@@ -697,6 +700,7 @@ export interface components {
                     input?: components["schemas"]["controllers.weights.input"] | null;
                 } | null;
                 hold?: components["schemas"]["catches.hold"] | null;
+                hold_speed?: components["schemas"]["catches.hold_speed"] | null;
                 hold_samples?: components["schemas"]["catches.hold_samples"] | null;
             } | null;
         };
@@ -1331,6 +1335,7 @@ export interface components {
                 };
                 input: number;
             };
+            hold_speed: number;
             hold: number;
             hold_samples: number;
         };
@@ -1974,6 +1979,7 @@ export type CatchesRatio = components['schemas']['catches.ratio'];
 export type CatchesStrikes = components['schemas']['catches.strikes'];
 export type CatchesBrake = components['schemas']['catches.brake'];
 export type CatchesHold = components['schemas']['catches.hold'];
+export type CatchesHoldSpeed = components['schemas']['catches.hold_speed'];
 export type CatchesHoldSamples = components['schemas']['catches.hold_samples'];
 export type ThrowsImpact = components['schemas']['throws.impact'];
 export type ThrowsApexHeight = components['schemas']['throws.apex.height'];
