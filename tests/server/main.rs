@@ -16,6 +16,7 @@ mod contract;
 mod controllers;
 mod dashboards;
 mod deploy;
+mod energy;
 mod ensembles;
 mod errors;
 mod events;

@@ -20,6 +20,7 @@ use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::stability::cycle::cycle_sentence;
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
@@ -209,6 +210,7 @@ impl<'a> StabilityAnswer<'a> {
             Err(why) => {
                 notes.push(format!("verdict, fixed_point, linear, boundary, loss_of_stability, lyapunov, agree, rotation_number, chaos and predictable_impacts are null: {why}"));
                 answer.reason = why;
+                notes.extend(cycle_sentence(scene));
             }
             Ok(fixed_point) => {
                 let linear = linear_verdict(scene, &fixed_point);

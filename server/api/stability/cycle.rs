@@ -1,0 +1,24 @@
+//! The orbit of one cycle of a program of heights, in place of a bounce that repeats.
+
+use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, find};
+use equipoise_physics::scene::Scene;
+
+/// A sentence on small deviations from the orbit of one cycle. None without a program.
+pub(super) fn cycle_sentence(scene: &Scene) -> Option<String> {
+    let period = scene.program()?.heights().len();
+    let orbit = OrbitProblem::of(scene)
+        .map_err(OrbitFailure::Scene)
+        .and_then(|problem| find(&problem, period, &problem.upright()));
+    Some(match orbit {
+        Ok(orbit) => {
+            let deviations = match orbit.multipliers.stable {
+                Some(true) => "small deviations stay small",
+                Some(false) => "small deviations grow",
+                None => "the linear analysis is silent there",
+            };
+            let (residue, time) = (orbit.multipliers.residue, orbit.flight_time);
+            format!("about the orbit of one cycle ({period} strikes, {time} s) {deviations}: its residue is {residue}")
+        }
+        Err(failure) => format!("the orbit of one cycle is not found: {failure}"),
+    })
+}

@@ -1,0 +1,203 @@
+//! The laws by which a table steers the energy: errors that say why, and every resource on the presets that have them.
+
+use crate::support::Server;
+use serde_json::{Value, json};
+
+const G: f64 = 9.81;
+
+fn numbers(column: &Value) -> Vec<f64> {
+    column.as_array().expect("a column").iter().map(|cell| cell.as_f64().expect("a number")).collect()
+}
+
+#[tokio::test]
+async fn contradictions_say_why() {
+    let server = Server::start();
+    let steered = |table: Value| json!({"preset": "case-1", "scene": {"table": table}});
+    let program = "an array of 1 to 16 numbers from 0.001 to 100 m";
+    for (request, pointer, words) in [
+        (steered(json!({"energy_law": "one_strike"})), "target_height", "energy_law `one_strike` needs the height"),
+        (json!({"preset": "case-4", "scene": {"table": {"energy_law": "one_strike"}}}), "energy_gain", "has no gain"),
+        (
+            steered(json!({"energy_law": "one_strike", "target_height": 0.3, "energy_measure": "vertical"})),
+            "energy_measure",
+            "total energy",
+        ),
+        (
+            steered(json!({"energy_law": "one_strike", "target_height": 0.3, "strike": "still"})),
+            "energy_law",
+            "strike says `still`",
+        ),
+        (
+            json!({"preset": "juggling", "scene": {"contact": {"friction": 0.1}}}),
+            "energy_law",
+            "without friction, and friction is 0.1",
+        ),
+        (
+            json!({"preset": "case-4", "scene": {"table": {"program": [0.2, 0.3]}}}),
+            "program",
+            "leave one of them out (null takes a preset's back)",
+        ),
+        (steered(json!({"program": []})), "program", program),
+        (steered(json!({"program": vec![0.2; 17]})), "program", program),
+        (steered(json!({"program": 0.2})), "program", program),
+        (steered(json!({"program": [0.2, 200]})), "program", "at index 1 is 200; it must be from 0.001 to 100 m"),
+        (steered(json!({"program": [0.2, "0.3"]})), "program", "at index 1 is \"0.3\"; it must be a number"),
+        (steered(json!({"energy_measure": "both"})), "energy_measure", "\"vertical\" or \"total\""),
+    ] {
+        let answer = server.post("/v1/trajectories", &request).await.expect(422);
+        assert_eq!(answer.pointers(), [format!("/scene/table/{pointer}")], "{request}");
+        assert!(
+            answer.text().contains(&serde_json::to_string(words).unwrap().trim_matches('"').to_owned()),
+            "{request}: {}",
+            answer.text()
+        );
+    }
+}
+
+#[tokio::test]
+async fn a_program_is_asked_for_by_body_and_by_query() {
+    let server = Server::start();
+    let scene = json!({"table": {"energy_gain": null, "target_height": null, "energy_law": "one_strike", "program": [0.2, 0.3]}});
+    let posted = server.post("/v1/trajectories", &json!({"preset": "case-4", "scene": scene})).await.expect(200);
+    let query = "preset=case-4&scene.table.energy_gain=null&scene.table.target_height=null&scene.table.energy_law=one_strike\
+                 &scene.table.program.0=0.2&scene.table.program.1=0.3";
+    let asked = server.get(&format!("/v1/trajectories?{query}")).await.expect(200);
+    assert_eq!(asked.raw, posted.raw);
+    assert_eq!(asked.json()["scene"]["table"]["program"], json!([0.2, 0.3]));
+    let holes = query.replace("program.1", "program.2");
+    assert_eq!(server.get(&format!("/v1/trajectories?{holes}")).await.expect(422).pointers(), ["/scene/table/program"]);
+}
+
+#[tokio::test]
+async fn scenes_without_the_fields_do_not_say_them() {
+    let server = Server::start();
+    for preset in ["case-1", "case-4", "case-5"] {
+        let scene = server.get(&format!("/v1/scenes/{preset}")).await.expect(200).json()["scene"].clone();
+        for field in ["energy_measure", "energy_law", "program"] {
+            assert_eq!(scene["table"].get(field), None, "{preset}: {field}");
+        }
+    }
+}
+
+/// Every resource on juggling: it answers, or says why not.
+#[tokio::test]
+async fn juggling_in_every_resource() {
+    let server = Server::start();
+    let get = async |target: &str| server.get(&format!("/v1/{target}")).await;
+    let run = get("trajectories?preset=juggling&impacts=3000").await.expect(200).json();
+    assert_eq!(run["outcome"]["kind"], "completed");
+    for (n, energy) in numbers(&run["impacts"]["energy"]).iter().enumerate().skip(1) {
+        // Before contact n + 1 the body has the energy of strike n.
+        let target = G * if n % 2 == 1 { 0.2 } else { 0.3 };
+        assert!((energy / target - 1.0).abs() <= 4e-15, "contact {}: {energy}", n + 1);
+    }
+    assert!(numbers(&run["impacts"]["error_estimate"])[100] < 1e-9);
+    let same = get("trajectories?preset=juggling&impacts=20&method=extended").await.expect(200).json();
+    assert_eq!(same["outcome"]["impacts"], 20);
+    let linear = get("trajectories?preset=juggling&method=linear").await.expect(422);
+    assert!(linear.text().contains("no bounce repeats"), "{}", linear.text());
+
+    let stability = get("stability?preset=juggling").await.expect(200).json();
+    assert_eq!((&stability["verdict"], &stability["fixed_point"]), (&Value::Null, &Value::Null));
+    assert!(stability["reason"].as_str().unwrap().contains("period 2"), "{}", stability["reason"]);
+    let cycle = stability["notes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .any(|note| note.as_str().unwrap().contains("small deviations stay small"));
+    assert!(cycle, "{}", stability["notes"]);
+    let orbit = get("periodic-orbits?preset=juggling").await.expect(200).json();
+    assert_eq!((&orbit["period"], &orbit["stable"]), (&json!(2), &json!(true)), "{orbit}");
+    assert_eq!(get("periodic-orbits?preset=juggling&period=3").await.expect(422).pointers(), ["/period"]);
+    let symmetric = get("periodic-orbits?preset=juggling&family=symmetric&theta=0.1").await.expect(422);
+    assert_eq!(symmetric.pointers(), ["/family"]);
+
+    assert_eq!(get("jacobians?preset=juggling").await.expect(422).pointers(), ["/at"]);
+    let at = async |impact: u64, method: &str| {
+        let target = format!("jacobians?preset=juggling&at.impact={impact}&period=2&method={method}");
+        get(&target).await.expect(200).json()["matrix"].clone()
+    };
+    for impact in [7, 8] {
+        let (exact, differences) = (at(impact, "exact").await, at(impact, "finite_difference").await);
+        for (exact, differences) in exact.as_array().unwrap().iter().zip(differences.as_array().unwrap()) {
+            for (exact, differences) in numbers(exact).iter().zip(numbers(differences)) {
+                assert!((exact - differences).abs() <= 1e-5, "{exact} {differences}");
+            }
+        }
+    }
+    let map = "regions?preset=juggling&impacts=300&x.parameter=table.tilt_gain&x.from=1.02&x.to=1.8&x.count=6\
+               &y.parameter=release.theta&y.from=0.01&y.to=0.3&y.count=5";
+    follows_the_runs(&server, map, "juggling").await;
+    for target in ["ensembles?preset=juggling&runs=4&impacts=50", "ladder?preset=juggling", "previews?preset=juggling"]
+    {
+        get(target).await.expect(200);
+    }
+    get("precision?preset=juggling&impacts=20").await.expect(200);
+    let design = get("controllers?preset=juggling").await.expect(422);
+    assert!(design.text().contains("no bounce repeats"), "{}", design.text());
+    let basin = get("stability?preset=juggling&basin=true").await.expect(200);
+    assert!(basin.text().contains("program of heights"), "{}", basin.text());
+}
+
+/// The cells of a map are what runs of their scenes say.
+async fn follows_the_runs(server: &Server, map: &str, preset: &str) {
+    let region = server.get(&format!("/v1/{map}")).await.expect(200).json();
+    let (x, y) = (numbers(&region["x"]), numbers(&region["y"]));
+    for (row, theta) in y.iter().enumerate() {
+        for (column, gain) in x.iter().enumerate() {
+            let target = format!(
+                "/v1/trajectories?preset={preset}&impacts=300&scene.table.tilt_gain={gain}&scene.release.theta={theta}"
+            );
+            let run = server.get(&target).await.expect(200).json();
+            assert_eq!(region["values"][row][column].as_f64(), run["outcome"]["impacts"].as_f64(), "{target}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn the_total_energy_holds_and_the_swing_keeps_its_size() {
+    let server = Server::start();
+    let total = server.get("/v1/stability?preset=case-4-total&impacts=3000").await.expect(200).json();
+    assert_eq!(total["verdict"], "elliptic, 3000 bounces survived");
+    assert_eq!((&total["lyapunov"]["coefficient"], &total["lyapunov"]["kind"]), (&json!(0.0), &json!("neutral")));
+    assert_eq!(total["boundary"]["kind"], "soft");
+    let vertical = server.get("/v1/stability?preset=case-4&impacts=3000").await.expect(200).json();
+    assert_eq!(vertical["lyapunov"]["kind"], "repelling");
+    assert_eq!(vertical["linear"]["eigenvalues"], total["linear"]["eigenvalues"], "the first order is the same");
+    let run = server.get("/v1/trajectories?preset=case-4-total&impacts=300").await.expect(200).json();
+    let energy = numbers(&run["impacts"]["energy"]);
+    let target = run["derived"]["target"]["energy"].as_f64().unwrap();
+    assert!((energy[299] / target - 1.0).abs() <= 1e-12, "{}", energy[299]);
+    let linear = server.get("/v1/trajectories?preset=case-4-total&method=linear").await.expect(422);
+    assert!(linear.text().contains("vertical energy"), "{}", linear.text());
+    let map = "regions?preset=case-4-total&impacts=300&x.parameter=table.tilt_gain&x.from=1.02&x.to=1.5&x.count=6\
+               &y.parameter=release.theta&y.from=0.05&y.to=0.5&y.count=5";
+    follows_the_runs(&server, map, "case-4-total").await;
+    let one_strike = server
+        .get("/v1/stability?preset=case-4-total&scene.table.energy_gain=null&scene.table.energy_law=one_strike")
+        .await
+        .expect(200)
+        .json();
+    let energy_gain = &one_strike["linear"]["energy_gain"];
+    assert_eq!((&energy_gain["upper"], &energy_gain["eigenvalue"]), (&Value::Null, &json!(0.0)), "{energy_gain}");
+}
+
+/// A run that begins to juggle under way: the heights take the place of the target height.
+#[tokio::test]
+async fn a_run_begins_to_juggle() {
+    let server = Server::start();
+    let juggle = json!({"table": {"energy_gain": 0, "energy_law": "one_strike", "program": [0.2, 0.3]}});
+    let request = json!({"preset": "case-4", "impacts": 40, "interventions": [{"impact": 20, "set": juggle}]});
+    let run = server.post("/v1/trajectories", &request).await.expect(200).json();
+    let energy = numbers(&run["impacts"]["energy"]);
+    let gravity = run["derived"]["gravity"].as_f64().unwrap();
+    // Strike 20 takes the second height of the cycle.
+    for (n, height) in [(21, 0.3), (22, 0.2), (39, 0.3), (40, 0.2)] {
+        let energy: f64 = energy[n - 1];
+        assert!((energy / (gravity * height) - 1.0).abs() <= 1e-14, "contact {n}: {energy}");
+    }
+    let both = json!({"table": {"target_height": 0.3, "program": [0.2, 0.3]}});
+    let request = json!({"preset": "case-4", "interventions": [{"impact": 20, "set": both}]});
+    let refused = server.post("/v1/trajectories", &request).await.expect(422);
+    assert!(refused.text().contains("say the same thing"), "{}", refused.text());
+}
