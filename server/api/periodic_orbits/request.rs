@@ -50,6 +50,11 @@ impl ResourceRequest for PeriodicOrbitRequest {
         let before = reader.errors().len();
         let cycle = scene.as_ref().and_then(Scene::program).map_or(1, |program| program.heights().len() as u64);
         let period = reader.integer("period", 1..=limits::ORBIT_PERIOD);
+        if let Some(period) = period.filter(|period| !period.is_multiple_of(cycle)) {
+            let detail =
+                format!("period is {period}; with a program of {cycle} heights it must be a multiple of {cycle}");
+            reader.refuse("period", detail);
+        }
         let guess = reader.within("guess", read_state);
         let family = reader.choice("family", &[("symmetric", ())]);
         let theta = reader.number("theta", -1.5..=1.5, "rad");
@@ -88,11 +93,6 @@ impl ResourceRequest for PeriodicOrbitRequest {
                 None
             }
         };
-        if let Some(period) = period.filter(|period| !period.is_multiple_of(cycle)) {
-            let detail =
-                format!("period is {period}; with a program of {cycle} heights it must be a multiple of {cycle}");
-            reader.refuse("period", detail);
-        }
         if cycle > 1 && matches!(start, Some(BranchStart::Symmetric(_))) {
             reader.refuse(
                 "family",

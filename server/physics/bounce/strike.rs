@@ -2,7 +2,7 @@
 //!
 //! Not here: when contacts happen ([`crate::bounce::contact_time`]) and whether a run goes on after one ([`crate::run::orbit`]).
 
-use crate::bounce::energy_feedback::MeasuredBounce;
+use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rebound::Rebound;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -70,6 +70,48 @@ pub struct Strike<N = f64> {
     pub energy: N,
     /// Energy that the strike adds, ½γ(γ − 2) v_nc²/B: nothing where the strike gain is 2.
     pub energy_gain: N,
+}
+
+/// Quantities of a strike from which its gain follows.
+#[derive(Clone, Copy, Debug)]
+struct MeasuredBounce<N> {
+    /// G l cos θ, m²/s².
+    potential: N,
+    /// ẏ, m/s.
+    y_dot: N,
+    /// |v|², m²/s².
+    speed_squared: N,
+    /// v_nc, m/s.
+    normal_velocity: N,
+    /// B.
+    mobility: N,
+}
+
+impl<N: Number> Rod<N> {
+    /// γ, the strike gain.
+    #[inline(always)]
+    fn gain(&self, bounce: &MeasuredBounce<N>) -> N {
+        let (half, one, two) = (N::from_f64(0.5), N::from_f64(1.0), N::from_f64(2.0));
+        let MeasuredBounce { potential, y_dot, speed_squared, normal_velocity, mobility } = *bounce;
+        match self.energy_feedback {
+            EnergyFeedback::Vertical => {
+                let energy = potential + half * y_dot * y_dot;
+                self.strike_gain + self.strike_gain_per_energy * (self.target_energy - energy)
+            }
+            EnergyFeedback::Total => {
+                let energy = potential + half * speed_squared;
+                self.strike_gain + self.strike_gain_per_energy * (self.target_energy - energy)
+            }
+            EnergyFeedback::OneStrike => {
+                let missing = self.target_energy - (potential + half * speed_squared);
+                let square = one + two * missing * mobility / (normal_velocity * normal_velocity);
+                // Where the contact point does not approach, the run ends as `separating` for any gain > 0.
+                let can = (normal_velocity.to_f64() < 0.0) & (square.to_f64() > 0.0);
+                let ratio = if can { square.sqrt() } else { N::from_f64(0.0) };
+                half * self.strike_gain * (one + ratio)
+            }
+        }
+    }
 }
 
 impl<N: Number> Rod<N> {
