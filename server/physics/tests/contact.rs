@@ -1,10 +1,18 @@
 //! Motion in lasting contact.
 
+use equipoise_physics::body::polygon::{Outline, Vertices};
 use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, Touching, hold};
+use equipoise_physics::contact::{
+    ContactMotion, ContactStart, Grip, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, Touching, hold,
+};
 use equipoise_physics::control::care;
+use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::table::control_law::Gains;
 use nalgebra::{SMatrix, SVector};
+use random::Random;
+
+#[path = "support/random.rs"]
+mod random;
 
 fn paper() -> Rod {
     Rod::lossless(0.4 / 3.0, 2.0_f64.sqrt() / 15.0, 1.1)
@@ -109,4 +117,190 @@ fn contact_gains(gravity: f64) -> Gains {
     let b = SVector::from([0.0, 0.0, -gravity, -turn]);
     let gain = care::solve(&a, &b, &SVector::from([1.0, 10.0, 0.1, 0.1]), 10.0).unwrap().gain;
     Gains { x: gain[0], theta: gain[1], x_dot: gain[2], theta_dot: gain[3] }
+}
+
+#[test]
+fn a_level_table_keeps_the_energy() {
+    let start = ContactStart { t: 0.0, x: 0.1, theta: 0.05, x_dot: 0.2, theta_dot: -0.3, table_speed: 0.0 };
+    let rod = paper();
+    let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
+    let energy = |it: &HoldSample, sticks: f64| {
+        let (sin, cos) = it.theta.sin_cos();
+        let along = sticks * l * cos * it.theta_dot;
+        let up = l * sin * it.theta_dot;
+        0.5 * (along * along + up * up + rho * rho * it.theta_dot * it.theta_dot) + rod.gravity * l * cos
+    };
+    let level = request(HoldLaw::TiltGain(0.0), start);
+    let smooth = held(&level);
+    // The body falls; the table has nothing to pull it back with.
+    assert_eq!(smooth.ending, HoldEnding::Toppled);
+    let begin = energy(&smooth.samples[0], 0.0);
+    for sample in &smooth.samples {
+        assert!((energy(sample, 0.0) - begin).abs() < 1e-7 && (sample.x_dot - 0.2).abs() < 1e-15, "{sample:?}");
+    }
+    // A contact that sticks turns about its point.
+    let x_dot = -l * start.theta.cos() * start.theta_dot;
+    let stuck = HoldRequest { touching: Touching::Coulomb(50.0), start: ContactStart { x_dot, ..start }, ..level };
+    let stuck = held(&stuck);
+    let begin = energy(&stuck.samples[0], 1.0);
+    assert!(stuck.samples.len() > 50);
+    for sample in &stuck.samples {
+        assert!((energy(sample, 1.0) - begin).abs() < 1e-7, "{sample:?}");
+        assert!((sample.x + l * sample.theta.sin() - stuck.samples[0].x - l * start.theta.sin()).abs() < 1e-7);
+    }
+}
+
+#[test]
+fn a_mirrored_hold_is_the_mirror_of_the_hold() {
+    let start = ContactStart { t: 0.0, x: 0.03, theta: 0.1, x_dot: -0.1, theta_dot: 0.4, table_speed: -0.5 };
+    let mirrored = ContactStart { x: -0.03, theta: -0.1, x_dot: 0.1, theta_dot: -0.4, ..start };
+    for touching in [Touching::Frictionless, Touching::Matched(0.3), Touching::Coulomb(0.2)] {
+        let of = |start| held(&HoldRequest { touching, brake: Some(3.0), ..request(HoldLaw::Feedback(K_HOLD), start) });
+        let (one, other) = (of(start), of(mirrored));
+        assert_eq!((one.ending, one.t_end, one.samples.len()), (other.ending, other.t_end, other.samples.len()));
+        for (one, other) in one.samples.iter().zip(&other.samples) {
+            assert_eq!((one.x, one.theta, one.theta_dot), (-other.x, -other.theta, -other.theta_dot));
+            assert_eq!(one.normal_force, other.normal_force);
+        }
+    }
+}
+
+/// Fourth-order Runge-Kutta with 31 digits over the same equations.
+fn extended(start: &ContactStart, gains: &Gains, duration: f64) -> [f64; 4] {
+    type N = DoubleDouble;
+    let number = |value: f64| N::from(value);
+    let rod = paper().lift::<N>();
+    let gains = [gains.x, gains.theta, gains.x_dot, gains.theta_dot].map(number);
+    let rates = |s: [N; 4]| {
+        let alpha = -(gains[0] * s[0] + gains[1] * s[1] + gains[2] * s[2] + gains[3] * s[3]);
+        let motion = ContactMotion::new(&rod, rod.gravity, [s[1], s[3], alpha], Grip::Sliding(number(0.0)));
+        [s[2], s[3], motion.x_ddot, motion.theta_ddot]
+    };
+    let steps = 10_000;
+    let h = number(duration / f64::from(steps));
+    let moved = |s: [N; 4], k: [N; 4], h: N| std::array::from_fn(|i| s[i] + h * k[i]);
+    let mut s = [start.x, start.theta, start.x_dot, start.theta_dot].map(number);
+    let (half, sixth, two) = (h * number(0.5), h / number(6.0), number(2.0));
+    for _ in 0..steps {
+        let k1 = rates(s);
+        let k2 = rates(moved(s, k1, half));
+        let k3 = rates(moved(s, k2, half));
+        let k4 = rates(moved(s, k3, h));
+        s = std::array::from_fn(|i| s[i] + sixth * (k1[i] + two * (k2[i] + k3[i]) + k4[i]));
+    }
+    s.map(|it| it.to_f64())
+}
+
+#[test]
+fn the_error_is_within_its_bound() {
+    let mut random = Random::new(16);
+    for _ in 0..6 {
+        let start = ContactStart {
+            t: 0.0,
+            x: random.between(-0.1, 0.1),
+            theta: random.between(-0.2, 0.2),
+            x_dot: random.between(-0.2, 0.2),
+            theta_dot: random.between(-1.0, 1.0),
+            table_speed: 0.0,
+        };
+        let hold = held(&HoldRequest { duration: 1.0, ..request(HoldLaw::Feedback(K_HOLD), start) });
+        assert_eq!(hold.ending, HoldEnding::Completed);
+        let last = hold.samples.last().unwrap();
+        let [x, theta, x_dot, theta_dot] = extended(&start, &K_HOLD, 1.0);
+        let rho = paper().radius_of_gyration;
+        let differences =
+            [last.x - x, rho * (last.theta - theta), last.x_dot - x_dot, rho * (last.theta_dot - theta_dot)];
+        let error = differences.iter().fold(0.0_f64, |worst, it| worst.max(it.abs()));
+        assert!(error <= hold.error_bound && hold.error_bound < 1e-6, "{error:e} {:e}", hold.error_bound);
+    }
+}
+
+/// K for a contact that sticks, with the weights of sliding contact: a table that tilts by α pushes with about Gα.
+fn cart_pole_gains(input: f64) -> Gains {
+    let Rod { contact_distance: l, radius_of_gyration: rho, gravity, .. } = paper();
+    let about_contact = l * l + rho * rho;
+    let mut a = SMatrix::<f64, 4, 4>::zeros();
+    (a[(0, 2)], a[(1, 3)]) = (1.0, 1.0);
+    (a[(2, 1)], a[(3, 1)]) = (-l * l * gravity / about_contact, l * gravity / about_contact);
+    let b = SVector::from([0.0, 0.0, rho * rho / about_contact, l / about_contact]);
+    let gain = care::solve(&a, &b, &SVector::from([1.0, 10.0, 0.1, 0.1]), input).unwrap().gain;
+    Gains { x: gain[0], theta: gain[1], x_dot: gain[2], theta_dot: gain[3] }
+}
+
+#[test]
+fn a_cart_balances_a_contact_that_sticks() {
+    let start = ContactStart { t: 0.0, x: 0.0, theta: 0.1, x_dot: 0.0, theta_dot: 0.0, table_speed: 0.0 };
+    // A dear input needs less friction and more travel.
+    for (input, friction, travel) in [(0.005, 0.31, 0.058), (0.02, 0.221, 0.071), (1.0, 0.149, 0.157)] {
+        let request = HoldRequest {
+            touching: Touching::Coulomb(2.0),
+            ..request(HoldLaw::CartPole(cart_pole_gains(input)), start)
+        };
+        let hold = held(&request);
+        assert!((hold.least_friction - friction).abs() < 5e-3 && (hold.travel - travel).abs() < 1e-3, "{hold:?}");
+        assert_eq!(hold.ending, HoldEnding::Completed);
+        assert!(hold.theta_within.is_some());
+        // With less friction it slips, and says how much it needs.
+        let rough = held(&HoldRequest { touching: Touching::Coulomb(0.9 * hold.least_friction), ..request });
+        assert!(matches!(rough.ending, HoldEnding::Slipped { needed } if needed > 0.9 * hold.least_friction * 0.999));
+        // The force is that of Newton's law: F = ẍ, N = G + ÿ.
+        for three in hold.samples[..600].windows(3) {
+            let second = (three[2].x - 2.0 * three[1].x + three[0].x) / 1e-4;
+            assert!((second - three[1].tangential_force).abs() < 0.1, "{second} {}", three[1].tangential_force);
+        }
+    }
+}
+
+/// The paper's triangle, on the left end of its base.
+fn on_its_base(theta_off: f64, theta_dot: f64, touching: Touching) -> HoldRequest {
+    let vertices = Vertices::new(&[[-0.05, 0.0], [0.05, 0.0], [0.0, 0.2]]).unwrap();
+    let outline = Outline::new(&vertices, 0).unwrap();
+    let flat = -libm::atan2(0.05, 0.2 / 3.0);
+    let theta = flat + theta_off;
+    // The vertex rests.
+    let x_dot = -outline.contact_distance() * theta.cos() * theta_dot;
+    let start = ContactStart { t: 0.0, x: 0.0, theta, x_dot, theta_dot, table_speed: 0.0 };
+    let rod = Rod {
+        contact_distance: outline.contact_distance(),
+        radius_of_gyration: outline.radius_of_gyration(),
+        ..paper()
+    };
+    HoldRequest { rod, touching, outline: Some(outline), topple_angle: 3.0, ..request(HoldLaw::Level, start) }
+}
+
+#[test]
+fn a_triangle_rocks_to_rest_on_its_base() {
+    let request = on_its_base(0.3, 0.0, Touching::Coulomb(5.0));
+    let hold = held(&request);
+    assert_eq!(hold.ending, HoldEnding::RestsOnEdge { vertices: [0, 1] });
+    let last = hold.samples.last().unwrap();
+    assert!((last.theta - (request.start.theta - 0.3)).abs() < 1e-8 && last.theta_dot == 0.0);
+    // The base lands at θ̇, and the body turns on at 0.478θ̇ about the other end.
+    let landed = hold.samples.iter().position(|it| it.theta < request.start.theta - 0.3).unwrap();
+    let rod = request.rod;
+    let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
+    let fallen = rod.gravity * l * ((request.start.theta).cos() - (request.start.theta - 0.3).cos()).abs();
+    let speed = (2.0 * fallen / (l * l + rho * rho)).sqrt();
+    let most = hold.samples[..landed].iter().map(|it| it.theta_dot.abs()).fold(0.0, f64::max);
+    let after = hold.samples[landed].theta_dot.abs();
+    assert!(most < speed && most > 0.9 * speed, "{most} {speed}");
+    assert!(after < 0.478 * speed && after > 0.35 * speed, "{after} {speed}");
+}
+
+#[test]
+fn a_triangle_topples_over_its_base_above_its_speed() {
+    let rho_squared = {
+        let outline = on_its_base(0.0, 0.0, Touching::Frictionless).outline.unwrap();
+        outline.radius_of_gyration() * outline.radius_of_gyration()
+    };
+    let arm = 0.05_f64 * 0.05 + (0.2_f64 / 3.0) * (0.2 / 3.0);
+    let ratio = (rho_squared - 0.05 * 0.05 + (0.2_f64 / 3.0) * (0.2 / 3.0)) / (rho_squared + arm);
+    assert!((ratio - 0.478).abs() < 5e-4, "{ratio}");
+    // ½(ρ² + r²)θ̇² = G(r − h) on top of the vertex.
+    let speed = (2.0 * 9.81 * (arm.sqrt() - 0.2 / 3.0) / (rho_squared + arm)).sqrt();
+    assert!((speed - 5.84).abs() < 5e-3, "{speed}");
+    for (share, edge) in [(0.999, [0, 1]), (1.001, [0, 2])] {
+        let hold = held(&on_its_base(1e-12, share * speed, Touching::Coulomb(50.0)));
+        assert_eq!(hold.ending, HoldEnding::RestsOnEdge { vertices: edge });
+    }
 }
