@@ -11,6 +11,7 @@ use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker};
 
+use crate::api::scene::has_angle;
 use crate::api::shared::outcome::Outcome;
 use crate::compute::Price;
 use crate::limits;
@@ -103,7 +104,8 @@ impl Playback {
             self.tracker.track(strike, contact.flight_time);
         }
         if let Some(ending) = contact.ending {
-            self.outcome = Some(Arc::new(Outcome::new(ending, n, contact.t)));
+            let turning = Some(&contact).filter(|_| has_angle(&self.scene));
+            self.outcome = Some(Arc::new(Outcome::new(ending, n, contact.t).turning(turning)));
         }
         (contact, price(&contact))
     }

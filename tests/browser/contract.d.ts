@@ -64,6 +64,8 @@ export interface components {
         "trajectories.tolerance": number;
         "trajectories.epoch": number;
         /** @default 0 */
+        "trajectories.hold": number;
+        /** @default 0 */
         "trajectories.samples_per_flight": number;
         "state.theta": number;
         "state.x_dot": number;
@@ -280,6 +282,7 @@ export interface components {
             method?: components["schemas"]["trajectories.method"] | null;
             tolerance?: components["schemas"]["trajectories.tolerance"] | null;
             samples_per_flight?: components["schemas"]["trajectories.samples_per_flight"] | null;
+            hold?: components["schemas"]["trajectories.hold"] | null;
             epoch?: components["schemas"]["trajectories.epoch"] | null;
             /** @default [] */
             interventions: {
@@ -852,6 +855,7 @@ export interface components {
             limit: number | null;
             unit: string | null;
             settle_time: number | null;
+            theta_dot?: number;
         };
         Eigenvalue: {
             re: number;
@@ -950,6 +954,8 @@ export interface components {
             impacts: components["schemas"]["Impacts"];
             predictable_impacts: components["schemas"]["PredictableImpacts"];
             flights?: components["schemas"]["Flights"];
+            hold?: components["schemas"]["HoldSamples"];
+            hold_end?: components["schemas"]["HoldEnd"];
             demand: components["schemas"]["Demand"];
             notes: components["schemas"]["Notes"];
         };
@@ -1040,6 +1046,7 @@ export interface components {
             end: {
                 demand: components["schemas"]["Demand"];
                 nearest_vertex?: components["schemas"]["NearestVertex"];
+                hold_end?: components["schemas"]["HoldEnd"];
                 outcome: components["schemas"]["Outcome"];
                 method: components["schemas"]["MethodChoice"];
                 predictable_impacts: components["schemas"]["PredictableImpacts"];
@@ -1275,6 +1282,19 @@ export interface components {
             clearance: components["schemas"]["Numbers"];
             table_velocity: components["schemas"]["Numbers"];
             ratio: components["schemas"]["Numbers"];
+        };
+        HoldEnd: {
+            /** @enum {string} */
+            kind: "completed" | "contact_lost" | "toppled" | "other_vertex" | "rests_on_edge" | "slipped" | "beyond_limits" | "too_long";
+            t: number;
+            detail: string;
+            /** @enum {string} */
+            contact: "frictionless" | "matched" | "coulomb";
+            error_bound: number | null;
+            upright_within: {
+                theta_1mrad: number | null;
+                x_1mm: number | null;
+            };
         };
         HoldSamples: {
             t: components["schemas"]["Numbers"];
@@ -1942,6 +1962,7 @@ export type TrajectoriesImpacts = components['schemas']['trajectories.impacts'];
 export type TrajectoriesMethod = components['schemas']['trajectories.method'];
 export type TrajectoriesTolerance = components['schemas']['trajectories.tolerance'];
 export type TrajectoriesEpoch = components['schemas']['trajectories.epoch'];
+export type TrajectoriesHold = components['schemas']['trajectories.hold'];
 export type TrajectoriesSamplesPerFlight = components['schemas']['trajectories.samples_per_flight'];
 export type StateTheta = components['schemas']['state.theta'];
 export type StateXDot = components['schemas']['state.x_dot'];
@@ -2074,6 +2095,7 @@ export type Span = components['schemas']['Span'];
 export type StateGain = components['schemas']['StateGain'];
 export type JudgedLaw = components['schemas']['JudgedLaw'];
 export type Strikes = components['schemas']['Strikes'];
+export type HoldEnd = components['schemas']['HoldEnd'];
 export type HoldSamples = components['schemas']['HoldSamples'];
 export type CatchOutcome = components['schemas']['CatchOutcome'];
 export type CatchStrategy = components['schemas']['CatchStrategy'];

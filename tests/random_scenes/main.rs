@@ -157,8 +157,9 @@ fn trajectories_of_random_scenes() {
         maybe((-15.0..-1.0).prop_map(|power| 10_f64.powf(power))),
         maybe(0..2_000_000_000_000_u64),
         prop::option::weighted(0.3, (1..20_u64, -1.0..1.0)),
+        maybe(0.0..3.0),
     )
-        .prop_map(|(impacts, samples, method, tolerance, epoch, kick)| {
+        .prop_map(|(impacts, samples, method, tolerance, epoch, kick, hold)| {
             let kick = kick.map(|(impact, speed)| json!([{"impact": impact, "kick": {"x_dot": speed}}]));
             object(vec![
                 ("impacts", Some(json!(impacts))),
@@ -167,6 +168,7 @@ fn trajectories_of_random_scenes() {
                 ("tolerance", tolerance),
                 ("epoch", epoch),
                 ("interventions", kick),
+                ("hold", hold),
             ])
         });
     hold(&resource("/v1/trajectories", |json| length(&json["impacts"])), parameters, 40);

@@ -23,6 +23,7 @@ mod events;
 mod failures;
 mod formats;
 mod friction;
+mod holds;
 mod hostile;
 mod ladder;
 mod live;

@@ -2,6 +2,7 @@
 
 use equipoise_physics::body::Touch;
 use equipoise_physics::run::ending::{Ending, EndingKind};
+use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::rules::SPEED_LIMIT;
 use equipoise_physics::table::actuator_load::LimitViolation;
 use serde::Serialize;
@@ -30,6 +31,9 @@ pub struct Outcome {
     pub unit: Option<&'static str>,
     /// Time at which a settling run comes to rest, s.
     pub settle_time: Option<f64>,
+    /// Angular velocity of a settling run as its bounces end, rad/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub theta_dot: Option<f64>,
 }
 
 impl Outcome {
@@ -112,7 +116,23 @@ impl Outcome {
             limit: decided.map(|(_, _, limit, _)| limit),
             unit: decided.map(|(.., unit)| unit),
             settle_time,
+            theta_dot: None,
         }
+    }
+
+    /// The same outcome of a run of a body with an angle, whose `last` contact is known: bounces that end do not stop its rotation.
+    #[must_use]
+    pub fn turning(mut self, last: Option<&Contact>) -> Self {
+        if self.ending == EndingKind::Settled
+            && let Some(strike) = last.and_then(|last| last.strike)
+        {
+            let theta_dot = strike.after.theta_dot;
+            self.theta_dot = Some(theta_dot);
+            if theta_dot != 0.0 {
+                self.detail.push_str(&format!(", while the body still turns at {theta_dot} rad/s"));
+            }
+        }
+        self
     }
 }
 

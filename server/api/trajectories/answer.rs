@@ -22,6 +22,7 @@ use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::Table;
 use crate::api::trajectories::columns::{ExtendedRow, ImpactRow, date};
 use crate::api::trajectories::flights::{Flights, SampledFlight};
+use crate::api::trajectories::hold::{HoldAnswer, HoldEnd};
 use crate::api::trajectories::impacts::Impacts;
 use crate::api::trajectories::request::TrajectoryRequest;
 
@@ -113,6 +114,12 @@ pub struct TrajectoryAnswer<'a> {
     /// Samples of the flights.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flights: Option<Table>,
+    /// The contact after the bounces, if it is asked for and they ended.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hold: Option<Table>,
+    /// End of that contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hold_end: Option<HoldEnd>,
     /// Largest load on the table.
     pub demand: LoadAnswer,
     /// Smallest distance of a polygon's other vertices from the table.
@@ -143,7 +150,7 @@ impl<'a> TrajectoryAnswer<'a> {
         let mut rows = Impacts::with_capacity(room, epoch.is_some(), method == RunMethod::Extended);
         let mut flights = (samples > 0).then(|| Flights::new(scene, samples, epoch));
         let (body, has_angle) = (scene.model(), has_angle(scene));
-        let (mut last, mut unknown, mut predictable) = (None, 0, None);
+        let (mut last, mut unknown, mut predictable) = (None::<Contact>, 0, None);
         let mut tracker = LoadTracker::default();
         let mut nearest_vertex = None;
         let mut visit = |impact: &ComputedImpact<'_>| {
@@ -173,7 +180,7 @@ impl<'a> TrajectoryAnswer<'a> {
             if let Some(outline) = scene.outline() {
                 nearest_vertex = Some(NearestVertex::or(nearest_vertex, outline, contact));
             }
-            last = Some((contact.n, contact.t));
+            last = Some(*contact);
             unknown += u64::from(!error_estimate.is_finite());
             let lost = error_estimate.is_nan() || *error_estimate > tolerance.unwrap_or(PREDICTABLE);
             if predictable.is_none() && lost {
@@ -197,8 +204,17 @@ impl<'a> TrajectoryAnswer<'a> {
         };
         let ending = run.map_err(|why| ("/method", format!("{} does not apply: {why}", choice.name)))?;
         let ending = ending.ok_or(Refusal::Cancelled)?;
-        let (contacts_made, t) = last.unwrap_or((0, 0.0));
+        let (contacts_made, t) = last.map_or((0, 0.0), |last| (last.n, last.t));
+        let outcome = Outcome::new(ending, contacts_made, t).turning(last.as_ref().filter(|_| has_angle));
         let mut notes = Vec::new();
+        let (mut hold, mut hold_end) = (None, None);
+        if request.hold > 0.0 {
+            let in_force = request.run.restarted(contacts_made);
+            match HoldAnswer::compute(in_force.scene(), (ending, last.as_ref()), request.hold, &mut go_on)? {
+                Ok(held) => (hold, hold_end) = (Some(held.samples), Some(held.end)),
+                Err(reason) => notes.push(reason),
+            }
+        }
         if was_changed {
             notes.push(format!("error_estimate is null and predictable_impacts 0: {NO_BOUND}"));
         } else if let Some(error) = scene.beyond(&[ModelLevel::Friction]) {
@@ -224,10 +240,12 @@ impl<'a> TrajectoryAnswer<'a> {
             derived: Derived::of(scene),
             model: ModelChoice::by_method(scene, method),
             method: choice,
-            outcome: Outcome::new(ending, contacts_made, t),
+            outcome,
             impacts: rows.into_table(),
             predictable_impacts: predictable,
             flights: flights.map(Flights::into_table),
+            hold,
+            hold_end,
             notes,
             demand: tracker.most.into(),
             nearest_vertex,
@@ -246,14 +264,16 @@ impl Tabular for TrajectoryAnswer<'_> {
             outcome: Outcome,
             method: MethodAnswer,
             predictable_impacts: Option<u64>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            hold_end: Option<HoldEnd>,
             demand: LoadAnswer,
             #[serde(skip_serializing_if = "Option::is_none")]
             nearest_vertex: Option<NearestVertex>,
             notes: Vec<String>,
         }
-        let Self { outcome, method, predictable_impacts, demand, nearest_vertex, notes, .. } = self;
-        let (outcome, method, notes) = (outcome.clone(), method.clone(), notes.clone());
+        let Self { outcome, method, predictable_impacts, hold_end, demand, nearest_vertex, notes, .. } = self;
+        let (outcome, method, hold_end, notes) = (outcome.clone(), method.clone(), hold_end.clone(), notes.clone());
         let (predictable_impacts, demand, nearest_vertex) = (*predictable_impacts, *demand, *nearest_vertex);
-        End { outcome, method, predictable_impacts, demand, nearest_vertex, notes }
+        End { outcome, method, predictable_impacts, hold_end, demand, nearest_vertex, notes }
     }
 }

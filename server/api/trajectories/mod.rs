@@ -3,6 +3,7 @@
 pub mod answer;
 pub mod columns;
 pub mod flights;
+pub mod hold;
 pub mod impacts;
 pub mod picture;
 pub mod request;

@@ -3,6 +3,7 @@
 use equipoise_physics::run::method::{RunMethod, deviations_circle};
 use equipoise_physics::scene::{Name, Scene};
 
+use crate::api::catches::columns::OF_HOLD;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::shared::write;
 use crate::api::trajectories::{columns, flights};
@@ -29,6 +30,8 @@ pub struct TrajectoryRequest {
     pub tolerance: Option<f64>,
     /// Time of the release, unix ms. Without it there is no column `time`.
     pub epoch: Option<u64>,
+    /// Time in contact that is followed after the bounces have ended, s.
+    pub hold: f64,
 }
 
 /// Range of tolerances, m/s. Below it no method has enough digits; above it a bound carries no information.
@@ -63,7 +66,8 @@ impl ResourceRequest for TrajectoryRequest {
         let method = reader.choice("method", &[("auto", None), map, linear, extended]).flatten();
         let tolerance = reader.number("tolerance", TOLERANCES, "m/s");
         let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
-        Some(Self { run: run?, impacts, samples_per_flight, method, tolerance, epoch })
+        let hold = reader.number("hold", 0.0..=limits::HOLD_TIME, "s").unwrap_or(0.0);
+        Some(Self { run: run?, impacts, samples_per_flight, method, tolerance, epoch, hold })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -74,8 +78,8 @@ impl ResourceRequest for TrajectoryRequest {
 
 impl CanonicalRequest for TrajectoryRequest {
     fn canonical(&self) -> Vec<u8> {
-        let Self { run, impacts, samples_per_flight, method, tolerance, epoch } = self;
-        let rest = (impacts, samples_per_flight, method.map(RunMethod::name), tolerance, epoch);
+        let Self { run, impacts, samples_per_flight, method, tolerance, epoch, hold } = self;
+        let rest = (impacts, samples_per_flight, method.map(RunMethod::name), tolerance, epoch, hold);
         write::canonical(run.scene(), &(rest, intervention_parameters(run)))
     }
 }
@@ -85,7 +89,13 @@ impl TrajectoryRequest {
     pub fn numbers(&self) -> u64 {
         let dated = self.epoch.is_some();
         let (impact, sample) = (columns::of_trajectories(dated).count(), flights::columns(dated).count());
-        self.impacts.saturating_mul(impact as u64 + self.samples_per_flight * sample as u64)
+        let held = self.held_samples() * OF_HOLD.len() as u64;
+        self.impacts.saturating_mul(impact as u64 + self.samples_per_flight * sample as u64).saturating_add(held)
+    }
+
+    /// Most samples of the contact after the bounces.
+    fn held_samples(&self) -> u64 {
+        if self.hold > 0.0 { limits::HOLD_SAMPLES } else { 0 }
     }
 
     /// Price of the work, in bounces.
@@ -102,6 +112,7 @@ impl TrajectoryRequest {
             }
         };
         let each = impact + SAMPLE_PRICE * self.samples_per_flight;
-        self.impacts.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once)
+        let held = limits::HOLD_SAMPLE_PRICE * self.held_samples();
+        self.impacts.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once + held)
     }
 }

@@ -16,6 +16,7 @@ mod look;
 mod record;
 mod recorder;
 mod request;
+mod rest_of_run;
 mod solver;
 mod stance;
 
@@ -23,6 +24,7 @@ pub use equations::Motion;
 pub use force::{ContactForce, ContactMotion, Grip};
 pub use record::{Hold, HoldEnding, HoldSample, LONGEST_HOLD, MOST_SAMPLES};
 pub use request::{ContactStart, HoldLaw, HoldRequest, Touching};
+pub use rest_of_run::rest_of_run;
 
 use follow::follow;
 

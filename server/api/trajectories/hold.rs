@@ -1,0 +1,126 @@
+//! The contact after the last bounce of a run that settles, as an answer.
+
+use equipoise_physics::contact::{Hold, HoldEnding, HoldRequest, LONGEST_HOLD, Touching, hold, rest_of_run};
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::Contact;
+use equipoise_physics::scene::Scene;
+use serde::Serialize;
+
+use crate::api::catches::columns::{OF_HOLD, to_table};
+use crate::api::shared::refusal::Refusal;
+use crate::api::shared::table::Table;
+
+/// The contact: its samples and its end.
+#[derive(Debug)]
+pub(crate) struct HoldAnswer {
+    /// Samples.
+    pub(crate) samples: Table,
+    /// End.
+    pub(crate) end: HoldEnd,
+}
+
+/// End of the contact.
+#[derive(Debug, Clone, Serialize)]
+pub struct HoldEnd {
+    /// Name of the ending.
+    pub kind: &'static str,
+    /// Run time of the ending, s.
+    pub t: f64,
+    /// A sentence with the numbers.
+    pub detail: String,
+    /// Kind of contact.
+    pub contact: &'static str,
+    /// Bound on the error of the samples, if there is one.
+    pub error_bound: Option<f64>,
+    /// Times from which the body stays upright and in place.
+    pub upright_within: UprightWithin,
+}
+
+/// Times from which the body stays within 1 mrad of upright and within 1 mm of x = 0, s.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct UprightWithin {
+    /// For θ.
+    pub theta_1mrad: Option<f64>,
+    /// For x.
+    pub x_1mm: Option<f64>,
+}
+
+impl HoldAnswer {
+    /// Follows a run that ended at its `last` contact for `duration` s more. `Err` has a reason if it did not settle.
+    ///
+    /// # Errors
+    /// Cancelled work.
+    pub(crate) fn compute(
+        scene: &Scene,
+        (ending, last): (Ending, Option<&Contact>),
+        duration: f64,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Result<Self, String>, Refusal> {
+        let (Ending::Settled { settle_time, .. }, Some(last)) = (ending, last) else {
+            return Ok(Err(format!("hold is absent: the run ended as `{}`, not as `settled`", ending.name())));
+        };
+        let Some(request) = rest_of_run(scene, last, settle_time, duration) else {
+            return Ok(Err("hold is absent: a point mass has no angle in contact".to_owned()));
+        };
+        let held = hold(&request, go_on);
+        if held.ending == HoldEnding::Stopped {
+            return Err(Refusal::Cancelled);
+        }
+        let samples = to_table(OF_HOLD.iter().copied(), &held.samples);
+        Ok(Ok(Self { samples, end: HoldEnd::new(&request, &held) }))
+    }
+}
+
+impl HoldEnd {
+    fn new(request: &HoldRequest, held: &Hold) -> Self {
+        let (t, theta) = (held.t_end, held.samples.last().map_or(0.0, |last| last.theta));
+        let (kind, detail) = match held.ending {
+            HoldEnding::Completed => ("completed", format!("the body stays in contact up to t = {t} s")),
+            HoldEnding::ContactLost => {
+                ("contact_lost", format!("at t = {t} s, no pushing table keeps the contact point at its height"))
+            }
+            HoldEnding::Slipped { needed } => (
+                "slipped",
+                format!(
+                    "at t = {t} s, sticking needs a friction of {needed}; contact.friction is {}",
+                    request.touching.coefficient()
+                ),
+            ),
+            HoldEnding::Toppled => (
+                "toppled",
+                format!("at t = {t} s, the angle {theta} rad had reached topple_angle {} rad", request.topple_angle),
+            ),
+            HoldEnding::OtherVertex(vertex) => {
+                ("other_vertex", format!("at t = {t} s, vertex {vertex} of the body came down to the table"))
+            }
+            HoldEnding::RestsOnEdge { vertices: [one, other] } => {
+                ("rests_on_edge", format!("at t = {t} s, the body rests on vertices {one} and {other}"))
+            }
+            HoldEnding::BeyondLimits(limit) => (
+                "beyond_limits",
+                format!(
+                    "at t = {t} s, the contact asks for a {} of {} {}; table.limits.{} is {} {}",
+                    limit.quantity, limit.value, limit.unit, limit.quantity, limit.limit, limit.unit
+                ),
+            ),
+            HoldEnding::Stopped | HoldEnding::TooLong => (
+                "too_long",
+                format!(
+                    "at t = {t} s, the contact changes too often, or too fast, to be followed up to {LONGEST_HOLD} s"
+                ),
+            ),
+        };
+        Self {
+            kind,
+            t,
+            detail,
+            contact: match request.touching {
+                Touching::Frictionless => "frictionless",
+                Touching::Matched(_) => "matched",
+                Touching::Coulomb(_) => "coulomb",
+            },
+            error_bound: Some(held.error_bound).filter(|bound| bound.is_finite()),
+            upright_within: UprightWithin { theta_1mrad: held.theta_within, x_1mm: held.x_within },
+        }
+    }
+}

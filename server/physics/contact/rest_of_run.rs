@@ -1,0 +1,39 @@
+//! The contact that follows when the bounces of a run have died out, under the scene's own table.
+
+use crate::contact::request::{ContactStart, HoldLaw, HoldRequest, Touching};
+use crate::run::orbit::Contact;
+use crate::scene::{BodyShape, Scene};
+
+/// The motion in contact for so long (s) after the last strike of a run that settled: it begins at `settle_time` (s), to which the body
+/// drifts and turns as the strike left it. `None` for a point mass and without a strike.
+///
+/// The table goes on by the scene's law, α = κθ or its state feedback, tilting about the contact point. It moves along itself if
+/// `table.slide` is `matched`.
+pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f64) -> Option<HoldRequest> {
+    let after = last.strike?.after;
+    if scene.body == BodyShape::Point {
+        return None;
+    }
+    let rod = *scene.model().rod();
+    let rules = scene.rules();
+    let tail = settle_time - last.t;
+    Some(HoldRequest {
+        rod,
+        touching: Touching::new(scene.contact_friction()),
+        outline: scene.outline,
+        law: HoldLaw::of(scene.steering, &rod),
+        brake_law: None,
+        start: ContactStart {
+            t: settle_time,
+            x: last.x + after.x_dot * tail,
+            theta: last.state.theta + after.theta_dot * tail,
+            x_dot: after.x_dot,
+            theta_dot: after.theta_dot,
+            table_speed: 0.0,
+        },
+        brake: None,
+        duration,
+        topple_angle: rules.topple_angle,
+        limits: rules.limits,
+    })
+}
