@@ -1,6 +1,8 @@
 //! Tables, figures and claims of the paper, by the runs of the presets.
 
-use equipoise_physics::scene::Scene;
+use equipoise_physics::catching::catch;
+use equipoise_physics::catching::settings::{CatchSettings, Strategy};
+use equipoise_physics::scene::{Name, Scene, Value};
 
 use crate::api::paper::item::{Check, Item, Kind, PLAIN};
 use crate::api::paper::linear_equations::LOSSY_GAIN;
@@ -14,6 +16,18 @@ fn tilt(scene: &Scene) -> Option<Vec<Check>> {
     let contact = scene.orbit().ok()?.advance();
     let printed = scene.parameters::<f64>().tilt_gain * contact.state.theta;
     Some(vec![Check::formula(["table tilt at the first contact", "α", "rad"], printed, contact.alpha)])
+}
+
+/// Velocities of the body at the end of a catch: those of the table, which stands.
+fn caught(scene: &Scene) -> Option<Vec<Check>> {
+    let settings = CatchSettings { strategy: Some(Strategy::BounceDown), ..CatchSettings::default() };
+    let hold = catch(scene, &settings, &mut || true).ok()?.hold?;
+    let end = hold.samples.last()?;
+    let at_rest = |words, value| Check::within(words, 0.0, value, 1e-3);
+    Some(vec![
+        at_rest(["horizontal velocity after the hold", "ẋ", "m/s"], end.x_dot),
+        at_rest(["angular velocity after the hold", "θ̇", "rad/s"], end.theta_dot),
+    ])
 }
 
 /// Section 2.1.3.
@@ -105,7 +119,7 @@ pub(super) const LOSSLESS: [Item; 8] = [
 ];
 
 /// Sections 2.2.2 to 3.
-pub(super) const EXTENSIONS: [Item; 10] = [
+pub(super) const EXTENSIONS: [Item; 11] = [
     LOSSY_GAIN,
     Item {
         id: "energy-gain",
@@ -190,6 +204,22 @@ pub(super) const EXTENSIONS: [Item; 10] = [
         scene: ("still-lossy", &[]),
         ask: ("trajectories", "impacts=2000"),
         quoted: &[("still-lossy", Quantity::SettledSpin)],
+        ..PLAIN
+    },
+    Item {
+        id: "catching",
+        kind: Kind::Claim,
+        place: "section 3",
+        title: "Catching is the dual problem",
+        printed: "we would like to plan the movements of the hand so that the object does not fall or bounce away, but settles there",
+        scene: ("case-1", &[(Name::Height, Value::Number(0.25)), (Name::Theta, Value::Number(0.1))]),
+        ask: ("catches", "strategy=bounce_down"),
+        picture: true,
+        checks: caught,
+        why: Some(
+            "The paper leaves this open. Neither its energy feedback nor α = κθ settles the object. Strikes that each halve the contact \
+             speed do, with a tilt that follows position and velocities, and then the table holds it",
+        ),
         ..PLAIN
     },
     Item {

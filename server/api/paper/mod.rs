@@ -23,7 +23,7 @@ use crate::api::scenes::fixed;
 use crate::http::{ApiRequest, Problem};
 
 /// Price of the checks, without the presets' values, in bounces.
-const CHECKS: u64 = 5_000;
+const CHECKS: u64 = 25_000;
 
 /// The answer, once it has been computed.
 static PAPER: OnceLock<Paper> = OnceLock::new();
