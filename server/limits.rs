@@ -253,6 +253,9 @@ pub const REGION_ALONE_CELL_PRICE: u64 = 350;
 /// Price of a cell with a quantity of the linear analysis, in bounces in lanes.
 pub const REGION_LINEAR_CELL_PRICE: u64 = 200;
 
+/// Price of a bounce of the plain rod, in bounces in lanes: catches are priced in the former.
+pub const REGION_PLAIN_PRICE: u64 = 6;
+
 /// Price of a region besides its cells and its linear boundary, in bounces in lanes: the picture, about 5 ms.
 pub const REGION_ANSWER_PRICE: u64 = 400_000;
 

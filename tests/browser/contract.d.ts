@@ -362,7 +362,7 @@ export interface components {
          * @default survival
          * @enum {string}
          */
-        RegionQuantity: "survival" | "max_theta" | "residue" | "spectral_radius";
+        RegionQuantity: "survival" | "max_theta" | "residue" | "spectral_radius" | "caught" | "rest_time";
         RegionSide: {
             parameter: string;
             from: number;
@@ -376,6 +376,7 @@ export interface components {
             y: components["schemas"]["RegionSide"];
             impacts?: number | null;
             quantity?: components["schemas"]["RegionQuantity"] | null;
+            catch?: components["schemas"]["RegionCatch"] | null;
             tile?: {
                 index: number;
                 of: number;
@@ -391,6 +392,15 @@ export interface components {
             other_vertex: number;
             missed: number;
             beyond_limits: number;
+            none: number;
+        };
+        CatchCounts: {
+            held: number;
+            rests_on_edge: number;
+            fell: number;
+            slipped: number;
+            beyond_limits: number;
+            not_caught: number;
             none: number;
         };
         RegionOutcomes: number[];
@@ -420,7 +430,7 @@ export interface components {
                 x: number[];
                 y: number[];
             }[];
-            counts: components["schemas"]["RegionCounts"];
+            counts: components["schemas"]["RegionCounts"] | components["schemas"]["CatchCounts"];
             notes: string[];
         };
         RegionLine: {
@@ -430,7 +440,7 @@ export interface components {
             outcomes: components["schemas"]["RegionOutcomes"];
         } | {
             end: {
-                counts: components["schemas"]["RegionCounts"];
+                counts: components["schemas"]["RegionCounts"] | components["schemas"]["CatchCounts"];
             };
         };
         EnsembleRequest: {
@@ -672,6 +682,23 @@ export interface components {
             hold?: components["schemas"]["catches.hold"] | null;
             hold_speed?: components["schemas"]["catches.hold_speed"] | null;
             hold_samples?: components["schemas"]["catches.hold_samples"] | null;
+        };
+        RegionCatch: {
+            strategy?: components["schemas"]["catches.strategy"] | null;
+            ratio?: components["schemas"]["catches.ratio"] | null;
+            strikes?: components["schemas"]["catches.strikes"] | null;
+            brake?: components["schemas"]["catches.brake"] | null;
+            weights?: {
+                state?: null | {
+                    x?: components["schemas"]["controllers.weights.state.x"] | null;
+                    theta?: components["schemas"]["controllers.weights.state.theta"] | null;
+                    x_dot?: components["schemas"]["controllers.weights.state.x_dot"] | null;
+                    theta_dot?: components["schemas"]["controllers.weights.state.theta_dot"] | null;
+                } | number[];
+                input?: components["schemas"]["controllers.weights.input"] | null;
+            } | null;
+            hold_speed?: components["schemas"]["catches.hold_speed"] | null;
+            hold?: components["schemas"]["catches.hold"] | null;
         };
         ThrowRequest: {
             preset?: components["schemas"]["PresetName"] | null;
@@ -2018,6 +2045,7 @@ export type RegionQuantity = components['schemas']['RegionQuantity'];
 export type RegionSide = components['schemas']['RegionSide'];
 export type RegionRequest = components['schemas']['RegionRequest'];
 export type RegionCounts = components['schemas']['RegionCounts'];
+export type CatchCounts = components['schemas']['CatchCounts'];
 export type RegionOutcomes = components['schemas']['RegionOutcomes'];
 export type Region = components['schemas']['Region'];
 export type RegionLine = components['schemas']['RegionLine'];
@@ -2038,6 +2066,7 @@ export type PrecisionLine = components['schemas']['PrecisionLine'];
 export type PeriodicOrbitsRequest = components['schemas']['PeriodicOrbitsRequest'];
 export type ControllerRequest = components['schemas']['ControllerRequest'];
 export type CatchRequest = components['schemas']['CatchRequest'];
+export type RegionCatch = components['schemas']['RegionCatch'];
 export type ThrowRequest = components['schemas']['ThrowRequest'];
 export type StabilityRequest = components['schemas']['StabilityRequest'];
 export type Tolerances = components['schemas']['Tolerances'];

@@ -196,3 +196,68 @@ async fn threads_do_not_show() {
         }
     }
 }
+
+/// Release angle and spin as sides, for catches of the paper's body.
+const CATCHES: &str = "/v1/regions?preset=case-1&x.parameter=release.theta&x.from=-0.5&x.to=0.5&x.count=7\
+                       &y.parameter=release.theta_dot&y.from=-2&y.to=2&y.count=4&catch.strategy=bounce_down";
+
+#[tokio::test]
+async fn a_cell_of_catches_is_the_catch_of_its_scene() {
+    let server = Server::start();
+    let map = server.get(&format!("{CATCHES}&quantity=rest_time")).await.expect(200).json();
+    let whether = server.get(&format!("{CATCHES}&quantity=caught")).await.expect(200).json();
+    assert_eq!(map["outcomes"], whether["outcomes"]);
+    assert_eq!((&map["counts"], map["boundary"].as_array().unwrap().len()), (&whether["counts"], 0));
+    let names = map["outcome_names"].as_array().unwrap();
+    let mut caught = 0;
+    for (row, theta_dot) in map["y"].as_array().unwrap().iter().enumerate() {
+        for (column, theta) in map["x"].as_array().unwrap().iter().enumerate() {
+            let scene = json!({"release": {"theta": theta, "theta_dot": theta_dot}});
+            let request = json!({"preset": "case-1", "scene": scene, "strategy": "bounce_down"});
+            let catch = server.post("/v1/catches", &request).await.expect(200).json();
+            let code = map["outcomes"][row][column].as_u64().unwrap() as usize;
+            assert_eq!(names[code], catch["outcome"]["kind"], "{theta} {theta_dot}");
+            let upright = &catch["upright_within"];
+            let both = upright["theta_1mrad"].as_f64().zip(upright["x_1mm"].as_f64());
+            let rest = both.map_or(Value::Null, |(theta, x)| json!(theta.max(x)));
+            assert_eq!(map["values"][row][column], rest, "{theta} {theta_dot}");
+            let is_held = u64::from(names[code] == "held");
+            assert_eq!(whether["values"][row][column], is_held, "{theta} {theta_dot}");
+            caught += is_held;
+        }
+    }
+    assert_eq!(map["counts"]["held"], caught);
+    assert!((10..28).contains(&caught), "{caught} of 28 cells are caught");
+}
+
+#[tokio::test]
+async fn catches_come_in_tiles_rows_and_pictures_and_need_no_law() {
+    let server = Server::start();
+    let target = format!("{CATCHES}&quantity=caught&catch.hold=1");
+    let whole = server.get(&target).await.expect(200).json();
+    let mut values = Vec::new();
+    for index in 0..2 {
+        let tile = server.get(&format!("{target}&tile.index={index}&tile.of=2")).await.expect(200).json();
+        values.extend(tile["values"].as_array().unwrap().clone());
+    }
+    assert_eq!(json!(values), whole["values"]);
+    let csv = server.get(&format!("{target}&format=csv")).await.expect(200);
+    assert!(
+        csv.text().starts_with("release.theta_rad,release.theta_dot_rad_per_s,caught,outcome\r\n"),
+        "{}",
+        csv.text()
+    );
+    assert_eq!(csv.text().lines().count(), 29);
+    assert!(server.get(&format!("{target}&format=svg")).await.expect(200).text().contains("caught"));
+    let body = json!({
+        "scene": {"body": {"contact_distance": 0.13, "radius_of_gyration": 0.09}, "release": {"height": 0.2}},
+        "x": {"parameter": "release.theta", "from": 0.0, "to": 0.2, "count": 2},
+        "y": {"parameter": "contact.restitution", "from": 0.5, "to": 1.0, "count": 2},
+        "quantity": "caught", "catch": {"hold": 1},
+    });
+    assert_eq!(server.post("/v1/regions", &body).await.expect(200).json()["counts"]["held"], 4);
+    let refused = server.get(&format!("{CATCHES}&quantity=survival")).await.expect(422).json();
+    assert_eq!(refused["errors"][0]["pointer"], "/catch");
+    let dear = format!("{target}&x.count=400&y.count=400").replace("&x.count=7", "").replace("&y.count=4", "");
+    assert!(server.get(&dear).await.expect(422).text().contains("bounces"));
+}

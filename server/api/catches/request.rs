@@ -43,60 +43,75 @@ pub struct CatchRequest {
 }
 
 impl CatchOptions {
-    /// Reads the settings from the fields of an object.
+    /// Reads the settings and the size from the fields of an object.
     pub fn read(reader: &mut Reader<'_, '_>) -> Self {
-        let strategies = [
-            ("auto", None),
-            ("bounce_down", Some(Strategy::BounceDown)),
-            ("plan", Some(Strategy::Plan)),
-            ("brake", Some(Strategy::Brake)),
-        ];
-        let strategy = reader.choice("strategy", &strategies).flatten();
-        let ratio = reader.number("ratio", PLAN_RATIOS, "");
-        let strikes = reader.integer("strikes", limits::PLAN_STRIKES);
-        let brake = reader.number("brake", BRAKES, "m/s²");
-        let said = strategies.iter().find(|(_, known)| *known == strategy).map_or("auto", |(name, _)| name);
-        let mut only_for = |name: &'static str, known: &[Strategy], words: &str| {
-            if reader.has(name) && !strategy.is_some_and(|strategy| known.contains(&strategy)) {
-                reader.refuse(name, format!("{name} is for the strategy {words}, and strategy is {said}; leave {name} out or name that strategy"));
-            }
-        };
-        only_for("ratio", &[Strategy::BounceDown, Strategy::Plan], "bounce_down or plan");
-        only_for("strikes", &[Strategy::Plan], "plan");
-        only_for("brake", &[Strategy::Brake], "brake");
-        if let Some(ratio) = ratio.filter(|ratio| strategy == Some(Strategy::BounceDown) && !RATIOS.contains(ratio)) {
-            let (least, most) = (RATIOS.start(), RATIOS.end());
-            reader.refuse(
-                "ratio",
-                format!("ratio is {ratio}; for bounce_down it must be from {least} to {most} (no unit)"),
-            );
-        }
-        let (state_weights, input_weight) = read_weights(reader);
-        let hold_speed = reader.number("hold_speed", HOLD_SPEEDS, "m/s").unwrap_or(HOLD_SPEED);
-        let hold = reader.number("hold", HOLDS, "s").unwrap_or(DEFAULT_HOLD);
+        let settings = read_settings(reader);
         let hold_samples = reader.integer("hold_samples", 2..=limits::HOLD_SAMPLES).unwrap_or(HOLD_SAMPLES);
-        let strikes = strikes.and_then(|strikes| u32::try_from(strikes).ok());
-        let settings = CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold_speed, hold };
         Self { settings, hold_samples }
     }
 
     /// Everything that determines the answer.
     pub fn canonical(&self) -> impl Serialize {
-        let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold_speed, hold } =
-            self.settings;
-        let numbers = (ratio, strikes, brake, hold_speed, hold, self.hold_samples);
-        (strategy.map(Strategy::name), numbers, state_weights, input_weight)
+        (canonical_settings(&self.settings), self.hold_samples)
     }
 
     /// Price of the catch, in bounces.
     pub fn price(&self) -> u64 {
-        let catch = match self.settings.strategy {
-            Some(Strategy::BounceDown) => limits::CATCH_BOUNCE_DOWN_PRICE,
-            Some(Strategy::Plan) => limits::CATCH_PLAN_PRICE,
-            Some(Strategy::Brake) => limits::CATCH_BRAKE_PRICE,
-            None => 2 * (limits::CATCH_BOUNCE_DOWN_PRICE + limits::CATCH_PLAN_PRICE) + limits::CATCH_BRAKE_PRICE,
-        };
-        catch + limits::HOLD_SAMPLE_PRICE * self.hold_samples
+        catch_price(&self.settings) + limits::HOLD_SAMPLE_PRICE * self.hold_samples
+    }
+}
+
+/// Reads the settings of a catch from the fields of an object.
+pub fn read_settings(reader: &mut Reader<'_, '_>) -> CatchSettings {
+    let strategies = [
+        ("auto", None),
+        ("bounce_down", Some(Strategy::BounceDown)),
+        ("plan", Some(Strategy::Plan)),
+        ("brake", Some(Strategy::Brake)),
+    ];
+    let strategy = reader.choice("strategy", &strategies).flatten();
+    let ratio = reader.number("ratio", PLAN_RATIOS, "");
+    let strikes = reader.integer("strikes", limits::PLAN_STRIKES);
+    let brake = reader.number("brake", BRAKES, "m/s²");
+    let said = strategies.iter().find(|(_, known)| *known == strategy).map_or("auto", |(name, _)| name);
+    let mut only_for = |name: &'static str, known: &[Strategy], words: &str| {
+        if reader.has(name) && !strategy.is_some_and(|strategy| known.contains(&strategy)) {
+            reader.refuse(
+                name,
+                format!(
+                    "{name} is for the strategy {words}, and strategy is {said}; leave {name} out or name that strategy"
+                ),
+            );
+        }
+    };
+    only_for("ratio", &[Strategy::BounceDown, Strategy::Plan], "bounce_down or plan");
+    only_for("strikes", &[Strategy::Plan], "plan");
+    only_for("brake", &[Strategy::Brake], "brake");
+    if let Some(ratio) = ratio.filter(|ratio| strategy == Some(Strategy::BounceDown) && !RATIOS.contains(ratio)) {
+        let (least, most) = (RATIOS.start(), RATIOS.end());
+        reader
+            .refuse("ratio", format!("ratio is {ratio}; for bounce_down it must be from {least} to {most} (no unit)"));
+    }
+    let (state_weights, input_weight) = read_weights(reader);
+    let hold_speed = reader.number("hold_speed", HOLD_SPEEDS, "m/s").unwrap_or(HOLD_SPEED);
+    let hold = reader.number("hold", HOLDS, "s").unwrap_or(DEFAULT_HOLD);
+    let strikes = strikes.and_then(|strikes| u32::try_from(strikes).ok());
+    CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold_speed, hold }
+}
+
+/// Everything of the settings that determines a catch.
+pub fn canonical_settings(settings: &CatchSettings) -> impl Serialize + use<> {
+    let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold_speed, hold } = *settings;
+    (strategy.map(Strategy::name), (ratio, strikes, brake, hold_speed, hold), state_weights, input_weight)
+}
+
+/// Price of a catch, in bounces.
+pub fn catch_price(settings: &CatchSettings) -> u64 {
+    match settings.strategy {
+        Some(Strategy::BounceDown) => limits::CATCH_BOUNCE_DOWN_PRICE,
+        Some(Strategy::Plan) => limits::CATCH_PLAN_PRICE,
+        Some(Strategy::Brake) => limits::CATCH_BRAKE_PRICE,
+        None => 2 * (limits::CATCH_BOUNCE_DOWN_PRICE + limits::CATCH_PLAN_PRICE) + limits::CATCH_BRAKE_PRICE,
     }
 }
 

@@ -1,9 +1,11 @@
 //! The answer of `regions`: a quantity and an outcome for each pair of values of two fields.
 
+use equipoise_physics::catching::outcome::CatchOutcomeKind;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::surveys::stability_map;
-use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity};
+use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapOutcome, MapQuantity};
 use serde::{Serialize, Serializer};
+use std::sync::LazyLock;
 
 use crate::api::regions::request::RegionRequest;
 use crate::api::scene::Resolved;
@@ -24,7 +26,12 @@ pub struct RegionAnswer {
 impl RegionAnswer {
     /// The answer for the cells of a tile, row by row. Computes the boundary; `None` if `go_on` returned false meanwhile.
     pub fn new(request: RegionRequest, cells: Vec<MapCell>, mut go_on: impl FnMut() -> bool) -> Option<Self> {
-        let boundary = request.map.boundary(limits::REGION_BOUNDARY_NODES, &mut go_on)?;
+        // The linear boundary is that of the scene's own law, which a catch does not follow.
+        let boundary = if request.map.quantity.is_of_catches() {
+            Vec::new()
+        } else {
+            request.map.boundary(limits::REGION_BOUNDARY_NODES, &mut go_on)?
+        };
         Some(Self { request, cells, boundary })
     }
 
@@ -33,7 +40,7 @@ impl RegionAnswer {
     }
 
     fn counts(&self) -> Counts {
-        let mut counts = Counts::default();
+        let mut counts = Counts::new(self.request.map.quantity);
         counts.add(&self.cells);
         counts
     }
@@ -43,14 +50,27 @@ pub(crate) fn written(value: f64) -> String {
     serde_json::to_string(&value).unwrap_or_default()
 }
 
-/// Number of a cell's outcome. The number after the last outcome stands for a cell without a run.
-pub(super) fn code(cell: &MapCell) -> usize {
-    cell.outcome.map_or(EndingKind::ALL.len(), |outcome| outcome as usize)
+/// Number of a cell's outcome among those of the quantity. The number after the last outcome stands for a cell without a run.
+pub(super) fn code(cell: &MapCell, quantity: MapQuantity) -> usize {
+    cell.outcome.map_or_else(|| outcome_names(quantity).len() - 1, MapOutcome::code)
 }
 
 pub(crate) fn outcome_name(cell: &MapCell) -> &'static str {
-    cell.outcome.map_or(NO_RUN, EndingKind::name)
+    cell.outcome.map_or(NO_RUN, MapOutcome::name)
 }
+
+/// Names of the outcomes of a quantity, each at the place of its code.
+fn outcome_names(quantity: MapQuantity) -> &'static [&'static str] {
+    if quantity.is_of_catches() { &OF_CATCHES } else { &OF_RUNS }
+}
+
+/// Names of the endings of runs, and of a cell without a run.
+static OF_RUNS: LazyLock<Vec<&'static str>> =
+    LazyLock::new(|| EndingKind::ALL.into_iter().map(EndingKind::name).chain([NO_RUN]).collect());
+
+/// Names of the outcomes of catches, and of a cell without one.
+static OF_CATCHES: LazyLock<Vec<&'static str>> =
+    LazyLock::new(|| CatchOutcomeKind::ALL.into_iter().map(CatchOutcomeKind::name).chain([NO_RUN]).collect());
 
 pub(crate) fn quantity_name(quantity: MapQuantity) -> &'static str {
     match quantity {
@@ -58,6 +78,8 @@ pub(crate) fn quantity_name(quantity: MapQuantity) -> &'static str {
         MapQuantity::MaxTheta => "max_theta",
         MapQuantity::Residue => "residue",
         MapQuantity::SpectralRadius => "spectral_radius",
+        MapQuantity::Caught => "caught",
+        MapQuantity::RestTime => "rest_time",
     }
 }
 
@@ -78,35 +100,39 @@ impl Serialize for RowValues<'_> {
     }
 }
 
-pub(crate) struct Outcomes<'a>(pub(crate) &'a [MapCell]);
+pub(crate) struct Outcomes<'a>(pub(crate) &'a [MapCell], pub(crate) MapQuantity);
 
 impl Serialize for Outcomes<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.0.iter().map(code))
+        serializer.collect_seq(self.0.iter().map(|cell| code(cell, self.1)))
     }
 }
 
 /// Number of cells of each outcome.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Serialize)]
 pub(crate) struct Counts {
     #[serde(serialize_with = "by_name")]
-    counts: [u64; EndingKind::ALL.len() + 1],
+    counts: (MapQuantity, Vec<u64>),
 }
 
 impl Counts {
+    /// No cells of a map of this quantity.
+    pub(crate) fn new(quantity: MapQuantity) -> Self {
+        Self { counts: (quantity, vec![0; outcome_names(quantity).len()]) }
+    }
+
     pub(crate) fn add(&mut self, cells: &[MapCell]) {
+        let (quantity, counts) = &mut self.counts;
         for cell in cells {
-            self.counts[code(cell)] += 1;
+            if let Some(count) = counts.get_mut(code(cell, *quantity)) {
+                *count += 1;
+            }
         }
     }
 }
 
-fn by_name<S: Serializer>(counts: &[u64; EndingKind::ALL.len() + 1], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(outcome_names().zip(counts))
-}
-
-fn outcome_names() -> impl Iterator<Item = &'static str> {
-    EndingKind::ALL.into_iter().map(EndingKind::name).chain([NO_RUN])
+fn by_name<S: Serializer>((quantity, counts): &(MapQuantity, Vec<u64>), serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(outcome_names(*quantity).iter().zip(counts))
 }
 
 /// A segment of the linear boundary.
@@ -152,7 +178,8 @@ impl Serialize for RegionAnswer {
         let mut notes = vec!["scene is one of the region; x and y replace its two fields".to_owned()];
         if self.cells.iter().any(|cell| cell.value.is_none()) {
             let beside = match map.quantity {
-                MapQuantity::Survival | MapQuantity::MaxTheta => "",
+                MapQuantity::Survival | MapQuantity::MaxTheta | MapQuantity::Caught => "",
+                MapQuantity::RestTime => ", or the body does not come to rest in the time that is followed",
                 MapQuantity::SpectralRadius => ", has no fixed point or has noise",
                 MapQuantity::Residue => {
                     ", has no fixed point or has noise; and where the angle has no block of its own: of a point mass, with \
@@ -170,8 +197,8 @@ impl Serialize for RegionAnswer {
             x: (0..map.x.count).map(|column| map.x.value(column)).collect(),
             y: self.request.rows().map(|row| map.y.value(row)).collect(),
             values: self.rows().map(|(_, cells)| RowValues { cells, whole: self.request.is_whole() }).collect(),
-            outcomes: self.rows().map(|(_, cells)| Outcomes(cells)).collect(),
-            outcome_names: outcome_names().collect(),
+            outcomes: self.rows().map(|(_, cells)| Outcomes(cells, map.quantity)).collect(),
+            outcome_names: outcome_names(map.quantity).to_vec(),
             boundary: self
                 .boundary
                 .iter()

@@ -29,20 +29,26 @@ impl Pictured for RegionAnswer {
             MapQuantity::MaxTheta => ("largest |θ|", "rad"),
             MapQuantity::Residue => ("residue R", "1"),
             MapQuantity::SpectralRadius => ("spectral radius", "1"),
+            MapQuantity::Caught => ("caught", "1"),
+            MapQuantity::RestTime => ("time to rest", "s"),
         };
         let values: Vec<Option<f64>> = self.cells.iter().map(|cell| cell.value).collect();
-        let outcomes: Vec<u8> = self.cells.iter().map(|cell| code(cell) as u8).collect();
+        let outcomes: Vec<u8> = self.cells.iter().map(|cell| code(cell, map.quantity) as u8).collect();
         let finite = || values.iter().flatten().copied().filter(|value| value.is_finite());
         let scale = match map.quantity {
             MapQuantity::Survival => (0.0, map.impacts as f64),
-            MapQuantity::MaxTheta | MapQuantity::Residue | MapQuantity::SpectralRadius => {
+            MapQuantity::Caught => (0.0, 1.0),
+            MapQuantity::MaxTheta | MapQuantity::Residue | MapQuantity::SpectralRadius | MapQuantity::RestTime => {
                 (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max))
             }
         };
         let part = if tile.of > 1 { format!(", tile {} of {}", tile.index + 1, tile.of) } else { String::new() };
         Ok(heat_map(&HeatMap {
             title: &format!("{quantity} over {} and {}", field_text(map.x.name).title, field_text(map.y.name).title),
-            subtitle: &format!("runs of up to {} contacts{part}", map.impacts),
+            subtitle: &match map.quantity.is_of_catches() {
+                true => format!("catches, {} s in contact{part}", map.catch.hold),
+                false => format!("runs of up to {} contacts{part}", map.impacts),
+            },
             x: side(&map.x, 0, map.x.count),
             y: side(&map.y, rows.start, rows.len()),
             values: &values,

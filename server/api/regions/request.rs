@@ -6,8 +6,10 @@ use equipoise_physics::scene::{FieldKind, Scene, field};
 use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
+use crate::api::catches::request::{canonical_settings, catch_price, read_settings};
+use crate::api::regions::answer::quantity_name;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{build_scene, read_draft};
+use crate::api::scene::{build_scene, complete_law, has_angle, read_draft};
 use crate::api::shared::tile::Tile;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
@@ -29,7 +31,7 @@ pub struct RegionRequest {
 
 impl ResourceRequest for RegionRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let draft = read_draft(reader);
+        let mut draft = read_draft(reader);
         let axes = [read_axis(reader, "x"), read_axis(reader, "y")];
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(1000);
         let quantities = [
@@ -37,8 +39,26 @@ impl ResourceRequest for RegionRequest {
             ("max_theta", MapQuantity::MaxTheta),
             ("residue", MapQuantity::Residue),
             ("spectral_radius", MapQuantity::SpectralRadius),
+            ("caught", MapQuantity::Caught),
+            ("rest_time", MapQuantity::RestTime),
         ];
         let quantity = reader.choice("quantity", &quantities).unwrap_or(MapQuantity::Survival);
+        let catch = reader.within("catch", read_settings);
+        if catch.is_some() && !quantity.is_of_catches() {
+            let name = quantity_name(quantity);
+            reader.refuse(
+                "catch",
+                format!(
+                    "catch is for the quantities caught and rest_time, and quantity is {name}; leave one of them out"
+                ),
+            );
+        }
+        if quantity.is_of_catches()
+            && let Some(draft) = &mut draft
+        {
+            // The table of a catch follows no law of the scene.
+            complete_law(draft);
+        }
         let tile = Tile::read(reader, limits::REGION_SIDE);
         let ([Some(x), Some(y)], Some(draft), Some(tile)) = (axes, draft, tile) else { return None };
         if x.name == y.name {
@@ -49,7 +69,7 @@ impl ResourceRequest for RegionRequest {
             reader.refuse("tile", format!("tile has {} bands, but y has only {} rows", tile.of, y.count));
             return None;
         }
-        let map = StabilityMap { scene: draft, x, y, impacts, quantity };
+        let map = StabilityMap { scene: draft, x, y, impacts, quantity, catch: catch.unwrap_or_default() };
         let corners = [(0, 0), (x.count - 1, 0), (0, y.count - 1), (x.count - 1, y.count - 1)];
         let middle = (x.count / 2, y.count / 2);
         let possible = corners.into_iter().chain([middle]).find_map(|(column, row)| map.scene(column, row));
@@ -75,6 +95,13 @@ impl ResourceRequest for RegionRequest {
             reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
             return None;
         }
+        if quantity.is_of_catches() && !has_angle(&scene) {
+            reader.refuse(
+                "quantity",
+                format!("{} is of a body with an angle; a point mass has none", quantity_name(quantity)),
+            );
+            return None;
+        }
         Some(Self { map, scene, tile })
     }
 
@@ -86,9 +113,10 @@ impl ResourceRequest for RegionRequest {
 
 impl CanonicalRequest for RegionRequest {
     fn canonical(&self) -> Vec<u8> {
-        let StabilityMap { x, y, impacts, quantity, .. } = self.map;
+        let StabilityMap { x, y, impacts, quantity, catch, .. } = self.map;
         let sides = [x, y].map(|axis| (axis.name.row().path, axis.from, axis.to, axis.count));
-        write::canonical(&self.scene, &(sides, impacts, quantity as u8, self.tile))
+        let catch = quantity.is_of_catches().then(|| canonical_settings(&catch));
+        write::canonical(&self.scene, &(sides, impacts, quantity as u8, self.tile, catch))
     }
 }
 
@@ -119,12 +147,13 @@ impl RegionRequest {
 
     /// Number of bounces that the runs of some cells took, as far as their values tell it.
     pub fn bounces_of(&self, cells: &[MapCell]) -> u64 {
-        cells.iter().filter_map(|cell| cell.value.filter(|_| self.is_whole())).map(|value| value as u64).sum()
+        let runs = self.map.quantity == MapQuantity::Survival;
+        cells.iter().filter_map(|cell| cell.value.filter(|_| runs)).map(|value| value as u64).sum()
     }
 
     /// Tells whether values are whole numbers.
     pub(crate) fn is_whole(&self) -> bool {
-        self.map.quantity == MapQuantity::Survival
+        matches!(self.map.quantity, MapQuantity::Survival | MapQuantity::Caught)
     }
 
     /// Price, in bounces of lanes.
@@ -132,7 +161,8 @@ impl RegionRequest {
         // Scenes of the boundary: the nodes of its grid, and some 80 for each of its crossings.
         let [columns, rows] =
             [self.map.x, self.map.y].map(|axis| axis.count.clamp(2, limits::REGION_BOUNDARY_NODES) as u64);
-        let scenes = columns * rows + 80 * (columns + rows);
+        let has_boundary = u64::from(!self.map.quantity.is_of_catches());
+        let scenes = has_boundary * (columns * rows + 80 * (columns + rows));
         let boundary = scenes * (limits::REGION_LINEAR_CELL_PRICE + self.polygon_price());
         self.cells().saturating_mul(self.cell_price()).saturating_add(boundary + limits::REGION_ANSWER_PRICE)
     }
@@ -146,6 +176,9 @@ impl RegionRequest {
     /// Highest price of one cell.
     fn cell_price(&self) -> u64 {
         let (once, bounce) = match self.map.quantity {
+            MapQuantity::Caught | MapQuantity::RestTime => {
+                (limits::REGION_CELL_PRICE + limits::REGION_PLAIN_PRICE * catch_price(&self.map.catch), 0)
+            }
             MapQuantity::Residue | MapQuantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),
             MapQuantity::Survival | MapQuantity::MaxTheta if self.map.fits_lanes() => (limits::REGION_CELL_PRICE, 1),
             MapQuantity::Survival | MapQuantity::MaxTheta => {

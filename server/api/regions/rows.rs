@@ -38,7 +38,14 @@ impl Rows {
             RowFormat::Csv => (0..x.count).map(|column| written(x.value(column))).collect(),
             RowFormat::Ndjson => Vec::new(),
         };
-        Self { request, format, columns, row: request.rows().start, begun: Vec::new(), counts: Counts::default() }
+        Self {
+            request,
+            format,
+            columns,
+            row: request.rows().start,
+            begun: Vec::new(),
+            counts: Counts::new(request.map.quantity),
+        }
     }
 
     /// Text before all rows: in CSV the names of the two fields, the quantity and `outcome`.
@@ -48,7 +55,12 @@ impl Rows {
             return Vec::new();
         }
         let field = |name: Name| with_unit(name.row().path, name.row().unit);
-        let value = with_unit(quantity_name(quantity), if quantity == MapQuantity::MaxTheta { "rad" } else { "" });
+        let unit = match quantity {
+            MapQuantity::MaxTheta => "rad",
+            MapQuantity::RestTime => "s",
+            MapQuantity::Survival | MapQuantity::Residue | MapQuantity::SpectralRadius | MapQuantity::Caught => "",
+        };
+        let value = with_unit(quantity_name(quantity), unit);
         format!("{},{},{value},outcome\r\n", field(x.name), field(y.name)).into_bytes()
     }
 
@@ -112,7 +124,10 @@ impl Rows {
             outcomes: Outcomes<'a>,
         }
         let (row, y, whole) = (self.row, self.request.map.y.value(self.row), self.request.is_whole());
-        line(&Row { row, y, values: RowValues { cells, whole }, outcomes: Outcomes(cells) }, out);
+        line(
+            &Row { row, y, values: RowValues { cells, whole }, outcomes: Outcomes(cells, self.request.map.quantity) },
+            out,
+        );
     }
 }
 

@@ -1,10 +1,14 @@
-//! A map of stability over two fields of a scene: how long each cell's run survives, or what the linear analysis says of it.
+//! A map over two fields of a scene: how long each cell's run survives, what the linear analysis says of it, or whether the body can be
+//! caught.
 //!
 //! Not here: threads and drawing.
 
 use crate::batch::batch_run::{LaneRunEnd, RunStart, run_batch_with_feedback, run_batch_with_friction};
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
+use crate::catching::catch_outcome;
+use crate::catching::outcome::{CatchFailure, CatchOutcomeKind};
+use crate::catching::settings::CatchSettings;
 use crate::run::cancellation::CancellationCheck;
 use crate::run::ending::EndingKind;
 use crate::run::orbit::run;
@@ -49,6 +53,44 @@ pub enum MapQuantity {
     Residue,
     /// Largest modulus of an eigenvalue at the fixed point.
     SpectralRadius,
+    /// 1 if the body is caught, 0 if it is not.
+    Caught,
+    /// Time from which a caught body rests, s.
+    RestTime,
+}
+
+impl MapQuantity {
+    /// True if cells are catches: their outcomes are those of catches.
+    pub fn is_of_catches(self) -> bool {
+        matches!(self, Self::Caught | Self::RestTime)
+    }
+}
+
+/// Outcome of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapOutcome {
+    /// Ending of a run.
+    Run(EndingKind),
+    /// Outcome of a catch.
+    Catch(CatchOutcomeKind),
+}
+
+impl MapOutcome {
+    /// Place among the outcomes of its kind.
+    pub fn code(self) -> usize {
+        match self {
+            Self::Run(ending) => ending as usize,
+            Self::Catch(outcome) => outcome as usize,
+        }
+    }
+
+    /// Name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Run(ending) => ending.name(),
+            Self::Catch(outcome) => outcome.name(),
+        }
+    }
 }
 
 /// A region: a scene, two of its fields, and the number of contacts that each run is watched for.
@@ -64,6 +106,8 @@ pub struct StabilityMap {
     pub impacts: u64,
     /// Quantity of the cells.
     pub quantity: MapQuantity,
+    /// Settings of the catches, of a quantity of catches.
+    pub catch: CatchSettings,
 }
 
 /// A cell of the map.
@@ -71,8 +115,8 @@ pub struct StabilityMap {
 pub struct MapCell {
     /// Value of the quantity; `None` for an impossible scene and for one without a fixed point.
     pub value: Option<f64>,
-    /// Outcome of the run; `None` without a run.
-    pub outcome: Option<EndingKind>,
+    /// Outcome of the run or catch; `None` without one.
+    pub outcome: Option<MapOutcome>,
 }
 
 /// Cells of linear analysis between two calls of `go_on`. The most expensive cell takes 10 µs.
@@ -103,7 +147,7 @@ impl StabilityMap {
     }
 
     /// Computes the cells with these numbers, counted row after row. `None` once `go_on` returns `false`; it is called every
-    /// hundred contacts, in lanes every few thousand.
+    /// hundred contacts, in lanes every few thousand, and at every strike of a catch.
     pub fn cells(&self, numbers: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<MapCell>> {
         let first = numbers.start;
         let mut cells = vec![NOTHING; numbers.len()];
@@ -113,6 +157,15 @@ impl StabilityMap {
                     return None;
                 }
                 cell.value = self.linear((first + index) % self.x.count, (first + index) / self.x.count);
+            }
+            return Some(cells);
+        }
+        if self.quantity.is_of_catches() {
+            for (index, cell) in cells.iter_mut().enumerate() {
+                let (column, row) = ((first + index) % self.x.count, (first + index) / self.x.count);
+                if let Some(scene) = self.scene(column, row) {
+                    *cell = self.catch_in(&scene, go_on)?;
+                }
             }
             return Some(cells);
         }
@@ -173,7 +226,20 @@ impl StabilityMap {
 
     fn cell(&self, end: &LaneRunEnd) -> MapCell {
         let value = if self.quantity == MapQuantity::MaxTheta { end.max_theta } else { end.impacts as f64 };
-        MapCell { value: Some(value), outcome: Some(end.outcome) }
+        MapCell { value: Some(value), outcome: Some(MapOutcome::Run(end.outcome)) }
+    }
+
+    /// The cell of a catch; `None` once cancelled. There is none of a point mass, and none if the weights give no law.
+    fn catch_in(&self, scene: &Scene, go_on: &mut dyn FnMut() -> bool) -> Option<MapCell> {
+        match catch_outcome(scene, &self.catch, go_on) {
+            Ok((outcome, rest)) => {
+                let caught = f64::from(u8::from(outcome.is_caught()));
+                let value = if self.quantity == MapQuantity::Caught { Some(caught) } else { rest };
+                Some(MapCell { value, outcome: Some(MapOutcome::Catch(outcome.kind())) })
+            }
+            Err(CatchFailure::Stopped) => None,
+            Err(CatchFailure::Point | CatchFailure::NoLaw(_)) => Some(NOTHING),
+        }
     }
 
     fn linear(&self, column: usize, row: usize) -> Option<f64> {

@@ -4,6 +4,7 @@
 use equipoise_physics::body::Body;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::ContactMode;
+use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::orbit::run;
@@ -18,7 +19,7 @@ use equipoise_physics::stability::jacobian::{eigenvalues, jacobian};
 use equipoise_physics::stability::linear_verdict::{AngleClass, linear_verdict};
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
-use equipoise_physics::surveys::stability_map::{MapAxis, MapQuantity, StabilityMap};
+use equipoise_physics::surveys::stability_map::{MapAxis, MapOutcome, MapQuantity, StabilityMap};
 
 const L: f64 = 0.4 / 3.0;
 const RHO: f64 = 0.094_280_904_158_206_35;
@@ -169,6 +170,7 @@ fn the_stick_cone_shows_in_a_region_over_friction_and_tilt_gain() {
         y: MapAxis { name: Name::TiltGain, from: 1.6, to: 2.4, count: 25 },
         impacts: 1000,
         quantity: MapQuantity::Survival,
+        catch: CatchSettings::default(),
     };
     let cells = region.cells(0..40 * 25, &mut || true).unwrap();
     let (mut inside, mut outside) = (0, 0);
@@ -176,7 +178,7 @@ fn the_stick_cone_shows_in_a_region_over_friction_and_tilt_gain() {
         let scene = region.scene(index % 40, index / 40).unwrap();
         let cone = stick_cone(&scene.model()).unwrap();
         let residue = linear_verdict(&scene, &find_fixed_point(&scene).unwrap()).residue.unwrap();
-        let survived = cell.outcome == Some(EndingKind::Completed);
+        let survived = cell.outcome == Some(MapOutcome::Run(EndingKind::Completed));
         if theta / (1.0 - residue).sqrt() < cone {
             inside += 1;
             assert!(survived, "{index} {cell:?} {cone}");

@@ -1,13 +1,14 @@
 //! Runs that come to rest: contacts with friction that lose their speed, and strikes that stop the contact point at once. Against a
 //! simulation of its own, written from the equations; in the map, with 31 digits and in lanes alike.
 
+use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::surveys::stability_map::{MapAxis, MapQuantity, StabilityMap};
+use equipoise_physics::surveys::stability_map::{MapAxis, MapOutcome, MapQuantity, StabilityMap};
 
 #[path = "support/random.rs"]
 mod random;
@@ -70,10 +71,12 @@ fn by_lanes(draft: &Draft, impacts: u64) -> (u64, EndingKind) {
         y: axis(Name::Theta, theta),
         impacts,
         quantity: MapQuantity::Survival,
+        catch: CatchSettings::default(),
     };
     assert!(region.fits_lanes());
     let cell = region.cells(0..1, &mut || true).unwrap()[0];
-    (cell.value.unwrap() as u64, cell.outcome.unwrap())
+    let Some(MapOutcome::Run(outcome)) = cell.outcome else { panic!("{cell:?}") };
+    (cell.value.unwrap() as u64, outcome)
 }
 
 fn draft(numbers: &[(Name, f64)], choices: &[(Name, &'static str)]) -> Draft {

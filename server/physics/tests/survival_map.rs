@@ -1,6 +1,7 @@
 //! The survival map over κ and θ₀ of the paper's body, against runs one by one: `cargo test -p equipoise-physics --test
 //! survival_map -- --nocapture` prints its outline.
 
+use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
@@ -26,6 +27,7 @@ fn map() -> StabilityMap {
         y: MapAxis { name: Name::Theta, from: 0.0, to: 0.5, count: ROWS },
         impacts: IMPACTS,
         quantity: MapQuantity::Survival,
+        catch: CatchSettings::default(),
     }
 }
 
