@@ -8,8 +8,6 @@ use std::time::Duration;
 
 use clap::builder::Resettable;
 use clap::{Args, Command, FromArgMatches};
-use equipoise_physics::catching::plan::{FEWEST_STRIKES, MOST_STRIKES};
-use equipoise_physics::contact::{LONGEST_HOLD, MOST_SAMPLES};
 
 use crate::flags::{seconds, within};
 use crate::memory;
@@ -210,28 +208,13 @@ pub const SPINNING_PRICE: u64 = 8;
 pub const CONTROLLER_PRICE: u64 = 20_000;
 
 /// Longest time in contact after a catch, s: ten times the time in which the default weights bring a body to rest.
-pub const HOLD_TIME: f64 = LONGEST_HOLD;
+pub const HOLD_TIME: f64 = 60.0;
 
 /// Rows of one hold: 140 kB of JSON. A canvas is no wider.
-pub const HOLD_SAMPLES: u64 = MOST_SAMPLES as u64;
-
-/// Strikes of a planned catch before its stop: four numbers are to vanish, and an error grows by up to 16 times a strike.
-pub const PLAN_STRIKES: RangeInclusive<u64> = FEWEST_STRIKES as u64..=MOST_STRIKES as u64;
-
-/// Price of a catch by bounces that die down, in bounces: about 1 ms.
-pub const CATCH_BOUNCE_DOWN_PRICE: u64 = 20_000;
-
-/// Price of a planned catch, in bounces: about 20 ms, with a new plan at each strike.
-pub const CATCH_PLAN_PRICE: u64 = 300_000;
-
-/// Price of a catch by a braking table, in bounces: about 1 ms.
-pub const CATCH_BRAKE_PRICE: u64 = 20_000;
+pub const HOLD_SAMPLES: u64 = 602;
 
 /// Price of each row of a hold, in bounces: computing and writing.
 pub const HOLD_SAMPLE_PRICE: u64 = 40;
-
-/// Price of a throw, in bounces: with friction a few thousand strikes of the search.
-pub const THROW_PRICE: u64 = 20_000;
 
 /// Samples of one flight. A canvas is no wider.
 pub const SAMPLES_PER_FLIGHT: u64 = 256;
@@ -463,16 +446,5 @@ pub const LIVE_CATCH_UP: Limit =
     Limit { name: "work of catching up with this run", most: LIVE_IMPACTS + 1_000_000, unit: "bounces" };
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn answers_are_held_in_a_share_of_the_memory_there_is() {
-        for (allowed, held) in
-            [(None, 1 << 30), (Some(64 << 30), 1 << 30), (Some(512 << 20), 128 << 20), (Some(0), 1 << 20)]
-        {
-            assert_eq!(held_bytes(allowed), held, "{allowed:?}");
-        }
-        assert!(Limits::default().held_bytes as u64 <= HELD_BYTES_MOST);
-    }
-}
+#[path = "limits_tests.rs"]
+mod tests;

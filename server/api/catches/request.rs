@@ -1,5 +1,6 @@
 //! The request for `catches`: a scene, and the settings of the catch.
 
+use equipoise_physics::catching::plan::{FEWEST_STRIKES, MOST_STRIKES};
 use equipoise_physics::catching::settings::{
     BRAKES, CatchSettings, DEFAULT_HOLD, HOLD_SPEED, PLAN_RATIOS, RATIOS, Strategy,
 };
@@ -23,6 +24,24 @@ const HOLDS: std::ops::RangeInclusive<f64> = 0.1..=limits::HOLD_TIME;
 
 /// Default for the largest number of rows of the hold.
 const HOLD_SAMPLES: u64 = 200;
+
+// The limits are those of the physics.
+const _: () = assert!(
+    limits::HOLD_SAMPLES == equipoise_physics::contact::MOST_SAMPLES as u64
+        && limits::HOLD_TIME == equipoise_physics::contact::LONGEST_HOLD
+);
+
+/// Price of a catch by bounces that die down, in bounces: about 1 ms.
+const CATCH_BOUNCE_DOWN_PRICE: u64 = 20_000;
+
+/// Price of a planned catch, in bounces: about 20 ms, with a new plan at each strike.
+const CATCH_PLAN_PRICE: u64 = 300_000;
+
+/// Price of a catch by a braking table, in bounces: about 1 ms.
+const CATCH_BRAKE_PRICE: u64 = 20_000;
+
+/// Strikes of a planned catch before its stop: four numbers are to vanish, and an error grows by up to 16 times a strike.
+const PLAN_STRIKES: std::ops::RangeInclusive<u64> = FEWEST_STRIKES as u64..=MOST_STRIKES as u64;
 
 /// Settings of a catch, with the size of its answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,7 +90,7 @@ pub fn read_settings(reader: &mut Reader<'_, '_>) -> CatchSettings {
     ];
     let strategy = reader.choice("strategy", &strategies).flatten();
     let ratio = reader.number("ratio", PLAN_RATIOS, "");
-    let strikes = reader.integer("strikes", limits::PLAN_STRIKES);
+    let strikes = reader.integer("strikes", PLAN_STRIKES);
     let brake = reader.number("brake", BRAKES, "m/s²");
     let said = strategies.iter().find(|(_, known)| *known == strategy).map_or("auto", |(name, _)| name);
     let mut only_for = |name: &'static str, known: &[Strategy], words: &str| {
@@ -108,10 +127,10 @@ pub fn canonical_settings(settings: &CatchSettings) -> impl Serialize + use<> {
 /// Price of a catch, in bounces.
 pub fn catch_price(settings: &CatchSettings) -> u64 {
     match settings.strategy {
-        Some(Strategy::BounceDown) => limits::CATCH_BOUNCE_DOWN_PRICE,
-        Some(Strategy::Plan) => limits::CATCH_PLAN_PRICE,
-        Some(Strategy::Brake) => limits::CATCH_BRAKE_PRICE,
-        None => 2 * (limits::CATCH_BOUNCE_DOWN_PRICE + limits::CATCH_PLAN_PRICE) + limits::CATCH_BRAKE_PRICE,
+        Some(Strategy::BounceDown) => CATCH_BOUNCE_DOWN_PRICE,
+        Some(Strategy::Plan) => CATCH_PLAN_PRICE,
+        Some(Strategy::Brake) => CATCH_BRAKE_PRICE,
+        None => 2 * (CATCH_BOUNCE_DOWN_PRICE + CATCH_PLAN_PRICE) + CATCH_BRAKE_PRICE,
     }
 }
 

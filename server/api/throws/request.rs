@@ -23,6 +23,9 @@ const ANGLES: std::ops::RangeInclusive<f64> = -100.0..=100.0;
 /// Places of the centre of gravity before the throw, m.
 const PLACES: std::ops::RangeInclusive<f64> = -1000.0..=1000.0;
 
+/// Price of a throw, in bounces: with friction a few thousand strikes of the search.
+const THROW_PRICE: u64 = 20_000;
+
 /// The state before the throw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Start {
@@ -92,7 +95,7 @@ impl ResourceRequest for ThrowRequest {
             Start::Impact(impact) => impact * bounce_price(&self.scene),
         };
         let catch = self.catch.map_or(0, |catch| catch.price());
-        Price::bounces(limits::ANSWER_PRICE + limits::THROW_PRICE + before + catch).within(&limits.of_work())
+        Price::bounces(limits::ANSWER_PRICE + THROW_PRICE + before + catch).within(&limits.of_work())
     }
 }
 

@@ -1,0 +1,13 @@
+//! Unit tests of the limits.
+
+use super::*;
+
+#[test]
+fn answers_are_held_in_a_share_of_the_memory_there_is() {
+    for (allowed, held) in
+        [(None, 1 << 30), (Some(64 << 30), 1 << 30), (Some(512 << 20), 128 << 20), (Some(0), 1 << 20)]
+    {
+        assert_eq!(held_bytes(allowed), held, "{allowed:?}");
+    }
+    assert!(Limits::default().held_bytes as u64 <= HELD_BYTES_MOST);
+}
