@@ -36,7 +36,12 @@ pub fn catch_up(
     while let (Some(t), Some(n)) = (playback.next_t(), playback.next_n())
         && t <= until
     {
-        if from.is_none_or(|from| n == from) {
+        // A hold is sent from its beginning, after the last strike.
+        let starts = match from {
+            Some(from) => n == from && begin.is_none(),
+            None => playback.held_until().is_none(),
+        };
+        if starts {
             begin = Some(playback.clone());
         }
         if from.is_some_and(|from| n >= from) {
@@ -71,7 +76,7 @@ mod tests {
     /// Time of impact n, s.
     fn time_of(run: &Run, n: usize) -> f64 {
         let mut playback = Playback::new(run, limits::LIVE_IMPACTS);
-        std::iter::from_fn(|| playback.next_n().map(|_| playback.advance(run).0.t)).nth(n - 1).unwrap()
+        std::iter::from_fn(|| playback.next_impact(run).map(|(contact, _)| contact.t)).nth(n - 1).unwrap()
     }
 
     fn caught_up(run: &Run, from: Option<u64>, until: f64, limit: &Limit) -> Result<Playback, CatchUpError> {

@@ -3,9 +3,13 @@
 //! `session` carries them out.
 
 use equipoise_physics::body::Kick;
+use equipoise_physics::catching::settings::CatchSettings;
+use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::scene::{Name, Value as FieldValue};
 use serde_json::{Map, Value};
 
+use crate::api::catches::request::read_settings;
+use crate::api::throws::request::read_apex;
 use crate::http::request::json;
 use crate::http::request::reader::join;
 use crate::http::{Errors, Problem, Reader, Source};
@@ -29,6 +33,10 @@ pub enum ClientMessage {
     Set(Vec<(Name, FieldValue)>),
     /// Kick the body just after the next impact.
     Kick(Kick),
+    /// Catch the body from the next impact on, and hold it.
+    Catch(CatchSettings),
+    /// Throw the body at the next impact, or from the table that holds it.
+    Throw(ThrowTarget),
 }
 
 impl ClientMessage {
@@ -42,6 +50,8 @@ impl ClientMessage {
             Self::Speed(_) => "speed",
             Self::Set(_) => "set",
             Self::Kick(_) => "kick",
+            Self::Catch(_) => "catch",
+            Self::Throw(_) => "throw",
         }
     }
 
@@ -56,8 +66,10 @@ impl ClientMessage {
             Speed,
             Set,
             Kick,
+            Catch,
+            Throw,
         }
-        const TYPES: [(&str, MessageType); 7] = [
+        const TYPES: [(&str, MessageType); 9] = [
             ("pause", MessageType::Plain(|| ClientMessage::Pause)),
             ("resume", MessageType::Plain(|| ClientMessage::Resume)),
             ("step", MessageType::Plain(|| ClientMessage::Step)),
@@ -65,6 +77,8 @@ impl ClientMessage {
             ("speed", MessageType::Speed),
             ("set", MessageType::Set),
             ("kick", MessageType::Kick),
+            ("catch", MessageType::Catch),
+            ("throw", MessageType::Throw),
         ];
         let fields = json::object(text.as_bytes()).map_err(|problem| of_a_message(&problem))?;
         let mut errors = Errors::default();
@@ -88,6 +102,17 @@ impl ClientMessage {
                 let kick = read_kick(&mut reader);
                 reader.finish();
                 kick.map(ClientMessage::Kick)
+            }
+            MessageType::Catch => {
+                let settings = read_settings(&mut reader);
+                reader.finish();
+                Some(ClientMessage::Catch(settings))
+            }
+            MessageType::Throw => {
+                reader.require(&["apex"]);
+                let target = reader.within("apex", read_apex).flatten();
+                reader.finish();
+                target.map(ClientMessage::Throw)
             }
             MessageType::Set => {
                 let paths: Map<String, Value> = fields.clone().into_iter().filter(|(key, _)| key != "type").collect();
@@ -118,6 +143,7 @@ fn of_a_message(problem: &Problem) -> Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use equipoise_physics::catching::settings::Strategy;
 
     fn refused(text: &str) -> Vec<String> {
         let problem = ClientMessage::read(text).unwrap_err();
@@ -138,6 +164,15 @@ mod tests {
         );
         let kick = Kick { theta_dot: 0.5, ..Kick::default() };
         assert_eq!(ClientMessage::read(r#"{"type":"kick","theta_dot":0.5}"#).unwrap(), ClientMessage::Kick(kick));
+        let settings = CatchSettings { strategy: Some(Strategy::Brake), hold: 2.0, ..CatchSettings::default() };
+        assert_eq!(
+            ClientMessage::read(r#"{"type":"catch","strategy":"brake","hold":2}"#).unwrap(),
+            ClientMessage::Catch(settings)
+        );
+        assert_eq!(
+            ClientMessage::read(r#"{"type":"throw","apex":{"height":0.4}}"#).unwrap(),
+            ClientMessage::Throw(ThrowTarget { height: 0.4, theta: 0.0 })
+        );
     }
 
     #[test]
@@ -159,6 +194,13 @@ mod tests {
             ),
             (r#"{"type":"kick"}"#, vec![""]),
             (r#"{"type":"kick","theta_dot":1e3,"y":1}"#, vec!["/theta_dot", "/y"]),
+            (r#"{"type":"catch","strategy":"net"}"#, vec!["/strategy"]),
+            (r#"{"type":"catch","strategy":"brake","ratio":0.5,"hold":900}"#, vec!["/hold", "/ratio"]),
+            (r#"{"type":"throw"}"#, vec!["/apex"]),
+            (
+                r#"{"type":"throw","apex":{"height":-1,"theta":1e9,"y":2}}"#,
+                vec!["/apex/height", "/apex/theta", "/apex/y"],
+            ),
         ] {
             let mut found = refused(text);
             found.sort();

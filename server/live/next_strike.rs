@@ -57,7 +57,7 @@ mod tests {
     fn follow(run: &Run, impacts: u64) {
         let mut playback = Playback::new(run, impacts);
         while let Some(next) = NextStrike::of(&playback, run) {
-            let (contact, _) = playback.advance(run);
+            let (contact, _) = playback.next_impact(run).unwrap();
             assert_eq!((next.n, next.t.to_bits()), (contact.n, contact.t.to_bits()));
             assert_eq!((next.y, next.alpha.to_bits()), (contact.clearance, contact.alpha.to_bits()), "at {}", next.n);
             let foot = contact.x + playback.body().contact_distance() * contact.state.theta.sin();
@@ -96,7 +96,7 @@ mod tests {
         run.set(1, &zero).unwrap();
         let mut playback = Playback::new(&run, 100);
         let next = NextStrike::of(&playback, &run).unwrap();
-        let (contact, _) = playback.advance(&run);
+        let (contact, _) = playback.next_impact(&run).unwrap();
         let (sin, cos) = next.alpha.sin_cos();
         let beta = contact.state.theta - contact.alpha;
         let state = contact.state;

@@ -131,7 +131,7 @@ mod tests {
         let run = case("case-1");
         let mut playback = Playback::new(&run, limits::LIVE_IMPACTS);
         let mut next = || {
-            let (contact, _) = playback.advance(&run);
+            let (contact, _) = playback.next_impact(&run).unwrap();
             ImpactMessage { row: ImpactRow::new(playback.body(), true, contact), next_strike: None }
         };
         let mut outbox = Outbox::new(4);

@@ -127,8 +127,11 @@ mod tests {
     use crate::http::Errors;
     use crate::http::request::query;
     use crate::http::request::scalar::Source;
+    use crate::runs::run::ThrowOrder;
     use crate::runs::run::tests::case;
     use equipoise_physics::body::Kick;
+    use equipoise_physics::catching::settings::CatchSettings;
+    use equipoise_physics::catching::throw::ThrowTarget;
     use equipoise_physics::scene::{Name, Value as FieldValue};
     use proptest::prelude::*;
 
@@ -155,6 +158,8 @@ mod tests {
     enum Did {
         Set(Name, f64),
         Kick(f64, f64, f64),
+        Catch(CatchSettings),
+        Throw(f64, f64, Option<f64>),
         Pause,
         Resume,
         Speed(f64),
@@ -168,6 +173,19 @@ mod tests {
             (0.01..=3.0).prop_map(|value| Did::Set(Name::ToppleAngle, value)),
             (-1.0..=1.0, -1.0..=1.0, -2.0..=2.0).prop_map(|(x, y, theta)| Did::Kick(x, y, theta)),
             Just(Did::Kick(0.0, -0.0, 0.0)),
+            Just(Did::Catch(CatchSettings::default())),
+            (0.05..=0.98, 0.0..=1e6, 0.1..=60.0).prop_map(|(ratio, weight, hold)| {
+                Did::Catch(CatchSettings {
+                    strategy: Some(equipoise_physics::catching::settings::Strategy::Plan),
+                    ratio: Some(ratio),
+                    strikes: Some(7),
+                    state_weights: [weight, 10.0, 0.1, 2.0],
+                    hold,
+                    ..CatchSettings::default()
+                })
+            }),
+            (0.0..=100.0, -9.0..=9.0, proptest::option::of(0.0..=1e9))
+                .prop_map(|(height, theta, t)| Did::Throw(height, theta, t)),
             Just(Did::Pause),
             Just(Did::Resume),
             Just(Did::Step),
@@ -193,6 +211,11 @@ mod tests {
                         let theta_dot = if has_angle(&scene) { theta_dot } else { 0.0 };
                         live.run.kick(impact, Kick { x_dot, y_dot, theta_dot }).unwrap();
                     }
+                    Did::Catch(settings) if has_angle(&scene) => live.run.catch(impact, settings).unwrap(),
+                    Did::Throw(height, theta, t) if has_angle(&scene) => {
+                        live.run.throw(impact, ThrowOrder { target: ThrowTarget { height, theta }, t }).unwrap();
+                    }
+                    Did::Catch(_) | Did::Throw(..) => {}
                     Did::Pause => live.clock.pause(wall),
                     Did::Resume => live.clock.resume(wall),
                     Did::Speed(speed) => live.clock.set_speed(wall, speed),

@@ -11,6 +11,7 @@ use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::http::{Problem, ValidationError};
 use crate::limits;
+use crate::live::hold_message::HoldMessage;
 use crate::live::impact_message::{ImpactColumns, ImpactMessage};
 use crate::live::next_strike::NextStrike;
 use crate::live::run_url;
@@ -32,6 +33,8 @@ pub enum ServerMessage<'a> {
         /// The strike after the last of them.
         next_strike: Option<NextStrike>,
     },
+    /// The body in contact with the table that holds it, for a time that begins when the message is sent.
+    Hold(&'a HoldMessage),
     /// Impacts that were skipped for a slow client.
     Gap {
         /// Number of the first one.
@@ -101,6 +104,7 @@ impl ServerMessage<'_> {
             ServerMessage::Impacts { columns, .. } => {
                 ("impacts", columns.0.last().map(|impact| EventId::Impact(impact.n())))
             }
+            ServerMessage::Hold(_) => ("hold", None),
             ServerMessage::Gap { .. } => ("gap", None),
             ServerMessage::End { .. } => ("end", Some(EventId::End)),
             ServerMessage::Problem { .. } => ("problem", None),
@@ -194,7 +198,7 @@ pub struct Ack<'a> {
     pub speed: f64,
     /// True if the run is paused.
     pub paused: bool,
-    /// Impact at which `set`, `kick` or `step` acts.
+    /// Impact at which `set`, `kick`, `catch`, `throw` or `step` acts.
     pub impact: Option<u64>,
     /// The strike that comes next, with what was set. None after the end.
     pub next_strike: Option<NextStrike>,

@@ -25,6 +25,7 @@ use crate::live::catch_up;
 use crate::live::catch_up::CatchUpError;
 use crate::live::client_message::ClientMessage;
 use crate::live::close::{Close, Unreadable};
+use crate::live::hold_message::HoldMessage;
 use crate::live::impact_message::ImpactMessage;
 use crate::live::next_strike::NextStrike;
 use crate::live::outbox::Outbox;
@@ -32,8 +33,10 @@ use crate::live::run_url;
 use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message;
 use crate::live::server_message::{Ack, Hello, OutgoingFrame, ServerMessage};
-use crate::runs::interventions::NO_ANGLE;
-use crate::runs::playback::Playback;
+use crate::runs::caught::HoldPart;
+use crate::runs::interventions::{NO_ANGLE, NO_BODY};
+use crate::runs::playback::{Playback, Step};
+use crate::runs::run::ThrowOrder;
 
 /// Parts of the server that a session uses.
 #[derive(Debug, Clone)]
@@ -256,22 +259,42 @@ impl Session {
         let begin = Instant::now();
         let run_time = self.live.clock.run_time(now);
         let (mut told, mut spent, mut last_flight) = (0, 0, None);
+        let mut held: Option<HoldPart> = None;
         while told < limits::LIVE_BATCH
             && spent < limits::LIVE_BATCH_BOUNCES
             && self.playback.next_t().is_some_and(|t| t <= run_time)
         {
-            let (contact, price) = self.playback.advance(&self.live.run);
-            (told, spent, last_flight) = (told + 1, spent + price.as_bounces(), contact.flight_time);
-            if contact.n >= self.first {
-                let has_angle = has_angle(self.live.run.scene());
-                let row = ImpactRow::new(self.playback.body(), has_angle, contact);
-                let next_strike = NextStrike::of(&self.playback, &self.live.run);
-                self.outbox.push_impact(ImpactMessage { row, next_strike });
+            let (step, price) = self.playback.advance(&self.live.run);
+            (told, spent) = (told + 1, spent + price.as_bounces());
+            match step {
+                Step::Impact(contact) => {
+                    self.tell_hold(held.take());
+                    last_flight = contact.flight_time;
+                    if contact.n >= self.first {
+                        let has_angle = has_angle(self.live.run.scene());
+                        let row = ImpactRow::new(self.playback.body(), has_angle, contact);
+                        let next_strike = NextStrike::of(&self.playback, &self.live.run);
+                        self.outbox.push_impact(ImpactMessage { row, next_strike });
+                    }
+                }
+                Step::Hold(part) => {
+                    last_flight = Some(part.length());
+                    held = match held.take().map(|before| before.joined(&part)) {
+                        Some(Ok(joined)) => Some(joined),
+                        Some(Err(before)) => {
+                            self.tell_hold(Some(before));
+                            Some(part)
+                        }
+                        None => Some(part),
+                    };
+                }
+                Step::End => self.tell_hold(held.take()),
             }
             if let Some(outcome) = self.playback.outcome() {
                 self.outbox.push(ServerMessage::End { outcome, demand: self.playback.load().into() }.to_frame());
             }
         }
+        self.tell_hold(held);
         self.context.bounces.inc_by(told as u64);
         let Some(t) = self.playback.next_t() else {
             self.catching_up = false;
@@ -289,6 +312,13 @@ impl Session {
         let due = begin + Duration::from_millis(wait_ms as u64);
         let is_fast = last_flight.is_some_and(|flight| flight * limits::LIVE_SINGLE_PER_S < self.live.clock.speed());
         self.next_compute = if is_fast { due.max(batch) } else { due };
+    }
+
+    /// Sends samples of a hold, if there are any.
+    fn tell_hold(&mut self, part: Option<HoldPart>) {
+        if let Some(part) = part {
+            self.outbox.push(ServerMessage::Hold(&HoldMessage(part)).to_frame());
+        }
     }
 
     /// Returns the close for a broken bound, if there is one. Sends pings.
@@ -398,10 +428,33 @@ impl Session {
             }
             ClientMessage::Kick(kick) => {
                 let (n, _) = self.next_impact()?;
+                if let Some(t) = self.playback.held_until() {
+                    let detail =
+                        format!("the table holds the body (until t = {t} s at least); a kick acts after an impact");
+                    return Err(Problem::invalid_at("/type", detail));
+                }
                 if kick.theta_dot != 0.0 && !has_angle(live.run.scene()) {
                     return Err(Problem::invalid_at("/theta_dot", NO_ANGLE));
                 }
                 live.run.kick(n, *kick).map_err(|detail| Problem::invalid_at("", detail))?;
+                impact = Some(n);
+            }
+            ClientMessage::Catch(settings) => {
+                let (n, _) = self.next_impact()?;
+                self.has_body(&live)?;
+                if let Some(t) = self.playback.held_until() {
+                    let detail = format!("the table holds the body already (until t = {t} s at least); throw it first");
+                    return Err(Problem::invalid_at("/type", detail));
+                }
+                live.run.catch(n, *settings).map_err(|detail| Problem::invalid_at("", detail))?;
+                impact = Some(n);
+            }
+            ClientMessage::Throw(target) => {
+                let (n, _) = self.next_impact()?;
+                self.has_body(&live)?;
+                self.playback.try_throw(target).map_err(|failure| Problem::invalid_at("/apex", failure.to_string()))?;
+                let order = ThrowOrder { target: *target, t: self.playback.held_until() };
+                live.run.throw(n, order).map_err(|detail| Problem::invalid_at("", detail))?;
                 impact = Some(n);
             }
             ClientMessage::Restart => {
@@ -415,7 +468,11 @@ impl Session {
             }
         }
         live.clock.forget_beyond(limits::LIVE_CLOCK_ENTRIES);
-        if matches!(message, ClientMessage::Set(_) | ClientMessage::Kick(_)) && run_url::is_too_long(&live) {
+        let adds = matches!(
+            message,
+            ClientMessage::Set(_) | ClientMessage::Kick(_) | ClientMessage::Catch(_) | ClientMessage::Throw(_)
+        );
+        if adds && run_url::is_too_long(&live) {
             let most = limits::URL_BYTES;
             let detail = format!("the run's URL would be over the limit of {most} bytes; restart keeps what was set");
             return Err(Problem::invalid_at("", detail));
@@ -434,6 +491,11 @@ impl Session {
         };
         self.outbox.push(ServerMessage::Ack(ack).to_frame());
         Ok(())
+    }
+
+    /// Refuses a catch or a throw of a point mass.
+    fn has_body(&self, live: &LiveRun) -> Result<(), Problem> {
+        if has_angle(live.run.scene()) { Ok(()) } else { Err(Problem::invalid_at("/type", NO_BODY)) }
     }
 
     /// Number and time of the next impact.

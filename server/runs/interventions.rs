@@ -1,19 +1,29 @@
 //! Interventions in a request: reads them with the scene of their run, and writes them as parameters of a query.
 
 use equipoise_physics::body::Kick;
+use equipoise_physics::catching::settings::CatchSettings;
+use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::scene::{FIELDS, Field, Name, Value as FieldValue, field};
 use serde_json::{Map, Value};
 
+use crate::api::catches::request::{read_settings, strategy_name};
 use crate::api::scene::{has_angle, read_scene, read_value, value_to_query};
+use crate::api::throws::request::read_apex;
 use crate::http::request::reader::join;
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
 use crate::http::{Errors, Reader};
 use crate::limits;
-use crate::runs::run::{KICK_SPEED, KICK_SPIN, Run};
+use crate::runs::run::{KICK_SPEED, KICK_SPIN, Run, ThrowOrder};
+
+/// Latest time of a throw, s: the run times of a live run's clock end there.
+const THROW_TIMES: std::ops::RangeInclusive<f64> = 0.0..=2e14;
 
 /// Error of a kick that would turn a point mass.
 pub const NO_ANGLE: &str = "a point mass has no theta_dot; leave it out";
+
+/// Error of a catch or a throw of a point mass.
+pub const NO_BODY: &str = "a point mass has no angle to bring to rest; a catch or a throw needs a rod or a polygon";
 
 /// One entry of `interventions`, valid by itself but not yet applied to a run.
 #[derive(Debug)]
@@ -21,6 +31,8 @@ pub struct InterventionRequest {
     impact: u64,
     set: Vec<(Name, FieldValue)>,
     kick: Option<Kick>,
+    catch: Option<CatchSettings>,
+    throw: Option<ThrowOrder>,
 }
 
 /// Reads a scene and its interventions. Returns None if something is wrong; the reader then has the errors.
@@ -49,7 +61,7 @@ pub fn apply_interventions(run: &mut Run, all: Vec<Option<InterventionRequest>>,
 }
 
 fn apply(run: &mut Run, intervention: &InterventionRequest, pointer: &str, errors: &mut Errors) {
-    let InterventionRequest { impact, set, kick } = intervention;
+    let InterventionRequest { impact, set, kick, catch, throw } = intervention;
     if !set.is_empty()
         && let Err(found) = run.set(*impact, set)
     {
@@ -64,6 +76,16 @@ fn apply(run: &mut Run, intervention: &InterventionRequest, pointer: &str, error
         } else if let Err(detail) = run.kick(*impact, *kick) {
             errors.push(pointer, detail);
         }
+    }
+    if (catch.is_some() || throw.is_some()) && !has_angle(run.scene()) {
+        let name = if catch.is_some() { "catch" } else { "throw" };
+        errors.push(format!("{pointer}/{name}"), NO_BODY);
+        return;
+    }
+    // A catch takes the place of a throw at the same impact, so it comes first.
+    let caught = catch.map_or(Ok(()), |settings| run.catch(*impact, settings));
+    if let Err(detail) = caught.and_then(|()| throw.map_or(Ok(()), |order| run.throw(*impact, order))) {
+        errors.push(pointer, detail);
     }
 }
 
@@ -80,10 +102,26 @@ fn read_intervention(item: &mut Reader<'_, '_>) -> Option<InterventionRequest> {
         }
     };
     let kick = item.within("kick", read_kick);
-    if !item.has("set") && !item.has("kick") {
-        item.refuse_whole("an intervention is a set or a kick, and this is neither");
+    let catch = item.within("catch", read_settings);
+    let throw = item.within("throw", read_throw);
+    if ["set", "kick", "catch", "throw"].iter().all(|name| !item.has(name)) {
+        item.refuse_whole("an intervention is a set, a kick, a catch or a throw, and this is none of them");
     }
-    Some(InterventionRequest { impact: impact?, set: set?, kick: kick.flatten() })
+    if catch.is_some() && throw.flatten().is_some_and(|order| order.t.is_none()) {
+        item.refuse(
+            "throw",
+            "a catch and a throw act at the same impact; leave one of them out, or give the throw a time t",
+        );
+    }
+    Some(InterventionRequest { impact: impact?, set: set?, kick: kick.flatten(), catch, throw: throw.flatten() })
+}
+
+/// Reads a throw: its apex, and the time of the throw of a body that is held.
+pub fn read_throw(reader: &mut Reader<'_, '_>) -> Option<ThrowOrder> {
+    reader.require(&["apex"]);
+    let target = reader.within("apex", read_apex).flatten();
+    let t = reader.number("t", THROW_TIMES, "s");
+    Some(ThrowOrder { target: target?, t })
 }
 
 /// Reads a kick: velocities to add, at least one of them.
@@ -173,8 +211,43 @@ pub fn intervention_parameters(run: &Run) -> Vec<(String, String)> {
                 }
             }
         }
+        let mut push = |name: &str, value: String| parameters.push((format!("{prefix}.{name}"), value));
+        if let Some(settings) = &intervention.catch {
+            catch_parameters(settings, |name, value| push(&format!("catch.{name}"), value));
+        }
+        if let Some(ThrowOrder { target, t }) = intervention.throw {
+            push("throw.apex.height", number_text(target.height));
+            push("throw.apex.theta", number_text(target.theta));
+            if let Some(t) = t {
+                push("throw.t", number_text(t));
+            }
+        }
     }
     parameters
+}
+
+/// Writes the settings of a catch, without those that have their defaults.
+fn catch_parameters(settings: &CatchSettings, mut push: impl FnMut(&str, String)) {
+    let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold_speed, hold } = settings;
+    let default = CatchSettings::default();
+    // An object needs a field to be there.
+    push("strategy", strategy_name(*strategy).to_owned());
+    for (name, value) in [("ratio", *ratio), ("strikes", strikes.map(f64::from)), ("brake", *brake)] {
+        if let Some(value) = value {
+            push(name, if name == "strikes" { value.to_string() } else { number_text(value) });
+        }
+    }
+    for (name, (value, known)) in STATE.iter().zip(state_weights.iter().zip(default.state_weights)) {
+        if value.to_bits() != known.to_bits() {
+            push(&format!("weights.state.{name}"), number_text(*value));
+        }
+    }
+    for (name, value, known) in [("weights.input", *input_weight, default.input_weight), ("hold", *hold, default.hold)]
+    {
+        if value.to_bits() != known.to_bits() {
+            push(name, number_text(value));
+        }
+    }
 }
 
 /// Shortest text that reads back to the same double.

@@ -3,19 +3,28 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use equipoise_physics::body::PreImpact;
+use equipoise_physics::body::{Body, Kick, PreImpact};
+use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::strike::Strike;
+use equipoise_physics::catching::settings::CatchSettings;
+use equipoise_physics::catching::throw;
+use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowTarget};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, Orbit};
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker};
 
+use crate::api::catches::request::catch_price;
 use crate::api::scene::has_angle;
 use crate::api::shared::outcome::Outcome;
 use crate::compute::Price;
 use crate::limits;
+use crate::runs::caught::{CaughtRun, HoldPart, full_strike, held_body};
 use crate::runs::run::Run;
+
+/// Rounding of a time in a URL, s.
+const SAME_TIME: f64 = 1e-9;
 
 /// Position in a run: before the next impact, or at the end. Cheap to clone.
 #[derive(Debug, Clone)]
@@ -27,6 +36,19 @@ pub struct Playback {
     tracker: LoadTracker,
     /// Number of the impact after which the run is completed.
     last: u64,
+    /// The catch under way.
+    caught: Option<CaughtRun>,
+}
+
+/// Next thing that happens in a run.
+#[derive(Debug)]
+pub enum Step {
+    /// An impact.
+    Impact(Contact),
+    /// The body is held for some time.
+    Hold(HoldPart),
+    /// The run ended without an impact.
+    End,
 }
 
 impl Playback {
@@ -40,17 +62,32 @@ impl Playback {
                 (nowhere, Some(Arc::new(Outcome::new(no_contact.ending(0.0, 0.0), 0, 0.0))))
             }
         };
-        Self { orbit, scene: Arc::new(scene), outcome, tracker: LoadTracker::default(), last }
+        Self { orbit, scene: Arc::new(scene), outcome, tracker: LoadTracker::default(), last, caught: None }
     }
 
-    /// Time of the next impact, s; `None` after the end.
+    /// Time of the next step, s; `None` after the end.
     pub fn next_t(&self) -> Option<f64> {
-        self.outcome.is_none().then(|| self.orbit.t())
+        self.outcome.is_none().then(|| self.held().map_or_else(|| self.orbit.t(), |(_, t)| t))
     }
 
-    /// Number of the next impact; `None` after the end.
+    /// Number of the next impact; `None` after the end. While the body is held there may be no other.
     pub fn next_n(&self) -> Option<u64> {
         self.outcome.is_none().then(|| self.orbit.contacts() + 1)
+    }
+
+    /// Time, s, up to which a hold is known to the client. `None` if the body is not held.
+    pub fn held_until(&self) -> Option<f64> {
+        self.held().map(|(_, t)| t)
+    }
+
+    /// Tells whether the table catches the body, or holds it.
+    pub fn is_caught(&self) -> bool {
+        self.caught.is_some()
+    }
+
+    fn held(&self) -> Option<(&CaughtRun, f64)> {
+        let caught = self.caught.as_ref().filter(|caught| caught.next_strike().is_none())?;
+        Some((caught, caught.sample()?.t))
     }
 
     /// The end of the run, if it has ended.
@@ -60,13 +97,25 @@ impl Playback {
 
     /// The next contact before it happens, with its strike by the changes that act there, and the scene then in force. `None` after
     /// the end.
+    ///
+    /// While the body is held, nothing is foreseen.
     pub fn foresee(&self, run: &Run) -> Option<(PreImpact, Strike, Arc<Scene>)> {
-        let mut next = self.clone();
-        if let Some(intervention) = run.at(self.next_n()?).filter(|intervention| !intervention.set.is_empty()) {
-            next.replace(intervention.set.iter().copied());
+        let (mut next, n) = (self.clone(), self.next_n()?);
+        if self.held().is_some() {
+            return None;
         }
-        let (coming, strike) = next.orbit.foresee();
-        Some((coming, strike, next.scene))
+        next.intervene(run, n);
+        if let Some(order) = run.at(n).and_then(|intervention| intervention.throw)
+            && let Ok(thrown) = throw::throw(&next.scene, &next.coming(), &order.target)
+        {
+            return Some((next.coming(), thrown.strike, next.scene));
+        }
+        let Some(caught) = &next.caught else {
+            let (coming, strike) = next.orbit.foresee();
+            return Some((coming, strike, next.scene));
+        };
+        let strike = full_strike(caught.next_strike()?, next.rod());
+        Some((next.coming(), strike, next.scene))
     }
 
     /// Largest load on the table so far.
@@ -84,19 +133,47 @@ impl Playback {
         &self.scene
     }
 
-    /// Computes the next impact of a run that has not ended, and its price.
-    pub fn advance(&mut self, run: &Run) -> (Contact, Price) {
+    /// Computes the next impact of a run, and its price; `None` if there is none before the run ends.
+    pub fn next_impact(&mut self, run: &Run) -> Option<(Contact, Price)> {
+        while self.outcome.is_none() {
+            if let (Step::Impact(contact), price) = self.advance(run) {
+                return Some((contact, price));
+            }
+        }
+        None
+    }
+
+    /// Computes the next step of a run that has not ended, and its price.
+    pub fn advance(&mut self, run: &Run) -> (Step, Price) {
         let n = self.orbit.contacts() + 1;
         let intervention = run.at(n);
-        if let Some(intervention) = intervention.filter(|intervention| !intervention.set.is_empty()) {
-            self.replace(intervention.set.iter().copied());
+        if self.held().is_some() {
+            return self.hold(run, n);
+        }
+        let began = self.intervene(run, n);
+        let caught_price =
+            Price::bounces(self.settings().filter(|_| began).map_or(0, |settings| catch_price(&settings)));
+        if self.held().is_some() {
+            // It met the table without a strike.
+            let (step, price) = self.hold(run, n);
+            return (step, price.and(caught_price));
         }
         let kick = intervention.and_then(|intervention| intervention.kick);
-        let mut contact = match kick {
-            Some(kick) => self.orbit.advance_kicked(kick),
-            None => self.orbit.advance(),
+        let order = intervention.and_then(|intervention| intervention.throw);
+        let thrown = order.and_then(|order| self.throw(&self.coming(), &order.target).ok());
+        let mut contact = match (thrown, self.caught.is_some(), kick) {
+            (Some(thrown), ..) => self.fly_after(&self.coming(), self.orbit.t(), thrown.strike, kick),
+            (None, true, kick) => self.strike_of_catch(kick),
+            (None, false, Some(kick)) => self.orbit.advance_kicked(kick),
+            (None, false, None) => self.orbit.advance(),
         };
-        if contact.ending.is_none() && n >= self.last {
+        self.note(&mut contact);
+        (Step::Impact(contact), price(&contact).and(caught_price))
+    }
+
+    /// Counts an impact, and ends the run with it if it is the last.
+    fn note(&mut self, contact: &mut Contact) {
+        if contact.ending.is_none() && self.outcome.is_none() && contact.n >= self.last {
             contact.ending = Some(Ending::Completed);
             contact.flight_time = None;
         }
@@ -104,10 +181,152 @@ impl Playback {
             self.tracker.track(strike, contact.flight_time);
         }
         if let Some(ending) = contact.ending {
-            let turning = Some(&contact).filter(|_| has_angle(&self.scene));
-            self.outcome = Some(Arc::new(Outcome::new(ending, n, contact.t).turning(turning)));
+            let turning = Some(&*contact).filter(|_| has_angle(&self.scene));
+            self.outcome = Some(Arc::new(Outcome::new(ending, contact.n, contact.t).turning(turning)));
         }
-        (contact, price(&contact))
+    }
+
+    /// Puts in force what is set at impact `n`, and begins a catch there. True if a catch was computed.
+    fn intervene(&mut self, run: &Run, n: u64) -> bool {
+        let Some(intervention) = run.at(n) else { return false };
+        let is_set = !intervention.set.is_empty();
+        if is_set {
+            self.replace(intervention.set.iter().copied());
+        }
+        let settings = intervention.catch.or_else(|| self.settings().filter(|_| is_set));
+        settings.is_some_and(|settings| self.begin_catch(&settings, &self.coming(), self.orbit.t()))
+    }
+
+    /// Settings of the catch under way.
+    fn settings(&self) -> Option<CatchSettings> {
+        self.caught.as_ref().map(|caught| caught.catch().settings)
+    }
+
+    /// Begins a catch at a coming contact, at the time `t`, s. False if there is no law for it; then the run goes on.
+    fn begin_catch(&mut self, settings: &CatchSettings, coming: &PreImpact, t: f64) -> bool {
+        let caught = CaughtRun::begin(&self.scene, settings, t, coming);
+        let begins = caught.is_some();
+        self.caught = caught.or(self.caught.take());
+        begins
+    }
+
+    /// The coming contact.
+    fn coming(&self) -> PreImpact {
+        self.orbit.coming()
+    }
+
+    fn rod(&self) -> &Rod {
+        self.orbit.body.rod()
+    }
+
+    /// The next strike of the catch under way, with a kick after it.
+    fn strike_of_catch(&mut self, kick: Option<Kick>) -> Contact {
+        let (coming, t) = (self.coming(), self.orbit.t());
+        let rod = *self.rod();
+        let Some((mut contact, arrival)) = self.caught.as_mut().and_then(|caught| caught.strike(&rod)) else {
+            // A catch without strikes and without a hold: the body falls before the table meets it.
+            self.end_catch(coming.n - 1);
+            return Contact { flight_time: None, ..bare_contact(&coming, t) };
+        };
+        match (kick, contact.strike) {
+            (Some(kick), Some(strike)) => {
+                let settings = self.settings();
+                contact = self.fly_after(&coming, t, strike, Some(kick));
+                if let (Some(settings), true) = (settings, contact.ending.is_none()) {
+                    self.begin_catch(&settings, &self.coming(), self.orbit.t());
+                }
+            }
+            _ => match arrival {
+                Some(arrival) => self.orbit.resume(contact.n, t, contact.x, &arrival),
+                None => {
+                    self.orbit.stay(contact.n);
+                    let held = self.caught.as_ref().and_then(CaughtRun::hold).map(|hold| hold.load);
+                    match held {
+                        Some(load) => self.tracker.most = self.tracker.most.or(load),
+                        None => self.end_catch(contact.n),
+                    }
+                }
+            },
+        }
+        contact
+    }
+
+    /// Ends the run with the outcome of its catch.
+    fn end_catch(&mut self, impacts: u64) {
+        if let Some(caught) = &self.caught {
+            self.outcome = Some(Arc::new(Outcome::of_catch(
+                caught.catch(),
+                self.scene.number(Name::Friction).unwrap_or_default(),
+                impacts,
+            )));
+        }
+    }
+
+    /// The next part of a hold, or the throw that ends it.
+    fn hold(&mut self, run: &Run, n: u64) -> (Step, Price) {
+        let free = Price::bounces(1);
+        let Some((sample, t)) = self.held().and_then(|(caught, t)| Some((*caught.sample()?, t))) else {
+            return (Step::End, free);
+        };
+        if let Some(intervention) = run.at(n)
+            && let Some(order) = intervention.throw
+            && order.t.is_none_or(|least| t >= least - SAME_TIME)
+        {
+            if !intervention.set.is_empty() {
+                self.replace(intervention.set.iter().copied());
+            }
+            let coming = held_body(n, self.rod(), &sample);
+            if let Ok(thrown) = self.throw(&coming, &order.target) {
+                let mut contact = self.fly_after(&coming, t, thrown.strike, intervention.kick);
+                self.note(&mut contact);
+                return (Step::Impact(contact), price(&contact));
+            }
+        }
+        match self.caught.as_mut().and_then(CaughtRun::next_part) {
+            Some(part) => (Step::Hold(part), free),
+            None => {
+                self.end_catch(n - 1);
+                (Step::End, free)
+            }
+        }
+    }
+
+    /// The throw of the body from a coming strike, or from the table that holds it.
+    fn throw(&self, coming: &PreImpact, target: &ThrowTarget) -> Result<Throw, ThrowFailure> {
+        throw::throw(&self.scene, coming, target)
+    }
+
+    /// The throw that a message asks for, from the next impact, or from where the hold is known to.
+    ///
+    /// # Errors
+    /// The reason for which no strike throws the body there.
+    pub fn try_throw(&self, target: &ThrowTarget) -> Result<(), ThrowFailure> {
+        let held = self.held().and_then(|(caught, _)| caught.sample());
+        let coming = match held {
+            Some(sample) => held_body(self.orbit.contacts() + 1, self.rod(), sample),
+            None => self.coming(),
+        };
+        self.throw(&coming, target).map(|_| ())
+    }
+
+    /// Flies on from a strike by other guidance than the law of the scene, which is in force again from then on.
+    fn fly_after(&mut self, coming: &PreImpact, t: f64, mut strike: Strike, kick: Option<Kick>) -> Contact {
+        self.caught = None;
+        if let Some(kick) = kick {
+            kick.disturb(&mut strike, self.orbit.body.contact_distance());
+        }
+        let mut contact = Contact { strike: Some(strike), alpha: strike.alpha, ..bare_contact(coming, t) };
+        match self.orbit.body.fly(coming, &strike) {
+            Ok(arrival) => {
+                contact.flight_time = Some(arrival.t);
+                self.orbit.resume(coming.n, t, coming.x, &arrival);
+            }
+            Err(no_contact) => {
+                self.orbit.stay(coming.n);
+                contact.ending = Some(no_contact.ending(strike.contact_rise, strike.after.y_dot.abs()));
+            }
+        }
+        contact
     }
 
     /// Puts these fields in force.
@@ -122,6 +341,12 @@ impl Playback {
             self.scene = Arc::new(scene);
         }
     }
+}
+
+/// A contact without a strike.
+fn bare_contact(coming: &PreImpact, t: f64) -> Contact {
+    let PreImpact { n, x, state, clearance, .. } = *coming;
+    Contact { n, t, x, state, clearance, alpha: 0.0, strike: None, flight_time: None, ending: None }
 }
 
 /// One bounce, and one more for each turn of the body in the following flight, up to a limit. The search for the next contact goes
@@ -140,7 +365,7 @@ mod tests {
 
     fn contacts(run: &Run, count: usize) -> Vec<Contact> {
         let mut playback = Playback::new(run, 1_000_000);
-        std::iter::from_fn(|| playback.next_n().map(|_| playback.advance(run).0)).take(count).collect()
+        std::iter::from_fn(|| playback.next_impact(run)).map(|(contact, _)| contact).take(count).collect()
     }
 
     #[test]

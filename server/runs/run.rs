@@ -3,6 +3,8 @@
 //! `interventions` reads and writes it, `playback` computes it.
 
 use equipoise_physics::body::Kick;
+use equipoise_physics::catching::settings::CatchSettings;
+use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::scene::{FieldError, Name, Scene, Value};
 
 use crate::api::scene::explain;
@@ -23,6 +25,19 @@ pub struct Intervention {
     pub set: Vec<(Name, Value)>,
     /// Velocities added just after this impact.
     pub kick: Option<Kick>,
+    /// Catch that begins with this impact.
+    pub catch: Option<CatchSettings>,
+    /// Throw at this impact. After a catch without strikes from the same impact, the throw of the body that is held.
+    pub throw: Option<ThrowOrder>,
+}
+
+/// A throw under way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ThrowOrder {
+    /// Apex that it aims at.
+    pub target: ThrowTarget,
+    /// Earliest time, s, of the throw of a body that is held; as soon as it is held by default.
+    pub t: Option<f64>,
 }
 
 /// A run. Equal runs have equal impacts.
@@ -108,6 +123,29 @@ impl Run {
         Ok(())
     }
 
+    /// Catches the body from an impact on, in place of a throw there.
+    ///
+    /// # Errors
+    /// There are too many interventions. The run is then unchanged.
+    pub fn catch(&mut self, impact: u64, settings: CatchSettings) -> Result<(), String> {
+        let entry = self.entry(impact)?;
+        (entry.catch, entry.throw) = (Some(settings), None);
+        Ok(())
+    }
+
+    /// Throws the body at an impact. A throw without a time replaces a catch there.
+    ///
+    /// # Errors
+    /// There are too many interventions. The run is then unchanged.
+    pub fn throw(&mut self, impact: u64, order: ThrowOrder) -> Result<(), String> {
+        let entry = self.entry(impact)?;
+        entry.throw = Some(order);
+        if order.t.is_none() {
+            entry.catch = None;
+        }
+        Ok(())
+    }
+
     /// The run released again: fields set up to impact `reached` are in force from the start; no other intervention is kept.
     pub fn restarted(&self, reached: u64) -> Self {
         // `set` has built each of these scenes before, so this does not fail.
@@ -123,7 +161,8 @@ impl Run {
                     let hint = "restart keeps what was set";
                     return Err(format!("this run has {most} interventions, which is the limit; {hint}"));
                 }
-                self.interventions.insert(place, Intervention { impact, set: Vec::new(), kick: None });
+                self.interventions
+                    .insert(place, Intervention { impact, set: Vec::new(), kick: None, catch: None, throw: None });
                 place
             }
         };

@@ -265,15 +265,7 @@ export interface components {
             scene?: components["schemas"]["ScenePatch"] | null;
             impacts?: components["schemas"]["previews.impacts"] | null;
             /** @default [] */
-            interventions: {
-                impact: number;
-                set?: components["schemas"]["LiveFields"] | null;
-                kick?: {
-                    x_dot?: number | null;
-                    y_dot?: number | null;
-                    theta_dot?: number | null;
-                } | null;
-            }[] | null;
+            interventions: components["schemas"]["Intervention"][] | null;
         };
         TrajectoryRequest: {
             preset?: components["schemas"]["PresetName"] | null;
@@ -285,15 +277,7 @@ export interface components {
             hold?: components["schemas"]["trajectories.hold"] | null;
             epoch?: components["schemas"]["trajectories.epoch"] | null;
             /** @default [] */
-            interventions: {
-                impact: number;
-                set?: components["schemas"]["LiveFields"] | null;
-                kick?: {
-                    x_dot?: number | null;
-                    y_dot?: number | null;
-                    theta_dot?: number | null;
-                } | null;
-            }[] | null;
+            interventions: components["schemas"]["Intervention"][] | null;
         };
         LiveFields: {
             "contact.restitution"?: components["schemas"]["scene.contact.restitution"];
@@ -703,10 +687,7 @@ export interface components {
         ThrowRequest: {
             preset?: components["schemas"]["PresetName"] | null;
             scene?: components["schemas"]["ScenePatch"] | null;
-            apex: {
-                height: components["schemas"]["throws.apex.height"];
-                theta?: components["schemas"]["throws.apex.theta"] | null;
-            };
+            apex: components["schemas"]["ThrowApex"];
             impact?: components["schemas"]["throws.impact"] | null;
             state?: {
                 x?: components["schemas"]["state.x"] | null;
@@ -733,6 +714,39 @@ export interface components {
                 hold_speed?: components["schemas"]["catches.hold_speed"] | null;
                 hold_samples?: components["schemas"]["catches.hold_samples"] | null;
             } | null;
+        };
+        Intervention: {
+            impact: number;
+            set?: components["schemas"]["LiveFields"] | null;
+            kick?: {
+                x_dot?: number | null;
+                y_dot?: number | null;
+                theta_dot?: number | null;
+            } | null;
+            catch?: {
+                strategy?: components["schemas"]["catches.strategy"] | null;
+                ratio?: components["schemas"]["catches.ratio"] | null;
+                strikes?: components["schemas"]["catches.strikes"] | null;
+                brake?: components["schemas"]["catches.brake"] | null;
+                weights?: {
+                    state?: null | {
+                        x?: components["schemas"]["controllers.weights.state.x"] | null;
+                        theta?: components["schemas"]["controllers.weights.state.theta"] | null;
+                        x_dot?: components["schemas"]["controllers.weights.state.x_dot"] | null;
+                        theta_dot?: components["schemas"]["controllers.weights.state.theta_dot"] | null;
+                    } | number[];
+                    input?: components["schemas"]["controllers.weights.input"] | null;
+                } | null;
+                hold?: components["schemas"]["catches.hold"] | null;
+            } | null;
+            throw?: {
+                apex: components["schemas"]["ThrowApex"];
+                t?: number | null;
+            } | null;
+        };
+        ThrowApex: {
+            height: components["schemas"]["throws.apex.height"];
+            theta?: components["schemas"]["throws.apex.theta"] | null;
         };
         StabilityRequest: {
             preset?: components["schemas"]["PresetName"] | null;
@@ -873,7 +887,7 @@ export interface components {
         /** @enum {string} */
         OutcomeKind: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "other_vertex" | "missed" | "beyond_limits";
         Outcome: {
-            kind: components["schemas"]["OutcomeKind"];
+            kind: components["schemas"]["OutcomeKind"] | components["schemas"]["CatchOutcomeKind"];
             impacts: number;
             t: number;
             detail: string;
@@ -1337,8 +1351,7 @@ export interface components {
             table_y_dot: components["schemas"]["Numbers"];
         };
         CatchOutcome: {
-            /** @enum {string} */
-            kind: "held" | "rests_on_edge" | "fell" | "slipped" | "beyond_limits" | "not_caught";
+            kind: components["schemas"]["CatchOutcomeKind"];
             t: number;
             detail: string;
             quantity: string | null;
@@ -1347,6 +1360,8 @@ export interface components {
             unit: string | null;
             vertices: number[] | null;
         };
+        /** @enum {string} */
+        CatchOutcomeKind: "held" | "rests_on_edge" | "fell" | "slipped" | "beyond_limits" | "not_caught";
         /** @enum {string} */
         CatchStrategy: "bounce_down" | "plan" | "brake";
         CatchDemand: {
@@ -1825,6 +1840,11 @@ export interface components {
                 clearance: components["schemas"]["Numbers"];
             };
         };
+        "live.hold": {
+            /** @constant */
+            type: "hold";
+            columns: components["schemas"]["HoldSamples"];
+        };
         "live.gap": {
             /** @constant */
             type: "gap";
@@ -1841,7 +1861,7 @@ export interface components {
             /** @constant */
             type: "ack";
             /** @enum {string} */
-            of: "pause" | "resume" | "step" | "speed" | "set" | "kick" | "restart";
+            of: "pause" | "resume" | "step" | "speed" | "set" | "kick" | "catch" | "throw" | "restart";
             url: string;
             run_time: number;
             now: number;
@@ -1936,6 +1956,47 @@ export interface components {
             x_dot: components["schemas"]["scene.release.x_dot"];
             /** @default 0 */
             y_dot: components["schemas"]["scene.release.y_dot"];
+        };
+        /**
+         * @example {
+         *       "type": "catch"
+         *     }
+         * @example {
+         *       "type": "catch",
+         *       "strategy": "bounce_down",
+         *       "ratio": 0.7
+         *     }
+         */
+        "live.catch": {
+            /** @constant */
+            type: "catch";
+            strategy?: components["schemas"]["catches.strategy"] | null;
+            ratio?: components["schemas"]["catches.ratio"] | null;
+            strikes?: components["schemas"]["catches.strikes"] | null;
+            brake?: components["schemas"]["catches.brake"] | null;
+            weights?: {
+                state?: null | {
+                    x?: components["schemas"]["controllers.weights.state.x"] | null;
+                    theta?: components["schemas"]["controllers.weights.state.theta"] | null;
+                    x_dot?: components["schemas"]["controllers.weights.state.x_dot"] | null;
+                    theta_dot?: components["schemas"]["controllers.weights.state.theta_dot"] | null;
+                } | number[];
+                input?: components["schemas"]["controllers.weights.input"] | null;
+            } | null;
+            hold?: components["schemas"]["catches.hold"] | null;
+        };
+        /**
+         * @example {
+         *       "type": "throw",
+         *       "apex": {
+         *         "height": 0.3
+         *       }
+         *     }
+         */
+        "live.throw": {
+            /** @constant */
+            type: "throw";
+            apex: components["schemas"]["ThrowApex"];
         };
     };
     responses: never;
@@ -2068,6 +2129,8 @@ export type ControllerRequest = components['schemas']['ControllerRequest'];
 export type CatchRequest = components['schemas']['CatchRequest'];
 export type RegionCatch = components['schemas']['RegionCatch'];
 export type ThrowRequest = components['schemas']['ThrowRequest'];
+export type Intervention = components['schemas']['Intervention'];
+export type ThrowApex = components['schemas']['ThrowApex'];
 export type StabilityRequest = components['schemas']['StabilityRequest'];
 export type Tolerances = components['schemas']['Tolerances'];
 export type PlacedState = components['schemas']['PlacedState'];
@@ -2127,6 +2190,7 @@ export type Strikes = components['schemas']['Strikes'];
 export type HoldEnd = components['schemas']['HoldEnd'];
 export type HoldSamples = components['schemas']['HoldSamples'];
 export type CatchOutcome = components['schemas']['CatchOutcome'];
+export type CatchOutcomeKind = components['schemas']['CatchOutcomeKind'];
 export type CatchStrategy = components['schemas']['CatchStrategy'];
 export type CatchDemand = components['schemas']['CatchDemand'];
 export type CatchCandidate = components['schemas']['CatchCandidate'];
@@ -2151,6 +2215,7 @@ export type ProblemError = components['schemas']['ProblemError'];
 export type LiveHello = components['schemas']['live.hello'];
 export type LiveImpact = components['schemas']['live.impact'];
 export type LiveImpacts = components['schemas']['live.impacts'];
+export type LiveHold = components['schemas']['live.hold'];
 export type LiveGap = components['schemas']['live.gap'];
 export type LiveEnd = components['schemas']['live.end'];
 export type LiveAck = components['schemas']['live.ack'];
@@ -2163,5 +2228,7 @@ export type LiveRestart = components['schemas']['live.restart'];
 export type LiveSpeed = components['schemas']['live.speed'];
 export type LiveSet = components['schemas']['live.set'];
 export type LiveKick = components['schemas']['live.kick'];
+export type LiveCatch = components['schemas']['live.catch'];
+export type LiveThrow = components['schemas']['live.throw'];
 export type $defs = Record<string, never>;
 export type operations = Record<string, never>;

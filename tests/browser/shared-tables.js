@@ -53,12 +53,20 @@ function figureColours() {
 /** The words for each ending but that of a run that goes through, from the headline of a run. */
 function endings() {
   const path = 'server/api/shared/outcome.rs';
-  const arms = part(path, /pub fn headline\([^{]*\{([\s\S]*?)\n\}/);
-  const rows = [...arms.matchAll(/EndingKind::(\w+) => \("([^"]+)", "([^"]+)"\)/g)].map(([, variant, verb, reason]) => {
+  const arms = part(path, /\npub fn headline\([^{]*\{([\s\S]*?)\n\}/);
+  const caught = part(path, /fn caught_words\([^{]*\{([\s\S]*?)\n\}/);
+  const words = [
+    ...arms.matchAll(/EndingKind::(\w+) => \("([^"]+)", "([^"]+)"\)/g),
+    // A run that goes beyond a limit has the same words either way.
+    ...[...caught.matchAll(/CatchOutcomeKind::(\w+) => \("([^"]+)", "([^"]+)"\)/g)].filter(
+      ([, variant]) => variant !== 'BeyondLimits',
+    ),
+  ];
+  const rows = words.map(([, variant, verb, reason]) => {
     const kind = variant.replace(/\B[A-Z]/g, '_$&').toLowerCase();
     return `  ${kind}: { verb: '${verb}', reason: '${reason}' },\n`;
   });
-  if (rows.length < 8) throw new Error(`${path} has ${rows.length} endings with words`);
+  if (rows.length < 13) throw new Error(`${path} has ${rows.length} endings with words`);
   return `${note(path)}/** The verb of a headline and the reason, by the kind of an ending. @type {Record<string, {verb: string, reason: string}>} */\nexport const ENDINGS = {\n${rows.join('')}};\n`;
 }
 

@@ -27,6 +27,7 @@ mod holds;
 mod hostile;
 mod ladder;
 mod live;
+mod live_catches;
 mod methods;
 mod page;
 mod periodic_orbits;

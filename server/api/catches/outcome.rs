@@ -1,7 +1,7 @@
 //! The outcome of a catch, and the facts beside it, in words and numbers.
 
 use equipoise_physics::body::Touch;
-use equipoise_physics::catching::outcome::{CatchNote, CatchOutcome, Escape, Fall, Reach};
+use equipoise_physics::catching::outcome::{Catch, CatchNote, CatchOutcome, Escape, Fall, Reach};
 use equipoise_physics::run::rules::SPEED_LIMIT;
 use equipoise_physics::table::actuator_load::LimitViolation;
 use serde::Serialize;
@@ -33,6 +33,13 @@ pub struct CatchOutcomeAnswer {
 type Decision = (&'static str, f64, f64, &'static str);
 
 impl CatchOutcomeAnswer {
+    /// The outcome of a catch.
+    pub fn of(catch: &Catch, friction: f64) -> Self {
+        let last = catch.strikes.last().map(|strike| strike.t);
+        let end = catch.hold.as_ref().map(|hold| hold.t_end).or(last).unwrap_or(0.0);
+        Self::new(&catch.outcome, catch.contact_from, end, friction)
+    }
+
     /// The outcome of a catch whose contact began at `contact_from` and was followed up to `end`, s.
     pub fn new(outcome: &CatchOutcome, contact_from: Option<f64>, end: f64, friction: f64) -> Self {
         let from = contact_from.map_or_else(String::new, |t| format!(" from t = {t} s"));

@@ -80,19 +80,26 @@ impl CatchOptions {
     }
 }
 
+/// Strategies by their names in requests; `auto` leaves the choice to the server.
+const STRATEGIES: [(&str, Option<Strategy>); 4] = [
+    ("auto", None),
+    ("bounce_down", Some(Strategy::BounceDown)),
+    ("plan", Some(Strategy::Plan)),
+    ("brake", Some(Strategy::Brake)),
+];
+
+/// Name of a strategy in requests.
+pub fn strategy_name(strategy: Option<Strategy>) -> &'static str {
+    STRATEGIES.iter().find(|(_, known)| *known == strategy).map_or("auto", |(name, _)| name)
+}
+
 /// Reads the settings of a catch from the fields of an object.
 pub fn read_settings(reader: &mut Reader<'_, '_>) -> CatchSettings {
-    let strategies = [
-        ("auto", None),
-        ("bounce_down", Some(Strategy::BounceDown)),
-        ("plan", Some(Strategy::Plan)),
-        ("brake", Some(Strategy::Brake)),
-    ];
-    let strategy = reader.choice("strategy", &strategies).flatten();
+    let strategy = reader.choice("strategy", &STRATEGIES).flatten();
     let ratio = reader.number("ratio", PLAN_RATIOS, "");
     let strikes = reader.integer("strikes", PLAN_STRIKES);
     let brake = reader.number("brake", BRAKES, "m/s²");
-    let said = strategies.iter().find(|(_, known)| *known == strategy).map_or("auto", |(name, _)| name);
+    let said = strategy_name(strategy);
     let mut only_for = |name: &'static str, known: &[Strategy], words: &str| {
         if reader.has(name) && !strategy.is_some_and(|strategy| known.contains(&strategy)) {
             reader.refuse(

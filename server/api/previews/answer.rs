@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::api::previews::request::PreviewRequest;
 use crate::api::scene::{Resolved, has_angle};
-use crate::api::shared::outcome::{Outcome, headline};
+use crate::api::shared::outcome::Outcome;
 use crate::charts::{FirstContact, PlacedBody, significant};
 use crate::runs::playback::Playback;
 use crate::runs::run::Run;
@@ -55,15 +55,14 @@ impl<'a> PreviewAnswer<'a> {
         let scene = run.scene();
         let mut playback = Playback::new(run, *impacts);
         let mut drawing = Drawing::new(scene);
-        while let Some(n) = playback.next_n() {
-            if n.is_multiple_of(CHECK_INTERVAL) && !go_on() {
+        while let Some((contact, _)) = playback.next_impact(run) {
+            if contact.n.is_multiple_of(CHECK_INTERVAL) && !go_on() {
                 return None;
             }
-            let (contact, _) = playback.advance(run);
             drawing.add(&contact, playback.body().contact_height(&contact.state), scene);
         }
         let outcome = playback.outcome().cloned()?;
-        let title = headline(outcome.ending, outcome.impacts);
+        let title = outcome.headline();
         Some(Self { scene: Resolved(scene), title, text: text(run), outcome, drawing })
     }
 }

@@ -5,6 +5,7 @@ use equipoise_physics::run::ending::EndingKind;
 use crate::api::formats::Pictured;
 use crate::api::previews::answer::PreviewAnswer;
 use crate::api::scene::has_angle;
+use crate::api::shared::outcome::RunEnding;
 use crate::charts::{Card, CardPlane, card};
 use crate::http::Problem;
 
@@ -14,7 +15,7 @@ impl Pictured for PreviewAnswer<'_> {
         Ok(card(&Card {
             title: &self.title,
             text: &self.text,
-            goes_on: self.outcome.ending == EndingKind::Completed,
+            goes_on: self.outcome.ending == RunEnding::Bouncing(EndingKind::Completed),
             path: &drawing.path,
             release: &drawing.release,
             contact: drawing.contact.as_ref(),

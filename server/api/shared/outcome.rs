@@ -1,18 +1,30 @@
 //! The outcome of a run in words and numbers. The physics decides when a run ends.
 
 use equipoise_physics::body::Touch;
+use equipoise_physics::catching::outcome::{Catch, CatchOutcomeKind};
 use equipoise_physics::run::ending::{Ending, EndingKind};
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::rules::SPEED_LIMIT;
 use equipoise_physics::table::actuator_load::LimitViolation;
 use serde::Serialize;
 
+use crate::api::catches::outcome::CatchOutcomeAnswer;
+
+/// Ending of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RunEnding {
+    /// Of a body that bounced.
+    Bouncing(EndingKind),
+    /// Of a body that the table caught, or tried to.
+    Caught(CatchOutcomeKind),
+}
+
 /// The outcome of a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct Outcome {
     /// The ending.
     #[serde(skip)]
-    pub ending: EndingKind,
+    pub ending: RunEnding,
     /// Name of the ending.
     pub kind: &'static str,
     /// Number of contacts, with the last.
@@ -106,7 +118,7 @@ impl Outcome {
         };
         let settle_time = if let Ending::Settled { settle_time, .. } = ending { Some(settle_time) } else { None };
         Self {
-            ending: ending.into(),
+            ending: RunEnding::Bouncing(ending.into()),
             kind: ending.name(),
             impacts,
             t,
@@ -133,6 +145,39 @@ impl Outcome {
             }
         }
         self
+    }
+}
+
+impl Outcome {
+    /// The outcome of a run that ended with a catch, after so many impacts.
+    pub fn of_catch(catch: &Catch, friction: f64, impacts: u64) -> Self {
+        let CatchOutcomeAnswer { kind, t, detail, quantity, value, limit, unit, .. } =
+            CatchOutcomeAnswer::of(catch, friction);
+        let ending = RunEnding::Caught(catch.outcome.kind());
+        Self { ending, kind, impacts, t, detail, quantity, value, limit, unit, settle_time: None }
+    }
+
+    /// Headline of the run, in plain words.
+    pub fn headline(&self) -> String {
+        match self.ending {
+            RunEnding::Bouncing(ending) => headline(ending, self.impacts),
+            RunEnding::Caught(outcome) => {
+                let (verb, reason) = caught_words(outcome);
+                format!("{verb} after bounce {}: {reason}", self.impacts)
+            }
+        }
+    }
+}
+
+/// Verb and reason of a headline for a body that the table caught, or tried to.
+fn caught_words(outcome: CatchOutcomeKind) -> (&'static str, &'static str) {
+    match outcome {
+        CatchOutcomeKind::Held => ("Caught", "the table holds it"),
+        CatchOutcomeKind::RestsOnEdge => ("Caught", "it lies still on an edge"),
+        CatchOutcomeKind::Fell => ("Falls", "it tipped over while the table caught it"),
+        CatchOutcomeKind::Slipped => ("Not caught", "its foot slipped on the table"),
+        CatchOutcomeKind::BeyondLimits => ("Not caught", "the catch asks more of the table than its limits allow"),
+        CatchOutcomeKind::NotCaught => ("Not caught", "the table could not follow it"),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The request for `throws`: a scene, the state before the throw, the apex, and the catch after it.
 
 use equipoise_physics::bounce::state::State;
+use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::scene::Scene;
 use serde::Serialize;
 
@@ -75,18 +76,22 @@ impl Start {
     }
 }
 
+/// Reads the apex of a throw.
+pub fn read_apex(apex: &mut Reader<'_, '_>) -> Option<ThrowTarget> {
+    apex.require(&["height"]);
+    let theta = apex.number("theta", ANGLES, "rad").unwrap_or(0.0);
+    Some(ThrowTarget { height: apex.number("height", HEIGHTS, "m")?, theta })
+}
+
 impl ResourceRequest for ThrowRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let scene = read_caught_scene(reader);
         reader.require(&["apex"]);
-        let apex = reader.within("apex", |apex| {
-            apex.require(&["height"]);
-            (apex.number("height", HEIGHTS, "m"), apex.number("theta", ANGLES, "rad").unwrap_or(0.0))
-        });
+        let apex = reader.within("apex", read_apex);
         let start = Start::read(reader);
         let catch = reader.within("catch", CatchOptions::read);
-        let (height, theta) = apex?;
-        Some(Self { scene: scene?, start, height: height?, theta, catch })
+        let ThrowTarget { height, theta } = apex??;
+        Some(Self { scene: scene?, start, height, theta, catch })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {

@@ -6,7 +6,6 @@ use equipoise_physics::body::Body;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::method;
 use equipoise_physics::run::method::{ComputedImpact, RunMethod, choose_method, run_by};
-use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::table::actuator_load::LoadTracker;
@@ -25,6 +24,7 @@ use crate::api::trajectories::flights::{Flights, SampledFlight};
 use crate::api::trajectories::hold::{HoldAnswer, HoldEnd};
 use crate::api::trajectories::impacts::Impacts;
 use crate::api::trajectories::request::TrajectoryRequest;
+use crate::runs::playback::Playback;
 
 /// Default tolerance, m/s, up to which impacts count as predictable.
 const PREDICTABLE: f64 = 1e-3;
@@ -130,13 +130,13 @@ pub struct TrajectoryAnswer<'a> {
 }
 
 impl<'a> TrajectoryAnswer<'a> {
-    /// Runs a scene, or takes the contacts of a `changed` run. Asks `go_on` now and then.
+    /// Runs a scene, or plays a `changed` run. Asks `go_on` now and then.
     ///
     /// # Errors
     /// [`Refusal`]: if `go_on` returned false, if no method holds the tolerance, or if the method does not apply.
     pub fn compute(
         request: &'a TrajectoryRequest,
-        changed: Option<&mut dyn Iterator<Item = Contact>>,
+        changed: Option<&mut Playback>,
         mut go_on: impl FnMut() -> bool,
     ) -> Result<Self, Refusal> {
         let scene = request.run.scene();
@@ -188,29 +188,35 @@ impl<'a> TrajectoryAnswer<'a> {
             }
             !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
         };
+        let mut played = None;
         let run = match changed {
             None => run_by(scene, method, impacts, visit),
-            Some(contacts) => {
-                let mut ending = None;
-                for contact in contacts {
-                    ending = contact.ending;
+            Some(playback) => {
+                while let Some((contact, _)) = playback.next_impact(&request.run) {
                     if !visit(&ComputedImpact { contact, error_estimate: f64::INFINITY, extended: None }) {
-                        ending = None;
-                        break;
+                        return Err(Refusal::Cancelled);
                     }
                 }
-                Ok(ending)
+                played = playback.outcome().cloned();
+                Ok(None)
             }
         };
         let ending = run.map_err(|why| ("/method", format!("{} does not apply: {why}", choice.name)))?;
-        let ending = ending.ok_or(Refusal::Cancelled)?;
         let (contacts_made, t) = last.map_or((0, 0.0), |last| (last.n, last.t));
-        let outcome = Outcome::new(ending, contacts_made, t).turning(last.as_ref().filter(|_| has_angle));
+        let made = |ending| Outcome::new(ending, contacts_made, t).turning(last.as_ref().filter(|_| has_angle));
+        let ending = ending.or(last.and_then(|last| last.ending));
+        let outcome = played.or_else(|| ending.map(made)).ok_or(Refusal::Cancelled)?;
         let mut notes = Vec::new();
         let (mut hold, mut hold_end) = (None, None);
         if request.hold > 0.0 {
             let in_force = request.run.restarted(contacts_made);
-            match HoldAnswer::compute(in_force.scene(), (ending, last.as_ref()), request.hold, &mut go_on)? {
+            let held = match ending {
+                Some(ending) => {
+                    HoldAnswer::compute(in_force.scene(), (ending, last.as_ref()), request.hold, &mut go_on)?
+                }
+                None => Err("hold is null: the table caught the body, and `/v1/catches` tells of the hold of a catch".to_owned()),
+            };
+            match held {
                 Ok(held) => (hold, hold_end) = (Some(held.samples), Some(held.end)),
                 Err(reason) => notes.push(reason),
             }

@@ -8,8 +8,6 @@ pub mod impacts;
 pub mod picture;
 pub mod request;
 
-use equipoise_physics::run::orbit::Contact;
-
 use crate::api::formats::{ChartFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::trajectories::answer::TrajectoryAnswer;
@@ -29,10 +27,8 @@ impl ComputedResource for Trajectories {
         compute: |request, format, slice, bounces| {
             let run = &request.run;
             let mut playback = Playback::new(run, request.impacts);
-            let mut contacts = std::iter::from_fn(|| playback.next_n().map(|_| playback.advance(run).0));
             // Without interventions, and where the body never meets the table, it is the scene's own run.
-            let changed = (!run.interventions().is_empty() && run.scene().orbit().is_ok())
-                .then_some(&mut contacts as &mut dyn Iterator<Item = Contact>);
+            let changed = (!run.interventions().is_empty() && run.scene().orbit().is_ok()).then_some(&mut playback);
             let answer = TrajectoryAnswer::compute(request, changed, || slice.should_continue())?;
             bounces.inc_by(answer.outcome.impacts);
             format.write(&answer, slice)

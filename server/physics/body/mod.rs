@@ -34,6 +34,17 @@ pub struct Kick {
     pub theta_dot: f64,
 }
 
+impl Kick {
+    /// Adds the kick to a strike of a body whose contact point is `length` (m) from its centre of gravity.
+    #[inline(always)]
+    pub fn disturb(&self, strike: &mut Strike, length: f64) {
+        strike.after.x_dot += self.x_dot;
+        strike.after.y_dot += self.y_dot;
+        strike.after.theta_dot += self.theta_dot;
+        strike.contact_rise += self.y_dot + length * self.theta_dot * strike.sin_cos_theta.0;
+    }
+}
+
 /// End of a flight: just before a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {

@@ -134,9 +134,14 @@ impl<B: Body> Orbit<B> {
 
     /// The coming contact with the strike that the table makes ready for. The run may still end there without one.
     pub fn foresee(&self) -> (PreImpact, Strike) {
-        let Self { n, state, clearance, plan, .. } = *self;
-        let coming = PreImpact { n: n + 1, x: self.x.value, state, clearance, plan };
+        let coming = self.coming();
         (coming, self.body.strike(&coming))
+    }
+
+    /// The coming contact.
+    pub fn coming(&self) -> PreImpact {
+        let Self { n, state, clearance, plan, .. } = *self;
+        PreImpact { n: n + 1, x: self.x.value, state, clearance, plan }
     }
 
     /// The coming contact. After one with an ending, call it no more: the state stays that of the last contact.
@@ -148,10 +153,7 @@ impl<B: Body> Orbit<B> {
     /// [`Orbit::advance`] with a kick between the strike and the flight: `strike.after` is with it.
     pub fn advance_kicked(&mut self, kick: Kick) -> Contact {
         self.advance_disturbed(|orbit, strike| {
-            strike.after.x_dot += kick.x_dot;
-            strike.after.y_dot += kick.y_dot;
-            strike.after.theta_dot += kick.theta_dot;
-            strike.contact_rise += kick.y_dot + orbit.body.contact_distance() * kick.theta_dot * strike.sin_cos_theta.0;
+            kick.disturb(strike, orbit.body.contact_distance());
             // The energy after the kick is known only at the coming contact.
             orbit.energy = None;
         })
@@ -165,6 +167,21 @@ impl<B: Body> Orbit<B> {
         if !rules.settles {
             self.flights.first = 0.0;
         }
+    }
+
+    /// Counts contacts that something else than the orbit has computed, and that no flight follows.
+    pub fn stay(&mut self, contacts: u64) {
+        self.n = contacts;
+    }
+
+    /// Goes on from the end of a flight that something else than the orbit has computed: `contacts` contacts so far, the last one at
+    /// `t` (s) and `x` (m).
+    pub fn resume(&mut self, contacts: u64, t: f64, x: f64, arrival: &Arrival) {
+        (self.n, self.energy, self.last, self.flights.first) = (contacts, None, None, 0.0);
+        (self.t, self.x) = (CompensatedSum::default(), CompensatedSum::default());
+        self.t.add(t);
+        self.x.add(x);
+        self.arrive(arrival);
     }
 
     #[inline(always)]

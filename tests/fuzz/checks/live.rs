@@ -1,11 +1,15 @@
 //! Input from clients of live runs: the URL of the run, and the messages that change it.
 
+use equipoise::api::catches::request::strategy_name;
 use equipoise::api::scene::{has_angle, value_to_json};
 use equipoise::http::{Errors, Problem, Reader, Source};
 use equipoise::limits;
 use equipoise::live::client_message::ClientMessage;
 use equipoise::live::run_url;
 use equipoise::live::run_url::{LiveRequest, LiveRun};
+use equipoise::runs::run::ThrowOrder;
+use equipoise_physics::catching::settings::CatchSettings;
+use equipoise_physics::control::bounce_model::STATE;
 use serde_json::{Map, Value, json};
 
 use super::{problem, query};
@@ -104,6 +108,23 @@ fn written(order: &ClientMessage) -> String {
                 message[name] = json!(value);
             }
         }
+        ClientMessage::Catch(settings) => {
+            let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold, hold_speed: _ } =
+                settings;
+            message["strategy"] = json!(strategy_name(*strategy));
+            for (name, value) in [("ratio", *ratio), ("strikes", strikes.map(f64::from)), ("brake", *brake)] {
+                if let Some(value) = value {
+                    message[name] = json!(value);
+                }
+            }
+            message["weights"] = json!({"state": {}, "input": input_weight});
+            for (name, weight) in STATE.iter().zip(state_weights) {
+                message["weights"]["state"][name] = json!(weight);
+            }
+            message["hold_speed"] = json!(hold_speed);
+            message["hold"] = json!(hold);
+        }
+        ClientMessage::Throw(target) => message["apex"] = json!({"height": target.height, "theta": target.theta}),
     }
     message.to_string()
 }
@@ -132,6 +153,17 @@ fn carried_out(run: &LiveRun, order: &ClientMessage, n: u64) -> LiveRun {
             if kick.theta_dot == 0.0 || has_angle(run.run.scene()) {
                 // Too many kicks, or a sum of kicks that is too large.
                 let _ = changed.run.kick(impact, *kick);
+            }
+        }
+        ClientMessage::Catch(settings) => {
+            if has_angle(run.run.scene()) {
+                let _ = changed.run.catch(impact, *settings);
+            }
+        }
+        ClientMessage::Throw(target) => {
+            if has_angle(run.run.scene()) {
+                let t = (n % 2 == 0).then_some(0.3 * impact as f64);
+                let _ = changed.run.throw(impact, ThrowOrder { target: *target, t });
             }
         }
         ClientMessage::Restart => changed = run.restarted(now, impact),

@@ -10,4 +10,9 @@ export const ENDINGS = {
   other_vertex: { verb: 'Falls', reason: 'another corner touched the table' },
   missed: { verb: 'Falls', reason: 'it never met the table again' },
   beyond_limits: { verb: 'Falls', reason: 'the strike asks more of the table than its limits allow' },
+  held: { verb: 'Caught', reason: 'the table holds it' },
+  rests_on_edge: { verb: 'Caught', reason: 'it lies still on an edge' },
+  fell: { verb: 'Falls', reason: 'it tipped over while the table caught it' },
+  slipped: { verb: 'Not caught', reason: 'its foot slipped on the table' },
+  not_caught: { verb: 'Not caught', reason: 'the table could not follow it' },
 };
