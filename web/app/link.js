@@ -2,8 +2,7 @@
 
 import { number, quantity } from '../dom/numbers.js';
 import { setAt, valueAt } from '../api/scene-fields.js';
-import { parameters } from '../api/scene-query.js';
-import { interventionsOf } from '../run/interventions.js';
+import { interventionQuery, interventionsOf } from '../run/interventions.js';
 import { FASTEST, SLOWEST } from '../run/speed.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
@@ -62,7 +61,9 @@ export function readLink(search, fields, cases) {
     } else if (key === 'epoch') {
       if (Number.isFinite(value) && value >= 0) run.set(key, text);
       else link.dropped.push(`the start “${shown(text)}”, which is not a time in ms`);
-    } else if (/^(interventions\.\d+\.(impact|(set|kick)\.[\w.]+)|clock\.\d+\.(wall|run|speed))$/.test(key)) {
+    } else if (
+      /^(interventions\.\d+\.(impact|(set|kick|catch|throw)\.[\w.]+)|clock\.\d+\.(wall|run|speed))$/.test(key)
+    ) {
       if (Number.isFinite(value) || isChoice(key, text, fields)) run.set(key, text);
       else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
     } else if (PANEL_KEYS.test(key)) {
@@ -142,22 +143,17 @@ function wholeRun(run, fields, dropped) {
   if (epoch !== null) kept.set('epoch', epoch);
   const interventions = interventionsOf(run);
   const whole = interventions.filter(
-    ({ impact, set, kick }) =>
+    ({ impact, set, kick, guide }) =>
       impact >= 1 &&
       Object.keys(set).every((path) => fields.some((field) => field.path === path && field.live)) &&
       Object.keys(kick).every((name) => ['theta_dot', 'x_dot', 'y_dot'].includes(name)) &&
-      Object.keys(set).length + Object.keys(kick).length > 0,
+      Object.keys(set).length + Object.keys(kick).length + Object.keys(guide).length > 0,
   );
   if (whole.length < interventions.length)
     dropped.push(
       `${interventions.length - whole.length} of ${interventions.length} interventions, which are not whole`,
     );
-  whole.forEach(({ impact, set, kick }, index) => {
-    kept.set(`interventions.${index}.impact`, String(impact));
-    for (const [path, value] of Object.entries(set))
-      for (const [name, text] of parameters(`interventions.${index}.set.${path}`, value)) kept.set(name, text);
-    for (const [name, value] of Object.entries(kick)) kept.set(`interventions.${index}.kick.${name}`, String(value));
-  });
+  for (const [name, value] of interventionQuery(whole)) kept.set(name, value);
   const marks = [
     ...new Set([...run.keys()].filter((key) => key.startsWith('clock.')).map((key) => Number(key.split('.')[1]))),
   ].sort((a, b) => a - b);

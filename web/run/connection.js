@@ -1,6 +1,7 @@
 // The connection of a run: what its messages change, how it is resumed after a loss, and when silence counts as one.
 
 import { fromColumns, fromMessage } from './impact-messages.js';
+import { Holds } from '../physics/holds.js';
 import { interventionsOf } from './interventions.js';
 import { LiveStream } from './live-stream.js';
 
@@ -8,7 +9,7 @@ import { LiveStream } from './live-stream.js';
 /** @typedef {import('./impacts.js').Impact} Impact */
 /**
  * @typedef {import('contract').LiveHello | import('contract').LiveAck | import('contract').LiveImpact
- *   | import('contract').LiveImpacts | import('contract').LiveGap | import('contract').LiveEnd
+ *   | import('contract').LiveImpacts | import('contract').LiveHold | import('contract').LiveGap | import('contract').LiveEnd
  *   | import('contract').LiveProblem} ServerMessage
  */
 
@@ -96,6 +97,12 @@ export class Connection {
       case 'impacts':
         this.#take(fromColumns(message.columns), message.next_strike);
         break;
+      case 'hold':
+        run.holds ??= new Holds();
+        run.holds.append(message.columns);
+        this.#expect();
+        run.watcher.changed();
+        break;
       case 'gap':
         run.impacts.missing += message.to - message.from + 1;
         break;
@@ -144,7 +151,8 @@ export class Connection {
     const run = this.#run;
     if (run.phase !== 'running') return;
     const arc = run.arcAt(Infinity);
-    const wait_s = arc ? Math.max(0, arc.t + arc.duration - run.clock.runTime()) / run.clock.speed : 0;
+    const next = Math.max(arc ? arc.t + arc.duration : 0, run.holds?.until ?? 0);
+    const wait_s = Math.max(0, next - run.clock.runTime()) / run.clock.speed;
     this.#overdue = setTimeout(
       () => {
         if (run.phase === 'running') this.#stream?.drop();

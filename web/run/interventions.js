@@ -2,7 +2,7 @@
 
 import { parameters } from '../api/scene-query.js';
 
-/** @typedef {{impact: number, set: Record<string, number | string | number[]>, kick: Record<string, number>}} Intervention */
+/** @typedef {{impact: number, set: Record<string, number | string | number[]>, kick: Record<string, number>, guide: Record<string, string>}} Intervention `guide` has the parameters of a catch or a throw */
 
 /**
  * @param {URLSearchParams} query
@@ -12,13 +12,14 @@ export function interventionsOf(query) {
   /** @type {Map<number, Intervention>} */
   const found = new Map();
   for (const [key, text] of query) {
-    const match = /^interventions\.(\d+)\.(impact$|set\.|kick\.)(.*?)(\.\d+)?$/.exec(key);
+    const match = /^interventions\.(\d+)\.(impact$|set\.|kick\.|catch\.|throw\.)(.*?)(\.\d+)?$/.exec(key);
     if (!match) continue;
     const index = Number(match[1]);
-    const one = found.get(index) ?? { impact: 0, set: {}, kick: {} };
+    const one = found.get(index) ?? { impact: 0, set: {}, kick: {}, guide: {} };
     found.set(index, one);
     const value = Number.isFinite(Number(text)) ? Number(text) : text;
     if (match[2] === 'impact') one.impact = Number(text);
+    else if (match[2] === 'catch.' || match[2] === 'throw.') one.guide[match[2] + match[3] + (match[4] ?? '')] = text;
     else if (match[4]) one.set[match[3]] = [.../** @type {number[]} */ (one.set[match[3]] ?? []), Number(text)];
     else if (match[2] === 'set.') one.set[match[3]] = value;
     else one.kick[match[3]] = Number(text);
@@ -29,9 +30,10 @@ export function interventionsOf(query) {
 /** Interventions as a query. @param {Intervention[]} interventions */
 export const interventionQuery = (interventions) =>
   new URLSearchParams(
-    interventions.flatMap(({ impact, set, kick }, index) => [
+    interventions.flatMap(({ impact, set, kick, guide }, index) => [
       [`interventions.${index}.impact`, String(impact)],
       ...Object.entries(set).flatMap(([path, value]) => parameters(`interventions.${index}.set.${path}`, value)),
       ...Object.entries(kick).map(([name, value]) => [`interventions.${index}.kick.${name}`, String(value)]),
+      ...Object.entries(guide).map(([name, value]) => [`interventions.${index}.${name}`, value]),
     ]),
   );

@@ -37,6 +37,8 @@ export class RunState {
   interventions = [];
   /** The query that replays this run. */
   query = new URLSearchParams();
+  /** The time in which the table holds the body; null before a run is caught. @type {import('../physics/holds.js').Holds | null} */
+  holds = null;
   /** The time that the reader looks at; null while it is the present. @type {number | null} */
   past = null;
   /** Pace at which the past is played, in times real time; 0 while it stands still. */
@@ -68,6 +70,7 @@ export class RunState {
     this.released = null;
     this.fall = null;
     this.nextStrike = null;
+    this.holds = null;
     this.watcher.cleared();
   }
 

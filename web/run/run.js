@@ -84,6 +84,16 @@ export class Run extends RunState {
     this.#send({ type: 'kick', ...velocities });
   }
 
+  /** @param {Record<string, string | number>} settings of a catch */
+  catchIt(settings) {
+    this.#send({ type: 'catch', ...settings });
+  }
+
+  /** @param {{height: number, theta: number}} apex */
+  throwIt(apex) {
+    this.#send({ type: 'throw', apex });
+  }
+
   restart() {
     this.#send({ type: 'restart' });
   }

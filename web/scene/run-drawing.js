@@ -49,7 +49,8 @@ export class RunDrawing {
     if (!arc) return drawGrid(surface, camera);
     // Without flights, the pose of the last strike is held until the next one.
     const t = moving || !impact ? now : arc.t;
-    const pose = poseOn(arc, t, scene);
+    const held = run.holds?.at(now, impact?.t ?? -Infinity, scene);
+    const pose = held?.pose ?? poseOn(arc, t, scene);
     camera.contain(scene, arc.y + Math.max(0, arc.y_dot) ** 2 / (2 * effectiveGravity(scene)));
     camera.follow(pose.x, run.pace > 0 && moving ? since_s : null);
     drawGrid(surface, camera);
@@ -59,13 +60,14 @@ export class RunDrawing {
     this.#drawTrail(scene, place, t);
     const last = impact ? strikeOf(impact, scene) : firstTable(arc, scene);
     const next = this.#strikeAfter(place, scene) ?? last;
-    const table = tableBetween(last, next, t);
+    const table = held?.table ?? tableBetween(last, next, t);
     drawTable(context, scale, table, camera.halfTable(scene), camera.floor);
     drawOthers(context, scale, others(), t);
     drawRod(context, scale, scene, pose);
-    const strength = impact ? this.#glow(now, impact.t, moving) : 0;
+    const strength = impact && !held ? this.#glow(now, impact.t, moving) : 0;
     if (impact && strength > 0) drawStrike(context, scale, impact, last, strength);
-    if (impact) this.#numbersAt = tellStrike(context, scale, impact, camera.floor, scale.x(table.x), this.#numbersAt);
+    if (impact && !held)
+      this.#numbersAt = tellStrike(context, scale, impact, camera.floor, scale.x(table.x), this.#numbersAt);
     drew({ scene, pose, table, struck: strength > 0 });
     drawRulers(surface, camera);
     this.#say(now_ms, now, pose, impact);

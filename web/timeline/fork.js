@@ -163,7 +163,7 @@ export class Fork {
     const gain = this.#gain.valueAsNumber;
     const interventions = [
       ...run.interventions.filter(({ impact }) => impact <= at.n),
-      { impact: at.n + 1, set: { 'table.tilt_gain': gain }, kick: {} },
+      { impact: at.n + 1, set: { 'table.tilt_gain': gain }, kick: {}, guide: {} },
     ];
     const query = new URLSearchParams([...release(), ...interventionQuery(interventions)]);
     const request = new AbortController();

@@ -20,7 +20,7 @@ export function marksOf(run, fields) {
   const { impacts, interventions, outcome } = run;
   /** @type {Mark[]} */
   const marks = [];
-  for (const { impact: n, set, kick } of interventions) {
+  for (const { impact: n, set, kick, guide } of interventions) {
     const place = impacts.lastUpTo('n', n);
     if (place < impacts.begin || impacts.at('n', place) !== n) continue;
     const t = impacts.at('t', place);
@@ -31,6 +31,8 @@ export function marksOf(run, fields) {
       return `${field?.title.toLowerCase() ?? path} ${shown}`;
     });
     if (kicks.length > 0) marks.push({ n, t, kind: 'kick', words: `kick ${kicks.join(', ')}` });
+    const guides = new Set(Object.keys(guide).map((name) => name.split('.')[0]));
+    for (const words of guides) marks.push({ n, t, kind: 'set', words });
     if (sets.length > 0) marks.push({ n, t, kind: 'set', words: sets.join(', ') });
   }
   if (outcome) marks.push({ n: outcome.impacts, t: outcome.t, kind: 'end', words: 'the end of the run' });

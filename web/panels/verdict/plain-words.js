@@ -4,7 +4,13 @@ import { number } from '../../dom/numbers.js';
 import { ENDINGS } from '../../run/generated/endings.js';
 
 /** The verbs of the server's headlines, told of a run that is over. @type {Record<string, string>} */
-const PAST = { Falls: 'fell', 'Comes to rest': 'came to rest', 'Cannot be followed': 'could not be followed' };
+const PAST = {
+  Falls: 'fell',
+  'Comes to rest': 'came to rest',
+  'Cannot be followed': 'could not be followed',
+  Caught: 'was caught',
+  'Not caught': 'was not caught',
+};
 
 /** The reason of an ending; it goes on after “fell at bounce 11:”. @param {string} kind */
 export const reasonOf = (kind) =>

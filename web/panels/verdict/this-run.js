@@ -20,7 +20,9 @@ function doneTo({ interventions }, until, fields) {
   if (!last) return '';
   const [path] = Object.keys(last.set);
   const title = fields.find((field) => field.path === path)?.title.toLowerCase();
-  const deed = Object.keys(last.kick).length > 0 ? 'kick' : `change of ${title ?? 'the settings'}`;
+  const [guided] = Object.keys(last.guide);
+  const changed = `change of ${title ?? 'the settings'}`;
+  const deed = guided ? guided.split('.')[0] : Object.keys(last.kick).length > 0 ? 'kick' : changed;
   return `, after your ${deed} at ${number(last.impact, 8)}`;
 }
 
@@ -77,7 +79,10 @@ export class ThisRun {
     const told = ended ? outcome.kind : `${phase} ${impacts.missing}`;
     if (this.#root.dataset.told === told) return words;
     this.#root.dataset.told = told;
-    this.#root.classList.toggle('fell', ended && !['completed', 'settled'].includes(outcome.kind));
+    this.#root.classList.toggle(
+      'fell',
+      ended && !['completed', 'settled', 'held', 'rests_on_edge'].includes(outcome.kind),
+    );
     const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} impacts were skipped over.` : '';
     this.#reason.textContent = ended ? `${capitalized(reasonOf(outcome.kind))}.` : skipped;
     this.#details.hidden = !ended;
