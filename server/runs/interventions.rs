@@ -242,8 +242,11 @@ fn catch_parameters(settings: &CatchSettings, mut push: impl FnMut(&str, String)
             push(&format!("weights.state.{name}"), number_text(*value));
         }
     }
-    for (name, value, known) in [("weights.input", *input_weight, default.input_weight), ("hold", *hold, default.hold)]
-    {
+    for (name, value, known) in [
+        ("weights.input", *input_weight, default.input_weight),
+        ("hold_speed", *hold_speed, default.hold_speed),
+        ("hold", *hold, default.hold),
+    ] {
         if value.to_bits() != known.to_bits() {
             push(name, number_text(value));
         }

@@ -737,6 +737,7 @@ export interface components {
                     } | number[];
                     input?: components["schemas"]["controllers.weights.input"] | null;
                 } | null;
+                hold_speed?: components["schemas"]["catches.hold_speed"] | null;
                 hold?: components["schemas"]["catches.hold"] | null;
             } | null;
             throw?: {
@@ -1983,6 +1984,7 @@ export interface components {
                 } | number[];
                 input?: components["schemas"]["controllers.weights.input"] | null;
             } | null;
+            hold_speed?: components["schemas"]["catches.hold_speed"] | null;
             hold?: components["schemas"]["catches.hold"] | null;
         };
         /**
