@@ -135,7 +135,7 @@ impl Outcome {
     /// The same outcome of a run of a body with an angle, whose `last` contact is known: bounces that end do not stop its rotation.
     #[must_use]
     pub fn turning(mut self, last: Option<&Contact>) -> Self {
-        if self.ending == EndingKind::Settled
+        if self.ending == RunEnding::Bouncing(EndingKind::Settled)
             && let Some(strike) = last.and_then(|last| last.strike)
         {
             let theta_dot = strike.after.theta_dot;
@@ -154,7 +154,7 @@ impl Outcome {
         let CatchOutcomeAnswer { kind, t, detail, quantity, value, limit, unit, .. } =
             CatchOutcomeAnswer::of(catch, friction);
         let ending = RunEnding::Caught(catch.outcome.kind());
-        Self { ending, kind, impacts, t, detail, quantity, value, limit, unit, settle_time: None }
+        Self { ending, kind, impacts, t, detail, quantity, value, limit, unit, settle_time: None, theta_dot: None }
     }
 
     /// Headline of the run, in plain words.

@@ -6,6 +6,7 @@ use equipoise_physics::body::Body;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::method;
 use equipoise_physics::run::method::{ComputedImpact, RunMethod, choose_method, run_by};
+use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::table::actuator_load::LoadTracker;
@@ -214,7 +215,8 @@ impl<'a> TrajectoryAnswer<'a> {
                 Some(ending) => {
                     HoldAnswer::compute(in_force.scene(), (ending, last.as_ref()), request.hold, &mut go_on)?
                 }
-                None => Err("hold is null: the table caught the body, and `/v1/catches` tells of the hold of a catch".to_owned()),
+                None => Err("hold is null: the table caught the body, and `/v1/catches` tells of the hold of a catch"
+                    .to_owned()),
             };
             match held {
                 Ok(held) => (hold, hold_end) = (Some(held.samples), Some(held.end)),

@@ -109,7 +109,7 @@ fn written(order: &ClientMessage) -> String {
             }
         }
         ClientMessage::Catch(settings) => {
-            let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold, hold_speed: _ } =
+            let CatchSettings { strategy, ratio, strikes, brake, state_weights, input_weight, hold_speed, hold } =
                 settings;
             message["strategy"] = json!(strategy_name(*strategy));
             for (name, value) in [("ratio", *ratio), ("strikes", strikes.map(f64::from)), ("brake", *brake)] {
