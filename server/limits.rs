@@ -440,9 +440,6 @@ pub const LIVE_RETRY_TIME: Duration = Duration::from_secs(1);
 /// Price of sending one past impact, in bounces. About 100,000 of them can be sent at once.
 pub const LIVE_IMPACT_PRICE: u64 = 100;
 
-/// Samples of a hold in one message of a live run: 0.1 s of a hold of 6 s. A throw acts at the end of a message that was sent.
-pub const LIVE_HOLD_SAMPLES: usize = 10;
-
 /// Work of catching up with an old `epoch` or `from`: a run of `LIVE_IMPACTS` to its end, so that every run can be reconnected to, and
 /// the last impacts sent again. About 0.7 s of one core, and 2 s with noise.
 pub const LIVE_CATCH_UP: Limit =

@@ -16,7 +16,8 @@ use equipoise_physics::numbers::trig;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 
-use crate::limits;
+/// Samples in one part of a hold: 0.1 s of a hold of 6 s. A throw acts at the end of a part that was told.
+const PART: usize = 10;
 
 /// A catch, and how much of it is over.
 #[derive(Debug, Clone)]
@@ -101,7 +102,7 @@ impl CaughtRun {
     pub fn next_part(&mut self) -> Option<HoldPart> {
         let samples = self.hold()?.samples.len();
         let begin = self.held;
-        let end = (begin + limits::LIVE_HOLD_SAMPLES).min(samples.saturating_sub(1));
+        let end = (begin + PART).min(samples.saturating_sub(1));
         if begin >= end {
             return None;
         }
@@ -189,7 +190,7 @@ mod tests {
                 }
                 Step::Hold(part) => {
                     assert_eq!(part.samples()[0].t, due);
-                    assert!(part.samples().len() <= limits::LIVE_HOLD_SAMPLES + 1 && part.length() > 0.0);
+                    assert!(part.samples().len() <= PART + 1 && part.length() > 0.0);
                     let follows = samples.last().is_some_and(|last| last.t == due);
                     samples.extend(&part.samples()[usize::from(follows)..]);
                 }
