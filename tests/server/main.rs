@@ -11,6 +11,7 @@ mod availability;
 mod batches;
 mod caching;
 mod cases;
+mod catch_failures;
 mod catches;
 mod contract;
 mod controllers;
