@@ -189,7 +189,7 @@ class Held:
     states: list
 
 
-def hold(body, s, laws, times, speed=0.0, brake=0.0, step=2e-3, topple=1.5707963267948966):
+def hold(body, s, laws, times, speed=0.0, brake=0.0, step=1e-3, topple=1.5707963267948966):
     """Follows the body in contact up to the last of `times`, by Runge-Kutta steps of order 4.
 
     The table's surface moves vertically at `speed` at first and is brought to rest by `brake`; `laws` are the law until then and the one
@@ -214,11 +214,12 @@ def hold(body, s, laws, times, speed=0.0, brake=0.0, step=2e-3, topple=1.5707963
         while s.t < time - 1e-12:
             braking = s.t < stands - 1e-12
             law, up = (laws[0], lift) if braking else (laws[1], 0.0)
-            # A push of several G is faster.
-            h = min(step / 4, time - s.t, stands - s.t) if braking else min(step, time - s.t)
             first, normal, tangential = rates(s, law, up)
             if normal <= 0:
                 return Held("contact lost", s, least, states)
+            # A strong push changes fast.
+            longest = (step / 4 if braking else step) * min(1.0, body.gravity / normal)
+            h = min(longest, time - s.t, stands - s.t if braking else longest)
             if abs(s.theta) >= topple:
                 return Held("toppled", s, least, states)
             least = max(least, abs(tangential) / normal)
