@@ -7,7 +7,7 @@ use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapOutcome, Ma
 use serde::{Serialize, Serializer};
 use std::sync::LazyLock;
 
-use crate::api::regions::request::RegionRequest;
+use crate::api::regions::request::{RegionRequest, quantity_name};
 use crate::api::scene::Resolved;
 use crate::api::shared::tile::Tile;
 use crate::limits;
@@ -71,17 +71,6 @@ static OF_RUNS: LazyLock<Vec<&'static str>> =
 /// Names of the outcomes of catches, and of a cell without one.
 static OF_CATCHES: LazyLock<Vec<&'static str>> =
     LazyLock::new(|| CatchOutcomeKind::ALL.into_iter().map(CatchOutcomeKind::name).chain([NO_RUN]).collect());
-
-pub(crate) fn quantity_name(quantity: MapQuantity) -> &'static str {
-    match quantity {
-        MapQuantity::Survival => "survival",
-        MapQuantity::MaxTheta => "max_theta",
-        MapQuantity::Residue => "residue",
-        MapQuantity::SpectralRadius => "spectral_radius",
-        MapQuantity::Caught => "caught",
-        MapQuantity::RestTime => "rest_time",
-    }
-}
 
 /// A row of values. Numbers of contacts are written as whole numbers.
 pub(crate) struct RowValues<'a> {

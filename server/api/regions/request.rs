@@ -7,7 +7,6 @@ use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
 use crate::api::catches::request::{canonical_settings, catch_price, read_settings};
-use crate::api::regions::answer::quantity_name;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, complete_law, has_angle, read_draft};
 use crate::api::shared::tile::Tile;
@@ -186,6 +185,18 @@ impl RegionRequest {
             }
         };
         once + self.polygon_price() + bounce * self.map.impacts
+    }
+}
+
+/// Name of a quantity in requests and answers.
+pub(crate) fn quantity_name(quantity: MapQuantity) -> &'static str {
+    match quantity {
+        MapQuantity::Survival => "survival",
+        MapQuantity::MaxTheta => "max_theta",
+        MapQuantity::Residue => "residue",
+        MapQuantity::SpectralRadius => "spectral_radius",
+        MapQuantity::Caught => "caught",
+        MapQuantity::RestTime => "rest_time",
     }
 }
 

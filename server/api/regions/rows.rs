@@ -4,8 +4,8 @@ use equipoise_physics::scene::Name;
 use equipoise_physics::surveys::stability_map::{MapCell, MapQuantity, StabilityMap};
 use serde::Serialize;
 
-use crate::api::regions::answer::{Counts, Outcomes, RowValues, outcome_name, quantity_name, written};
-use crate::api::regions::request::RegionRequest;
+use crate::api::regions::answer::{Counts, Outcomes, RowValues, outcome_name, written};
+use crate::api::regions::request::{RegionRequest, quantity_name};
 use crate::api::shared::table::with_unit;
 
 /// A format whose rows are sent as they are computed.
