@@ -19,6 +19,7 @@ const SIGNS = {
   survival: '#survival-told:has-text("outlast")',
   ladder: '.rungs td',
   design: '#design-sheet svg',
+  catch: '#catch-sheet svg',
   branch: '#branch-body svg.figure',
   precision: '#precision-told:has-text("Measured over")',
   paper: '.paper',

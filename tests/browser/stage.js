@@ -310,6 +310,10 @@ const PANELS = {
     await page.click('#design-start');
     await page.locator('#design-sheet svg').waitFor();
   },
+  catch: async (page) => {
+    await page.click('#catch-start');
+    await page.locator('#catch-sheet svg').waitFor();
+  },
   branch: (page) => page.locator('#branch-body svg.figure').waitFor(),
   precision: (page) => measure(page),
   paper: (page) => page.locator('#paper-body td').first().waitFor(),

@@ -159,8 +159,8 @@ test('nothing of a tab is loaded or computed before it is opened, nor asked for 
   await verdict(page);
   await ready(page);
   await page.waitForTimeout(500);
-  const panels = /\/panels\/(map|survival|ladder|design|branch|precision|measured|paper|calls|gallery)\//;
-  const studies = /\/v1\/(ladder|ensembles|periodic-orbits|precision|design|failure-cases)/;
+  const panels = /\/panels\/(map|survival|ladder|design|catch|branch|precision|measured|paper|calls|gallery)\//;
+  const studies = /\/v1\/(ladder|ensembles|periodic-orbits|precision|design|catches|failure-cases)/;
   assert.deepEqual(
     asked.filter((path) => panels.test(path) || studies.test(path)),
     [],

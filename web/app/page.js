@@ -55,7 +55,7 @@ export class Page {
   unjudged = false;
   /** True while the run has lost the server. */
   away = false;
-  /** The message sent last: a problem that comes back is about it. @type {'kick' | 'set' | 'other'} */
+  /** The message sent last: a problem that comes back is about it. @type {'kick' | 'set' | 'guide' | 'other'} */
   lastSent = 'other';
   /** The element that names the scene's case. */
   chooser = byId('case', HTMLSelectElement);

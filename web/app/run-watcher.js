@@ -1,15 +1,14 @@
-// Reacts to news of the run: impacts, a lost connection, refusals.
+// Reacts to news of the run: impacts, a lost connection.
 
-import { pathOf } from '../api/scene-fields.js';
 import { invalidate } from '../charts/surface.js';
-import { h } from '../dom/elements.js';
-import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
-import { inWords } from '../dom/typeset.js';
-import { updateAddressSoon } from './address-bar.js';
+import { connectionNotice } from '../dom/notices.js';
 import { sendChanges } from './run-actions.js';
 import { showRun, showThisRun } from './run-state.js';
 
 /** @typedef {import('./page.js').Page} Page */
+
+/** What is said of refusals comes after the first plot. */
+const problems = () => import('./late/run-problems.js');
 
 /** @param {Page} page @returns {import('../run/run-state.js').Watcher} */
 export const watcherOf = (page) => ({
@@ -30,21 +29,8 @@ export const watcherOf = (page) => ({
     if (!Number.isNaN(seconds)) page.away = true;
     else if (page.away) returned(page);
   },
-  refused: (problem) => {
-    clearNotice('connection');
-    const elsewhere = page.form?.blame(problem.errors) ?? [];
-    const words = [inWords(problem.message), ...elsewhere, 'Its scene is kept; Run releases it anew.'].join(' ');
-    notice('run', [h('strong', {}, 'The server did not take this run. '), words], { caution: true });
-    updateAddressSoon(page);
-  },
-  problem: ({ title, detail, errors }) => {
-    const own = errors.filter(({ pointer }) => page.fields.some((field) => field.path === pathOf(pointer)));
-    const others = errors.filter((error) => !own.includes(error)).map((error) => inWords(error.detail));
-    const words =
-      [...(page.form?.blame(own) ?? []), ...others].join(' ') || (errors.length > 0 ? '' : inWords(detail || title));
-    if (page.lastSent === 'kick') page.controls.blameKick(words || inWords(detail));
-    else if (words) notice('message', [words], { caution: true });
-  },
+  refused: (problem) => void problems().then(({ refused }) => refused(page, problem)),
+  problem: (message) => void problems().then(({ tell }) => tell(page, message)),
 });
 
 /** Makes up for what was missed while the server was away. @param {Page} page */

@@ -21,6 +21,20 @@ export { styles };
  * @property {(values: Record<string, number>) => void} launch releases the scene with these values in it
  * @property {(scene: Scene) => void} play shows another scene and runs it
  * @property {() => void} changed the panel’s part of the address is another one
+ * @property {(id: string, link: URLSearchParams) => void} [open] another panel, with this as its part of the address
+ * @property {Guide} [guide]
+ */
+
+/**
+ * The table under a run that is under way: what it does on request.
+ * @typedef {object} Guide
+ * @property {() => boolean} live there is such a run
+ * @property {() => boolean} held the table holds its body
+ * @property {() => number} length from the contact point to the centre of gravity, m
+ * @property {(watcher: {changed: () => void, problem: (told: {title: string, detail: string, errors: import('contract').ProblemError[]}) => void}) => void} watch
+ * @property {(settings: Record<string, string | number>) => void} catchIt
+ * @property {(apex: {height: number, theta: number}) => void} throwIt
+ * @property {(heights: number[]) => void} juggle
  */
 
 /** A verdict and the scene it is of. @typedef {{answer: import('contract').Stability, scene: URLSearchParams}} Judged */

@@ -67,6 +67,16 @@ export class Panels {
     this.#tabs.choose(PANELS.find((entry) => entry.id === id)?.tab ?? id, true);
   }
 
+  /** Opens a panel as a link with this part would show it. @param {string} id @param {URLSearchParams} part */
+  open(id, part) {
+    const link = new URLSearchParams([...this.#link].filter(([key]) => !key.startsWith(`${id}.`)));
+    for (const [key, value] of part) link.append(key, value);
+    this.#link = link;
+    const panel = this.#mounted.get(id);
+    if (panel) this.#restore(id, panel);
+    this.show(id);
+  }
+
   /** One that has its place already takes its part of the address as well. @param {string} id @param {Panel} panel */
   join(id, panel) {
     this.#mounted.set(id, panel);

@@ -11,6 +11,7 @@ export const TABS = [
   { id: 'models', name: 'Models' },
   { id: 'noise', name: 'Noise' },
   { id: 'control', name: 'Control' },
+  { id: 'catch', name: 'Catch' },
   { id: 'accuracy', name: 'Speed and accuracy' },
   { id: 'measured', name: 'Measured' },
   { id: 'paper', name: 'Paper' },
@@ -49,6 +50,14 @@ export const PANELS = [
     about: 'A law that brings this scene to rest in place.',
     shared: FIGURE_STYLES,
     load: () => import('./design/panel.js'),
+  },
+  {
+    id: 'catch',
+    tab: 'catch',
+    title: 'Catch the body',
+    about: 'Brings this scene to rest on the table, and holds it there.',
+    shared: FIGURE_STYLES,
+    load: () => import('./catch/panel.js'),
   },
   {
     id: 'branch',

@@ -16,6 +16,7 @@ import { FASTEST, SLOWEST } from './speed.js';
  * @property {(speed: number) => void} speed
  * @property {(gain: number | null, final: boolean) => void} gain
  * @property {(velocities: Record<string, number>) => void} kick
+ * @property {() => void} [catchIt] where there is a table to catch with
  */
 
 const KICKS = [
@@ -51,6 +52,7 @@ export class RunSliders {
   #gainShown = h('output', { class: 'value', for: 'gain' });
   #gainBox;
   #kick = h('button', { type: 'button', id: 'kick' }, 'Kick');
+  #catch = h('button', { type: 'button', id: 'catch-it' }, 'Catch');
   #kickWhat = h(
     'select',
     { 'aria-label': 'What the kick changes' },
@@ -95,6 +97,10 @@ export class RunSliders {
     this.#gain.addEventListener('input', () => this.#gained(false));
     this.#gain.addEventListener('change', () => this.#gained(true));
     this.#kick.addEventListener('click', () => this.kick());
+    this.#catch.addEventListener('click', () => {
+      this.#kickError.textContent = '';
+      actions.catchIt?.();
+    });
     this.#kickBy.setAttribute('aria-describedby', 'kick-error');
     this.#kickWhat.addEventListener('change', () => {
       this.#kickError.textContent = '';
@@ -123,6 +129,7 @@ export class RunSliders {
         this.#kickWhat,
         this.#kickBy,
         this.#kickUnit,
+        actions.catchIt && this.#catch,
         this.#kickError,
       ),
     );
@@ -200,6 +207,6 @@ export class RunSliders {
 
   /** @param {boolean} live there is a run to kick */
   show(live) {
-    for (const button of [this.#kick, ...this.#directions]) button.disabled = !live;
+    for (const button of [this.#kick, this.#catch, ...this.#directions]) button.disabled = !live;
   }
 }

@@ -1,6 +1,7 @@
 // Brings the time line and what belongs to it.
 
 import { sceneQuery } from '../api/scene-query.js';
+import { catchIt } from '../app/late/guide.js';
 import { GAIN } from '../app/page.js';
 import { byId } from '../dom/elements.js';
 import { styles } from '../panels/card.js';
@@ -13,7 +14,7 @@ import { Timeline } from './timeline.js';
 export async function bringTimeline(page) {
   await styles('timeline/timeline.css').catch(() => {});
   const { run, view, plots, controls, fields } = page;
-  controls.join(new RunSliders(byId('controls'), controls.actions));
+  controls.join(new RunSliders(byId('controls'), { ...controls.actions, catchIt: () => catchIt(page, {}, 'kick') }));
   const root = byId('timeline');
   const timeline = new Timeline(root, { run, view, plots, controls, fields, speed: () => page.speed });
   page.timeline = timeline;

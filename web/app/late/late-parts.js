@@ -17,8 +17,11 @@ import { beginAutorun } from '../autorun.js';
 import { History } from '../history.js';
 import { playedQuery, typedQuery } from '../queries.js';
 import { launch, play } from '../scenes.js';
+import { guideOf } from './guide.js';
 import { bindingsOf } from './key-bindings.js';
 import { listenToKeys } from './keys.js';
+// It is there when the server is not.
+import './run-problems.js';
 import { savesOf } from './saves.js';
 import { bringSettings, bringTracks } from './settings.js';
 import { bringShare, csvPath } from './share.js';
@@ -72,6 +75,8 @@ export async function bringLateParts(page) {
         document.dispatchEvent(new Event('show-scene'));
         play(page, scene);
       },
+      open: (id, link) => page.panels?.open(id, link),
+      guide: guideOf(page),
     },
     (id, dropped) => {
       if (dropped.length > 0) brokenLinkNotice(`link-${id}`, dropped);

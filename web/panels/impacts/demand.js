@@ -15,6 +15,27 @@ const QUANTITIES = [
   { name: 'stroke', title: 'Stroke', unit: 'm' },
 ];
 
+/**
+ * Rows of the largest values with their limits and shares.
+ * @param {Partial<Record<keyof Demand, number | null>>} values
+ * @param {Record<string, number | undefined>} limits
+ */
+export const loadRows = (values, limits) =>
+  QUANTITIES.map(({ name, title, unit }) => {
+    const [value, limit] = [values[name] ?? null, limits[name] ?? null];
+    const share = value === null || !limit ? null : value / limit;
+    const line = row(title, [
+      quantity(value, unit, 3),
+      limit === null ? 'none' : quantity(limit, unit, 3),
+      share === null ? '' : `${number(100 * share, 3)}\u202f%`,
+    ]);
+    line.classList.toggle('beyond', share !== null && share > 1);
+    return line;
+  });
+
+/** Names of their columns. */
+export const LOAD_COLUMNS = ['quantity', 'largest', 'limit', 'share'];
+
 /** While a run goes on, it is asked for anew after so much more of it, and not sooner than, ms. */
 const GROWTH = 1.5;
 const PACE_MS = 2000;
@@ -44,7 +65,7 @@ export class TableDemand {
     this.element = h(
       'div',
       { class: 'demand' },
-      table('Largest values and limits', ['quantity', 'largest', 'limit', 'share'], this.#body),
+      table('Largest values and limits', LOAD_COLUMNS, this.#body),
       this.#told,
     );
     this.retell();
@@ -57,20 +78,8 @@ export class TableDemand {
     const limits = run.asked?.table?.limits ?? {};
     // A strike that a limit forbids is not among the impacts.
     const refused = run.outcome?.kind === 'beyond_limits' ? run.outcome : null;
-    this.#body.replaceChildren(
-      ...QUANTITIES.map(({ name, title, unit }) => {
-        const asked = refused?.quantity === name ? refused.value : null;
-        const [value, limit] = [asked ?? this.#demand?.[name] ?? null, limits[name] ?? null];
-        const share = value === null || !limit ? null : value / limit;
-        const line = row(title, [
-          quantity(value, unit, 3),
-          limit === null ? 'none' : quantity(limit, unit, 3),
-          share === null ? '' : `${number(100 * share, 3)}\u202f%`,
-        ]);
-        line.classList.toggle('beyond', share !== null && share > 1);
-        return line;
-      }),
-    );
+    const asked = refused?.quantity ? { [refused.quantity]: refused.value } : {};
+    this.#body.replaceChildren(...loadRows({ ...this.#demand, ...asked }, limits));
   }
 
   /** Another run: the numbers are void. */
