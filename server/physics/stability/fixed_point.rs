@@ -43,7 +43,7 @@ pub fn drift_speed(scene: &Scene) -> Option<f64> {
 
 /// The fixed point on the energy surface of the release, or that of the target height with energy feedback.
 ///
-/// V² = |v₀|² + 2G(y₀ − l) − c², or 2G(y* − l) − c² where the table holds the total energy: drift energy never comes back, and what counts is the height above l, not above
+/// V² = |v₀|² + 2G(y₀ − l) − c²: drift energy never comes back, and what counts is the height above l, not above
 /// l cos θ as in eq. (10). A matched table with friction lends some more. Friction on one that only tilts takes the
 /// energy of sideways motion and spin, so there V² = ẏ₀² + 2G(y₀ − l).
 ///
@@ -86,15 +86,7 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
             let why = if settled == height { String::new() } else { format!(", where {} holds it,", belief(scene)) };
             return Err(format!("target_height {settled} m{why} is not above contact_distance {contact_distance} m"));
         }
-        let drift = held_drift(scene);
-        let bouncing = 2.0 * scene.gravity * room - drift;
-        if bouncing <= 0.0 {
-            return Err(format!(
-                "the target leaves {} m²/s² for bouncing upright and the drift takes {drift} m²/s²: no upright bounce has that energy",
-                2.0 * scene.gravity * room
-            ));
-        }
-        bouncing
+        2.0 * scene.gravity * room
     } else {
         let start = scene.start();
         let spin = radius_of_gyration * start.theta_dot;
@@ -119,26 +111,6 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
         flight_time: 2.0 * speed / scene.gravity,
         apex_height: contact_distance + speed_squared / (2.0 * scene.gravity),
     })
-}
-
-/// Part of V² that the drift takes where the total energy is held, m²/s²: c², in the share of the energy that a table with
-/// a wrong belief holds in one strike ([`height_error`]).
-fn held_drift(scene: &Scene) -> f64 {
-    let drift = drift_speed(scene).unwrap_or(0.0);
-    match scene.energy_feedback {
-        EnergyFeedback::Vertical => 0.0,
-        EnergyFeedback::Total => drift * drift,
-        EnergyFeedback::OneStrike => {
-            let share = held_share(scene);
-            drift * drift * share * share
-        }
-    }
-}
-
-/// s/(2 − s) with s = (1 + e)/(1 + ê): the speed that a table holds in one strike, over the speed that it aims at.
-fn held_share(scene: &Scene) -> f64 {
-    let e = scene.restitution;
-    (1.0 + e) / (1.0 + 2.0 * scene.assumed_restitution() - e)
 }
 
 fn belief(scene: &Scene) -> String {
@@ -167,7 +139,7 @@ pub fn height_error(scene: &Scene) -> f64 {
     }
     if let (EnergyFeedback::OneStrike, Some(height)) = (scene.energy_feedback, scene.target_height) {
         let contact_distance = scene.parameters::<f64>().contact_distance;
-        let share = held_share(scene);
+        let share = (1.0 + e) / (1.0 + 2.0 * assumed - e);
         return (share * share - 1.0) * (height - contact_distance);
     }
     2.0 * (e - assumed) / ((1.0 + e) * (1.0 + assumed) * scene.energy_gain * scene.gravity)

@@ -251,29 +251,6 @@ fn a_wrong_belief_settles_where_the_closed_form_says() {
 }
 
 #[test]
-fn a_drift_takes_its_part_of_a_total_energy_that_is_held() {
-    let with = |x_dot| [(Name::XDot, x_dot), (Name::TiltGain, 1.1), (Name::Height, 0.25), (Name::TargetHeight, 0.2)];
-    let drifting = with(0.5);
-    let proportional: Vec<_> = drifting.into_iter().chain([(Name::EnergyGain, 0.45)]).collect();
-    let believing: Vec<_> =
-        drifting.into_iter().chain([(Name::Restitution, 0.8), (Name::AssumedRestitution, 0.9)]).collect();
-    let mut speeds = Vec::new();
-    for scene in [scene(&proportional, &[TOTAL]), scene(&drifting, &[ONE_STRIKE]), scene(&believing, &[ONE_STRIKE])] {
-        let fixed_point = find_fixed_point(&scene).unwrap();
-        let mut orbit = scene.orbit().unwrap();
-        assert_eq!(run(&mut orbit, 2000, |_| true), Some(Ending::Completed));
-        let State { x_dot, y_dot, .. } = *orbit.state();
-        assert!((y_dot + fixed_point.speed).abs() < 1e-9 && (x_dot - 0.5).abs() < 1e-12, "{y_dot} {fixed_point:?}");
-        speeds.push(fixed_point.speed);
-    }
-    // 2G(y* − l) − c².
-    let expected = (2.0 * 9.81 * (0.2 - 0.4 / 3.0) - 0.25_f64).sqrt();
-    assert!((speeds[0] - expected).abs() < 1e-12 && speeds[0] == speeds[1] && speeds[2] != speeds[0], "{speeds:?}");
-    let fast = scene(&with(1.5), &[ONE_STRIKE]);
-    assert!(find_fixed_point(&fast).unwrap_err().contains("the drift takes 2.25"));
-}
-
-#[test]
 fn doubles_are_within_their_bound_of_31_digits() {
     let mut random = Random::new(4);
     for kind in [Kind::Total, Kind::OneStrike, Kind::Juggling] {
