@@ -16,12 +16,12 @@ use crate::compute::{GaugeGuard, QuotaExceeded, Reservation};
 use crate::http::security::origin;
 use crate::http::{ApiRequest, Format, Problem, Resource};
 use crate::limits;
-use crate::live::bounds::SessionBounds;
+use crate::live::bounds::{SessionBounds, SessionContext};
+use crate::live::catch_up;
 use crate::live::close::Unreadable;
 use crate::live::run_url;
 use crate::live::run_url::PATH;
 use crate::live::session;
-use crate::live::session::SessionContext;
 use crate::live::sse;
 use crate::live::sse::EventsRequest;
 
@@ -57,7 +57,7 @@ async fn live(State(app): State<App>, upgrade: Upgrade, api_request: ApiRequest)
         let (outgoing, incoming) = socket.split();
         let incoming = incoming.map(|message| message.map_err(unreadable));
         let outgoing = outgoing.with(|frame| ready(Ok::<_, axum::Error>(Message::from(frame))));
-        let playback = session::catch_up(&request, &context).await;
+        let playback = catch_up::catch_up_with(&request, &context).await;
         session::serve(request, playback, incoming, outgoing, context, app.closing()).await;
     }))
 }
@@ -82,7 +82,7 @@ async fn live_events(State(app): State<App>, api_request: ApiRequest) -> Result<
     origin::check(&api_request.headers, &app.config.allow_origin)?;
     let EventsRequest::Run(request) = events_request else { return Ok(StatusCode::NO_CONTENT.into_response()) };
     let (gauge, context) = admit(&app, &api_request, SessionBounds::for_sse(&app.config.limits))?;
-    let playback = session::catch_up(&request, &context).await?;
+    let playback = catch_up::catch_up_with(&request, &context).await?;
     let told = sse::events(*request, playback, context, async move { app.closing().await }, gauge);
     // A proxy that buffers would delay the run.
     Ok(([("x-accel-buffering", "no")], Sse::new(told)).into_response())

@@ -1,9 +1,39 @@
-//! Bounds of one live client: times, numbers and rates, from the server's limits. Tests use smaller ones.
+//! Bounds of one live client: times, numbers and rates, from the server's limits, and the parts of the server that it uses. Tests use
+//! smaller ones.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::histogram::Histogram;
+
+use crate::compute::Pool;
 use crate::limits;
 use crate::limits::{Limit, Limits};
+
+/// Parts of the server that a session uses.
+#[derive(Debug, Clone)]
+pub struct SessionContext {
+    /// Runs long work.
+    pub pool: Pool,
+    /// Counts the bounces.
+    pub bounces: Counter,
+    /// Delay of computing due impacts, s.
+    pub lags: Histogram,
+    /// Path in front of the run's URL, as clients see it.
+    pub base_path: Arc<str>,
+    /// Bounds of the session.
+    pub bounds: SessionBounds,
+}
+
+#[cfg(test)]
+impl SessionContext {
+    /// A context with these bounds and a pool of its own.
+    pub(crate) fn for_test(bounds: SessionBounds) -> Self {
+        let pool = Pool::new(1, &Limits::default());
+        Self { pool, bounces: Counter::default(), lags: Histogram::new([]), base_path: "".into(), bounds }
+    }
+}
 
 /// Bounds of one session.
 #[derive(Debug, Clone, Copy)]

@@ -6,6 +6,9 @@ use crate::compute::{Cancelled, OverBudget, Price, TimeSlice};
 use crate::http::Problem;
 use crate::limits;
 use crate::limits::Limit;
+use crate::live::bounds::SessionContext;
+use crate::live::run_url::LiveRequest;
+use crate::live::session::wall_now;
 use crate::runs::playback::Playback;
 use crate::runs::run::Run;
 
@@ -55,6 +58,27 @@ pub fn catch_up(
         }
     }
     Ok(begin.unwrap_or(playback))
+}
+
+/// Computes the run up to the first impact to send: on this thread if it is little work, else in the pool.
+///
+/// # Errors
+/// The work is over its limit, or the pool is overloaded.
+pub async fn catch_up_with(request: &LiveRequest, context: &SessionContext) -> Result<Playback, Problem> {
+    let until = request.live.clock.run_time(wall_now());
+    let limit = context.bounds.catch_up;
+    let little = Limit { most: limit.most.min(limits::INLINE_BOUNCES), ..limit };
+    let playback =
+        match context.pool.run_inline(|slice| catch_up(&request.live.run, request.from, until, &little, slice)).await {
+            None | Some(Err(CatchUpError::OverBudget(_))) => {
+                let (run, from) = (request.live.run.clone(), request.from);
+                let work = move |slice: &TimeSlice| catch_up(&run, from, until, &limit, slice).map_err(Problem::from);
+                context.pool.run_on_worker(work).await?
+            }
+            Some(other) => other?,
+        };
+    context.bounces.inc_by(playback.next_n().unwrap_or_default());
+    Ok(playback)
 }
 
 impl From<CatchUpError> for Problem {

@@ -1,12 +1,15 @@
-//! Impacts as a live run tells them: one as an object, many as columns. Their numbers are those of trajectories.
+//! Impacts as a live run tells them: one as an object, many as columns. Their numbers are those of trajectories. The hold of a body that was
+//! caught has the columns of `/v1/catches`.
 
 use serde::{Serialize, Serializer};
 
+use crate::api::catches::columns::{OF_HOLD, to_table};
 use crate::api::shared::table::gather::Gathered;
 use crate::api::shared::table::{Column, Table};
 use crate::api::trajectories::columns;
 use crate::api::trajectories::columns::{After, ImpactRow};
 use crate::live::next_strike::{NextStrike, TableVelocity};
+use crate::runs::caught::HoldPart;
 
 /// An impact, as an object.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,5 +108,19 @@ impl Serialize for ImpactColumns {
             Column { name: column.name, unit: column.unit, cells: gathered.into_cells() }
         };
         Table(columns::of_live_runs().map(column).collect()).serialize(serializer)
+    }
+}
+
+/// Samples of a hold.
+#[derive(Debug, Clone)]
+pub struct HoldMessage(pub HoldPart);
+
+impl Serialize for HoldMessage {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Columns<T> {
+            columns: T,
+        }
+        Columns { columns: to_table(OF_HOLD.iter().copied(), self.0.samples()) }.serialize(serializer)
     }
 }

@@ -10,7 +10,6 @@ pub mod bounds;
 pub mod catch_up;
 pub mod clock;
 pub mod close;
-pub mod hold_message;
 pub mod impact_message;
 pub mod next_strike;
 pub mod outbox;

@@ -2,6 +2,7 @@
 //!
 //! `session` decides when they are sent.
 
+use axum::extract::ws::{CloseFrame, Message, Utf8Bytes};
 use serde::Serialize;
 
 use crate::BUILD;
@@ -11,8 +12,7 @@ use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::http::{Problem, ValidationError};
 use crate::limits;
-use crate::live::hold_message::HoldMessage;
-use crate::live::impact_message::{ImpactColumns, ImpactMessage};
+use crate::live::impact_message::{HoldMessage, ImpactColumns, ImpactMessage};
 use crate::live::next_strike::NextStrike;
 use crate::live::run_url;
 use crate::live::run_url::LiveRun;
@@ -78,6 +78,18 @@ pub enum OutgoingFrame {
     Ping,
     /// A close, with a code of RFC 6455 and the reason.
     Close(u16, &'static str),
+}
+
+impl From<OutgoingFrame> for Message {
+    fn from(frame: OutgoingFrame) -> Self {
+        match frame {
+            OutgoingFrame::Message { text, .. } => Message::text(text),
+            OutgoingFrame::Ping => Message::Ping(axum::body::Bytes::new()),
+            OutgoingFrame::Close(code, reason) => {
+                Message::Close(Some(CloseFrame { code, reason: Utf8Bytes::from_static(reason) }))
+            }
+        }
+    }
 }
 
 /// Position of a message in its run, sent as the id of an event.

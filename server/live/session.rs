@@ -4,29 +4,21 @@
 //! messages that cannot be sent at once wait in the outbox. The carrier is a WebSocket or an event stream.
 
 use std::pin::pin;
-use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, close_code};
+use axum::extract::ws::{Message, close_code};
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
-use prometheus_client::metrics::counter::Counter;
-use prometheus_client::metrics::histogram::Histogram;
 use tokio::sync::mpsc;
 use tokio::time::{sleep_until, timeout};
 
 use crate::api::scene::has_angle;
 use crate::api::trajectories::columns::ImpactRow;
-use crate::compute::{Pool, TimeSlice};
 use crate::http::{Problem, ValidationError};
 use crate::limits;
-use crate::limits::Limit;
-use crate::live::bounds::{SessionBounds, TokenBucket};
-use crate::live::catch_up;
-use crate::live::catch_up::CatchUpError;
+use crate::live::bounds::{SessionContext, TokenBucket};
 use crate::live::client_message::ClientMessage;
 use crate::live::close::{Close, Unreadable};
-use crate::live::hold_message::HoldMessage;
-use crate::live::impact_message::ImpactMessage;
+use crate::live::impact_message::{HoldMessage, ImpactMessage};
 use crate::live::next_strike::NextStrike;
 use crate::live::outbox::Outbox;
 use crate::live::run_url;
@@ -38,49 +30,13 @@ use crate::runs::interventions::{NO_ANGLE, NO_BODY};
 use crate::runs::playback::{Playback, Step};
 use crate::runs::run::ThrowOrder;
 
-/// Parts of the server that a session uses.
-#[derive(Debug, Clone)]
-pub struct SessionContext {
-    /// Runs long work.
-    pub pool: Pool,
-    /// Counts the bounces.
-    pub bounces: Counter,
-    /// Delay of computing due impacts, s.
-    pub lags: Histogram,
-    /// Path in front of the run's URL, as clients see it.
-    pub base_path: Arc<str>,
-    /// Bounds of the session.
-    pub bounds: SessionBounds,
-}
-
-#[cfg(test)]
-impl SessionContext {
-    /// A context with these bounds and a pool of its own.
-    pub(crate) fn for_test(bounds: SessionBounds) -> Self {
-        let pool = Pool::new(1, &limits::Limits::default());
-        Self { pool, bounces: Counter::default(), lags: Histogram::new([]), base_path: "".into(), bounds }
-    }
-}
-
 /// The server's clock, unix ms.
 pub fn wall_now() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     u64::try_from(since.as_millis()).unwrap_or_default()
 }
 
-impl From<OutgoingFrame> for Message {
-    fn from(frame: OutgoingFrame) -> Self {
-        match frame {
-            OutgoingFrame::Message { text, .. } => Message::text(text),
-            OutgoingFrame::Ping => Message::Ping(axum::body::Bytes::new()),
-            OutgoingFrame::Close(code, reason) => {
-                Message::Close(Some(CloseFrame { code, reason: Utf8Bytes::from_static(reason) }))
-            }
-        }
-    }
-}
-
-/// Serves a client until it leaves, breaks a bound, or the server is `closing`. [`catch_up`] gives `playback`.
+/// Serves a client until it leaves, breaks a bound, or the server is `closing`. [`crate::live::catch_up`] gives `playback`.
 pub async fn serve(
     request: LiveRequest,
     playback: Result<Playback, Problem>,
@@ -132,31 +88,6 @@ async fn write(mut receiver: mpsc::Receiver<OutgoingFrame>, mut outgoing: impl S
         }
     }
     // The last message has been flushed. Dropping the other half ends the connection.
-}
-
-/// Computes the run up to the first impact to send: on this thread if it is little work, else in the pool.
-///
-/// # Errors
-/// The work is over its limit, or the pool is overloaded.
-pub async fn catch_up(request: &LiveRequest, context: &SessionContext) -> Result<Playback, Problem> {
-    let until = request.live.clock.run_time(wall_now());
-    let limit = context.bounds.catch_up;
-    let little = Limit { most: limit.most.min(limits::INLINE_BOUNCES), ..limit };
-    let playback = match context
-        .pool
-        .run_inline(|slice| catch_up::catch_up(&request.live.run, request.from, until, &little, slice))
-        .await
-    {
-        None | Some(Err(CatchUpError::OverBudget(_))) => {
-            let (run, from) = (request.live.run.clone(), request.from);
-            let work =
-                move |slice: &TimeSlice| catch_up::catch_up(&run, from, until, &limit, slice).map_err(Problem::from);
-            context.pool.run_on_worker(work).await?
-        }
-        Some(other) => other?,
-    };
-    context.bounces.inc_by(playback.next_n().unwrap_or_default());
-    Ok(playback)
 }
 
 struct Session {

@@ -9,12 +9,13 @@ use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tokio::time::{sleep, timeout};
 
 use crate::limits::Limits;
-use crate::live::bounds::SessionBounds;
+use crate::live::bounds::{SessionBounds, SessionContext};
+use crate::live::catch_up::catch_up_with;
 use crate::live::clock::Clock;
 use crate::live::close::Unreadable;
 use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message::OutgoingFrame;
-use crate::live::session::{SessionContext, catch_up, serve, wall_now};
+use crate::live::session::{serve, wall_now};
 use crate::runs::run::tests::case;
 
 /// The client's ends of a connection that takes one message at a time.
@@ -32,7 +33,7 @@ fn open(request: LiveRequest, bounds: SessionBounds) -> Client {
     });
     let context = SessionContext::for_test(bounds);
     tokio::spawn(async move {
-        let playback = catch_up(&request, &context).await;
+        let playback = catch_up_with(&request, &context).await;
         serve(request, playback, Box::pin(incoming), Box::pin(outgoing), context, std::future::pending()).await;
     });
     Client { says, hears }

@@ -15,11 +15,11 @@ use crate::http::Reader;
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
 use crate::limits;
+use crate::live::bounds::SessionContext;
 use crate::live::run_url;
 use crate::live::run_url::LiveRequest;
 use crate::live::server_message::{EventId, OutgoingFrame};
 use crate::live::session;
-use crate::live::session::SessionContext;
 use crate::runs::playback::Playback;
 
 /// Id of the last event of a run.
@@ -128,7 +128,7 @@ mod tests {
         let live = LiveRun { run: case(preset), clock: Clock::new(session::wall_now(), 20.0) };
         let request = LiveRequest { live, from: None };
         let context = SessionContext::for_test(bounds);
-        let playback = session::catch_up(&request, &context).await.unwrap();
+        let playback = crate::live::catch_up::catch_up_with(&request, &context).await.unwrap();
         let sessions = Gauge::default();
         let events = events(request, playback, context, std::future::pending(), GaugeGuard::new(&sessions));
         tokio::time::sleep(Duration::from_millis(500)).await;

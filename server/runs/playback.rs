@@ -42,6 +42,7 @@ pub struct Playback {
 
 /// Next thing that happens in a run.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "a step is taken apart at once, and most are impacts")]
 pub enum Step {
     /// An impact.
     Impact(Contact),

@@ -93,7 +93,7 @@ async fn what_is_no_batch_is_refused_as_a_whole() {
     let stability = "/v1/batches/stability";
     let line = r#"{"preset": "case-1"}"#;
     let unknown = post("/v1/batches/scenes", "application/x-ndjson", line).await.expect(404);
-    assert!(unknown.json()["detail"].as_str().unwrap().ends_with("regions, stability, trajectories"));
+    assert!(unknown.json()["detail"].as_str().unwrap().ends_with("regions, stability, throws, trajectories"));
     let json = post(stability, "application/json", line).await.expect(415);
     assert_eq!(json.header("accept"), Some("application/x-ndjson"));
     post(&format!("{stability}?format=csv"), "application/x-ndjson", line).await.expect(406);

@@ -162,7 +162,7 @@ fn carried_out(run: &LiveRun, order: &ClientMessage, n: u64) -> LiveRun {
         }
         ClientMessage::Throw(target) => {
             if has_angle(run.run.scene()) {
-                let t = (n % 2 == 0).then_some(0.3 * impact as f64);
+                let t = n.is_multiple_of(2).then_some(0.3 * impact as f64);
                 let _ = changed.run.throw(impact, ThrowOrder { target: *target, t });
             }
         }
