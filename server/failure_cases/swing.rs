@@ -45,7 +45,10 @@ pub(crate) const SETTLED: FailureCase = FailureCase {
                 verdict: if spin.abs() < 1e-3 { "at rest" } else { "swings" },
                 value: Some(spin),
                 unit: Some("rad/s"),
-                detail: format!("x_dot is {:.1e} m/s, and the contact does not move", bounces.end.x_dot),
+                detail: format!(
+                    "the body moves along x at {:.1e} m/s, and the contact does not move",
+                    bounces.end.x_dot
+                ),
             },
             MethodClaim {
                 method: "forces at the end of the bounces",
