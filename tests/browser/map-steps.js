@@ -16,7 +16,7 @@ export async function whole(page) {
   await page.locator('#map-box[aria-busy=false]').waitFor();
 }
 
-/** Where the cells are on the screen: what the canvas leaves for axes and colour bar is known. */
+/** The rectangle of the cells on the screen. The margins of axes and colour bar are known. */
 export async function place(page, across, upwards) {
   const box = await page.locator('#map-box').boundingBox();
   return [box.x + 52 + (box.width - 52 - 18) * across, box.y + 24 + (box.height - 24 - 96) * (1 - upwards)];

@@ -7,7 +7,7 @@ import { showRun, showThisRun } from './run-state.js';
 
 /** @typedef {import('./page.js').Page} Page */
 
-/** What is said of refusals comes after the first plot. */
+/** Loads the words for refusals, which come after the first plot. */
 const problems = () => import('./late/run-problems.js');
 
 /** @param {Page} page @returns {import('../run/run-state.js').Watcher} */

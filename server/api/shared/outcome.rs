@@ -13,9 +13,9 @@ use crate::api::catches::outcome::CatchOutcomeAnswer;
 /// Ending of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RunEnding {
-    /// Of a body that bounced.
+    /// Ending of a body that bounced.
     Bouncing(EndingKind),
-    /// Of a body that the table caught, or tried to.
+    /// Outcome of a body that the table caught, or tried to.
     Caught(CatchOutcomeKind),
 }
 

@@ -258,11 +258,11 @@ pub enum CatchNote {
 pub struct Candidate {
     /// The strategy with its numbers.
     pub approach: Approach,
-    /// Its demand, up to its end.
+    /// Demand on the table, up to the end.
     pub demand: CatchDemand,
     /// Beginning of its lasting contact, s.
     pub contact_from: Option<f64>,
-    /// Its outcome. One that is not caught rules it out.
+    /// Outcome. One that is not caught rules the strategy out.
     pub outcome: CatchOutcome,
     /// True for the one that was taken.
     pub taken: bool,

@@ -45,7 +45,7 @@ pub(super) struct Look {
     pub(super) sample: HoldSample,
     /// α̇, rad/s.
     pub(super) tilt_rate: f64,
-    /// What it asks of the table.
+    /// Load on the table.
     pub(super) load: ActuatorLoad,
     /// |F|/N.
     pub(super) needed_friction: f64,

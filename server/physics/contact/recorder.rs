@@ -46,7 +46,7 @@ impl Band {
     }
 }
 
-/// What has been recorded so far.
+/// Samples and extremes of a motion so far.
 #[derive(Clone, Debug)]
 pub(super) struct Recorder {
     pub(super) samples: Vec<HoldSample>,

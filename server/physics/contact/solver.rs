@@ -21,7 +21,7 @@ const STEPS_PER_QUESTION: u32 = 32;
 /// Reason for the end of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum PieceEnd {
-    /// Its time is over.
+    /// The time is over.
     Over,
     /// The observer ended it.
     Found,

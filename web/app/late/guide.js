@@ -1,4 +1,4 @@
-// What the table does on request with the body of a run under way: it catches it, throws it, juggles it.
+// Requests to the table of a run under way: to catch its body, to throw it, to juggle it.
 
 import { contactDistance } from '../../physics/body.js';
 import { edited } from '../typed/edits.js';

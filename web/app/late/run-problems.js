@@ -1,4 +1,4 @@
-// What the page says when the server refuses a run, or something that was sent to it.
+// The words of the page when the server refuses a run, or something that was sent to it.
 
 import { pathOf } from '../../api/scene-fields.js';
 import { h } from '../../dom/elements.js';

@@ -39,7 +39,7 @@ export function told({ outcome, settings, strategy }) {
   ];
 }
 
-/** What the catch asks of the table, beside its limits. @param {Catch} answer */
+/** Demands of the catch on the table, beside its limits. @param {Catch} answer */
 export const demands = ({ demand, scene }) =>
   table(
     'What it asks of the table',
@@ -68,7 +68,7 @@ export function facts({ strikes, contact_from: from, upright_within: upright, de
   ];
 }
 
-/** What rules a candidate out, or does not. @param {import('contract').CatchCandidate} candidate */
+/** The reason that rules a candidate out, or none. @param {import('contract').CatchCandidate} candidate */
 function judged({ taken, outcome }) {
   if (taken) return 'taken';
   if (isCaught(outcome)) return 'would catch it too';

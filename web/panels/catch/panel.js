@@ -93,7 +93,7 @@ class CatchPanel {
     this.#voided('The scene has changed since; catch anew for it.');
   }
 
-  /** What is shown answers another request. @param {string} words */
+  /** Marks the shown answer as one to another request. @param {string} words */
   #voided(words) {
     this.#latest.cancel();
     this.#reach.stale();

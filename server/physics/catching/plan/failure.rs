@@ -41,7 +41,7 @@ pub enum PlanFailure {
     },
     /// A strike of the plan cannot be.
     Blocked {
-        /// Its number, from 1 at the contact where the plan begins.
+        /// Number of the strike, from 1 at the contact where the plan begins.
         strike: u32,
         /// The reason.
         obstacle: Obstacle,

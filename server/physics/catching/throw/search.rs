@@ -42,7 +42,7 @@ struct Candidate {
     approach: f64,
     /// θ̇⁺ less the wanted one, rad/s.
     miss: f64,
-    /// Its derivative by α.
+    /// Derivative by α.
     slope: f64,
 }
 
