@@ -1,16 +1,14 @@
 //! The weights of a state feedback, as part of requests and answers.
 
 use equipoise_physics::control::bounce_model::STATE;
+use equipoise_physics::control::lqr::{DEFAULT_INPUT_WEIGHT, DEFAULT_STATE_WEIGHTS};
 use serde::Serialize;
 
 use crate::http::Reader;
 
-/// Default weights of state and tilt. They keep tilts so small that laws hold for large deviations.
-const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
-
 /// Reads `weights`: those of the state, in its order, and that of the tilt.
 pub(crate) fn read_weights(reader: &mut Reader<'_, '_>) -> ([f64; 4], f64) {
-    let (mut state, mut input) = WEIGHTS;
+    let (mut state, mut input) = (DEFAULT_STATE_WEIGHTS, DEFAULT_INPUT_WEIGHT);
     reader.within("weights", |weights| {
         weights.numbers("state", &STATE, &(0.0..=1e6), &mut state);
         input = weights.number("input", 1e-6..=1e6, "").unwrap_or(input);

@@ -1,5 +1,6 @@
 //! Settings of a catch: the strategy, and the numbers of each.
 
+use crate::control::lqr::{DEFAULT_INPUT_WEIGHT, DEFAULT_STATE_WEIGHTS};
 use std::ops::RangeInclusive;
 
 /// Contact speed after a strike, m/s, below which the table stays with the body if nothing else is asked for: the lasting contact begins.
@@ -28,12 +29,6 @@ pub const MOST_STRIKES: u64 = 1000;
 
 /// Decelerations of the table, m/s², that may be asked for.
 pub const BRAKES: RangeInclusive<f64> = 0.01..=1e4;
-
-/// Weights on (x, θ, ẋ, θ̇) if none are asked for.
-pub const DEFAULT_STATE_WEIGHTS: [f64; 4] = [1.0, 10.0, 0.1, 0.1];
-
-/// Weight on the tilt if none is asked for.
-pub const DEFAULT_INPUT_WEIGHT: f64 = 10.0;
 
 /// Time in contact that is followed, s, if none is asked for.
 pub const DEFAULT_HOLD: f64 = 6.0;

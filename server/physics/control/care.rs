@@ -3,7 +3,7 @@
 //! A Cayley transform with a parameter γ > 0 turns it into a discrete one with the same P (Chu, Fan and Lin 2005), which structured
 //! doubling solves ([`crate::control::riccati`]). Not here: the choice of A and B.
 
-use crate::control::riccati::{DOUBLINGS, RiccatiSolution, double, symmetric};
+use crate::control::riccati::{RiccatiSolution, double, doubled_sum, symmetric};
 use nalgebra::{Const, DimMin, SMatrix, SVector};
 
 /// Solves the equation for one input with weights Q = diag(`state`) ≥ 0 and R = `input` > 0: K = R⁻¹BᵀP.
@@ -57,17 +57,9 @@ where
     let closed = a - b * gain;
     let cayley = closed.norm();
     let Some(inverse) = (closed - identity * cayley).try_inverse() else { return *cost };
-    let mut power = identity + inverse * (2.0 * cayley);
-    let mut sum = inverse.transpose() * (weights + gain.transpose() * gain * input) * inverse * (2.0 * cayley);
-    for _ in 0..DOUBLINGS {
-        let more = power.transpose() * sum * power;
-        sum = symmetric(&(sum + more));
-        if more.norm() <= f64::EPSILON * sum.norm() {
-            return sum;
-        }
-        power *= power;
-    }
-    *cost
+    let power = identity + inverse * (2.0 * cayley);
+    let sum = inverse.transpose() * (weights + gain.transpose() * gain * input) * inverse * (2.0 * cayley);
+    doubled_sum(power, sum).unwrap_or(*cost)
 }
 
 #[cfg(test)]

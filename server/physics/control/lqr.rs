@@ -6,6 +6,13 @@ use crate::control::riccati;
 use crate::control::riccati::RiccatiSolution;
 use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
 
+/// Weights on (x, θ, ẋ, θ̇) if none are asked for. With [`DEFAULT_INPUT_WEIGHT`] they keep tilts so small that laws hold for large
+/// deviations.
+pub const DEFAULT_STATE_WEIGHTS: [f64; 4] = [1.0, 10.0, 0.1, 0.1];
+
+/// Weight on the tilt if none is asked for.
+pub const DEFAULT_INPUT_WEIGHT: f64 = 10.0;
+
 /// Largest residual of the Riccati equation at which its solution still has trustworthy digits.
 pub const RESIDUAL: f64 = 1e-8;
 

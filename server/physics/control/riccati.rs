@@ -93,16 +93,23 @@ fn refined<const N: usize>(
     cost: &SMatrix<f64, N, N>,
 ) -> SMatrix<f64, N, N> {
     let gain = gain(a, b, input, cost);
-    let (mut power, mut sum) = (a - b * gain, weights + gain.transpose() * gain * input);
+    doubled_sum(a - b * gain, weights + gain.transpose() * gain * input).unwrap_or(*cost)
+}
+
+/// W + AᵀWA + (Aᵀ)²WA² + … for A = `power` and W = `sum`, twice as many terms at each step. `None` if it does not converge.
+pub(crate) fn doubled_sum<const N: usize>(
+    mut power: SMatrix<f64, N, N>,
+    mut sum: SMatrix<f64, N, N>,
+) -> Option<SMatrix<f64, N, N>> {
     for _ in 0..DOUBLINGS {
         let more = power.transpose() * sum * power;
         sum = symmetric(&(sum + more));
         if more.norm() <= f64::EPSILON * sum.norm() {
-            return sum;
+            return Some(sum);
         }
         power *= power;
     }
-    *cost
+    None
 }
 
 pub(crate) fn symmetric<const N: usize>(matrix: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
