@@ -69,7 +69,7 @@ test('the verdict tells what the run asks of the table', async () => {
     nonlinear: { demand },
   } = await (await fetch(`${stage.url}v1/stability?preset=case-4`)).json();
   await page.locator('.verdict-numbers summary').click();
-  const text = plain(await page.locator('.numbers').innerText());
+  const text = plain(await page.locator('.verdict-numbers .numbers').innerText());
   for (const [value, unit] of [
     [demand.tilt, 'rad'],
     [demand.tilt_rate, 'rad/s'],

@@ -10,6 +10,29 @@ import { UNITS } from '../dom/units.js';
  * @property {() => string[][]} rows newest first
  */
 
+/** Does something at most once a second. The newest call of a second comes at its end, so that none is the last and lost. */
+class EverySecond {
+  #done_ms = -Infinity;
+  #later = 0;
+
+  /** @param {number} now_ms Infinity: at once @param {() => void} act */
+  ask(now_ms, act) {
+    clearTimeout(this.#later);
+    const left = this.#done_ms + 1000 - now_ms;
+    if (left > 0) {
+      this.#later = setTimeout(() => this.ask(now_ms + left, act), left);
+      return;
+    }
+    this.#done_ms = now_ms === Infinity ? -Infinity : now_ms;
+    act();
+  }
+
+  /** Lets the next call act at once. */
+  free() {
+    this.#done_ms = -Infinity;
+  }
+}
+
 export class Figure {
   element;
   /** The box of the canvases. */
@@ -20,8 +43,8 @@ export class Figure {
   /** The table, once it was opened. @type {import('./figure-numbers.js').FigureNumbers | null} */
   #numbers = null;
   #disclosure;
-  #named_ms = -Infinity;
-  #listed_ms = -Infinity;
+  #naming = new EverySecond();
+  #listing = new EverySecond();
 
   /**
    * @param {string} id
@@ -36,8 +59,7 @@ export class Figure {
     this.box = h('div', { class: 'canvas-box', role: 'img', 'aria-label': 'Nothing to show yet' });
     this.#readout = h('output', { class: 'readout', 'aria-live': 'off' });
     document.addEventListener(UNITS, () => {
-      this.#named_ms = -Infinity;
-      this.#listed_ms = -Infinity;
+      this.#naming.free();
       this.list(Infinity);
     });
     this.#disclosure = h('details', { toggle: () => void this.#open() }, h('summary', {}, 'Numbers'));
@@ -76,15 +98,11 @@ export class Figure {
    * @param {() => string} words
    */
   name(now_ms, words) {
-    if (now_ms - this.#named_ms < 1000) return;
-    this.#named_ms = now_ms;
-    this.box.setAttribute('aria-label', words());
+    this.#naming.ask(now_ms, () => this.box.setAttribute('aria-label', words()));
   }
 
   /** Brings the table up to date when it is open, at most once a second. @param {number} now_ms */
   list(now_ms) {
-    if (!this.#disclosure.open || now_ms - this.#listed_ms < 1000) return;
-    this.#listed_ms = now_ms === Infinity ? -Infinity : now_ms;
-    this.#numbers?.fill();
+    if (this.#disclosure.open) this.#listing.ask(now_ms, () => this.#numbers?.fill());
   }
 }
