@@ -5,6 +5,8 @@ import { test } from 'node:test';
 import { Stage } from './stage.js';
 
 const stage = await Stage.open();
+const PHONE =
+  '.bar :is(button, select), #timeline button, .scrub, #controls button, #chart-tabs button, #run, #kick, #pin, #gain, .parts button';
 
 /** The places of the parts of the page, px. */
 const places = (page) =>
@@ -33,9 +35,12 @@ const covered = (page, selector) =>
 for (const [width, height, controls] of [
   [1280, 800, 'button, select, input, summary, a'],
   [844, 390, 'button, select, input, summary, a'],
-  [390, 844, '.bar :is(button, select), #timeline button, #controls button, #run, #kick, #pin, #gain, .parts button'],
+  [390, 844, PHONE],
+  [375, 667, PHONE],
+  [320, 640, PHONE],
+  [320, 568, PHONE],
 ])
-  test(`a notice moves nothing and covers no control, ${width} px wide`, async () => {
+  test(`a notice moves nothing and covers no control, ${width} × ${height} px`, async () => {
     const { page, clean } = await stage.page('?preset=case-1', { viewport: { width, height } });
     await page.locator('#pin').waitFor({ state: 'attached' });
     await page.locator('#grab').waitFor();
