@@ -6,7 +6,7 @@ import { Stage, changedRun, reachImpact, reachPhase, slide, speedUp, verdict } f
 
 const stage = await Stage.open();
 
-const ready = (page) => page.locator('#undo:not([hidden])').waitFor();
+const ready = (page) => page.locator('#undone').waitFor({ state: 'attached' });
 const address = (page) => page.evaluate(() => Object.fromEntries(new URLSearchParams(location.search)));
 const holds = (page, condition, argument) => page.waitForFunction(condition, argument);
 

@@ -57,8 +57,6 @@ export class History {
   constructor(page) {
     this.#page = page;
     document.body.append(this.#said);
-    this.#undo.hidden = false;
-    this.#redo.hidden = false;
     this.#undo.addEventListener('click', () => this.undo());
     this.#redo.addEventListener('click', () => this.redo());
     // A press begins another edit, of the same slider too.
