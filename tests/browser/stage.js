@@ -16,6 +16,8 @@ const FLAGS = [
   '--disable-component-update',
   '--disable-sync',
 ];
+/** The page itself, once its first parts are there. */
+const BEGUN = '#case:enabled';
 /** How long a condition may take before a test gives up; no test measures speed by it. */
 export const PATIENCE_MS = 120_000;
 
@@ -90,11 +92,12 @@ export class Stage {
    * A page in a fresh browser profile, and what it did wrong so far.
    * @param {string} query
    * @param {object} options of Playwright's context; `prepare`, which the page runs before its own code; `watch`, which sees the page before
-   * it loads; another `path`, and the `sign` that it is there; `folded` settings; `autorun`, to let it run by itself
+   * it loads; another `path`, and the `sign` that it is there; `folded` settings; `autorun`, to let it run by itself; `begun`, to take it as
+   * soon as its first parts are there
    */
   async page(
     query = '',
-    { prepare, path = '', sign = '#case:enabled', watch, folded = false, autorun = false, ...options } = {},
+    { prepare, path = '', sign = BEGUN, watch, folded = false, autorun = false, begun = false, ...options } = {},
   ) {
     const context = await this.#browser.newContext({ viewport: { width: 1280, height: 860 }, ...options });
     this.#contexts.push(context);
@@ -143,6 +146,8 @@ export class Stage {
     if (prepare) await page.addInitScript(prepare);
     await page.goto(this.url + path + query);
     await page.locator(sign).first().waitFor();
+    if (sign === BEGUN && !begun)
+      await page.waitForFunction(() => performance.getEntriesByName('all parts').length > 0);
     return { page, context, wrongs, clean: () => assert.deepEqual(wrongs, []) };
   }
 }

@@ -103,4 +103,5 @@ export async function bringLateParts(page) {
   page.panels.join('pin', await bringPins(page, others));
   page.panels.restore(page.panelLink);
   if (page.judged) page.panels.judged(page.judged);
+  performance.mark('all parts');
 }
