@@ -6,7 +6,6 @@ use std::sync::Arc;
 use equipoise_physics::body::{Arrival, PreImpact};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::catching::catch_from;
 use equipoise_physics::catching::descent::ComingContact;
 use equipoise_physics::catching::outcome::{Catch, CatchStrike};
@@ -80,9 +79,9 @@ impl CaughtRun {
     }
 
     /// The next strike as a contact of the run, and the flight to the one after it.
-    pub fn strike(&mut self, rod: &Rod) -> Option<(Contact, Option<Arrival>)> {
+    pub fn strike(&mut self) -> Option<(Contact, Option<Arrival>)> {
         let strike = self.next_strike()?;
-        let contact = contact(strike, rod);
+        let contact = contact(strike);
         self.struck += 1;
         let arrival = self.next_strike().zip(contact.flight_time).map(|(next, t)| Arrival {
             t,
@@ -121,50 +120,9 @@ pub fn held_body(n: u64, rod: &Rod, sample: &HoldSample) -> PreImpact {
 }
 
 /// A strike of a catch as a contact of a run.
-fn contact(strike: &CatchStrike, rod: &Rod) -> Contact {
-    Contact {
-        n: strike.n,
-        t: strike.t,
-        x: strike.x,
-        state: strike.state,
-        clearance: strike.clearance,
-        alpha: strike.alpha,
-        strike: Some(full_strike(strike, rod)),
-        flight_time: strike.flight_time,
-        ending: None,
-    }
-}
-
-/// All there is to know about a strike of a catch.
-pub fn full_strike(strike: &CatchStrike, rod: &Rod) -> Strike {
-    let CatchStrike { state, after, alpha, .. } = *strike;
-    let (sin_theta, cos_theta) = trig::sin_cos(state.theta);
-    let (sin_alpha, cos_alpha) = trig::sin_cos(alpha);
-    let (sin_beta, _) = trig::sin_cos(state.theta - alpha);
-    let length = rod.contact_distance;
-    let normal_velocity = cos_alpha * state.y_dot - sin_alpha * state.x_dot + length * sin_beta * state.theta_dot;
-    let approach = normal_velocity - strike.table_velocity;
-    let squared = |state: &State| {
-        let spin = rod.radius_of_gyration * state.theta_dot;
-        state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin
-    };
-    let speed_squared = squared(&state);
-    Strike {
-        after,
-        alpha,
-        sin_cos_theta: (sin_theta, cos_theta),
-        normal_velocity,
-        push: (1.0 + rod.restitution) * approach,
-        approach,
-        table_velocity: strike.table_velocity_xy,
-        impulse_normal: strike.impulse_normal,
-        impulse_tangential: strike.impulse_tangential,
-        mode: strike.contact_mode,
-        contact_rise: after.y_dot + length * after.theta_dot * sin_theta,
-        speed_squared,
-        energy: 0.5 * speed_squared - rod.gravity * length * (1.0 - cos_theta),
-        energy_gain: 0.5 * (squared(&after) - speed_squared),
-    }
+fn contact(at: &CatchStrike) -> Contact {
+    let CatchStrike { n, t, x, state, clearance, strike, flight_time, .. } = *at;
+    Contact { n, t, x, state, clearance, alpha: strike.alpha, strike: Some(strike), flight_time, ending: None }
 }
 
 #[cfg(test)]
@@ -218,7 +176,7 @@ mod tests {
         assert_eq!(contacts.len(), 4 + alone.catch().strikes.len());
         for (contact, strike) in contacts[4..].iter().zip(&alone.catch().strikes) {
             assert_eq!((contact.n, contact.t, contact.state), (strike.n, strike.t, strike.state));
-            assert_eq!(contact.strike.unwrap().after, strike.after);
+            assert_eq!(contact.strike, Some(strike.strike));
         }
         assert_eq!(samples, alone.hold().unwrap().samples);
         let outcome = playback.outcome().unwrap();

@@ -9,6 +9,7 @@ use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw;
 use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowTarget};
+use equipoise_physics::numbers::trig;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, Orbit};
 use equipoise_physics::scene::model::Model;
@@ -20,7 +21,7 @@ use crate::api::scene::has_angle;
 use crate::api::shared::outcome::Outcome;
 use crate::compute::Price;
 use crate::limits;
-use crate::runs::caught::{CaughtRun, HoldPart, full_strike, held_body};
+use crate::runs::caught::{CaughtRun, HoldPart, held_body};
 use crate::runs::run::Run;
 
 /// Rounding of a time in a URL, s.
@@ -115,7 +116,7 @@ impl Playback {
             let (coming, strike) = next.orbit.foresee();
             return Some((coming, strike, next.scene));
         };
-        let strike = full_strike(caught.next_strike()?, next.rod());
+        let strike = caught.next_strike()?.strike;
         Some((next.coming(), strike, next.scene))
     }
 
@@ -223,8 +224,7 @@ impl Playback {
     /// The next strike of the catch under way, with a kick after it.
     fn strike_of_catch(&mut self, kick: Option<Kick>) -> Contact {
         let (coming, t) = (self.coming(), self.orbit.t());
-        let rod = *self.rod();
-        let Some((mut contact, arrival)) = self.caught.as_mut().and_then(|caught| caught.strike(&rod)) else {
+        let Some((mut contact, arrival)) = self.caught.as_mut().and_then(|caught| caught.strike()) else {
             // A catch without strikes and without a hold: the body falls before the table meets it.
             self.end_catch(coming.n - 1);
             return Contact { flight_time: None, ..bare_contact(&coming, t) };
@@ -232,6 +232,8 @@ impl Playback {
         match (kick, contact.strike) {
             (Some(kick), Some(strike)) => {
                 let settings = self.settings();
+                // This flight starts from cos θ, not from 1 − (1 − cos θ), which differs in the last digit.
+                let strike = Strike { sin_cos_theta: trig::sin_cos(coming.state.theta), ..strike };
                 contact = self.fly_after(&coming, t, strike, Some(kick));
                 if let (Some(settings), true) = (settings, contact.ending.is_none()) {
                     self.begin_catch(&settings, &self.coming(), self.orbit.t());

@@ -26,23 +26,23 @@ const fn own<Row>(name: &'static str, unit: &'static str, about: &'static str, r
 
 /// Columns of a strike that an impact of a run has too: its description there holds here.
 static SHARED: [(&str, Read<CatchStrike>); 17] = [
-    ("n", Read::Count(|strike| strike.n)),
-    ("t", Read::Number(|strike| strike.t)),
-    ("x", Read::Number(|strike| strike.x)),
-    ("theta", Read::Number(|strike| strike.state.theta)),
-    ("x_dot", Read::Number(|strike| strike.state.x_dot)),
-    ("y_dot", Read::Number(|strike| strike.state.y_dot)),
-    ("theta_dot", Read::Number(|strike| strike.state.theta_dot)),
-    ("x_dot_after", Read::Number(|strike| strike.after.x_dot)),
-    ("y_dot_after", Read::Number(|strike| strike.after.y_dot)),
-    ("theta_dot_after", Read::Number(|strike| strike.after.theta_dot)),
-    ("alpha", Read::Number(|strike| strike.alpha)),
-    ("impulse_normal", Read::Number(|strike| strike.impulse_normal)),
-    ("impulse_tangential", Read::Number(|strike| strike.impulse_tangential + 0.0)),
-    ("contact_mode", Read::Word(|strike| Some(strike.contact_mode.name()))),
-    ("flight_time", Read::Sparse(|strike| strike.flight_time)),
-    ("contact_speed", Read::Number(|strike| strike.contact_speed)),
-    ("clearance", Read::Number(|strike| strike.clearance)),
+    ("n", Read::Count(|at| at.n)),
+    ("t", Read::Number(|at| at.t)),
+    ("x", Read::Number(|at| at.x)),
+    ("theta", Read::Number(|at| at.state.theta)),
+    ("x_dot", Read::Number(|at| at.state.x_dot)),
+    ("y_dot", Read::Number(|at| at.state.y_dot)),
+    ("theta_dot", Read::Number(|at| at.state.theta_dot)),
+    ("x_dot_after", Read::Number(|at| at.strike.after.x_dot)),
+    ("y_dot_after", Read::Number(|at| at.strike.after.y_dot)),
+    ("theta_dot_after", Read::Number(|at| at.strike.after.theta_dot)),
+    ("alpha", Read::Number(|at| at.strike.alpha)),
+    ("impulse_normal", Read::Number(|at| at.strike.impulse_normal)),
+    ("impulse_tangential", Read::Number(|at| at.strike.impulse_tangential + 0.0)),
+    ("contact_mode", Read::Word(|at| Some(at.strike.mode.name()))),
+    ("flight_time", Read::Sparse(|at| at.flight_time)),
+    ("contact_speed", Read::Number(|at| at.contact_speed)),
+    ("clearance", Read::Number(|at| at.clearance)),
 ];
 
 /// Columns of strikes alone.
@@ -51,13 +51,13 @@ static OF_STRIKES_ALONE: [CatchColumn<CatchStrike>; 2] = [
         "table_velocity",
         "m/s",
         "Velocity of the table along its normal, in metres per second; upwards is positive.",
-        Read::Number(|strike| strike.table_velocity + 0.0),
+        Read::Number(|at| at.strike.table_speed() + 0.0),
     ),
     own(
         "ratio",
         "",
         "Vertical speed of the contact point just after the strike over that just before: 0 if it comes to rest, below 0 if it goes on downwards.",
-        Read::Number(|strike| strike.ratio + 0.0),
+        Read::Number(|at| at.ratio() + 0.0),
     ),
 ];
 

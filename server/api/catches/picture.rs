@@ -50,10 +50,10 @@ impl Motion {
             let (x, y, start) = (release.x, release.height, release.state);
             motion.fly(gravity, &Flight { t: 0.0, x, y, start, length });
         }
-        for strike in strikes.iter().take(FLIGHTS) {
-            if let Some(length) = strike.flight_time {
-                let y = height(strike.state.theta) + strike.clearance;
-                motion.fly(gravity, &Flight { t: strike.t, x: strike.x, y, start: strike.after, length });
+        for at in strikes.iter().take(FLIGHTS) {
+            if let Some(length) = at.flight_time {
+                let y = height(at.state.theta) + at.clearance;
+                motion.fly(gravity, &Flight { t: at.t, x: at.x, y, start: at.strike.after, length });
             }
         }
         for sample in hold {
@@ -80,8 +80,7 @@ impl Pictured for CatchAnswer {
         let (scene, caught) = &self.drawn;
         let hold = caught.hold.as_ref().map_or(&[][..], |hold| &hold.samples);
         let motion = Motion::new(scene, &caught.strikes, hold);
-        let strikes =
-            |read: fn(&CatchStrike) -> f64| caught.strikes.iter().map(|strike| (strike.t, read(strike))).collect();
+        let strikes = |read: fn(&CatchStrike) -> f64| caught.strikes.iter().map(|at| (at.t, read(at))).collect();
         let held = |read: fn(&HoldSample) -> f64| hold.iter().map(|sample| (sample.t, read(sample))).collect();
         let time = ChartAxis::new("time", "t", "s");
         let plot = |name, symbol, unit, curves| Plot { x: time, y: ChartAxis::new(name, symbol, unit), curves };
@@ -99,7 +98,7 @@ impl Pictured for CatchAnswer {
                     "rad",
                     vec![
                         body("body", motion.theta),
-                        dots("table at strikes", strikes(|strike| strike.alpha)),
+                        dots("table at strikes", strikes(|at| at.strike.alpha)),
                         line("table in contact", held(|sample| sample.alpha)),
                     ],
                 ),
@@ -109,10 +108,7 @@ impl Pictured for CatchAnswer {
                     "speed of the table",
                     "w",
                     "m/s",
-                    vec![
-                        dots("", strikes(|strike| strike.table_velocity)),
-                        line("", held(|sample| sample.table_y_dot)),
-                    ],
+                    vec![dots("", strikes(|at| at.strike.table_speed())), line("", held(|sample| sample.table_y_dot))],
                 ),
             ],
         }))

@@ -194,6 +194,11 @@ impl<N: Number> Rod<N> {
 pub(crate) const RISE_UNITS: f64 = 8.0;
 
 impl<N: Number> Strike<N> {
+    /// w, velocity of the table along its normal, m/s, up positive.
+    pub fn table_speed(&self) -> N {
+        self.normal_velocity - self.approach
+    }
+
     /// Tells whether the contact point rises from the table, by more than rounding. `y_dot` is ẏ before, m/s; `unit` the relative size of one
     /// unit in the last place.
     #[inline(always)]

@@ -90,7 +90,7 @@ impl Descent {
             if strike.push >= 0.0 {
                 return escaped(t, Escape::Separating(strike.approach));
             }
-            self.strikes.push(record(body, &now, &strike));
+            self.strikes.push(record(body, &now, strike));
             let after = strike.after;
             let squared = speed_squared(after.x_dot, after.y_dot, body.rod.contact_distance * after.theta_dot);
             if squared.is_nan() || squared > SPEED_LIMIT * SPEED_LIMIT {
@@ -139,24 +139,7 @@ fn escaped(t: f64, escape: Escape) -> DescentEnd {
     DescentEnd::Ended(CatchOutcome::NotCaught { t, escape })
 }
 
-fn record(body: &GeneralBody, now: &ComingContact, strike: &Strike) -> CatchStrike {
-    let ComingContact { t, coming } = *now;
-    let contact_speed = body.rod.contact_speed(&coming.state);
-    CatchStrike {
-        n: coming.n,
-        t,
-        x: coming.x,
-        state: coming.state,
-        clearance: coming.clearance,
-        alpha: strike.alpha,
-        table_velocity: strike.normal_velocity - strike.approach,
-        table_velocity_xy: strike.table_velocity,
-        impulse_normal: strike.impulse_normal,
-        impulse_tangential: strike.impulse_tangential,
-        contact_mode: strike.mode,
-        ratio: strike.contact_rise / -contact_speed,
-        contact_speed,
-        flight_time: None,
-        after: strike.after,
-    }
+fn record(body: &GeneralBody, now: &ComingContact, strike: Strike) -> CatchStrike {
+    let ComingContact { t, coming: PreImpact { n, x, state, clearance, .. } } = *now;
+    CatchStrike { n, t, x, state, clearance, contact_speed: body.rod.contact_speed(&state), strike, flight_time: None }
 }

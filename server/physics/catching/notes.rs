@@ -26,9 +26,9 @@ pub(super) fn notes(scene: &Scene, attempt: &Attempt) -> Vec<CatchNote> {
     }
     if scene.assumed_restitution() != scene.restitution
         && let (Some(first), Some(aimed)) = (attempt.descent.strikes.first(), attempt.descent.aimed)
-        && (first.ratio - aimed).abs() > MISSED_RATIO
+        && (first.ratio() - aimed).abs() > MISSED_RATIO
     {
-        notes.push(CatchNote::WrongBelief { aimed, reached: first.ratio });
+        notes.push(CatchNote::WrongBelief { aimed, reached: first.ratio() });
     }
     if let (Some(touchdown), Some(landed)) = (&attempt.touchdown, &attempt.landed) {
         if touchdown.speed.abs() >= HOLD_SPEED {

@@ -4,7 +4,7 @@ use super::plan::PlanFailure;
 use super::settings::{Approach, CatchSettings};
 use crate::body::Touch;
 use crate::bounce::state::State;
-use crate::bounce::strike::ContactMode;
+use crate::bounce::strike::Strike;
 use crate::contact::Hold;
 use crate::control::lqr::DesignFailure;
 use crate::table::actuator_load::{ActuatorLoad, LimitViolation};
@@ -22,26 +22,19 @@ pub struct CatchStrike {
     pub state: State,
     /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
     pub clearance: f64,
-    /// α, tilt of the table, rad.
-    pub alpha: f64,
-    /// w, velocity of the table along its normal, m/s, up positive.
-    pub table_velocity: f64,
-    /// Velocity of the table in x and y, m/s.
-    pub table_velocity_xy: (f64, f64),
-    /// P_n per unit mass, m/s.
-    pub impulse_normal: f64,
-    /// P_t per unit mass, m/s.
-    pub impulse_tangential: f64,
-    /// Mode of the contact along the table.
-    pub contact_mode: ContactMode,
-    /// Height ratio ẏ_c⁺/|ẏ_c| that it reached.
-    pub ratio: f64,
     /// ẏ_c just before, m/s.
     pub contact_speed: f64,
+    /// The strike.
+    pub strike: Strike,
     /// Time to the next contact, s; `None` after the last strike.
     pub flight_time: Option<f64>,
-    /// Angle and velocities just after it.
-    pub after: State,
+}
+
+impl CatchStrike {
+    /// Height ratio ẏ_c⁺/|ẏ_c| that it reached.
+    pub fn ratio(&self) -> f64 {
+        self.strike.contact_rise / -self.contact_speed
+    }
 }
 
 /// Reason for which a body fell.

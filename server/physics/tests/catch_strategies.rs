@@ -52,7 +52,7 @@ fn printed(value: f64, figure: f64, unit: f64, what: &str) {
 }
 
 fn table_speeds(catch: &Catch) -> (f64, f64) {
-    let speeds = || catch.strikes.iter().map(|strike| strike.table_velocity);
+    let speeds = || catch.strikes.iter().map(|at| at.strike.table_speed());
     (speeds().fold(f64::INFINITY, f64::min), speeds().fold(f64::NEG_INFINITY, f64::max))
 }
 
@@ -75,7 +75,7 @@ fn bounces_go_down_within_the_printed_figures() {
     assert_eq!((slow.outcome, slow.strikes.len()), (CatchOutcome::Held, 63));
     printed(slow.contact_from.unwrap(), 2.94, 1e-2, "time in the air");
     printed(slow.demand.load.tilt, 0.112, 1e-3, "tilt");
-    assert!(slow.strikes.iter().all(|strike| strike.table_velocity.abs() < 0.0865));
+    assert!(slow.strikes.iter().all(|at| at.strike.table_speed().abs() < 0.0865));
     assert!(slow.hold.unwrap().samples[0].theta.abs() < 1e-2);
 }
 
@@ -90,10 +90,10 @@ fn plans_come_to_rest_within_the_printed_figures() {
         printed(catch.contact_from.unwrap(), time, 1e-3, "time in the air");
         printed(catch.demand.load.tilt, tilt, 1e-3, "tilt");
         let (stop, strikes) = catch.strikes.split_last().unwrap();
-        printed(stop.table_velocity, last, 1e-3, "table at the stop");
-        let most = strikes.iter().map(|strike| strike.table_velocity.abs()).fold(0.0, f64::max);
+        printed(stop.strike.table_speed(), last, 1e-3, "table at the stop");
+        let most = strikes.iter().map(|at| at.strike.table_speed().abs()).fold(0.0, f64::max);
         printed(most, speed, 1e-3, "table before");
-        let State { theta, x_dot, theta_dot, .. } = stop.after;
+        let State { theta, x_dot, theta_dot, .. } = stop.strike.after;
         for rest in [stop.x, theta, x_dot, theta_dot] {
             assert!(rest.abs() < 1e-9, "{stop:?}");
         }
@@ -159,18 +159,18 @@ fn a_wrong_belief_is_caught_at_the_ratio_that_it_gives() {
         // At the height ratio itself where the normal one is the same: upright.
         let first = &catch.strikes[0];
         let normal = |velocity: &State| {
-            let beta = velocity.theta - first.alpha;
-            first.alpha.cos() * velocity.y_dot - first.alpha.sin() * velocity.x_dot
+            let beta = velocity.theta - first.strike.alpha;
+            first.strike.alpha.cos() * velocity.y_dot - first.strike.alpha.sin() * velocity.x_dot
                 + LENGTH * beta.sin() * velocity.theta_dot
         };
-        let aimed = -normal(&first.state) + first.table_velocity;
-        let reached = normal(&first.after) - first.table_velocity;
+        let aimed = -normal(&first.state) + first.strike.table_speed();
+        let reached = normal(&first.strike.after) - first.strike.table_speed();
         assert!((reached - actual * aimed).abs() < 1e-12, "{reached} {aimed}");
-        assert!((first.ratio - expected).abs() < 0.05, "{} {expected}", first.ratio);
+        assert!((first.ratio() - expected).abs() < 0.05, "{} {expected}", first.ratio());
         assert_eq!(catch.outcome, CatchOutcome::Held, "{actual} {assumed} {ratio}");
         assert!(catch.notes.iter().any(|note| matches!(note, CatchNote::WrongBelief { .. })), "{:?}", catch.notes);
         let rode = catch.notes.iter().any(|note| matches!(note, CatchNote::RodeAlong { .. }));
-        assert_eq!(rode, catch.strikes.last().unwrap().ratio < 0.0);
+        assert_eq!(rode, catch.strikes.last().unwrap().ratio() < 0.0);
     }
 }
 
@@ -189,12 +189,12 @@ fn every_strike_keeps_the_velocity_of_the_centre_of_percussion() {
                 ]);
                 draft.set(Name::Law, Some(Value::Choice(law.word()))).unwrap();
                 let catch = caught(&draft.build().unwrap(), by(Strategy::BounceDown));
-                for strike in &catch.strikes {
+                for at in &catch.strikes {
                     let along = |state: &State| {
                         let (sin, cos) = state.theta.sin_cos();
                         state.x_dot * cos + state.y_dot * sin - RHO * RHO / LENGTH * state.theta_dot
                     };
-                    let change = along(&strike.after) - along(&strike.state);
+                    let change = along(&at.strike.after) - along(&at.state);
                     assert!(change.abs() < 1e-13, "{law:?} μ = {friction}: {change}");
                     strikes += 1;
                 }
