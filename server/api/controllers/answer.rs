@@ -2,12 +2,14 @@
 
 use std::borrow::Cow;
 
+use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::control::bounce_model::{BounceModel, ClosedLoop, STATE};
 use equipoise_physics::control::lqr::{DesignFailure, LqrDesign, design_lqr};
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::stability::fixed_point::{FixedPoint, bounce_in_place};
+use equipoise_physics::stability::linear_verdict::one_strike_eigenvalue;
 use serde::Serialize;
 use serde_json::Value as Json;
 
@@ -126,7 +128,12 @@ impl ControllerAnswer {
         let applied = (own != regime).then(|| judge(design.gain)).transpose()?;
         let given = scene.model().feedback().map(judge).transpose()?;
         let first = usize::from(!with_x);
-        let energy_eigenvalue = 1.0 - rod.strike_gain_per_energy * place.speed * place.speed;
+        let energy_eigenvalue = match rod.energy_feedback {
+            EnergyFeedback::Vertical | EnergyFeedback::Total => {
+                1.0 - rod.strike_gain_per_energy * place.speed * place.speed
+            }
+            EnergyFeedback::OneStrike => one_strike_eigenvalue(&scene),
+        };
         let mut answer = Self {
             scene: scene_to_json(&designed),
             model: ModelChoice::of(&designed),

@@ -96,10 +96,7 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
     let loop_gain = (1.0 + scene.restitution) * speed_squared;
     let (energy_eigenvalue, upper_energy_gain) = match scene.energy_feedback {
         EnergyFeedback::Vertical | EnergyFeedback::Total => (1.0 - scene.energy_gain * loop_gain, 2.0 / loop_gain),
-        EnergyFeedback::OneStrike => {
-            let assumed = scene.assumed_restitution();
-            ((scene.restitution - assumed) / (1.0 + assumed), f64::INFINITY)
-        }
+        EnergyFeedback::OneStrike => (one_strike_eigenvalue(scene), f64::INFINITY),
     };
     let real = |value: f64| Complex::new(value, 0.0);
     let model = scene.model();
@@ -183,6 +180,12 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
         energy_eigenvalue,
         closed_loop: None,
     }
+}
+
+/// (e − ê)/(1 + ê): the eigenvalue of the energy where one strike brings it to its target.
+pub fn one_strike_eigenvalue(scene: &Scene) -> f64 {
+    let assumed = scene.assumed_restitution();
+    (scene.restitution - assumed) / (1.0 + assumed)
 }
 
 /// The closed loop of a model's state feedback at a bounce in place; `None` without state feedback.
