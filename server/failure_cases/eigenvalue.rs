@@ -1,7 +1,6 @@
 //! The claim of the eigenvalues of a computed Jacobian at the upright bounce.
 
 use crate::failure_cases::case::MethodClaim;
-use equipoise_physics::bounce::state::State;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::fixed_point::{FixedPoint, find_fixed_point};
 use equipoise_physics::stability::jacobian;
@@ -11,8 +10,7 @@ use equipoise_physics::stability::linear_verdict::{PARABOLIC, linear_verdict};
 /// Verdict by the largest modulus of the computed Jacobian's eigenvalues at the fixed point, and the eigenvalue of the angle
 /// farthest from 1: (re, im).
 fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f64, (f64, f64)) {
-    let upright = State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 };
-    let matrix = jacobian::jacobian(&scene.model(), &upright, 1).map(|linearization| linearization.matrix);
+    let matrix = jacobian::jacobian(&scene.model(), &fixed_point.state(), 1).map(|linearization| linearization.matrix);
     let values = matrix.ok().and_then(|matrix| jacobian::eigenvalues(&matrix)).unwrap_or_default();
     let radius = values.iter().copied().map(modulus).fold(0.0, f64::max);
     let verdict = match radius {

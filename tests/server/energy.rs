@@ -182,6 +182,62 @@ async fn the_total_energy_holds_and_the_swing_keeps_its_size() {
     assert_eq!((&energy_gain["upper"], &energy_gain["eigenvalue"]), (&Value::Null, &json!(0.0)), "{energy_gain}");
 }
 
+/// The drift is a part of a total energy that is held: V² = 2G(y* − l) − c², in every resource.
+#[tokio::test]
+async fn a_drift_is_a_part_of_the_total_energy() {
+    let server = Server::start();
+    let get = async |target: &str| server.get(&format!("/v1/{target}")).await;
+    let held = "preset=case-1&scene.release.theta=0&scene.table.target_height=0.2&scene.release.x_dot";
+    let total = "scene.table.energy_gain=0.45&scene.table.energy_measure=total";
+    let expected = (2.0 * G * (0.2 - 0.4 / 3.0) - 0.25_f64).sqrt();
+    for law in [total, "scene.table.energy_law=one_strike"] {
+        let scene = format!("{held}=0.5&{law}");
+        let stability = get(&format!("stability?{scene}")).await.expect(200).json();
+        let place = &stability["fixed_point"];
+        assert!((place["y_dot"].as_f64().unwrap() + expected).abs() < 1e-12, "{place}");
+        assert_eq!((&place["x_dot"], &stability["drift_speed"]), (&json!(0.5), &json!(0.5)));
+        assert_eq!((&stability["agree"], &stability["boundary"]), (&json!(true), &Value::Null), "{stability}");
+        for note in ["boundary is null", "has that of the drift of 0.5 m/s in it"] {
+            assert!(stability["notes"].to_string().contains(note), "{}", stability["notes"]);
+        }
+        for method in ["map", "extended"] {
+            let run = get(&format!("trajectories?{scene}&impacts=300&method={method}")).await.expect(200).json();
+            let last = run["impacts"]["y_dot"][299].clone();
+            let last = last.as_f64().unwrap_or_else(|| last.as_str().unwrap().parse().unwrap());
+            assert!((last + expected).abs() < 1e-12, "{law} {method}: {last}");
+        }
+        let jacobian = get(&format!("jacobians?{scene}")).await.expect(200).json();
+        for component in ["theta", "x_dot", "y_dot", "theta_dot"] {
+            assert_eq!(jacobian["at"]["state"][component], place[component], "{law} {component}");
+        }
+        let eigenvalue = stability["linear"]["energy_gain"]["eigenvalue"].as_f64().unwrap();
+        assert!((jacobian["determinant"].as_f64().unwrap() - eigenvalue).abs() < 1e-12, "{jacobian}");
+        // Lanes.
+        let map = format!(
+            "regions?{scene}&quantity=residue&x.parameter=table.tilt_gain&x.from=1.02&x.to=1.4&x.count=2\
+             &y.parameter=release.x_dot&y.from=0&y.to=0.5&y.count=2"
+        );
+        let region = get(&map).await.expect(200).json();
+        let gain = region["x"][0].as_f64().unwrap();
+        for (row, x_dot) in numbers(&region["y"]).into_iter().enumerate() {
+            let of = format!("stability?{held}={x_dot}&{law}&scene.table.tilt_gain={gain}");
+            let residue = get(&of).await.expect(200).json()["linear"]["residue"].as_f64().unwrap();
+            assert!((region["values"][row][0].as_f64().unwrap() - residue).abs() < 1e-12, "{of}");
+        }
+        // Periodic orbits have no drift, and all of the energy.
+        let orbit = get(&format!("periodic-orbits?{scene}")).await.expect(200).json();
+        let whole = (2.0 * G * (0.2 - 0.4 / 3.0)).sqrt();
+        assert!((orbit["states"]["y_dot"][0].as_f64().unwrap() + whole).abs() < 1e-12, "{orbit}");
+        let fast = get(&format!("stability?{held}=1.5&{law}")).await.expect(200).json();
+        assert!(fast["verdict"].is_null() && fast["reason"].to_string().contains("takes 2.25 m²/s²"), "{fast}");
+        let fast = get(&format!("jacobians?{held}=1.5&{law}")).await.expect(422);
+        assert!(fast.text().contains("takes 2.25 m²/s²"), "{}", fast.text());
+    }
+    let law = "scene.table.energy_law=one_strike&scene.contact.restitution=0.8&scene.table.assumed_restitution=0.9";
+    let design = get(&format!("controllers?{held}=0.5&{law}")).await.expect(200).json();
+    assert!((design["energy_eigenvalue"].as_f64().unwrap() + 0.1 / 1.9).abs() < 1e-12, "{design}");
+}
+
 /// A run that begins to juggle under way: the heights take the place of the target height.
 #[tokio::test]
 async fn a_run_begins_to_juggle() {

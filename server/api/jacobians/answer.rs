@@ -216,7 +216,7 @@ fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, Sta
         At::FixedPoint => {
             let fixed_point =
                 find_fixed_point(scene).map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
-            Ok((0.0, State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 }))
+            Ok((0.0, fixed_point.state()))
         }
         At::State(x, state) if has_angle(scene) => Ok((x, state)),
         At::State(x, State { theta, x_dot, y_dot, theta_dot }) => {

@@ -27,9 +27,9 @@ struct Upright {
 impl Upright {
     fn of(scene: &Scene) -> Option<Self> {
         let rod = scene.parameters::<f64>();
-        let speed = find_fixed_point(scene).ok()?.speed;
-        let state = State { theta: 0.0, x_dot: 0.0, y_dot: -speed, theta_dot: 0.0 };
-        let matrix = jacobian(&scene.model(), &state, 1).ok()?.matrix;
+        let fixed_point = find_fixed_point(scene).ok()?;
+        let matrix = jacobian(&scene.model(), &fixed_point.state(), 1).ok()?.matrix;
+        let speed = fixed_point.speed;
         let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
         Some(Self { speed, l, rho, gravity: rod.gravity, gain: rod.tilt_gain, matrix })
     }

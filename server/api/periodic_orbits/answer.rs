@@ -8,7 +8,7 @@ use equipoise_physics::periodic_orbits::branch::{
 use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::boundary::period_two_angle;
-use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::fixed_point::find_bounce_without_drift;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::Complex;
 use serde::Serialize;
@@ -114,7 +114,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             .zip(branch.as_ref())
             .map(|(range, branch)| Swept { range, start: branch.points[branch.start].parameter });
         let tilts = request.sweep.is_some_and(|sweep| sweep.parameter == Name::TiltGain);
-        let fixed_point = find_fixed_point(scene).ok().filter(|_| tilts);
+        let fixed_point = find_bounce_without_drift(scene).ok().filter(|_| tilts);
         Ok(Self {
             scene: Resolved(scene),
             model: ModelChoice::of(scene),
@@ -189,7 +189,7 @@ const SAME_THETA: f64 = 1e-6;
 
 /// Checks that with energy feedback the symmetric orbit through an angle is the one of the scene's target height.
 fn has_target_height(scene: &Scene, theta: f64) -> Result<(), OrbitFailure> {
-    let found = find_fixed_point(scene)
+    let found = find_bounce_without_drift(scene)
         .ok()
         .and_then(|fixed_point| period_two_angle(&scene.model(), scene.rules().topple_angle, &fixed_point));
     if found.is_some_and(|found| (found - theta.abs()).abs() <= SAME_THETA) {

@@ -289,8 +289,7 @@ fn derivative(scene: &Scene, at_fixed_point: bool) -> Option<DMatrix<f64>> {
     let orbit = scene.orbit().ok()?;
     let mut state = *orbit.state();
     if at_fixed_point {
-        let speed = find_fixed_point(scene).ok()?.speed;
-        (state.theta, state.x_dot, state.y_dot, state.theta_dot) = (0.0, 0.0, -speed, 0.0);
+        state = find_fixed_point(scene).ok()?.state();
     }
     Some(jacobian_at(&scene.model(), orbit.x(), &state, 1).ok()?.matrix)
 }

@@ -1,9 +1,10 @@
 //! The fixed point of the return map, as part of answers.
 
+use equipoise_physics::bounce::state::State;
 use equipoise_physics::stability::fixed_point;
 use serde::Serialize;
 
-/// The upright bounce in place, as a state just before an impact.
+/// The upright bounce, as a state just before an impact.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct FixedPointAnswer {
     theta: f64,
@@ -15,7 +16,9 @@ pub(crate) struct FixedPointAnswer {
 }
 
 impl From<fixed_point::FixedPoint> for FixedPointAnswer {
-    fn from(fixed_point::FixedPoint { speed, flight_time, apex_height }: fixed_point::FixedPoint) -> Self {
-        Self { theta: 0.0, x_dot: 0.0, y_dot: -speed, theta_dot: 0.0, flight_time, apex_height }
+    fn from(fixed_point: fixed_point::FixedPoint) -> Self {
+        let State { theta, x_dot, y_dot, theta_dot } = fixed_point.state();
+        let fixed_point::FixedPoint { flight_time, apex_height, .. } = fixed_point;
+        Self { theta, x_dot, y_dot, theta_dot, flight_time, apex_height }
     }
 }

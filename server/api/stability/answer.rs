@@ -5,8 +5,11 @@ use std::borrow::Cow;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::basin::{NoBasin, find_basin};
+use equipoise_physics::stability::boundary::underived;
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime, stick_cone};
-use equipoise_physics::stability::fixed_point::{LINEARLY_JUDGED, drift_speed, find_fixed_point, height_error};
+use equipoise_physics::stability::fixed_point::{
+    LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, find_fixed_point, height_error,
+};
 use equipoise_physics::stability::linear_verdict::{LinearVerdict, linear_verdict};
 use equipoise_physics::stability::nonlinear_run::{NonlinearRun, run_nonlinear};
 use equipoise_physics::stability::verdict::{Assessment, HigherOrder, Verdict, assess};
@@ -222,8 +225,8 @@ impl<'a> StabilityAnswer<'a> {
                 answer.decided_by = Some(decided_by.name());
                 answer.agree = Some(agree);
                 answer.reason = reason;
-                if contact_regime(&scene.model()) != ContactRegime::Frictionless && linear.closed_loop.is_none() {
-                    notes.push("boundary is null: its coefficient is not derived with friction".to_owned());
+                if let Some(case) = underived(&scene.model(), &fixed_point) {
+                    notes.push(format!("boundary is null: its coefficient is not derived {case}"));
                 }
                 if let Some(cone) = stick_cone(&scene.model()) {
                     notes.push(format!(
@@ -252,12 +255,20 @@ impl<'a> StabilityAnswer<'a> {
                 answer.chaos = evidence.chaos().map(Chaos::from);
                 answer.rotation_number = evidence.rotation().map(RotationNumber::from);
                 let off = height_error(scene);
+                let drifts = fixed_point.x_dot != 0.0;
                 if off != 0.0 {
+                    let height = find_bounce_without_drift(scene).map_or(f64::NAN, |it| it.apex_height);
                     notes.push(format!(
-                        "the table believes restitution {} and meets {}: the height settles at {} m, {off} m above target_height",
+                        "the table believes restitution {} and meets {}: {} {height} m, {off} m above target_height",
                         scene.assumed_restitution(),
                         scene.number(Name::Restitution).unwrap_or_default(),
-                        fixed_point.apex_height
+                        if drifts { "without the drift the height would settle at" } else { "the height settles at" }
+                    ));
+                }
+                if drifts {
+                    notes.push(format!(
+                        "the total energy that the table holds has that of the drift of {} m/s in it: the height settles at {} m",
+                        fixed_point.x_dot, fixed_point.apex_height
                     ));
                 }
                 answer.linear = Some(LinearPart::new(scene, &linear));

@@ -7,7 +7,7 @@ use crate::numbers::number::Number;
 use crate::run::ending::Ending;
 use crate::scene::Scene;
 use crate::scene::model::Model;
-use crate::stability::fixed_point::find_fixed_point;
+use crate::stability::fixed_point::find_bounce_without_drift;
 use crate::table::program::HeightProgram;
 
 /// Remainder of the equations, in parts of the scene's speed, up to which they count as solved.
@@ -29,7 +29,8 @@ pub struct OrbitProblem {
 }
 
 impl OrbitProblem {
-    /// The problem of a scene. Its energy is that of the release without the drift, as for the fixed point.
+    /// The problem of a scene. Its energy is that of the release without the drift, as for the fixed point, or the energy that the table
+    /// holds: orbits have no drift.
     ///
     /// # Errors
     /// A sentence that says why the scene has no periodic orbits.
@@ -46,7 +47,7 @@ impl OrbitProblem {
             }
         };
         let speed = match &program {
-            None => find_fixed_point(scene)?.speed,
+            None => find_bounce_without_drift(scene)?.speed,
             Some(program) => speed_from(&rod, program)?,
         };
         let energy = 0.5 * speed * speed + rod.gravity * rod.contact_distance;

@@ -28,11 +28,31 @@ impl BoundaryCoefficient {
     }
 }
 
-/// The rod of a model for which the boundary is derived: frictionless, with an angle and with a tilt gain.
-fn frictionless_rod(model: &Model) -> Option<&Rod> {
+/// The rod of a model for which the boundary is derived: frictionless, with an angle, with a tilt gain, and about a bounce in place.
+fn frictionless_rod<'a>(model: &'a Model, fixed_point: &FixedPoint) -> Option<&'a Rod> {
     let is_point = matches!(model, Model::Point(_));
     let derived = !is_point && contact_regime(model) == ContactRegime::Frictionless && model.feedback().is_none();
-    derived.then(|| model.rod())
+    (derived && fixed_point.x_dot == 0.0).then(|| model.rod())
+}
+
+/// Case for which C is not derived, in words; `None` where it is derived, for a point mass and with state feedback.
+pub fn underived(model: &Model, fixed_point: &FixedPoint) -> Option<&'static str> {
+    if matches!(model, Model::Point(_)) || model.feedback().is_some() {
+        None
+    } else if contact_regime(model) != ContactRegime::Frictionless {
+        Some("with friction")
+    } else if fixed_point.x_dot != 0.0 {
+        Some("for a drift in the energy that the table holds")
+    } else if misses_target(model.rod()) {
+        Some("for one strike with a wrong assumed_restitution")
+    } else {
+        None
+    }
+}
+
+/// Tells whether a wrong restitution keeps one strike from its target.
+fn misses_target(rod: &Rod) -> bool {
+    rod.energy_feedback == EnergyFeedback::OneStrike && rod.strike_gain != 2.0
 }
 
 /// Tells whether the table holds η in place of the energy. One that measures the total energy keeps the surface of the target energy,
@@ -43,15 +63,15 @@ fn holds_height(rod: &Rod) -> bool {
 
 /// The boundary coefficient C at κ_c, with a = κ_c − 1 and γ = Gl/V²: (1+a)²/2 + a²/6 − (1−a)γ, and with a positive
 /// energy gain that holds η and not the energy, −(1+a)²/2 + a²/6 − γ. `None` for a point mass, with friction, with state
-/// feedback, and where one strike brings the energy off its target by a wrong restitution, for which it is not derived.
+/// feedback, with a drift in the energy that is held, and where one strike misses its target by a wrong restitution.
 pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<BoundaryCoefficient> {
-    let rod = frictionless_rod(model)?;
+    let rod = frictionless_rod(model, fixed_point)?;
     let gamma = rod.gravity * rod.contact_distance / (fixed_point.speed * fixed_point.speed);
     let lever = rod.radius_of_gyration / rod.contact_distance;
     let a = gamma * lever * lever;
     let half_square = 0.5 * (1.0 + a) * (1.0 + a);
     let sixth = a * a / 6.0;
-    if rod.energy_feedback == EnergyFeedback::OneStrike && rod.strike_gain != 2.0 {
+    if misses_target(rod) {
         return None;
     }
     let holds_height = holds_height(rod);
@@ -63,9 +83,9 @@ pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<B
 /// none within the topple angle (rad).
 ///
 /// The states of the orbit are (±θ, ±V tan κθ, −V, ±Gθ/V) with V² = Gρ²θ cos κθ / (l sin((κ − 1)θ)); with energy feedback η is held in
-/// place of the energy. `None` also with friction and with state feedback, for which it is not derived.
+/// place of the energy. `None` also with friction, with state feedback and with a drift in the energy that is held.
 pub fn period_two_angle(model: &Model, topple_angle: f64, fixed_point: &FixedPoint) -> Option<f64> {
-    let rod = frictionless_rod(model)?;
+    let rod = frictionless_rod(model, fixed_point)?;
     let Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, .. } = *rod;
     let weight = gravity * contact_distance;
     // The energy of the orbit with angle θ above that of the fixed point; NaN if there is no such orbit.

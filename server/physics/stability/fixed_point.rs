@@ -4,6 +4,7 @@
 
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
 use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, lent_by_table};
@@ -12,15 +13,35 @@ use crate::table::program::HeightProgram;
 /// The levels above the plain rod that can be judged linearly.
 pub const LINEARLY_JUDGED: [ModelLevel; 3] = [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::Friction];
 
-/// The upright bounce in place that a scene is to be balanced on.
+/// The upright bounce that a scene is to be balanced on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedPoint {
+    /// ẋ*, m/s: the drift speed c where the table holds the total energy, of which c² is a part; 0 elsewhere, where the bounce in
+    /// place belongs to every drift.
+    pub x_dot: f64,
     /// V = |ẏ*|, m/s.
     pub speed: f64,
     /// 2V/G, s.
     pub flight_time: f64,
     /// Height of the centre of gravity at the top of the bounce, m.
     pub apex_height: f64,
+}
+
+impl FixedPoint {
+    fn new(x_dot: f64, speed_squared: f64, gravity: f64, contact_distance: f64) -> Self {
+        let speed = speed_squared.sqrt();
+        Self {
+            x_dot,
+            speed,
+            flight_time: 2.0 * speed / gravity,
+            apex_height: contact_distance + speed_squared / (2.0 * gravity),
+        }
+    }
+
+    /// The state just before a contact.
+    pub fn state(&self) -> State {
+        State { theta: 0.0, x_dot: self.x_dot, y_dot: -self.speed, theta_dot: 0.0 }
+    }
 }
 
 /// c = ẋ − κρ²θ̇/((κ − 1)l), or ẋ − (κρ² + l²)θ̇/((κ − 1)l) where a matched contact sticks: the mean horizontal speed of a balanced
@@ -45,11 +66,34 @@ pub fn drift_speed(scene: &Scene) -> Option<f64> {
 ///
 /// V² = |v₀|² + 2G(y₀ − l) − c²: drift energy never comes back, and what counts is the height above l, not above
 /// l cos θ as in eq. (10). A matched table with friction lends some more. Friction on one that only tilts takes the
-/// energy of sideways motion and spin, so there V² = ẏ₀² + 2G(y₀ − l).
+/// energy of sideways motion and spin, so there V² = ẏ₀² + 2G(y₀ − l). A table that holds the total energy holds that of the drift
+/// too: V² = 2G(y* − l) − c².
 ///
 /// # Errors
 /// A sentence that says why there is none.
 pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
+    upright_bounce(scene, held_drift(scene))
+}
+
+/// The fixed point of the same scene without the drift: [`find_fixed_point`], but with all of a total energy that is held.
+///
+/// # Errors
+/// A sentence that says why there is none.
+pub fn find_bounce_without_drift(scene: &Scene) -> Result<FixedPoint, String> {
+    upright_bounce(scene, 0.0)
+}
+
+/// c, m/s, where the table holds the total energy; 0 elsewhere.
+fn held_drift(scene: &Scene) -> f64 {
+    let holds_total = match scene.energy_feedback {
+        EnergyFeedback::Vertical => false,
+        EnergyFeedback::Total | EnergyFeedback::OneStrike => scene.steers_energy(),
+    };
+    if holds_total { drift_speed(scene).unwrap_or(0.0) } else { 0.0 }
+}
+
+/// The fixed point with the drift speed `held`, m/s, in the energy that the table holds.
+fn upright_bounce(scene: &Scene, held: f64) -> Result<FixedPoint, String> {
     if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
         return Err(error.detail);
     }
@@ -86,7 +130,19 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
             let why = if settled == height { String::new() } else { format!(", where {} holds it,", belief(scene)) };
             return Err(format!("target_height {settled} m{why} is not above contact_distance {contact_distance} m"));
         }
-        2.0 * scene.gravity * room
+        let available = 2.0 * scene.gravity * room;
+        let share = match scene.energy_feedback {
+            EnergyFeedback::OneStrike => held_share(scene),
+            EnergyFeedback::Vertical | EnergyFeedback::Total => 1.0,
+        };
+        let taken = share * share * held * held;
+        if available - taken <= 0.0 {
+            return Err(format!(
+                "the target leaves {available} m²/s² for bouncing upright and the drift at {held} m/s takes {taken} m²/s² of the total \
+                 energy that the table holds: no upright bounce has that energy"
+            ));
+        }
+        available - taken
     } else {
         let start = scene.start();
         let spin = radius_of_gyration * start.theta_dot;
@@ -105,12 +161,7 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
         }
         available - drift * drift
     };
-    let speed = speed_squared.sqrt();
-    Ok(FixedPoint {
-        speed,
-        flight_time: 2.0 * speed / scene.gravity,
-        apex_height: contact_distance + speed_squared / (2.0 * scene.gravity),
-    })
+    Ok(FixedPoint::new(held, speed_squared, scene.gravity, contact_distance))
 }
 
 fn belief(scene: &Scene) -> String {
@@ -131,7 +182,7 @@ fn no_single_bounce(program: &HeightProgram) -> String {
 /// ê, κ_E(η* − η) = 2(ê − e)/((1 + e)(1 + ê)). Nothing without feedback, or where ê is e.
 ///
 /// With [`EnergyFeedback::OneStrike`] the speeds of upright bounces follow u ↦ (s − 1)u + s√C, s = (1 + e)/(1 + ê), C = 2G(y* − l). They
-/// come to rest at u² = C s²/(2 − s)²; at s = 2 nowhere, and the height is infinite.
+/// come to rest at u² = C s²/(2 − s)²; at s = 2 nowhere, and the height is infinite. With a drift c, C is 2G(y* − l) − c².
 pub fn height_error(scene: &Scene) -> f64 {
     let (e, assumed) = (scene.restitution, scene.assumed_restitution());
     if !scene.steers_energy() || e == assumed {
@@ -139,10 +190,15 @@ pub fn height_error(scene: &Scene) -> f64 {
     }
     if let (EnergyFeedback::OneStrike, Some(height)) = (scene.energy_feedback, scene.target_height) {
         let contact_distance = scene.parameters::<f64>().contact_distance;
-        let share = (1.0 + e) / (1.0 + 2.0 * assumed - e);
+        let share = held_share(scene);
         return (share * share - 1.0) * (height - contact_distance);
     }
     2.0 * (e - assumed) / ((1.0 + e) * (1.0 + assumed) * scene.energy_gain * scene.gravity)
+}
+
+/// s/(2 − s) with s = (1 + e)/(1 + ê): the speed that [`EnergyFeedback::OneStrike`] settles at, over the speed that it aims at.
+fn held_share(scene: &Scene) -> f64 {
+    (1.0 + scene.restitution) / (1.0 + 2.0 * scene.assumed_restitution() - scene.restitution)
 }
 
 /// The upright bounce in place that a law with feedback comes to: where the strike neither takes energy nor gives any, on the
@@ -181,10 +237,5 @@ pub fn bounce_in_place(scene: &Scene) -> Result<FixedPoint, String> {
     if !speed_squared.is_finite() || speed_squared <= 0.0 {
         return Err(format!("the square of its speed would be {speed_squared} m²/s²: there is no upright bounce"));
     }
-    let speed = speed_squared.sqrt();
-    Ok(FixedPoint {
-        speed,
-        flight_time: 2.0 * speed / rod.gravity,
-        apex_height: rod.contact_distance + speed_squared / (2.0 * rod.gravity),
-    })
+    Ok(FixedPoint::new(0.0, speed_squared, rod.gravity, rod.contact_distance))
 }

@@ -142,7 +142,7 @@ fn two_heights(scene: &Scene, fixed_point: &FixedPoint, loop_gain: f64) -> Optio
     let (low, high) = (mean / share, mean * share);
     let rod = scene.parameters::<f64>();
     let height = |speed_squared: f64| rod.contact_distance + speed_squared / (2.0 * rod.gravity);
-    let state = State { theta: 0.0, x_dot: 0.0, y_dot: -high.sqrt(), theta_dot: 0.0 };
+    let state = State { y_dot: -high.sqrt(), ..fixed_point.state() };
     let model = scene.model();
     let angle_bounded = jacobian(&model, &state, 2).ok().and_then(|twice| {
         let odd = odd_part(&twice.matrix, model.feedback().is_some_and(|gain| gain[0] != 0.0));

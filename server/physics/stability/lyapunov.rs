@@ -89,6 +89,12 @@ pub fn lyapunov_coefficient(
     }
     let cubic = bounce.cubic(eigenvalue, first_contact(scene)?)?;
     let coefficient = cubic.growth_or_zero();
+    if coefficient != 0.0 && fixed_point.x_dot != 0.0 {
+        let drift = fixed_point.x_dot;
+        return Err(format!(
+            "it is derived for a bounce in place, and the energy that the table holds has a drift of {drift} m/s in it"
+        ));
+    }
     let kind = if coefficient > 0.0 {
         SwingFate::Repelling
     } else if coefficient < 0.0 {

@@ -67,7 +67,8 @@ impl CubicCoefficient {
 }
 
 impl UprightBounce {
-    /// The bounce of a model about its fixed point.
+    /// The bounce of a model about its fixed point, as one in place: the drift that a table holds is taken off the target energy, and what
+    /// it changes in the swing itself is left out.
     ///
     /// # Errors
     /// A sentence that says why it has no third derivatives.
@@ -88,6 +89,8 @@ impl UprightBounce {
             return Err("friction on a table that only tilts has a kink of third order at the fixed point".to_owned());
         }
         let mut bounce = Self { rod, steering, friction, speed: fixed_point.speed, height: [0.0; 3] };
+        // The energy that is held, less that of the drift.
+        bounce.rod.target_energy -= 0.5 * fixed_point.x_dot * fixed_point.x_dot;
         let (_, y_dot) = bounce.image(&[0.0; 4].map(Taylor::from_f64), Taylor::linear(-bounce.speed, 1.0, 0.0));
         bounce.height = [y_dot.first()[0], y_dot.second()[0], y_dot.third()[0]];
         Ok(bounce)

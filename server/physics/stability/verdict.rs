@@ -6,7 +6,7 @@ use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::control::bounce_model::{ClosedLoop, STATE};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
-use crate::stability::boundary::{BoundaryCoefficient, boundary_coefficient, period_two_angle};
+use crate::stability::boundary::{BoundaryCoefficient, boundary_coefficient, period_two_angle, underived};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one};
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC};
@@ -205,7 +205,8 @@ pub fn assess(
                 if survived { Verdict::BoundedBeyondBoundary } else { Verdict::Unstable },
                 DecidedBy::Nonlinear,
                 format!(
-                    "tilt_gain is κ_c, where eigenvalues are silent, and C is not derived with friction; {}",
+                    "tilt_gain is κ_c, where eigenvalues are silent, and C is not derived {}; {}",
+                    underived(&model, fixed_point).unwrap_or("here"),
                     if survived { "the run survived" } else { fell.as_str() }
                 ),
             ),
