@@ -11,6 +11,7 @@ use futures_util::{Sink, SinkExt, Stream, StreamExt};
 use tokio::sync::mpsc;
 use tokio::time::{sleep_until, timeout};
 
+use crate::api::catches::request::NO_BODY;
 use crate::api::scene::has_angle;
 use crate::api::trajectories::columns::ImpactRow;
 use crate::http::{Problem, ValidationError};
@@ -26,7 +27,7 @@ use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message;
 use crate::live::server_message::{Ack, Hello, OutgoingFrame, ServerMessage};
 use crate::runs::caught::HoldPart;
-use crate::runs::interventions::{NO_ANGLE, NO_BODY};
+use crate::runs::interventions::NO_ANGLE;
 use crate::runs::playback::{Playback, Step};
 use crate::runs::run::ThrowOrder;
 

@@ -6,7 +6,7 @@ use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::scene::{FIELDS, Field, Name, Value as FieldValue, field};
 use serde_json::{Map, Value};
 
-use crate::api::catches::request::{read_settings, strategy_name};
+use crate::api::catches::request::{NO_BODY, read_settings, strategy_name};
 use crate::api::scene::{has_angle, read_scene, read_value, value_to_query};
 use crate::api::throws::request::read_apex;
 use crate::http::request::reader::join;
@@ -21,9 +21,6 @@ const THROW_TIMES: std::ops::RangeInclusive<f64> = 0.0..=2e14;
 
 /// Error of a kick that would turn a point mass.
 pub const NO_ANGLE: &str = "a point mass has no theta_dot; leave it out";
-
-/// Error of a catch or a throw of a point mass.
-pub const NO_BODY: &str = "a point mass has no angle to bring to rest; a catch or a throw needs a rod or a polygon";
 
 /// One entry of `interventions`, valid by itself but not yet applied to a run.
 #[derive(Debug)]

@@ -239,9 +239,16 @@ async fn requests_that_contradict_themselves_are_refused() {
         assert_eq!(answer.pointers(), [pointer], "{query}: {}", answer.text());
         assert!(answer.text().contains(words), "{query}: {}", answer.text());
     }
-    for scene in ["preset=point-mass", "scene.body.point=true&scene.release.height=0.2"] {
-        let answer = server.get(&format!("/v1/catches?{scene}")).await.expect(422);
-        assert_eq!(answer.pointers(), ["/scene/body/point"], "{}", answer.text());
+    let caught = "preset=point-mass&interventions.0.impact=2&interventions.0.catch.strategy=brake";
+    for (target, pointer) in [
+        ("/v1/catches?preset=point-mass", "/scene/body/point"),
+        ("/v1/catches?scene.body.point=true&scene.release.height=0.2", "/scene/body/point"),
+        ("/v1/throws?preset=point-mass&apex.height=0.3", "/scene/body/point"),
+        (&format!("/v1/trajectories?{caught}"), "/interventions/0/catch"),
+    ] {
+        let answer = server.get(target).await.expect(422);
+        assert_eq!(answer.pointers(), [pointer], "{}", answer.text());
+        assert!(answer.text().contains("no angle to bring to rest; a catch or a throw needs a rod or a polygon"));
     }
     let schema = &DOCUMENT["components"]["schemas"]["CatchRequest"];
     for body in [json!({"preset": "case-1", "hold": 61}), json!({"preset": "case-1", "strategy": "drop"})] {

@@ -12,7 +12,7 @@ use serde_json::Value as Json;
 
 use crate::api::catches::columns::{OF_HOLD, of_strikes, stacked, to_table};
 use crate::api::catches::outcome::{CatchOutcomeAnswer, note_text};
-use crate::api::catches::request::CatchOptions;
+use crate::api::catches::request::{CatchOptions, NO_BODY};
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, scene_to_json};
 use crate::api::shared::actuator_load::LoadAnswer;
@@ -196,9 +196,7 @@ fn thinned(samples: &[HoldSample], most: u64) -> Vec<HoldSample> {
 fn refusal(why: CatchFailure) -> Refusal {
     match why {
         CatchFailure::Stopped => Refusal::Cancelled,
-        CatchFailure::Point => {
-            Refusal::At("/scene/body/point", "a point mass has no angle to bring to rest".to_owned())
-        }
+        CatchFailure::Point => Refusal::At("/scene/body/point", NO_BODY.to_owned()),
         CatchFailure::NoLaw(why) => {
             Refusal::At("/weights", format!("no state feedback holds the body in contact: {why:?}"))
         }

@@ -43,6 +43,9 @@ const CATCH_BRAKE_PRICE: u64 = 20_000;
 /// Strikes of a planned catch before its stop: four numbers are to vanish, and an error grows by up to 16 times a strike.
 const PLAN_STRIKES: std::ops::RangeInclusive<u64> = FEWEST_STRIKES as u64..=MOST_STRIKES as u64;
 
+/// Error of a catch or a throw of a point mass.
+pub const NO_BODY: &str = "a point mass has no angle to bring to rest; a catch or a throw needs a rod or a polygon";
+
 /// Settings of a catch, with the size of its answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CatchOptions {
@@ -148,7 +151,7 @@ pub fn read_caught_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
         return Some(scene);
     }
     let pointer = format!("{}/{}", reader.pointer_to("scene"), Name::PointMass.row().path.replace('.', "/"));
-    reader.errors().push(pointer, "a point mass has no angle to bring to rest; give a rod or a polygon");
+    reader.errors().push(pointer, NO_BODY);
     None
 }
 
