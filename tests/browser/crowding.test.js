@@ -112,6 +112,7 @@ const rows = (page, selector) =>
 for (const [width, height] of [
   [1280, 800],
   [800, 900],
+  [844, 390],
   [390, 844],
   [320, 640],
 ])
@@ -130,6 +131,7 @@ for (const [width, height] of [
     assert.ok(controls.height < 130, `${controls.height} px`);
     const frame = await page.locator('#scene-frame').boundingBox();
     assert.ok(frame.height > 0.25 * height, `${frame.height} px`);
+    assert.ok(controls.y >= frame.y + frame.height, `controls at ${controls.y} px, the scene at ${frame.y} px`);
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);
     assert.ok(wide <= width, `${wide} px`);
     clean();
