@@ -1,10 +1,12 @@
-// Pictures of the workbench for docs/: `node tests/browser/screenshots.js`.
+// Pictures of the workbench for docs/: `node tests/browser/screenshots.js`, or some of them: `… screenshots.js run map`.
 
+import { writeFile } from 'node:fs/promises';
 import { Stage, openPanel, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
 
 const stage = await Stage.open(null);
 const docs = new URL('../../docs/', import.meta.url);
 const DESK = { width: 1280, height: 800 };
+const ONLY = process.argv.slice(2);
 const PHONE = { width: 390, height: 844 };
 
 /** A run of 140 impacts with a change in it, held. @param {import('playwright-core').Page} page */
@@ -26,7 +28,6 @@ const PICTURES = {
   run: { schemes: ['light', 'dark'], bring: held },
   time: {
     schemes: ['light'],
-    query: '?preset=case-1',
     bring: async (page) => {
       await held(page);
       await page.click('#pin');
@@ -40,7 +41,7 @@ const PICTURES = {
       for (let k = 0; k < 20; k += 1) await page.click('#step-back');
       await page.click('#fork');
       await page.locator('#fork-told', { hasText: /\w/ }).waitFor();
-      await page.waitForTimeout(1500);
+      await page.waitForTimeout(300);
     },
   },
   map: {
@@ -57,8 +58,11 @@ const PICTURES = {
     query: '?preset=case-1&tab=paper&reading.item=figure-5',
     bring: async (page) => {
       await page.locator('#reading-figure-5 svg.figure').waitFor();
-      await page.locator('#reading-speed > summary').click();
-      await page.locator('#reading').evaluate((panel) => panel.scrollIntoView());
+      await page.getByLabel('Figures').click();
+      await page.locator('#reading').evaluate((panel) => {
+        panel.scrollIntoView();
+        scrollBy(0, -60); // the row of tabs
+      });
     },
   },
   present: {
@@ -80,11 +84,14 @@ const PICTURES = {
 };
 
 for (const [name, { schemes, query = '?preset=case-1', size = DESK, bring }] of Object.entries(PICTURES)) {
+  if (ONLY.length > 0 && !ONLY.includes(name)) continue;
   for (const colorScheme of schemes) {
-    const { page } = await stage.page(query, { colorScheme, viewport: size });
+    const { page } = await stage.page(query, { colorScheme, viewport: size, folded: true });
     await verdict(page);
     await bring(page);
-    await page.screenshot({ path: new URL(`page-${name}-${colorScheme}.png`, docs).pathname });
+    const browser = await page.context().newCDPSession(page);
+    const { data } = await browser.send('Page.captureScreenshot', { format: 'webp', quality: 85 });
+    await writeFile(new URL(`page-${name}-${colorScheme}.webp`, docs), Buffer.from(data, 'base64'));
     await page.close();
   }
 }
