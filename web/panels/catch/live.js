@@ -4,6 +4,7 @@ import { h } from '../../dom/elements.js';
 import { parse } from '../../dom/numbers.js';
 import { inWords } from '../../dom/typeset.js';
 import { UNITS, shownUnit } from '../../dom/units.js';
+import { numberInput } from '../study.js';
 
 /** @typedef {import('../card.js').Guide} Guide */
 
@@ -30,15 +31,7 @@ export class LiveCatch {
    */
   constructor(guide, { settings, blame, changed }) {
     this.#guide = guide;
-    const typed = (/** @type {Name} */ name) =>
-      h('input', {
-        id: `catch-${name}`,
-        type: 'text',
-        inputmode: 'decimal',
-        autocomplete: 'off',
-        'aria-describedby': 'catch-live-error',
-        change: changed,
-      });
+    const typed = (/** @type {Name} */ name) => numberInput(`catch-${name}`, 'catch-live-error', changed);
     this.#inputs = { height: typed('height'), theta: typed('theta'), low: typed('low'), high: typed('high') };
     const button = (/** @type {string} */ id, /** @type {string} */ words, /** @type {() => void} */ click) =>
       h('button', { type: 'button', id, click }, words);
@@ -68,10 +61,10 @@ export class LiveCatch {
       'fieldset',
       { class: 'catch-live' },
       h('legend', {}, 'The run under way'),
-      h('p', { class: 'catch-row' }, catcher, this.#told),
+      h('p', { class: 'study-row' }, catcher, this.#told),
       h(
         'p',
-        { class: 'catch-row' },
+        { class: 'study-row' },
         thrower,
         ...named('height', 'to'),
         h('span', { class: 'unit' }, 'm'),
@@ -80,7 +73,7 @@ export class LiveCatch {
       ),
       h(
         'p',
-        { class: 'catch-row' },
+        { class: 'study-row' },
         juggler,
         ...named('low', 'to'),
         h('span', { class: 'unit' }, 'm'),

@@ -1,12 +1,11 @@
 // The panel that catches the body of the page's scene, tells how, and catches, throws and juggles in the run under way.
 
 import { LatestRequest } from '../../api/latest-request.js';
-import { Problem, get, wordsOf } from '../../api/client.js';
-import { serverFigure } from '../../charts/readable/server-figure.js';
+import { Problem, wordsOf } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
 import { entries } from '../../dom/tables.js';
 import { capitalized, marked, prose } from '../../dom/typeset.js';
-import { actions } from '../../export/save-actions.js';
+import { NO_SCENE, pictured, savings, study, studyForm } from '../study.js';
 import { candidates, demands, facts, strikesTable, told } from './answer.js';
 import { LiveCatch } from './live.js';
 import { catchPicture } from './picture.js';
@@ -24,8 +23,8 @@ class CatchPanel {
   /** @type {LiveCatch | null} */
   #live = null;
   #reach;
-  #told = h('div', { class: 'catch-told', id: 'catch-told', role: 'status' });
-  #sheet = h('div', { class: 'catch-sheet', id: 'catch-sheet', hidden: true });
+  #told;
+  #sheet;
   #latest = new LatestRequest();
 
   /**
@@ -34,12 +33,15 @@ class CatchPanel {
    */
   constructor(root, page) {
     this.#page = page;
+    const { told, sheet } = study(root, 'catch');
+    this.#told = told;
+    this.#sheet = sheet;
     const settings = new CatchSettings(() => {
       this.#voided('The settings have changed since; catch anew with them.');
       page.changed();
     });
     this.#settings = settings;
-    this.#reach = new ReachMap(() => this.#request('catch.'));
+    this.#reach = new ReachMap(() => this.#request('catch.'), page.open);
     if (page.guide)
       this.#live = new LiveCatch(page.guide, {
         settings: () => settings.read(),
@@ -47,24 +49,8 @@ class CatchPanel {
         changed: () => page.changed(),
       });
     root.append(
-      h(
-        'form',
-        {
-          novalidate: true,
-          submit: (/** @type {Event} */ event) => {
-            event.preventDefault();
-            void this.ask();
-          },
-        },
-        h(
-          'div',
-          { class: 'catch-act' },
-          h('button', { type: 'submit', id: 'catch-start', class: 'primary' }, 'Catch'),
-          this.#told,
-        ),
-        settings.element,
-      ),
-      this.#sheet,
+      studyForm('catch', 'Catch', () => void this.ask(), [told], [settings.element]),
+      sheet,
       ...(this.#live ? [this.#live.element] : []),
       this.#reach.element,
     );
@@ -112,7 +98,7 @@ class CatchPanel {
     if (!settings) return null;
     const request = this.#page.query();
     if (!request) {
-      this.#told.replaceChildren(h('p', {}, 'A parameter of the scene is not a number; it is marked among them.'));
+      this.#told.replaceChildren(h('p', {}, NO_SCENE));
       return null;
     }
     for (const [name, value] of Object.entries(settings)) request.set(under + name, String(value));
@@ -125,7 +111,7 @@ class CatchPanel {
     const signal = this.#latest.next();
     const path = `v1/catches?${request}`;
     try {
-      const [answer, figure] = await Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);
+      const [answer, figure] = await pictured(path, signal);
       if (!signal.aborted) this.#show(answer, figure, path);
     } catch (error) {
       if (signal.aborted) return;
@@ -143,7 +129,11 @@ class CatchPanel {
     this.#told.replaceChildren(...words);
     const { notes } = answer;
     this.#sheet.replaceChildren(
-      catchPicture(figure, answer, `Angle, height, place and table speed over time. ${words[0].textContent}`),
+      catchPicture(
+        figure,
+        answer,
+        `Angle, height and place of the body, and tilt, height and speed of the table over time. ${words[0].textContent}`,
+      ),
       h(
         'div',
         { class: 'catch-numbers' },
@@ -157,11 +147,7 @@ class CatchPanel {
             ...notes.map((note) => h('p', { class: 'muted small' }, ...prose(capitalized(note)), '.')),
           ),
         h('details', {}, h('summary', {}, 'Strikes'), strikesTable(answer)),
-        h(
-          'p',
-          { class: 'actions', id: 'catch-links' },
-          ...actions({ id: 'catch', title: 'Catch the body', path, formats: ['svg', 'png', 'csv', 'json'] }),
-        ),
+        savings('catch', 'Catch the body', path),
       ),
     );
     this.#sheet.classList.remove('stale');

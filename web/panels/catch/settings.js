@@ -3,6 +3,7 @@
 import { h } from '../../dom/elements.js';
 import { number, parse } from '../../dom/numbers.js';
 import { inWords } from '../../dom/typeset.js';
+import { numberInput } from '../study.js';
 
 /** The strategies by their names in requests; without one the server chooses. */
 export const STRATEGIES = { '': 'Choose for me', bounce_down: 'Bounce down', plan: 'Plan', brake: 'Brake' };
@@ -23,36 +24,36 @@ const NAMES = [...new Set(NUMBERS.map(({ name }) => name))];
 
 export class CatchSettings {
   element;
+  #key;
   #strategy;
   /** @type {Map<string, {input: HTMLInputElement, row: HTMLElement, error: HTMLElement, label: HTMLElement}>} */
   #rows = new Map();
 
-  /** @param {() => void} changed */
-  constructor(changed) {
+  /**
+   * @param {() => void} changed
+   * @param {{id: string, key: string, automatic: boolean}} [place] beginning of its ids and of its keys in the address; true where the server may choose
+   */
+  constructor(changed, { id, key, automatic } = { id: 'catch', key: 'catch.', automatic: true }) {
+    this.#key = key;
     const turned = () => {
       this.#show();
       changed();
     };
     this.#strategy = h(
       'select',
-      { id: 'catch-strategy', change: turned },
-      ...Object.entries(STRATEGIES).map(([value, words]) => h('option', { value }, words)),
+      { id: `${id}-strategy`, change: turned },
+      ...Object.entries(STRATEGIES)
+        .filter(([value]) => automatic || value)
+        .map(([value, words]) => h('option', { value }, words)),
     );
     for (const name of NAMES) {
       const { unit } = /** @type {Setting} */ (NUMBERS.find((one) => one.name === name));
-      const error = h('p', { class: 'error', id: `catch-${name}-error` });
-      const input = h('input', {
-        id: `catch-${name}`,
-        type: 'text',
-        inputmode: 'decimal',
-        autocomplete: 'off',
-        'aria-describedby': error.id,
-        change: changed,
-      });
+      const error = h('p', { class: 'error', id: `${id}-${name}-error` });
+      const input = numberInput(`${id}-${name}`, error.id, changed);
       const label = h('label', { for: input.id });
       const row = h(
         'div',
-        { class: 'catch-row' },
+        { class: 'study-row' },
         label,
         input,
         unit !== '1' && h('span', { class: 'unit' }, unit),
@@ -62,9 +63,9 @@ export class CatchSettings {
     }
     this.element = h(
       'fieldset',
-      { class: 'catch-settings' },
+      { class: 'study-settings' },
       h('legend', {}, 'How'),
-      h('div', { class: 'catch-row' }, h('label', { for: 'catch-strategy' }, 'Strategy'), this.#strategy),
+      h('div', { class: 'study-row' }, h('label', { for: this.#strategy.id }, 'Strategy'), this.#strategy),
       ...[...this.#rows.values()].map(({ row }) => row),
     );
     this.#show();
@@ -131,10 +132,10 @@ export class CatchSettings {
   /** Part of the page’s address. */
   query() {
     const query = new URLSearchParams();
-    if (this.#strategy.value) query.set('catch.strategy', this.#strategy.value);
+    if (this.#strategy.value) query.set(`${this.#key}strategy`, this.#strategy.value);
     for (const { name } of this.#numbers) {
       const text = this.#rows.get(name)?.input.value.trim();
-      if (text) query.set(`catch.${name}`, text);
+      if (text) query.set(this.#key + name, text);
     }
     return query;
   }
@@ -142,11 +143,12 @@ export class CatchSettings {
   /** @param {URLSearchParams} link @returns {string[]} what was dropped */
   restore(link) {
     const dropped = [];
-    const strategy = link.get('catch.strategy') ?? '';
-    this.#strategy.value = strategy in STRATEGIES ? strategy : '';
+    const strategy = link.get(`${this.#key}strategy`) ?? '';
+    const [usual] = this.#strategy.options;
+    this.#strategy.value = strategy in STRATEGIES && strategy ? strategy : usual.value;
     if (!(strategy in STRATEGIES)) dropped.push(`the strategy “${strategy.slice(0, 40)}”`);
     for (const [name, { input }] of this.#rows) {
-      const text = link.get(`catch.${name}`) ?? '';
+      const text = link.get(this.#key + name) ?? '';
       const right = text === '' || parse(text, null) !== null;
       if (!right) dropped.push(`${name} of the catch “${text.slice(0, 40)}”, which is not a number`);
       input.value = right ? text : '';

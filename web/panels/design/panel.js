@@ -1,13 +1,13 @@
 // The panel that designs a law α = −K·(x, θ, ẋ, θ̇) for the page's scene by chosen weights, and runs it.
 
-import { readFigure, serverFigure } from '../../charts/readable/server-figure.js';
+import { readFigure } from '../../charts/readable/server-figure.js';
 import { entries, row, table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
-import { get, wordsOf } from '../../api/client.js';
+import { wordsOf } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
 import { term } from '../../dom/glossary.js';
 import { marked, prose, symbol } from '../../dom/typeset.js';
-import { actions } from '../../export/save-actions.js';
+import { NO_SCENE, numberInput, pictured, savings, study, studyForm } from '../study.js';
 import { number, parse, quantity } from '../../dom/numbers.js';
 
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
@@ -54,8 +54,8 @@ class DesignPanel {
     { id: 'design-contact', change: () => this.#page.changed() },
     ...Object.entries(CONTACTS).map(([value, words]) => h('option', { value }, words)),
   );
-  #told = h('div', { class: 'design-told', id: 'design-told', role: 'status' });
-  #sheet = h('div', { class: 'design-sheet', id: 'design-sheet', hidden: true });
+  #told;
+  #sheet;
   #run = h(
     'button',
     {
@@ -77,47 +77,34 @@ class DesignPanel {
    */
   constructor(root, page) {
     this.#page = page;
+    const { told, sheet } = study(root, 'design');
+    this.#told = told;
+    this.#sheet = sheet;
     const row = (/** @type {string} */ name, /** @type {string} */ sign, /** @type {string} */ value) => {
-      const input = h('input', {
-        id: `design-${name}`,
-        type: 'text',
-        inputmode: 'decimal',
-        autocomplete: 'off',
-        value,
-        'aria-describedby': 'design-error',
-        change: () => page.changed(),
-      });
+      const input = numberInput(`design-${name}`, 'design-error', () => page.changed());
+      input.defaultValue = value;
       this.#weights.set(name, input);
-      return h('p', { class: 'design-row' }, h('label', { for: `design-${name}` }, 'of ', symbol(sign)), input);
+      return h('p', { class: 'study-row' }, h('label', { for: `design-${name}` }, 'of ', symbol(sign)), input);
     };
     root.append(
-      h(
-        'form',
-        {
-          novalidate: true,
-          submit: (/** @type {Event} */ event) => {
-            event.preventDefault();
-            void this.ask();
-          },
-        },
-        h(
-          'div',
-          { class: 'design-act' },
-          h('button', { type: 'submit', id: 'design-start', class: 'primary' }, 'Design'),
-          this.#run,
-          this.#told,
-        ),
-        h(
-          'fieldset',
-          {},
-          h('legend', {}, 'Weights of squared deviations (', term('lqr', 'LQR'), ')'),
-          ...STATES.map(([name, sign, value]) => row(name, sign, value)),
-          row('input', 'α', INPUT),
-          h('p', { class: 'design-row' }, h('label', { for: 'design-contact' }, 'Contact'), this.#contact),
-        ),
-        this.#error,
+      studyForm(
+        'design',
+        'Design',
+        () => void this.ask(),
+        [this.#run, told],
+        [
+          h(
+            'fieldset',
+            { class: 'study-settings' },
+            h('legend', {}, 'Weights of squared deviations (', term('lqr', 'LQR'), ')'),
+            ...STATES.map(([name, sign, value]) => row(name, sign, value)),
+            row('input', 'α', INPUT),
+            h('p', { class: 'study-row' }, h('label', { for: 'design-contact' }, 'Contact'), this.#contact),
+          ),
+          this.#error,
+        ],
       ),
-      this.#sheet,
+      sheet,
     );
     this.#told.append(
       'A tilt in proportion to the angle leaves the rod circling and drifting. A law that feeds back the whole state brings it to rest in place.',
@@ -182,7 +169,7 @@ class DesignPanel {
       return null;
     }
     if (this.#contact.value) request?.set('contact', this.#contact.value);
-    if (!request) this.#told.replaceChildren('A parameter of the scene is not a number; it is marked among them.');
+    if (!request) this.#told.replaceChildren(NO_SCENE);
     return request;
   }
 
@@ -196,7 +183,7 @@ class DesignPanel {
     const signal = this.#latest.next();
     const path = `v1/controllers?${request}`;
     try {
-      const [answer, figure] = await Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);
+      const [answer, figure] = await pictured(path, signal);
       if (!signal.aborted) this.#show(answer, figure, path);
     } catch (error) {
       if (signal.aborted) return;
@@ -288,11 +275,7 @@ class DesignPanel {
               h('p', { class: 'muted small' }, ...prose(note[0].toUpperCase() + note.slice(1)), '.'),
             ),
           ),
-        h(
-          'p',
-          { class: 'actions', id: 'design-links' },
-          ...actions({ id: 'design', title: 'Design a controller', path, formats: ['svg', 'png', 'csv', 'json'] }),
-        ),
+        savings('design', 'Design a controller', path),
       ),
     );
     this.#sheet.hidden = false;

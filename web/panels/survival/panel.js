@@ -1,5 +1,6 @@
 // The panel of survival under noise: how long many runs of the page's scene last. It asks on request only.
 
+import { NO_SCENE } from '../study.js';
 import { ChartReader, movedInRow } from '../../charts/readable/chart-reader.js';
 import { FigureColumns, figureOf } from '../../charts/readable/server-figure.js';
 import { entries, row, table } from '../../dom/tables.js';
@@ -92,7 +93,7 @@ class SurvivalPanel {
   constructor(root, page) {
     this.#page = page;
     const field = (/** @type {Name} */ name, /** @type {string} */ label) => [
-      h('p', { class: 'survival-row' }, h('label', { for: `survival-${name}` }, label), this.#inputs[name]),
+      h('p', { class: 'study-row' }, h('label', { for: `survival-${name}` }, label), this.#inputs[name]),
       this.#errors[name],
     ];
     this.#offered = h(
@@ -102,7 +103,7 @@ class SurvivalPanel {
       ...field('timing', 'σ_t / ms'),
       h(
         'p',
-        { class: 'survival-wide' },
+        { class: 'study-row survival-wide' },
         h('label', { for: 'survival-reading' }, 'A table that errs in time:'),
         this.#reading,
       ),
@@ -119,7 +120,7 @@ class SurvivalPanel {
     ];
     this.#sheet = h(
       'div',
-      { class: 'survival-sheet', hidden: true },
+      { class: 'study-sheet survival-sheet', hidden: true },
       this.#headline,
       h(
         'div',
@@ -142,6 +143,7 @@ class SurvivalPanel {
         this.#links,
       ),
     );
+    root.classList.add('study');
     root.append(
       h(
         'form',
@@ -270,7 +272,7 @@ class SurvivalPanel {
     if (!this.#offered.hidden) request?.set('scene.noise.model', this.#reading.value);
     wrong[0]?.focus();
     if (wrong.length > 0) return null;
-    if (!request) this.#task.say('A parameter of the scene is not a number; it is marked among them.');
+    if (!request) this.#task.say(NO_SCENE);
     return request;
   }
 
