@@ -11,7 +11,7 @@ import { FASTEST, SLOWEST } from '../run/speed.js';
 
 /** Parts of the address that belong to a panel. */
 const PANEL_KEYS =
-  /^(tab|chart|map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|gallery\.case|catch\.(strategy|ratio|strikes|brake|hold|height|theta|low|high)|calls\.language|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input))|reading\.item|brush\.\w+\.(from|to)|pin\.[0-2]\.(preset|(scene|interventions)\.[\w.]+))$/;
+  /^(tab|chart|map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|gallery\.case|(map\.)?catch\.(strategy|ratio|strikes|brake|hold|height|theta|low|high)|calls\.language|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input))|reading\.item|brush\.\w+\.(from|to)|pin\.[0-2]\.(preset|(scene|interventions)\.[\w.]+))$/;
 
 /**
  * @typedef {object} Link

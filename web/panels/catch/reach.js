@@ -18,6 +18,7 @@ const SIDES = {
 export class ReachMap {
   element;
   #query;
+  #open;
   #latest = new LatestRequest();
   #told = h('p', { id: 'catch-reach-told', role: 'status' });
   #sheet = h('div', { id: 'catch-reach-sheet' });
@@ -29,9 +30,13 @@ export class ReachMap {
     'Cancel',
   );
 
-  /** @param {() => URLSearchParams | null} query of the scene with the settings of the catch as `catch.…`; null while something is wrong */
-  constructor(query) {
+  /**
+   * @param {() => URLSearchParams | null} query of the scene with the settings of the catch as `catch.…`; null while something is wrong
+   * @param {((id: string, link: URLSearchParams) => void) | undefined} open another panel with its part of the address
+   */
+  constructor(query, open) {
     this.#query = query;
+    this.#open = open;
     this.element = h(
       'section',
       { class: 'catch-reach', 'aria-labelledby': 'catch-reach-title' },
@@ -114,7 +119,19 @@ export class ReachMap {
           path,
           formats: ['svg', 'png', 'csv', 'json'],
         }).slice(0, -1),
+        this.#open &&
+          h('button', { type: 'button', id: 'catch-map', click: () => this.#closer(path) }, 'Look closer in the map'),
       ),
     );
+  }
+
+  /** Opens the map tab with the same fields and settings. @param {string} path of the shown map */
+  #closer(path) {
+    const link = new URLSearchParams([['map.quantity', 'caught']]);
+    for (const [name, { parameter, from, to }] of Object.entries(SIDES))
+      for (const [key, value] of Object.entries({ parameter, from, to })) link.set(`map.${name}.${key}`, String(value));
+    for (const [key, value] of new URLSearchParams(path.split('?')[1]))
+      if (key.startsWith('catch.')) link.set(`map.${key}`, value);
+    this.#open?.('map', link);
   }
 }

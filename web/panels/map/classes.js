@@ -1,8 +1,9 @@
-// The classes of outcomes: what a cell's run comes to, with a colour and a hatching for each.
+// The classes of outcomes: what a cell's run or catch comes to, with a colour and a hatching for each.
 
 import { COLOURS, PIXELS } from '../../charts/cividis.js';
+import { isOfCatches } from './settings.js';
 
-/** @typedef {'survives' | 'settles' | 'falls' | 'none'} Class */
+/** @typedef {'survives' | 'caught' | 'settles' | 'lies' | 'falls' | 'escapes' | 'none'} Class */
 
 /**
  * Colours are places in cividis. A hatching tells the classes apart without colours: its lines, with their slope.
@@ -11,16 +12,24 @@ import { COLOURS, PIXELS } from '../../charts/cividis.js';
 export const CLASSES = {
   survives: { name: 'survives', colour: COLOURS - 1, slopes: [] },
   settles: { name: 'comes to rest', colour: COLOURS / 2, slopes: [1, -1] },
+  caught: { name: 'caught', colour: COLOURS - 1, slopes: [] },
+  lies: { name: 'lies on an edge', colour: COLOURS / 2, slopes: [1, -1] },
   falls: { name: 'falls', colour: 0, slopes: [1] },
+  escapes: { name: 'not caught', colour: COLOURS / 4, slopes: [-1] },
   none: { name: 'no run', colour: null, slopes: [] },
 };
 
-/** @param {string} outcome its name in answers @returns {Class} */
-export function classOf(outcome) {
-  if (outcome === 'completed') return 'survives';
-  if (outcome === 'settled') return 'settles';
-  return outcome === 'none' ? 'none' : 'falls';
-}
+/** The classes of outcomes of runs, and of catches; all others of each fall, or are not caught. @type {Record<string, Class>} */
+const OF_RUNS = { completed: 'survives', settled: 'settles', none: 'none' };
+/** @type {Record<string, Class>} */
+const OF_CATCHES = { held: 'caught', rests_on_edge: 'lies', fell: 'falls', none: 'none' };
+
+/** @param {string} outcome its name in answers @param {string} quantity of the map @returns {Class} */
+export const classOf = (outcome, quantity) =>
+  isOfCatches(quantity) ? (OF_CATCHES[outcome] ?? 'escapes') : (OF_RUNS[outcome] ?? 'falls');
+
+/** The classes that a legend always has. @param {string} quantity @returns {Class[]} */
+export const expected = (quantity) => [isOfCatches(quantity) ? 'caught' : 'survives', 'falls'];
 
 /** The pixel of a class; transparent where it has no colour. @param {Class} kind */
 export const pixelOf = (kind) => PIXELS[CLASSES[kind].colour ?? -1] ?? 0;

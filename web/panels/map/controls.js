@@ -1,9 +1,10 @@
 // The controls of a map with their errors beside them, and the progress of its answer.
 
-import { COLUMNS, QUANTITIES, rowsOf, sidesOf } from './settings.js';
+import { COLUMNS, QUANTITIES, isOfCatches, rowsOf, sidesOf, usualColumns } from './settings.js';
 import { MOST_IMPACTS } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
 import { number, parse, quantity, unitAfter } from '../../dom/numbers.js';
+import { styles } from '../../dom/styles.js';
 import { inWords } from '../../dom/typeset.js';
 import { UNITS, shownValue } from '../../dom/units.js';
 import { sliderRange } from '../../form/slider-range.js';
@@ -34,6 +35,10 @@ export class MapControls {
   #impacts;
   #impactsError = h('p', { class: 'error', id: 'map-impacts-error' });
   #columns;
+  #bounces;
+  #catch = h('div', { hidden: true });
+  /** The settings of a catch, there with the first map of catches. @type {import('../catch/settings.js').CatchSettings | null} */
+  #catching = null;
   #compute = h('button', { type: 'button', id: 'map-compute', click: () => this.#actions.compute() }, 'Compute');
   #cancel = h(
     'button',
@@ -73,6 +78,7 @@ export class MapControls {
       { id: 'map-columns', change: () => this.#read() },
       ...COLUMNS.map((value) => h('option', { value }, times(value))),
     );
+    this.#bounces = h('p', { class: 'map-row' }, h('label', { for: 'map-impacts' }, 'Bounces'), this.#impacts);
     this.element = h(
       'form',
       {
@@ -90,10 +96,11 @@ export class MapControls {
         {},
         h('legend', {}, 'Shown'),
         h('p', { class: 'map-row' }, h('label', { for: 'map-quantity' }, 'Colour'), this.#quantity),
-        h('p', { class: 'map-row' }, h('label', { for: 'map-impacts' }, 'Bounces'), this.#impacts),
+        this.#bounces,
         this.#impactsError,
         h('p', { class: 'map-row' }, h('label', { for: 'map-columns' }, 'Finest'), this.#columns),
       ),
+      this.#catch,
       h(
         'div',
         { class: 'map-go' },
@@ -204,8 +211,38 @@ export class MapControls {
     this.#quantity.value = settings.quantity;
     this.#impacts.value = String(settings.impacts);
     this.#columns.value = String(settings.columns);
-    this.#impacts.disabled = !QUANTITIES[settings.quantity].runs;
+    this.#suit(settings);
     this.blame([]);
+    void this.#showCatch();
+  }
+
+  /** Offers what the quantity needs. @param {Settings} settings */
+  #suit({ quantity }) {
+    this.#impacts.disabled = !QUANTITIES[quantity].runs;
+    this.#bounces.hidden = isOfCatches(quantity);
+    this.#catch.hidden = !isOfCatches(quantity);
+  }
+
+  /** Shows the settings of the catch, and loads what they need before. */
+  async #showCatch() {
+    if (this.#catch.hidden) return;
+    if (!this.#catching) {
+      try {
+        const [{ CatchSettings }] = await Promise.all([import('../catch/settings.js'), styles('panels/study.css')]);
+        this.#catching ??= new CatchSettings(() => this.#read(), {
+          id: 'map-catch',
+          key: 'map.catch.',
+          automatic: false,
+        });
+      } catch {
+        return this.say(['The settings of the catch did not load.'], 'wrong');
+      }
+      this.#catch.replaceChildren(this.#catching.element);
+    }
+    const { catch: chosen } = this.#settings;
+    this.#catching.restore(
+      new URLSearchParams(Object.entries(chosen).map(([name, value]) => [`map.catch.${name}`, value])),
+    );
   }
 
   /** Reads the typed settings. Invalid values are marked, and the settings stay unchanged. */
@@ -230,12 +267,20 @@ export class MapControls {
     if (impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS)
       settings.impacts = impacts;
     else errors.push({ pointer: '/impacts', detail: `It must be a whole number from 1 to ${number(MOST_IMPACTS)}.` });
+    const before = settings.quantity;
     settings.quantity = this.#quantity.value;
     settings.columns = Number(this.#columns.value);
-    this.#impacts.disabled = !QUANTITIES[settings.quantity].runs;
+    if (isOfCatches(before) !== isOfCatches(settings.quantity) && settings.columns === usualColumns(before)) {
+      settings.columns = usualColumns(settings.quantity);
+      this.#columns.value = String(settings.columns);
+    }
+    this.#suit(settings);
     this.blame(errors);
-    if (errors.length > 0) return;
+    const chosen = isOfCatches(settings.quantity) && this.#catching ? this.#catching.read() : settings.catch;
+    if (errors.length > 0 || !chosen) return;
+    settings.catch = Object.fromEntries(Object.entries(chosen).map(([name, value]) => [name, String(value)]));
     this.#settings = settings;
+    if (isOfCatches(before) !== isOfCatches(settings.quantity)) void this.#showCatch();
     this.#actions.changed(settings);
   }
 
@@ -253,7 +298,13 @@ export class MapControls {
     this.#impactsError.textContent = '';
     /** @type {string[]} */
     const elsewhere = [];
+    const ofCatch = errors.filter(({ pointer }) => pointer.startsWith('/catch/'));
+    if (this.#catching) {
+      const inside = ofCatch.map(({ pointer, detail }) => ({ pointer: pointer.slice('/catch'.length), detail }));
+      elsewhere.push(...this.#catching.blame(inside));
+    }
     for (const error of errors) {
+      if (ofCatch.includes(error) && this.#catching) continue;
       const { pointer } = error;
       const detail = inWords(error.detail);
       const [, place, end] = pointer.split('/');

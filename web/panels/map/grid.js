@@ -1,7 +1,7 @@
 // The cells of a map as they arrive, row by row.
 
 import { classOf } from './classes.js';
-import { rowsOf } from './settings.js';
+import { isOfCatches, rowsOf } from './settings.js';
 
 /** @typedef {import('contract').Region['boundary']} Boundary */
 
@@ -70,9 +70,18 @@ export class Grid {
     return { column: place(this.settings.x, x, this.columns), row: place(this.settings.y, y, this.rows) };
   }
 
-  /** Finds out whether two classes tell what the values do. */
+  /** The class of an outcome. @param {string} outcome */
+  classOf(outcome) {
+    return classOf(outcome, this.settings.quantity);
+  }
+
+  /** Finds out whether classes tell what the values do. */
   judge() {
     const { quantity, impacts } = this.settings;
+    if (isOfCatches(quantity)) {
+      this.classes = quantity === 'caught';
+      return;
+    }
     let [all, between] = [0, 0];
     for (const value of quantity === 'survival' ? this.values : []) {
       if (Number.isNaN(value)) continue;
@@ -84,7 +93,7 @@ export class Grid {
 
   /** True when some cell that arrived is of this class. @param {import('./classes.js').Class} kind */
   holds(kind) {
-    return this.names.some((name, index) => this.#seen[index] === 1 && classOf(name) === kind);
+    return this.names.some((name, index) => this.#seen[index] === 1 && this.classOf(name) === kind);
   }
 
   /** Share of the cells of each class, the largest first. @returns {[import('./classes.js').Class, number][]} */
@@ -92,7 +101,8 @@ export class Grid {
     /** @type {Map<import('./classes.js').Class, number>} */
     const found = new Map();
     for (const [name, count] of Object.entries(this.counts ?? {}))
-      if (count > 0) found.set(classOf(name), (found.get(classOf(name)) ?? 0) + count / (this.columns * this.rows));
+      if (count > 0)
+        found.set(this.classOf(name), (found.get(this.classOf(name)) ?? 0) + count / (this.columns * this.rows));
     return [...found].sort(([, a], [, b]) => b - a);
   }
 

@@ -19,7 +19,7 @@ const MOST_SHOWN = 2000;
  * @typedef {object} Chosen
  * @property {string[]} place the values of its fields in words
  * @property {string[]} value the map's own words for it
- * @property {URLSearchParams | null} query its scene; null while some of that is no value
+ * @property {URLSearchParams | null} query its scene; null while some of that is no value, and for a catch, which is not the scene’s run
  * @property {number} ends the bounce at which it falls; not finite where it does not
  * @property {() => void} release
  */
@@ -83,6 +83,7 @@ export class Inset {
     this.#release.disabled = headline === 'no such scene';
     this.#time.textContent = '';
     this.#dots = null;
+    this.#box.hidden = this.#time.hidden = !query;
     this.#box.setAttribute('aria-label', 'Its impacts are on their way');
     invalidate(this);
     const signal = this.#latest.next();

@@ -9,8 +9,9 @@ import { Refinement } from './refinement.js';
 import { UNITS } from '../../dom/units.js';
 import { playedAt } from '../../api/scene-fields.js';
 import { actions } from '../../export/save-actions.js';
-import { QUANTITIES, readSettings, requestQuery, rowsOf, settingsQuery } from './settings.js';
+import { QUANTITIES, isOfCatches, readSettings, requestQuery, rowsOf, settingsQuery } from './settings.js';
 import { h } from '../../dom/elements.js';
+import { NO_SCENE } from '../study.js';
 import { debounce } from '../../dom/debounce.js';
 import { listen } from './pointer.js';
 import { unbroken } from '../../dom/numbers.js';
@@ -184,7 +185,7 @@ class MapPanel {
     this.#asked = String(this.#request());
     if (!scene) {
       this.#refinement.cancel();
-      return this.#controls.say(['A parameter of the scene is not a number; it is marked among them.'], 'wrong');
+      return this.#controls.say([NO_SCENE], 'wrong');
     }
     this.#controls.say([]);
     const settings = structuredClone(this.#settings);
@@ -240,7 +241,7 @@ class MapPanel {
         swatch('scene', 'the scene'),
         has(1) && swatch('whole', 'linear boundary, R = 1'),
         has(0) && swatch('broken', 'linear boundary, R = 0'),
-        grid.lacks && swatch('none', QUANTITIES[grid.settings.quantity].runs ? 'no such scene' : 'no fixed point'),
+        grid.lacks && swatch('none', lacking(grid.settings.quantity)),
       ].filter((one) => one !== false),
     );
     if (!this.#picture.cursor) this.#read(null, false);
@@ -314,7 +315,7 @@ class MapPanel {
       {
         place: this.#words.place(grid, cell),
         value: words,
-        query,
+        query: isOfCatches(quantity) ? null : query,
         ends: falls ? value : NaN,
         release: () => this.#launch(values),
       },
@@ -347,7 +348,20 @@ class MapPanel {
         },
         'Show the run',
       ),
+      ...this.#catchIt(grid.settings),
     ]);
+  }
+
+  /** Goes on in the tab Catch with the settings of a map of catches. @param {Settings} settings */
+  #catchIt({ quantity, catch: chosen }) {
+    const { open } = this.#page;
+    if (!isOfCatches(quantity) || !open) return [];
+    const part = Object.entries({ strategy: 'bounce_down', ...chosen }).map(([name, value]) => [
+      `catch.${name}`,
+      value,
+    ]);
+    const click = () => open('catch', new URLSearchParams(part));
+    return [' ', h('button', { type: 'button', id: 'map-catch', click }, 'Catch it')];
   }
 
   /** @param {import('./settings.js').Side} side @param {number} value @param {number} count */
@@ -422,3 +436,11 @@ class MapPanel {
     this.#turned();
   }
 }
+
+/** The reason for a cell without a value. @param {string} quantity */
+const lacking = (quantity) =>
+  quantity === 'rest_time'
+    ? 'not at rest, or no such scene'
+    : QUANTITIES[quantity].runs || isOfCatches(quantity)
+      ? 'no such scene'
+      : 'no fixed point';

@@ -1,7 +1,7 @@
 // A map on its canvas: cells, their classes or a colour bar, linear boundary, the marks of the scene and of a chosen cell.
 
 import { COLOURS, PIXELS } from '../../charts/cividis.js';
-import { CLASSES, blank, classOf, hatchingOf, pixelOf } from './classes.js';
+import { CLASSES, blank, expected, hatchingOf, pixelOf } from './classes.js';
 import { QUANTITIES, rowsOf } from './settings.js';
 import { SANS, SERIF, onThemeChange, theme } from '../../charts/theme.js';
 import { drawAxes, line, ticks, toX, toY } from '../../charts/axes.js';
@@ -180,7 +180,7 @@ export class MapPicture {
   /** The colour of each cell; 0 where it has none. @param {Grid} layer @returns {(column: number, row: number) => number} */
   #pixelOf(layer) {
     if (layer.classes) {
-      const pixels = layer.names.map((name) => pixelOf(classOf(name)));
+      const pixels = layer.names.map((name) => pixelOf(layer.classOf(name)));
       return (column, row) =>
         Number.isNaN(layer.value(column, row)) ? 0 : pixels[layer.outcomes[row * layer.columns + column]];
     }
@@ -225,14 +225,14 @@ export class MapPicture {
     this.#sheet.height = canvas.height;
     const sheet = /** @type {CanvasRenderingContext2D} */ (this.#sheet.getContext('2d'));
     sheet.setTransform(ratio, 0, 0, ratio, 0, 0);
-    for (const kind of /** @type {const} */ (['falls', 'settles'])) {
+    for (const kind of /** @type {const} */ (['falls', 'escapes', 'settles', 'lies'])) {
       if (!grid.holds(kind) && !this.#under?.holds(kind)) continue;
       sheet.globalCompositeOperation = 'source-over';
       sheet.clearRect(0, 0, this.#paper.width, this.#paper.height);
       sheet.fillStyle = 'transparent';
       for (const layer of [this.#under, grid]) {
         if (!layer) continue;
-        const marked = layer.names.map((name) => (classOf(name) === kind ? 0xff000000 : 0));
+        const marked = layer.names.map((name) => (layer.classOf(name) === kind ? 0xff000000 : 0));
         this.#drawCells(sheet, layer, (column, row) => marked[layer.outcomes[row * layer.columns + column]]);
       }
       sheet.globalCompositeOperation = 'source-in';
@@ -248,8 +248,9 @@ export class MapPicture {
     const colours = theme();
     const y = top + height + BAR.below - 6;
     const shares = new Map(grid.shares());
-    const kinds = /** @type {const} */ (['survives', 'falls', 'settles', 'none']).filter(
-      (kind) => shares.has(kind) || kind === 'survives' || kind === 'falls',
+    const always = expected(grid.settings.quantity);
+    const kinds = /** @type {(keyof typeof CLASSES)[]} */ (Object.keys(CLASSES)).filter(
+      (kind) => shares.has(kind) || always.includes(kind),
     );
     context.textAlign = 'left';
     context.textBaseline = 'middle';

@@ -4,7 +4,8 @@ import { MOST_IMPACTS } from '../../api/client.js';
 
 /** @typedef {import('../../api/scene-fields.js').Field} Field */
 /** @typedef {{parameter: string, from: number, to: number}} Side */
-/** @typedef {{x: Side, y: Side, quantity: string, impacts: number, columns: number}} Settings */
+/** The settings of a catch as a request has them. @typedef {Record<string, string>} CatchOf */
+/** @typedef {{x: Side, y: Side, quantity: string, impacts: number, columns: number, catch: CatchOf}} Settings */
 
 /** @type {Settings} */
 export const DEFAULT = {
@@ -13,17 +14,32 @@ export const DEFAULT = {
   quantity: 'survival',
   impacts: 1000,
   columns: 384,
+  catch: {},
 };
 
-/** @type {Record<string, {title: string, unit: string, runs: boolean}>} */
+/** Those with `runs` run each cell by the law of its scene; those with `catches` catch its body. @type {Record<string, {title: string, unit: string, runs: boolean, catches?: boolean}>} */
 export const QUANTITIES = {
   survival: { title: 'Bounces survived', unit: '', runs: true },
   max_theta: { title: 'Largest |θ|', unit: 'rad', runs: true },
   residue: { title: 'Residue R', unit: '', runs: false },
   spectral_radius: { title: 'Spectral radius', unit: '', runs: false },
+  caught: { title: 'Caught', unit: '', runs: false, catches: true },
+  rest_time: { title: 'Time to rest', unit: 's', runs: false, catches: true },
 };
 
 export const COLUMNS = [48, 96, 192, 384];
+
+/** Finest columns of a map of catches unless somebody asks for more: a catch takes about a millisecond. */
+const CATCH_COLUMNS = 96;
+/** A catch in bounces of a run, by their time. */
+const CATCH_BOUNCES = 1e5;
+const STRATEGIES = ['bounce_down', 'plan', 'brake'];
+
+/** True for a map with a catch in every cell. @param {string} quantity */
+export const isOfCatches = (quantity) => QUANTITIES[quantity].catches === true;
+
+/** The usual finest columns. @param {string} quantity */
+export const usualColumns = (quantity) => (isOfCatches(quantity) ? CATCH_COLUMNS : DEFAULT.columns);
 
 /** Columns that a map goes through until it is as fine as wanted. */
 const PASSES = [24, 96, 384];
@@ -31,9 +47,11 @@ const PASSES = [24, 96, 384];
 /** The columns of its passes, from coarse to fine. @param {number} finest */
 export const passesOf = (finest) => [...PASSES.filter((columns) => columns < finest), finest];
 
-/** Bounces of its runs. @param {Settings} settings */
-export const bouncesOf = ({ columns, impacts, quantity }) =>
-  QUANTITIES[quantity].runs ? columns * rowsOf(columns) * impacts : 0;
+/** Bounces of its runs, or as many as take the time of its catches. @param {Settings} settings */
+export function bouncesOf({ columns, impacts, quantity }) {
+  const { runs, catches } = QUANTITIES[quantity];
+  return columns * rowsOf(columns) * (runs ? impacts : catches ? CATCH_BOUNCES : 0);
+}
 
 /** @param {number} columns */
 export const rowsOf = (columns) => (columns * 2) / 3;
@@ -77,8 +95,16 @@ export function readSettings(query, fields) {
   if (Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS) settings.impacts = impacts;
   else if (query.has('map.impacts')) dropped.push('the impacts');
   const columns = numberAt('columns');
+  settings.columns = usualColumns(settings.quantity);
   if (COLUMNS.includes(columns)) settings.columns = columns;
   else if (query.has('map.columns')) dropped.push('the resolution');
+  for (const [key, text] of query) {
+    if (!key.startsWith('map.catch.')) continue;
+    const name = key.slice('map.catch.'.length);
+    const right = name === 'strategy' ? STRATEGIES.includes(text) : text.trim() !== '' && Number.isFinite(Number(text));
+    if (right) settings.catch[name] = text;
+    else dropped.push(`${name} of the catch “${text.slice(0, 40)}”`);
+  }
   return { settings, dropped };
 }
 
@@ -94,8 +120,11 @@ export function settingsQuery(settings) {
     if (own.every(([key, value]) => DEFAULT[name][/** @type {keyof Side} */ (key)] === value)) continue;
     for (const [key, value] of own) query.set(`map.${name}.${key}`, String(value));
   }
+  const usual = { ...DEFAULT, columns: usualColumns(settings.quantity) };
   for (const key of /** @type {const} */ (['quantity', 'impacts', 'columns']))
-    if (settings[key] !== DEFAULT[key]) query.set(`map.${key}`, String(settings[key]));
+    if (settings[key] !== usual[key]) query.set(`map.${key}`, String(settings[key]));
+  if (isOfCatches(settings.quantity))
+    for (const [key, value] of Object.entries(settings.catch)) query.set(`map.catch.${key}`, value);
   return query;
 }
 
@@ -104,7 +133,7 @@ export function settingsQuery(settings) {
  * @param {Settings} settings
  * @param {URLSearchParams} scene
  */
-export function requestQuery({ x, y, quantity, impacts, columns }, scene) {
+export function requestQuery({ x, y, quantity, impacts, columns, catch: catching }, scene) {
   const query = new URLSearchParams(scene);
   for (const { parameter } of [x, y]) query.delete(`scene.${parameter}`);
   for (const [name, side, count] of /** @type {const} */ ([
@@ -117,7 +146,11 @@ export function requestQuery({ x, y, quantity, impacts, columns }, scene) {
     query.set(`${name}.count`, String(count));
   }
   query.set('quantity', quantity);
-  query.set('impacts', String(impacts));
+  if (!isOfCatches(quantity)) query.set('impacts', String(impacts));
+  // Each cell by one strategy: comparing them all in each takes too long.
+  else
+    for (const [key, value] of Object.entries({ strategy: STRATEGIES[0], ...catching }))
+      query.set(`catch.${key}`, value);
   return query;
 }
 
@@ -125,19 +158,15 @@ export function requestQuery({ x, y, quantity, impacts, columns }, scene) {
 const NODES = 49;
 
 /**
- * The cheapest request that has the linear boundary of the same map, and the names of outcomes: NDJSON has neither.
+ * The cheapest request that has the linear boundary of the same map, and the names of outcomes: NDJSON has neither. A map of catches
+ * has no boundary.
  * @param {URLSearchParams} request
  */
 export function outlineQuery(request) {
   const query = new URLSearchParams(request);
-  for (const [key, value] of Object.entries({
-    'x.count': NODES,
-    'y.count': NODES,
-    quantity: 'residue',
-    impacts: 1,
-    'tile.index': 0,
-    'tile.of': NODES,
-  }))
-    query.set(key, String(value));
+  const cheapest = isOfCatches(request.get('quantity') ?? '')
+    ? { 'x.count': 1, 'y.count': 1 }
+    : { 'x.count': NODES, 'y.count': NODES, quantity: 'residue', impacts: 1, 'tile.index': 0, 'tile.of': NODES };
+  for (const [key, value] of Object.entries(cheapest)) query.set(key, String(value));
   return query;
 }

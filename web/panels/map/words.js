@@ -1,7 +1,7 @@
 // A map in words: its fields, a cell, the whole of it, and a table of some of its cells.
 
-import { CLASSES, classOf } from './classes.js';
-import { QUANTITIES } from './settings.js';
+import { CLASSES } from './classes.js';
+import { QUANTITIES, isOfCatches } from './settings.js';
 import { endedAs, reasonOf } from '../verdict/plain-words.js';
 import { h } from '../../dom/elements.js';
 import { number, quantity as withUnit, unitAfter } from '../../dom/numbers.js';
@@ -74,13 +74,21 @@ export class MapWords {
     const { quantity, impacts } = grid.settings;
     const value = grid.value(column, upwards);
     const outcome = grid.outcome(column, upwards);
+    const kind = grid.classOf(outcome);
+    if (isOfCatches(quantity) && outcome !== 'none')
+      return [
+        ...(quantity === 'caught' ? [] : [atRest(value)]),
+        CLASSES[kind].name,
+        ...(kind === 'lies' ? [] : [reasonOf(outcome)]),
+      ];
+    if (isOfCatches(quantity)) return ['no such scene'];
     if (Number.isNaN(value)) return [QUANTITIES[quantity].runs ? 'no such scene' : 'no fixed point'];
     if (quantity === 'residue') return [`R ${number(value)}`];
     if (quantity === 'spectral_radius') return [`max |λ| ${number(value, 6)}`];
-    const reason = classOf(outcome) === 'falls' ? [reasonOf(outcome)] : [];
+    const reason = kind === 'falls' ? [reasonOf(outcome)] : [];
     return quantity === 'survival'
       ? [endedAs(outcome, outcome === 'completed' ? impacts : value), ...reason]
-      : [`largest |θ| ${withUnit(value, 'rad')}`, CLASSES[classOf(outcome)].name, ...reason];
+      : [`largest |θ| ${withUnit(value, 'rad')}`, CLASSES[kind].name, ...reason];
   }
 
   /** @param {Grid} grid @param {Cell} cell */
@@ -94,7 +102,9 @@ export class MapWords {
   told(grid) {
     const total = number(grid.columns * grid.rows, 7);
     const { quantity, impacts } = grid.settings;
-    if (!QUANTITIES[quantity].runs)
+    if (quantity === 'rest_time')
+      return `${total} cells, at rest within ${number(grid.scale.low)} to ${withUnit(grid.scale.high, 's')} of the release.`;
+    if (!QUANTITIES[quantity].runs && quantity !== 'caught')
       return `${total} cells, from ${number(grid.scale.low)} to ${number(grid.scale.high)}.`;
     const shares = grid
       .shares()
@@ -113,7 +123,7 @@ export class MapWords {
       const unit = this.field(parameter)?.unit ?? '';
       return `${this.title(parameter)} from ${withUnit(from, unit)} to ${withUnit(to, unit)}`;
     };
-    return `Stability map. ${QUANTITIES[quantity].title} over ${range(x)} and ${range(y)}.`;
+    return `${isOfCatches(quantity) ? 'Reach' : 'Stability'} map. ${QUANTITIES[quantity].title} over ${range(x)} and ${range(y)}.`;
   }
 
   /** Some cells as a table, for those who do not see the map. @param {Grid} grid */
@@ -127,7 +137,8 @@ export class MapWords {
     const short = (/** @type {number} */ column, /** @type {number} */ at) => {
       const value = grid.value(column, at);
       if (Number.isNaN(value)) return '–';
-      const kind = classOf(grid.outcome(column, at));
+      const kind = grid.classOf(grid.outcome(column, at));
+      if (quantity === 'caught') return CLASSES[kind].name;
       if (quantity !== 'survival') return number(value);
       return kind === 'survives' ? CLASSES[kind].name : `${CLASSES[kind].name} at ${number(value, 7)}`;
     };
@@ -149,6 +160,9 @@ export class MapWords {
     );
   }
 }
+
+/** @param {number} time since the release, s; NaN where it does not come to rest */
+const atRest = (time) => (Number.isNaN(time) ? 'not at rest' : `at rest after ${withUnit(time, 's')}`);
 
 /** @param {number} share */
 export const percent = (share) => `${share > 0 && share < 0.01 ? '< 1' : Math.round(share * 100)}\u202f%`;
