@@ -1,7 +1,7 @@
 // The studies: their tabs, and the panels in each with a sentence on them and where their code is.
 
-/** The colours and sizes of the server's pictures in the page. */
-const FIGURE_STYLES = ['charts/generated/figure-colours.css', 'charts/readable/server-figure.css'];
+/** The colours and sizes of the server's pictures in the page, and the form of a study. */
+const FIGURE_STYLES = ['charts/generated/figure-colours.css', 'charts/readable/server-figure.css', 'panels/study.css'];
 
 /** The tabs in their order; the first is open unless the address says another. @type {readonly {id: string, name: string}[]} */
 export const TABS = [
