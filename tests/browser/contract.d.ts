@@ -1367,9 +1367,9 @@ export interface components {
         CatchStrategy: "bounce_down" | "plan" | "brake";
         CatchDemand: {
             tilt: number;
-            tilt_rate: number;
+            tilt_rate: number | null;
             speed: number;
-            stroke: number;
+            stroke: number | null;
             travel: number;
             normal_force: number;
             friction: number | null;

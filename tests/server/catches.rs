@@ -113,6 +113,35 @@ async fn the_choice_is_told_with_what_rules_the_others_out() {
     assert!(stiff["strategy"]["reason"].as_str().unwrap().contains("no strategy catches"), "{}", stiff["strategy"]);
 }
 
+#[tokio::test]
+async fn a_plan_says_how_many_strikes_it_chose_and_why() {
+    let server = Server::start();
+    let chosen = caught(&server, "strategy=plan").await;
+    let strikes = chosen["settings"]["strikes"].as_u64().unwrap();
+    assert_eq!(numbers(&chosen["strikes"]["n"]).len() as u64, strikes + 1);
+    let reason = format!("as asked for; its {strikes} strikes are the fewest with all tilts within 0.25 rad");
+    assert_eq!(chosen["strategy"]["reason"], reason);
+    assert!(number(&chosen, "/demand/tilt") <= 0.25, "{}", chosen["demand"]);
+    let named = caught(&server, &format!("strategy=plan&strikes={strikes}")).await;
+    assert_eq!((&named["strikes"], &named["hold"]), (&chosen["strikes"], &chosen["hold"]));
+    assert_eq!(named["strategy"]["reason"], "as asked for");
+    let wrong = "strategy=plan&scene.contact.restitution=0.6&scene.table.assumed_restitution=0.8";
+    let notes = caught(&server, wrong).await["notes"].to_string();
+    assert!(notes.contains("a restitution of 0.6 in place of 0.8, which the table assumed"), "{notes}");
+}
+
+#[tokio::test]
+async fn a_motion_between_strikes_that_was_never_made_is_null() {
+    let server = Server::start();
+    let slow = caught(&server, "scene.table.limits.speed=0.15").await;
+    let first = &slow["candidates"][0];
+    assert_eq!(first["outcome"]["kind"], "beyond_limits");
+    assert!(first["demand"]["stroke"].is_null() && first["demand"]["tilt_rate"].is_null(), "{}", first["demand"]);
+    assert!(number(&slow, "/demand/stroke") > 0.0);
+    let detail = slow["outcome"]["detail"].as_str().unwrap();
+    assert!(detail.contains("to the end of the time asked for"), "{detail}");
+}
+
 /// Between strikes there is a flight in closed form from the columns alone.
 #[tokio::test]
 async fn each_strike_follows_from_the_flight_after_the_last() {

@@ -4,9 +4,12 @@ use std::borrow::Cow;
 
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::{Candidate, Catch, CatchDemand, CatchFailure, Reach, UprightWithin};
+use equipoise_physics::catching::plan::{FEWEST_STRIKES, MOST_TRIED, StrikesReason};
 use equipoise_physics::catching::settings::Approach;
 use equipoise_physics::contact::HoldSample;
+use equipoise_physics::control::lqr::DesignFailure;
 use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::table::actuator_load::ActuatorLoad;
 use serde::Serialize;
 use serde_json::Value as Json;
 
@@ -15,7 +18,6 @@ use crate::api::catches::outcome::{CatchOutcomeAnswer, note_text};
 use crate::api::catches::request::{CatchOptions, NO_BODY};
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, scene_to_json};
-use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::Table;
@@ -60,20 +62,25 @@ pub(super) struct StrategyAnswer {
     pub(super) reason: String,
 }
 
-/// Largest load on the table, and the least friction of the contact.
+/// Largest load on the table, and the least friction of the contact. Tilt rate and stroke are null if the table did not move from one strike to
+/// another.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct DemandAnswer {
-    #[serde(flatten)]
-    load: LoadAnswer,
+    tilt: f64,
+    tilt_rate: Option<f64>,
+    speed: f64,
+    stroke: Option<f64>,
     travel: f64,
     normal_force: f64,
     friction: Option<f64>,
 }
 
 impl From<CatchDemand> for DemandAnswer {
-    fn from(CatchDemand { load, travel, least_friction, most_normal_force }: CatchDemand) -> Self {
+    fn from(CatchDemand { load, moves, travel, least_friction, most_normal_force }: CatchDemand) -> Self {
+        let ActuatorLoad { tilt, tilt_rate, speed, stroke } = load;
         let friction = Some(least_friction).filter(|friction| friction.is_finite());
-        Self { load: load.into(), travel, normal_force: most_normal_force, friction }
+        let (tilt_rate, stroke) = (moves.then_some(tilt_rate), moves.then_some(stroke));
+        Self { tilt, tilt_rate, speed, stroke, travel, normal_force: most_normal_force, friction }
     }
 }
 
@@ -198,13 +205,51 @@ fn refusal(why: CatchFailure) -> Refusal {
         CatchFailure::Stopped => Refusal::Cancelled,
         CatchFailure::Point => Refusal::At("/scene/body/point", NO_BODY.to_owned()),
         CatchFailure::NoLaw(why) => {
-            Refusal::At("/weights", format!("no state feedback holds the body in contact: {why:?}"))
+            Refusal::At("/weights", format!("no state feedback holds the body in contact: {}", no_law(why)))
         }
     }
 }
 
-/// The reason for the strategy.
+/// The reason for which weights give no law, in a sentence.
+fn no_law(why: DesignFailure) -> String {
+    match why {
+        DesignFailure::Diverging => {
+            "the Riccati equation has no solution that the doubling finds; give theta and, without x, x_dot a weight above 0".to_owned()
+        }
+        DesignFailure::Inaccurate(residual) => format!(
+            "the Riccati equation is solved only to {residual:e} of the solution: weights or lengths are too far apart for doubles"
+        ),
+        DesignFailure::Unseen(spectral_radius) => {
+            format!("a deviation without a weight does not die out (spectral radius {spectral_radius})")
+        }
+    }
+}
+
+/// The reason for the strategy, and for the number of strikes of a plan that chose it.
 fn reason(caught: &Catch) -> String {
+    let three = |value: f64| significant(value, 3);
+    let strikes = caught.strikes_reason.zip(strikes_of(&caught.approach)).map(|(reason, strikes)| match reason {
+        StrikesReason::FewestWithin(tilt) => {
+            format!("; its {strikes} strikes are the fewest with all tilts within {} rad", three(tilt))
+        }
+        StrikesReason::LeastTilt(tilt) => format!(
+            "; no number of strikes from {FEWEST_STRIKES} to {MOST_TRIED} keeps all tilts within {} rad, and more than {strikes} hardly lower them",
+            three(tilt)
+        ),
+    });
+    strategy_reason(caught) + &strikes.unwrap_or_default()
+}
+
+/// Strikes of a plan.
+fn strikes_of(approach: &Approach) -> Option<u32> {
+    match *approach {
+        Approach::Plan { strikes, .. } => Some(strikes),
+        Approach::BounceDown { .. } | Approach::Brake { .. } => None,
+    }
+}
+
+/// The reason for the strategy.
+fn strategy_reason(caught: &Catch) -> String {
     if caught.settings.strategy.is_some() {
         return "as asked for".to_owned();
     }

@@ -44,7 +44,9 @@ impl CatchOutcomeAnswer {
     pub fn new(outcome: &CatchOutcome, contact_from: Option<f64>, end: f64, friction: f64) -> Self {
         let from = contact_from.map_or_else(String::new, |t| format!(" from t = {t} s"));
         let (t, detail, decided): (f64, String, Option<Decision>) = match *outcome {
-            CatchOutcome::Held => (end, format!("the body stays in contact{from} to t = {end} s"), None),
+            CatchOutcome::Held => {
+                (end, format!("the body stays in contact{from} to the end of the time asked for, t = {end} s"), None)
+            }
             CatchOutcome::RestsOnEdge { vertices: [first, second] } => (
                 end,
                 format!("at t = {end} s, the body rests on the edge from vertex {first} to vertex {second}"),
@@ -152,6 +154,16 @@ pub fn note_text(note: &CatchNote) -> String {
             "the table's belief about restitution is wrong: the first strike aimed at a ratio of {} and reached {}",
             three(aimed),
             three(reached)
+        ),
+        CatchNote::KeepsHeight { aimed, reached } => format!(
+            "with this belief about restitution each strike reaches a ratio of {} in place of {}, at least 1: the body does not lose height",
+            three(reached),
+            three(aimed)
+        ),
+        CatchNote::LearnedRestitution { assumed, shown } => format!(
+            "the first strikes showed a restitution of {} in place of {}, which the table assumed; the plan went on with that",
+            three(shown),
+            three(assumed)
         ),
         CatchNote::RodeAlong { speed } => format!(
             "the table met the contact point at its own speed of {} m/s, without an impulse, and braked in contact",

@@ -34,8 +34,8 @@ const _: () = assert!(
 /// Price of a catch by bounces that die down, in bounces: about 1 ms.
 const CATCH_BOUNCE_DOWN_PRICE: u64 = 20_000;
 
-/// Price of a planned catch, in bounces: about 20 ms, with a new plan at each strike.
-const CATCH_PLAN_PRICE: u64 = 300_000;
+/// Price of a planned catch, in bounces: about 20 ms for random releases, with the choice of its strikes and a new plan at each of them.
+const CATCH_PLAN_PRICE: u64 = 400_000;
 
 /// Price of a catch by a braking table, in bounces: about 1 ms.
 const CATCH_BRAKE_PRICE: u64 = 20_000;

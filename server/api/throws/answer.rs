@@ -182,6 +182,7 @@ fn refusal(why: ThrowFailure, start: Start) -> Refusal {
             Start::Impact(_) => "/impact",
         },
         ThrowFailure::CannotPush { .. }
+        | ThrowFailure::TooSteep { .. }
         | ThrowFailure::AngleOutOfReach { .. }
         | ThrowFailure::OtherVertex(_)
         | ThrowFailure::ContactSinks { .. }

@@ -5,6 +5,7 @@ use super::gain_schedule::GainSchedule;
 use super::guidance::Catcher;
 use super::landing::{Landed, Landing};
 use super::outcome::{CatchDemand, CatchFailure, CatchNote, CatchOutcome, Escape, Fall};
+use super::plan::StrikesReason;
 use super::settings::{Approach, CatchSettings, DEFAULT_RATIO};
 use crate::body::general::{GeneralBody, Guide};
 use crate::body::{Arrival, NoContact, PreImpact};
@@ -27,6 +28,8 @@ pub(super) enum CatchStart {
 #[derive(Clone, Debug)]
 pub(super) struct Attempt {
     pub(super) approach: Approach,
+    /// Reason for the number of strikes of a plan, if it was chosen.
+    pub(super) strikes_reason: Option<StrikesReason>,
     pub(super) descent: Descent,
     pub(super) touchdown: Option<Touchdown>,
     pub(super) landed: Option<Landed>,
@@ -68,12 +71,16 @@ impl Attempt {
         let believed = Rod { restitution: scene.assumed_restitution(), ..rod };
         let friction = body.friction.map_or(0.0, |friction| friction.coefficient);
         let mut catcher = Catcher::new(believed, friction, approach, schedule, rules.limits.as_ref());
+        if settings.strikes.is_none() {
+            catcher = catcher.choosing_strikes();
+        }
         let mut descent = Descent::default();
         let end = match first_contact(scene, &body, start, &mut catcher) {
             Ok(first) => descent.go_down(&body, (&rules, settings.hold_speed), &mut catcher, first, go_on),
             Err(outcome) => DescentEnd::Ended(outcome),
         };
-        let notes = catcher.notes;
+        let (approach, strikes_reason) = (catcher.approach(), catcher.strikes_reason);
+        let notes = catcher.into_notes(believed.restitution);
         let (touchdown, landed, outcome) = match end {
             DescentEnd::Touchdown(touchdown) => {
                 let landed = landing.land(&touchdown, go_on).map_err(CatchFailure::NoLaw)?;
@@ -84,7 +91,7 @@ impl Attempt {
             DescentEnd::Ended(outcome) => (None, None, outcome),
             DescentEnd::Stopped => return Err(CatchFailure::Stopped),
         };
-        Ok(Self { approach, descent, touchdown, landed, notes, outcome })
+        Ok(Self { approach, strikes_reason, descent, touchdown, landed, notes, outcome })
     }
 
     /// Beginning of the lasting contact, s.
@@ -94,9 +101,10 @@ impl Attempt {
 
     /// Demand on the table.
     pub(super) fn demand(&self) -> CatchDemand {
-        let demand = CatchDemand { load: self.descent.load, ..CatchDemand::default() };
+        let demand = CatchDemand { load: self.descent.load, moves: self.descent.moves, ..CatchDemand::default() };
         self.landed.as_ref().map_or(demand, |Landed { hold, .. }| CatchDemand {
             load: demand.load.or(hold.load),
+            moves: true,
             travel: hold.travel,
             least_friction: hold.least_friction,
             most_normal_force: hold.samples.iter().map(|sample| sample.normal_force).fold(0.0, f64::max),

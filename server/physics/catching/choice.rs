@@ -11,8 +11,8 @@ use crate::scene::Scene;
 /// Height ratio of a slow `bounce_down`, which asks for less tilt and speed.
 const SLOW_RATIO: f64 = 0.9;
 
-/// Strikes of a slow plan, and their ratio: all keep the height.
-const SLOW_PLAN: (u32, f64) = (5, 1.0);
+/// Height ratio of a slow plan: its strikes keep the height.
+const SLOW_PLAN_RATIO: f64 = 1.0;
 
 /// The strategies to compare, in their order.
 fn approaches(settings: &CatchSettings, gravity: f64) -> Vec<Approach> {
@@ -21,8 +21,9 @@ fn approaches(settings: &CatchSettings, gravity: f64) -> Vec<Approach> {
         approaches.push(Approach::BounceDown { ratio: SLOW_RATIO });
     }
     approaches.push(settings.approach(Strategy::Plan, gravity));
-    if settings.ratio.is_none() && settings.strikes.is_none() {
-        approaches.push(Approach::Plan { strikes: SLOW_PLAN.0, ratio: SLOW_PLAN.1 });
+    if settings.ratio.is_none() {
+        let slow = CatchSettings { ratio: Some(SLOW_PLAN_RATIO), ..*settings };
+        approaches.push(slow.approach(Strategy::Plan, gravity));
     }
     approaches.push(settings.approach(Strategy::Brake, gravity));
     approaches
@@ -47,7 +48,8 @@ pub(super) fn choose(
     let (mut candidates, mut taken): (Vec<Candidate>, Option<(usize, Attempt)>) = (Vec::new(), None);
     for approach in approaches(settings, scene.gravity()) {
         let attempt = Attempt::new(scene, settings, approach, start, go_on)?;
-        let (demand, contact_from, outcome) = (attempt.demand(), attempt.contact_from(), attempt.outcome);
+        let (approach, demand) = (attempt.approach, attempt.demand());
+        let (contact_from, outcome) = (attempt.contact_from(), attempt.outcome);
         let is_better = match &taken {
             None => true,
             Some((_, best)) => outcome.is_caught() && !best.outcome.is_caught(),

@@ -34,6 +34,8 @@ pub(super) struct Descent {
     /// Height ratio that the first strike aimed for.
     pub(super) aimed: Option<f64>,
     pub(super) load: ActuatorLoad,
+    /// True if the table moved from one strike to another.
+    pub(super) moves: bool,
 }
 
 /// End of the strikes of an attempt.
@@ -83,6 +85,7 @@ impl Descent {
             }
             let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
             let load = pose.load(last);
+            self.moves |= last.is_some();
             self.load = self.load.or(load);
             if let Some(violation) = rules.limits.as_ref().and_then(|limits| limits.exceeded(&load)) {
                 return DescentEnd::Ended(CatchOutcome::BeyondLimits { t, violation });

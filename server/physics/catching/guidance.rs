@@ -3,7 +3,10 @@
 use super::aim::Aim;
 use super::gain_schedule::GainSchedule;
 use super::outcome::{CatchNote, Escape};
-use super::plan::{BouncingRod, NextStrike, PlanFailure, PlanProblem, Replanner};
+use super::plan::{
+    BouncingRod, LearnedRestitution, NextStrike, PlanFailure, PlanLimits, PlanProblem, Replanner, StrikesReason,
+    choose_plan,
+};
 use super::settings::{Approach, DEFAULT_RATIO, MOST_PLANNED_TILT};
 use crate::body::PreImpact;
 use crate::body::general::Guide;
@@ -50,8 +53,14 @@ pub struct Catcher {
     friction: f64,
     approach: Approach,
     schedule: GainSchedule,
-    /// Largest tilt of a strike of a plan that is made again, rad.
-    most_tilt: f64,
+    /// Limits of the table.
+    limits: Option<ActuatorLimits>,
+    /// True if a plan chooses its number of strikes.
+    chooses_strikes: bool,
+    /// Reason for the number of strikes of a plan that chose it.
+    pub(super) strikes_reason: Option<StrikesReason>,
+    /// Restitution that the strikes of the plan have shown.
+    learned: LearnedRestitution,
     /// State of a catch by a plan.
     planning: Planning,
     /// The last decision.
@@ -69,17 +78,38 @@ impl Catcher {
         schedule: GainSchedule,
         limits: Option<&ActuatorLimits>,
     ) -> Self {
-        let most_tilt = limits.map_or(MOST_PLANNED_TILT, |limits| limits.tilt.min(MOST_PLANNED_TILT));
         Self {
             believed,
             friction,
             approach,
             schedule,
-            most_tilt,
+            limits: limits.copied(),
+            chooses_strikes: false,
+            strikes_reason: None,
+            learned: LearnedRestitution::default(),
             planning: Planning::NotBegun,
             guidance: Guidance::Touch,
             notes: Vec::new(),
         }
+    }
+
+    /// The same guide, which chooses the number of strikes of a plan at its first contact.
+    pub(super) fn choosing_strikes(self) -> Self {
+        Self { chooses_strikes: true, ..self }
+    }
+
+    /// The strategy with its numbers, as it was used.
+    pub(super) fn approach(&self) -> Approach {
+        self.approach
+    }
+
+    /// The facts that were noticed, and the restitution that strikes showed in place of the one that the table believed in.
+    pub(super) fn into_notes(mut self, assumed: f64) -> Vec<CatchNote> {
+        let shown = self.believed.restitution;
+        if shown != assumed {
+            self.notes.push(CatchNote::LearnedRestitution { assumed, shown });
+        }
+        self.notes
     }
 
     /// A strike of `ratio` at the tilt of the gain schedule.
@@ -107,14 +137,22 @@ impl Catcher {
         (strikes, ratio): (u32, f64),
     ) -> Option<PlannedTableMotion> {
         let coming = PreImpact { state: *sensed, ..*seen };
-        let most_tilt = self.most_tilt;
+        let body = BouncingRod { rod: self.believed, friction: self.friction };
+        if let Some(shown) = self.learned.seen(&body, &coming) {
+            self.believed.restitution = shown;
+        }
+        let most_tilt = self.limits.map_or(MOST_PLANNED_TILT, |limits| limits.tilt.min(MOST_PLANNED_TILT));
         let (next, is_first) = match &mut self.planning {
             Planning::Over => return self.bounce_down(seen, sensed, DEFAULT_RATIO),
-            Planning::Under(planner) => (planner.next(&coming), false),
+            Planning::Under(planner) => {
+                planner.believe(self.believed.restitution);
+                (planner.next(&coming), false)
+            }
             Planning::NotBegun => (self.begin_plan(&coming, strikes, ratio), true),
         };
         match next {
             Ok(NextStrike { alpha, ratio }) if ratio > 0.0 && (is_first || alpha.abs() <= most_tilt) => {
+                self.learned.aimed(&BouncingRod { rod: self.believed, friction: self.friction }, &coming, alpha, ratio);
                 self.aim(seen, alpha, ratio)
             }
             Ok(NextStrike { alpha, ratio }) if ratio == 0.0 => {
@@ -137,7 +175,20 @@ impl Catcher {
 
     fn begin_plan(&mut self, coming: &PreImpact, strikes: u32, ratio: f64) -> Result<NextStrike, PlanFailure> {
         let body = BouncingRod { rod: self.believed, friction: self.friction };
-        let mut planner = Replanner::new(PlanProblem { body, strikes, ratio })?;
+        let mut problem = PlanProblem { body, strikes, ratio };
+        if self.chooses_strikes {
+            // Where no plan is within the limits, the run tells which limit the one of least tilt passes.
+            let within = choose_plan(&problem, coming, &PlanLimits { table: self.limits, outline: None });
+            let chosen = match (within, self.limits) {
+                (Ok(chosen), _) => Ok(chosen),
+                (Err(_), Some(_)) => choose_plan(&problem, coming, &PlanLimits::default()),
+                (Err(failure), None) => Err(failure),
+            }?;
+            problem.strikes = chosen.strikes;
+            self.approach = Approach::Plan { strikes: chosen.strikes, ratio };
+            self.strikes_reason = Some(chosen.reason);
+        }
+        let mut planner = Replanner::new(problem)?;
         let next = planner.next(coming);
         self.planning = Planning::Under(planner);
         next

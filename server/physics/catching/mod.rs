@@ -83,6 +83,7 @@ fn catch_by(
     Ok(Catch {
         settings: *settings,
         approach: attempt.approach,
+        strikes_reason: attempt.strikes_reason,
         candidates,
         strikes: attempt.descent.strikes,
         contact_from,

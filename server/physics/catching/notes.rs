@@ -2,7 +2,7 @@
 
 use super::attempt::Attempt;
 use super::outcome::CatchNote;
-use super::settings::HOLD_SPEED;
+use super::settings::{Approach, HOLD_SPEED};
 use crate::bounce::friction::Slide;
 use crate::bounce::rod::Rod;
 use crate::contact::HoldEnding;
@@ -30,6 +30,7 @@ pub(super) fn notes(scene: &Scene, attempt: &Attempt) -> Vec<CatchNote> {
     {
         notes.push(CatchNote::WrongBelief { aimed, reached: first.ratio() });
     }
+    notes.extend(keeps_height(scene, attempt));
     if let (Some(touchdown), Some(landed)) = (&attempt.touchdown, &attempt.landed) {
         if touchdown.speed.abs() >= HOLD_SPEED {
             notes.push(CatchNote::RodeAlong { speed: touchdown.speed });
@@ -49,6 +50,14 @@ pub(super) fn notes(scene: &Scene, attempt: &Attempt) -> Vec<CatchNote> {
         }
     }
     notes
+}
+
+/// A wrong belief with which the strikes of `bounce_down` do not slow the body down.
+fn keeps_height(scene: &Scene, attempt: &Attempt) -> Option<CatchNote> {
+    let Approach::BounceDown { ratio: aimed } = attempt.approach else { return None };
+    let (actual, assumed) = (scene.restitution, scene.assumed_restitution());
+    let reached = actual + (1.0 + actual) * (aimed - assumed) / (1.0 + assumed);
+    (reached >= 1.0).then_some(CatchNote::KeepsHeight { aimed, reached })
 }
 
 /// The energy feedback of the scene, if it does not catch by itself: near its target Gl each strike takes a share that is

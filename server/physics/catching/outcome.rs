@@ -1,6 +1,6 @@
 //! A catch as data: its strikes, its hold, what it asks of the table, and how it ends.
 
-use super::plan::PlanFailure;
+use super::plan::{PlanFailure, StrikesReason};
 use super::settings::{Approach, CatchSettings};
 use crate::body::Touch;
 use crate::bounce::state::State;
@@ -196,6 +196,8 @@ pub struct UprightWithin {
 pub struct CatchDemand {
     /// Largest tilt, tilt rate, speed and stroke.
     pub load: ActuatorLoad,
+    /// True if the table moved from one strike to another, or in contact; otherwise its tilt rate and stroke are not known.
+    pub moves: bool,
     /// Way of the table along x in contact, m.
     pub travel: f64,
     /// Friction that a contact without slip needs.
@@ -221,6 +223,20 @@ pub enum CatchNote {
         aimed: f64,
         /// Height ratio reached.
         reached: f64,
+    },
+    /// With what the table believes about restitution each strike reaches a ratio of at least 1, so that the body does not lose height.
+    KeepsHeight {
+        /// Height ratio aimed for.
+        aimed: f64,
+        /// e + (1 + e)(r − ê)/(1 + ê), with ê as believed.
+        reached: f64,
+    },
+    /// The strikes of a plan showed a restitution other than the one that the table believed in; it planned on with that.
+    LearnedRestitution {
+        /// The belief.
+        assumed: f64,
+        /// The restitution shown, from the strikes up to the last contact.
+        shown: f64,
     },
     /// The contact began at this vertical velocity of the contact point (m/s); the table moved along with it and braked.
     RodeAlong {
@@ -268,6 +284,8 @@ pub struct Catch {
     pub settings: CatchSettings,
     /// The strategy that was used, with its numbers.
     pub approach: Approach,
+    /// Reason for the number of strikes of a plan, if it was chosen.
+    pub strikes_reason: Option<StrikesReason>,
     /// The strategies that were compared, if none was asked for.
     pub candidates: Vec<Candidate>,
     /// Strikes.

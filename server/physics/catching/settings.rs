@@ -15,14 +15,15 @@ pub const PLAN_RATIOS: RangeInclusive<f64> = 0.05..=1.0;
 /// Height ratio of [`Strategy::BounceDown`] if none is asked for.
 pub const DEFAULT_RATIO: f64 = 0.5;
 
-/// Strikes of a plan before its stop, if no number is asked for.
+/// Strikes of a plan before its stop, if no number is asked for and none was chosen: there is no plan.
 pub const DEFAULT_STRIKES: u32 = 8;
 
 /// Height ratio of a plan if none is asked for.
 pub const DEFAULT_PLAN_RATIO: f64 = 0.8;
 
-/// Largest tilt of a planned strike, rad. A plan that asks for more is given up: its last strikes are too slow for what is left to do.
-pub const MOST_PLANNED_TILT: f64 = 0.5;
+/// Largest tilt of a strike of a plan that is made again, rad. A plan that asks for more is given up: beyond, a table turns a body more than it
+/// lifts it.
+pub const MOST_PLANNED_TILT: f64 = 1.2;
 
 /// Most strikes of a catch. From 44 m/s down to [`HOLD_SPEED`] the largest of [`RATIOS`] takes 450.
 pub const MOST_STRIKES: u64 = 1000;

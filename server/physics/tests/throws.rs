@@ -179,6 +179,9 @@ fn throws_that_cannot_be_say_why() {
     let sinking = ThrowTarget { height: 0.95 * L, theta: -3.0 };
     assert!(matches!(of(&[], &leaning, sinking), ThrowFailure::ContactSinks { contact_rise } if contact_rise < 0.0));
     let rough = of(&[(Name::Friction, Value::Number(0.5))], &upright(), ThrowTarget { height: 0.2, theta: 200.0 });
+    // tan α = (ρ²/l)θG/ẏ⁺² of a body at rest: some 80° for almost five turns.
+    let fast = ThrowTarget { height: 0.3, theta: 30.0 };
+    assert!(matches!(of(&[], &upright(), fast), ThrowFailure::TooSteep { alpha } if alpha < -1.4 && alpha > -1.5));
     let ThrowFailure::AngleOutOfReach { reach: Some((least, most)), .. } = rough else { panic!("{rough:?}") };
     assert!(least < -0.5 && (least + most).abs() < 1e-9 && most < 200.0, "{rough:?}");
     for failure in [low, limited, rough] {

@@ -3,7 +3,7 @@
 use super::bounce::Node;
 use super::failure::{FEWEST_STRIKES, MOST_STRIKES, Obstacle, PlanFailure};
 use super::problem::{Goal, PlanLimits, PlanProblem};
-use super::shooting::solve;
+use super::shooting::solve_from_upright;
 use super::trajectory::Trajectory;
 use crate::body::PreImpact;
 use crate::bounce::strike::Strike;
@@ -77,7 +77,7 @@ pub fn plan_catch(problem: &PlanProblem, coming: &PreImpact) -> Result<CatchPlan
         return Err(PlanFailure::Strikes(problem.strikes));
     }
     let first = Node { x: coming.x, state: coming.state };
-    let solution = solve(problem, &Goal::Rest, coming.clearance, Trajectory::upright(problem, &first))?;
+    let solution = solve_from_upright(problem, &Goal::Rest, coming.clearance, &first)?;
     let Trajectory { nodes, mut tilts } = solution.trajectory;
     let cost = tilts.iter().map(|tilt| tilt * tilt).sum();
     tilts.push(0.0);

@@ -11,6 +11,9 @@ pub const MOST_TRIED: u32 = 12;
 /// Tilt, rad, below which a plan is calm: the reach of the hold is some 0.3 rad, and more strikes take more time.
 pub const CALM_TILT: f64 = 0.25;
 
+/// Share of the least tilt so far that a further strike has to save; a plan that does not is the last that is tried.
+const WORTH: f64 = 0.03;
+
 /// Number of strikes that was tried, and its plan's largest tilt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriedPlan {
@@ -42,7 +45,8 @@ pub struct ChosenPlan {
     pub tried: Vec<TriedPlan>,
 }
 
-/// The plan of the fewest strikes whose tilts are calm; if there is none, the plan of the least tilt. `problem.strikes` is not looked at.
+/// The plan of the fewest strikes whose tilts are calm; if there is none, the plan of the least tilt, with more strikes as
+/// long as each of them lowers the tilt. `problem.strikes` is not looked at.
 ///
 /// # Errors
 /// The reason for which there is no plan of [`MOST_TRIED`] strikes, if there is none at all.
@@ -59,8 +63,12 @@ pub fn choose_plan(problem: &PlanProblem, coming: &PreImpact, limits: &PlanLimit
                 if tilt <= calm {
                     return Ok(ChosenPlan { plan, strikes, reason: StrikesReason::FewestWithin(calm), tried });
                 }
-                if best.as_ref().is_none_or(|(best, _)| tilt < best.load.tilt) {
+                let least = best.as_ref().map_or(f64::INFINITY, |(best, _)| best.load.tilt);
+                if tilt < least {
                     best = Some((plan, strikes));
+                }
+                if tilt > (1.0 - WORTH) * least {
+                    break;
                 }
             }
             Err(reason) => {

@@ -3,7 +3,7 @@
 use super::bounce::Node;
 use super::failure::{FEWEST_STRIKES, MOST_STRIKES, PlanFailure};
 use super::problem::{Goal, PlanProblem};
-use super::shooting::{Solution, solve};
+use super::shooting::{Solution, solve, solve_from_upright};
 use super::trajectory::Trajectory;
 use crate::body::PreImpact;
 
@@ -46,6 +46,11 @@ impl Replanner {
         self.left
     }
 
+    /// Plans on with another restitution.
+    pub fn believe(&mut self, restitution: f64) {
+        self.problem.body.rod.restitution = restitution;
+    }
+
     /// The strike of a coming contact. All after the last one are stops: a table that is wrong about the restitution needs several.
     ///
     /// # Errors
@@ -76,17 +81,15 @@ impl Replanner {
         warm: Option<Trajectory>,
         first: &Node,
     ) -> Result<Solution, PlanFailure> {
-        let upright = || Trajectory::upright(problem, first);
         let tilts = warm.as_ref().map_or_else(Vec::new, |warm| warm.tilts.clone());
         let near = Goal::NearRest { tilts };
         let mut failure = PlanFailure::Strikes(problem.strikes);
         let goals = if problem.strikes >= FEWEST_STRIKES { &[Goal::Rest, near][..] } else { &[near][..] };
         for goal in goals {
-            for start in warm.iter().cloned().chain([upright()]) {
-                match solve(problem, goal, clearance, start) {
-                    Ok(solution) => return Ok(solution),
-                    Err(reason) => failure = reason,
-                }
+            let warm = warm.clone().and_then(|start| solve(problem, goal, clearance, start).ok());
+            match warm.map_or_else(|| solve_from_upright(problem, goal, clearance, first), Ok) {
+                Ok(solution) => return Ok(solution),
+                Err(reason) => failure = reason,
             }
         }
         Err(failure)

@@ -5,6 +5,7 @@
 //! linearized bounces and bring their end to x = θ = ẋ = θ̇ = 0, with the second derivatives of the bounces in what it minimizes: the steps are
 //! Newton's on the conditions of the minimum, which hold where they end. The first step starts from a body that bounces upright.
 
+use super::bounce::Node;
 use super::failure::{Obstacle, PlanFailure};
 use super::problem::{END_WEIGHT, Goal, PlanProblem};
 use super::step::{Step, end_units};
@@ -28,6 +29,9 @@ const NEAR: f64 = 1e-6;
 
 /// Largest tilt on the way, rad: below a quarter turn.
 const LARGEST_TILT: f64 = 1.4;
+
+/// Shares of a first node's x, θ, ẋ and θ̇ from which a plan is carried on to all of it, where it does not converge at once.
+const SHARES: [f64; 4] = [0.4, 0.6, 0.8, 1.0];
 
 /// A solution and the way to it.
 #[derive(Clone, Debug)]
@@ -73,6 +77,36 @@ pub(super) fn solve(
         }
     }
     Err(PlanFailure::NotConverged { strikes: *strikes, iterations: MOST_STEPS, residual: linearization.largest_gap })
+}
+
+/// Solves a problem from a body that bounces upright; where that does not converge, from the solution of the problem that begins nearer to
+/// upright, share by share.
+///
+/// # Errors
+/// The reason for which the first does not converge.
+pub(super) fn solve_from_upright(
+    problem: &PlanProblem,
+    goal: &Goal,
+    clearance: f64,
+    first: &Node,
+) -> Result<Solution, PlanFailure> {
+    let begin = Trajectory::upright(problem, first);
+    solve(problem, goal, clearance, begin).or_else(|failure| {
+        let nearer = |share: f64| {
+            let mut node = first.to_vector();
+            node.fixed_rows_mut::<4>(0).scale_mut(share);
+            node
+        };
+        let mut now = Trajectory::upright(problem, &Node::from_vector(&nearer(SHARES[0])));
+        let mut found = Err(failure);
+        for share in SHARES {
+            now.nodes[0] = nearer(share);
+            let solution = solve(problem, goal, clearance, now).map_err(|_| failure)?;
+            now = solution.trajectory.clone();
+            found = Ok(solution);
+        }
+        found
+    })
 }
 
 /// Search along a step for a better trajectory.

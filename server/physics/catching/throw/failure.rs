@@ -4,6 +4,9 @@ use crate::body::Touch;
 use crate::table::actuator_load::LimitViolation;
 use std::fmt;
 
+/// Largest tilt of a throw, rad: 80°. A steeper table throws to the side what it should lift, and no rig tilts so far.
+pub const STEEPEST: f64 = 1.4;
+
 /// Reason for which no strike throws a body to a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ThrowFailure {
@@ -36,6 +39,11 @@ pub enum ThrowFailure {
         friction: f64,
         /// Least and largest angle at the apex, rad, that tilts below a quarter turn reach; `None` if no tilt reaches the height.
         reach: Option<(f64, f64)>,
+    },
+    /// The table would have to tilt beyond [`STEEPEST`].
+    TooSteep {
+        /// α, rad.
+        alpha: f64,
     },
     /// The strike needs more of the table than its limits allow.
     BeyondLimits(LimitViolation),
@@ -86,6 +94,9 @@ impl fmt::Display for ThrowFailure {
                 "theta {theta} rad at the apex is out of reach with friction {friction}: tilts below a quarter turn reach {least} to \
                  {most} rad"
             ),
+            Self::TooSteep { alpha } => {
+                write!(f, "the strike needs a tilt of {alpha} rad; no throw tilts the table beyond {STEEPEST} rad")
+            }
             Self::BeyondLimits(LimitViolation { quantity, value, limit, unit }) => {
                 write!(f, "the strike needs a {quantity} of {value} {unit}; the table's limit is {limit} {unit}")
             }

@@ -6,7 +6,7 @@
 mod failure;
 mod search;
 
-pub use failure::ThrowFailure;
+pub use failure::{STEEPEST, ThrowFailure};
 
 use crate::body::general::GeneralBody;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release};
@@ -97,6 +97,9 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
         Err(NoContact::OtherVertex(touch)) if touch.t <= apex.t => return Err(ThrowFailure::OtherVertex(touch)),
         Ok(Arrival { t, .. }) if t <= apex.t => return Err(ThrowFailure::ContactReturns { t, apex: apex.t }),
         Ok(_) | Err(_) => {}
+    }
+    if strike.alpha.abs() > STEEPEST {
+        return Err(ThrowFailure::TooSteep { alpha: strike.alpha });
     }
     let turn = body.rod.radius_of_gyration * (apex.theta - target.theta);
     Ok(Throw {
