@@ -1085,6 +1085,34 @@ export interface components {
             clearance: number;
             error_estimate: number | null;
         } | {
+            /** @enum {string} */
+            phase: "impact" | "hold";
+            n: number | null;
+            time?: number;
+            t: components["schemas"]["Decimal"];
+            x: components["schemas"]["Decimal"];
+            theta: components["schemas"]["Decimal"];
+            x_dot: components["schemas"]["Decimal"];
+            y_dot: components["schemas"]["Decimal"] | null;
+            theta_dot: components["schemas"]["Decimal"] | null;
+            alpha: components["schemas"]["Decimal"];
+            table_velocity_x: components["schemas"]["Decimal"] | null;
+            table_velocity_y: components["schemas"]["Decimal"] | null;
+            impulse_normal: components["schemas"]["Decimal"] | null;
+            impulse_tangential: components["schemas"]["Decimal"] | null;
+            /** @enum {unknown} */
+            contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null;
+            energy: components["schemas"]["Decimal"] | null;
+            flight_time: components["schemas"]["Decimal"] | null;
+            contact_speed: components["schemas"]["Decimal"] | null;
+            clearance: number | null;
+            error_estimate: number | null;
+            normal_force: number | null;
+            tangential_force: number | null;
+            table_x: number | null;
+            table_y: number | null;
+            table_y_dot: number | null;
+        } | {
             end: {
                 demand: components["schemas"]["Demand"];
                 nearest_vertex?: components["schemas"]["NearestVertex"];

@@ -13,7 +13,7 @@ use equipoise_physics::table::actuator_load::ActuatorLoad;
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use crate::api::catches::columns::{OF_HOLD, of_strikes, stacked, to_table};
+use crate::api::catches::columns::{OF_HOLD, of_strikes, to_table};
 use crate::api::catches::outcome::{CatchOutcomeAnswer, note_text};
 use crate::api::catches::request::{CatchOptions, NO_BODY};
 use crate::api::formats::Tabular;
@@ -21,6 +21,7 @@ use crate::api::scene::{Derived, scene_to_json};
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::Table;
+use crate::api::shared::table::stacked::stacked;
 use crate::api::shared::weights::Weights;
 use crate::charts::significant;
 

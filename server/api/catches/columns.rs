@@ -4,7 +4,7 @@ use equipoise_physics::catching::outcome::CatchStrike;
 use equipoise_physics::contact::HoldSample;
 
 use crate::api::shared::table::gather::{Gathered, Read};
-use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::shared::table::{Column, Table};
 use crate::api::trajectories::columns::COLUMNS;
 
 /// A column of the rows of a catch.
@@ -120,49 +120,6 @@ pub fn to_table<Row>(columns: impl Iterator<Item = CatchColumn<Row>>, rows: &[Ro
     Table(columns.map(column).collect())
 }
 
-/// One table of several, for CSV and NDJSON: their rows one after another, and the column `phase` first. A cell is empty where its
-/// part lacks the column.
-pub fn stacked(parts: &[(&'static str, &Table)]) -> Table {
-    let phase = parts.iter().flat_map(|(phase, table)| std::iter::repeat_n(Some(*phase), table.rows()));
-    let mut columns = vec![Column { name: "phase", unit: "", cells: Cells::Words(phase.collect()) }];
-    for column in parts.iter().flat_map(|(_, table)| &table.0) {
-        if columns.iter().all(|known| known.name != column.name) {
-            let same = |table: &'_ Table| table.0.iter().position(|own| own.name == column.name);
-            let cells = parts.iter().map(|(_, table)| (same(table).map(|index| &table.0[index].cells), table.rows()));
-            let cells = joined(&column.cells, &cells.collect::<Vec<_>>());
-            columns.push(Column { name: column.name, unit: column.unit, cells });
-        }
-    }
-    Table(columns)
-}
-
-/// The cells of a column in several tables, one after another; `kind` is one of them.
-fn joined(kind: &Cells, parts: &[(Option<&Cells>, usize)]) -> Cells {
-    fn filled<T: Clone>(
-        parts: &[(Option<&Cells>, usize)],
-        read: impl Fn(&Cells) -> Option<Vec<Option<T>>>,
-    ) -> Vec<Option<T>> {
-        let each = parts.iter().map(|(cells, rows)| cells.and_then(&read).unwrap_or_else(|| vec![None; *rows]));
-        each.flatten().collect()
-    }
-    match kind {
-        Cells::Words(_) => Cells::Words(filled(parts, |cells| match cells {
-            Cells::Words(words) => Some(words.clone()),
-            _ => None,
-        })),
-        Cells::Counts(_) => Cells::SparseCounts(filled(parts, |cells| match cells {
-            Cells::Counts(counts) => Some(counts.iter().copied().map(Some).collect()),
-            _ => None,
-        })),
-        // Strikes and holds have no other kinds.
-        _ => Cells::Sparse(filled(parts, |cells| match cells {
-            Cells::Numbers(numbers) => Some(numbers.iter().copied().map(Some).collect()),
-            Cells::Sparse(numbers) => Some(numbers.clone()),
-            _ => None,
-        })),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -189,23 +146,5 @@ mod tests {
     fn the_contract_has_the_columns_of_strikes_and_hold() {
         hold("Strikes", &of_strikes().map(|column| (column.name, column.unit, column.about)).collect::<Vec<_>>());
         hold("HoldSamples", &OF_HOLD.iter().map(|column| (column.name, column.unit, column.about)).collect::<Vec<_>>());
-    }
-
-    #[test]
-    fn rows_of_two_tables_stand_one_after_another() {
-        let column = |name, cells| Column { name, unit: "", cells };
-        let one = Table(vec![
-            column("n", Cells::Counts(vec![1, 2])),
-            column("t", Cells::Numbers(vec![0.5, 0.75])),
-            column("mode", Cells::Words(vec![Some("stick"), None])),
-        ]);
-        let other =
-            Table(vec![column("t", Cells::Numbers(vec![1.0])), column("force", Cells::Sparse(vec![Some(9.8)]))]);
-        let both = stacked(&[("strike", &one), ("hold", &other)]);
-        assert_eq!(
-            serde_json::to_value(&both).unwrap(),
-            json!({"phase": ["strike", "strike", "hold"], "n": [1, 2, null], "t": [0.5, 0.75, 1.0],
-                "mode": ["stick", null, null], "force": [null, null, 9.8]})
-        );
     }
 }

@@ -22,7 +22,7 @@ use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::Table;
 use crate::api::trajectories::columns::{ExtendedRow, ImpactRow, date};
 use crate::api::trajectories::flights::{Flights, SampledFlight};
-use crate::api::trajectories::hold::{HoldAnswer, HoldEnd};
+use crate::api::trajectories::hold::{HoldAnswer, HoldEnd, phases};
 use crate::api::trajectories::impacts::Impacts;
 use crate::api::trajectories::request::TrajectoryRequest;
 use crate::runs::playback::Playback;
@@ -128,6 +128,9 @@ pub struct TrajectoryAnswer<'a> {
     pub nearest_vertex: Option<NearestVertex>,
     /// Reasons for nulls.
     pub notes: Vec<String>,
+    /// The request, for the table of its phases.
+    #[serde(skip)]
+    request: &'a TrajectoryRequest,
 }
 
 impl<'a> TrajectoryAnswer<'a> {
@@ -257,13 +260,18 @@ impl<'a> TrajectoryAnswer<'a> {
             notes,
             demand: tracker.most.into(),
             nearest_vertex,
+            request,
         })
     }
 }
 
 impl Tabular for TrajectoryAnswer<'_> {
     fn to_table(&self) -> Cow<'_, Table> {
-        Cow::Borrowed(&self.impacts)
+        if self.request.hold > 0.0 {
+            Cow::Owned(phases(&self.impacts, self.hold.as_ref(), self.request.epoch))
+        } else {
+            Cow::Borrowed(&self.impacts)
+        }
     }
 
     fn end(&self) -> impl Serialize {

@@ -152,11 +152,14 @@ impl ImpactColumn {
     }
 }
 
+/// Name of the column of dates.
+pub const DATES: &str = "time";
+
 /// All columns, in their order.
 pub static COLUMNS: [ImpactColumn; 22] = [
     column("n", "", "Number of the impact, counted from 1.", Read::Count(|row| row.contact.n)),
     column(
-        "time",
+        DATES,
         "",
         "Wall time, in milliseconds since 1970 (UTC). Only with `epoch`.",
         Read::SparseCount(|row| row.time),

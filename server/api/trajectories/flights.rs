@@ -6,7 +6,7 @@ use equipoise_physics::scene::Scene;
 use crate::api::scene::has_angle;
 use crate::api::shared::table::gather::{Gathered, Read};
 use crate::api::shared::table::{Column, Table};
-use crate::api::trajectories::columns::date;
+use crate::api::trajectories::columns::{DATES, date};
 
 /// A point of a flight.
 #[derive(Debug, Clone, Copy)]
@@ -34,8 +34,6 @@ const COLUMNS: [(&str, &str, Read<FlightSample>); 9] = [
     ("y_dot", "m/s", Read::Number(|sample| sample.y_dot)),
     ("theta_dot", "rad/s", Read::Sparse(|sample| sample.theta_dot)),
 ];
-
-const DATES: &str = "time";
 
 /// The columns of an answer.
 pub(crate) fn columns(dated: bool) -> impl Iterator<Item = (&'static str, &'static str, Read<FlightSample>)> {

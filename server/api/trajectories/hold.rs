@@ -8,7 +8,9 @@ use serde::Serialize;
 
 use crate::api::catches::columns::{OF_HOLD, to_table};
 use crate::api::shared::refusal::Refusal;
-use crate::api::shared::table::Table;
+use crate::api::shared::table::stacked::stacked;
+use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::trajectories::columns::{DATES, date};
 
 /// The contact: its samples and its end.
 #[derive(Debug)]
@@ -17,6 +19,18 @@ pub(crate) struct HoldAnswer {
     pub(crate) samples: Table,
     /// End.
     pub(crate) end: HoldEnd,
+}
+
+/// Impacts and the contact after them as one table, for CSV and NDJSON. The columns do not depend on the outcome: a run that did not
+/// settle has no rows in contact. With a known time of release the contact has dates too.
+pub(crate) fn phases(impacts: &Table, samples: Option<&Table>, epoch: Option<u64>) -> Table {
+    let mut contact = samples.cloned().unwrap_or_else(|| to_table(OF_HOLD.iter().copied(), &[]));
+    let times = contact.0.iter().find(|column| column.name == "t").and_then(|column| column.cells.numbers());
+    if let (Some(epoch), Some(times)) = (epoch, times) {
+        let dates = times.into_iter().map(|t| Some(date(epoch, t))).collect();
+        contact.0.push(Column { name: DATES, unit: "", cells: Cells::SparseCounts(dates) });
+    }
+    stacked(&[("impact", impacts), ("hold", &contact)])
 }
 
 /// End of the contact.

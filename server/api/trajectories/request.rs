@@ -89,8 +89,10 @@ impl TrajectoryRequest {
     pub fn numbers(&self) -> u64 {
         let dated = self.epoch.is_some();
         let (impact, sample) = (columns::of_trajectories(dated).count(), flights::columns(dated).count());
-        let held = self.held_samples() * OF_HOLD.len() as u64;
-        self.impacts.saturating_mul(impact as u64 + self.samples_per_flight * sample as u64).saturating_add(held)
+        // In CSV and NDJSON each row has the columns of both phases.
+        let row = if self.hold > 0.0 { impact + OF_HOLD.len() } else { impact } as u64;
+        let held = self.held_samples() * row;
+        self.impacts.saturating_mul(row + self.samples_per_flight * sample as u64).saturating_add(held)
     }
 
     /// Most samples of the contact after the bounces.

@@ -1,6 +1,7 @@
 //! A table of results, defined once and written as JSON columns, CSV with units in its header, or NDJSON rows.
 
 pub mod gather;
+pub mod stacked;
 
 use std::io::{self, Write};
 
