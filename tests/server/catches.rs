@@ -242,6 +242,63 @@ async fn the_same_catch_is_the_same_bytes_in_every_format() {
     }
 }
 
+/// Places of a curve of the picture in the units of its panel, as its data attributes tell them.
+fn curve(picture: &roxmltree::Document<'_>, panel: &str, name: &str) -> Vec<(f64, f64)> {
+    let nodes = || picture.descendants();
+    let frame = nodes().find(|node| node.attribute("data-panel") == Some(panel)).unwrap();
+    let read = |name: &str| frame.attribute(name).unwrap().parse::<f64>().unwrap();
+    let ends = |name: &str| -> Vec<f64> {
+        frame.attribute(name).unwrap().split(' ').map(|end| end.parse().unwrap()).collect()
+    };
+    let ([left, top, width, height], x, y) = (["x", "y", "width", "height"].map(read), ends("data-x"), ends("data-y"));
+    let paths = nodes().filter(|node| node.attribute("data-curve") == Some(name));
+    let places = paths.flat_map(|path| {
+        let points = path.attribute("d").unwrap().split(['M', 'L']).filter(|point| !point.is_empty());
+        points.map(|point| {
+            let mut numbers = point.trim_end_matches("h0").split(' ').map(|number| number.parse::<f64>().unwrap());
+            (numbers.next().unwrap(), numbers.next().unwrap())
+        })
+    });
+    let inside = places.filter(|(px, py)| {
+        (left - 0.1..=left + width + 0.1).contains(px) && (top - 0.1..=top + height + 0.1).contains(py)
+    });
+    inside
+        .map(|(px, py)| (x[0] + (px - left) / width * (x[1] - x[0]), y[1] - (py - top) / height * (y[1] - y[0])))
+        .collect()
+}
+
+#[tokio::test]
+async fn the_picture_has_the_stroke_and_every_strike() {
+    let server = Server::start();
+    for query in ["strategy=plan&ratio=1&strikes=5", "strategy=bounce_down", "strategy=brake"] {
+        let answer = caught(&server, query).await;
+        let text = server.get(&format!("/v1/catches?{FALL}&{query}&format=svg")).await.expect(200);
+        let picture = roxmltree::Document::parse(text.text()).unwrap();
+        let strikes = &answer["strikes"];
+        for (panel, column) in [("alpha", "alpha"), ("table_speed", "table_velocity")] {
+            let (t, values) = (numbers(&strikes["t"]), numbers(&strikes[column]));
+            let drawn = curve(&picture, panel, "strikes");
+            assert_eq!(drawn.len(), t.len(), "{query}: {panel}");
+            let range = 1e-2 * largest(&values).max(1e-3);
+            for ((x, y), (t, value)) in drawn.into_iter().zip(t.into_iter().zip(values)) {
+                assert!((x - t).abs() < 0.02 && (y - value).abs() < range.max(0.01), "{panel}: {x} {y}, {t} {value}");
+            }
+        }
+        // From the lowest to the highest place of the table: on its way from one strike to the next, 17 points each, and in contact.
+        let height = |name| curve(&picture, "table_y", name).into_iter().map(|(_, y)| y).collect::<Vec<_>>();
+        let span = |heights: &[f64]| {
+            heights.iter().fold(0.0_f64, |most, y| most.max(*y))
+                - heights.iter().fold(0.0_f64, |least, y| least.min(*y))
+        };
+        let drawn = height("way").chunks(17).map(span).fold(span(&height("contact")), f64::max);
+        let stroke = number(&answer, "/demand/stroke");
+        assert!(drawn < 1.03 * stroke && drawn > 0.9 * stroke, "{query}: {drawn} {stroke}");
+        for panel in ["theta", "y", "x"] {
+            assert!(curve(&picture, panel, "body").len() > 17, "{query}: {panel}");
+        }
+    }
+}
+
 #[tokio::test]
 async fn requests_that_contradict_themselves_are_refused() {
     let server = Server::start();

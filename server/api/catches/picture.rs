@@ -1,14 +1,15 @@
-//! The picture of `catches`: angles, height, place and table speed over time, through strikes and hold.
+//! The picture of `catches` over time, through strikes and hold: angle, height and place of the body; tilt, height and speed of the table.
 
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::catching::outcome::CatchStrike;
 use equipoise_physics::contact::HoldSample;
 use equipoise_physics::numbers::trig::sin_cos;
 use equipoise_physics::scene::Scene;
+use equipoise_physics::table::actuator_load::height_between;
 
 use crate::api::catches::answer::CatchAnswer;
 use crate::api::formats::Pictured;
-use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot, chart};
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, PanelNames, Plot, readable_chart};
 use crate::http::Problem;
 
 /// Points of a flight.
@@ -84,26 +85,33 @@ impl Pictured for CatchAnswer {
         let held = |read: fn(&HoldSample) -> f64| hold.iter().map(|sample| (sample.t, read(sample))).collect();
         let time = ChartAxis::new("time", "t", "s");
         let plot = |name, symbol, unit, curves| Plot { x: time, y: ChartAxis::new(name, symbol, unit), curves };
-        let body = |label, points| Curve { label, style: CurveStyle::Truth, points };
+        let body = |label, points| vec![Curve { label, style: CurveStyle::Truth, points }];
         let dots = |label, points| Curve { label, style: CurveStyle::BesideDots, points };
         let line = |label, points| Curve { label, style: CurveStyle::Beside, points };
-        Ok(chart(&Chart {
+        let way = Curve { label: "table between strikes", style: CurveStyle::Limit, points: way(&caught.strikes) };
+        let drawn = Chart {
             title: "A falling body, caught and held by a table",
             subtitle: format!("{}: {}", self.outcome.kind, self.outcome.detail),
             caption: format!("Strategy {}: {}. {}", self.strategy.name, self.strategy.reason, self.notes.join("; ")),
             plots: vec![
+                plot("angle of the body", "θ", "rad", body("body", motion.theta)),
                 plot(
-                    "angle",
-                    "θ, α",
+                    "tilt of the table",
+                    "α",
                     "rad",
                     vec![
-                        body("body", motion.theta),
                         dots("table at strikes", strikes(|at| at.strike.alpha)),
                         line("table in contact", held(|sample| sample.alpha)),
                     ],
                 ),
-                plot("height of the centre of gravity", "y", "m", vec![body("", motion.y)]),
-                plot("place of the centre of gravity", "x", "m", vec![body("", motion.x)]),
+                plot("height of the centre of gravity", "y", "m", body("", motion.y)),
+                plot(
+                    "height of the table",
+                    "",
+                    "m",
+                    vec![way, dots("", strikes(|_| 0.0)), line("", held(|sample| sample.table_y))],
+                ),
+                plot("place of the centre of gravity", "x", "m", body("", motion.x)),
                 plot(
                     "speed of the table",
                     "w",
@@ -111,6 +119,30 @@ impl Pictured for CatchAnswer {
                     vec![dots("", strikes(|at| at.strike.table_speed())), line("", held(|sample| sample.table_y_dot))],
                 ),
             ],
-        }))
+        };
+        Ok(readable_chart(&drawn, &PANELS))
     }
+}
+
+/// Names of the panels and curves for a page. Those of the body are on the left, those of the table on the right.
+static PANELS: [PanelNames; 6] = [
+    PanelNames { panel: "theta", curves: &["body"] },
+    PanelNames { panel: "alpha", curves: &["strikes", "contact"] },
+    PanelNames { panel: "y", curves: &["body"] },
+    PanelNames { panel: "table_y", curves: &["way", "strikes", "contact"] },
+    PanelNames { panel: "x", curves: &["body"] },
+    PanelNames { panel: "table_speed", curves: &["strikes", "contact"] },
+];
+
+/// Height of the table from strike to strike: the way whose range is the stroke of the demand.
+fn way(strikes: &[CatchStrike]) -> Points {
+    let vertical = |at: &CatchStrike| at.strike.table_velocity.1;
+    let pairs = strikes.windows(2).take(FLIGHTS);
+    let between = pairs.flat_map(|pair| {
+        let (t, time) = (pair[0].t, pair[0].flight_time.unwrap_or(0.0));
+        let velocities = (vertical(&pair[0]), vertical(&pair[1]));
+        let share = |n: usize| n as f64 / (POINTS - 1) as f64;
+        (0..POINTS).map(move |n| (t + time * share(n), height_between(velocities, time, share(n))))
+    });
+    between.collect()
 }

@@ -4,18 +4,34 @@ use std::fmt::Write as _;
 
 use crate::charts::draw::colour::{HATCH, INK, PALE_GREY, PAPER};
 use crate::charts::draw::geometry::{Frame, Point};
-use crate::charts::draw::svg::{Svg, fixed};
+use crate::charts::draw::svg::{Svg, Tag, fixed};
 
 /// Many equal dots, as one path: a third of the bytes of circles.
 pub(crate) fn dots(svg: &mut Svg, points: impl Iterator<Item = Point>, radius: f64, colour: &str) {
+    readable_dots(svg, points, radius, colour, &[]);
+}
+
+/// The same with data attributes.
+pub(crate) fn readable_dots(
+    svg: &mut Svg,
+    points: impl Iterator<Item = Point>,
+    radius: f64,
+    colour: &str,
+    data: &[(&str, &str)],
+) {
     let mut path = String::new();
     for (x, y) in points {
         let _ = write!(path, "M{} {}h0", fixed(x), fixed(y));
     }
     if !path.is_empty() {
         let tag = svg.tag("path").word("d", &path).word("fill", "none").word("stroke", colour);
-        tag.number("stroke-width", 2.0 * radius).word("stroke-linecap", "round").end();
+        with_data(tag.number("stroke-width", 2.0 * radius).word("stroke-linecap", "round"), data).end();
     }
+}
+
+/// Adds data attributes to a tag.
+fn with_data<'a>(tag: Tag<'a>, data: &[(&str, &str)]) -> Tag<'a> {
+    data.iter().fold(tag, |tag, (name, value)| tag.word(name, value))
 }
 
 /// Straight lines through points, dashed by `dashes`.
@@ -41,10 +57,7 @@ pub(crate) fn readable_line(
     if let Some(dashes) = dashes {
         tag = tag.word("stroke-dasharray", dashes);
     }
-    for (name, value) in data {
-        tag = tag.word(name, value);
-    }
-    tag.end();
+    with_data(tag, data).end();
 }
 
 /// Numbers for a data attribute, apart by spaces, each with all its digits.

@@ -3,7 +3,7 @@
 use crate::charts::draw::colour::{BLUE, GREEN, ORANGE, SOFT_INK, VERMILION};
 use crate::charts::draw::geometry::{Frame, Point};
 use crate::charts::draw::legend::{LegendSample, legend};
-use crate::charts::draw::marks::{dots, line, ring};
+use crate::charts::draw::marks::{readable_dots, readable_line, ring};
 use crate::charts::draw::panel::{Axis, Panel};
 use crate::charts::draw::scale::Range;
 use crate::charts::draw::sheet::{Sheet, Words};
@@ -56,6 +56,15 @@ pub struct Curve {
     pub style: CurveStyle,
     /// x and y. Points that are NaN or outside the panel are left out.
     pub points: Vec<(f64, f64)>,
+}
+
+/// Names of a panel and of its curves, in their order.
+#[derive(Clone, Copy, Debug)]
+pub struct PanelNames {
+    /// Name of the panel.
+    pub panel: &'static str,
+    /// Names of the curves.
+    pub curves: &'static [&'static str],
 }
 
 /// The style of a curve. Colour and kind of line carry the same information.
@@ -151,8 +160,18 @@ impl ChartAxis {
 
 /// Draws a chart.
 pub fn chart(drawn: &Chart) -> String {
+    readable_chart(drawn, &[])
+}
+
+/// The same with data attributes, from which a page reads values at a place: a name for each panel (`data-panel`, with the ends of its
+/// axes), and one for each of its curves (`data-curve`).
+pub fn readable_chart(drawn: &Chart, names: &[PanelNames]) -> String {
     // Height of a panel, and from one row to the next.
-    let (height, pitch) = if drawn.plots.len() > 2 { (230.0, 312.0) } else { (332.0, 0.0) };
+    let (height, pitch) = match drawn.plots.len() {
+        0..=2 => (332.0, 0.0),
+        3..=4 => (230.0, 312.0),
+        _ => (180.0, 258.0),
+    };
     let rows = drawn.plots.len().div_ceil(2).max(1);
     let room = height + 92.0 + pitch * (rows - 1) as f64;
     let description = format!("{}: {} {}", drawn.title, drawn.subtitle, drawn.caption);
@@ -169,7 +188,10 @@ pub fn chart(drawn: &Chart) -> String {
         let points = || plot.curves.iter().flat_map(|curve| curve.points.iter().copied());
         let (x, y) = (plot.x.axis(points().map(|point| point.0)), plot.y.axis(points().map(|point| point.1)));
         let panel = Panel::draw_scaled(&mut svg, frame, x, y, [plot.x.logarithmic, plot.y.logarithmic]);
-        for curve in &plot.curves {
+        let named = names.get(n);
+        for (index, curve) in plot.curves.iter().enumerate() {
+            let data = named.and_then(|names| names.curves.get(index)).map(|name| ("data-curve", *name));
+            let data = data.as_slice();
             let placed = curve.points.iter().map(|(x, y)| (plot.x.place(*x), plot.y.place(*y)));
             let inside = |range: Range, value: f64| (range.low..=range.high).contains(&value);
             let drawn: Vec<Point> = placed
@@ -179,15 +201,18 @@ pub fn chart(drawn: &Chart) -> String {
             let thickness = if matches!(curve.style, CurveStyle::Beside | CurveStyle::Limit) { 1.6 } else { 2.4 };
             match curve.style.mark() {
                 Mark::Line { .. } if drawn.is_empty() => {}
-                Mark::Line { colour, dashes } => line(&mut svg, &drawn, colour, thickness, dashes),
-                Mark::Dots { radius, colour } => dots(&mut svg, drawn.into_iter(), radius, colour),
+                Mark::Line { colour, dashes } => readable_line(&mut svg, &drawn, colour, thickness, dashes, data),
+                Mark::Dots { radius, colour } => readable_dots(&mut svg, drawn.into_iter(), radius, colour, data),
                 Mark::Rings(colour) => drawn.into_iter().for_each(|point| ring(&mut svg, point, 4.5, colour)),
             }
             if !curve.label.is_empty() {
                 entries.push((curve.style.mark().sample(), curve.label));
             }
         }
-        panel.edge(&mut svg);
+        match named {
+            Some(names) => panel.readable_edge(&mut svg, names.panel, x.range, y.range),
+            None => panel.edge(&mut svg),
+        }
     }
     legend(&mut svg, 0.5 * width, top + room - 22.0, &entries);
     svg.finish()

@@ -12,7 +12,7 @@ pub mod survival;
 
 pub use branches::{Branches, StabilityChange, branches};
 pub use card::{CARD_SIZE, Card, CardPlane, FirstContact, PlacedBody, card};
-pub use chart::{Chart, ChartAxis, Curve, CurveStyle, Plot, chart};
+pub use chart::{Chart, ChartAxis, Curve, CurveStyle, PanelNames, Plot, chart, readable_chart};
 pub use closed_loop::{Loop, closed_loop};
 pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalue_dial, eigenvalues};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};

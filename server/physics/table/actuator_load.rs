@@ -58,10 +58,17 @@ impl Pose {
     }
 }
 
-/// Maximum minus minimum of time·s(1 − s)(v₀(1 − s) − v₁s) over 0 ≤ s ≤ 1, m.
+/// Height of the table at the share `s` of the time between two strikes, m: time·s(1 − s)(v₀(1 − s) − v₁s), the cubic that leaves y = 0
+/// at v₀ and comes back to it at v₁, in m/s.
+#[inline(always)]
+pub fn height_between((v0, v1): (f64, f64), time: f64, s: f64) -> f64 {
+    time * s * (1.0 - s) * (v0 * (1.0 - s) - v1 * s)
+}
+
+/// Maximum minus minimum of the height between two strikes over 0 ≤ s ≤ 1, m.
 fn stroke(v0: f64, v1: f64, time: f64) -> f64 {
     // The derivative 3(v₀ + v₁)s² − (4v₀ + 2v₁)s + v₀ has two real roots: its discriminant is 4(v₀² + v₀v₁ + v₁²).
-    let height = |s: f64| time * s * (1.0 - s) * (v0 * (1.0 - s) - v1 * s);
+    let height = |s: f64| height_between((v0, v1), time, s);
     let half = 2.0 * v0 + v1;
     let root = (v0 * v0 + v0 * v1 + v1 * v1).sqrt();
     // Without cancellation: the root of the same sign first, the other from their product v₀/(3(v₀ + v₁)).

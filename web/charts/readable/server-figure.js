@@ -86,7 +86,7 @@ export class FigurePoints {
   }
 }
 
-/** Panels of a figure, one below the other, that share whole numbers along x. */
+/** Panels of a figure, one below the other or side by side, that share their values along x. */
 export class FigureColumns {
   #figure;
   #line = svg('path', { class: 'pointed', hidden: '' });
@@ -107,13 +107,20 @@ export class FigureColumns {
     figure.append(this.#line);
   }
 
-  /** The number next to a place on the screen, or null beside the panels. @param {PointerEvent} event */
-  nearest({ clientX, clientY }) {
+  /** The value along x at a place on the screen, or null beside the panels. @param {PointerEvent} event */
+  valueAt({ clientX, clientY }) {
     const { x } = new DOMPoint(clientX, clientY).matrixTransform(this.#figure.getScreenCTM()?.inverse());
-    const { left, right, low, high } = this.#panels[0];
-    if (x < left - 8 || x > right + 8) return null;
-    const value = Math.round(low + ((x - left) / (right - left)) * (high - low));
-    return Math.max(low + 1, Math.min(high, value));
+    const panel = this.#panels.find(({ left, right }) => x >= left - 8 && x <= right + 8);
+    if (!panel) return null;
+    const { left, right, low, high } = panel;
+    return low + ((x - left) / (right - left)) * (high - low);
+  }
+
+  /** The whole number next to a place on the screen, or null beside the panels. @param {PointerEvent} event */
+  nearest(event) {
+    const value = this.valueAt(event);
+    const { low, high } = this.#panels[0];
+    return value === null ? null : Math.max(low + 1, Math.min(high, Math.round(value)));
   }
 
   /** @param {number | null} value */
