@@ -62,7 +62,7 @@ export async function bringLateParts(page) {
     launch: (/** @type {Record<string, number>} */ values) => launch(page, values),
     changed: () => updateAddressSoon(page),
   };
-  page.panels = new Panels(
+  const panels = new Panels(
     byId('tabs'),
     byId('tab-panels'),
     {
@@ -94,14 +94,16 @@ export async function bringLateParts(page) {
     measured: { bar: byId('measured-bar'), show: () => page.panels?.show('measured') },
     follow: () => page.follow(false),
   });
-  page.panels.join('brush', page.interaction);
-  page.panels.join('chart', chart);
+  panels.join('brush', page.interaction);
+  panels.join('chart', chart);
   await styles('scene/tools/tools.css').catch(() => {});
   bringSceneTools({ ...actions, view, typed: () => page.complete });
   bringTracks(page);
   void bringImpacts({ run, query: () => playedQuery(page), csv: () => csvPath(page) });
-  page.panels.join('pin', await bringPins(page, others));
-  page.panels.restore(page.panelLink);
-  if (page.judged) page.panels.judged(page.judged);
+  panels.join('pin', await bringPins(page, others));
+  // Until they are restored, the address keeps their part of the link.
+  page.panels = panels;
+  panels.restore(page.panelLink);
+  if (page.judged) panels.judged(page.judged);
   performance.mark('all parts');
 }
