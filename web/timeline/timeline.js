@@ -150,6 +150,8 @@ export class Timeline {
     const { run, fields } = this.#parts;
     if (run.interventions.length > this.bar.marks.length) this.bar.marks = marksOf(run, fields);
     if (this.#back.disabled) this.#offer();
+    // Of a run that stands still this may be the last picture.
+    if (run.phase !== 'running') this.#told_ms = -Infinity;
     invalidate(this.bar);
     invalidate(this);
   }
