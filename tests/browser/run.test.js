@@ -113,7 +113,10 @@ test('pause holds the run, step moves it by one impact, restart begins again', a
 test('a kick acts and is kept in the address', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
   await page.click('#run');
-  await reachImpact(page, 1);
+  await reachPhase(page, 'running');
+  // Some kicks make the body fall within a second, and then there is nothing to kick.
+  await page.click('#run');
+  await reachPhase(page, 'paused');
   await page.click('#kick');
   await page.waitForFunction(() => /kick\.theta_dot=0\.5/.test(location.search));
   await page.locator('.kick input').fill('much');

@@ -18,6 +18,8 @@ const FLAGS = [
 ];
 /** The page itself, once its first parts are there. */
 const BEGUN = '#case:enabled';
+/** Slows the page down by so many times, to find races. */
+const THROTTLE = Number(process.env.THROTTLE ?? 1);
 /** How long a condition may take before a test gives up; no test measures speed by it. */
 export const PATIENCE_MS = 120_000;
 
@@ -104,6 +106,8 @@ export class Stage {
     await context.grantPermissions(['clipboard-read', 'clipboard-write']);
     const page = await context.newPage();
     page.setDefaultTimeout(PATIENCE_MS);
+    if (THROTTLE > 1)
+      await (await context.newCDPSession(page)).send('Emulation.setCPUThrottlingRate', { rate: THROTTLE });
     const wrongs = [];
     page.on('console', (message) => {
       if (['error', 'warning'].includes(message.type())) wrongs.push(`console: ${message.text()}`);
@@ -206,6 +210,31 @@ export const reachImpact = (page, n) =>
 
 export const reachPhase = (page, phase) => page.locator(`#run-state[data-phase=${phase}]`).waitFor();
 
+/** Waits until all that is known is drawn. */
+export const drawn = (page) =>
+  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+/**
+ * Steps a run to its impact `n`, or pauses it beyond. A run that goes on by the clock is anywhere by the time a busy machine
+ * pauses it.
+ */
+export async function stepTo(page, n) {
+  if ((await page.locator('#run-state').getAttribute('data-phase')) !== 'paused') await page.click('#run');
+  await reachPhase(page, 'paused');
+  await drawn(page);
+  for (let last = await impacts(page); last < n; last += 1) {
+    await page.click('#step');
+    await reachImpact(page, last + 1);
+  }
+  // The address follows a moment later.
+  const last = await impacts(page);
+  await page.waitForFunction((n) => {
+    const [, told, t] = /^n\s(\d+) · ([\d.]+)/.exec(document.querySelector('#timeline-told').textContent) ?? [];
+    const run = [...new URLSearchParams(location.search)].findLast(([key]) => /^clock\.\d+\.run$/.test(key))?.[1];
+    return Number(told) === n && Number(run).toFixed(2) === t;
+  }, last);
+}
+
 /** How many pixels of a canvas have (nearly) the colour of the style sheet's property. */
 export async function ink(page, selector, property) {
   await showChart(page, selector.slice(1));
@@ -244,7 +273,7 @@ export async function showChart(page, id) {
   await page.locator('.switch').waitFor({ state: 'attached' });
   if (!(await button.isVisible())) return;
   await button.click();
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await drawn(page);
 }
 
 /** The numbers behind a chart, as its table shows them. */
@@ -355,16 +384,14 @@ export async function pausedRun(stage, query, n, options = {}) {
 export async function changedRun(stage) {
   const opened = await stage.page('?preset=case-1&scene.release.theta=0.2');
   const { page } = opened;
-  await speedUp(page);
   await page.click('#run');
-  await reachImpact(page, 3);
+  await reachPhase(page, 'running');
+  await stepTo(page, 3);
   await slide(page, '#gain', 1.2);
   await page.waitForFunction(() => /tilt_gain=1\.2/.test(location.search));
+  await stepTo(page, (await impacts(page)) + 2);
   await page.click('#kick');
   await page.waitForFunction(() => /kick\.theta_dot/.test(location.search));
-  await reachImpact(page, 12);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
-  await page.waitForFunction(() => /clock\.\d+\.speed=0/.test(location.search));
+  await stepTo(page, Math.max(12, (await impacts(page)) + 2));
   return opened;
 }
