@@ -1,10 +1,13 @@
 //! Liveness and readiness probes, `/health/live` and `/health/ready`.
 
+use std::sync::LazyLock;
+
+use axum::Router;
+use axum::body::Bytes;
 use axum::extract::State;
-use axum::http::{HeaderValue, header};
+use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use axum::{Json, Router};
 use serde_json::json;
 
 use crate::BUILD;
@@ -25,6 +28,10 @@ async fn ready(State(app): State<App>) -> Result<Response, Problem> {
 }
 
 fn healthy() -> Response {
-    let body = Json(json!({"status": "ok", "build": BUILD, "version": env!("CARGO_PKG_VERSION")}));
-    ([(header::CACHE_CONTROL, HeaderValue::from_static("no-store"))], body).into_response()
+    static BODY: LazyLock<Bytes> = LazyLock::new(|| {
+        let body = json!({"status": "ok", "build": BUILD, "version": env!("CARGO_PKG_VERSION")});
+        body.to_string().into()
+    });
+    let headers = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
+    (headers, BODY.clone()).into_response()
 }

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::hash::{Hash, Hasher};
 use std::time::Duration;
 
-use prometheus_client::encoding::EncodeLabelSet;
+use axum::extract::MatchedPath;
 use prometheus_client::encoding::text::encode;
+use prometheus_client::encoding::{EncodeLabelSet, EncodeLabelValue, LabelValueEncoder};
 use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::family::Family;
 use prometheus_client::metrics::gauge::Gauge;
@@ -35,15 +37,52 @@ const BUCKETS_S: [f64; 11] = [1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0,
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
 struct RequestLabels {
-    method: String,
-    route: String,
+    method: &'static str,
+    route: Route,
     status: u16,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
 struct RouteLabels {
-    method: String,
-    route: String,
+    method: &'static str,
+    route: Route,
+}
+
+/// The template of a request's route. It shares the router's text.
+#[derive(Debug, Clone)]
+pub struct Route(Option<MatchedPath>);
+
+impl Route {
+    /// The template, or `none` outside all routes.
+    fn as_str(&self) -> &str {
+        self.0.as_ref().map_or("none", MatchedPath::as_str)
+    }
+}
+
+impl From<Option<MatchedPath>> for Route {
+    fn from(path: Option<MatchedPath>) -> Self {
+        Self(path)
+    }
+}
+
+impl PartialEq for Route {
+    fn eq(&self, other: &Self) -> bool {
+        self.as_str() == other.as_str()
+    }
+}
+
+impl Eq for Route {}
+
+impl Hash for Route {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.as_str().hash(state);
+    }
+}
+
+impl EncodeLabelValue for Route {
+    fn encode(&self, encoder: &mut LabelValueEncoder<'_>) -> fmt::Result {
+        self.as_str().encode(encoder)
+    }
 }
 
 impl Metrics {
@@ -66,12 +105,10 @@ impl Metrics {
     }
 
     /// Counts one answered request. `route` is the template and not the path, so clients cannot make up labels.
-    pub fn record(&self, method: &str, route: &str, status: u16, duration: Duration) {
-        let method = match method {
-            "GET" | "HEAD" | "POST" | "PUT" | "PATCH" | "DELETE" | "OPTIONS" => method,
-            _ => "other",
-        };
-        let labels = RouteLabels { method: method.to_owned(), route: route.to_owned() };
+    pub fn record(&self, method: &str, route: Route, status: u16, duration: Duration) {
+        const METHODS: [&str; 7] = ["GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"];
+        let method = METHODS.into_iter().find(|known| *known == method).unwrap_or("other");
+        let labels = RouteLabels { method, route };
         self.durations.get_or_create(&labels).observe(duration.as_secs_f64());
         self.requests.get_or_create(&RequestLabels { method: labels.method, route: labels.route, status }).inc();
     }
@@ -118,12 +155,12 @@ mod tests {
     #[test]
     fn what_is_counted_is_shown() {
         let metrics = Metrics::new(&Pool::new(1, &crate::limits::Limits::default()));
-        metrics.record("GET", "/v1/scenes", 200, Duration::from_millis(1));
-        metrics.record("BREW", "none", 405, Duration::from_millis(1));
+        metrics.record("GET", Route(None), 404, Duration::from_millis(1));
+        metrics.record("BREW", Route(None), 405, Duration::from_millis(1));
         metrics.bounces.inc_by(7);
         let text = metrics.to_open_metrics().unwrap();
         for line in [
-            "equipoise_requests_total{method=\"GET\",route=\"/v1/scenes\",status=\"200\"} 1",
+            "equipoise_requests_total{method=\"GET\",route=\"none\",status=\"404\"} 1",
             "equipoise_requests_total{method=\"other\",route=\"none\",status=\"405\"} 1",
             "equipoise_bounces_total 7",
             "equipoise_jobs_running 0",
