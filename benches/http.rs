@@ -1,12 +1,16 @@
-//! Requests per second of `GET /v1/trajectories` and of a bare axum handler that serializes the same columns from memory:
-//! `cargo bench --bench http`. Both are measured in turns over the same number of connections on loopback, so that the ratio holds
-//! on a noisy machine.
+//! Requests per second of the server and of bare axum handlers: `cargo bench --bench http`.
+//!
+//! First answers that are asked for again, beside a handler that sends the same bytes from memory; then `/v1/trajectories` computed
+//! each time, beside a handler that serializes the same columns from memory. Both sides are measured in turns over the same number of
+//! connections on loopback, so that the ratio holds on a noisy machine.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use axum::body::Bytes;
+use axum::http::header;
 use axum::routing::get;
 use axum::{Json, Router};
 use clap::Parser;
@@ -16,30 +20,53 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 
 const CONNECTIONS: usize = 8;
-const ROUND: Duration = Duration::from_millis(1500);
+const ROUND: Duration = Duration::from_millis(800);
 const ROUNDS: usize = 7;
 const PATH: &str = "/v1/trajectories?preset=case-1&impacts=100";
 
+/// Answers that are asked for again, with their media types.
+const AGAIN: [(&str, &str); 6] = [
+    ("/health/live", "application/json"),
+    ("/", "text/html; charset=utf-8"),
+    (PATH, "application/json"),
+    ("/v1/stability?preset=case-1", "application/json"),
+    ("/v1/scenes", "application/json"),
+    ("/v1/controllers?preset=case-1", "application/json"),
+];
+
 #[tokio::main]
 async fn main() -> std::io::Result<()> {
-    let app = App::new(&Config::parse_from(["equipoise"]));
-    let ours = serve(equipoise::router::router(app)).await?;
-    let answer = ask(ours, PATH).await?;
-    let columns: serde_json::Value = serde_json::from_slice(&answer)?;
-    let columns: Arc<Columns> = Arc::new(serde_json::from_value(columns["impacts"].clone())?);
-    let bare =
-        serve(Router::new().route("/v1/trajectories", get(move || async move { Json(Columns::clone(&columns)) })))
-            .await?;
-    println!("{} bytes each, {CONNECTIONS} connections, {ROUNDS} rounds of {ROUND:?}", answer.len());
-    let mut ratios = Vec::new();
-    for _ in 0..ROUNDS {
-        let (ours, bare) = (rate(ours).await, rate(bare).await);
-        println!("equipoise {ours:.0}/s, bare axum from memory {bare:.0}/s, ratio {:.2}", ours / bare);
-        ratios.push(ours / bare);
+    let ours = serve(equipoise::router::router(App::new(&Config::parse_from(["equipoise"])))).await?;
+    println!("{CONNECTIONS} connections, {ROUNDS} rounds of {ROUND:?}; medians");
+    for (path, media_type) in AGAIN {
+        let bytes = Bytes::from(ask(ours, path).await?);
+        let answer = move || {
+            let bytes = bytes.clone();
+            async move { ([(header::CONTENT_TYPE, media_type)], bytes) }
+        };
+        let bare = serve(Router::new().route(path.split('?').next().unwrap_or(path), get(answer))).await?;
+        compare(path, ours, bare, path).await;
     }
-    ratios.sort_by(f64::total_cmp);
-    println!("median ratio {:.2}", ratios[ROUNDS / 2]);
+    let ours =
+        serve(equipoise::router::router(App::new(&Config::parse_from(["equipoise", "--answer-cache", "0"])))).await?;
+    let columns: serde_json::Value = serde_json::from_slice(&ask(ours, PATH).await?)?;
+    let columns: Arc<Columns> = Arc::new(serde_json::from_value(columns["impacts"].clone())?);
+    let answer = move || async move { Json(Columns::clone(&columns)) };
+    let bare = serve(Router::new().route("/v1/trajectories", get(answer))).await?;
+    compare("computed each time, beside columns serialized from memory", ours, bare, PATH).await;
     Ok(())
+}
+
+/// Measures both servers in turns, and prints the medians.
+async fn compare(title: &str, ours: SocketAddr, bare: SocketAddr, path: &'static str) {
+    let mut rounds = Vec::new();
+    for _ in 0..ROUNDS {
+        let (ours, bare) = (rate(ours, path).await, rate(bare, path).await);
+        rounds.push((ours, bare, ours / bare));
+    }
+    rounds.sort_by(|one, other| one.2.total_cmp(&other.2));
+    let (ours, bare, ratio) = rounds[ROUNDS / 2];
+    println!("{title}: equipoise {ours:.0}/s, bare axum {bare:.0}/s, ratio {ratio:.2}");
 }
 
 /// The columns of the answer in memory.
@@ -59,7 +86,7 @@ async fn serve(router: Router) -> std::io::Result<SocketAddr> {
 }
 
 /// Measures requests per second over one round.
-async fn rate(address: SocketAddr) -> f64 {
+async fn rate(address: SocketAddr, path: &'static str) -> f64 {
     let count = Arc::new(AtomicU64::new(0));
     let start = Instant::now();
     let clients: Vec<_> = (0..CONNECTIONS)
@@ -69,7 +96,7 @@ async fn rate(address: SocketAddr) -> f64 {
                 let mut stream = TcpStream::connect(address).await?;
                 stream.set_nodelay(true)?;
                 while start.elapsed() < ROUND {
-                    exchange(&mut stream, PATH).await?;
+                    exchange(&mut stream, path).await?;
                     count.fetch_add(1, Ordering::Relaxed);
                 }
                 std::io::Result::Ok(())

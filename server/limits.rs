@@ -82,6 +82,12 @@ pub struct Limits {
     #[arg(value_parser = within::<usize>(HELD_BYTES_LEAST as usize..=1 << 44, "bytes"))]
     pub held_bytes: usize,
 
+    /// Memory for answers that are asked for again: those whose request determines every byte. 0 keeps none. The default is a
+    /// thirty-second of the memory of the process, at most 64 MiB, some 2000 runs of a hundred impacts
+    #[arg(long, env = "EQUIPOISE_ANSWER_CACHE", value_name = "BYTES", default_value = ANSWER_CACHE.as_str())]
+    #[arg(value_parser = within::<usize>(0..=1 << 44, "bytes"))]
+    pub answer_cache: usize,
+
     /// Requests that may wait for each permit. One client gets at most as many places as are left, so half of them. More
     /// requests than this would reach the queue time anyway
     #[arg(long, env = "EQUIPOISE_QUEUE", value_name = "NUMBER", default_value = "16")]
@@ -143,12 +149,17 @@ impl Limits {
     }
 }
 
-/// Default of [`Limits::held_bytes`] on this machine, as text.
-static HELD_BYTES: LazyLock<String> = LazyLock::new(|| held_bytes(memory::allowed()).to_string());
+/// Default of [`Limits::held_bytes`] on this machine, as text. Computing takes as much again; connections take the rest.
+static HELD_BYTES: LazyLock<String> =
+    LazyLock::new(|| share(memory::allowed(), HELD_BYTES_SHARE, HELD_BYTES_LEAST..=HELD_BYTES_MOST).to_string());
 
-/// Memory for unsent answers, from the memory of the process. Computing takes as much again; connections take the rest.
-fn held_bytes(allowed: Option<u64>) -> u64 {
-    allowed.map_or(HELD_BYTES_MOST, |allowed| allowed / HELD_BYTES_SHARE).clamp(HELD_BYTES_LEAST, HELD_BYTES_MOST)
+/// Default of [`Limits::answer_cache`] on this machine, as text.
+static ANSWER_CACHE: LazyLock<String> =
+    LazyLock::new(|| share(memory::allowed(), ANSWER_CACHE_SHARE, 0..=ANSWER_CACHE_MOST).to_string());
+
+/// One part in so many of the memory of the process, within a range.
+fn share(allowed: Option<u64>, parts: u64, range: RangeInclusive<u64>) -> u64 {
+    allowed.map_or(*range.end(), |allowed| allowed / parts).clamp(*range.start(), *range.end())
 }
 
 /// The defaults of the flags. The environment is not read.
@@ -341,6 +352,24 @@ const HELD_BYTES_LEAST: u64 = 1024 * 1024;
 /// Largest default for unsent answers, bytes: a dozen answers of the largest size.
 const HELD_BYTES_MOST: u64 = 1024 * 1024 * 1024;
 
+/// Default share of the memory of the process for kept answers: one part in so many.
+const ANSWER_CACHE_SHARE: u64 = 32;
+
+/// Largest default for kept answers, bytes. What is asked for again, such as the panels of a dashboard, takes far less.
+const ANSWER_CACHE_MOST: u64 = 64 * 1024 * 1024;
+
+/// Largest kept answer, bytes. A larger one takes longer to send than its request to read, and would push many others out.
+pub const KEPT_ANSWER_BYTES: usize = 1024 * 1024;
+
+/// Bytes of a kept answer besides its name and its body.
+pub const KEPT_ANSWER_OVERHEAD: usize = 256;
+
+/// Size of a typical kept answer, bytes, from which the tables for them are sized.
+pub const ANSWER_CACHE_TYPICAL_BYTES: usize = 16 * 1024;
+
+/// Parts of the memory for kept answers, each with a lock. An answer has room in one of them.
+pub const ANSWER_CACHE_SHARDS: usize = 4;
+
 /// Bytes that are compressed or copied between two checks for cancellation: under 10 ms.
 pub const GZIP_STEP_BYTES: usize = 128 * 1024;
 
@@ -379,71 +408,10 @@ pub const GOODBYE_TIME: Duration = Duration::from_secs(1);
 
 // --- Live runs ---
 
-/// Bytes of one message from a live client. The longest valid one sets a few fields.
-pub const LIVE_MESSAGE_BYTES: usize = 8 * 1024;
+#[path = "limits_live.rs"]
+mod live;
 
-/// Messages a second that a live client may send, averaged over a few seconds. A dragged slider sends up to 60.
-pub const LIVE_MESSAGES_PER_S: u32 = 120;
-
-/// Read buffer of a live client, bytes; its messages are short. The library clears its default of 128 KiB at every read, which takes
-/// two thirds of all work with a thousand clients.
-pub const LIVE_READ_BYTES: usize = 4 * 1024;
-
-/// Bytes that wait before the socket is written to.
-pub const LIVE_WRITE_BYTES: usize = 16 * 1024;
-
-/// Most bytes that wait in the socket's buffer: several of the longest messages. Beyond it messages wait in the outbox, where impacts
-/// can be skipped.
-pub const LIVE_WRITE_MOST_BYTES: usize = 1024 * 1024;
-
-/// Impacts that wait for a slow live client before the oldest are skipped with a `gap`: four batches.
-pub const LIVE_QUEUE: usize = 1024;
-
-/// Time that a live client may be behind before it is closed with 1013. It is under the default `stall_time`, which would close the
-/// connection without a reason.
-pub const LIVE_BEHIND_TIME: Duration = Duration::from_secs(20);
-
-/// Bytes of a message that close the connection. A message between this and `LIVE_MESSAGE_BYTES` is refused, and the run goes on.
-pub const LIVE_FRAME_BYTES: usize = 4 * LIVE_MESSAGE_BYTES;
-
-/// Impacts in one message: 14 numbers of 20 bytes each, so about 70 KiB.
-pub const LIVE_BATCH: usize = 256;
-
-/// Impacts per second of wall time above which they come in batches. No display shows more.
-pub const LIVE_SINGLE_PER_S: f64 = 60.0;
-
-/// Time from one such batch to the next.
-pub const LIVE_BATCH_TIME: Duration = Duration::from_millis(50);
-
-/// Work of a live run between two batches, in bounces, besides the limit of `LIVE_BATCH` impacts, which is 5,120 a second. A run that
-/// needs more falls behind its clock.
-pub const LIVE_BATCH_BOUNCES: u64 = 4096;
-
-/// Impacts of a live run, after which it is `completed`: a month at four a second. Otherwise a run that bounces in place never ends.
-pub const LIVE_IMPACTS: u64 = 10_000_000;
-
-/// Interventions in one run. All of them are in its URL, which must stay under `URL_BYTES`.
-pub const LIVE_INTERVENTIONS: usize = 100;
-
-/// Clock entries in a live run's URL. Older entries change nothing from now on, and are left out.
-pub const LIVE_CLOCK_ENTRIES: usize = 16;
-
-/// Time between pings to a live client.
-pub const LIVE_PING_TIME: Duration = Duration::from_secs(20);
-
-/// Time without a message or pong from a live client, after which it counts as gone.
-pub const LIVE_SILENCE_TIME: Duration = Duration::from_secs(60);
-
-/// Time after which a client of events reconnects.
-pub const LIVE_RETRY_TIME: Duration = Duration::from_secs(1);
-
-/// Price of sending one past impact, in bounces. About 100,000 of them can be sent at once.
-pub const LIVE_IMPACT_PRICE: u64 = 100;
-
-/// Work of catching up with an old `epoch` or `from`: a run of `LIVE_IMPACTS` to its end, so that every run can be reconnected to, and
-/// the last impacts sent again. About 0.7 s of one core, and 2 s with noise.
-pub const LIVE_CATCH_UP: Limit =
-    Limit { name: "work of catching up with this run", most: LIVE_IMPACTS + 1_000_000, unit: "bounces" };
+pub use live::*;
 
 #[cfg(test)]
 #[path = "limits_tests.rs"]

@@ -110,8 +110,8 @@ async fn identify(State(edge): State<Arc<EdgeConfig>>, mut request: Request, nex
     let begin = Instant::now();
     let peer = edge.peer(&request);
     request.extensions_mut().insert(peer);
-    if let Some(origin) = host::PublicOrigin::of(request.headers(), edge.is_from_proxy(&request)) {
-        request.extensions_mut().insert(origin);
+    if edge.is_from_proxy(&request) {
+        request.extensions_mut().insert(host::FromProxy);
     }
     let logged = edge.config.access_log.then(|| (request.method().clone(), request.uri().clone()));
     let context = RequestContext::new(request.headers(), edge.base.clone());

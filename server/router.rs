@@ -153,7 +153,7 @@ mod tests {
                 _ => serde_json::to_vec(&squares).expect("numbers"),
             })
         };
-        api_request.respond(&app.pool, &RESOURCE, &canonical, price, compute).await
+        api_request.respond(&app.answers, &RESOURCE, &canonical, price, compute).await
     }
 
     async fn text_of(response: Response<Body>) -> String {

@@ -8,6 +8,7 @@ use tokio::sync::watch;
 use crate::api::ops::metrics::Metrics;
 use crate::compute::{FairQuota, Pool};
 use crate::config::Config;
+use crate::http::Answers;
 use crate::limits::Limits;
 
 /// State of the server, shared by all routes. Cheap to clone.
@@ -15,6 +16,8 @@ use crate::limits::Limits;
 pub struct App {
     /// Runs CPU-bound work.
     pub pool: Pool,
+    /// Answers of pure work, in memory and under way.
+    pub answers: Answers,
     /// Places for live runs, shared among clients.
     pub live_quota: FairQuota,
     /// The configuration.
@@ -30,9 +33,11 @@ impl App {
     /// An app as configured, with nothing to do yet.
     pub fn new(config: &Config) -> Self {
         let pool = Pool::new(config.permits(), &config.limits);
+        let answers = Answers::new(&pool, config.limits.answer_cache);
         Self {
-            metrics: Arc::new(Metrics::new(&pool)),
+            metrics: Arc::new(Metrics::new(&pool, answers.counts())),
             pool,
+            answers,
             live_quota: FairQuota::new(config.limits.live_sessions),
             config: Arc::new(config.clone()),
             base_path: config.base_path.as_str().into(),

@@ -130,14 +130,14 @@ async fn answer<R: ComputedResource>(app: App, api_request: ApiRequest) -> Resul
         Work::Pure { canonical, compute } => {
             let canonical = canonical(&request);
             let compute = move |format, slice: &TimeSlice| compute(&request, negotiated(format), slice, &bounces);
-            api_request.respond(&app.pool, &resource, &canonical, price, compute).await
+            api_request.respond(&app.answers, &resource, &canonical, price, compute).await
         }
         Work::InSlices { canonical, streamed, compute } => {
             let canonical = canonical(&request);
             let compute = move |format, slices: &TimeSlices, out: &mut BodyWriter| {
                 compute(&request, negotiated(format), slices, out, &bounces)
             };
-            api_request.respond_in_slices(&app.pool, &resource, &canonical, streamed, compute).await
+            api_request.respond_in_slices(&app.answers, &resource, &canonical, streamed, compute).await
         }
         Work::Measured { streamed, compute } => {
             let compute = move |format, slice: &TimeSlice, out: &mut BodyWriter| {

@@ -64,5 +64,5 @@ pub(crate) async fn fixed<T: Serialize>(
     api_request.read(|_| Some(()))?;
     let price = Price::bounces(price);
     let compute = move |_, slice: &TimeSlice| shared::write::json(&answer(slice).ok_or(Cancelled)?, slice);
-    api_request.respond(&app.pool, &RESOURCE, canonical.as_bytes(), price, compute).await
+    api_request.respond(&app.answers.permanent(), &RESOURCE, canonical.as_bytes(), price, compute).await
 }

@@ -100,8 +100,8 @@ impl Pool {
     }
 
     /// Accounts an answer to the peer until it is dropped.
-    pub fn hold(&self, result: Vec<u8>) -> HeldBytes {
-        HeldBytes { _reservation: self.results.charge(self.peer, result.len()), result }
+    pub fn hold<T: AsRef<[u8]>>(&self, result: T) -> HeldBytes<T> {
+        HeldBytes { _reservation: self.results.charge(self.peer, result.as_ref().len()), result }
     }
 
     /// Number of running jobs.
@@ -223,14 +223,14 @@ impl Pool {
 
 /// Bytes of an unsent answer, accounted to its client.
 #[derive(Debug)]
-pub struct HeldBytes {
-    result: Vec<u8>,
+pub struct HeldBytes<T> {
+    result: T,
     _reservation: Reservation,
 }
 
-impl AsRef<[u8]> for HeldBytes {
+impl<T: AsRef<[u8]>> AsRef<[u8]> for HeldBytes<T> {
     fn as_ref(&self) -> &[u8] {
-        &self.result
+        self.result.as_ref()
     }
 }
 

@@ -15,6 +15,7 @@ pub use crate::http::request::context::{REQUEST_ID, RequestContext};
 pub use crate::http::request::ndjson::{BatchItem, NdjsonBatch};
 pub use crate::http::request::reader::{Errors, Reader};
 pub use crate::http::request::scalar::Source;
+pub use crate::http::response::answers::{AnswerCounts, Answers};
 pub use crate::http::response::cached::Resource;
 pub use crate::http::response::negotiate::Format;
 pub use crate::http::response::streaming::BodyWriter;

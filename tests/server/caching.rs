@@ -1,7 +1,13 @@
-//! The same request has the same bytes, and a client that has them gets 304 without any work.
+//! The same request has the same bytes, and a client that has them gets 304 without any work. Answers are kept in memory, and computed
+//! once for requests that come together.
 
-use crate::support::Server;
-use axum::http::Method;
+use std::sync::Arc;
+
+use crate::support::{Answer, Server};
+use axum::http::{HeaderMap, Method};
+use equipoise::config::Config;
+use equipoise::limits;
+use equipoise::limits::Limits;
 use serde_json::json;
 
 const TARGETS: [&str; 8] = [
@@ -131,4 +137,268 @@ async fn the_pool_has_no_say_in_the_bytes() {
     let dear = "/v1/trajectories?preset=case-1&impacts=20000";
     let (one, other) = tokio::join!(server.get(dear), server.get(dear));
     assert_eq!(one.expect(200).raw, other.expect(200).raw);
+}
+
+/// A server with so much memory for answers.
+fn with_answer_cache(bytes: usize) -> Server {
+    Server::with(&Config { limits: Limits { answer_cache: bytes, ..Limits::default() }, ..Config::default() })
+}
+
+/// A count at `/metrics`, without the prefix of all names.
+async fn count(server: &Server, name: &str) -> u64 {
+    let metrics = server.get("/metrics").await.expect(200);
+    let line = metrics.text().lines().find_map(|line| line.strip_prefix(&format!("equipoise_{name} ")));
+    line.unwrap_or_else(|| panic!("no count {name}")).parse().expect("a whole number")
+}
+
+/// Hits, misses and joined requests.
+async fn counts(server: &Server) -> [u64; 3] {
+    [
+        count(server, "answer_cache_hits_total").await,
+        count(server, "answer_cache_misses_total").await,
+        count(server, "answer_cache_joined_total").await,
+    ]
+}
+
+/// All headers but the id of the request.
+fn lasting(answer: &Answer) -> HeaderMap {
+    let mut headers = answer.headers.clone();
+    assert!(headers.remove("x-request-id").is_some());
+    headers
+}
+
+/// Every resource and format whose answers are kept.
+const KEPT: [&str; 19] = [
+    "/v1/trajectories?preset=case-1",
+    "/v1/trajectories?preset=case-1&format=csv",
+    "/v1/trajectories?preset=case-1&format=ndjson",
+    "/v1/trajectories?preset=case-1&format=svg",
+    "/v1/trajectories?preset=case-1&impacts=10&format=png",
+    "/v1/jacobians?preset=case-1",
+    "/v1/stability?preset=case-1&impacts=100",
+    "/v1/stability?preset=case-1&impacts=100&format=svg",
+    "/v1/controllers?preset=case-1",
+    "/v1/ladder?preset=case-1&impacts=100",
+    "/v1/previews?preset=case-1",
+    "/v1/previews?preset=case-1&format=svg",
+    "/v1/periodic-orbits?preset=case-1",
+    "/v1/regions?preset=case-1&impacts=20&x.parameter=release.theta&x.from=-1&x.to=1&x.count=8&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=8",
+    "/v1/regions?preset=case-1&impacts=20&x.parameter=release.theta&x.from=-1&x.to=1&x.count=8&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=8&format=svg",
+    "/v1/ensembles?preset=case-1-noise&runs=20&impacts=50",
+    "/v1/ensembles?preset=case-1-noise&runs=20&impacts=50&format=csv",
+    "/v1/failures",
+    "/v1/scenes",
+];
+
+#[tokio::test]
+async fn a_kept_answer_is_the_first_one_again() {
+    let server = Server::start();
+    let none = with_answer_cache(0);
+    for target in KEPT {
+        for headers in [&[][..], &[("accept-encoding", "gzip")]] {
+            let before = counts(&server).await;
+            let cold = server.get_with(target, headers).await.expect(200);
+            // Pixels are never compressed, so both encodings are one answer.
+            let is_new = u64::from(headers.is_empty() || cold.header("content-encoding").is_some());
+            let between = counts(&server).await;
+            assert_eq!(between[1] - before[1], is_new, "{target}");
+            let bounces = count(&server, "bounces_total").await;
+            let warm = server.get_with(target, headers).await.expect(200);
+            assert_eq!((&warm.raw, lasting(&warm)), (&cold.raw, lasting(&cold)), "{target}");
+            assert_eq!(counts(&server).await, [between[0] + 1, between[1], between[2]], "{target}");
+            assert_eq!(count(&server, "bounces_total").await, bounces, "{target}");
+            let alone = none.get_with(target, headers).await.expect(200);
+            assert_eq!((&alone.raw, lasting(&alone)), (&cold.raw, lasting(&cold)), "{target}");
+            let head = server.send(Method::HEAD, target, headers, "").await.expect(200);
+            assert_eq!((head.raw.len(), head.etag()), (0, cold.etag()), "{target}");
+            let held = [headers, &[("if-none-match", cold.etag())]].concat();
+            server.get_with(target, &held).await.expect(304);
+        }
+    }
+}
+
+#[tokio::test]
+async fn get_post_and_batches_share_an_answer() {
+    let server = Server::start();
+    let first = server.get("/v1/trajectories?preset=case-1").await.expect(200);
+    let again = server.post("/v1/trajectories", &json!({"preset": "case-1", "impacts": 100})).await.expect(200);
+    assert_eq!(again.raw, first.raw);
+    let lines = "{\"preset\": \"case-1\"}\n{\"preset\": \"case-1\", \"impacts\": 100}\n";
+    let headers = [("content-type", "application/x-ndjson")];
+    let batch = server.send(Method::POST, "/v1/batches/trajectories", &headers, lines).await.expect(200);
+    let answers = batch.text().lines().filter(|line| line.ends_with(&format!("{}}}", first.text()))).count();
+    assert_eq!(answers, 2);
+    assert_eq!(counts(&server).await, [3, 1, 0]);
+}
+
+#[tokio::test]
+async fn requests_that_come_together_are_computed_once() {
+    for target in [
+        "/v1/stability?preset=case-1&impacts=20000",
+        "/v1/regions?preset=case-1&impacts=200&x.parameter=release.theta&x.from=-1&x.to=1&x.count=60&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=60",
+        "/v1/trajectories?preset=case-1&impacts=20000",
+    ] {
+        let alone = Server::start();
+        let one = alone.get(target).await.expect(200);
+        let bounces = count(&alone, "bounces_total").await;
+        let server = Server::start();
+        let all = futures_util::future::join_all((0..8).map(|_| server.get(target))).await;
+        for answer in all {
+            assert_eq!(answer.expect(200).raw, one.raw, "{target}");
+        }
+        let [hits, misses, joined] = counts(&server).await;
+        assert_eq!((misses, hits + joined), (1, 7), "{target}");
+        assert_eq!(count(&server, "bounces_total").await, bounces, "{target}");
+    }
+}
+
+#[tokio::test]
+async fn a_computation_outlives_the_client_that_began_it() {
+    let target = "/v1/stability?preset=case-1&impacts=100000";
+    let server = Arc::new(Server::start());
+    let begin = || {
+        let server = server.clone();
+        tokio::spawn(async move { server.get(target).await })
+    };
+    let first = begin();
+    while count(&server, "answer_cache_misses_total").await == 0 {
+        tokio::task::yield_now().await;
+    }
+    let second = begin();
+    while count(&server, "answer_cache_joined_total").await == 0 {
+        tokio::task::yield_now().await;
+    }
+    first.abort();
+    second.await.unwrap().expect(200);
+    assert_eq!(counts(&server).await, [0, 1, 1]);
+    server.get(target).await.expect(200);
+    assert_eq!(counts(&server).await, [1, 1, 1]);
+}
+
+#[tokio::test]
+async fn work_that_every_client_has_left_is_cancelled_and_not_kept() {
+    let target = "/v1/regions?preset=case-1&impacts=2000&x.parameter=release.theta&x.from=-1&x.to=1&x.count=500&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=500";
+    let server = Arc::new(Server::start());
+    let asked = server.clone();
+    let first = tokio::spawn(async move { asked.get(target).await });
+    while count(&server, "jobs_running").await == 0 {
+        assert!(!first.is_finished(), "the work is too short to be seen");
+        tokio::task::yield_now().await;
+    }
+    first.abort();
+    while count(&server, "jobs_running").await > 0 {
+        tokio::task::yield_now().await;
+    }
+    assert_eq!((counts(&server).await, count(&server, "answer_cache_bytes").await), ([0, 1, 0], 0));
+}
+
+#[tokio::test]
+async fn memory_is_bounded_however_many_requests_differ() {
+    const BYTES: usize = 256 * 1024;
+    let server = with_answer_cache(BYTES);
+    let mut most = 0;
+    for n in 0..200 {
+        let target = format!("/v1/trajectories?preset=case-1&impacts=40&scene.release.theta=0.{n:03}1");
+        server.get(&target).await.expect(200);
+        most = most.max(count(&server, "answer_cache_bytes").await);
+        assert!(most <= BYTES as u64, "{most} bytes after {n} answers");
+    }
+    assert!(most > BYTES as u64 / 2, "{most}");
+    assert_eq!(counts(&server).await[1], 200);
+    // The oldest have made room, and are computed again.
+    let [hits, ..] = counts(&server).await;
+    server.get("/v1/trajectories?preset=case-1&impacts=40&scene.release.theta=0.0001").await.expect(200);
+    server.get("/v1/trajectories?preset=case-1&impacts=40&scene.release.theta=0.0011").await.expect(200);
+    server.get("/v1/trajectories?preset=case-1&impacts=40&scene.release.theta=0.0021").await.expect(200);
+    assert!(counts(&server).await[0] < hits + 3);
+}
+
+#[tokio::test]
+async fn a_large_answer_is_not_kept() {
+    let server = Server::start();
+    let large = "/v1/trajectories?preset=case-1&impacts=10000";
+    for _ in 0..2 {
+        assert!(server.get(large).await.expect(200).raw.len() > limits::KEPT_ANSWER_BYTES);
+    }
+    assert_eq!((counts(&server).await, count(&server, "answer_cache_bytes").await), ([0, 2, 0], 0));
+}
+
+#[tokio::test]
+async fn without_memory_each_request_is_computed() {
+    let server = with_answer_cache(0);
+    let target = "/v1/stability?preset=case-1&impacts=100";
+    let first = server.get(target).await.expect(200);
+    let bounces = count(&server, "bounces_total").await;
+    assert_eq!(server.get(target).await.expect(200).raw, first.raw);
+    assert_eq!(count(&server, "bounces_total").await, 2 * bounces);
+    assert_eq!(counts(&server).await, [0, 0, 0]);
+    // Answers of the build are made once all the same.
+    for fixed in ["/v1/scenes", "/v1/fields"] {
+        let [hits, misses, _] = counts(&server).await;
+        let first = server.get(fixed).await.expect(200);
+        assert_eq!(server.get(fixed).await.expect(200).raw, first.raw);
+        assert_eq!(counts(&server).await, [hits + 1, misses + 1, 0]);
+    }
+}
+
+#[tokio::test]
+async fn an_error_is_not_kept() {
+    let server = Server::start();
+    // The answer has nothing to draw, which is known only when it is computed.
+    let target = "/v1/periodic-orbits?preset=case-4&format=svg";
+    for _ in 0..2 {
+        let answer = server.send_unheld(Method::GET, target, &[], "").await;
+        let kept = count(&server, "answer_cache_bytes").await;
+        assert_eq!(answer.status == 200, kept > 0, "{}", answer.status);
+    }
+    server.get("/v1/trajectories?preset=case-1&impacts=0").await.expect(422);
+    assert_eq!(counts(&server).await[0], 0);
+}
+
+#[tokio::test]
+async fn a_measurement_and_a_stream_are_never_kept() {
+    let server = Server::start();
+    let before = counts(&server).await;
+    for target in [
+        "/v1/precision?preset=case-1&impacts=2&methods.0=time_stepping",
+        "/v1/regions?preset=case-1&impacts=20&x.parameter=release.theta&x.from=-1&x.to=1&x.count=8&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=8&format=csv",
+        "/v1/regions?preset=case-1&impacts=20&x.parameter=release.theta&x.from=-1&x.to=1&x.count=8&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=8&format=ndjson",
+    ] {
+        server.get(target).await.expect(200);
+        server.get(target).await.expect(200);
+        assert_eq!((counts(&server).await, count(&server, "answer_cache_bytes").await), (before, 0), "{target}");
+    }
+}
+
+#[tokio::test]
+async fn access_is_checked_before_the_cache() {
+    let config = Config { token: Some("0123456789abcdef".parse().unwrap()), ..Config::default() };
+    let server = Server::with(&config);
+    let target = "/v1/stability?preset=case-1&impacts=100";
+    let bearer = ("authorization", "Bearer 0123456789abcdef");
+    for _ in 0..2 {
+        server.get_with(target, &[bearer]).await.expect(200);
+        let refused = server.send_unheld(Method::GET, target, &[], "").await.expect(401);
+        assert_eq!(refused.header("etag"), None);
+        let wrong = ("authorization", "Bearer 0123456789abcdee");
+        server.send_unheld(Method::GET, target, &[wrong], "").await.expect(401);
+    }
+    let open = Server::start();
+    open.get(target).await.expect(200);
+    let foreign = [("sec-fetch-site", "cross-site"), ("sec-fetch-mode", "no-cors"), ("sec-fetch-dest", "image")];
+    open.send_unheld(Method::GET, target, &foreign, "").await.expect(403);
+}
+
+#[tokio::test]
+async fn the_page_is_kept_as_it_is_sent() {
+    let (server, none) = (Server::start(), with_answer_cache(0));
+    for target in ["/", "/?preset=case-2", "/?preset=case-2&scene.table.tilt_gain=1.2"] {
+        for headers in [&[][..], &[("accept-encoding", "gzip")]] {
+            let ask = async |server: &Server| server.get_with(target, headers).await.expect(200);
+            let (cold, warm, alone) = (ask(&server).await, ask(&server).await, ask(&none).await);
+            assert_eq!((&warm.raw, lasting(&warm)), (&cold.raw, lasting(&cold)), "{target}");
+            assert_eq!((&alone.raw, lasting(&alone)), (&cold.raw, lasting(&cold)), "{target}");
+        }
+    }
+    assert_eq!(counts(&server).await[0], 6);
 }

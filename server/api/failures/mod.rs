@@ -34,7 +34,7 @@ async fn failures(State(app): State<App>, api_request: ApiRequest) -> Result<Res
     api_request.read(|_| Some(()))?;
     let price = Price::bounces(CASES.iter().map(|case| case.price).sum());
     api_request
-        .respond(&app.pool, &RESOURCE, b"", price, move |_, slice: &TimeSlice| {
+        .respond(&app.answers, &RESOURCE, b"", price, move |_, slice: &TimeSlice| {
             // A case takes a few milliseconds, so one check per case is enough.
             let each = CASES
                 .iter()
@@ -57,12 +57,16 @@ async fn failure(
     api_request.read(|_| Some(()))?;
     let price = Price::bounces(case.price);
     api_request
-        .respond(&app.pool, &RESOURCE, case.name.as_bytes(), price, move |format, slice: &TimeSlice| {
-            match negotiated(format) {
+        .respond(
+            &app.answers,
+            &RESOURCE,
+            case.name.as_bytes(),
+            price,
+            move |format, slice: &TimeSlice| match negotiated(format) {
                 FigureFormat::Json => write::json(&FailureAnswer::compute(case), slice),
                 FigureFormat::Svg => Ok(chart(&case.picture()).into_bytes()),
                 FigureFormat::Png => write::pixels(&chart(&case.picture()), slice),
-            }
-        })
+            },
+        )
         .await
 }

@@ -14,6 +14,7 @@ use crate::charts::CARD_SIZE;
 use crate::compute::{Cancelled, Peer, Price, TimeSlice};
 use crate::http::request::query;
 use crate::http::request::scalar::Source;
+use crate::http::response::negotiate::Encoding;
 use crate::http::security::host::PublicOrigin;
 use crate::http::{Errors, Problem, Reader, peer};
 use crate::limits;
@@ -38,31 +39,51 @@ struct NamedRun {
     query: String,
 }
 
+/// Tags for a request of the page.
+#[derive(Debug)]
+pub struct Tags {
+    /// The tags as HTML.
+    pub html: String,
+    /// False if the run had to be left out because of load. All else follows from the address.
+    pub is_whole: bool,
+}
+
+/// Name of the page with its tags: all that determines its bytes.
+pub fn name(app: &App, parts: &Parts, encoding: Encoding) -> Vec<u8> {
+    let origin =
+        PublicOrigin::of(&parts.headers, &parts.extensions).map(|origin| origin.to_string()).unwrap_or_default();
+    let query = parts.uri.query().unwrap_or_default();
+    // Zeros separate the parts, none of which has one.
+    ["/", encoding.name(), &origin, &app.base_path, query].join("\0").into_bytes()
+}
+
 /// The tags for a request of the page.
-pub async fn tags(app: &App, parts: &Parts) -> String {
+pub async fn tags(app: &App, parts: &Parts) -> Tags {
     let pairs: Vec<(String, String)> =
         form_urlencoded::parse(parts.uri.query().unwrap_or_default().as_bytes()).into_owned().collect();
     let named = if pairs.len() > limits::QUERY_PARAMETERS { None } else { named_run(&pairs) };
     // The default names a preset, so it is valid.
     let first = || named_run(&[("preset".to_owned(), DEFAULT_PRESET.to_owned())]);
-    let Some(run) = named.or_else(first) else { return String::new() };
+    let Some(run) = named.or_else(first) else { return Tags { html: String::new(), is_whole: true } };
     let words = words(app, peer(&parts.extensions), run.request).await;
-    let base = parts.extensions.get::<PublicOrigin>().map(|origin| format!("{origin}{}", app.base_path));
-    written(base.as_deref(), &pairs, &run.query, &words)
+    let is_whole = words.is_some();
+    let default = || (DEFAULT_WORDS.0.to_owned(), DEFAULT_WORDS.1.to_owned());
+    let base = PublicOrigin::of(&parts.headers, &parts.extensions).map(|origin| format!("{origin}{}", app.base_path));
+    Tags { html: written(base.as_deref(), &pairs, &run.query, &words.unwrap_or_else(default)), is_whole }
 }
 
 /// Headline and sentence on a run. Dear runs get words without a result, so that the page need not wait for a place in the queue.
-async fn words(app: &App, peer: Peer, request: PreviewRequest) -> (String, String) {
-    let default = (DEFAULT_WORDS.0.to_owned(), DEFAULT_WORDS.1.to_owned());
+/// None if the server is overloaded.
+async fn words(app: &App, peer: Peer, request: PreviewRequest) -> Option<(String, String)> {
     let bounces = request.bounces();
     if bounces > limits::INLINE_BOUNCES {
-        return default;
+        return Some((DEFAULT_WORDS.0.to_owned(), DEFAULT_WORDS.1.to_owned()));
     }
     let compute = move |slice: &TimeSlice| {
         let answer = PreviewAnswer::compute(&request, || slice.should_continue()).ok_or(Cancelled)?;
         Ok::<_, Problem>((answer.title, answer.text))
     };
-    app.pool.for_peer(peer).run(Price::bounces(bounces), compute).await.unwrap_or(default)
+    app.pool.for_peer(peer).run(Price::bounces(bounces), compute).await.ok()
 }
 
 /// The run that these parameters name; `None` if they name none, or not a valid one.

@@ -17,6 +17,7 @@ use prometheus_client::registry::Registry;
 
 use crate::BUILD;
 use crate::compute::Pool;
+use crate::http::AnswerCounts;
 
 /// All metrics.
 #[derive(Debug)]
@@ -86,8 +87,8 @@ impl EncodeLabelValue for Route {
 }
 
 impl Metrics {
-    /// Metrics with all counts at zero. The gauges of `pool` are registered with them.
-    pub fn new(pool: &Pool) -> Self {
+    /// Metrics with all counts at zero. The gauges of `pool` and the counts of answers are registered with them.
+    pub fn new(pool: &Pool, answers: &AnswerCounts) -> Self {
         let durations: Family<RouteLabels, Histogram, fn() -> Histogram> =
             Family::new_with_constructor(|| Histogram::new(BUCKETS_S));
         let (requests, bounces, live_sessions) = (Family::default(), Counter::default(), Gauge::default());
@@ -98,6 +99,11 @@ impl Metrics {
         registry.register("request_duration_seconds", "Time from request head to answer head", durations.clone());
         registry.register("jobs_running", "Pieces of work being computed", pool.running().clone());
         registry.register("jobs_queued", "Pieces of work waiting for their turn", pool.queued().clone());
+        let AnswerCounts { hits, misses, joined, bytes } = answers.clone();
+        registry.register("answer_cache_hits", "Answers from memory", hits);
+        registry.register("answer_cache_misses", "Answers that had to be computed", misses);
+        registry.register("answer_cache_joined", "Requests that waited for an answer under way", joined);
+        registry.register("answer_cache_bytes", "Memory of kept answers, in bytes", bytes);
         registry.register("live_sessions", "Live runs", live_sessions.clone());
         registry.register("live_lag_seconds", "Time from when an impact was due to its telling", live_lags.clone());
         registry.register("bounces", "Bounces computed", bounces.clone());
@@ -154,7 +160,7 @@ mod tests {
 
     #[test]
     fn what_is_counted_is_shown() {
-        let metrics = Metrics::new(&Pool::new(1, &crate::limits::Limits::default()));
+        let metrics = Metrics::new(&Pool::new(1, &crate::limits::Limits::default()), &AnswerCounts::default());
         metrics.record("GET", Route(None), 404, Duration::from_millis(1));
         metrics.record("BREW", Route(None), 405, Duration::from_millis(1));
         metrics.bounces.inc_by(7);

@@ -5,8 +5,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axum::Router;
+use axum::body::{Body, Bytes};
 use axum::extract::{Request, State};
-use axum::http::{HeaderValue, header};
+use axum::http::request::Parts;
+use axum::http::{HeaderValue, Response, header};
 use axum::response::Redirect;
 use axum::routing::{MethodRouter, get};
 use tower_http::set_header::SetResponseHeaderLayer;
@@ -14,7 +16,9 @@ use tower_http::set_header::SetResponseHeaderLayer;
 use crate::api::app::App;
 use crate::api::ops::link_preview;
 use crate::http::Problem;
+use crate::http::response::negotiate::Encoding;
 use crate::http::response::static_asset::StaticAsset;
+use crate::http::response::{gzip, negotiate, static_asset};
 
 include!(concat!(env!("OUT_DIR"), "/assets.rs"));
 
@@ -61,9 +65,13 @@ fn file(name: String, bytes: &'static [u8]) -> MethodRouter<App> {
         let read = read.transpose()?;
         if name == PAGE {
             let (parts, _) = request.into_parts();
-            let html = read.as_deref().unwrap_or(bytes);
-            let html = link_preview::with_tags(html, &link_preview::tags(&app, &parts).await);
-            return StaticAsset::new(media_type, html).answer(&parts.headers);
+            return match read {
+                Some(html) => {
+                    let tags = link_preview::tags(&app, &parts).await;
+                    StaticAsset::new(media_type, link_preview::with_tags(&html, &tags.html)).answer(&parts.headers)
+                }
+                None => page(&app, &parts, (media_type, bytes)).await,
+            };
         }
         match read {
             None => fixed.answer(request.headers()),
@@ -75,6 +83,29 @@ fn file(name: String, bytes: &'static [u8]) -> MethodRouter<App> {
     } else {
         handler
     }
+}
+
+/// The embedded page with its tags. They follow from its address, so it is kept as it is sent.
+async fn page(
+    app: &App,
+    parts: &Parts,
+    (media_type, html): (&'static str, &'static [u8]),
+) -> Result<Response<Body>, Problem> {
+    let encoding = negotiate::encoding(&parts.headers)?;
+    let name = link_preview::name(app, parts, encoding);
+    if let Some(kept) = app.answers.kept(&name) {
+        return Ok(static_asset::answer_encoded(media_type, (encoding, &kept), &parts.headers));
+    }
+    let tags = link_preview::tags(app, parts).await;
+    let page = link_preview::with_tags(html, &tags.html);
+    let sent = Bytes::from(match encoding {
+        Encoding::Identity => page,
+        Encoding::Gzip => gzip::gzip_best(&page),
+    });
+    if tags.is_whole {
+        app.answers.keep(name.into(), sent.clone());
+    }
+    Ok(static_asset::answer_encoded(media_type, (encoding, &sent), &parts.headers))
 }
 
 /// The files of a folder and its folders, by their paths from `root`. Skips what cannot be read and names with a brace, which

@@ -10,12 +10,13 @@ use crate::compute::{Pool, Price, TimeSlice, TimeSlices};
 use crate::http::problem::Problem;
 use crate::http::request::api_request::ApiRequest;
 use crate::http::request::scalar::Source;
+use crate::http::response::answers::{Answers, Ticket};
 use crate::http::response::builder::{REVALIDATED, ok, status_only};
 use crate::http::response::etag::{EntityTag, IfNoneMatch};
 use crate::http::response::gzip;
 use crate::http::response::negotiate;
 use crate::http::response::negotiate::{Encoding, Format};
-use crate::http::response::streaming::{BodyWriter, stream_in_slices, stream_on_worker};
+use crate::http::response::streaming::{BodyWriter, collect_in_slices, stream_in_slices, stream_on_worker};
 use crate::{BUILD, limits};
 
 /// A resource, as far as negotiation and entity tags need it.
@@ -28,43 +29,60 @@ pub struct Resource {
 }
 
 impl ApiRequest {
-    /// The answer of a pure resource: 304 if the client has it, else the bytes that `compute` returns, computed by `pool` at
+    /// The answer of a pure resource: 304 if the client has it, else the bytes that `compute` returns, from memory or computed at
     /// `price`.
     ///
     /// `canonical` is the request with all defaults, in a fixed order. Together with build, format and encoding it must determine
     /// every byte of the answer.
     pub async fn respond(
         &self,
-        pool: &Pool,
+        answers: &Answers,
         resource: &Resource,
         canonical: &[u8],
         price: Price,
         compute: impl FnOnce(Format, &TimeSlice) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
-        self.with_entity_tag(
-            resource,
-            (format, encoding),
-            canonical,
-            compute_whole(&pool.for_peer(self.peer), format, encoding, price, compute),
-        )
-        .await
+        let work = |pool, ticket| compute_whole(pool, ticket, (format, encoding), price, compute);
+        let answer = self.kept_or_computed(answers, resource, (format, encoding), canonical, work);
+        self.with_entity_tag(resource, (format, encoding), canonical, answer).await
     }
 
-    /// The same for long work, which `compute` does in time slices. Formats in `streamed` are sent piece by piece.
+    /// The same for long work, which `compute` does in time slices. Formats in `streamed` are sent piece by piece, and are not kept.
     pub async fn respond_in_slices(
         &self,
-        pool: &Pool,
+        answers: &Answers,
         resource: &Resource,
         canonical: &[u8],
         streamed: &[Format],
         compute: impl FnOnce(Format, &TimeSlices, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
-        let streams = streamed.contains(&format);
-        let pool = pool.for_peer(self.peer);
-        let answer = stream_in_slices(&pool, format, encoding, streams, compute);
+        if streamed.contains(&format) {
+            let pool = answers.pool(self.peer);
+            let answer = stream_in_slices(&pool, (format, encoding), compute);
+            return self.with_entity_tag(resource, (format, encoding), canonical, answer).await;
+        }
+        let work = |pool, ticket: Ticket| collect_in_slices(pool, ticket, (format, encoding), compute);
+        let answer = self.kept_or_computed(answers, resource, (format, encoding), canonical, work);
         self.with_entity_tag(resource, (format, encoding), canonical, answer).await
+    }
+
+    /// An answer from memory, from the computation of another request, or computed by `work`. It counts as the client's until it is
+    /// sent.
+    async fn kept_or_computed<Work: Future<Output = Result<Vec<u8>, Problem>> + Send + 'static>(
+        &self,
+        answers: &Answers,
+        resource: &Resource,
+        (format, encoding): (Format, Encoding),
+        canonical: &[u8],
+        work: impl FnOnce(Pool, Ticket) -> Work,
+    ) -> Result<Response<Body>, Problem> {
+        // Zeros separate the words, none of which has one.
+        let words = [resource.name, format.name(), encoding.name()].map(str::as_bytes);
+        let name = [words[0], words[1], words[2], canonical].join(&0);
+        let bytes = answers.once(self.peer, name, work).await?;
+        Ok(ok(format.media_type(), encoding, Bytes::from_owner(answers.pool(self.peer).hold(bytes))))
     }
 
     /// An answer with its entity tag, or a 304 without computing it.
@@ -126,19 +144,21 @@ impl ApiRequest {
 }
 
 async fn compute_whole(
-    pool: &Pool,
-    format: Format,
-    encoding: Encoding,
+    pool: Pool,
+    ticket: Ticket,
+    (format, encoding): (Format, Encoding),
     price: Price,
     compute: impl FnOnce(Format, &TimeSlice) -> Result<Vec<u8>, Problem> + Clone + Send + 'static,
-) -> Result<Response<Body>, Problem> {
+) -> Result<Vec<u8>, Problem> {
     // Compression is part of the work: it takes as long as computing, and is cancelled with it.
     let work = move |slice: &TimeSlice| {
+        if let Some(kept) = ticket.begin() {
+            return Ok(kept.into());
+        }
         let bytes = compute(format, slice)?;
         Ok::<_, Problem>(if encoding == Encoding::Gzip { gzip::gzip(&bytes, slice)? } else { bytes })
     };
-    let bytes = pool.run(with_drawing(price, format), work).await?;
-    Ok(ok(format.media_type(), encoding, Bytes::from_owner(pool.hold(bytes))))
+    pool.run(with_drawing(price, format), work).await
 }
 
 /// The price of an answer in this format. Drawing and pixels cost extra.
@@ -168,7 +188,13 @@ mod tests {
             Ok(format.name().repeat(1000).into_bytes())
         };
         request
-            .respond(&Pool::new(1, &Limits::default()), &RESOURCE, b"canonical", Price::bounces(1), compute)
+            .respond(
+                &Answers::new(&Pool::new(1, &Limits::default()), 0),
+                &RESOURCE,
+                b"canonical",
+                Price::bounces(1),
+                compute,
+            )
             .await
             .unwrap()
     }

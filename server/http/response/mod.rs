@@ -1,5 +1,6 @@
-//! Responses: negotiated, tagged, compressed, whole or streamed.
+//! Responses: negotiated, tagged, compressed, kept, whole or streamed.
 
+pub mod answers;
 pub(crate) mod builder;
 pub mod cached;
 pub mod etag;

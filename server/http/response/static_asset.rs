@@ -16,40 +16,73 @@ use crate::http::response::negotiate::Encoding;
 #[derive(Debug)]
 pub struct StaticAsset {
     media_type: &'static str,
-    identity: Bytes,
-    gzip: OnceLock<Option<Bytes>>,
+    identity: Form,
+    gzip: OnceLock<Option<Form>>,
+}
+
+/// Bytes as they are sent, with their tag.
+#[derive(Debug)]
+struct Form {
+    bytes: Bytes,
+    tag: OnceLock<EntityTag>,
+}
+
+impl From<Bytes> for Form {
+    fn from(bytes: Bytes) -> Self {
+        Self { bytes, tag: OnceLock::new() }
+    }
 }
 
 impl StaticAsset {
     /// An asset of these bytes.
     pub fn new(media_type: &'static str, bytes: impl Into<Bytes>) -> Self {
-        Self { media_type, identity: bytes.into(), gzip: OnceLock::new() }
+        Self { media_type, identity: Form::from(bytes.into()), gzip: OnceLock::new() }
     }
 
     /// The answer to a GET or HEAD: 304 if the client has these bytes.
     pub fn answer(&self, headers: &HeaderMap) -> Result<Response<Body>, Problem> {
-        let (encoding, bytes) = match (negotiate::encoding(headers)?, self.gzip()) {
-            (Encoding::Gzip, Some(gzip)) => (Encoding::Gzip, gzip),
-            (Encoding::Gzip, None) | (Encoding::Identity, _) => (Encoding::Identity, &self.identity),
+        let encoding = negotiate::encoding(headers)?;
+        let compressed = (encoding == Encoding::Gzip).then(|| self.gzip()).flatten();
+        let (encoding, form) = match compressed {
+            Some(gzip) => (Encoding::Gzip, gzip),
+            None => (Encoding::Identity, &self.identity),
         };
-        let tag = EntityTag::of(&[self.media_type.as_bytes(), bytes]);
-        let mut response = match tag.if_none_match(headers) {
-            IfNoneMatch::Match | IfNoneMatch::Any => status_only(StatusCode::NOT_MODIFIED),
-            IfNoneMatch::NoMatch => ok(self.media_type, encoding, bytes.clone()),
-        };
-        response.headers_mut().insert(header::ETAG, tag.header());
-        response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);
-        Ok(response)
+        let tag = form.tag.get_or_init(|| EntityTag::of(&[self.media_type.as_bytes(), &form.bytes]));
+        Ok(respond(self.media_type, (encoding, &form.bytes), tag, headers))
     }
 
     /// The compressed form, if it is smaller.
-    fn gzip(&self) -> Option<&Bytes> {
+    fn gzip(&self) -> Option<&Form> {
         let compressed = self.gzip.get_or_init(|| {
-            let gzip = gzip::gzip_best(&self.identity);
-            (gzip.len() < self.identity.len()).then(|| gzip.into())
+            let gzip = gzip::gzip_best(&self.identity.bytes);
+            (gzip.len() < self.identity.bytes.len()).then(|| Form::from(Bytes::from(gzip)))
         });
         compressed.as_ref()
     }
+}
+
+/// The answer of an asset in one encoding, for an asset that is kept elsewhere.
+pub fn answer_encoded(
+    media_type: &'static str,
+    (encoding, bytes): (Encoding, &Bytes),
+    headers: &HeaderMap,
+) -> Response<Body> {
+    respond(media_type, (encoding, bytes), &EntityTag::of(&[media_type.as_bytes(), bytes]), headers)
+}
+
+fn respond(
+    media_type: &'static str,
+    (encoding, bytes): (Encoding, &Bytes),
+    tag: &EntityTag,
+    headers: &HeaderMap,
+) -> Response<Body> {
+    let mut response = match tag.if_none_match(headers) {
+        IfNoneMatch::Match | IfNoneMatch::Any => status_only(StatusCode::NOT_MODIFIED),
+        IfNoneMatch::NoMatch => ok(media_type, encoding, bytes.clone()),
+    };
+    response.headers_mut().insert(header::ETAG, tag.header());
+    response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);
+    response
 }
 
 #[cfg(test)]

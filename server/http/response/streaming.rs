@@ -16,6 +16,7 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
 use crate::compute::{Cancelled, Pool, TimeSlice, TimeSlices};
 use crate::http::problem::Problem;
+use crate::http::response::answers::Ticket;
 use crate::http::response::builder::ok;
 use crate::http::response::gzip;
 use crate::http::response::negotiate::{Encoding, Format};
@@ -70,6 +71,33 @@ struct BodyPieces {
 }
 
 impl BodyPieces {
+    /// The pieces that `work` writes.
+    fn of<Work: Future<Output = Result<(), Problem>> + Send + 'static>(
+        pool: &Pool,
+        encoding: Encoding,
+        work: impl FnOnce(BodyWriter) -> Work,
+    ) -> Self {
+        let (to, made) = unbounded_channel();
+        let gzip = (encoding == Encoding::Gzip).then(gzip::encoder);
+        let writer = BodyWriter { to, gzip, pool: pool.clone() };
+        Self { made, work: Some(Box::pin(work(writer))) }
+    }
+
+    /// All pieces as one.
+    async fn collect(mut self) -> Result<Vec<u8>, Problem> {
+        let mut whole = Vec::new();
+        while let Some(piece) = self.next().await? {
+            whole.extend_from_slice(&piece);
+        }
+        Ok(whole)
+    }
+
+    /// The response, which begins with the first piece. A failure before it is a problem.
+    async fn into_response(mut self, (format, encoding): (Format, Encoding)) -> Result<Response<Body>, Problem> {
+        let first = self.next().await?.unwrap_or_default();
+        Ok(ok(format.media_type(), encoding, self.into_body(first)))
+    }
+
     /// The next piece; None at the end. An error if the work has failed.
     async fn next(&mut self) -> Result<Option<Bytes>, Problem> {
         loop {
@@ -96,27 +124,48 @@ impl BodyPieces {
     }
 }
 
-/// Runs `compute` in time slices. If it `streams`, the answer begins with the first piece, else it is whole.
+/// Runs `compute` in time slices. The answer begins with the first piece.
 pub(crate) async fn stream_in_slices(
     pool: &Pool,
-    format: Format,
-    encoding: Encoding,
-    streams: bool,
+    (format, encoding): (Format, Encoding),
     compute: impl FnOnce(Format, &TimeSlices, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
+    let pieces = pieces_in_slices(pool, (format, encoding), compute);
+    pieces.into_response((format, encoding)).await
+}
+
+/// Runs `compute` in time slices, and returns the whole answer.
+pub(crate) async fn collect_in_slices(
+    pool: Pool,
+    ticket: Ticket,
+    (format, encoding): (Format, Encoding),
+    compute: impl FnOnce(Format, &TimeSlices, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
+) -> Result<Vec<u8>, Problem> {
+    let compute = move |format, slices: &TimeSlices, writer: &mut BodyWriter| {
+        // A kept answer would have its own encoding, so this one is computed.
+        ticket.begin();
+        compute(format, slices, writer)
+    };
+    pieces_in_slices(&pool, (format, encoding), compute).collect().await
+}
+
+fn pieces_in_slices(
+    pool: &Pool,
+    (format, encoding): (Format, Encoding),
+    compute: impl FnOnce(Format, &TimeSlices, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
+) -> BodyPieces {
     let working = pool.clone();
-    let work = |mut writer: BodyWriter| async move {
+    BodyPieces::of(pool, encoding, |mut writer| async move {
         let compute = move |slices: &TimeSlices| {
             compute(format, slices, &mut writer)?;
             writer.finish();
             Ok(())
         };
         working.run_in_slices(compute).await
-    };
-    stream_body(pool, (format, encoding), streams, work).await
+    })
 }
 
-/// The same for work on one thread.
+/// Runs `compute` on one thread. If it `streams`, the answer begins with the first piece, else it is whole.
 pub(crate) async fn stream_on_worker(
     pool: &Pool,
     (format, encoding): (Format, Encoding),
@@ -124,35 +173,18 @@ pub(crate) async fn stream_on_worker(
     compute: impl FnOnce(Format, &TimeSlice, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
     let working = pool.clone();
-    let work = |mut writer: BodyWriter| async move {
+    let pieces = BodyPieces::of(pool, encoding, |mut writer| async move {
         let compute = move |slice: &TimeSlice| {
             compute(format, slice, &mut writer)?;
             writer.finish();
             Ok(())
         };
         working.run_on_worker(compute).await
-    };
-    stream_body(pool, (format, encoding), streams, work).await
-}
-
-async fn stream_body<Work: Future<Output = Result<(), Problem>> + Send + 'static>(
-    pool: &Pool,
-    (format, encoding): (Format, Encoding),
-    streams: bool,
-    work: impl FnOnce(BodyWriter) -> Work,
-) -> Result<Response<Body>, Problem> {
-    let (to, made) = unbounded_channel();
-    let gzip = (encoding == Encoding::Gzip).then(gzip::encoder);
-    let writer = BodyWriter { to, gzip, pool: pool.clone() };
-    let mut pieces = BodyPieces { made, work: Some(Box::pin(work(writer))) };
-    let first = pieces.next().await?.unwrap_or_default();
+    });
     if streams {
-        return Ok(ok(format.media_type(), encoding, pieces.into_body(first)));
+        return pieces.into_response((format, encoding)).await;
     }
-    let mut whole = Vec::from(first);
-    while let Some(piece) = pieces.next().await? {
-        whole.extend_from_slice(&piece);
-    }
+    let whole = pieces.collect().await?;
     Ok(ok(format.media_type(), encoding, Bytes::from_owner(pool.hold(whole))))
 }
 
@@ -165,15 +197,9 @@ mod tests {
         streams: bool,
         compute: impl FnOnce(&mut BodyWriter) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
-        let compute = |_: Format, _: &TimeSlices, out: &mut BodyWriter| compute(out);
-        stream_in_slices(
-            &Pool::new(1, &crate::limits::Limits::default()),
-            Format::Ndjson,
-            Encoding::Identity,
-            streams,
-            compute,
-        )
-        .await
+        let compute = |_: Format, _: &TimeSlice, out: &mut BodyWriter| compute(out);
+        let pool = Pool::new(1, &crate::limits::Limits::default());
+        stream_on_worker(&pool, (Format::Ndjson, Encoding::Identity), streams, compute).await
     }
 
     #[tokio::test]

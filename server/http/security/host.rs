@@ -9,7 +9,7 @@ use std::net::{Ipv4Addr, Ipv6Addr};
 use std::str::FromStr;
 
 use axum::http::uri::Authority;
-use axum::http::{HeaderMap, StatusCode, Uri, Version, header};
+use axum::http::{Extensions, HeaderMap, StatusCode, Uri, Version, header};
 
 use crate::http::problem::{Problem, shortened};
 
@@ -64,15 +64,24 @@ pub fn check_form(version: Version, headers: &HeaderMap) -> Result<(), Problem> 
 /// The name in `name:port`; None if it has another form. A URL allows commas and other punctuation in a name, but no name that
 /// resolves has them.
 fn name_of(host: &str) -> Option<String> {
+    let is_name = |byte: u8| byte.is_ascii_alphanumeric() || b"-._".contains(&byte);
+    // Nearly all requests name a host without a port, or with one.
+    let (name, port) = host.split_once(':').unwrap_or((host, ""));
+    if !name.is_empty() && name.bytes().all(is_name) && port.bytes().all(|byte| byte.is_ascii_digit()) {
+        return Some(plain(name));
+    }
     let authority: Authority = host.parse().ok()?;
     let name = authority.host();
     let port = host.strip_prefix(name)?;
     let is_port =
         port.is_empty() || port.strip_prefix(':').is_some_and(|port| port.bytes().all(|byte| byte.is_ascii_digit()));
-    let is_name = |byte: u8| byte.is_ascii_alphanumeric() || b"-._".contains(&byte);
     let is_fine = name.starts_with('[') || !name.is_empty() && name.bytes().all(is_name);
     (is_fine && is_port).then(|| plain(name))
 }
+
+/// Marks a request of a trusted proxy.
+#[derive(Debug, Clone, Copy)]
+pub struct FromProxy;
 
 /// Scheme, name and port by which clients reach this server, as in `https://lab.example:8443`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -81,7 +90,8 @@ pub struct PublicOrigin(String);
 impl PublicOrigin {
     /// The origin of a request: `Host` over HTTP, or what a trusted proxy says in `X-Forwarded-Host` and `X-Forwarded-Proto`. `None` if the
     /// request does not name a host.
-    pub fn of(headers: &HeaderMap, from_proxy: bool) -> Option<Self> {
+    pub fn of(headers: &HeaderMap, extensions: &Extensions) -> Option<Self> {
+        let from_proxy = extensions.get::<FromProxy>().is_some();
         // The last entry is the one that the proxy has added. Anyone can send the entries before it.
         let last = |name: &str| headers.get_all(name).into_iter().next_back()?.to_str().ok()?.rsplit(',').next();
         let forwarded = |name: &str| last(name).filter(|_| from_proxy).map(str::trim);
@@ -205,7 +215,11 @@ mod tests {
             let headers = pairs
                 .iter()
                 .map(|(name, value)| (HeaderName::from_static(name), HeaderValue::from_str(value).unwrap()));
-            PublicOrigin::of(&headers.collect(), from_proxy).map(|origin| origin.to_string())
+            let mut extensions = Extensions::new();
+            if from_proxy {
+                extensions.insert(FromProxy);
+            }
+            PublicOrigin::of(&headers.collect(), &extensions).map(|origin| origin.to_string())
         };
         let forwarded =
             [("host", "inner:8080"), ("x-forwarded-host", "a, Lab.example"), ("x-forwarded-proto", "http,HTTPS")];

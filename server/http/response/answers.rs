@@ -1,0 +1,236 @@
+//! Answers of pure work: kept in memory under the name of their request, and computed once for all requests that wait for them
+//! together.
+//!
+//! A name determines every byte of its answer, and names are compared as a whole: two requests never share an answer by a collision
+//! of hashes. An answer in memory takes no place in the queue. One that is computed is admitted, priced and counted for the client
+//! that asked first, and its work is cancelled when the last request for it has gone. Errors are not kept.
+
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
+
+use axum::body::Bytes;
+use futures_util::FutureExt;
+use futures_util::future::{BoxFuture, Shared, WeakShared};
+use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::gauge::Gauge;
+use quick_cache::sync::Cache;
+use quick_cache::{OptionsBuilder, Weighter};
+
+use crate::compute::{Peer, Pool};
+use crate::http::problem::Problem;
+use crate::limits;
+
+/// Kept answers, answers under way, and the pool that computes them. Cheap to clone; clones share their answers.
+#[derive(Debug, Clone)]
+pub struct Answers {
+    pool: Pool,
+    shared: Arc<SharedAnswers>,
+    is_permanent: bool,
+}
+
+/// Counts of [`Answers`].
+#[derive(Debug, Clone, Default)]
+pub struct AnswerCounts {
+    /// Answers from memory.
+    pub hits: Counter,
+    /// Answers that had to be computed.
+    pub misses: Counter,
+    /// Requests that waited for an answer which another one had begun.
+    pub joined: Counter,
+    /// Bytes of kept answers, with their names.
+    pub bytes: Gauge,
+}
+
+struct SharedAnswers {
+    /// None if no memory is granted.
+    kept: Option<Cache<Bytes, Bytes, InBytes>>,
+    /// Answers that depend on the build alone. They are few, and never dropped.
+    permanent: RwLock<HashMap<Bytes, Bytes>>,
+    /// Answers under way by name; of several with one name the newest.
+    running: Mutex<HashMap<Bytes, Running>>,
+    counts: AnswerCounts,
+}
+
+type Computation = BoxFuture<'static, Result<Bytes, Problem>>;
+
+/// An answer under way.
+struct Running {
+    peer: Peer,
+    state: Arc<AtomicBool>,
+    answer: WeakShared<Computation>,
+}
+
+impl Answers {
+    /// No answers yet, in at most so many bytes of memory. Without memory, each request is computed for itself.
+    pub fn new(pool: &Pool, bytes: usize) -> Self {
+        let options = || {
+            OptionsBuilder::new()
+                .shards(limits::ANSWER_CACHE_SHARDS)
+                .estimated_items_capacity(bytes.div_ceil(limits::ANSWER_CACHE_TYPICAL_BYTES))
+                .weight_capacity(bytes as u64)
+                .build()
+                .expect("both capacities are set")
+        };
+        let kept = (bytes > 0).then(|| Cache::with_options(options(), InBytes, Default::default(), Default::default()));
+        let counts = AnswerCounts::default();
+        let shared = SharedAnswers { kept, permanent: RwLock::default(), running: Mutex::default(), counts };
+        Self { pool: pool.clone(), shared: Arc::new(shared), is_permanent: false }
+    }
+
+    /// The same answers, for requests whose answers depend on the build alone. They are kept whatever the memory.
+    pub fn permanent(&self) -> Self {
+        Self { is_permanent: true, ..self.clone() }
+    }
+
+    /// Hits, misses and bytes.
+    pub fn counts(&self) -> &AnswerCounts {
+        &self.shared.counts
+    }
+
+    /// The pool of this client.
+    pub(crate) fn pool(&self, peer: Peer) -> Pool {
+        self.pool.for_peer(peer)
+    }
+
+    /// The kept answer of this name.
+    pub(crate) fn kept(&self, name: &[u8]) -> Option<Bytes> {
+        let answer = self.find(name);
+        if answer.is_some() {
+            self.shared.counts.hits.inc();
+        }
+        answer
+    }
+
+    /// Keeps an answer, if it is not too large.
+    pub(crate) fn keep(&self, name: Bytes, answer: Bytes) {
+        if self.is_permanent {
+            self.shared.permanent.write().unwrap_or_else(PoisonError::into_inner).insert(name, answer);
+            return;
+        }
+        let Some(kept) = self.shared.kept.as_ref() else { return };
+        if answer.len() <= limits::KEPT_ANSWER_BYTES {
+            kept.insert(name, answer);
+            self.shared.counts.bytes.set(i64::try_from(kept.weight()).unwrap_or(i64::MAX));
+        }
+    }
+
+    /// The answer of this name: from memory, from the computation of another request, or computed by `compute`.
+    pub(crate) async fn once<Work>(
+        &self,
+        peer: Peer,
+        name: Vec<u8>,
+        compute: impl FnOnce(Pool, Ticket) -> Work,
+    ) -> Result<Bytes, Problem>
+    where
+        Work: Future<Output = Result<Vec<u8>, Problem>> + Send + 'static,
+    {
+        if let Some(answer) = self.kept(&name) {
+            return Ok(answer);
+        }
+        let name = Bytes::from(name.into_boxed_slice());
+        let ticket = || Ticket { answers: self.clone(), name: name.clone(), has_begun: Arc::default() };
+        if !self.is_permanent && self.shared.kept.is_none() {
+            return compute(self.pool(peer), ticket()).await.map(Bytes::from);
+        }
+        let computation = {
+            let mut running = self.running();
+            // The client that asked first may wait for its turn behind its own requests. Others need not wait with it.
+            let other = running.get(&name).filter(|other| other.peer == peer || other.state.load(Ordering::Relaxed));
+            match other.and_then(|other| other.answer.upgrade()) {
+                Some(computation) => {
+                    self.shared.counts.joined.inc();
+                    computation
+                }
+                None => {
+                    // It may have been kept since it was looked for: answers are kept first, and then no longer under way.
+                    if let Some(answer) = self.find(&name) {
+                        self.shared.counts.hits.inc();
+                        return Ok(answer);
+                    }
+                    self.shared.counts.misses.inc();
+                    let ticket = ticket();
+                    let state = ticket.has_begun.clone();
+                    let computation = self.start(&ticket, compute(self.pool(peer), ticket.clone()));
+                    let answer = computation.downgrade().expect("it has not been polled");
+                    running.insert(name.clone(), Running { peer, state, answer });
+                    computation
+                }
+            }
+        };
+        computation.await
+    }
+
+    fn start(
+        &self,
+        ticket: &Ticket,
+        work: impl Future<Output = Result<Vec<u8>, Problem>> + Send + 'static,
+    ) -> Shared<Computation> {
+        let entry = RunningEntry(ticket.clone());
+        let computation = async move {
+            let answer = Bytes::from(work.await?.into_boxed_slice());
+            let RunningEntry(Ticket { answers, name, .. }) = &entry;
+            answers.keep(name.clone(), answer.clone());
+            Ok(answer)
+        };
+        computation.boxed().shared()
+    }
+
+    fn find(&self, name: &[u8]) -> Option<Bytes> {
+        if self.is_permanent {
+            return self.shared.permanent.read().unwrap_or_else(PoisonError::into_inner).get(name).cloned();
+        }
+        self.shared.kept.as_ref()?.get(name)
+    }
+
+    fn running(&self) -> MutexGuard<'_, HashMap<Bytes, Running>> {
+        self.shared.running.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl fmt::Debug for SharedAnswers {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("SharedAnswers").field("counts", &self.counts).finish_non_exhaustive()
+    }
+}
+
+/// The place of a computation among those under way.
+#[derive(Debug, Clone)]
+pub(crate) struct Ticket {
+    answers: Answers,
+    name: Bytes,
+    has_begun: Arc<AtomicBool>,
+}
+
+impl Ticket {
+    /// Says that the work has left the queue, so that requests of other clients join it. Returns the answer if another computation
+    /// has kept it meanwhile.
+    pub(crate) fn begin(&self) -> Option<Bytes> {
+        self.has_begun.store(true, Ordering::Relaxed);
+        self.answers.find(&self.name)
+    }
+}
+
+/// Removes a computation from those under way when it ends, is cancelled or panics.
+struct RunningEntry(Ticket);
+
+impl Drop for RunningEntry {
+    fn drop(&mut self) {
+        let Ticket { answers, name, has_begun } = &self.0;
+        let mut running = answers.running();
+        if running.get(name).is_some_and(|entry| Arc::ptr_eq(&entry.state, has_begun)) {
+            running.remove(name);
+        }
+    }
+}
+
+/// Weighs an answer with its name and its entry.
+#[derive(Debug, Clone)]
+struct InBytes;
+
+impl Weighter<Bytes, Bytes> for InBytes {
+    fn weight(&self, name: &Bytes, answer: &Bytes) -> u64 {
+        (name.len() + answer.len() + limits::KEPT_ANSWER_OVERHEAD) as u64
+    }
+}
