@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { endedAs, reasonOf } from '../../web/panels/verdict/plain-words.js';
-import { openMap, place, whole } from './map-steps.js';
+import { LIGHTEST, DARKEST, anew, colourAt, isColour, openMap, place, shows, whole } from './map-steps.js';
 import { gate } from './slow-network.js';
 import { PATIENCE_MS, Stage, openPanel, reachPhase, verdict } from './stage.js';
 
@@ -11,63 +11,7 @@ const stage = await Stage.open();
 
 const open = (query = '?preset=case-1&map.columns=96', options = {}) => openMap(stage, query, options);
 
-/** Waits until the map has answered anew after `act`. */
-async function anew(page, act) {
-  const before = await page.locator('#map-links a').first().getAttribute('href');
-  await act();
-  await page.waitForFunction((old) => document.querySelector('#map-links a')?.getAttribute('href') !== old, before);
-  await whole(page);
-}
-
 const readout = async (page) => (await page.locator('#map-readout').innerText()).replaceAll('\u2212', '-');
-const frames = (page) =>
-  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-
-/** The colour at a share of the map, as [r, g, b, a]. */
-async function colourAt(page, across, upwards) {
-  await frames(page);
-  return page
-    .locator('#map-box canvas')
-    .first()
-    .evaluate(
-      (canvas, [right, up]) => {
-        const ratio = devicePixelRatio;
-        const copy = Object.assign(document.createElement('canvas'), {
-          width: canvas.width,
-          height: canvas.height,
-        }).getContext('2d', { willReadFrequently: true });
-        copy.drawImage(canvas, 0, 0);
-        return [
-          ...copy.getImageData(
-            Math.round(52 * ratio + (canvas.width - 70 * ratio) * right),
-            Math.round(24 * ratio + (canvas.height - 120 * ratio) * (1 - up)),
-            1,
-            1,
-          ).data,
-        ];
-      },
-      [across, upwards],
-    );
-}
-
-const isColour = ([r, g, b], [R, G, B]) => Math.abs(r - R) + Math.abs(g - G) + Math.abs(b - B) < 30;
-/** True when a cell has a colour, its hatching aside. */
-async function shows(page, across, upwards, colour) {
-  const { width, height } = await page.locator('#map-box').boundingBox();
-  let found = 0;
-  for (const [right, up] of [
-    [0, 0],
-    [2, 0],
-    [-2, 0],
-    [0, 2],
-    [0, -2],
-  ])
-    if (isColour(await colourAt(page, across + right / (width - 70), upwards + up / (height - 120)), colour))
-      found += 1;
-  return found >= 2;
-}
-const LIGHTEST = [254, 232, 56];
-const DARKEST = [0, 34, 78];
 
 async function drag(page, from, to) {
   const [x0, y0] = await place(page, ...from);
@@ -423,67 +367,5 @@ test('a point mass and a quantity without runs have their maps too', async () =>
   await anew(page, () => page.selectOption('#map-quantity', 'spectral_radius'));
   assert.match(await page.locator('#map-told').innerText(), /1536 cells, from/);
   assert.ok(await page.locator('#map-impacts').isDisabled());
-  clean();
-});
-
-test('catches have a map with their own settings and classes, and a link restores it', async () => {
-  const query =
-    '?preset=case-1&map.x.parameter=release.theta&map.x.from=-1.2&map.x.to=1.2&map.y.parameter=release.theta_dot&map.y.from=-8&map.y.to=8&map.columns=48';
-  const { page, wrongs } = await open(query);
-  await whole(page);
-  assert.ok(await page.locator('#map-catch-strategy').isHidden());
-  await anew(page, () => page.selectOption('#map-quantity', 'caught'));
-  await page.locator('#map-catch-ratio').fill('0,6');
-  await anew(page, () => page.locator('#map-catch-ratio').blur());
-  assert.ok(await page.locator('#map-impacts').isHidden());
-  const request = new URL(await page.locator('#map-links a', { hasText: 'JSON' }).evaluate((link) => link.href));
-  const asked = ['quantity', 'catch.strategy', 'catch.ratio'].map((key) => request.searchParams.get(key));
-  assert.deepEqual(asked, ['caught', 'bounce_down', '0.6']);
-  const answer = await (await fetch(request)).json();
-  const share = Math.round((100 * answer.counts.held) / (48 * 32));
-  const told = (await page.locator('#map-told').innerText()).replaceAll('\u202f', ' ');
-  assert.ok(told.includes(`caught in ${share} %`), `${told} ${share}`);
-  // Caught cells are light, those that fall dark under their hatching.
-  const place = ([column, row]) => [(column + 0.5) / 48, (row + 0.5) / 32];
-  const cellOf = (name) => {
-    const code = answer.outcome_names.indexOf(name);
-    const row = answer.outcomes.findIndex((codes) => codes.some((one, at) => at > 0 && at < 47 && one === code));
-    return [answer.outcomes[row].findIndex((one, at) => at > 0 && at < 47 && one === code), row];
-  };
-  assert.ok(await shows(page, ...place(cellOf('held')), LIGHTEST), 'caught');
-  assert.ok(await shows(page, ...place(cellOf('fell')), DARKEST), 'fell');
-  await page.waitForFunction(() => /map\.catch\.ratio=0\.6/.test(location.search));
-  const second = await open(new URL(page.url()).search);
-  await whole(second.page);
-  assert.equal(await second.page.inputValue('#map-catch-ratio'), '0.6');
-  assert.equal(await second.page.locator('#map-told').innerText(), await page.locator('#map-told').innerText());
-  assert.equal(await second.page.locator('#notices').innerText(), '');
-  second.clean();
-  // A setting out of its range is marked in its place.
-  await page.locator('#map-catch-ratio').fill('2');
-  await page.locator('#map-catch-ratio').blur();
-  await page.locator('#map-catch-ratio[aria-invalid=true]').waitFor();
-  await page.locator('#map-catch-ratio').fill('0.6');
-  await page.locator('#map-catch-ratio').blur();
-  await whole(page);
-  // Its cell goes on in the tab Catch.
-  await page.locator('#map-box').focus();
-  for (const key of ['ArrowRight', 'Enter', 'Enter']) await page.keyboard.press(key);
-  await page.click('#map-catch');
-  await page.locator('#catch-ratio').waitFor();
-  assert.equal(await page.inputValue('#catch-ratio'), '0.6');
-  assert.deepEqual(
-    wrongs.filter((wrong) => !/422/.test(wrong)),
-    [],
-  );
-});
-
-test('the time to rest has a scale, and cells that do not come to rest have none', async () => {
-  const { page, clean } = await open(
-    '?preset=case-1&map.x.parameter=release.theta&map.x.from=-1.2&map.x.to=1.2&map.y.parameter=release.theta_dot&map.y.from=-8&map.y.to=8&map.columns=48&map.quantity=rest_time',
-  );
-  await whole(page);
-  assert.match(await page.locator('#map-told').innerText(), /at rest within .* of the release/);
-  assert.match(await page.locator('.map-legend').innerText(), /not at rest/);
   clean();
 });
