@@ -1,7 +1,7 @@
 //! An ODE library's Runge-Kutta 5(4) with steps of its own choice (Dormand and Prince 1980), and events on its dense output.
 //!
-//! The tolerance speaks of the flight, which is a parabola and has no error: the steps grow tenfold each, whatever the tolerance, and
-//! what happens to the gap within one is not looked at. The contact is located here, by halving on the dense output: the
+//! The tolerance is for the flight, which is a parabola and has no error. So each step is ten times the last, for any tolerance, and the
+//! method does not examine the gap within a step. The contact is located here, by halving on the dense output: the
 //! library's own search for events is off by 4e-4 at the first contact of the paper's case 1.
 
 use std::convert::Infallible;

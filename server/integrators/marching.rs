@@ -5,8 +5,18 @@
 
 use std::convert::Infallible;
 
-use crate::integrators::integrator::Location;
 use crate::integrators::simulation_run::{Halt, SimulationRun, bisect};
+
+/// Treatment of a contact within a step, by a method with fixed steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Location {
+    /// The strike is at the end of the step.
+    StepEnd,
+    /// The step is done again up to where the chord of the gap is zero.
+    Secant,
+    /// The step is done again and again, until the contact is known to the last digit.
+    Bisection,
+}
 
 pub(crate) fn simulate(run: &mut SimulationRun, step: f64, location: Location) -> Result<Infallible, Halt> {
     let (mut motion, at_contact) = run.start();

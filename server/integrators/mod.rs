@@ -1,10 +1,9 @@
 //! The bounce by general simulation methods, as people use them, to be charted against the exact map.
 //!
-//! Nothing that answers a user's scene uses them. The strike is [`Rod::strike`] throughout; what differs is how a method moves the
-//! rod and how it notices that it meets the table. Times are in s, lengths in m, angles in rad.
+//! Answers about a user's scene do not use them. The strike is [`Rod::strike`] throughout; methods differ in how they move the
+//! rod and how they notice that it meets the table. Times are in s, lengths in m, angles in rad.
 
 mod adaptive;
-mod integrator;
 mod marching;
 mod motion;
 mod penalty;
@@ -19,9 +18,55 @@ use equipoise_physics::run::rules::Rules;
 
 use simulation_run::{Halt, SimulationRun};
 
-pub use integrator::{Integrator, Location};
+pub use marching::Location;
 pub use penalty::STEPS_PER_CONTACT;
 pub use simulation::{SimulatedImpact, Simulation, SimulationEnding, WorkCount};
+
+/// A method with its setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integrator {
+    /// Runge-Kutta of order 4 with a fixed step. A contact shows by the sign of the gap at the end of a step.
+    RungeKutta {
+        /// Step, s.
+        step: f64,
+        /// Treatment of a contact within a step.
+        location: Location,
+    },
+    /// Dormand and Prince's Runge-Kutta 5(4) with steps of its own choice, as ODE libraries have it. A contact shows by the sign of
+    /// the gap at the end of a step and is located on the dense output.
+    Adaptive {
+        /// Absolute and relative tolerance.
+        tolerance: f64,
+    },
+    /// Moreau and Jean's time stepping with the midpoint rule: a contact is closed for a whole step, and known only to the step.
+    TimeStepping {
+        /// Step, s.
+        step: f64,
+    },
+    /// A spring and a damper along the table's normal in place of the strike, moved by Runge-Kutta of order 4.
+    Penalty {
+        /// Step, s; the spring is as stiff as [`STEPS_PER_CONTACT`] of them allow.
+        step: f64,
+    },
+    /// The exact flight, evaluated on a grid of times.
+    Sampling {
+        /// Interval of the grid, s.
+        step: f64,
+    },
+}
+
+impl Integrator {
+    /// Name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::RungeKutta { .. } => "runge_kutta",
+            Self::Adaptive { .. } => "adaptive",
+            Self::TimeStepping { .. } => "time_stepping",
+            Self::Penalty { .. } => "penalty",
+            Self::Sampling { .. } => "sampling",
+        }
+    }
+}
 
 /// Runs a method from the release for so many contacts and at most so many steps. `go_on` is asked every few thousand steps, and there
 /// is no answer once it says `false`.

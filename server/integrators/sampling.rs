@@ -1,6 +1,6 @@
-//! The exact flight, looked at on a grid of times: what scripts do that know the parabola and not its contact time.
+//! The exact flight on a grid of times, as in scripts that know the parabola and not its contact time.
 //!
-//! A contact between two looks, after which the gap is open again, is not seen.
+//! The method misses a contact between two samples if the gap is open again at the second.
 
 use std::convert::Infallible;
 
