@@ -39,7 +39,36 @@ pub enum ClientMessage {
     Throw(ThrowTarget),
 }
 
+/// The type of a message, by which the rest is read.
+#[derive(Clone, Copy)]
+enum MessageType {
+    Plain(fn() -> ClientMessage),
+    Speed,
+    Set,
+    Kick,
+    Catch,
+    Throw,
+}
+
+/// The types by name.
+const TYPES: [(&str, MessageType); 9] = [
+    ("pause", MessageType::Plain(|| ClientMessage::Pause)),
+    ("resume", MessageType::Plain(|| ClientMessage::Resume)),
+    ("step", MessageType::Plain(|| ClientMessage::Step)),
+    ("restart", MessageType::Plain(|| ClientMessage::Restart)),
+    ("speed", MessageType::Speed),
+    ("set", MessageType::Set),
+    ("kick", MessageType::Kick),
+    ("catch", MessageType::Catch),
+    ("throw", MessageType::Throw),
+];
+
 impl ClientMessage {
+    /// Names of all messages, as in `type`.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        TYPES.iter().map(|(name, _)| *name)
+    }
+
     /// The `type` of the message.
     pub fn name(&self) -> &'static str {
         match self {
@@ -60,26 +89,6 @@ impl ClientMessage {
     /// # Errors
     /// All errors of the message.
     pub fn read(text: &str) -> Result<Self, Problem> {
-        #[derive(Clone, Copy)]
-        enum MessageType {
-            Plain(fn() -> ClientMessage),
-            Speed,
-            Set,
-            Kick,
-            Catch,
-            Throw,
-        }
-        const TYPES: [(&str, MessageType); 9] = [
-            ("pause", MessageType::Plain(|| ClientMessage::Pause)),
-            ("resume", MessageType::Plain(|| ClientMessage::Resume)),
-            ("step", MessageType::Plain(|| ClientMessage::Step)),
-            ("restart", MessageType::Plain(|| ClientMessage::Restart)),
-            ("speed", MessageType::Speed),
-            ("set", MessageType::Set),
-            ("kick", MessageType::Kick),
-            ("catch", MessageType::Catch),
-            ("throw", MessageType::Throw),
-        ];
         let fields = json::object(text.as_bytes()).map_err(|problem| of_a_message(&problem))?;
         let mut errors = Errors::default();
         let mut reader = Reader::new(&fields, String::new(), Source::Json, &mut errors);

@@ -2,9 +2,10 @@
 //!
 //! The test frame holds every single answer to the contract, in every test of every file.
 //!
-//! The scene parts of `openapi.yaml` follow from the table of scene fields and from the presets. After a change of those,
-//! `UPDATE=1 cargo test --test server scene_parts` rewrites them.
+//! The scene parts of `openapi.yaml` follow from the table of scene fields, the presets and the endings, and so do words of the fuzz
+//! dictionaries. After a change of those, `UPDATE=1 cargo test --test server scene_parts` rewrites them.
 
+mod dictionaries;
 mod docs;
 mod endings;
 mod scene;
@@ -14,6 +15,7 @@ use std::path::Path;
 use crate::support::Server;
 use crate::support::contract::{self, DOCUMENT};
 use axum::http::Method;
+use equipoise::live::client_message::ClientMessage;
 use serde_json::{Value, json};
 
 /// A path for a template.
@@ -270,18 +272,44 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
 
 #[test]
 fn scene_parts_follow_from_the_table() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("openapi.yaml");
-    let contract = std::fs::read_to_string(&path).unwrap();
-    let wanted = scene::rewritten(&contract);
-    if std::env::var_os("UPDATE").is_some() {
-        return std::fs::write(&path, wanted).unwrap();
+    is_written("openapi.yaml", scene::rewritten);
+}
+
+#[test]
+fn dictionaries_have_the_scene_parts() {
+    for (name, words) in dictionaries::DICTIONARIES {
+        let words = words();
+        is_written(&format!("tests/fuzz/{name}.dict"), |dictionary| dictionaries::rewritten(dictionary, &words));
     }
-    let differs = contract.lines().zip(wanted.lines()).position(|(written, wanted)| written != wanted);
+}
+
+/// Panics unless a file has the parts that follow from tables. With `UPDATE` set, writes them.
+fn is_written(path: &str, rewritten: impl Fn(&str) -> String) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    let text = std::fs::read_to_string(&file).unwrap();
+    let wanted = rewritten(&text);
+    if std::env::var_os("UPDATE").is_some() {
+        return std::fs::write(&file, wanted).unwrap();
+    }
+    let differs = text.lines().zip(wanted.lines()).position(|(written, wanted)| written != wanted);
     assert!(
-        contract == wanted,
-        "openapi.yaml:{}: not what the tables of scene fields and endings give; UPDATE=1 cargo test --test server scene_parts rewrites it",
+        text == wanted,
+        "{path}:{}: not what the tables of scene fields and endings give; UPDATE=1 cargo test --test server scene_parts rewrites it",
         differs.map_or(0, |line| line + 1)
     );
+}
+
+/// Schemas of the messages that clients of live runs send.
+fn client_messages() -> impl Iterator<Item = &'static Value> {
+    let sent = &DOCUMENT["paths"]["/v1/live"]["get"]["x-messages"]["client"];
+    sent.as_array().unwrap().iter().map(contract::resolved)
+}
+
+#[test]
+fn the_messages_of_clients_are_those_of_the_contract() {
+    let said: BTreeSet<&str> =
+        client_messages().map(|message| message["properties"]["type"]["const"].as_str().unwrap()).collect();
+    assert_eq!(ClientMessage::names().collect::<BTreeSet<_>>(), said);
 }
 
 #[test]

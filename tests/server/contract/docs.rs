@@ -6,13 +6,13 @@ use super::scene::number;
 
 /// Differences of the documentation from the table.
 pub(crate) fn differences(document: &str) -> Vec<String> {
-    let (mut differences, mut seen) = (Vec::new(), 0);
+    let (mut differences, mut seen) = (Vec::new(), Vec::new());
     for line in document.lines().filter(|line| line.starts_with('|')) {
         let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
         let [_, paths, units, meaning] = cells[..] else { continue };
         let rows: Vec<&Field> = paths.split('`').skip(1).step_by(2).flat_map(expanded).filter_map(field).collect();
         let units: Vec<&str> = units.split(", ").filter(|unit| !unit.is_empty()).collect();
-        seen += rows.len();
+        seen.extend(rows.iter().map(|row| row.path));
         for (index, row) in rows.iter().enumerate() {
             let unit = if units.len() == rows.len() { units.get(index) } else { units.first() };
             if *unit.unwrap_or(&"1") != row.unit && rows.len() <= 4 {
@@ -23,9 +23,8 @@ pub(crate) fn differences(document: &str) -> Vec<String> {
             }
         }
     }
-    if seen < 20 {
-        differences.push(format!("only {seen} fields were found in the table of symbols"));
-    }
+    let missing = FIELDS.iter().filter(|row| !seen.contains(&row.path));
+    differences.extend(missing.map(|row| format!("{} is not in the table of symbols", row.path)));
     differences
 }
 
