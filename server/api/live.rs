@@ -88,8 +88,8 @@ async fn live_events(State(app): State<App>, api_request: ApiRequest) -> Result<
     Ok(([("x-accel-buffering", "no")], Sse::new(told)).into_response())
 }
 
-/// A place for one more live run, if there is one. Also while the server closes: a run that is told so at once is come back to,
-/// and a browser takes an answer of events other than 200 for the end.
+/// Takes a place for one more live run. A server that closes still gives places: the client hears of the end at once and reconnects,
+/// while a browser takes any status of an event stream other than 200 for the end of the run.
 fn admit(
     app: &App,
     api_request: &ApiRequest,

@@ -211,7 +211,7 @@ fn measure(
     Ok(())
 }
 
-/// Marks the points that none beats: at most as dear and as far off as they are, and less in one of the two.
+/// Marks the points of the Pareto front. A point is on it if no other is at most as expensive and as inaccurate, and less in one of the two.
 fn mark(
     points: &mut [WorkPrecisionPoint],
     cost: impl Fn(&WorkPrecisionPoint) -> Option<f64>,

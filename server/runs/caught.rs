@@ -15,7 +15,7 @@ use equipoise_physics::numbers::trig;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 
-/// Samples in one part of a hold: 0.1 s of a hold of 6 s. A throw acts at the end of a part that was told.
+/// Samples in one part of a hold: 0.1 s of a hold of 6 s. A throw acts at the end of a part that was sent.
 const PART: usize = 10;
 
 /// A catch, and how much of it is over.
@@ -24,7 +24,7 @@ pub struct CaughtRun {
     catch: Arc<Catch>,
     /// Number of strikes that are over.
     struck: usize,
-    /// Index of the last sample of the hold that was told.
+    /// Index of the last sample of the hold that was sent.
     held: usize,
 }
 
@@ -57,7 +57,7 @@ impl HoldPart {
 impl CaughtRun {
     /// A catch that begins with a coming contact. `None` if there is no law that could catch it.
     pub fn begin(scene: &Scene, settings: &CatchSettings, t: f64, coming: &PreImpact) -> Option<Self> {
-        // What the scene's own table had planned for this contact is void.
+        // The scene's own table had a plan for this contact, which no longer holds.
         let from = ComingContact { t, coming: PreImpact { plan: None, ..*coming } };
         let catch = catch_from(scene, settings, &from, &mut || true).ok()?;
         Some(Self { catch: Arc::new(catch), struck: 0, held: 0 })

@@ -100,7 +100,7 @@ impl Playback {
     /// The next contact before it happens, with its strike by the changes that act there, and the scene then in force. `None` after
     /// the end.
     ///
-    /// While the body is held, nothing is foreseen.
+    /// `None` too while the body is held.
     pub fn foresee(&self, run: &Run) -> Option<(PreImpact, Strike, Arc<Scene>)> {
         let (mut next, n) = (self.clone(), self.next_n()?);
         if self.held().is_some() {

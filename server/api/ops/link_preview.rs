@@ -72,7 +72,7 @@ pub async fn tags(app: &App, parts: &Parts) -> Tags {
     Tags { html: written(base.as_deref(), &pairs, &run.query, &words.unwrap_or_else(default)), is_whole }
 }
 
-/// Headline and sentence on a run. Dear runs get words without a result, so that the page need not wait for a place in the queue.
+/// Headline and sentence on a run. Expensive runs get words without a result, so that the page need not wait for a place in the queue.
 /// None if the server is overloaded.
 async fn words(app: &App, peer: Peer, request: PreviewRequest) -> Option<(String, String)> {
     let bounces = request.bounces();

@@ -33,7 +33,7 @@ pub(crate) fn pixels(svg: &str, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
     })
 }
 
-/// Canonical form of a request: the scene with all defaults, and the rest of what determines the answer.
+/// Canonical form of a request: the scene with all defaults, and everything else that determines the answer.
 pub(crate) fn canonical(scene: &Scene, rest: &impl Serialize) -> Vec<u8> {
     canonical_of(&(Resolved(scene), rest))
 }

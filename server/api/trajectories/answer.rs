@@ -54,7 +54,7 @@ pub struct MethodAnswer {
     pub reason: String,
     /// Cost by the fixed table that the choice is made with, µs.
     pub cost_us: f64,
-    /// The next dearer method that would suffice.
+    /// The next more expensive method that would suffice.
     pub next: Option<Dearer>,
 }
 

@@ -90,24 +90,24 @@ impl Panel {
             .number("height", height)
             .word("fill", PAPER)
             .end();
-        let look = Type::new(TICK_SIZE, SOFT_INK);
+        let style = Type::new(TICK_SIZE, SOFT_INK);
         let mut widest: f64 = 0.0;
         for (value, label) in &ticks_x.marks {
             let at = self.x.at(*value);
             line(svg, &[(at, top), (at, bottom)], grid(*value, logarithmic[0]), 1.0, None);
             line(svg, &[(at, bottom), (at, bottom + 5.0)], AXIS, 1.0, None);
-            svg.text(at, bottom + 19.0, look.anchored(Anchor::Middle), &[Span::Plain(label)]);
+            svg.text(at, bottom + 19.0, style.anchored(Anchor::Middle), &[Span::Plain(label)]);
         }
         for (value, label) in &ticks_y.marks {
             let at = self.y.at(*value);
             line(svg, &[(left, at), (right, at)], grid(*value, logarithmic[1]), 1.0, None);
             line(svg, &[(left - 5.0, at), (left, at)], AXIS, 1.0, None);
-            svg.text(left - 9.0, at + 4.2, look.anchored(Anchor::End), &[Span::Plain(label)]);
+            svg.text(left - 9.0, at + 4.2, style.anchored(Anchor::End), &[Span::Plain(label)]);
             widest = widest.max(width(label, TICK_SIZE));
         }
-        let look = Type::new(TITLE_SIZE, INK).anchored(Anchor::Middle);
-        title(svg, left + 0.5 * across, bottom + 40.0, look, x, &ticks_x);
-        title(svg, left - 20.0 - widest, top + 0.5 * height, look.upwards(), y, &ticks_y);
+        let style = Type::new(TITLE_SIZE, INK).anchored(Anchor::Middle);
+        title(svg, left + 0.5 * across, bottom + 40.0, style, x, &ticks_x);
+        title(svg, left - 20.0 - widest, top + 0.5 * height, style.upwards(), y, &ticks_y);
     }
 }
 
@@ -122,12 +122,12 @@ fn grid(value: f64, is_logarithm: bool) -> &'static str {
 }
 
 /// The title of an axis: name, symbol, unit and power of ten.
-pub(crate) fn title(svg: &mut Svg, x: f64, y: f64, look: Type, axis: Axis<'_>, ticks: &Ticks) {
+pub(crate) fn title(svg: &mut Svg, x: f64, y: f64, style: Type, axis: Axis<'_>, ticks: &Ticks) {
     let unit = match (ticks.power, axis.unit) {
         (0, "") => String::new(),
         (0, unit) => format!(" ({unit})"),
         (power, unit) => format!(" (10{} {unit})", raised(power)).replace(" )", ")"),
     };
     let name = format!("{} ", axis.name);
-    svg.text(x, y, look, &[Span::Plain(&name), Span::Symbol(axis.symbol), Span::Plain(&unit)]);
+    svg.text(x, y, style, &[Span::Plain(&name), Span::Symbol(axis.symbol), Span::Plain(&unit)]);
 }

@@ -53,10 +53,10 @@ impl Sheet {
         let paper = svg.tag("rect").number("x", 0.5).number("y", 0.5).number("width", width - 1.0);
         paper.number("height", height - 1.0).number("rx", 6.0).word("fill", PAPER).word("stroke", EDGE).end();
         let mut y = 22.0;
-        let mut write = |lines: &[String], look: Type| {
+        let mut write = |lines: &[String], style: Type| {
             for line in lines {
-                svg.text(MARGIN, y + look.size, look, &sentence(line));
-                y += look.size * LEADING;
+                svg.text(MARGIN, y + style.size, style, &sentence(line));
+                y += style.size * LEADING;
             }
         };
         write(&title, Type::new(TITLE, INK).bold());

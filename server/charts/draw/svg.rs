@@ -85,25 +85,25 @@ impl Svg {
     }
 
     /// Writes one line of text.
-    pub(crate) fn text(&mut self, x: f64, y: f64, look: Type, spans: &[Span<'_>]) {
-        let mut tag = self.tag("text").number("x", x).number("y", y).number("font-size", look.size);
-        tag = tag.word("fill", look.colour);
-        if look.bold {
+    pub(crate) fn text(&mut self, x: f64, y: f64, style: Type, spans: &[Span<'_>]) {
+        let mut tag = self.tag("text").number("x", x).number("y", y).number("font-size", style.size);
+        tag = tag.word("fill", style.colour);
+        if style.bold {
             tag = tag.word("font-weight", "600");
         }
-        tag = match look.anchor {
+        tag = match style.anchor {
             Anchor::Start => tag,
             Anchor::Middle => tag.word("text-anchor", "middle"),
             Anchor::End => tag.word("text-anchor", "end"),
         };
-        if look.upwards {
+        if style.upwards {
             tag = tag.word("transform", &format!("rotate(-90 {} {})", fixed(x), fixed(y)));
         }
         tag.svg.out.push('>');
-        let small = fixed(look.size * 0.72);
+        let small = fixed(style.size * 0.72);
         let mut lowered = false;
         for span in spans {
-            let raise = if lowered { format!(" dy=\"{}\"", fixed(-look.size * 0.22)) } else { String::new() };
+            let raise = if lowered { format!(" dy=\"{}\"", fixed(-style.size * 0.22)) } else { String::new() };
             lowered = false;
             match span {
                 Span::Plain("") => {}
@@ -111,7 +111,7 @@ impl Svg {
                 Span::Plain(text) => self.span(&raise, text),
                 Span::Symbol(text) => self.span(&format!("{raise} font-style=\"italic\""), text),
                 Span::Below(text) => {
-                    let drop = if raise.is_empty() { fixed(look.size * 0.22) } else { "0".to_owned() };
+                    let drop = if raise.is_empty() { fixed(style.size * 0.22) } else { "0".to_owned() };
                     self.span(&format!(" dy=\"{drop}\" font-size=\"{small}\""), text);
                     lowered = true;
                 }

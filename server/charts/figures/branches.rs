@@ -78,8 +78,8 @@ pub fn branches(drawn: &Branches<'_>) -> String {
         let (at, bottom) = panel.at(critical, 0.0);
         line(&mut svg, &[(at, frame.top), (at, bottom)], SOFT_INK, 1.0, Some("2 3"));
         let label = format!(" = {}", significant(critical, 4));
-        let look = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
-        svg.text(at, frame.top - 7.0, look, &[Span::Symbol("κ"), Span::Below("c"), Span::Plain(&label)]);
+        let style = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
+        svg.text(at, frame.top - 7.0, style, &[Span::Symbol("κ"), Span::Below("c"), Span::Plain(&label)]);
     }
     let mut run: Vec<(f64, f64)> = Vec::new();
     let mut last: Option<bool> = None;

@@ -84,13 +84,13 @@ pub fn card(card: &Card<'_>) -> String {
     svg.text(width - MARGIN, height - 14.0, name, &[Span::Plain("equipoise")]);
 
     let mut y = 38.0;
-    for (text, look, room, lines) in [
+    for (text, style, room, lines) in [
         (card.title, Type::new(50.0, INK).bold(), BOLD * (width - 2.0 * MARGIN), 2),
         (card.text, Type::new(28.0, SOFT_INK), width - 2.0 * MARGIN, 2),
     ] {
-        for line in wrap(text, look.size, room, lines) {
-            svg.text(MARGIN, y + look.size, look, &sentence(&line));
-            y += 1.25 * look.size;
+        for line in wrap(text, style.size, room, lines) {
+            svg.text(MARGIN, y + style.size, style, &sentence(&line));
+            y += 1.25 * style.size;
         }
         y += 4.0;
     }

@@ -113,9 +113,9 @@ fn draw_mark(
     let direction = if re > 0.0 { 1.0 } else { -1.0 };
     arrow(svg, (x - 3.0 * direction, y), (direction, 0.0), 15.0, INK);
     let anchor = if re > 0.0 { Anchor::End } else { Anchor::Start };
-    let look = Type::new(12.5, INK).anchored(anchor);
+    let style = Type::new(12.5, INK).anchored(anchor);
     for (up, text) in [(30.0, whose), (14.0, format!("λ = {}", significant(re, 3)).as_str())] {
-        svg.text(x - 5.0 * direction, y - up, look, &[Span::Plain(text)]);
+        svg.text(x - 5.0 * direction, y - up, style, &[Span::Plain(text)]);
     }
 }
 
@@ -136,11 +136,11 @@ fn draw_modulus(law: &Loop<'_>, svg: &mut Svg, frame: Frame) {
     band(svg, Frame { left, width: (right - left).max(0.0), ..frame }, PALE_BLUE);
     let one = panel.at(range.low, 1.0).1;
     line(svg, &[(frame.left, one), (frame.left + frame.width, one)], AXIS, 1.0, None);
-    let look = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
+    let style = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
     for (x, end) in [(left, lower), (right, upper)] {
         let Some(end) = end.filter(|end| *end >= range.low && *end <= range.high) else { continue };
         line(svg, &[(x, frame.top), (x, bottom)], AXIS, 1.0, Some("2 3"));
-        svg.text(x, frame.top - 7.0, look, &[Span::Plain(&significant(end, 4))]);
+        svg.text(x, frame.top - 7.0, style, &[Span::Plain(&significant(end, 4))]);
     }
     let drawn = || sizes.iter().filter(|(_, size)| *size <= top);
     let points: Vec<_> = drawn().map(|it| panel.at(it.0, it.1)).collect();

@@ -187,14 +187,14 @@ impl<'a> View<'a> {
                     }
                 }
             }
-            let look = Type::new(12.5, SOFT_INK);
+            let style = Type::new(12.5, SOFT_INK);
             let lower = format!(" = {}", significant(self.spectrum.lower, 4));
             let critical = format!(" = {}", significant(self.spectrum.critical, 4));
             self.draw_scale(svg, &panel, trail.law);
             let (start, end) = (place((1.0, 0.0)), place((-1.0, 0.0)));
-            svg.text(start.0 + 9.0, start.1 + 24.0, look, &[Span::Symbol("κ"), Span::Plain(&lower)]);
+            svg.text(start.0 + 9.0, start.1 + 24.0, style, &[Span::Symbol("κ"), Span::Plain(&lower)]);
             let spans = [Span::Symbol("κ"), Span::Below("c"), Span::Plain(&critical)];
-            svg.text(end.0 - 9.0, end.1 + 24.0, look.anchored(Anchor::End), &spans);
+            svg.text(end.0 - 9.0, end.1 + 24.0, style.anchored(Anchor::End), &spans);
         }
         self.draw_marks(svg, &panel, range);
         panel.edge(svg);
@@ -206,7 +206,7 @@ impl<'a> View<'a> {
         if law != Law::Pair {
             return;
         }
-        let look = Type::new(11.5, SOFT_INK).anchored(Anchor::Middle);
+        let style = Type::new(11.5, SOFT_INK).anchored(Anchor::Middle);
         for (kappa, label) in ticks(Range::new(lower, self.spectrum.critical), 6).marks {
             let residue = (kappa - lower) / width;
             // The ends have labels of their own.
@@ -217,7 +217,7 @@ impl<'a> View<'a> {
             let at = |radius: f64| panel.at(radius * re, radius * im);
             line(svg, &[at(0.96), at(1.04)], SOFT_INK, 1.5, None);
             let (x, y) = at(1.17);
-            svg.text(x, y + 4.0, look, &[Span::Plain(&label)]);
+            svg.text(x, y + 4.0, style, &[Span::Plain(&label)]);
         }
     }
 
@@ -264,7 +264,7 @@ impl<'a> View<'a> {
                 None => seen.push((*value, 1, n < self.own)),
             }
         }
-        let look = Type::new(12.5, INK).anchored(Anchor::Middle);
+        let style = Type::new(12.5, INK).anchored(Anchor::Middle);
         for ((re, im), count, own) in seen {
             let (x, y) = panel.at(re, im);
             if re < range.low || re > range.high {
@@ -272,7 +272,7 @@ impl<'a> View<'a> {
                 arrow(svg, (x - 3.0 * direction, y), (direction, 0.0), 15.0, INK);
                 let label = format!("λ = {}", significant(re, 3));
                 let anchor = if re > 0.0 { Anchor::End } else { Anchor::Start };
-                svg.text(x - 5.0 * direction, y - 14.0, look.anchored(anchor), &[Span::Plain(&label)]);
+                svg.text(x - 5.0 * direction, y - 14.0, style.anchored(anchor), &[Span::Plain(&label)]);
                 continue;
             }
             if own {
@@ -281,7 +281,7 @@ impl<'a> View<'a> {
                 hollow(svg, (x, y), 5.0, INK);
             }
             if count > 1 {
-                svg.text(x + 13.0, y - 11.0, look, &[Span::Plain(&format!("×{count}"))]);
+                svg.text(x + 13.0, y - 11.0, style, &[Span::Plain(&format!("×{count}"))]);
             }
         }
     }
@@ -306,15 +306,15 @@ impl<'a> View<'a> {
             band(svg, Frame { left, width: right - left, ..frame }, PALE_BLUE);
             let one = panel.at(range.low, 1.0).1;
             line(svg, &[(frame.left, one), (frame.left + frame.width, one)], AXIS, 1.0, None);
-            let look = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
+            let style = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
             for (x, below, value) in [(left, Span::Plain(""), lower), (right, Span::Below("c"), critical)] {
                 line(svg, &[(x, frame.top), (x, bottom)], AXIS, 1.0, Some("2 3"));
                 let value = format!(" = {}", significant(value, 4));
-                svg.text(x, frame.top - 7.0, look, &[Span::Symbol("κ"), below, Span::Plain(&value)]);
+                svg.text(x, frame.top - 7.0, style, &[Span::Symbol("κ"), below, Span::Plain(&value)]);
             }
             let middle = 0.5 * left + 0.5 * right;
-            let look = Type::new(12.5, BLUE).anchored(Anchor::Middle);
-            svg.text(middle, frame.top + 20.0, look, &[Span::Plain("stable")]);
+            let style = Type::new(12.5, BLUE).anchored(Anchor::Middle);
+            svg.text(middle, frame.top + 20.0, style, &[Span::Plain("stable")]);
             let branches = if trail.law == Law::Pair { 0..2 } else { 0..1 };
             for branch in branches {
                 for (part, colour, dashes) in
@@ -339,18 +339,18 @@ impl<'a> View<'a> {
         }
         let Frame { top: above, height, .. } = panel.frame;
         let (x, _) = panel.at(kappa, 0.0);
-        let look = Type::new(13.0, INK).bold();
+        let style = Type::new(13.0, INK).bold();
         let label = format!(" = {}", significant(kappa, 4));
         let spans = [Span::Symbol("κ"), Span::Plain(&label)];
         if kappa < range.low || kappa > range.high {
             let direction = if kappa > range.high { 1.0 } else { -1.0 };
             let anchor = if kappa > range.high { Anchor::End } else { Anchor::Start };
             arrow(svg, (x, above - 29.0), (direction, 0.0), 15.0, INK);
-            svg.text(x - 20.0 * direction, above - 24.5, look.anchored(anchor), &spans);
+            svg.text(x - 20.0 * direction, above - 24.5, style.anchored(anchor), &spans);
             return;
         }
         line(svg, &[(x, above - 4.0), (x, above + height)], INK, 1.5, None);
-        svg.text(x, above - 24.5, look.anchored(Anchor::Middle), &spans);
+        svg.text(x, above - 24.5, style.anchored(Anchor::Middle), &spans);
         let mut drawn: Vec<f64> = Vec::new();
         for (n, value) in self.eigenvalues.iter().enumerate() {
             let size = modulus(*value);

@@ -141,9 +141,9 @@ impl Plane<'_> {
             ring(svg, panel.at(x, y), 6.5, GREEN);
         }
         if count == 0 {
-            let look = Type::new(14.0, SOFT_INK).anchored(Anchor::Middle);
+            let style = Type::new(14.0, SOFT_INK).anchored(Anchor::Middle);
             let middle = (frame.left + 0.5 * frame.width, frame.top + 0.5 * frame.height - 8.0);
-            svg.text(middle.0, middle.1, look, &[Span::Plain("no impact")]);
+            svg.text(middle.0, middle.1, style, &[Span::Plain("no impact")]);
         }
         panel.edge(svg);
     }

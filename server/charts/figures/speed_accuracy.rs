@@ -121,7 +121,7 @@ const SIZE: f64 = 5.0;
 /// Space between lines of the legend, px.
 const LEADING: f64 = 23.0;
 
-/// Draws a symbol. `mark` is the method of a point, for pages that look for its points; a legend has none.
+/// Draws a symbol. `mark` is the method of a point, for pages that read the chart; a legend has none.
 fn draw_symbol(svg: &mut Svg, (x, y): Point, Symbol { colour, outline }: Symbol, mark: Option<&str>) {
     let corner = |(index, (right, down)): (usize, &Point)| {
         let kind = if index == 0 { "M" } else { "L" };

@@ -86,12 +86,12 @@ fn draw_survival(svg: &mut Svg, frame: Frame, x: Axis<'_>, curve: &[SurvivalAt])
     panel.readable_edge(svg, "survival", x.range, y.range);
     // At the ticks of the axis, which has room for six.
     let y = frame.top + frame.height + 62.0;
-    let look = Type::new(TICK_SIZE, INK);
+    let style = Type::new(TICK_SIZE, INK);
     svg.begin_group("data-row", "at-risk");
     for (n, _) in ticks(x.range, 6).marks {
         let place = (n as usize).saturating_sub(1);
         let Some(at) = curve.get(place) else { continue };
-        svg.text(panel.at(n, 0.0).0, y, look.anchored(Anchor::Middle), &[Span::Plain(&at.at_risk.to_string())]);
+        svg.text(panel.at(n, 0.0).0, y, style.anchored(Anchor::Middle), &[Span::Plain(&at.at_risk.to_string())]);
     }
     svg.end_group();
     let label = Type::new(TICK_SIZE, SOFT_INK).anchored(Anchor::End);

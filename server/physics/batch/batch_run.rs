@@ -269,8 +269,8 @@ impl<S: Surface> LaneRuns<S> {
         (0..WIDTH).filter(|&lane| self.turn >= self.last[lane]).fold(0, |mask, lane| mask | 1 << lane)
     }
 
-    /// Contacts of all lanes with the flights after them: at most `most`, up to the next that is somebody's last, or that is
-    /// not a common one for all. Those lanes are left before it, and told.
+    /// Computes contacts of all lanes with the flights after them: at most `most`, and only up to the next contact that is the last of a
+    /// run or not a common one. Returns the lanes that stopped before such a contact.
     #[inline(always)]
     fn together(&mut self, most: u64) -> Mask {
         let most = self.last.iter().map(|last| last - self.turn).fold(most, u64::min);

@@ -1,8 +1,8 @@
 //! The strike with Coulomb friction: Routh's impulse in the plane, followed along its normal part through sliding, sticking and
 //! slip reversal, with restitution by Poisson, Newton or Stronge.
 //!
-//! One formula in any kind of number; which way it takes is decided in `f64`, by whoever asks. Flights are the rod's, and what else
-//! a contact needs is in [`crate::body::general`]. Not here: error bounds and linear verdicts.
+//! The formula runs on any kind of number; its branches are decided in `f64`, by the caller. Flights are the rod's, and the rest of a
+//! contact is in [`crate::body::general`].
 
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;

@@ -30,7 +30,7 @@ fn approaches(settings: &CatchSettings, gravity: f64) -> Vec<Approach> {
 }
 
 /// The attempt with the strategy that was asked for, or the first that catches; the first of all if none does. With `compare`, all
-/// are tried and told; without, none beyond the first that catches.
+/// are tried and returned; without it, none after the first that catches.
 ///
 /// # Errors
 /// [`CatchFailure`].

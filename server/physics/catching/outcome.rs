@@ -206,7 +206,7 @@ pub struct CatchDemand {
     pub most_normal_force: f64,
 }
 
-/// A fact about a catch that is told beside it.
+/// A note on a catch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CatchNote {
     /// The energy feedback of the scene with its target would not catch: it slows down as 2/(aGt), a = (1 + e)κ_E/2, and comes down to

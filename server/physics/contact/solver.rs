@@ -1,4 +1,4 @@
-//! The library's integrator over one piece of the motion, looked at so often that nothing of note is missed.
+//! The library's integrator over one piece of the motion, sampled so finely that the observer misses no event.
 
 use crate::contact::equations::{Equations, Motion};
 use differential_equations::interpolate::Interpolation;
@@ -6,8 +6,8 @@ use differential_equations::methods::ExplicitRungeKutta;
 use differential_equations::ode::OrdinaryNumericalMethod;
 use differential_equations::status::Status;
 
-/// Looks at each step of the integrator.
-const LOOKS: u32 = 8;
+/// Samples of the motion that the observer gets in each step of the integrator.
+const SAMPLES: u32 = 8;
 
 /// Longest step, s.
 const LONGEST_STEP: f64 = 0.1;
@@ -15,7 +15,7 @@ const LONGEST_STEP: f64 = 0.1;
 /// Most steps of one piece.
 const MOST_STEPS: usize = 100_000;
 
-/// Steps between two questions to the caller about going on.
+/// Steps after which the caller is asked again whether to go on.
 const STEPS_PER_QUESTION: u32 = 32;
 
 /// Reason for the end of a piece.
@@ -36,7 +36,7 @@ pub(super) trait Observer {
     /// True if the motion at this time, s after the beginning of the piece, is beyond the end of the piece.
     fn ends(&mut self, t: f64, motion: &Motion) -> bool;
 
-    /// Takes in the motion from one look to the next.
+    /// Takes in the motion from one sample to the next.
     fn pass(&mut self, from: (f64, Motion), to: (f64, Motion), between: &mut dyn FnMut(f64) -> Motion);
 }
 
@@ -75,8 +75,9 @@ pub(super) fn integrate(
         let stop = solver.t();
         // Within the step the library has no reason to refuse.
         let mut between = |t: f64| if t >= stop { after } else { solver.interpolate(t.max(begin)).unwrap_or(after) };
-        for look in 1..=LOOKS {
-            let t = if look == LOOKS { end } else { begin + (end - begin) * (f64::from(look) / f64::from(LOOKS)) };
+        for sample in 1..=SAMPLES {
+            let t =
+                if sample == SAMPLES { end } else { begin + (end - begin) * (f64::from(sample) / f64::from(SAMPLES)) };
             let motion = between(t);
             if observer.ends(t, &motion) {
                 let (t, motion) = first(last.0, (t, motion), &mut |t| {

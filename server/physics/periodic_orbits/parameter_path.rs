@@ -96,7 +96,7 @@ fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, Orb
     OrbitProblem::of(&built).map_err(OrbitFailure::Scene)
 }
 
-/// A rod made of what `each` gives for each of its parameters.
+/// A rod with parameters from `each`.
 pub(super) fn rod_with<N>(energy_feedback: EnergyFeedback, each: impl Fn(fn(&Rod) -> f64) -> N) -> Rod<N> {
     Rod {
         contact_distance: each(|rod| rod.contact_distance),

@@ -79,7 +79,7 @@ pub struct MethodChoice {
     pub error_estimate: f64,
     /// Cost by the table, µs.
     pub cost_us: f64,
-    /// The next dearer one that applies and its cost, if there is one.
+    /// The next more expensive method that applies, and its cost, µs.
     pub next: Option<(RunMethod, f64)>,
     /// Reason, in a sentence.
     pub reason: String,

@@ -32,7 +32,7 @@ pub struct LevelRun {
     pub impacts: u64,
     /// Time of the last contact, s.
     pub t: f64,
-    /// The most that it asked of the table.
+    /// Largest load on the table.
     pub load: ActuatorLoad,
     /// Change against the next lower one that applies.
     pub change: Option<LevelChange>,
@@ -152,7 +152,7 @@ pub fn at_level(scene: &Scene, level: ModelLevel) -> Scene {
     if level < ModelLevel::RodWithX && scene.number(Name::FeedbackX).is_some() {
         let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));
     }
-    // A scene without some of what it had is a scene.
+    // A valid scene stays valid without these fields.
     draft.build().unwrap_or(*scene)
 }
 

@@ -1,7 +1,7 @@
 //! Load of a run on the table: tilt, tilt rate between strikes, speed and stroke. It decides whether a real table can do it.
 //!
-//! Between two strikes nothing of the table touches the body, so how it gets from one to the next is the rig's affair; what is
-//! told here is the least that any rig needs.
+//! Between two strikes nothing of the table touches the body, so a rig is free to choose the motion in
+//! between. The values here are the least that any rig needs.
 
 use crate::bounce::strike::Strike;
 

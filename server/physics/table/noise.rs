@@ -24,9 +24,9 @@ pub struct Noise {
     pub angle_sd: f64,
     /// Meaning of a timing error.
     pub model: NoiseModel,
-    /// Which errors, of all that there could be.
+    /// Seed.
     pub seed: u64,
-    /// Which run of them.
+    /// Number of the run with this seed.
     pub run: u64,
 }
 

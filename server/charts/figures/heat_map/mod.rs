@@ -257,17 +257,17 @@ impl Bar {
                 (Scale::linear(around, bottom, top), ticks)
             }
         };
-        let look = Type::new(TICK_SIZE, SOFT_INK);
+        let style = Type::new(TICK_SIZE, SOFT_INK);
         let mut widest: f64 = 0.0;
         for (value, label) in &ticks.marks {
             let at = if self.range.is_some() { scale.at(*value) } else { 0.5 * (top + bottom) };
             line(svg, &[(right, at), (right + 5.0, at)], AXIS, 1.0, None);
-            svg.text(right + 9.0, at + 4.2, look, &[Span::Plain(label)]);
+            svg.text(right + 9.0, at + 4.2, style, &[Span::Plain(label)]);
             widest = widest.max(width(label, TICK_SIZE));
         }
-        let look = Type::new(TITLE_SIZE, INK).anchored(Anchor::Middle).upwards();
+        let style = Type::new(TITLE_SIZE, INK).anchored(Anchor::Middle).upwards();
         let range = scale.range;
         let quantity = Axis { name: map.quantity, symbol: "", unit: map.unit, range };
-        title(svg, right + 26.0 + widest, top + 0.5 * height, look, quantity, &ticks);
+        title(svg, right + 26.0 + widest, top + 0.5 * height, style, quantity, &ticks);
     }
 }

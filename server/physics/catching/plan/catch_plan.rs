@@ -44,7 +44,8 @@ pub struct CatchPlan {
     pub load: ActuatorLoad,
 }
 
-/// Plans the strikes from a coming contact on, within limits. Limits are looked at when the plan is made; it does not go around them.
+/// Plans the strikes from a coming contact on, within limits. A finished plan is checked against the limits; the solver does not
+/// steer around them.
 ///
 /// # Errors
 /// The reason for which there is no plan.

@@ -46,7 +46,7 @@ pub struct ChosenPlan {
 }
 
 /// The plan of the fewest strikes whose tilts are calm; if there is none, the plan of the least tilt, with more strikes as
-/// long as each of them lowers the tilt. `problem.strikes` is not looked at.
+/// long as each of them lowers the tilt. `problem.strikes` is ignored.
 ///
 /// # Errors
 /// The reason for which there is no plan of [`MOST_TRIED`] strikes, if there is none at all.

@@ -150,7 +150,7 @@ impl WantedVelocities {
     }
 }
 
-/// The body of a scene on a table that is told its motion.
+/// The body of a scene on a table whose motion is planned from outside.
 fn thrown_body(scene: &Scene) -> GeneralBody {
     GeneralBody {
         rod: scene.parameters(),

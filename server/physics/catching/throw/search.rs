@@ -13,7 +13,7 @@ use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use std::f64::consts::FRAC_PI_2;
 
-/// Number of tilts on each side that are looked at.
+/// Number of tilts that are tried on each side.
 const TILTS: u32 = 96;
 
 /// Largest number of steps of one root, and of doublings of a speed.

@@ -16,7 +16,7 @@ pub use decimal::{Decimal, NotADecimal, SIGNIFICANT_DIGITS};
 use crate::numbers::number::{Number, Real};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The most that one rounding is off, as a share: a fifth of what is proved for these operations, ten times what they do.
+/// Relative error of one rounding: a fifth of the proved bound for these operations, ten times the errors that occur.
 pub(crate) const ROUNDING: f64 = 2e-32;
 
 /// A number of some 31 digits: `high + low`, where `low` is at most half a unit in the last place of `high`.

@@ -9,10 +9,10 @@ use crate::numbers::trig;
 use crate::run::extended;
 use crate::stability::linear_verdict::AngleClass;
 
-/// By how much a bound is above the sum of what each bounce leaves out: those are taken at the linear state, not the true one.
+/// Factor of a bound over the sum of the terms that each bounce neglects. They are taken at the linear state, not at the true one.
 pub const SAFETY: f64 = 1.5;
 
-/// Points at which what a bounce leaves out is looked at: phases of half a turn, or bounces of a run.
+/// Points at which the neglected terms are evaluated: phases of half a turn, or bounces of a run.
 const SAMPLES: u64 = 12;
 
 impl LinearSolution {
