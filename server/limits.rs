@@ -38,7 +38,7 @@ pub struct Limits {
     #[arg(value_parser = seconds(1..=3600))]
     pub head_time: Duration,
 
-    /// Size of a request's body. A scene of a polygon with hundreds of vertices has about 20 KiB
+    /// Size of a request's body. A scene of a polygon with all its vertices has a few KiB
     #[arg(long, env = "EQUIPOISE_BODY_BYTES", value_name = "BYTES", default_value = "262144")]
     #[arg(value_parser = within::<usize>(1024..=64 * 1024 * 1024, "bytes"))]
     pub body_bytes: usize,
