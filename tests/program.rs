@@ -209,10 +209,14 @@ fn answers_are_held_in_a_share_of_what_the_process_may_have() {
     assert!((1 << 20..=1 << 30).contains(&without), "{without}");
 }
 
+/// Keeps no answers: each request needs a place in the queue, also one that was answered before.
+const FORGETFUL: [&str; 2] = ["--answer-cache", "0"];
+
 /// One client fills its whole share. Others are still served, and requests without a place get 503.
 #[tokio::test]
 async fn one_client_cannot_have_it_all() {
-    let program = Program::start(&["--permits", "1", "--queue", "4", "--trust-proxy", "127.0.0.1"]);
+    let narrow = ["--permits", "1", "--queue", "4", "--trust-proxy", "127.0.0.1"];
+    let program = Program::start(&[narrow.as_slice(), &FORGETFUL].concat());
     let of = |client: u8| format!("x-forwarded-for: 192.0.2.{client}\r\n");
     // One client gets 3 of 5 places.
     let mut held = Vec::new();
@@ -237,7 +241,8 @@ async fn one_client_cannot_have_it_all() {
 /// A client that does not read its answers gets no more of them; others do.
 #[tokio::test]
 async fn answers_that_nobody_reads_count() {
-    let program = Program::start(&["--held-bytes", "10000000", "--trust-proxy", "127.0.0.1"]);
+    let narrow = ["--held-bytes", "10000000", "--trust-proxy", "127.0.0.1"];
+    let program = Program::start(&[narrow.as_slice(), &FORGETFUL].concat());
     let of = |client: u8| format!("x-forwarded-for: 192.0.2.{client}\r\n");
     let long = "/v1/trajectories?preset=case-1&impacts=30000";
     let short = "/v1/stability?preset=case-1&impacts=2000";
@@ -259,7 +264,7 @@ async fn answers_that_nobody_reads_count() {
 #[tokio::test]
 async fn who_keeps_the_server_waiting_is_let_go() {
     let times = ["--head-time", "1", "--body-time", "1", "--stall-time", "1"];
-    let program = Program::start(&[times.as_slice(), &["--held-bytes", "10000000"]].concat());
+    let program = Program::start(&[times.as_slice(), &["--held-bytes", "10000000"], &FORGETFUL].concat());
     for (begin, end) in [
         ("GET / HT", ""),
         ("GET /health/live HTTP/1.1\r\nhost: localhost\r\n\r\n", "HTTP/1.1 200"),
