@@ -74,9 +74,10 @@ test('a map comes after the first plot, once for a change of the scene, and not 
   ]);
   assert.ok(begin > first);
   const before = requests.length;
+  const asking = page.waitForRequest((request) => /x\.parameter=release\.theta/.test(request.url()));
   await slide(page, GAIN, 1.2);
   await page.waitForFunction(() => /tilt_gain=1\.2/.test(location.search));
-  const answer = await page.waitForRequest((request) => /x\.parameter=release\.theta/.test(request.url()));
+  const answer = await asking;
   assert.equal(new URL(answer.url()).searchParams.get('scene.table.tilt_gain'), '1.2');
   await verdict(page);
   await page.waitForTimeout(600);

@@ -98,7 +98,7 @@ export async function bringLateParts(page) {
   panels.join('chart', chart);
   await styles('scene/tools/tools.css').catch(() => {});
   bringSceneTools({ ...actions, view, typed: () => page.complete });
-  bringTracks(page);
+  bringTracks(page, panels);
   void bringImpacts({ run, query: () => playedQuery(page), csv: () => csvPath(page) });
   panels.join('pin', await bringPins(page, others));
   // Until they are restored, the address keeps their part of the link.

@@ -28,9 +28,13 @@ export function bringSettings(page) {
 /** The field of the release whose track has a map as well. */
 const ANGLE = 'release.theta';
 
-/** Shows on the tracks of κ and θ₀ what is known of their values: κ_c, and a map of runs. @param {import('../page.js').Page} page */
-export function bringTracks(page) {
-  const { form, fields, panels } = page;
+/**
+ * Shows on the tracks of κ and θ₀ what is known of their values: κ_c, and a map of runs.
+ * @param {import('../page.js').Page} page
+ * @param {import('../../panels/panels.js').Panels} panels tell of scenes and verdicts
+ */
+export function bringTracks(page, panels) {
+  const { form, fields } = page;
   const trackOf = (/** @type {string} */ path) => {
     const row = form?.row(path);
     return row instanceof NumberRow && row.track ? [row.track] : [];
@@ -52,7 +56,7 @@ export function bringTracks(page) {
     for (const track of gains) track.mark(critical, symbol('κ_c'), `The critical gain is ${number(critical)}.`);
   };
   document.addEventListener(UNITS, sceneChanged);
-  panels?.join('tracks', { sceneChanged, judged });
+  panels.join('tracks', { sceneChanged, judged });
   sceneChanged();
 }
 
