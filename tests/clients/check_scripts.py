@@ -102,7 +102,7 @@ def batch():
     assert told[1]["problem"]["errors"][0]["pointer"] == "/impacts", told[1]
     assert [line["answer"]["scene"]["table"]["tilt_gain"] for line in told[2:]] == gains[3:]
     assert "line 2 is not JSON" in printed("batch.py", "trajectories", given='{"preset": "case-1"}\n{', status=1)
-    assert "there are controllers" in printed("batch.py", "scenes", given="{}", status=1)
+    assert "there are no batches of this name; there are catches, controllers" in printed("batch.py", "scenes", given="{}", status=1)
 
 
 def cut_off():
