@@ -1509,6 +1509,12 @@ export interface components {
             y_dot: number;
             theta_dot: number;
         };
+        ReachedApex: {
+            t: number;
+            x: number;
+            y: number;
+            theta: number;
+        };
         Throw: {
             scene: components["schemas"]["Scene"];
             derived: components["schemas"]["Derived"];
@@ -1523,12 +1529,7 @@ export interface components {
             /** @enum {string} */
             contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through";
             after: components["schemas"]["ThrownState"];
-            apex: {
-                t: number;
-                x: number;
-                y: number;
-                theta: number;
-            };
+            apex: components["schemas"]["ReachedApex"];
             landing: null | {
                 t: number;
                 x: number;
@@ -2233,6 +2234,7 @@ export type ContactFrom = components['schemas']['ContactFrom'];
 export type Catch = components['schemas']['Catch'];
 export type CatchLine = components['schemas']['CatchLine'];
 export type ThrownState = components['schemas']['ThrownState'];
+export type ReachedApex = components['schemas']['ReachedApex'];
 export type Throw = components['schemas']['Throw'];
 export type ThrowLine = components['schemas']['ThrowLine'];
 export type Controller = components['schemas']['Controller'];
