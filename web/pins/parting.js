@@ -87,11 +87,13 @@ export class Parting {
     if (this.#stale) this.#paint();
     this.#stale = false;
     const { pace, shown } = this.#run;
-    if (now_ms - this.#said_ms > 100) {
+    const moves = pace > 0;
+    // At once while the run stands still: no other drawing may follow.
+    if (!moves || now_ms - this.#said_ms > 100) {
       this.#said_ms = now_ms;
       this.#say(shown);
     }
-    return pace > 0;
+    return moves;
   }
 
   /** @param {number} t */

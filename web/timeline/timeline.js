@@ -183,11 +183,11 @@ export class Timeline {
     this.#from.textContent = first > 1 ? `Kept from impact ${fixed(first, 0)} on` : '';
   }
 
-  /** Says the time shown. @param {number} now_ms */
+  /** Says the time shown: at once while the run stands still. @param {number} now_ms */
   draw(now_ms) {
     const { run } = this.#parts;
     const moves = run.pace > 0;
-    if (now_ms - this.#told_ms > 100) {
+    if (!moves || now_ms - this.#told_ms > 100) {
       this.#told_ms = now_ms;
       this.#say(now_ms, moves);
     }
