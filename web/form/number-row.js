@@ -152,14 +152,14 @@ export class NumberRow extends Row {
   /** @param {string} text @returns {{value?: number, problem: string | null}} */
   #judge(text) {
     const { field } = this;
-    if (text === '') return { problem: this.host.needs(field) ? `${field.title} is needed.` : null };
+    if (text === '') return { problem: this.host.needs(field) ? this.missing : null };
     const value = parse(text, field.unit);
-    if (value === null) return { problem: `“${text}” is not a number.` };
-    if (field.kind === 'integer' && !Number.isInteger(value)) return { problem: `“${text}” is not a whole number.` };
+    if (value === null) return { problem: `“${text}” is not a number from ${this.limits}.` };
+    if (field.kind === 'integer' && !Number.isInteger(value))
+      return { problem: `“${text}” is not a whole number from ${this.limits}.` };
     const { minimum, maximum, unit } = field;
     if ((minimum == null || value >= minimum) && (maximum == null || value <= maximum)) return { value, problem: null };
-    const limits = `${number(shownValue(minimum ?? -Infinity, unit))} to ${quantity(maximum, unit)}`;
-    return { problem: `${quantity(value, unit)} is outside its limits, ${limits}.` };
+    return { problem: `${quantity(value, unit)} is outside its limits, ${this.limits}.` };
   }
 
   /** Marks a text that is no value. */

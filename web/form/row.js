@@ -101,12 +101,25 @@ export class Row {
     this.#help.replaceChildren(this.helpWords().join(' '));
   }
 
+  /** Its limits with the unit; '' where it has none. */
+  get limits() {
+    const { minimum, maximum, unit } = this.field;
+    return minimum == null || maximum == null
+      ? ''
+      : `${number(shownValue(minimum, unit))} to ${quantity(maximum, unit)}`;
+  }
+
+  /** The fault of an empty field. */
+  get missing() {
+    return `${this.field.title} is needed${this.limits && `: ${this.limits}`}.`;
+  }
+
   /** Sentences of the help. */
   helpWords() {
-    const { about, live, minimum, maximum, unit, default: usual } = this.field;
+    const { about, live, unit, default: usual } = this.field;
+    const { limits } = this;
     const words = about === '' ? [] : [inWords(about.endsWith('.') ? about : `${about}.`)];
-    if (minimum != null && maximum != null)
-      words.push(`Allowed: ${number(shownValue(minimum, unit))} to ${quantity(maximum, unit)}.`);
+    if (limits !== '') words.push(`Allowed: ${limits}.`);
     if (usual != null && typeof usual === 'number') words.push(`Usually ${quantity(usual, unit)}.`);
     words.push(live ? 'Acts on a run from its next impact.' : 'Acts when the run is restarted.');
     return words;
@@ -127,7 +140,7 @@ export class Row {
   read() {
     if (this.input.disabled) return { value: undefined, problem: null };
     if (this.problem === null && this.value === undefined && this.host.needs(this.field))
-      return { value: undefined, problem: `${this.field.title} is needed.` };
+      return { value: undefined, problem: this.missing };
     return { value: this.value, problem: this.problem };
   }
 

@@ -16,7 +16,7 @@ export const BOUNCES = 500;
 /** Wait after a change of the scene, ms. */
 const QUIET_MS = 250;
 /** A field that every scene has, for the axis that stands still. */
-const STILL = 'gravity';
+export const STILL = 'gravity';
 /** Ranges that the words name. */
 const TOLD = 4;
 
@@ -26,6 +26,7 @@ const whenIdle = (run) =>
 
 export class TrackMap {
   #field;
+  #still;
   #tracks;
   #scene;
   #latest = new LatestRequest();
@@ -35,11 +36,13 @@ export class TrackMap {
 
   /**
    * @param {Field} field
+   * @param {Field} still the field of `STILL`
    * @param {Track[]} tracks of sliders of this field, which show the same
    * @param {() => URLSearchParams | null} scene as typed; null while some of it is no value, and for one without this field
    */
-  constructor(field, tracks, scene) {
+  constructor(field, still, tracks, scene) {
     this.#field = field;
+    this.#still = still;
     this.#tracks = tracks;
     this.#scene = scene;
   }
@@ -59,8 +62,9 @@ export class TrackMap {
     const query = new URLSearchParams(scene);
     // The scene's own value of the field does not matter: the same row serves all of them.
     query.set(`scene.${path}`, String(from / factor));
-    const still = query.get(`scene.${STILL}`) ?? '9.81';
-    const axes = { x: [path, from / factor, to / factor, CELLS], y: [STILL, still, still, 1] };
+    const { path: other, default: usual } = this.#still;
+    const still = query.get(`scene.${other}`) ?? String(usual);
+    const axes = { x: [path, from / factor, to / factor, CELLS], y: [other, still, still, 1] };
     for (const [axis, values] of Object.entries(axes))
       for (const [index, part] of ['parameter', 'from', 'to', 'count'].entries())
         query.set(`${axis}.${part}`, String(values[index]));

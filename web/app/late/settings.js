@@ -6,7 +6,7 @@ import { symbol } from '../../dom/typeset.js';
 import { UNITS, angles, chooseAngles, followAddress } from '../../dom/units.js';
 import { Form } from '../../form/form.js';
 import { NumberRow } from '../../form/number-row.js';
-import { TrackMap } from '../../form/track-map.js';
+import { STILL, TrackMap } from '../../form/track-map.js';
 import { Track } from '../../form/track.js';
 import { updateAddress } from '../address-bar.js';
 import { GAIN } from '../page.js';
@@ -45,8 +45,10 @@ export function bringTracks(page, panels) {
     { path: GAIN, tracks: gains, has: () => !page.typed?.table?.feedback },
     { path: ANGLE, tracks: trackOf(ANGLE), has: () => !page.typed?.body?.point },
   ].flatMap(({ path, tracks, has }) => {
-    const field = fields.find((one) => one.path === path);
-    return field && tracks.length > 0 ? [new TrackMap(field, tracks, () => (has() ? typedQuery(page) : null))] : [];
+    const [field, still] = [path, STILL].map((name) => fields.find((one) => one.path === name));
+    return field && still && tracks.length > 0
+      ? [new TrackMap(field, still, tracks, () => (has() ? typedQuery(page) : null))]
+      : [];
   });
   const sceneChanged = () => {
     for (const map of maps) map.renew();
