@@ -1659,7 +1659,7 @@ export interface components {
             margins?: components["schemas"]["Margins"];
             dial?: string;
             model: components["schemas"]["Model"];
-            verdict: null | ("stable in place" | "unstable") | string;
+            verdict: null | ("stable in place" | "stable, drifting" | "unstable") | string;
             /** @enum {unknown} */
             decided_by: "linear" | "nonlinear" | "boundary" | "lyapunov" | null;
             reason: string;

@@ -129,6 +129,24 @@ async fn energy_feedback_is_weakly_unstable_or_weakly_attracting() {
 }
 
 #[tokio::test]
+async fn a_feedback_without_x_and_x_dot_leaves_the_drift() {
+    let steered = "scene.release.x_dot=0.5&scene.release.theta=0.05&scene.table.energy_gain=0.45&scene.table.target_height=0.2\
+                   &scene.table.energy_measure=total";
+    let tilted = verdict(steered).await;
+    let law = "scene.table.tilt_gain=null&scene.table.feedback.theta=-1.1";
+    let fed_back = verdict(&format!("{steered}&{law}&basin=true")).await;
+    for part in ["verdict", "fixed_point", "linear", "drift_speed", "lyapunov", "rotation_number"] {
+        assert_eq!(fed_back[part], tilted[part], "{part}");
+    }
+    assert!(fed_back["notes"].to_string().contains("which is a tilt_gain of 1.1"), "{fed_back}");
+    assert!(number(&fed_back, "/basin/theta") > 0.1);
+    let damped = verdict(&format!("{steered}&{law}&scene.table.feedback.theta_dot=-0.02")).await;
+    assert_eq!((&damped["verdict"], &damped["agree"]), (&"stable, drifting".into(), &true.into()), "{damped}");
+    assert!(number(&damped, "/fixed_point/x_dot") == number(&damped, "/drift_speed"));
+    assert_eq!(damped["linear"]["eigenvalues"].as_array().unwrap().len(), 2);
+}
+
+#[tokio::test]
 async fn a_run_that_leaves_in_the_end_is_not_called_outside_the_basin() {
     for (theta, fall) in [(0.04, 1332), (0.02, 5354), (0.01, 21453)] {
         let query = format!("scene.table.energy_gain=0.45&scene.table.target_height=0.2&scene.release.theta={theta}");

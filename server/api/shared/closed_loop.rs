@@ -9,12 +9,12 @@ const FACTORS: usize = 160;
 
 /// The eigenvalues of a law's closed loop on the unit circle, and their path as the gain is scaled, as SVG.
 pub(crate) fn draw_closed_loop(title: &str, caption: &str, model: &BounceModel, gain: [f64; 4]) -> String {
-    let with_x = gain[0] != 0.0;
+    let states = model.fed_back(gain);
     let eigenvalues = |factor: f64| -> Vec<(f64, f64)> {
-        let closed = model.closed_loop(gain.map(|gain| gain * factor), with_x);
+        let closed = model.closed_loop_of(gain.map(|gain| gain * factor), states);
         closed.iter().flat_map(|closed| &closed.eigenvalues).map(|value| (value.re, value.im)).collect()
     };
-    let closed = model.closed_loop(gain, with_x);
+    let closed = model.closed_loop_of(gain, states);
     let margin = closed.as_ref().and_then(|closed| closed.margin);
     let (lower, upper) = (margin.and_then(|it| it.lower), margin.and_then(|it| it.upper));
     let high = upper.map_or(2.0, |upper| 1.0 + 1.4 * (upper - 1.0)).min(10.0);

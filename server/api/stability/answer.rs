@@ -109,6 +109,7 @@ fn words(verdict: Verdict, run: &NonlinearRun) -> String {
     let survived = format!("{impacts} bounces survived");
     match (verdict, *ending == Ending::Completed) {
         (Verdict::StableInPlace, _) => "stable in place".to_owned(),
+        (Verdict::StableDrifting, _) => "stable, drifting".to_owned(),
         (Verdict::Elliptic, _) => format!("elliptic, {survived}"),
         (Verdict::WeaklyAttracting, true) => format!("weakly attracting, {survived}"),
         (Verdict::WeaklyAttracting, false) => format!("weakly attracting, but this run ended at bounce {impacts}"),
@@ -153,6 +154,13 @@ impl<'a> StabilityAnswer<'a> {
         let StabilityRequest { ref scene, impacts, basin, dial, tolerances } = *request;
         let run = run_nonlinear(scene, impacts, &mut go_on)?;
         let mut notes = Vec::new();
+        let judged = &scene.with_tilt_law();
+        if judged.model().feedback().is_none() && scene.model().feedback().is_some() {
+            let kappa = judged.number(Name::TiltGain).unwrap_or_default();
+            notes.push(format!(
+                "table.feedback feeds back theta alone, which is a tilt_gain of {kappa}: it is judged as that"
+            ));
+        }
         let mut answer = Self {
             scene: Resolved(scene),
             derived: Derived::of(scene),
@@ -180,7 +188,7 @@ impl<'a> StabilityAnswer<'a> {
             predictable_impacts: None,
             basin: None,
             margins: tolerances.map(|tolerances| {
-                MarginsAnswer::compute(scene, &tolerances, scene.number(Name::TiltGain).unwrap_or_default())
+                MarginsAnswer::compute(judged, &tolerances, judged.number(Name::TiltGain).unwrap_or_default())
             }),
             dial: None,
             notes: Vec::new(),
@@ -192,13 +200,17 @@ impl<'a> StabilityAnswer<'a> {
                         mass has no angle of its own, and its drift dies out"
                     .to_owned(),
             );
-        } else if scene.model().feedback().is_some() {
-            notes.push(
+        } else if judged.model().feedback().is_some() {
+            notes.push(if answer.drift_speed.is_some() {
+                "linear.residue, linear.rotation, linear.tilt_gain, boundary, rotation_number, chaos and predictable_impacts are null: with \
+                 feedback of theta_dot nothing circles for ever, and the last two are not derived"
+                    .to_owned()
+            } else {
                 "drift_speed, linear.residue, linear.rotation, linear.tilt_gain, boundary, rotation_number, chaos and \
                  predictable_impacts are null: with state feedback nothing drifts or circles for ever, and the last two are not derived"
-                    .to_owned(),
-            );
-        } else if contact_regime(&scene.model()) == ContactRegime::Sticking {
+                    .to_owned()
+            });
+        } else if contact_regime(&judged.model()) == ContactRegime::Sticking {
             notes.push(
                 "drift_speed, linear.residue, linear.rotation and linear.tilt_gain are null: the contact sticks to a table that only \
                  tilts, so nothing drifts, the angle has no block of its own, and no tilt_gain balances"
@@ -216,19 +228,19 @@ impl<'a> StabilityAnswer<'a> {
                 notes.extend(cycle_sentence(scene));
             }
             Ok(fixed_point) => {
-                let linear = linear_verdict(scene, &fixed_point);
-                let higher = HigherOrder::of(scene, &fixed_point, &linear);
-                let evidence = Evidence::new(scene, &fixed_point, &linear, impacts);
+                let linear = linear_verdict(judged, &fixed_point);
+                let higher = HigherOrder::of(judged, &fixed_point, &linear);
+                let evidence = Evidence::new(judged, &fixed_point, &linear, impacts);
                 let Assessment { verdict, decided_by, agree, reason } =
-                    assess(scene, &fixed_point, &linear, &higher, &run, evidence.chaos());
+                    assess(judged, &fixed_point, &linear, &higher, &run, evidence.chaos());
                 answer.verdict = Some(words(verdict, &run));
                 answer.decided_by = Some(decided_by.name());
                 answer.agree = Some(agree);
                 answer.reason = reason;
-                if let Some(case) = underived(&scene.model(), &fixed_point) {
+                if let Some(case) = underived(&judged.model(), &fixed_point) {
                     notes.push(format!("boundary is null: its coefficient is not derived {case}"));
                 }
-                if let Some(cone) = stick_cone(&scene.model()) {
+                if let Some(cone) = stick_cone(&judged.model()) {
                     notes.push(format!(
                         "stick cone: the linear analysis holds where the matched contact sticks, for |θ| up to about {cone} rad \
                          (μ(ρ² + l²)/(l²|κ − 1|)); this run came to {} rad",
@@ -271,12 +283,12 @@ impl<'a> StabilityAnswer<'a> {
                         fixed_point.x_dot, fixed_point.apex_height
                     ));
                 }
-                answer.linear = Some(LinearPart::new(scene, &linear));
+                answer.linear = Some(LinearPart::new(judged, &linear));
                 answer.fixed_point = Some(fixed_point.into());
             }
         }
         if basin {
-            match find_basin(scene, impacts, &mut go_on) {
+            match find_basin(judged, impacts, &mut go_on) {
                 Ok(basin) => {
                     notes.push(format!(
                         "basin: released at rest; no hole wider than {} rad was missed, and its edges are known to {} rad",

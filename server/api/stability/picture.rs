@@ -11,7 +11,7 @@ use crate::http::Problem;
 
 impl Pictured for StabilityAnswer<'_> {
     fn to_picture(&self) -> Result<String, Problem> {
-        if let (Some(gain), Some(place)) = (self.scene.0.model().feedback(), &self.fixed_point) {
+        if let (Some(gain), Some(place)) = (self.scene.0.with_tilt_law().model().feedback(), &self.fixed_point) {
             let model =
                 BounceModel::new(&self.scene.0.parameters(), -place.y_dot, contact_regime(&self.scene.0.model()));
             let title = format!("Closed loop: {}", self.verdict.as_deref().unwrap_or("no verdict"));

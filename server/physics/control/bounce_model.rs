@@ -9,6 +9,12 @@ use nalgebra::{Complex, DMatrix, Matrix4, RowVector4, Vector4};
 /// Names of the components of the state just before a contact, in the order of A, B and K.
 pub const STATE: [&str; 4] = ["x", "theta", "x_dot", "theta_dot"];
 
+/// Indices of all of [`STATE`].
+const ALL: [usize; 4] = [0, 1, 2, 3];
+
+/// Indices of θ and θ̇ in [`STATE`].
+pub(crate) const ANGLE: [usize; 2] = [1, 3];
+
 /// Largest spectral radius of a stable loop. Nearer to 1, rounding would decide.
 pub const STABLE: f64 = 1.0 - 1e-9;
 
@@ -24,7 +30,8 @@ pub struct BounceModel {
 /// The closed loop of a gain on a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLoop {
-    /// Eigenvalues of A − BK, largest modulus first; without that of x if K does not feed x back.
+    /// Eigenvalues of A − BK, largest modulus first; without those of x and of the drift if K does not feed
+    /// them back.
     pub eigenvalues: Vec<Complex<f64>>,
     /// The largest modulus.
     pub spectral_radius: f64,
@@ -95,11 +102,29 @@ impl BounceModel {
 
     /// The closed loop of a gain, with or without x among the states. `None` if the eigenvalues do not converge.
     pub fn closed_loop(&self, gain: [f64; 4], with_x: bool) -> Option<ClosedLoop> {
-        let first = usize::from(!with_x);
-        let part = |matrix: &Matrix4<f64>| -> DMatrix<f64> {
-            matrix.view((first, first), (4 - first, 4 - first)).clone_owned()
-        };
-        let (open, closed) = (part(&self.a), part(&(self.a - self.b * RowVector4::from(gain))));
+        self.closed_loop_of(gain, if with_x { &ALL } else { &ALL[1..] })
+    }
+
+    /// The states that a gain feeds back or that act on those, as indices of [`STATE`]. A place that is not fed back is left out, and so
+    /// is a drift: if neither x nor ẋ is fed back and no friction takes ẋ away, both stay as they are.
+    pub fn fed_back(&self, gain: [f64; 4]) -> &'static [usize] {
+        let drifts = gain[2] == 0.0 && self.a[(1, 2)] == 0.0 && self.a[(3, 2)] == 0.0;
+        match (gain[0] != 0.0, drifts) {
+            (true, _) => &ALL,
+            (false, false) => &ALL[1..],
+            (false, true) => &ANGLE,
+        }
+    }
+
+    /// A, or A − BK with a gain, for some of the states.
+    pub fn part(&self, gain: [f64; 4], states: &[usize]) -> DMatrix<f64> {
+        let matrix = self.a - self.b * RowVector4::from(gain);
+        DMatrix::from_fn(states.len(), states.len(), |row, column| matrix[(states[row], states[column])])
+    }
+
+    /// The closed loop of a gain over some of the states. `None` if the eigenvalues do not converge.
+    pub fn closed_loop_of(&self, gain: [f64; 4], states: &[usize]) -> Option<ClosedLoop> {
+        let (open, closed) = (self.part([0.0; 4], states), self.part(gain, states));
         let eigenvalues = eigenvalues(&closed)?;
         let spectral_radius = eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max);
         let margin = (spectral_radius <= STABLE).then(|| stable_gain_range(&open, &closed));

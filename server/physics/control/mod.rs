@@ -4,6 +4,7 @@
 //! The analysis is linear; runs show how far from upright a law holds ([`crate::surveys::stability_map`]). The energy is not fed back
 //! here: to first order it moves independently of the angle ([`crate::stability::linear_verdict`]).
 
+pub mod angle_feedback;
 pub mod bounce_model;
 pub mod care;
 pub mod lqr;

@@ -98,6 +98,23 @@ impl Scene {
         draft.build().unwrap_or(*self)
     }
 
+    /// The same scene with a tilt gain, κ = −K_θ, in place of a state feedback of θ alone, which is the same law; other scenes as they are.
+    /// Friction on a table that only tilts is left as it is: nothing drifts or circles there.
+    pub fn with_tilt_law(&self) -> Self {
+        let Steering::Feedback(Gains { x: 0.0, theta, x_dot: 0.0, theta_dot: 0.0 }) = self.steering else {
+            return *self;
+        };
+        if self.friction != 0.0 && self.slide == Slide::None {
+            return *self;
+        }
+        let mut draft = self.draft;
+        for name in [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot] {
+            draft.put(name, None);
+        }
+        draft.put(Name::TiltGain, Some(Value::Number(-theta)));
+        draft.build().unwrap_or(*self)
+    }
+
     /// Vertices of a polygon as they were given.
     pub fn vertices(&self) -> Option<&Vertices> {
         self.draft.vertices()

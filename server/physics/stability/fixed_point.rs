@@ -5,6 +5,7 @@
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
+use crate::control::angle_feedback::AngleFeedback;
 use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, lent_by_table};
@@ -12,6 +13,12 @@ use crate::table::program::HeightProgram;
 
 /// The levels above the plain rod that can be judged linearly.
 pub const LINEARLY_JUDGED: [ModelLevel; 3] = [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::Friction];
+
+/// Most rounds in which the speed of a bounce and the drift beside it are brought together; each gains some digits.
+const MOST_ROUNDS: u32 = 32;
+
+/// Change of the drift, as a share of the speed, at which they are together.
+const SAME_DRIFT: f64 = 1e-15;
 
 /// The upright bounce that a scene is to be balanced on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +54,13 @@ impl FixedPoint {
 /// c = ẋ − κρ²θ̇/((κ − 1)l), or ẋ − (κρ² + l²)θ̇/((κ − 1)l) where a matched contact sticks: the mean horizontal speed of a balanced
 /// run, m/s. `None` if κ = 1, which drifts off in angle instead, where friction holds the contact, and for a point mass, whose
 /// drift dies out.
+///
+/// With state feedback of θ and θ̇ alone it is [`AngleFeedback::drift`]; feedback of x or ẋ leaves none.
 pub fn drift_speed(scene: &Scene) -> Option<f64> {
+    let scene = &scene.with_tilt_law();
+    if scene.model().feedback().is_some() {
+        return place_and_drift(scene, AngleFeedback::of(scene)?).ok().map(|(_, drift)| drift);
+    }
     let regime = contact_regime(&scene.model());
     if scene.beyond(&[ModelLevel::Friction]).is_some() || regime == ContactRegime::Sticking {
         return None;
@@ -72,6 +85,13 @@ pub fn drift_speed(scene: &Scene) -> Option<f64> {
 /// # Errors
 /// A sentence that says why there is none.
 pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
+    let scene = &scene.with_tilt_law();
+    if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
+        return Err(error.detail);
+    }
+    if let Some(feedback) = AngleFeedback::of(scene) {
+        return place_and_drift(scene, feedback).map(|(place, _)| place);
+    }
     upright_bounce(scene, held_drift(scene))
 }
 
@@ -80,16 +100,20 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
 /// # Errors
 /// A sentence that says why there is none.
 pub fn find_bounce_without_drift(scene: &Scene) -> Result<FixedPoint, String> {
-    upright_bounce(scene, 0.0)
+    upright_bounce(&scene.with_tilt_law(), 0.0)
+}
+
+/// Tells whether the table holds the total energy, and with it that of the drift.
+fn holds_total(scene: &Scene) -> bool {
+    match scene.energy_feedback {
+        EnergyFeedback::Vertical => false,
+        EnergyFeedback::Total | EnergyFeedback::OneStrike => scene.steers_energy(),
+    }
 }
 
 /// c, m/s, where the table holds the total energy; 0 elsewhere.
 fn held_drift(scene: &Scene) -> f64 {
-    let holds_total = match scene.energy_feedback {
-        EnergyFeedback::Vertical => false,
-        EnergyFeedback::Total | EnergyFeedback::OneStrike => scene.steers_energy(),
-    };
-    if holds_total { drift_speed(scene).unwrap_or(0.0) } else { 0.0 }
+    if holds_total(scene) { drift_speed(scene).unwrap_or(0.0) } else { 0.0 }
 }
 
 /// The fixed point with the drift speed `held`, m/s, in the energy that the table holds.
@@ -208,6 +232,15 @@ fn held_share(scene: &Scene) -> f64 {
 /// # Errors
 /// A sentence that says why there is none.
 pub fn bounce_in_place(scene: &Scene) -> Result<FixedPoint, String> {
+    bounce_beside(scene, 0.0, None)
+}
+
+/// [`bounce_in_place`] with a drift c (m/s) beside it, which takes its part of an energy that is kept or held. A matched table with friction
+/// that leaves the drift has `lent` (m²/s²) to the run by then.
+///
+/// # Errors
+/// Same as [`bounce_in_place`].
+fn bounce_beside(scene: &Scene, drift: f64, lent: Option<f64>) -> Result<FixedPoint, String> {
     if scene.body() == BodyShape::Point {
         return Err("a point mass has no angle to feed back".to_owned());
     }
@@ -216,7 +249,8 @@ pub fn bounce_in_place(scene: &Scene) -> Result<FixedPoint, String> {
     }
     let rod: Rod = scene.parameters();
     let weight = rod.gravity * rod.contact_distance;
-    let speed_squared = if rod.energy_feedback == EnergyFeedback::OneStrike {
+    let held = if holds_total(scene) { drift } else { 0.0 };
+    let available = if rod.energy_feedback == EnergyFeedback::OneStrike {
         2.0 * (rod.target_energy + rod.gravity * height_error(scene) - weight)
     } else if rod.strike_gain_per_energy != 0.0 {
         2.0 * (rod.target_energy + (rod.strike_gain - 2.0) / rod.strike_gain_per_energy - weight)
@@ -229,13 +263,31 @@ pub fn bounce_in_place(scene: &Scene) -> Result<FixedPoint, String> {
         let start = scene.start();
         let spin = rod.radius_of_gyration * start.theta_dot;
         let mut kinetic = start.y_dot * start.y_dot;
-        if contact_regime(&scene.model()) == ContactRegime::Frictionless {
-            kinetic += start.x_dot * start.x_dot + spin * spin;
+        if let Some(lent) = lent.or((contact_regime(&scene.model()) == ContactRegime::Frictionless).then_some(0.0)) {
+            kinetic += start.x_dot * start.x_dot + spin * spin - drift * drift + 2.0 * lent;
         }
         kinetic + 2.0 * (rod.gravity * scene.release().height - weight)
     };
+    let share = if rod.energy_feedback == EnergyFeedback::OneStrike { held_share(scene) } else { 1.0 };
+    let taken = share * held;
+    let speed_squared = available - taken * taken;
     if !speed_squared.is_finite() || speed_squared <= 0.0 {
         return Err(format!("the square of its speed would be {speed_squared} m²/s²: there is no upright bounce"));
     }
-    Ok(FixedPoint::new(0.0, speed_squared, rod.gravity, rod.contact_distance))
+    Ok(FixedPoint::new(held, speed_squared, rod.gravity, rod.contact_distance))
+}
+
+/// The bounce and the drift (m/s) of a feedback of θ and θ̇ alone, each with the other.
+fn place_and_drift(scene: &Scene, feedback: AngleFeedback) -> Result<(FixedPoint, f64), String> {
+    let mut drift = scene.start().x_dot;
+    let mut place = bounce_beside(scene, 0.0, None)?;
+    for _ in 0..MOST_ROUNDS {
+        let known = drift;
+        drift = feedback.drift(scene, place.speed, known).ok_or("the release comes to no contact")?;
+        place = bounce_beside(scene, drift, Some(feedback.lent_energy(scene, place.speed)))?;
+        if (drift - known).abs() <= SAME_DRIFT * place.speed {
+            break;
+        }
+    }
+    Ok((place, drift))
 }

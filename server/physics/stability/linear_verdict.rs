@@ -91,7 +91,10 @@ impl LinearVerdict {
 }
 
 /// The linear verdict about a fixed point, in closed form: eq. (14) with the energy term.
+///
+/// A state feedback of θ alone is the tilt gain that it is.
 pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict {
+    let scene = &scene.with_tilt_law();
     let speed_squared = fixed_point.speed * fixed_point.speed;
     let loop_gain = (1.0 + scene.restitution) * speed_squared;
     let (energy_eigenvalue, upper_energy_gain) = match scene.energy_feedback {
@@ -192,7 +195,7 @@ pub fn one_strike_eigenvalue(scene: &Scene) -> f64 {
 fn closed_loop(model: &Model, fixed_point: &FixedPoint) -> Option<ClosedLoop> {
     let gain = model.feedback()?;
     let bounce = BounceModel::new(model.rod(), fixed_point.speed, contact_regime(model));
-    bounce.closed_loop(gain, gain[0] != 0.0)
+    bounce.closed_loop_of(gain, bounce.fed_back(gain))
 }
 
 /// The class of a residue.

@@ -17,7 +17,7 @@ use crate::stability::jacobian::{eigenvalues, jacobian, modulus};
 use crate::stability::linear_verdict::{LinearVerdict, PARABOLIC};
 use crate::stability::lyapunov::first_contact;
 use crate::stability::normal_form::UprightBounce;
-use nalgebra::{Complex, DMatrix, RowVector4};
+use nalgebra::{Complex, DMatrix};
 
 /// Largest modulus of an eigenvalue of the angle, over two bounces of different height, for which the angle counts as bounded.
 const CIRCLING: f64 = 1.0 + 1e-7;
@@ -169,17 +169,13 @@ fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<StabilityLoss
     let bounce = UprightBounce::of(&model, fixed_point)?;
     let start = first_contact(scene)?;
     let linear = BounceModel::new(model.rod(), fixed_point.speed, contact_regime(&model));
-    let with_x = gain[0] != 0.0;
-    let first = usize::from(!with_x);
-    let part = |matrix: nalgebra::Matrix4<f64>| -> DMatrix<f64> {
-        matrix.view((first, first), (4 - first, 4 - first)).clone_owned()
-    };
-    let mut factors = critical_factors(&part(linear.a), &part(linear.a - linear.b * RowVector4::from(gain)));
+    let states = linear.fed_back(gain);
+    let mut factors = critical_factors(&linear.part([0.0; 4], states), &linear.part(gain, states));
     factors.retain(|factor| factor.is_finite() && *factor > 0.0);
     factors.extend([0.0, f64::INFINITY]);
     factors.sort_by(f64::total_cmp);
     let radius = |factor: f64| {
-        linear.closed_loop(gain.map(|gain| factor * gain), with_x).map_or(f64::INFINITY, |it| it.spectral_radius)
+        linear.closed_loop_of(gain.map(|gain| factor * gain), states).map_or(f64::INFINITY, |it| it.spectral_radius)
     };
     let is_stable =
         |low: f64, high: f64| radius(if high.is_finite() { 0.5 * (low + high) } else { 2.0 * low + 1.0 }) <= STABLE;

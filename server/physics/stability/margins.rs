@@ -67,6 +67,7 @@ pub fn margins_over_tolerances(scene: &Scene, tolerances: &Tolerances) -> Result
     if scene.outline().is_some() {
         return margins_over_tolerances(&scene.as_rod(), tolerances);
     }
+    let scene = &scene.with_tilt_law();
     let number = |name| scene.number(name).unwrap_or(f64::NAN);
     let middle = [Name::ContactDistance, Name::RadiusOfGyration, Name::Restitution].map(number);
     if middle.iter().any(|value| value.is_nan()) {

@@ -146,10 +146,15 @@ impl UprightBounce {
         DMatrix::from_fn(size, size, |row, n| columns[n][row])
     }
 
-    /// The eigenvalues of the odd components on or above the real axis, largest modulus first; `None` if the iteration does not
-    /// converge.
+    /// The eigenvalues of the odd components on or above the real axis, largest modulus first, without that of a drift that a state
+    /// feedback leaves as it is; `None` if the iteration does not converge.
     pub fn odd_eigenvalues(&self) -> Option<Vec<Complex<f64>>> {
-        let mut values = eigenvalues(&self.odd_derivative())?;
+        let mut matrix = self.odd_derivative();
+        let drifts = matches!(self.steering, Steering::Feedback(Gains { x: 0.0, x_dot: 0.0, .. }));
+        if drifts && matrix[(0, 1)] == 0.0 && matrix[(2, 1)] == 0.0 {
+            matrix = matrix.remove_row(1).remove_column(1);
+        }
+        let mut values = eigenvalues(&matrix)?;
         values.retain(|value| value.im >= 0.0);
         Some(values)
     }

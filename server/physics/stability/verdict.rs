@@ -3,7 +3,7 @@
 //! Not here: how any of them comes about ([`crate::stability::linear_verdict`], [`crate::stability::lyapunov`], [`crate::stability::loss_of_stability`], [`crate::stability::regularity`]).
 
 use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::control::bounce_model::{ClosedLoop, STATE};
+use crate::control::bounce_model::{ANGLE, ClosedLoop, STATE};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
 use crate::stability::boundary::{BoundaryCoefficient, boundary_coefficient, period_two_angle, underived};
@@ -20,6 +20,8 @@ use crate::stability::regularity::{CHAOTIC, ChaosIndicator};
 pub enum Verdict {
     /// A small deviation dies out.
     StableInPlace,
+    /// A small deviation of the angle dies out, and the drift of the release stays.
+    StableDrifting,
     /// The linear analysis says that the angle circles, and the run did for as long as it was watched; no theorem says more.
     Elliptic,
     /// The angle circles in first order, and the swing dies out in third.
@@ -86,6 +88,7 @@ pub struct HigherOrder {
 impl HigherOrder {
     /// Collects them for a scene.
     pub fn of(scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Self {
+        let scene = &scene.with_tilt_law();
         let boundary = boundary_coefficient(&scene.model(), fixed_point);
         let (losses, notes) = losses(scene, fixed_point, linear, boundary);
         Self { boundary, lyapunov: lyapunov_coefficient(scene, fixed_point, linear), losses, notes }
@@ -107,6 +110,7 @@ pub fn assess(
     run: &NonlinearRun,
     chaos: Option<ChaosIndicator>,
 ) -> Assessment {
+    let scene = &scene.with_tilt_law();
     let survived = run.ending == Ending::Completed;
     let agree = linear.says_bounded() == survived;
     let assessment = |verdict, decided_by, reason| Assessment { verdict, decided_by, agree, reason };
@@ -283,16 +287,21 @@ fn assess_feedback(closed: &ClosedLoop, higher: &HigherOrder, run: &NonlinearRun
     let survived = run.ending == Ending::Completed;
     let (stable, radius) = (closed.is_stable(), closed.spectral_radius);
     let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
-    let what = if closed.eigenvalues.len() == STATE.len() {
+    let states = closed.eigenvalues.len();
+    let drifts = states == ANGLE.len();
+    let what = if states == STATE.len() {
         "x, theta, x_dot and theta_dot"
+    } else if drifts {
+        "theta and theta_dot"
     } else {
         "theta, x_dot and theta_dot"
     };
+    let beside = if drifts { "; neither x nor x_dot is fed back, so a drift stays as it is" } else { "" };
     let (verdict, decided_by, reason) = match (stable, survived) {
         (true, true) => (
-            Verdict::StableInPlace,
+            if drifts { Verdict::StableDrifting } else { Verdict::StableInPlace },
             DecidedBy::Linear,
-            format!("every small deviation of {what} dies out: the closed loop has spectral radius {radius}"),
+            format!("every small deviation of {what} dies out: the closed loop has spectral radius {radius}{beside}"),
         ),
         (true, false) => (
             Verdict::Unstable,

@@ -1,0 +1,144 @@
+//! The drift that a state feedback of θ and θ̇ alone leaves to the body: fixed point, linear verdict and verdict against long runs.
+
+#[path = "support/random.rs"]
+mod random;
+#[path = "support/scenes.rs"]
+mod scenes;
+
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::run;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
+use equipoise_physics::stability::linear_verdict::linear_verdict;
+use equipoise_physics::stability::nonlinear_run::run_nonlinear;
+use equipoise_physics::stability::verdict::{Assessment, HigherOrder, Verdict, assess};
+use random::Random;
+use scenes::Kind;
+
+/// A scene with other numbers and words; a feedback takes the place of the tilt gain.
+fn with(scene: &Scene, numbers: &[(Name, f64)], words: &[(Name, &'static str)]) -> Option<Scene> {
+    let mut draft = scene.draft();
+    if numbers.iter().any(|(name, _)| *name == Name::FeedbackTheta) {
+        draft.set(Name::TiltGain, None).unwrap();
+    }
+    for &(name, number) in numbers {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    for &(name, word) in words {
+        draft.set(name, Some(Value::Choice(word))).unwrap();
+    }
+    draft.build().ok()
+}
+
+/// Case 1 with energy feedback, a drift of 0.5 m/s and a swing.
+fn case_1() -> Scene {
+    let mut draft = Draft::default();
+    for (name, number) in [
+        (Name::ContactDistance, 0.4 / 3.0),
+        (Name::RadiusOfGyration, std::f64::consts::SQRT_2 / 15.0),
+        (Name::Height, 0.2),
+        (Name::Theta, 0.02),
+        (Name::XDot, 0.5),
+        (Name::TiltGain, 1.1),
+    ] {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft.build().unwrap()
+}
+
+const TOTAL: &[(Name, &str)] = &[(Name::EnergyMeasure, "total")];
+const STEERED: [(Name, f64); 2] = [(Name::EnergyGain, 0.45), (Name::TargetHeight, 0.2)];
+
+fn judge(scene: &Scene) -> Assessment {
+    let fixed_point = find_fixed_point(scene).unwrap();
+    let linear = linear_verdict(scene, &fixed_point);
+    let higher = HigherOrder::of(scene, &fixed_point, &linear);
+    assess(scene, &fixed_point, &linear, &higher, &run_nonlinear(scene, 2000, || true).unwrap(), None)
+}
+
+/// Mean horizontal speed and mean |ẏ| at the contacts of the second half of a run; `None` if it ends early.
+fn settled(scene: &Scene, impacts: u64) -> Option<[f64; 2]> {
+    let (mut x, mut t, mut y_dot, mut count) = ([0.0; 2], [0.0; 2], 0.0, 0.0);
+    let ending = run(&mut scene.orbit().unwrap(), impacts, |contact| {
+        if contact.n == impacts / 2 {
+            (x[0], t[0]) = (contact.x, contact.t);
+        }
+        if contact.n >= impacts / 2 {
+            (x[1], t[1], y_dot, count) = (contact.x, contact.t, y_dot - contact.state.y_dot, count + 1.0);
+        }
+        true
+    });
+    (ending == Some(Ending::Completed)).then(|| [(x[1] - x[0]) / (t[1] - t[0]), y_dot / count])
+}
+
+#[test]
+fn feedback_of_the_angle_alone_is_judged_as_the_tilt_gain_that_it_is() {
+    let law = [(Name::FeedbackTheta, -1.1)];
+    for (numbers, words, speed) in [(&[][..], &[][..], 1.144), (&STEERED[..], TOTAL, 1.029), (&STEERED[..], &[], 1.144)]
+    {
+        let tilted = with(&case_1(), numbers, words).unwrap();
+        let fed_back = with(&tilted, &law, &[]).unwrap();
+        let fixed_point = find_fixed_point(&fed_back).unwrap();
+        assert!((fixed_point.speed - speed).abs() < 1e-3, "{}", fixed_point.speed);
+        assert_eq!(find_fixed_point(&tilted), Ok(fixed_point));
+        assert_eq!(drift_speed(&tilted), drift_speed(&fed_back));
+        let linear = linear_verdict(&fed_back, &fixed_point);
+        assert_eq!(linear_verdict(&tilted, &fixed_point), linear);
+        assert!(linear.residue.is_some() && linear.spectral_radius() == 1.0);
+        assert_eq!(judge(&fed_back).verdict, judge(&tilted).verdict);
+    }
+    assert_eq!(judge(&with(&case_1(), &law, &[]).unwrap()).verdict, Verdict::Elliptic);
+    // Feedback of ẋ takes the drift away.
+    let braked =
+        with(&case_1(), &[STEERED[0], STEERED[1], (Name::FeedbackTheta, -2.9), (Name::FeedbackXDot, 0.36)], TOTAL);
+    let braked = braked.unwrap();
+    assert_eq!((find_fixed_point(&braked).unwrap().x_dot, drift_speed(&braked)), (0.0, None));
+}
+
+#[test]
+fn runs_settle_on_the_drift_and_the_height_said() {
+    let mut random = Random::new(7);
+    let mut judged = [0; 5];
+    let mut worst = [0.0_f64; 2];
+    while judged.iter().sum::<usize>() < 300 {
+        let kind = (random.between(0.0, 5.0)) as usize;
+        let base = match kind {
+            0 | 4 => scenes::scene(&mut random, Kind::Regular),
+            1 => scenes::scene(&mut random, Kind::Total),
+            2 => scenes::scene(&mut random, Kind::OneStrike),
+            _ => scenes::scene(&mut random, Kind::Feedback),
+        };
+        let size = random.size(1e-4, 1e-2).abs();
+        let Ok(at) = find_fixed_point(&with(&base, &[(Name::XDot, 0.0)], &[]).unwrap()) else { continue };
+        let tilt_gain = base.number(Name::TiltGain).unwrap();
+        let numbers = [
+            (Name::Theta, size * random.between(-1.0, 1.0)),
+            (Name::ThetaDot, size / at.flight_time * random.between(-1.0, 1.0)),
+            (Name::XDot, at.speed * random.between(-0.5, 0.5)),
+            (Name::FeedbackTheta, -tilt_gain),
+            // From damping to undamped: a strike turns by a share of up to 0.6 of θ̇.
+            (
+                Name::FeedbackThetaDot,
+                -random.between(0.1, 0.3) * base.number(Name::RadiusOfGyration).unwrap().powi(2)
+                    / (at.speed * base.number(Name::ContactDistance).unwrap()),
+            ),
+            (Name::Friction, if kind == 4 { 0.3 } else { 0.0 }),
+        ];
+        let words: &[_] = if kind == 4 { &[(Name::Slide, "matched")] } else { &[] };
+        let Some(scene) = with(&base, &numbers, words) else { continue };
+        let Ok(fixed_point) = find_fixed_point(&scene) else { continue };
+        let linear = linear_verdict(&scene, &fixed_point);
+        if linear.spectral_radius() > 0.97 {
+            continue;
+        }
+        let Some([drift, speed]) = settled(&scene, 4000) else { panic!("{scene:?}") };
+        let said = drift_speed(&scene).unwrap();
+        let off = [(drift - said).abs() / at.speed, (speed - fixed_point.speed).abs() / at.speed];
+        for (worst, off) in worst.iter_mut().zip(off) {
+            *worst = worst.max(off / size);
+        }
+        judged[kind] += 1;
+        assert_eq!(judge(&scene).verdict, Verdict::StableDrifting);
+    }
+    assert!(worst.iter().all(|worst| *worst < 0.2) && judged.iter().all(|count| *count > 30), "{worst:?} {judged:?}");
+}
