@@ -15,7 +15,6 @@ use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::bounce::tilt::Tilt;
-use crate::numbers::trig;
 use crate::table::control_law::Steering;
 use crate::table::noise::{Noise, NoiseModel, NoiseSample};
 use crate::table::program::HeightProgram;
@@ -219,7 +218,7 @@ impl Body for GeneralBody {
         let rod = self.seen_at(*n, *clearance);
         let tilt = match plan {
             Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
-            None => self.tilt(*x, state, self.draw(*n).angle),
+            None => self.tilt(*x, state, self.noise.map_or(0.0, |noise| noise.angle_error(*n))),
         };
         match (&self.friction, plan) {
             (None, None) => rod.strike_with(state, &tilt, rod.leverage()),
@@ -232,7 +231,7 @@ impl Body for GeneralBody {
 
     #[inline(never)]
     fn touches(&self, coming: &PreImpact, strike: &Strike) -> Option<Touch> {
-        let nearest = self.outline.as_ref()?.below_table(trig::sin_cos(coming.state.theta - strike.alpha))?;
+        let nearest = self.outline.as_ref()?.below_table(coming.state.theta - strike.alpha)?;
         Some(Touch { vertex: nearest.vertex, t: 0.0 })
     }
 

@@ -4,6 +4,7 @@
 pub mod dispatch;
 pub mod double_double;
 pub mod dual;
+pub(crate) mod logarithm;
 pub mod number;
 pub mod second_order;
 pub mod taylor;

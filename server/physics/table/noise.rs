@@ -3,6 +3,8 @@
 //!
 //! Not here: what an error does to a strike; that is the map's.
 
+use crate::numbers::logarithm::ln_normal;
+use crate::numbers::trig;
 use rand_philox::philox4x32_10;
 
 /// Meaning of a timing error for the table.
@@ -42,34 +44,44 @@ pub struct NoiseSample {
 impl Noise {
     /// The errors at contact `n`: a block of Philox4x32-10 (Salmon et al. 2011) with the seed as its key and (n, run) as its
     /// counter is 128 bits, just what one pair of normal deviates takes.
+    #[inline(always)]
     pub fn draw(&self, n: u64) -> NoiseSample {
         let counter = [low(n), high(n), low(self.run), high(self.run)];
         let [a, b, c, d] = philox4x32_10(counter, [low(self.seed), high(self.seed)]);
         let [first, second] = normals(joined(a, b), joined(c, d));
         NoiseSample { timing: self.timing_sd * first, angle: self.angle_sd * second }
     }
+
+    /// Error of the angle at contact `n`, rad; without one no number is drawn.
+    pub fn angle_error(&self, n: u64) -> f64 {
+        if self.angle_sd == 0.0 { 0.0 } else { self.draw(n).angle }
+    }
 }
 
 /// Two independent standard normal deviates from 2 × 64 random bits (Box and Muller 1958). The largest there can be is 8.6:
 /// √(−2 ln 2⁻⁵³).
+#[inline(always)]
 fn normals(radial: u64, angular: u64) -> [f64; 2] {
     const TO_UNIT: f64 = 1.0 / (1u64 << 53) as f64;
     // From 2⁻⁵³ to 1, so that its logarithm is finite.
     let share = ((radial >> 11) + 1) as f64 * TO_UNIT;
     let turn = (angular >> 11) as f64 * TO_UNIT;
-    let radius = (-2.0 * libm::log(share)).sqrt();
-    let (sin, cos) = crate::numbers::trig::sin_cos(std::f64::consts::TAU * turn);
+    let radius = (-2.0 * ln_normal(share)).sqrt();
+    let (sin, cos) = trig::sin_cos_reducible(std::f64::consts::TAU * turn);
     [radius * cos, radius * sin]
 }
 
+#[inline(always)]
 fn low(word: u64) -> u32 {
     word as u32
 }
 
+#[inline(always)]
 fn high(word: u64) -> u32 {
     (word >> 32) as u32
 }
 
+#[inline(always)]
 fn joined(low: u32, high: u32) -> u64 {
     u64::from(low) | u64::from(high) << 32
 }

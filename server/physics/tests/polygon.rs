@@ -1,7 +1,7 @@
 //! Bodies drawn as polygons: closed forms, invariance, other ways of weighing them, what is no body, and which vertex
 //! touches the table, against sampling.
 
-use equipoise_physics::body::polygon::{FARTHEST, LENGTHS, MAX_VERTICES, Outline, PolygonError, Vertices};
+use equipoise_physics::body::polygon::{FARTHEST, FLUSH, LENGTHS, MAX_VERTICES, Outline, PolygonError, Vertices};
 use equipoise_physics::bounce::flight::Flight;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::trig;
@@ -156,6 +156,29 @@ proptest! {
         }
     }
 
+    /// Angles near those at which an edge lies on the table, to either side, and any others.
+    #[test]
+    fn a_vertex_is_below_the_table_where_the_nearest_is(
+        (places, _) in stars(), pick in 0_usize..MAX_VERTICES, any in -PI..PI, off in -1e-8..1e-8,
+    ) {
+        let Ok(body) = outline(&places, pick % places.len()) else { return Ok(()) };
+        let length = body.contact_distance();
+        let from_contact = |[x, y]: [f64; 2]| [x, y + length];
+        let size = body.vertices().iter().map(|&it| from_contact(it)).map(|[x, y]| x.hypot(y)).fold(0.0, f64::max);
+        let flush = body.vertices().iter().map(|&it| from_contact(it)).flat_map(|[x, y]| {
+            let angle = x.atan2(y);
+            [angle - 0.5 * PI, angle + 0.5 * PI]
+        });
+        for beta in flush.flat_map(|beta| [beta, beta + off, beta + 1e-7 * off]).chain([any]) {
+            let nearest = body.nearest(trig::sin_cos(beta));
+            // The same size, up to rounding.
+            if (nearest.clearance + FLUSH * size).abs() > 1e-15 {
+                let below = (nearest.clearance < -FLUSH * size).then_some(nearest);
+                prop_assert_eq!(body.below_table(beta), below, "{}", beta);
+            }
+        }
+    }
+
     /// A corner of the hull is alone on one side of some line, and in no triangle of others.
     #[test]
     fn only_corners_of_the_hull_are_contacts((places, _) in stars()) {
@@ -238,11 +261,11 @@ fn a_square_on_its_corner_lands_on_its_edge() {
         let nearest = square.nearest(trig::sin_cos(beta));
         assert_close(nearest.clearance, clearance);
         assert!(beta == 0.0 || nearest.vertex == vertex, "{nearest:?}");
-        assert_eq!(square.below_table(trig::sin_cos(beta)), None);
+        assert_eq!(square.below_table(beta), None);
     }
-    assert_eq!(square.below_table(trig::sin_cos(FRAC_PI_4)), None);
-    assert_eq!(square.below_table(trig::sin_cos(FRAC_PI_4 + 1e-6)).map(|it| it.vertex), Some(3));
-    assert_eq!(square.below_table(trig::sin_cos(-FRAC_PI_4 - 1e-6)).map(|it| it.vertex), Some(1));
+    assert_eq!(square.below_table(FRAC_PI_4), None);
+    assert_eq!(square.below_table(FRAC_PI_4 + 1e-6).map(|it| it.vertex), Some(3));
+    assert_eq!(square.below_table(-FRAC_PI_4 - 1e-6).map(|it| it.vertex), Some(1));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::bounce::contact_time::{TooManyPieces, first_descent_before};
 use crate::bounce::flight::Flight;
 use crate::bounce::state::State;
 use crate::numbers::trig;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Depth below the table at which a vertex still counts as flush with it, as a share of the body's size.
 pub const FLUSH: f64 = 1e-9;
@@ -27,6 +27,11 @@ pub struct Outline {
     radius_of_gyration: f64,
     /// From the contact vertex to the one farthest from it, m.
     size: f64,
+    /// Distance of the farthest vertex from the centre of gravity, m.
+    reach: f64,
+    /// Smallest and largest angle from the table's normal, rad, between which no other vertex is below the table that the contact vertex
+    /// touches.
+    clear_angles: (f64, f64),
 }
 
 /// A vertex near the table.
@@ -67,19 +72,30 @@ impl Outline {
             *place = [cross(down, from_centre), -dot(from_centre, down)];
         }
         turned.places[contact_vertex] = [0.0, -contact_distance];
-        let mut outline = Self { vertices: turned, contact_vertex, contact_distance, radius_of_gyration, size: 0.0 };
+        let mut outline = Self {
+            vertices: turned,
+            contact_vertex,
+            contact_distance,
+            radius_of_gyration,
+            size: 0.0,
+            reach: 0.0,
+            clear_angles: (0.0, 0.0),
+        };
         // Seen from a corner of the hull, all lies within less than half a turn.
         let (mut left, mut right) = (0.0_f64, 0.0_f64);
-        let mut size = 0.0_f64;
+        let (mut size, mut reach) = (0.0_f64, contact_distance);
         for (_, [x, y]) in outline.others() {
             let angle = libm::atan2(x, y + contact_distance);
             (left, right) = (left.min(angle), right.max(angle));
             size = size.max(dot([x, y + contact_distance], [x, y + contact_distance]).sqrt());
+            reach = reach.max(dot([x, y], [x, y]).sqrt());
         }
         if right - left > PI - FLUSH {
             return Err(PolygonError::Hidden(contact_vertex));
         }
-        outline.size = size;
+        (outline.size, outline.reach) = (size, reach);
+        // A vertex r from the contact vertex, at an angle a from the body's axis, is r cos(a − β) above the table.
+        outline.clear_angles = (right - FRAC_PI_2, left + FRAC_PI_2);
         Ok(outline)
     }
 
@@ -123,9 +139,20 @@ impl Outline {
         nearest
     }
 
-    /// [`Outline::nearest`] where it is below the table, by more than [`FLUSH`] of the body's size: an edge may lie on it.
-    pub fn below_table(&self, sin_cos_beta: (f64, f64)) -> Option<VertexClearance> {
-        let nearest = self.nearest(sin_cos_beta);
+    /// Tells whether no other vertex is below the table that the contact vertex touches, at an angle β (rad) from its normal. At an angle
+    /// where one may be, it is false too.
+    #[inline(always)]
+    fn is_clear_at(&self, beta: f64) -> bool {
+        (self.clear_angles.0 < beta) & (beta < self.clear_angles.1)
+    }
+
+    /// [`Outline::nearest`] at an angle β (rad) from the table's normal, where it is below the table by more than [`FLUSH`] of the body's
+    /// size: an edge may lie on it.
+    pub fn below_table(&self, beta: f64) -> Option<VertexClearance> {
+        if self.is_clear_at(beta) {
+            return None;
+        }
+        let nearest = self.nearest(trig::sin_cos(beta));
         (nearest.clearance < -FLUSH * self.size).then_some(nearest)
     }
 
@@ -139,7 +166,13 @@ impl Outline {
         let (sin, cos) = flight.sin_cos_theta;
         let drop = flight.clearance + flight.contact_distance * cos;
         let fall = arrival * (flight.start.y_dot - 0.5 * flight.gravity * arrival);
-        let (end_sin, end_cos) = trig::sin_cos(theta + theta_dot * arrival);
+        let end_theta = theta + theta_dot * arrival;
+        let (end_sin, end_cos) = trig::sin_cos(end_theta);
+        // The common case, of all vertices at once: each has a height without inflection, and ends no lower than the contact vertex.
+        let contact_is_up = drop + fall - self.contact_distance * end_cos >= -0.5 * FLUSH * self.size;
+        if contact_is_up && self.is_clear_at(end_theta) && self.reach * theta_dot * theta_dot <= flight.gravity {
+            return Ok(None);
+        }
         let mut first: Option<Touch> = None;
         for (vertex, [x, y]) in self.others() {
             let distance = dot([x, y], [x, y]).sqrt();

@@ -14,7 +14,6 @@ use crate::bounce::tilt::Tilt;
 use crate::catching::aim::Aim;
 use crate::numbers::number::Number;
 use crate::numbers::second_order::SecondOrder;
-use crate::numbers::trig;
 use crate::run::rules::SPEED_LIMIT;
 use nalgebra::{Matrix5, Matrix6, Vector5};
 
@@ -126,7 +125,7 @@ impl BouncingRod {
         flight_time: Option<f64>,
         clearance: f64,
     ) -> Option<Obstacle> {
-        if let Some(below) = outline.below_table(trig::sin_cos(theta - strike.alpha)) {
+        if let Some(below) = outline.below_table(theta - strike.alpha) {
             return Some(Obstacle::OtherVertex(Touch { vertex: below.vertex, t: 0.0 }));
         }
         let flight = Flight { clearance, ..self.rod.flight(strike) };
