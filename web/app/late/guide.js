@@ -19,10 +19,10 @@ function guide(page, words, sent, send) {
 /** Catches the body from the next strike on. @param {Page} page @param {Record<string, string | number>} settings @param {Page['lastSent']} sent */
 export const catchIt = (page, settings, sent) => guide(page, 'the catch', sent, () => page.run.catchIt(settings));
 
-/** @param {Page} page */
+/** True from the news of a hold on: no news follows at the moment when it begins. @param {Page} page */
 const isHeld = ({ run }) => {
-  const { scene, impacts, holds, present } = run;
-  return run.active && scene !== null && Boolean(holds?.at(present, impacts.last?.t ?? -Infinity, scene));
+  const { scene, impacts, holds } = run;
+  return run.active && scene !== null && Boolean(holds?.at(holds.until, impacts.last?.t ?? -Infinity, scene));
 };
 
 /** @param {Page} page @param {{height: number, theta: number}} apex @param {string} words */
