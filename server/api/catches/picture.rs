@@ -89,10 +89,11 @@ impl Pictured for CatchAnswer {
         let dots = |label, points| Curve { label, style: CurveStyle::BesideDots, points };
         let line = |label, points| Curve { label, style: CurveStyle::Beside, points };
         let way = Curve { label: "table between strikes", style: CurveStyle::Limit, points: way(&caught.strikes) };
+        let notes: String = self.notes.iter().map(|note| format!("; {note}")).collect();
         let drawn = Chart {
             title: "A falling body, caught and held by a table",
             subtitle: format!("{}: {}", self.outcome.kind, self.outcome.detail),
-            caption: format!("Strategy {}: {}. {}", self.strategy.name, self.strategy.reason, self.notes.join("; ")),
+            caption: format!("Strategy {}: {}{}", self.strategy.name, self.strategy.reason, notes),
             plots: vec![
                 plot("angle of the body", "θ", "rad", body("body", motion.theta)),
                 plot(
@@ -104,14 +105,14 @@ impl Pictured for CatchAnswer {
                         line("table in contact", held(|sample| sample.alpha)),
                     ],
                 ),
-                plot("height of the centre of gravity", "y", "m", body("", motion.y)),
+                plot("height of the body", "y", "m", body("", motion.y)),
                 plot(
                     "height of the table",
                     "",
                     "m",
                     vec![way, dots("", strikes(|_| 0.0)), line("", held(|sample| sample.table_y))],
                 ),
-                plot("place of the centre of gravity", "x", "m", body("", motion.x)),
+                plot("place of the body", "x", "m", body("", motion.x)),
                 plot(
                     "speed of the table",
                     "w",
