@@ -9,7 +9,6 @@ use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw;
 use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowTarget};
-use equipoise_physics::numbers::trig;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, Orbit};
 use equipoise_physics::scene::model::Model;
@@ -232,8 +231,6 @@ impl Playback {
         match (kick, contact.strike) {
             (Some(kick), Some(strike)) => {
                 let settings = self.settings();
-                // This flight starts from cos θ, not from 1 − (1 − cos θ), which differs in the last digit.
-                let strike = Strike { sin_cos_theta: trig::sin_cos(coming.state.theta), ..strike };
                 contact = self.fly_after(&coming, t, strike, Some(kick));
                 if let (Some(settings), true) = (settings, contact.ending.is_none()) {
                     self.begin_catch(&settings, &self.coming(), self.orbit.t());
