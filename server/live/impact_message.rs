@@ -1,5 +1,5 @@
-//! Impacts as a live run tells them: one as an object, many as columns. Their numbers are those of trajectories. The hold of a body that was
-//! caught has the columns of `/v1/catches`.
+//! Impacts as a live run tells them: one as an object, many as columns. Their numbers are those of trajectories. The hold of a body has
+//! the columns of `/v1/catches`.
 
 use serde::{Serialize, Serializer};
 
@@ -9,7 +9,7 @@ use crate::api::shared::table::{Column, Table};
 use crate::api::trajectories::columns;
 use crate::api::trajectories::columns::{After, ImpactRow};
 use crate::live::next_strike::{NextStrike, TableVelocity};
-use crate::runs::caught::HoldPart;
+use crate::runs::held::HoldPart;
 
 /// An impact, as an object.
 #[derive(Debug, Clone, PartialEq)]

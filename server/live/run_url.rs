@@ -10,7 +10,9 @@ use crate::http::request::scalar;
 use crate::http::request::scalar::LARGEST_EXACT;
 use crate::limits;
 use crate::live::clock::{Clock, ClockEntry, SPEEDS};
-use crate::runs::interventions::{apply_interventions, intervention_parameters, number_text, read_interventions};
+use crate::runs::interventions::{
+    apply_interventions, intervention_parameters, number_text, read_hold, read_interventions,
+};
 use crate::runs::run::Run;
 
 /// Path of live runs.
@@ -60,10 +62,10 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
     let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
     // A run that is released by this request is sent from its first impact.
     let from = reader.integer("from", 1..=limits::LIVE_IMPACTS).or(epoch.is_none().then_some(1));
-    let interventions = read_interventions(reader);
+    let (hold, interventions) = (read_hold(reader), read_interventions(reader));
     let mut entries = Vec::new();
     reader.objects("clock", limits::LIVE_CLOCK_ENTRIES, |_, item| entries.push(read_clock_entry(item)));
-    let (mut run, mut clock) = (Run::new(scene?), Clock::new(epoch.unwrap_or(now), speed));
+    let (mut run, mut clock) = (Run::new(scene?).holding(hold), Clock::new(epoch.unwrap_or(now), speed));
     apply_interventions(&mut run, interventions, reader);
     for (index, entry) in entries.into_iter().enumerate() {
         let Some(entry) = entry else { continue };
@@ -104,6 +106,9 @@ pub fn url(live: &LiveRun) -> String {
     query.extend_pairs(scene_to_query(run.scene()));
     query.append_pair("speed", &number_text(clock.first_speed()));
     query.append_pair("epoch", &clock.epoch().to_string());
+    if run.hold() > 0.0 {
+        query.append_pair("hold", &number_text(run.hold()));
+    }
     query.extend_pairs(intervention_parameters(run));
     for (index, entry) in clock.entries().iter().enumerate() {
         let prefix = format!("clock.{index}");

@@ -10,6 +10,7 @@ use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
+use crate::api::trajectories::hold::HoldEnd;
 use crate::http::{Problem, ValidationError};
 use crate::limits;
 use crate::live::impact_message::{HoldMessage, ImpactColumns, ImpactMessage};
@@ -48,6 +49,9 @@ pub enum ServerMessage<'a> {
         outcome: &'a Outcome,
         /// The largest load on the table.
         demand: LoadAnswer,
+        /// The end of the contact after the last bounce, if the run went on in contact.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        hold_end: Option<&'a HoldEnd>,
     },
     /// An error in a message or in the whole run.
     Problem {
@@ -101,7 +105,13 @@ pub enum EventId {
     End,
 }
 
-impl ServerMessage<'_> {
+impl<'a> ServerMessage<'a> {
+    /// The end of a run, if it has ended.
+    pub fn end(playback: &'a Playback) -> Option<Self> {
+        let hold_end = playback.rest().map(|(_, end)| end);
+        playback.outcome().map(|outcome| Self::End { outcome, demand: playback.load().into(), hold_end })
+    }
+
     /// Several impacts, and the strike after the last of them.
     pub fn impacts(columns: ImpactColumns) -> Self {
         let next_strike = columns.next_strike();

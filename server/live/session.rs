@@ -26,7 +26,7 @@ use crate::live::run_url;
 use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message;
 use crate::live::server_message::{Ack, Hello, OutgoingFrame, ServerMessage};
-use crate::runs::caught::HoldPart;
+use crate::runs::held::HoldPart;
 use crate::runs::interventions::NO_ANGLE;
 use crate::runs::playback::{Playback, Step};
 use crate::runs::run::ThrowOrder;
@@ -181,8 +181,13 @@ impl Session {
     fn send_hello(&mut self, now: u64) {
         let hello = Hello::new(&self.live, &self.playback, &self.context.base_path, now);
         self.outbox.push(ServerMessage::Hello(Box::new(hello)).to_frame());
-        if let Some(outcome) = self.playback.outcome() {
-            self.outbox.push(ServerMessage::End { outcome, demand: self.playback.load().into() }.to_frame());
+        self.send_end();
+    }
+
+    /// Sends the end of the run, if it has ended.
+    fn send_end(&mut self) {
+        if let Some(end) = ServerMessage::end(&self.playback) {
+            self.outbox.push(end.to_frame());
         }
     }
 
@@ -222,9 +227,7 @@ impl Session {
                 }
                 Step::End => self.tell_hold(held.take()),
             }
-            if let Some(outcome) = self.playback.outcome() {
-                self.outbox.push(ServerMessage::End { outcome, demand: self.playback.load().into() }.to_frame());
-            }
+            self.send_end();
         }
         self.tell_hold(held);
         self.context.bounces.inc_by(told as u64);

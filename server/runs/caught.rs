@@ -1,22 +1,17 @@
 //! A catch within a run: its strikes one after another, and then the time in which the table holds the body.
 
-use std::ops::Range;
+use std::mem::take;
 use std::sync::Arc;
 
 use equipoise_physics::body::{Arrival, PreImpact};
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
 use equipoise_physics::catching::catch_from;
 use equipoise_physics::catching::descent::ComingContact;
 use equipoise_physics::catching::outcome::{Catch, CatchStrike};
 use equipoise_physics::catching::settings::CatchSettings;
-use equipoise_physics::contact::{Hold, HoldSample};
-use equipoise_physics::numbers::trig;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 
-/// Samples in one part of a hold: 0.1 s of a hold of 6 s. A throw acts at the end of a part that was sent.
-const PART: usize = 10;
+use crate::runs::held::HeldRun;
 
 /// A catch, and how much of it is over.
 #[derive(Debug, Clone)]
@@ -24,43 +19,18 @@ pub struct CaughtRun {
     catch: Arc<Catch>,
     /// Number of strikes that are over.
     struck: usize,
-    /// Index of the last sample of the hold that was sent.
-    held: usize,
-}
-
-/// Samples of a hold that follow one another. They stay valid without the run.
-#[derive(Debug, Clone)]
-pub struct HoldPart {
-    catch: Arc<Catch>,
-    range: Range<usize>,
-}
-
-impl HoldPart {
-    /// The samples; the first one is also the last one of the part before.
-    pub fn samples(&self) -> &[HoldSample] {
-        self.catch.hold.as_ref().and_then(|hold| hold.samples.get(self.range.clone())).unwrap_or_default()
-    }
-
-    /// Time from the first sample to the last, s.
-    pub fn length(&self) -> f64 {
-        let samples = self.samples();
-        samples.first().zip(samples.last()).map_or(0.0, |(first, last)| last.t - first.t)
-    }
-
-    /// This part and the one that follows it, if it does.
-    pub fn joined(self, next: &Self) -> Result<Self, Self> {
-        let follows = Arc::ptr_eq(&self.catch, &next.catch) && self.range.end == next.range.start + 1;
-        if follows { Ok(Self { range: self.range.start..next.range.end, ..self }) } else { Err(self) }
-    }
+    /// The hold that follows the last strike, if the body comes to one. The catch is without its samples.
+    held: Option<HeldRun>,
 }
 
 impl CaughtRun {
     /// A catch that begins with a coming contact. `None` if there is no law that could catch it.
-    pub fn begin(scene: &Scene, settings: &CatchSettings, t: f64, coming: &PreImpact) -> Option<Self> {
+    pub fn begin(scene: &Scene, settings: &CatchSettings, from: &ComingContact) -> Option<Self> {
         // The scene's own table had a plan for this contact, which no longer holds.
-        let from = ComingContact { t, coming: PreImpact { plan: None, ..*coming } };
-        let catch = catch_from(scene, settings, &from, &mut || true).ok()?;
-        Some(Self { catch: Arc::new(catch), struck: 0, held: 0 })
+        let from = ComingContact { coming: PreImpact { plan: None, ..from.coming }, ..*from };
+        let mut catch = catch_from(scene, settings, &from, &mut || true).ok()?;
+        let held = catch.hold.as_mut().map(|hold| HeldRun::new(take(&mut hold.samples)));
+        Some(Self { catch: Arc::new(catch), struck: 0, held })
     }
 
     /// The catch.
@@ -73,9 +43,14 @@ impl CaughtRun {
         self.catch.strikes.get(self.struck)
     }
 
-    /// The hold that follows the last strike, if the body comes to one.
-    pub fn hold(&self) -> Option<&Hold> {
-        self.catch.hold.as_ref()
+    /// The hold once all strikes are over, if the body comes to one.
+    pub fn held(&self) -> Option<&HeldRun> {
+        self.held.as_ref().filter(|_| self.next_strike().is_none())
+    }
+
+    /// The hold, to go on in it.
+    pub fn held_mut(&mut self) -> Option<&mut HeldRun> {
+        self.held.as_mut()
     }
 
     /// The next strike as a contact of the run, and the flight to the one after it.
@@ -91,32 +66,6 @@ impl CaughtRun {
         });
         Some((contact, arrival))
     }
-
-    /// Last sample of the hold so far.
-    pub fn sample(&self) -> Option<&HoldSample> {
-        self.hold()?.samples.get(self.held)
-    }
-
-    /// Next part of the hold; `None` at its end.
-    pub fn next_part(&mut self) -> Option<HoldPart> {
-        let samples = self.hold()?.samples.len();
-        let begin = self.held;
-        let end = (begin + PART).min(samples.saturating_sub(1));
-        if begin >= end {
-            return None;
-        }
-        self.held = end;
-        Some(HoldPart { catch: self.catch.clone(), range: begin..end + 1 })
-    }
-}
-
-/// A body that is held, as it comes to a strike.
-pub fn held_body(n: u64, rod: &Rod, sample: &HoldSample) -> PreImpact {
-    let (sin, _) = trig::sin_cos(sample.theta);
-    // The contact point is as fast as the table, and as high.
-    let y_dot = sample.table_y_dot - rod.contact_distance * sample.theta_dot * sin;
-    let state = State { theta: sample.theta, x_dot: sample.x_dot, y_dot, theta_dot: sample.theta_dot };
-    PreImpact { n, x: sample.x, state, clearance: sample.table_y, plan: None }
 }
 
 /// A strike of a catch as a contact of a run.
@@ -132,8 +81,11 @@ mod tests {
     use crate::runs::run::tests::case;
     use crate::runs::run::{Run, ThrowOrder};
     use equipoise_physics::body::Kick;
+    use equipoise_physics::bounce::state::State;
     use equipoise_physics::catching::settings::Strategy;
     use equipoise_physics::catching::throw::ThrowTarget;
+    use equipoise_physics::contact::HoldSample;
+    use equipoise_physics::numbers::trig;
 
     /// All steps of a run up to its end: contacts, and samples of holds without those that stand in two parts.
     fn play(run: &Run, impacts: u64) -> (Vec<Contact>, Vec<HoldSample>, Playback) {
@@ -148,7 +100,7 @@ mod tests {
                 }
                 Step::Hold(part) => {
                     assert_eq!(part.samples()[0].t, due);
-                    assert!(part.samples().len() <= PART + 1 && part.length() > 0.0);
+                    assert!(part.samples().len() <= 11 && part.length() > 0.0);
                     let follows = samples.last().is_some_and(|last| last.t == due);
                     samples.extend(&part.samples()[usize::from(follows)..]);
                 }
@@ -172,13 +124,14 @@ mod tests {
         assert_eq!(contacts[..4], plain[..4]);
         assert_eq!(contacts[4].state, plain[4].state);
         let at = PreImpact::at(5, plain[4].x, plain[4].state);
-        let alone = CaughtRun::begin(run.scene(), &long, plain[4].t, &at).unwrap();
+        let from = ComingContact { t: plain[4].t, coming: at };
+        let alone = CaughtRun::begin(run.scene(), &long, &from).unwrap();
         assert_eq!(contacts.len(), 4 + alone.catch().strikes.len());
         for (contact, strike) in contacts[4..].iter().zip(&alone.catch().strikes) {
             assert_eq!((contact.n, contact.t, contact.state), (strike.n, strike.t, strike.state));
             assert_eq!(contact.strike, Some(strike.strike));
         }
-        assert_eq!(samples, alone.hold().unwrap().samples);
+        assert_eq!(samples, alone.held.unwrap().samples());
         let outcome = playback.outcome().unwrap();
         assert_eq!((outcome.kind, outcome.impacts), ("held", contacts.len() as u64));
         assert!(outcome.headline().starts_with("Caught after bounce"), "{}", outcome.headline());

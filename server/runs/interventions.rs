@@ -41,6 +41,11 @@ pub fn read_run(reader: &mut Reader<'_, '_>) -> Option<Run> {
     Some(run)
 }
 
+/// Reads the time for which a run goes on in contact after its bounces, s; 0 without it.
+pub fn read_hold(reader: &mut Reader<'_, '_>) -> f64 {
+    reader.number("hold", 0.0..=limits::HOLD_TIME, "s").unwrap_or(0.0)
+}
+
 /// Reads `interventions`. An entry that is not valid is None; the reader then has the errors.
 pub fn read_interventions(reader: &mut Reader<'_, '_>) -> Vec<Option<InterventionRequest>> {
     let mut interventions = Vec::new();

@@ -6,9 +6,11 @@ use std::sync::Arc;
 use equipoise_physics::body::{Body, Kick, PreImpact};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::strike::Strike;
+use equipoise_physics::catching::descent::ComingContact;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw;
 use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowTarget};
+use equipoise_physics::contact::HoldSample;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, Orbit};
 use equipoise_physics::scene::model::Model;
@@ -18,10 +20,12 @@ use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker};
 use crate::api::catches::request::catch_price;
 use crate::api::scene::has_angle;
 use crate::api::shared::outcome::Outcome;
+use crate::api::trajectories::hold::{HoldAnswer, HoldEnd};
 use crate::compute::Price;
 use crate::limits;
-use crate::runs::caught::{CaughtRun, HoldPart, held_body};
-use crate::runs::run::Run;
+use crate::runs::caught::CaughtRun;
+use crate::runs::held::{HeldRun, HoldPart, held_body};
+use crate::runs::run::{HOLD_PRICE, Run};
 
 /// Rounding of a time in a URL, s.
 const SAME_TIME: f64 = 1e-9;
@@ -38,6 +42,17 @@ pub struct Playback {
     last: u64,
     /// The catch under way.
     caught: Option<CaughtRun>,
+    /// The contact after the last bounce, if the run goes on in it.
+    rest: Option<RestOfRun>,
+}
+
+/// The contact that follows the bounces of a run.
+#[derive(Debug, Clone)]
+struct RestOfRun {
+    /// The outcome of the bounces, which is the outcome of the run.
+    outcome: Arc<Outcome>,
+    held: HeldRun,
+    end: Arc<HoldEnd>,
 }
 
 /// Next thing that happens in a run.
@@ -63,7 +78,8 @@ impl Playback {
                 (nowhere, Some(Arc::new(Outcome::new(no_contact.ending(0.0, 0.0), 0, 0.0))))
             }
         };
-        Self { orbit, scene: Arc::new(scene), outcome, tracker: LoadTracker::default(), last, caught: None }
+        let (scene, tracker) = (Arc::new(scene), LoadTracker::default());
+        Self { orbit, scene, outcome, tracker, last, caught: None, rest: None }
     }
 
     /// Time of the next step, s; `None` after the end.
@@ -81,14 +97,16 @@ impl Playback {
         self.held().map(|(_, t)| t)
     }
 
-    /// Tells whether the table catches the body, or holds it.
-    pub fn is_caught(&self) -> bool {
-        self.caught.is_some()
+    /// The hold under way, and the time up to which it was told.
+    fn held(&self) -> Option<(&HeldRun, f64)> {
+        let rest = self.rest.as_ref().map(|rest| &rest.held);
+        let held = rest.or_else(|| self.caught.as_ref()?.held())?;
+        Some((held, held.sample()?.t))
     }
 
-    fn held(&self) -> Option<(&CaughtRun, f64)> {
-        let caught = self.caught.as_ref().filter(|caught| caught.next_strike().is_none())?;
-        Some((caught, caught.sample()?.t))
+    /// The samples of the contact after the last bounce, and its end, if the run goes on in contact.
+    pub fn rest(&self) -> Option<(&[HoldSample], &HoldEnd)> {
+        self.rest.as_ref().map(|rest| (rest.held.samples(), &*rest.end))
     }
 
     /// The end of the run, if it has ended.
@@ -101,10 +119,11 @@ impl Playback {
     ///
     /// `None` too while the body is held.
     pub fn foresee(&self, run: &Run) -> Option<(PreImpact, Strike, Arc<Scene>)> {
-        let (mut next, n) = (self.clone(), self.next_n()?);
+        let n = self.next_n()?;
         if self.held().is_some() {
             return None;
         }
+        let mut next = self.clone();
         next.intervene(run, n);
         if let Some(order) = run.at(n).and_then(|intervention| intervention.throw)
             && let Ok(thrown) = throw::throw(&next.scene, &next.coming(), &order.target)
@@ -168,12 +187,12 @@ impl Playback {
             (None, false, Some(kick)) => self.orbit.advance_kicked(kick),
             (None, false, None) => self.orbit.advance(),
         };
-        self.note(&mut contact);
-        (Step::Impact(contact), price(&contact).and(caught_price))
+        let price = self.note(&mut contact, run.hold());
+        (Step::Impact(contact), price.and(caught_price))
     }
 
-    /// Counts an impact, and ends the run with it if it is the last.
-    fn note(&mut self, contact: &mut Contact) {
+    /// Counts an impact, and returns its price. If it is the last, the run ends with it, or goes on in contact for `hold` s.
+    fn note(&mut self, contact: &mut Contact, hold: f64) -> Price {
         if contact.ending.is_none() && self.outcome.is_none() && contact.n >= self.last {
             contact.ending = Some(Ending::Completed);
             contact.flight_time = None;
@@ -181,9 +200,22 @@ impl Playback {
         if let Some(strike) = &contact.strike {
             self.tracker.track(strike, contact.flight_time);
         }
-        if let Some(ending) = contact.ending {
-            let turning = Some(&*contact).filter(|_| has_angle(&self.scene));
-            self.outcome = Some(Arc::new(Outcome::new(ending, contact.n, contact.t).turning(turning)));
+        let price = price(contact);
+        let Some(ending) = contact.ending else { return price };
+        let turning = Some(&*contact).filter(|_| has_angle(&self.scene));
+        let outcome = Arc::new(Outcome::new(ending, contact.n, contact.t).turning(turning));
+        let rest = (hold > 0.0)
+            .then(|| HoldAnswer::compute(&self.scene, (ending, Some(&*contact)), hold, &mut || true))
+            .and_then(|computed| computed.ok()?.ok());
+        match rest {
+            Some(HoldAnswer { samples, end }) => {
+                self.rest = Some(RestOfRun { outcome, held: HeldRun::new(samples), end: Arc::new(end) });
+                price.and(Price::bounces(HOLD_PRICE))
+            }
+            None => {
+                self.outcome = Some(outcome);
+                price
+            }
         }
     }
 
@@ -205,7 +237,7 @@ impl Playback {
 
     /// Begins a catch at a coming contact, at the time `t`, s. False if there is no law for it; then the run goes on.
     fn begin_catch(&mut self, settings: &CatchSettings, coming: &PreImpact, t: f64) -> bool {
-        let caught = CaughtRun::begin(&self.scene, settings, t, coming);
+        let caught = CaughtRun::begin(&self.scene, settings, &ComingContact { t, coming: *coming });
         let begins = caught.is_some();
         self.caught = caught.or(self.caught.take());
         begins
@@ -225,7 +257,7 @@ impl Playback {
         let (coming, t) = (self.coming(), self.orbit.t());
         let Some((mut contact, arrival)) = self.caught.as_mut().and_then(|caught| caught.strike()) else {
             // A catch without strikes and without a hold: the body falls before the table meets it.
-            self.end_catch(coming.n - 1);
+            self.end_hold(coming.n - 1);
             return Contact { flight_time: None, ..bare_contact(&coming, t) };
         };
         match (kick, contact.strike) {
@@ -240,10 +272,10 @@ impl Playback {
                 Some(arrival) => self.orbit.resume(contact.n, t, contact.x, &arrival),
                 None => {
                     self.orbit.stay(contact.n);
-                    let held = self.caught.as_ref().and_then(CaughtRun::hold).map(|hold| hold.load);
-                    match held {
+                    let held = self.caught.as_ref().and_then(|caught| caught.catch().hold.as_ref());
+                    match held.map(|hold| hold.load) {
                         Some(load) => self.tracker.most = self.tracker.most.or(load),
-                        None => self.end_catch(contact.n),
+                        None => self.end_hold(contact.n),
                     }
                 }
             },
@@ -251,9 +283,11 @@ impl Playback {
         contact
     }
 
-    /// Ends the run with the outcome of its catch.
-    fn end_catch(&mut self, impacts: u64) {
-        if let Some(caught) = &self.caught {
+    /// Ends the run with the outcome of its bounces, or of its catch.
+    fn end_hold(&mut self, impacts: u64) {
+        if let Some(rest) = &self.rest {
+            self.outcome = Some(rest.outcome.clone());
+        } else if let Some(caught) = &self.caught {
             self.outcome = Some(Arc::new(Outcome::of_catch(
                 caught.catch(),
                 self.scene.number(Name::Friction).unwrap_or_default(),
@@ -265,7 +299,7 @@ impl Playback {
     /// The next part of a hold, or the throw that ends it.
     fn hold(&mut self, run: &Run, n: u64) -> (Step, Price) {
         let free = Price::bounces(1);
-        let Some((sample, t)) = self.held().and_then(|(caught, t)| Some((*caught.sample()?, t))) else {
+        let Some((sample, t)) = self.held().and_then(|(held, t)| Some((*held.sample()?, t))) else {
             return (Step::End, free);
         };
         if let Some(intervention) = run.at(n)
@@ -278,14 +312,18 @@ impl Playback {
             let coming = held_body(n, self.rod(), &sample);
             if let Ok(thrown) = self.throw(&coming, &order.target) {
                 let mut contact = self.fly_after(&coming, t, thrown.strike, intervention.kick);
-                self.note(&mut contact);
-                return (Step::Impact(contact), price(&contact));
+                let price = self.note(&mut contact, run.hold());
+                return (Step::Impact(contact), price);
             }
         }
-        match self.caught.as_mut().and_then(CaughtRun::next_part) {
+        let held = match &mut self.rest {
+            Some(rest) => Some(&mut rest.held),
+            None => self.caught.as_mut().and_then(CaughtRun::held_mut),
+        };
+        match held.and_then(HeldRun::next_part) {
             Some(part) => (Step::Hold(part), free),
             None => {
-                self.end_catch(n - 1);
+                self.end_hold(n - 1);
                 (Step::End, free)
             }
         }
@@ -301,7 +339,7 @@ impl Playback {
     /// # Errors
     /// The reason for which no strike throws the body there.
     pub fn try_throw(&self, target: &ThrowTarget) -> Result<(), ThrowFailure> {
-        let held = self.held().and_then(|(caught, _)| caught.sample());
+        let held = self.held().and_then(|(held, _)| held.sample());
         let coming = match held {
             Some(sample) => held_body(self.orbit.contacts() + 1, self.rod(), sample),
             None => self.coming(),
@@ -311,7 +349,7 @@ impl Playback {
 
     /// Flies on from a strike by other guidance than the law of the scene, which is in force again from then on.
     fn fly_after(&mut self, coming: &PreImpact, t: f64, mut strike: Strike, kick: Option<Kick>) -> Contact {
-        self.caught = None;
+        (self.caught, self.rest) = (None, None);
         if let Some(kick) = kick {
             kick.disturb(&mut strike, self.orbit.body.contact_distance());
         }
@@ -358,61 +396,5 @@ fn price(contact: &Contact) -> Price {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::runs::run::tests::case;
-    use equipoise_physics::body::Kick;
-
-    fn contacts(run: &Run, count: usize) -> Vec<Contact> {
-        let mut playback = Playback::new(run, 1_000_000);
-        std::iter::from_fn(|| playback.next_impact(run)).map(|(contact, _)| contact).take(count).collect()
-    }
-
-    #[test]
-    fn without_interventions_it_is_the_trajectory() {
-        for preset in crate::api::scene::presets::all() {
-            let run = case(preset.name);
-            let mut orbit = run.scene().orbit().unwrap();
-            for contact in contacts(&run, 200) {
-                assert_eq!(contact, orbit.advance());
-            }
-        }
-    }
-
-    #[test]
-    fn interventions_act_at_their_impact_and_not_before() {
-        let (plain, mut run) = (case("case-1"), case("case-1"));
-        run.set(5, &[(Name::TiltGain, Value::Number(1.3))]).unwrap();
-        run.kick(5, Kick { theta_dot: 0.5, ..Kick::default() }).unwrap();
-        let (plain, other) = (contacts(&plain, 10), contacts(&run, 10));
-        assert_eq!(plain[..4], other[..4]);
-        assert_eq!(plain[4].state, other[4].state);
-        let (plain, other) = (plain[4].strike.unwrap(), other[4].strike.unwrap());
-        assert!((other.alpha - 1.3 / 1.1 * plain.alpha).abs() < 1e-15);
-        assert!((other.after.theta_dot - plain.after.theta_dot).abs() > 0.1);
-    }
-
-    #[test]
-    fn a_change_that_stops_the_table_lets_the_run_settle() {
-        let mut run = case("case-1");
-        let still = [(Name::Strike, Value::Choice("still")), (Name::Restitution, Value::Number(0.5))];
-        run.set(3, &still).unwrap();
-        let all = contacts(&run, 100_000);
-        assert!(all.len() < 1000 && all.last().unwrap().ending.is_some());
-    }
-
-    #[test]
-    fn friction_that_comes_later_lets_the_run_settle() {
-        let mut run = case("case-1");
-        let rough = [
-            (Name::Friction, Value::Number(2.0)),
-            (Name::TiltGain, Value::Number(2.5)),
-            (Name::Restitution, Value::Number(0.0)),
-            (Name::Strike, Value::Choice("still")),
-        ];
-        run.set(3, &rough).unwrap();
-        let last = contacts(&run, 100).pop().unwrap();
-        let settled = matches!(last.ending, Some(Ending::Settled { settle_time, .. }) if settle_time == last.t);
-        assert!(settled && last.n == 3, "{last:?}");
-    }
-}
+#[path = "playback_tests.rs"]
+mod tests;

@@ -7,6 +7,7 @@ use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::scene::{FieldError, Name, Scene, Value};
 
+use crate::api::catches::request::catch_price;
 use crate::api::scene::explain;
 use crate::limits;
 
@@ -15,6 +16,9 @@ pub const KICK_SPEED: f64 = 100.0;
 
 /// Largest kick of the angular velocity, rad/s; the same as of a release.
 pub const KICK_SPIN: f64 = 200.0;
+
+/// Price of a contact after the bounces of a run, in bounces.
+pub const HOLD_PRICE: u64 = limits::HOLD_SAMPLES * limits::HOLD_SAMPLE_PRICE;
 
 /// A change of a run at one impact.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,12 +51,25 @@ pub struct Run {
     interventions: Vec<Intervention>,
     /// The scene with all interventions in force.
     last: Scene,
+    /// Time for which the run goes on in contact after its bounces, s.
+    hold: f64,
 }
 
 impl Run {
     /// A run without interventions.
     pub fn new(scene: Scene) -> Self {
-        Self { scene, interventions: Vec::new(), last: scene }
+        Self { scene, interventions: Vec::new(), last: scene, hold: 0.0 }
+    }
+
+    /// The same run, which goes on in contact for `hold` s after its bounces have ended.
+    #[must_use]
+    pub fn holding(self, hold: f64) -> Self {
+        Self { hold, ..self }
+    }
+
+    /// Time for which the run goes on in contact after its bounces, s; 0 if it ends with them.
+    pub fn hold(&self) -> f64 {
+        self.hold
     }
 
     /// The scene at the release.
@@ -146,10 +163,22 @@ impl Run {
         Ok(())
     }
 
+    /// Price of the catches of the run and of its contact after the bounces, in bounces, besides those that it makes.
+    pub fn guidance_price(&self) -> u64 {
+        let (mut price, mut caught, mut holds) = (0, 0, 1);
+        for intervention in &self.interventions {
+            // A change or a kick during a catch is caught anew.
+            caught = intervention.catch.map_or(caught, |settings| catch_price(&settings));
+            price += caught;
+            holds += u64::from(intervention.throw.is_some());
+        }
+        if self.hold > 0.0 { price + holds * HOLD_PRICE } else { price }
+    }
+
     /// The run released again: fields set up to impact `reached` are in force from the start; no other intervention is kept.
     pub fn restarted(&self, reached: u64) -> Self {
         // `set` has built each of these scenes before, so this does not fail.
-        Self::new(self.scene_at(reached).unwrap_or(self.last))
+        Self::new(self.scene_at(reached).unwrap_or(self.last)).holding(self.hold)
     }
 
     fn entry(&mut self, impact: u64) -> Result<&mut Intervention, String> {
@@ -209,6 +238,20 @@ pub(crate) mod tests {
         assert_eq!(at.kick.unwrap().theta_dot, 0.75);
         run.kick(2, Kick::default()).unwrap();
         assert_eq!(run.interventions()[0].impact, 2);
+    }
+
+    #[test]
+    fn catches_and_holds_have_a_price() {
+        let (mut run, catch) = (case("case-1"), CatchSettings::default());
+        run.kick(2, Kick::default()).unwrap();
+        assert_eq!(run.guidance_price(), 0);
+        assert_eq!(run.clone().holding(1.0).guidance_price(), HOLD_PRICE);
+        run.catch(3, catch).unwrap();
+        run.kick(4, Kick::default()).unwrap();
+        assert_eq!(run.guidance_price(), 2 * catch_price(&catch));
+        let order = ThrowOrder { target: ThrowTarget { height: 0.3, theta: 0.0 }, t: Some(2.0) };
+        run.throw(4, order).unwrap();
+        assert_eq!(run.holding(1.0).guidance_price(), 2 * (catch_price(&catch) + HOLD_PRICE));
     }
 
     #[test]

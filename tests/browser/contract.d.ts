@@ -1886,6 +1886,7 @@ export interface components {
             type: "end";
             outcome: components["schemas"]["Outcome"];
             demand: components["schemas"]["Demand"];
+            hold_end?: components["schemas"]["HoldEnd"];
         };
         "live.ack": {
             /** @constant */

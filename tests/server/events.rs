@@ -160,6 +160,29 @@ async fn a_client_that_comes_back_misses_nothing_and_hears_nothing_twice() {
 }
 
 #[tokio::test]
+async fn a_contact_after_the_bounces_comes_before_the_end() {
+    let (_, address) = start().await;
+    let url = format!("/v1/live/events?{}&scene.contact.restitution=0.1&hold=0.1", old("still-lossy", 60));
+    let mut whole = get(address, &format!("{url}&from=1"), "").await;
+    let mut events = vec![];
+    while let Some(event) = whole.event().await {
+        events.push(event);
+    }
+    let kinds = |events: &[Event]| events.iter().map(|one| one.message["type"].clone()).collect::<Vec<_>>();
+    assert_eq!(kinds(&events), ["hello", "impacts", "hold", "end"]);
+    assert_eq!((&events[2].id, events[3].id.as_deref()), (&None, Some("end")));
+    let [hold, end] = [&events[2].message, &events[3].message];
+    assert_eq!(hold["columns"]["t"].as_array().unwrap().last(), Some(&end["hold_end"]["t"]));
+    // A client that has the last impact gets the contact again, and the end.
+    let mut again = get(address, &url, &format!("last-event-id: {}\r\n", events[1].id.as_ref().unwrap())).await;
+    again.event().await.unwrap();
+    for known in [hold, end] {
+        assert_eq!(&again.event().await.unwrap().message, known);
+    }
+    assert!(again.event().await.is_none());
+}
+
+#[tokio::test]
 async fn a_run_that_has_ended_is_over() {
     let (app, address) = start().await;
     let url = format!("/v1/live/events?{}&from=1", old("case-3", 3600));

@@ -29,6 +29,7 @@ mod hostile;
 mod ladder;
 mod live;
 mod live_catches;
+mod live_holds;
 mod methods;
 mod page;
 mod periodic_orbits;

@@ -30,7 +30,7 @@ impl ResourceRequest for PreviewRequest {
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        let run = self.bounces() + DOT_PRICE * self.impacts;
+        let run = self.bounces() + self.run.guidance_price() + DOT_PRICE * self.impacts;
         Price::bounces(limits::PREVIEW_ANSWER_PRICE + run).within(&limits.of_work())
     }
 }

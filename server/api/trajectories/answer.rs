@@ -12,6 +12,7 @@ use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::table::actuator_load::LoadTracker;
 use serde::Serialize;
 
+use crate::api::catches::columns::{OF_HOLD, to_table};
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::actuator_load::LoadAnswer;
@@ -192,7 +193,7 @@ impl<'a> TrajectoryAnswer<'a> {
             }
             !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
         };
-        let mut played = None;
+        let (mut played, mut rest) = (None, None);
         let run = match changed {
             None => run_by(scene, method, impacts, visit),
             Some(playback) => {
@@ -202,6 +203,7 @@ impl<'a> TrajectoryAnswer<'a> {
                     }
                 }
                 played = playback.outcome().cloned();
+                rest = playback.rest().map(|(samples, end)| HoldAnswer { samples: samples.to_vec(), end: end.clone() });
                 Ok(None)
             }
         };
@@ -212,17 +214,22 @@ impl<'a> TrajectoryAnswer<'a> {
         let outcome = played.or_else(|| ending.map(made)).ok_or(Refusal::Cancelled)?;
         let mut notes = Vec::new();
         let (mut hold, mut hold_end) = (None, None);
-        if request.hold > 0.0 {
+        if request.run.hold() > 0.0 {
             let in_force = request.run.restarted(contacts_made);
-            let held = match ending {
-                Some(ending) => {
-                    HoldAnswer::compute(in_force.scene(), (ending, last.as_ref()), request.hold, &mut go_on)?
+            let held = match (rest, ending) {
+                (Some(rest), _) => Ok(rest),
+                (None, Some(ending)) => {
+                    HoldAnswer::compute(in_force.scene(), (ending, last.as_ref()), request.run.hold(), &mut go_on)?
                 }
-                None => Err("hold is null: the table caught the body, and `/v1/catches` tells of the hold of a catch"
-                    .to_owned()),
+                (None, None) => {
+                    Err("hold is null: the table caught the body, and `/v1/catches` tells of the hold of a catch"
+                        .to_owned())
+                }
             };
             match held {
-                Ok(held) => (hold, hold_end) = (Some(held.samples), Some(held.end)),
+                Ok(HoldAnswer { samples, end }) => {
+                    (hold, hold_end) = (Some(to_table(OF_HOLD.iter().copied(), &samples)), Some(end));
+                }
                 Err(reason) => notes.push(reason),
             }
         }
@@ -267,7 +274,7 @@ impl<'a> TrajectoryAnswer<'a> {
 
 impl Tabular for TrajectoryAnswer<'_> {
     fn to_table(&self) -> Cow<'_, Table> {
-        if self.request.hold > 0.0 {
+        if self.request.run.hold() > 0.0 {
             Cow::Owned(phases(&self.impacts, self.hold.as_ref(), self.request.epoch))
         } else {
             Cow::Borrowed(&self.impacts)

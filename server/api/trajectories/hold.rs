@@ -1,6 +1,8 @@
 //! The contact after the last bounce of a run that settles, as an answer.
 
-use equipoise_physics::contact::{Hold, HoldEnding, HoldRequest, LONGEST_HOLD, Touching, hold, rest_of_run};
+use equipoise_physics::contact::{
+    Hold, HoldEnding, HoldRequest, HoldSample, LONGEST_HOLD, Touching, hold, rest_of_run,
+};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
@@ -16,7 +18,7 @@ use crate::api::trajectories::columns::{DATES, date};
 #[derive(Debug)]
 pub(crate) struct HoldAnswer {
     /// Samples.
-    pub(crate) samples: Table,
+    pub(crate) samples: Vec<HoldSample>,
     /// End.
     pub(crate) end: HoldEnd,
 }
@@ -80,8 +82,8 @@ impl HoldAnswer {
         if held.ending == HoldEnding::Stopped {
             return Err(Refusal::Cancelled);
         }
-        let samples = to_table(OF_HOLD.iter().copied(), &held.samples);
-        Ok(Ok(Self { samples, end: HoldEnd::new(&request, &held) }))
+        let end = HoldEnd::new(&request, &held);
+        Ok(Ok(Self { samples: held.samples, end }))
     }
 }
 

@@ -12,7 +12,7 @@ use crate::http::Reader;
 use crate::http::request::scalar::LARGEST_EXACT;
 use crate::limits;
 use crate::limits::Limits;
-use crate::runs::interventions::{intervention_parameters, read_run};
+use crate::runs::interventions::{intervention_parameters, read_hold, read_run};
 use crate::runs::run::Run;
 
 /// A request for a run.
@@ -30,8 +30,6 @@ pub struct TrajectoryRequest {
     pub tolerance: Option<f64>,
     /// Time of the release, unix ms. Without it there is no column `time`.
     pub epoch: Option<u64>,
-    /// Time in contact that is followed after the bounces have ended, s.
-    pub hold: f64,
 }
 
 /// Range of tolerances, m/s. Below it no method has enough digits; above it a bound carries no information.
@@ -66,8 +64,8 @@ impl ResourceRequest for TrajectoryRequest {
         let method = reader.choice("method", &[("auto", None), map, linear, extended]).flatten();
         let tolerance = reader.number("tolerance", TOLERANCES, "m/s");
         let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
-        let hold = reader.number("hold", 0.0..=limits::HOLD_TIME, "s").unwrap_or(0.0);
-        Some(Self { run: run?, impacts, samples_per_flight, method, tolerance, epoch, hold })
+        let hold = read_hold(reader);
+        Some(Self { run: run?.holding(hold), impacts, samples_per_flight, method, tolerance, epoch })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -78,8 +76,8 @@ impl ResourceRequest for TrajectoryRequest {
 
 impl CanonicalRequest for TrajectoryRequest {
     fn canonical(&self) -> Vec<u8> {
-        let Self { run, impacts, samples_per_flight, method, tolerance, epoch, hold } = self;
-        let rest = (impacts, samples_per_flight, method.map(RunMethod::name), tolerance, epoch, hold);
+        let Self { run, impacts, samples_per_flight, method, tolerance, epoch } = self;
+        let rest = (impacts, samples_per_flight, method.map(RunMethod::name), tolerance, epoch, run.hold());
         write::canonical(run.scene(), &(rest, intervention_parameters(run)))
     }
 }
@@ -90,14 +88,14 @@ impl TrajectoryRequest {
         let dated = self.epoch.is_some();
         let (impact, sample) = (columns::of_trajectories(dated).count(), flights::columns(dated).count());
         // In CSV and NDJSON each row has the columns of both phases.
-        let row = if self.hold > 0.0 { impact + OF_HOLD.len() } else { impact } as u64;
+        let row = if self.run.hold() > 0.0 { impact + OF_HOLD.len() } else { impact } as u64;
         let held = self.held_samples() * row;
         self.impacts.saturating_mul(row + self.samples_per_flight * sample as u64).saturating_add(held)
     }
 
     /// Most samples of the contact after the bounces.
     fn held_samples(&self) -> u64 {
-        if self.hold > 0.0 { limits::HOLD_SAMPLES } else { 0 }
+        if self.run.hold() > 0.0 { limits::HOLD_SAMPLES } else { 0 }
     }
 
     /// Price of the work, in bounces.
@@ -114,7 +112,6 @@ impl TrajectoryRequest {
             }
         };
         let each = impact + SAMPLE_PRICE * self.samples_per_flight;
-        let held = limits::HOLD_SAMPLE_PRICE * self.held_samples();
-        self.impacts.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once + held)
+        self.impacts.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once + self.run.guidance_price())
     }
 }
