@@ -30,7 +30,7 @@ pub struct TableVelocity {
 
 impl NextStrike {
     /// The strike that a run comes to next. None after its end.
-    pub fn of(playback: &Playback, run: &Run) -> Option<Self> {
+    pub fn of(playback: &mut Playback, run: &Run) -> Option<Self> {
         let t = playback.next_t()?;
         let (coming, strike, scene) = playback.foresee(run)?;
         let (x, y) = strike.table_velocity;
@@ -56,7 +56,7 @@ mod tests {
     /// Compares each foreseen strike with the contact that comes.
     fn follow(run: &Run, impacts: u64) {
         let mut playback = Playback::new(run, impacts);
-        while let Some(next) = NextStrike::of(&playback, run) {
+        while let Some(next) = NextStrike::of(&mut playback, run) {
             let (contact, _) = playback.next_impact(run).unwrap();
             assert_eq!((next.n, next.t.to_bits()), (contact.n, contact.t.to_bits()));
             assert_eq!((next.y, next.alpha.to_bits()), (contact.clearance, contact.alpha.to_bits()), "at {}", next.n);
@@ -80,9 +80,9 @@ mod tests {
     #[test]
     fn a_change_is_foreseen_once_it_is_known() {
         let mut run = case("case-4");
-        let before = NextStrike::of(&Playback::new(&run, 100), &run).unwrap();
+        let before = NextStrike::of(&mut Playback::new(&run, 100), &run).unwrap();
         run.set(1, &[(Name::TiltGain, Value::Number(1.3)), (Name::TargetHeight, Value::Number(0.4))]).unwrap();
-        let after = NextStrike::of(&Playback::new(&run, 100), &run).unwrap();
+        let after = NextStrike::of(&mut Playback::new(&run, 100), &run).unwrap();
         assert!((after.alpha - 1.3 / 1.1 * before.alpha).abs() < 1e-15);
         assert_ne!((after.target, after.table_velocity), (before.target, before.table_velocity));
         follow(&run, 100);
@@ -95,7 +95,7 @@ mod tests {
         let zero = [(Name::EnergyGain, Value::Number(0.0))];
         run.set(1, &zero).unwrap();
         let mut playback = Playback::new(&run, 100);
-        let next = NextStrike::of(&playback, &run).unwrap();
+        let next = NextStrike::of(&mut playback, &run).unwrap();
         let (contact, _) = playback.next_impact(&run).unwrap();
         let (sin, cos) = next.alpha.sin_cos();
         let beta = contact.state.theta - contact.alpha;

@@ -176,7 +176,7 @@ impl<'a> Hello<'a> {
     /// The run from `playback` on, at the wall time `now`, unix ms. Its URL begins with `base`.
     pub fn new(live: &'a LiveRun, playback: &'a Playback, base: &str, now: u64) -> Self {
         let (scene, clock) = (live.run.scene(), &live.clock);
-        let (release, released) = (scene.release(), Playback::new(&live.run, limits::LIVE_IMPACTS));
+        let (release, mut released) = (scene.release(), Playback::new(&live.run, limits::LIVE_IMPACTS));
         let angle = |value| has_angle(scene).then_some(value);
         Self {
             scene: Resolved(scene),
@@ -199,7 +199,7 @@ impl<'a> Hello<'a> {
                 theta_dot: angle(release.state.theta_dot),
             },
             flight_time: released.next_t(),
-            first_strike: NextStrike::of(&released, &live.run),
+            first_strike: NextStrike::of(&mut released, &live.run),
             build: BUILD,
         }
     }

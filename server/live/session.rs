@@ -210,7 +210,7 @@ impl Session {
                     if contact.n >= self.first {
                         let has_angle = has_angle(self.live.run.scene());
                         let row = ImpactRow::new(self.playback.body(), has_angle, contact);
-                        let next_strike = NextStrike::of(&self.playback, &self.live.run);
+                        let next_strike = NextStrike::of(&mut self.playback, &self.live.run);
                         self.outbox.push_impact(ImpactMessage { row, next_strike });
                     }
                 }
@@ -422,7 +422,7 @@ impl Session {
             speed: self.live.clock.speed(),
             paused: self.live.clock.is_paused(),
             impact,
-            next_strike: NextStrike::of(&self.playback, &self.live.run),
+            next_strike: NextStrike::of(&mut self.playback, &self.live.run),
         };
         self.outbox.push(ServerMessage::Ack(ack).to_frame());
         Ok(())

@@ -44,6 +44,8 @@ pub struct Playback {
     caught: Option<CaughtRun>,
     /// The contact after the last bounce, if the run goes on in it.
     rest: Option<RestOfRun>,
+    /// The catch that comes next, if it was foreseen.
+    foreseen: Option<ForeseenCatch>,
 }
 
 /// The contact that follows the bounces of a run.
@@ -53,6 +55,16 @@ struct RestOfRun {
     outcome: Arc<Outcome>,
     held: HeldRun,
     end: Arc<HoldEnd>,
+}
+
+/// A catch, and everything that it follows from.
+#[derive(Debug, Clone)]
+struct ForeseenCatch {
+    scene: Arc<Scene>,
+    settings: CatchSettings,
+    from: ComingContact,
+    /// `None` if there is no law for it.
+    caught: Option<CaughtRun>,
 }
 
 /// Next thing that happens in a run.
@@ -79,7 +91,7 @@ impl Playback {
             }
         };
         let (scene, tracker) = (Arc::new(scene), LoadTracker::default());
-        Self { orbit, scene, outcome, tracker, last, caught: None, rest: None }
+        Self { orbit, scene, outcome, tracker, last, caught: None, rest: None, foreseen: None }
     }
 
     /// Time of the next step, s; `None` after the end.
@@ -117,14 +129,16 @@ impl Playback {
     /// The next contact before it happens, with its strike by the changes that act there, and the scene then in force. `None` after
     /// the end.
     ///
-    /// `None` too while the body is held.
-    pub fn foresee(&self, run: &Run) -> Option<(PreImpact, Strike, Arc<Scene>)> {
+    /// `None` too while the body is held. A catch that begins with the contact is kept, so that it is computed once.
+    pub fn foresee(&mut self, run: &Run) -> Option<(PreImpact, Strike, Arc<Scene>)> {
         let n = self.next_n()?;
         if self.held().is_some() {
             return None;
         }
         let mut next = self.clone();
-        next.intervene(run, n);
+        if next.intervene(run, n) {
+            self.foreseen.clone_from(&next.foreseen);
+        }
         if let Some(order) = run.at(n).and_then(|intervention| intervention.throw)
             && let Ok(thrown) = throw::throw(&next.scene, &next.coming(), &order.target)
         {
@@ -165,6 +179,12 @@ impl Playback {
 
     /// Computes the next step of a run that has not ended, and its price.
     pub fn advance(&mut self, run: &Run) -> (Step, Price) {
+        let step = self.step(run);
+        self.foreseen = None;
+        step
+    }
+
+    fn step(&mut self, run: &Run) -> (Step, Price) {
         let n = self.orbit.contacts() + 1;
         let intervention = run.at(n);
         if self.held().is_some() {
@@ -237,9 +257,16 @@ impl Playback {
 
     /// Begins a catch at a coming contact, at the time `t`, s. False if there is no law for it; then the run goes on.
     fn begin_catch(&mut self, settings: &CatchSettings, coming: &PreImpact, t: f64) -> bool {
-        let caught = CaughtRun::begin(&self.scene, settings, &ComingContact { t, coming: *coming });
-        let begins = caught.is_some();
-        self.caught = caught.or(self.caught.take());
+        let (scene, settings, from) = (self.scene.clone(), *settings, ComingContact { t, coming: *coming });
+        let foreseen =
+            self.foreseen.take().filter(|one| (&one.scene, one.settings, one.from) == (&scene, settings, from));
+        let foreseen = foreseen.unwrap_or_else(|| {
+            let caught = CaughtRun::begin(&scene, &settings, &from);
+            ForeseenCatch { scene, settings, from, caught }
+        });
+        let begins = foreseen.caught.is_some();
+        self.caught = foreseen.caught.clone().or(self.caught.take());
+        self.foreseen = Some(foreseen);
         begins
     }
 

@@ -1,6 +1,7 @@
 //! Runs with interventions against plain runs, and runs that go on in contact.
 
 use equipoise_physics::body::Kick;
+use equipoise_physics::catching::settings::Strategy;
 use equipoise_physics::contact::{hold, rest_of_run};
 
 use super::*;
@@ -128,4 +129,31 @@ fn a_body_in_contact_after_its_bounces_is_thrown_and_settles_again() {
     assert_eq!((outcome.kind, outcome.impacts), ("settled", contacts.len() as u64));
     let (second, _) = playback.rest().unwrap();
     assert_eq!((second, second[0].t), (&again[21..], outcome.settle_time.unwrap()));
+}
+
+#[test]
+fn a_catch_that_was_foreseen_is_computed_once() {
+    let settings =
+        |ratio| CatchSettings { strategy: Some(Strategy::BounceDown), ratio: Some(ratio), ..CatchSettings::default() };
+    let mut run = case("case-1");
+    run.catch(2, settings(0.6)).unwrap();
+    let mut playback = Playback::new(&run, 1000);
+    playback.advance(&run);
+    let address = |caught: Option<&CaughtRun>| std::ptr::from_ref(caught.unwrap().catch());
+    let known = |playback: &Playback| address(playback.foreseen.as_ref().and_then(|one| one.caught.as_ref()));
+    let foreseen = playback.foresee(&run).unwrap().1;
+    let first = known(&playback);
+    // Asked again, it is the same; with other settings it is another, and so it is once they are as before.
+    playback.foresee(&run).unwrap();
+    assert_eq!(known(&playback), first);
+    let mut other = run.clone();
+    other.catch(2, settings(0.5)).unwrap();
+    assert_ne!(playback.clone().foresee(&other).unwrap().1, foreseen);
+    let mut changed = playback.clone();
+    assert_eq!((changed.foresee(&other).is_some(), changed.foresee(&run).unwrap().1), (true, foreseen));
+    let (Step::Impact(contact), _) = playback.advance(&run) else { panic!("no impact") };
+    assert_eq!((contact.strike, address(playback.caught.as_ref())), (Some(foreseen), first));
+    assert!(playback.foreseen.is_none());
+    // A run that foresees nothing has the same strikes.
+    assert_eq!(play(&run, &mut Playback::new(&run, 1000)).0[2..], play(&run, &mut playback).0[..]);
 }
