@@ -6,9 +6,11 @@ use std::hint::black_box;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as bench_all};
-use equipoise_physics::batch::batch_run::{RunStart, run_batch_on};
+use equipoise_physics::batch::batch_run::run_batch_on;
+use equipoise_physics::batch::model::BatchModel;
 use equipoise_physics::body::Release;
 use equipoise_physics::body::polygon::Vertices;
+use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::dispatch::InstructionSet;
@@ -181,13 +183,13 @@ fn lanes(bencher: Bencher, path: InstructionSet) {
     let state = |theta| State { theta, x_dot: 0.0, y_dot: -1.15, theta_dot: 0.0 };
     bencher.counter(ItemsCount::new(RUNS * BOUNCES)).bench(|| {
         let mut left = RUNS;
-        let next = || {
+        let mut next = || {
             left = left.checked_sub(1)?;
             let rod = Rod { tilt_gain: black_box(1.1 + 0.01 * left as f64), ..case_1::ROD };
-            Some((0, RunStart { rod, rules: case_1::RULES, state: state(0.002 * left as f64) }))
+            Some((0, Orbit::at(Model::Rod(rod), case_1::RULES, state(0.002 * left as f64))))
         };
-        let mut survived = 0;
-        run_batch_on(path, BOUNCES, next, |_, end| survived += end.impacts, || true);
+        let (model, mut survived) = (BatchModel::rods(EnergyFeedback::Vertical), 0);
+        run_batch_on(path, model, BOUNCES, &mut next, &mut |_, end| survived += end.impacts, &mut || true);
         assert_eq!(survived, RUNS * BOUNCES);
     });
 }

@@ -1,5 +1,5 @@
-//! Cost of endings, energy and bookkeeping over a bare loop of lanes, and of a region on two threads: `cargo bench --bench lanes`.
-//! All are measured in turns in one run, so that ratios hold on a noisy machine.
+//! Cost of endings, energy and bookkeeping over a bare loop of lanes, of other models over the rod, and of a region on two threads:
+//! `cargo bench --bench lanes`. All are measured in turns in one run, so that ratios hold on a noisy machine.
 
 mod case_1;
 
@@ -8,43 +8,89 @@ use std::thread;
 use std::time::Instant;
 
 use case_1::{ROD, RULES};
-use equipoise_physics::batch::batch_run::{RunStart, run_batch_on, run_batch_with_friction_on};
-use equipoise_physics::bounce::friction::{RestitutionLaw, Slide};
+use equipoise_physics::batch::batch_run::run_batch_on;
+use equipoise_physics::batch::model::BatchModel;
+use equipoise_physics::body::general::GeneralBody;
+use equipoise_physics::body::model::Model;
+use equipoise_physics::body::point::PointMass;
+use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::dispatch::{InstructionSet, Kernel, dispatch_on};
+use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
+use equipoise_physics::table::control_law::{Gains, Steering};
 
 const RUNS: usize = 64;
 const BOUNCES: u64 = 2000;
 const ROUNDS: usize = 25;
 
-fn start(run: usize, wide: f64) -> RunStart {
-    RunStart {
-        rod: Rod { tilt_gain: 1.05 + 0.004 * run as f64, ..ROD },
-        rules: RULES,
-        state: State { theta: wide * (1 + run % 32) as f64, x_dot: 0.0, y_dot: -1.15, theta_dot: 0.0 },
+fn rod(run: usize) -> Rod {
+    Rod { tilt_gain: 1.05 + 0.004 * run as f64, ..ROD }
+}
+
+fn state(run: usize, wide: f64) -> State {
+    State { theta: wide * (1 + run % 32) as f64, x_dot: 0.0, y_dot: -1.15, theta_dot: 0.0 }
+}
+
+/// Kind of bodies that bounce.
+#[derive(Clone, Copy)]
+enum Bodies {
+    Rods,
+    Points,
+    /// With state feedback.
+    Fed,
+    Rough(RestitutionLaw, Slide),
+}
+
+impl Bodies {
+    fn orbit(self, run: usize, wide: f64) -> Orbit<Model> {
+        let (rod, state) = (rod(run), state(run, wide));
+        let general = GeneralBody {
+            rod,
+            steering: Steering::TiltGain,
+            program: None,
+            friction: None,
+            noise: None,
+            outline: None,
+        };
+        match self {
+            Self::Rods => Orbit::at(Model::Rod(rod), RULES, state),
+            Self::Points => {
+                let rod = Rod { tilt_gain: rod.tilt_gain - 1.0, ..rod };
+                let rules = Rules { topple_angle: f64::INFINITY, ..RULES };
+                Orbit::at(Model::Point(PointMass::new(rod)), rules, PointMass::state(state.theta, state.y_dot))
+            }
+            Self::Fed => {
+                let gains = Gains { x: 0.018, theta: -0.85 - 0.2 * rod.tilt_gain, x_dot: 0.023, theta_dot: -0.031 };
+                Orbit::at(Model::General(GeneralBody { steering: Steering::Feedback(gains), ..general }), RULES, state)
+            }
+            Self::Rough(law, slide) => {
+                let friction = Some(Friction { coefficient: 0.3, law, slide });
+                let rules = Rules { holds_energy: false, ..RULES };
+                Orbit::at(Model::General(GeneralBody { friction, ..general }), rules, state)
+            }
+        }
     }
 }
 
 /// Time per bounce of the batch run that regions use, ns.
-fn ours(path: InstructionSet, wide: f64) -> f64 {
-    let mut runs = (0..RUNS).map(|run| (run, start(black_box(run), wide)));
-    let mut bounces = 0;
+fn ours(path: InstructionSet, bodies: Bodies, wide: f64) -> f64 {
+    let orbits: Vec<_> = (0..RUNS).map(|run| (run, bodies.orbit(black_box(run), wide))).collect();
+    let first = &orbits[0].1.body;
+    let model =
+        BatchModel::of(first, &if first.friction().is_some() { Rules { holds_energy: false, ..RULES } } else { RULES });
+    let (mut orbits, mut bounces) = (orbits.into_iter(), 0);
     let clock = Instant::now();
-    run_batch_on(path, BOUNCES, || runs.next(), |_, end| bounces += end.impacts, || true);
-    clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
-}
-
-/// Time per bounce of the same with friction, ns.
-fn rough(path: InstructionSet, contact: (RestitutionLaw, Slide), wide: f64) -> f64 {
-    let mut runs = (0..RUNS).map(|run| {
-        let start = start(black_box(run), wide);
-        (run, RunStart { rules: Rules { holds_energy: false, ..start.rules }, ..start }, 0.3)
-    });
-    let mut bounces = 0;
-    let clock = Instant::now();
-    run_batch_with_friction_on(path, contact, BOUNCES, || runs.next(), |_, end| bounces += end.impacts, || true);
+    run_batch_on(
+        path,
+        model.expect("a model of lanes"),
+        BOUNCES,
+        &mut || orbits.next(),
+        &mut |_, end| bounces += end.impacts,
+        &mut || true,
+    );
+    assert_eq!(bounces, RUNS as u64 * BOUNCES);
     clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
 }
 
@@ -71,13 +117,13 @@ impl Kernel for Bare {
         let (l, per_square, g) = (ROD.contact_distance, ROD.radius_of_gyration.powi(-2), ROD.gravity);
         let (mut bounces, mut sum) = (0, 0.0);
         for chunk in 0..RUNS / LANES {
-            let starts: [RunStart; LANES] =
-                std::array::from_fn(|lane| start(black_box(chunk * LANES + lane), self.wide));
-            let kappa = starts.map(|start| start.rod.tilt_gain);
-            let mut theta = starts.map(|start| start.state.theta);
-            let mut x_dot = starts.map(|start| start.state.x_dot);
-            let mut y_dot = starts.map(|start| start.state.y_dot);
-            let mut theta_dot = starts.map(|start| start.state.theta_dot);
+            let runs: [usize; LANES] = std::array::from_fn(|lane| black_box(chunk * LANES + lane));
+            let kappa = runs.map(|run| rod(run).tilt_gain);
+            let starts = runs.map(|run| state(run, self.wide));
+            let mut theta = starts.map(|start| start.theta);
+            let mut x_dot = starts.map(|start| start.x_dot);
+            let mut y_dot = starts.map(|start| start.y_dot);
+            let mut theta_dot = starts.map(|start| start.theta_dot);
             for _ in 0..BOUNCES {
                 let mut small = true;
                 bounces += LANES;
@@ -149,20 +195,28 @@ fn main() {
     println!("{RUNS} runs of {BOUNCES} bounces, ns a bounce, medians of {ROUNDS} rounds");
     for path in InstructionSet::ALL.into_iter().filter(|path| path.is_there()) {
         for (name, wide) in [("|θ| ≤ 0.03", 0.001), ("|θ| ≤ 0.13", 0.004)] {
-            let [ours, bare, ratio] = compare(|| ours(path, wide), || bare(path, wide));
+            let [ours, bare, ratio] = compare(|| ours(path, Bodies::Rods, wide), || bare(path, wide));
             println!("{path:?}, {name}: sweep {ours:.2}, bare loop {bare:.2}, ratio {ratio:.2}");
+        }
+    }
+    for path in InstructionSet::ALL.into_iter().filter(|path| path.is_there()) {
+        for (name, bodies) in [("point mass", Bodies::Points), ("state feedback", Bodies::Fed)] {
+            let [its, rods, ratio] = compare(|| ours(path, bodies, 0.001), || ours(path, Bodies::Rods, 0.001));
+            println!("{path:?}, {name}: {its:.2}, rod {rods:.2}, ratio {ratio:.2}");
         }
     }
     for path in InstructionSet::ALL.into_iter().filter(|path| path.is_there()) {
         for law in [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge] {
             // With friction, a table that only tilts balances only the upright rod.
             for (slide, wide) in [(Slide::Matched, 0.001), (Slide::None, 0.0)] {
-                let [with, without, ratio] = compare(|| rough(path, (law, slide), wide), || ours(path, wide));
+                let [with, without, ratio] =
+                    compare(|| ours(path, Bodies::Rough(law, slide), wide), || ours(path, Bodies::Rods, wide));
                 println!("{path:?}, {law:?}, {slide:?}: {with:.2}, without friction {without:.2}, ratio {ratio:.2}");
             }
         }
     }
     let best = InstructionSet::ALL.into_iter().find(|path| path.is_there()).unwrap_or(InstructionSet::Portable);
+    let sweep = |path, wide| ours(path, Bodies::Rods, wide);
     let two = |work: fn(InstructionSet, f64) -> f64| {
         thread::scope(|scope| {
             let other = scope.spawn(|| work(best, 0.001));
@@ -170,7 +224,7 @@ fn main() {
             0.25 * (here + other.join().unwrap_or(f64::NAN))
         })
     };
-    for (name, work) in [("sweep", ours as fn(InstructionSet, f64) -> f64), ("bare loop", bare)] {
+    for (name, work) in [("sweep", sweep as fn(InstructionSet, f64) -> f64), ("bare loop", bare)] {
         let [one, two, ratio] = compare(|| work(best, 0.001), || two(work));
         println!("{name}, two threads side by side: {two:.2} a bounce for {one:.2} on one, {ratio:.2} times as fast");
     }

@@ -253,7 +253,7 @@ pub const REGION_PLAIN_PRICE: u64 = 6;
 /// Price of a region besides its cells and its linear boundary, in bounces in lanes: the picture, about 5 ms.
 pub const REGION_ANSWER_PRICE: u64 = 400_000;
 
-/// Price of a bounce outside lanes, in bounces in lanes: a rod with feedback takes 9, a polygon or a point mass 17, one with noise 25.
+/// Price of a bounce outside lanes, in bounces in lanes: a polygon takes 17, one with noise 25.
 pub const REGION_ALONE_PRICE: u64 = 20;
 
 /// Cells of one block: enough to fill the lanes, and few enough that rows are sent as they are done.

@@ -4,8 +4,8 @@ use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::eigenvalue::upright;
-use crate::failure_cases::scenes::{built, rod, rod_of, with};
-use equipoise_physics::batch::batch_run::{RunStart, run_all};
+use crate::failure_cases::scenes::{built, rod, with};
+use equipoise_physics::batch::batch_run::run_all;
 use equipoise_physics::body::Release;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Orbit, run};
@@ -154,18 +154,14 @@ fn horizon(scene: &Scene) -> Option<u64> {
 
 /// At which contacts the runs of an ensemble end, upwards: those whose starts have these numbers.
 fn ends(scene: &Scene, impacts: u64, numbers: std::ops::Range<usize>) -> Vec<u64> {
-    let rod = rod_of(scene);
-    let starts: Vec<RunStart> = numbers
-        .filter_map(|number| {
-            let mut release: Release = *scene.release();
-            // The scene's own start is not one of them.
-            release.state.theta += SPACING * (number as f64 + 1.0);
-            let (_, state) = rod.fall(&release).ok()?;
-            Some(RunStart { rod, rules: scene.rules(), state })
-        })
-        .collect();
-    let ends = run_all(impacts, &starts, &mut || true).unwrap_or_default();
-    let mut ends: Vec<u64> = ends.iter().map(|end| end.impacts).collect();
+    let mut orbits = numbers.filter_map(|number| {
+        let mut release: Release = *scene.release();
+        // The scene's own start is not one of them.
+        release.state.theta += SPACING * (number as f64 + 1.0);
+        Some((number, Orbit::new(scene.model(), scene.rules(), &release).ok()?))
+    });
+    let mut ends = Vec::new();
+    run_all(impacts, &mut || orbits.next(), &mut |_, end| ends.push(end.impacts), &mut || true);
     ends.sort_unstable();
     ends
 }

@@ -1,28 +1,19 @@
-//! Runs many rods side by side in lanes, each to its end: what a region of stability is made of.
+//! Runs many orbits side by side in lanes, each to its end: what a region of stability is made of.
 //!
-//! Every lane gives the bits that [`crate::run::orbit::run`] gives for its rod alone. A lane whose run has ended takes the next
-//! rod at once, so that dead cells cost nothing; a bounce that is not a common one is done alone, by the map itself.
+//! Every lane gives the bits that [`crate::run::orbit::run`] gives for its orbit alone. A lane whose run has ended takes the next
+//! orbit at once, so that dead cells cost nothing; a bounce that is not a common one is done alone, by the orbit itself.
 
-use crate::batch::lanes::{Bounced, Far, Moving, Near, Rods, Rough, Scratch, Smooth, Surface, WIDTH, bounce_lanes};
-use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::friction::{RestitutionLaw, Slide};
-use crate::bounce::rod::Rod;
+use crate::batch::lanes::{
+    Bounced, Far, LaneModel, Moving, Near, PointLanes, RodLanes, Rods, Rough, Scratch, Smooth, SteeringLanes, WIDTH,
+};
+use crate::batch::model::{BatchContact, BatchModel};
+use crate::body::model::Model;
 use crate::bounce::state::State;
-use crate::numbers::dispatch::{InstructionSet, Kernel, dispatch, dispatch_on};
+use crate::numbers::dispatch::{InstructionSet, Kernel, dispatch_on};
+use crate::run::cancellation::CancellationCheck;
 use crate::run::ending::EndingKind;
-use crate::run::orbit::LaneRunState;
+use crate::run::orbit::{LaneRunState, Orbit, run};
 use crate::run::rules::Rules;
-
-/// One run to be made.
-#[derive(Clone, Copy, Debug)]
-pub struct RunStart {
-    /// Body that bounces.
-    pub rod: Rod,
-    /// Rules that end it.
-    pub rules: Rules,
-    /// Just before its first contact.
-    pub state: State,
-}
 
 /// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,129 +26,163 @@ pub struct LaneRunEnd {
     pub max_theta: f64,
 }
 
-impl RunStart {
-    fn energy(&self) -> f64 {
-        self.rod.strike(&self.state).energy
+/// Gives one orbit after the other, each before its first contact and with a number of its own.
+pub type NextOrbit<'a> = dyn FnMut() -> Option<(usize, Orbit<Model>)> + 'a;
+
+/// Takes runs as they end, in any order.
+pub type RunDone<'a> = dyn FnMut(usize, LaneRunEnd) + 'a;
+
+/// Makes runs of up to `impacts` contacts, in lanes where they fit ([`BatchModel::of`]). Returns false once `go_on` did: it is asked
+/// every few thousand bounces, and every hundred contacts outside lanes.
+pub fn run_all(
+    impacts: u64,
+    next: &mut NextOrbit<'_>,
+    done: &mut RunDone<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> bool {
+    let mut others = run_those_like_the_first(impacts, next, done, go_on);
+    loop {
+        match others {
+            None => return false,
+            Some(left) if left.is_empty() => return true,
+            Some(left) => {
+                let mut left = left.into_iter();
+                others = run_those_like_the_first(impacts, &mut || left.next(), done, go_on);
+            }
+        }
     }
 }
 
-/// Runs of up to `impacts` contacts: `next` gives one after the other with a number of its own, `done` takes them as they
-/// end, in any order. `go_on` is asked every few thousand bounces; after a `false` no more are run.
-///
-/// No table may be limited: lanes do not look. All have the energy feedback [`EnergyFeedback::Vertical`].
+/// Makes the runs that fit into a batch with the first one, or all that fit into none as the first one. Returns the others; `None` once
+/// `go_on` returned false.
+fn run_those_like_the_first(
+    impacts: u64,
+    next: &mut NextOrbit<'_>,
+    done: &mut RunDone<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<Vec<(usize, Orbit<Model>)>> {
+    let mut others = Vec::new();
+    let mut first = next();
+    let Some((_, orbit)) = &first else { return Some(others) };
+    let model_of = |orbit: &Orbit<Model>| BatchModel::of(&orbit.body, orbit.rules());
+    let model = model_of(orbit);
+    let mut alike = || {
+        first.take().or_else(|| {
+            loop {
+                let (number, orbit) = next()?;
+                if model_of(&orbit) == model {
+                    return Some((number, orbit));
+                }
+                others.push((number, orbit));
+            }
+        })
+    };
+    let is_done = match model {
+        Some(model) => run_batch(model, impacts, &mut alike, done, go_on),
+        None => run_alone(impacts, &mut alike, done, go_on),
+    };
+    is_done.then_some(others)
+}
+
+/// Makes one run after the other. Returns false once `go_on` did.
+fn run_alone(impacts: u64, next: &mut NextOrbit<'_>, done: &mut RunDone<'_>, go_on: &mut dyn FnMut() -> bool) -> bool {
+    let mut looks = CancellationCheck::new(go_on);
+    while let Some((number, mut orbit)) = next() {
+        let mut max_theta: f64 = 0.0;
+        let ending = looks.begin().then(|| {
+            run(&mut orbit, impacts, |contact| {
+                max_theta = max_theta.max(contact.state.theta.abs());
+                looks.contact()
+            })
+        });
+        let Some(ending) = ending.flatten() else { return false };
+        done(number, LaneRunEnd { impacts: orbit.contacts(), outcome: ending.into(), max_theta });
+    }
+    true
+}
+
+/// [`run_all`] of runs that fit into a batch of one model.
 pub fn run_batch(
+    model: BatchModel,
     impacts: u64,
-    next: impl FnMut() -> Option<(usize, RunStart)>,
-    done: impl FnMut(usize, LaneRunEnd),
-    go_on: impl FnMut() -> bool,
-) {
-    run_batch_with_feedback(EnergyFeedback::Vertical, impacts, next, done, go_on);
-}
-
-/// [`run_batch`] of tables with one energy feedback, whatever that of the rods is.
-pub fn run_batch_with_feedback(
-    feedback: EnergyFeedback,
-    impacts: u64,
-    mut next: impl FnMut() -> Option<(usize, RunStart)>,
-    done: impl FnMut(usize, LaneRunEnd),
-    go_on: impl FnMut() -> bool,
-) {
-    let next = || next().map(|(number, start)| (number, start, ()));
-    dispatch(BatchRun { surface: Smooth(feedback), impacts, next, done, go_on });
-}
-
-/// [`run_batch`] with friction of one law and one way to slide: `next` gives its coefficient too.
-pub fn run_batch_with_friction(
-    (law, slide): (RestitutionLaw, Slide),
-    impacts: u64,
-    next: impl FnMut() -> Option<(usize, RunStart, f64)>,
-    done: impl FnMut(usize, LaneRunEnd),
-    go_on: impl FnMut() -> bool,
-) {
-    dispatch(BatchRun { surface: Rough::new(law, slide), impacts, next, done, go_on });
-}
-
-/// [`run_batch_with_feedback`] over all of `starts`, with the feedback of the first: their ends, in the same order. None once `go_on`
-/// said `false`.
-pub fn run_all(impacts: u64, starts: &[RunStart], go_on: &mut dyn FnMut() -> bool) -> Option<Vec<LaneRunEnd>> {
-    let feedback = starts.first().map_or(EnergyFeedback::Vertical, |first| first.rod.energy_feedback);
-    let mut ends = vec![None; starts.len()];
-    let mut starts = starts.iter().copied().enumerate();
-    run_batch_with_feedback(feedback, impacts, || starts.next(), |number, end| ends[number] = Some(end), go_on);
-    ends.into_iter().collect()
+    next: &mut NextOrbit<'_>,
+    done: &mut RunDone<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> bool {
+    let best = InstructionSet::ALL.into_iter().find(|path| path.is_there()).unwrap_or(InstructionSet::Portable);
+    run_batch_on(best, model, impacts, next, done, go_on)
 }
 
 /// [`run_batch`] with one kind of instructions, to hold all of them together.
 pub fn run_batch_on(
     path: InstructionSet,
+    model: BatchModel,
     impacts: u64,
-    mut next: impl FnMut() -> Option<(usize, RunStart)>,
-    done: impl FnMut(usize, LaneRunEnd),
-    go_on: impl FnMut() -> bool,
-) {
-    let next = || next().map(|(number, start)| (number, start, ()));
-    dispatch_on(path, BatchRun { surface: Smooth(EnergyFeedback::Vertical), impacts, next, done, go_on });
+    next: &mut NextOrbit<'_>,
+    done: &mut RunDone<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> bool {
+    macro_rules! run {
+        ($model:expr) => {
+            dispatch_on(path, BatchRun { model: $model, impacts, next, done, go_on })
+        };
+    }
+    match model {
+        BatchModel::Rod { contact, energy_feedback, law } => {
+            let steering = SteeringLanes::new(law);
+            match contact {
+                BatchContact::Smooth => run!(RodLanes { surface: Smooth(energy_feedback), steering }),
+                BatchContact::Rough(law, slide) => {
+                    run!(RodLanes { surface: Rough::new(law, slide, energy_feedback), steering })
+                }
+            }
+        }
+        BatchModel::Point(energy_feedback) => run!(PointLanes::new(energy_feedback)),
+    }
 }
 
-/// [`run_batch_with_friction`] with one kind of instructions.
-pub fn run_batch_with_friction_on(
-    path: InstructionSet,
-    (law, slide): (RestitutionLaw, Slide),
+struct BatchRun<'a, 'n, 'd, M> {
+    model: M,
     impacts: u64,
-    next: impl FnMut() -> Option<(usize, RunStart, f64)>,
-    done: impl FnMut(usize, LaneRunEnd),
-    go_on: impl FnMut() -> bool,
-) {
-    dispatch_on(path, BatchRun { surface: Rough::new(law, slide), impacts, next, done, go_on });
-}
-
-struct BatchRun<S, Next, Done, GoOn> {
-    surface: S,
-    impacts: u64,
-    next: Next,
-    done: Done,
-    go_on: GoOn,
+    next: &'a mut NextOrbit<'n>,
+    done: &'a mut RunDone<'d>,
+    go_on: &'a mut dyn FnMut() -> bool,
 }
 
 /// Bounces of all lanes between two questions whether to go on.
 const LOOK: u64 = 256;
 
-impl<S, Next, Done, GoOn> Kernel for BatchRun<S, Next, Done, GoOn>
-where
-    S: Surface,
-    Next: FnMut() -> Option<(usize, RunStart, S::Of)>,
-    Done: FnMut(usize, LaneRunEnd),
-    GoOn: FnMut() -> bool,
-{
-    type Output = ();
+impl<M: LaneModel> Kernel for BatchRun<'_, '_, '_, M> {
+    type Output = bool;
 
     #[inline(always)]
-    fn call(mut self) {
-        let mut orbits = LaneRuns::idle(self.surface, self.impacts);
+    fn call(self) -> bool {
+        let mut runs = LaneRuns::idle(self.model, self.impacts);
         for lane in 0..WIDTH {
-            orbits.load(lane, (self.next)());
+            runs.load(lane, (self.next)());
         }
         let mut looked = 0;
-        while orbits.busy != 0 {
-            if orbits.turn >= looked + LOOK {
-                looked = orbits.turn;
+        while runs.busy != 0 {
+            if runs.turn >= looked + LOOK {
+                looked = runs.turn;
                 if !(self.go_on)() {
-                    return;
+                    return false;
                 }
             }
-            let apart = orbits.together(LOOK) & orbits.busy;
-            let mut ended = orbits.completed();
+            let apart = runs.together(LOOK) & runs.busy;
+            let mut ended = runs.completed();
             for lane in bits(apart) {
-                if let Some(outcome) = orbits.alone(lane) {
+                if let Some(outcome) = runs.alone(lane) {
                     ended |= 1 << lane;
-                    orbits.outcome[lane] = outcome;
+                    runs.outcome[lane] = outcome;
                 }
             }
-            for lane in bits(ended & orbits.busy) {
-                (self.done)(orbits.number[lane], orbits.end(lane));
-                orbits.load(lane, (self.next)());
+            for lane in bits(ended & runs.busy) {
+                (self.done)(runs.number[lane], runs.end(lane));
+                runs.load(lane, (self.next)());
             }
         }
+        true
     }
 }
 
@@ -175,11 +200,13 @@ fn bits(mut mask: Mask) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Orbits side by side.
-struct LaneRuns<S> {
-    surface: S,
+/// Runs side by side.
+struct LaneRuns<M> {
+    model: M,
     rods: Rods,
     moving: Moving,
+    /// The run of each lane, as it was at its last contact that was done alone.
+    orbits: [Orbit<Model>; WIDTH],
     /// Contacts of each run.
     impacts: u64,
     /// Contacts of every lane since the start.
@@ -197,30 +224,18 @@ struct LaneRuns<S> {
     far: bool,
 }
 
-/// Run of an idle lane: it bounces upright, for ever, and nobody looks.
-const IDLE: RunStart = RunStart {
-    rod: Rod {
-        contact_distance: 1.0,
-        radius_of_gyration: 1.0,
-        gravity: 1.0,
-        restitution: 1.0,
-        tilt_gain: 1.0,
-        strike_gain: 2.0,
-        strike_gain_per_energy: 0.0,
-        // Its own energy, so that no feedback changes it.
-        target_energy: 1.5,
-        energy_feedback: EnergyFeedback::Vertical,
-    },
-    rules: Rules { topple_angle: 1.0, settles: false, holds_energy: true, limits: None },
-    state: State { theta: 0.0, x_dot: 0.0, y_dot: -1.0, theta_dot: 0.0 },
-};
+/// Rules of a lane that idles, and its state at each contact.
+const IDLE_RULES: Rules = Rules { topple_angle: 1.0, settles: false, holds_energy: true, limits: None };
+const IDLE_STATE: State = State { theta: 0.0, x_dot: 0.0, y_dot: -1.0, theta_dot: 0.0 };
 
-impl<S: Surface> LaneRuns<S> {
-    fn idle(surface: S, impacts: u64) -> Self {
+impl<M: LaneModel> LaneRuns<M> {
+    fn idle(model: M, impacts: u64) -> Self {
+        let orbit = Orbit::at(model.idle(), IDLE_RULES, IDLE_STATE);
         Self {
-            surface,
-            rods: Rods::all(&IDLE.rod, &IDLE.rules),
-            moving: Moving::all(&IDLE.state, IDLE.energy()),
+            rods: Rods::all(orbit.body.rod(), &IDLE_RULES),
+            moving: Moving::all(&IDLE_STATE, orbit.lane_state().energy),
+            model,
+            orbits: [orbit; WIDTH],
             impacts,
             turn: 0,
             first: [0; WIDTH],
@@ -234,24 +249,28 @@ impl<S: Surface> LaneRuns<S> {
     }
 
     /// Gives a lane its next run, or none.
-    fn load(&mut self, lane: usize, next: Option<(usize, RunStart, S::Of)>) {
-        let (start, of, last) = match next {
-            Some((number, start, of)) => {
+    fn load(&mut self, lane: usize, next: Option<(usize, Orbit<Model>)>) {
+        let last = match next {
+            Some((number, orbit)) => {
                 self.number[lane] = number;
                 self.busy |= 1 << lane;
-                (start, of, self.turn.saturating_add(self.impacts))
+                self.orbits[lane] = orbit;
+                self.turn.saturating_add(self.impacts)
             }
             None => {
                 self.busy &= !(1 << lane);
-                (IDLE, S::IDLE, u64::MAX)
+                self.orbits[lane] = Orbit::at(self.model.idle(), IDLE_RULES, IDLE_STATE);
+                u64::MAX
             }
         };
-        self.rods.set(lane, &start.rod, &start.rules);
-        self.surface.set(lane, of);
-        self.moving.set(lane, &start.state, start.energy());
+        let orbit = &self.orbits[lane];
+        let (rules, midst) = (*orbit.rules(), orbit.lane_state());
+        self.rods.set(lane, orbit.body.rod(), &rules);
+        self.model.load(lane, &orbit.body, &midst);
+        self.moving.set(lane, &midst.state, midst.energy);
         self.moving.max_theta[lane] = 0.0;
         self.fresh &= !(1 << lane);
-        self.fresh |= u16::from(start.rules.settles) << lane;
+        self.fresh |= u16::from(rules.settles) << lane;
         (self.first[lane], self.last[lane]) = (self.turn, last);
         self.outcome[lane] = EndingKind::Completed;
     }
@@ -279,20 +298,21 @@ impl<S: Surface> LaneRuns<S> {
             self.turn += 1;
             let mut bounced = Bounced { near: false, common: false };
             if !self.far {
-                bounced = bounce_lanes::<Near, S>(&self.surface, &self.rods, &self.moving, &mut next, &mut scratch);
+                bounced = self.model.bounce::<Near>(&self.rods, &self.moving, &mut next, &mut scratch);
                 self.far = !bounced.near;
             }
             if self.far {
-                bounced = bounce_lanes::<Far, S>(&self.surface, &self.rods, &self.moving, &mut next, &mut scratch);
+                bounced = self.model.bounce::<Far>(&self.rods, &self.moving, &mut next, &mut scratch);
                 self.far = !bounced.near;
             }
             if self.fresh != 0 {
                 self.begin(&scratch);
             }
             if !bounced.common {
-                return self.take_common(&next, &scratch.apart);
+                return self.take_common(&next, &scratch);
             }
             self.moving = next;
+            self.model.arrive(&self.moving, &scratch);
         }
         0
     }
@@ -309,10 +329,15 @@ impl<S: Surface> LaneRuns<S> {
 
     #[cold]
     #[inline(never)]
-    fn take_common(&mut self, next: &Moving, apart: &[u64; WIDTH]) -> Mask {
+    fn take_common(&mut self, next: &Moving, scratch: &Scratch) -> Mask {
         let mut mask = 0;
-        for (lane, apart) in apart.iter().enumerate() {
-            if *apart == 0 { self.moving.take(lane, next) } else { mask |= 1 << lane }
+        for lane in 0..WIDTH {
+            if scratch.apart[lane] == 0 {
+                self.moving.take(lane, next);
+                self.model.arrive_in(lane, next, scratch);
+            } else {
+                mask |= 1 << lane;
+            }
         }
         mask
     }
@@ -321,16 +346,26 @@ impl<S: Surface> LaneRuns<S> {
     #[cold]
     #[inline(never)]
     fn alone(&mut self, lane: usize) -> Option<EndingKind> {
-        let theta = self.moving.state(lane).theta;
+        let state = self.moving.state(lane);
         let max_theta = &mut self.moving.max_theta[lane];
-        *max_theta = max_theta.max(theta.abs());
-        match self.surface.contact(&self.rods, lane, self.rods.midst(&self.moving, lane)) {
-            Ok(LaneRunState { state, energy, first_flight }) => {
-                self.moving.set(lane, &state, energy);
-                self.rods.begin(lane, first_flight);
-                None
-            }
-            Err(ending) => Some(ending.into()),
+        *max_theta = max_theta.max(state.theta.abs());
+        let orbit = &mut self.orbits[lane];
+        let mut midst = LaneRunState {
+            n: self.turn - self.first[lane] - 1,
+            state,
+            energy: self.moving.energy[lane],
+            first_flight: self.rods.first_flight(lane),
+            ..orbit.lane_state()
+        };
+        self.model.save(lane, &mut midst);
+        orbit.set_lane_state(&midst);
+        if let Some(ending) = orbit.advance().ending {
+            return Some(ending.into());
         }
+        let midst = orbit.lane_state();
+        self.moving.set(lane, &midst.state, midst.energy);
+        self.rods.begin(lane, midst.first_flight);
+        self.model.load(lane, &orbit.body, &midst);
+        None
     }
 }

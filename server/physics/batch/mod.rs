@@ -2,3 +2,4 @@
 
 pub mod batch_run;
 mod lanes;
+pub mod model;

@@ -40,9 +40,14 @@ impl<N: Number> Flight<N> {
     /// t = 0 is divided out analytically and short flights keep their relative accuracy.
     #[inline(always)]
     pub fn gap(&self, t: N) -> Gap<N> {
+        self.gap_turned(t, (self.start.theta_dot * t).sin_versine())
+    }
+
+    /// [`Flight::gap`] with sin u and 1 − cos u.
+    #[inline(always)]
+    pub(crate) fn gap_turned(&self, t: N, (sin, versine): (N, N)) -> Gap<N> {
         let State { y_dot, theta_dot, .. } = self.start;
         let (sin_theta, cos_theta) = self.sin_cos_theta;
-        let (sin, versine) = (theta_dot * t).sin_versine();
         let (reach_x, reach_y) = (self.contact_distance * sin_theta, self.contact_distance * cos_theta);
         let spin = self.contact_distance * theta_dot;
         let (speed_x, speed_y) = (spin * cos_theta, spin * sin_theta);

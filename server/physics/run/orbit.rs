@@ -7,6 +7,7 @@ use crate::bounce::rebound::Rebound;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
+use crate::numbers::compensated_sum::CompensatedSum;
 use crate::numbers::dispatch::{Kernel, dispatch};
 use crate::run::ending::Ending;
 use crate::run::rules;
@@ -34,23 +35,6 @@ pub struct Contact<N = f64> {
     pub flight_time: Option<N>,
     /// Ending of the run, if it ended here.
     pub ending: Option<Ending>,
-}
-
-/// A sum of many terms that keeps what rounding would lose (Neumaier's form is not needed: the terms are smaller).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct CompensatedSum {
-    value: f64,
-    lost: f64,
-}
-
-impl CompensatedSum {
-    #[inline(always)]
-    fn add(&mut self, term: f64) {
-        let term = term - self.lost;
-        let next = self.value + term;
-        self.lost = (next - self.value) - term;
-        self.value = next;
-    }
 }
 
 /// A run that is computed contact by contact.
@@ -361,24 +345,35 @@ impl<B: Body> Checked for OrbitAtContact<'_, B> {
 /// A run between two contacts, as lanes keep it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LaneRunState {
+    /// Contacts so far.
+    pub(crate) n: u64,
     /// Just before the coming contact.
     pub(crate) state: State,
+    /// Horizontal place of the centre of gravity there, m.
+    pub(crate) x: CompensatedSum,
     /// Energy that the run should have there, m²/s².
     pub(crate) energy: f64,
     /// Same as in [`FlightTimes`], s.
     pub(crate) first_flight: f64,
 }
 
-impl LaneRunState {
-    /// One contact and the flight after it, or the ending of the run.
-    pub(crate) fn advance<B: Body>(self, body: B, rules: Rules) -> Result<Self, Ending> {
-        let Self { state, energy, first_flight } = self;
-        let flights = FlightTimes { first: first_flight, last: 0.0 };
-        let mut orbit = Orbit { energy: Some(energy), flights, ..Orbit::at(body, rules, state) };
-        let ending = orbit.advance().ending;
-        let Orbit { state, flights, .. } = orbit;
-        let after = Self { state, energy: orbit.energy.unwrap_or(energy), first_flight: flights.first };
-        ending.map_or(Ok(after), Err)
+impl<B: Body> Orbit<B> {
+    /// The run as a lane keeps it.
+    pub(crate) fn lane_state(&self) -> LaneRunState {
+        let energy = self.energy.unwrap_or_else(|| self.foresee().1.energy);
+        LaneRunState { n: self.n, state: self.state, x: self.x, energy, first_flight: self.flights.first }
+    }
+
+    /// Goes on where a lane has brought the run. Its time is not kept in lanes.
+    pub(crate) fn set_lane_state(&mut self, midst: &LaneRunState) {
+        let LaneRunState { n, state, x, energy, first_flight } = *midst;
+        (self.n, self.state, self.x, self.energy) = (n, state, x, Some(energy));
+        self.flights = FlightTimes { first: first_flight, last: 0.0 };
+    }
+
+    /// Rules that end the run.
+    pub(crate) fn rules(&self) -> &Rules {
+        &self.rules
     }
 }
 

@@ -1,24 +1,21 @@
 //! Chooses the smallest model that is exact for a scene, and says why.
 
+use crate::body::NoContact;
 use crate::body::general::GeneralBody;
+pub use crate::body::model::Model;
 use crate::body::point::PointMass;
 use crate::body::polygon::Outline;
-use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::contact_time::TooManyPieces;
-use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
 use crate::numbers::number::Number;
 use crate::run::extended;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::energy::energy_reason;
 use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
-use crate::table::control_law::{Gains, Steering};
+use crate::table::control_law::Steering;
 use crate::table::noise::Noise;
-use crate::table::program::HeightProgram;
 
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -77,85 +74,6 @@ pub struct ModelRequirement {
     pub path: &'static str,
     /// A sentence that says why the field needs that level.
     pub detail: String,
-}
-
-/// The model that runs a scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "a run has one, and it is Copy: the vertices of a polygon stand in it")]
-pub enum Model {
-    /// A rod; its strike gain says which of the levels it stands on.
-    Rod(Rod),
-    /// A point mass.
-    Point(PointMass),
-    /// A rod with more than that.
-    General(GeneralBody),
-}
-
-impl Model {
-    /// The rod in it, or what a point mass has of one.
-    pub fn rod(&self) -> &Rod {
-        match self {
-            Self::Rod(rod) => rod,
-            Self::Point(point) => point.parameters(),
-            Self::General(general) => &general.rod,
-        }
-    }
-
-    /// The same model whose contact 1 is contact `n` of this one: its program begins there.
-    #[must_use]
-    pub fn from_contact(mut self, n: u64) -> Self {
-        let program = match &mut self {
-            Self::Rod(_) => return self,
-            Self::Point(point) => &mut point.program,
-            Self::General(general) => &mut general.program,
-        };
-        *program = program.map(|program| program.from_strike(n));
-        self
-    }
-
-    /// Target heights of its strikes, if they differ.
-    pub fn program(&self) -> Option<&HeightProgram> {
-        match self {
-            Self::Rod(_) => None,
-            Self::Point(point) => point.program.as_ref(),
-            Self::General(general) => general.program.as_ref(),
-        }
-    }
-
-    /// The friction of its contact; `None` without friction on a table that does not move along itself.
-    pub fn friction(&self) -> Option<Friction> {
-        match self {
-            Self::Rod(_) | Self::Point(_) => None,
-            Self::General(general) => general.friction,
-        }
-    }
-
-    /// K of its state feedback, in the order of [`crate::control::bounce_model::STATE`]; `None` for a table with a tilt gain.
-    pub fn feedback(&self) -> Option<[f64; 4]> {
-        match self {
-            Self::Rod(_) | Self::Point(_) => None,
-            Self::General(general) => match general.steering {
-                Steering::TiltGain => None,
-                Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) => Some([x, theta, x_dot, theta_dot]),
-            },
-        }
-    }
-
-    /// The rod in it and its friction, if that is all there is.
-    pub(crate) fn in_lanes(&self) -> Option<(Rod, Option<Friction>)> {
-        match *self {
-            Self::Rod(rod) => Some((rod, None)),
-            Self::General(GeneralBody {
-                rod: rod @ Rod { energy_feedback: EnergyFeedback::Vertical, .. },
-                steering: Steering::TiltGain,
-                program: None,
-                friction: Some(friction),
-                noise: None,
-                outline: None,
-            }) => Some((rod, Some(friction))),
-            Self::Point(_) | Self::General(_) => None,
-        }
-    }
 }
 
 impl Scene {
@@ -383,63 +301,5 @@ impl Scene {
         } else {
             format!("the table makes up all that restitution {e} loses (eq. 25), so the run is that of restitution 1")
         }
-    }
-}
-
-/// Calls the same method of whichever body it is: a branch that a run always takes the same way, not a virtual call.
-macro_rules! either {
-    ($model:expr, $body:ident => $call:expr) => {
-        match $model {
-            Model::Rod($body) => $call,
-            Model::Point($body) => $call,
-            Model::General($body) => $call,
-        }
-    };
-}
-
-impl Body for Model {
-    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
-        either!(self, body => Body::fall(body, release))
-    }
-
-    #[inline(always)]
-    fn strike(&self, coming: &PreImpact) -> Strike {
-        either!(self, body => Body::strike(body, coming))
-    }
-
-    #[inline(always)]
-    fn touches(&self, coming: &PreImpact, strike: &Strike) -> Option<Touch> {
-        either!(self, body => body.touches(coming, strike))
-    }
-
-    #[inline(always)]
-    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
-        either!(self, body => Body::hold_energy(body, strike, energy))
-    }
-
-    #[inline(always)]
-    fn rise_rounding(&self, before: &State, strike: &Strike) -> f64 {
-        either!(self, body => body.rise_rounding(before, strike))
-    }
-
-    #[inline(always)]
-    fn fly(&self, from: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact> {
-        either!(self, body => Body::fly(body, from, strike))
-    }
-
-    fn contact_distance(&self) -> f64 {
-        either!(self, body => body.contact_distance())
-    }
-
-    fn contact_height(&self, state: &State) -> f64 {
-        either!(self, body => body.contact_height(state))
-    }
-
-    fn energy(&self, state: &State) -> f64 {
-        either!(self, body => Body::energy(body, state))
-    }
-
-    fn contact_speed(&self, state: &State) -> f64 {
-        either!(self, body => Body::contact_speed(body, state))
     }
 }

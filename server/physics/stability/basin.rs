@@ -3,12 +3,12 @@
 //! A scan in lanes and a search of its edges. Not a map over two fields, and no proof: between two angles of the scan a
 //! narrow hole stays unseen.
 
-use crate::batch::batch_run::{LaneRunEnd, RunStart, run_batch_with_feedback, run_batch_with_friction};
+use crate::batch::batch_run::{LaneRunEnd, run_all};
+use crate::batch::model::BatchModel;
 use crate::body::Release;
-use crate::body::general::GeneralBody;
-use crate::bounce::friction::Friction;
 use crate::bounce::state::State;
 use crate::run::ending::EndingKind;
+use crate::run::orbit::Orbit;
 use crate::scene::Scene;
 use crate::scene::model::{Model, ModelLevel};
 use std::cell::Cell;
@@ -70,54 +70,43 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
             "it is looked for in lanes of rods, which do not see the vertices of a polygon".to_owned(),
         ));
     }
-    let Some((rod, friction)) = scene.model().in_lanes() else {
-        return Err(because(match scene.model() {
-            Model::Point(_) => "a point mass has no angle to be released at".to_owned(),
-            Model::General(GeneralBody { program: Some(_), .. }) => {
-                "it is looked for in lanes of rods, which have no program of heights".to_owned()
-            }
-            Model::Rod(_) | Model::General(_) => {
-                "it is looked for in lanes of rods, which with friction measure the vertical energy only".to_owned()
-            }
-        }));
+    let (body, rules) = (scene.model(), scene.rules());
+    if matches!(body, Model::Point(_)) {
+        return Err(because("a point mass has no angle to be released at".to_owned()));
+    }
+    if body.program().is_some() {
+        return Err(because("it is looked for in lanes of rods, which have no program of heights".to_owned()));
+    }
+    let orbit = |theta: f64| {
+        let state = State { theta, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
+        Orbit::new(body, rules, &Release { x: 0.0, height: scene.release.height, state }).ok()
     };
     if scene.is_lossy() {
         return Err(because("every bounce loses energy, so all runs end".to_owned()));
     }
     let height = scene.release.height;
-    if height <= rod.contact_distance {
+    if height <= body.rod().contact_distance {
         return Err(because(format!(
             "released at rest at {height} m, not above contact_distance {} m, it does not fall",
-            rod.contact_distance
+            body.rod().contact_distance
         )));
     }
-    let rules = scene.rules();
-    let start = |theta: f64| {
-        let state = State { theta, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
-        let (_, state) = rod.fall(&Release { x: 0.0, height, state }).ok()?;
-        Some(RunStart { rod, rules, state })
-    };
+    if BatchModel::of(&body, &rules).is_none() {
+        return Err(because(
+            "it is looked for in lanes of rods, where one strike brings the energy to its target without friction only"
+                .to_owned(),
+        ));
+    }
     let bounces = Cell::new(0);
     let mut survive = |angles: &[f64]| {
         let mut survivors = vec![false; angles.len()];
-        let mut stopped = false;
-        let mut starts = angles.iter().enumerate().filter_map(|(index, theta)| Some((index, start(*theta)?)));
-        let done = |index: usize, end: LaneRunEnd| {
+        let mut orbits = angles.iter().enumerate().filter_map(|(index, theta)| Some((index, orbit(*theta)?)));
+        let mut done = |index: usize, end: LaneRunEnd| {
             survivors[index] = end.outcome == EndingKind::Completed;
             bounces.set(bounces.get() + end.impacts);
         };
-        let go_on = || {
-            stopped = !go_on();
-            !stopped
-        };
-        match friction {
-            None => run_batch_with_feedback(rod.energy_feedback, impacts, || starts.next(), done, go_on),
-            Some(Friction { coefficient, law, slide }) => {
-                let next = || starts.next().map(|(index, start)| (index, start, coefficient));
-                run_batch_with_friction((law, slide), impacts, next, done, go_on);
-            }
-        }
-        if stopped { Err(NoBasin::Stopped) } else { Ok(survivors) }
+        let is_done = run_all(impacts, &mut || orbits.next(), &mut done, &mut go_on);
+        if is_done { Ok(survivors) } else { Err(NoBasin::Stopped) }
     };
     let grid =
         |count: usize, span: f64| -> Vec<f64> { (1..=count).map(|index| span * index as f64 / count as f64).collect() };

@@ -3,15 +3,12 @@
 //!
 //! Not here: threads and drawing.
 
-use crate::batch::batch_run::{LaneRunEnd, RunStart, run_batch_with_feedback, run_batch_with_friction};
-use crate::bounce::friction::Friction;
-use crate::bounce::rod::Rod;
+use crate::batch::batch_run::{LaneRunEnd, run_all};
+use crate::batch::model::BatchModel;
 use crate::catching::catch_outcome;
 use crate::catching::outcome::{CatchFailure, CatchOutcomeKind};
 use crate::catching::settings::CatchSettings;
-use crate::run::cancellation::CancellationCheck;
 use crate::run::ending::EndingKind;
-use crate::run::orbit::run;
 use crate::scene::{Draft, Name, Scene, Value};
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::{LinearVerdict, linear_verdict};
@@ -143,7 +140,8 @@ impl StabilityMap {
     /// Tells whether all runs fit in lanes, judged by the corners of the map. Runs outside lanes take many times as long.
     pub fn fits_lanes(&self) -> bool {
         let corners = [(0, 0), (self.x.count - 1, 0), (0, self.y.count - 1), (self.x.count - 1, self.y.count - 1)];
-        corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(|scene| in_lanes(&scene).is_some()))
+        let fits = |scene: Scene| BatchModel::of(&scene.running_model(), &scene.rules()).is_some();
+        corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(fits))
     }
 
     /// Computes the cells with these numbers, counted row after row. `None` once `go_on` returns `false`; it is called every
@@ -169,57 +167,29 @@ impl StabilityMap {
             }
             return Some(cells);
         }
-        let (mut next, mut rough, mut alone, mut stopped) = (0, Vec::new(), Vec::new(), false);
-        let mut contact = None;
+        // Runs without a first contact end before it.
+        let (mut next, mut unstarted) = (0, Vec::new());
         let count = cells.len();
-        let start = || {
+        let mut orbits = || {
             while next < count {
                 let index = next;
                 next += 1;
                 let (column, row) = ((first + index) % self.x.count, (first + index) / self.x.count);
-                let Some(scene) = self.scene(column, row) else { continue };
-                match start_of(&scene) {
-                    Some((start, None)) => return Some((index, start)),
-                    Some((start, Some(friction))) => {
-                        contact = Some((friction.law, friction.slide));
-                        rough.push((index, start, friction.coefficient));
-                    }
-                    None => alone.push((index, scene)),
+                match self.scene(column, row).map(|scene| scene.orbit()) {
+                    Some(Ok(orbit)) => return Some((index, orbit)),
+                    Some(Err(no_contact)) => unstarted.push((index, no_contact)),
+                    None => {}
                 }
             }
             None
         };
-        run_batch_with_feedback(
-            self.scene.energy_feedback(),
-            self.impacts,
-            start,
-            |index, end| cells[index] = self.cell(&end),
-            || {
-                stopped = !go_on();
-                !stopped
-            },
-        );
-        if let (Some(contact), false) = (contact, stopped) {
-            // All cells have the same friction law and way to slide, because the fields of a map are numbers.
-            let mut rough = rough.into_iter();
-            let done = |index: usize, end| cells[index] = self.cell(&end);
-            run_batch_with_friction(
-                contact,
-                self.impacts,
-                || rough.next(),
-                done,
-                || {
-                    stopped = !go_on();
-                    !stopped
-                },
-            );
-        }
-        if stopped {
+        let mut done = |index: usize, end: LaneRunEnd| cells[index] = self.cell(&end);
+        if !run_all(self.impacts, &mut orbits, &mut done, go_on) {
             return None;
         }
-        let mut looks = CancellationCheck::new(go_on);
-        for (index, scene) in alone {
-            cells[index] = self.cell(&run_alone(&scene, self.impacts, &mut looks)?);
+        for (index, no_contact) in unstarted {
+            let outcome = no_contact.ending(0.0, 0.0).into();
+            cells[index] = self.cell(&LaneRunEnd { impacts: 0, outcome, max_theta: 0.0 });
         }
         Some(cells)
     }
@@ -309,35 +279,4 @@ fn cross(mut low: [f64; 2], mut high: [f64; 2], function: impl Fn([f64; 2]) -> O
         if negative(between) == side { low = between } else { high = between }
     }
     middle(low, high)
-}
-
-/// Rod and friction of a scene whose run fits in a lane; `None` for other models and for tables with limits.
-fn in_lanes(scene: &Scene) -> Option<(Rod, Option<Friction>)> {
-    scene.running_model().in_lanes().filter(|_| scene.rules().limits.is_none())
-}
-
-/// Start and friction of a run that fits in a lane.
-fn start_of(scene: &Scene) -> Option<(RunStart, Option<Friction>)> {
-    let (rod, friction) = in_lanes(scene)?;
-    let (_, state) = rod.fall(scene.release()).ok()?;
-    Some((RunStart { rod, rules: scene.rules(), state }, friction))
-}
-
-/// Runs a scene outside lanes; `None` once cancelled. The run of a body that never meets the table ends with 0 impacts.
-fn run_alone(scene: &Scene, impacts: u64, looks: &mut CancellationCheck<'_>) -> Option<LaneRunEnd> {
-    if !looks.begin() {
-        return None;
-    }
-    let mut orbit = match scene.orbit() {
-        Ok(orbit) => orbit,
-        Err(no_contact) => {
-            return Some(LaneRunEnd { impacts: 0, outcome: no_contact.ending(0.0, 0.0).into(), max_theta: 0.0 });
-        }
-    };
-    let mut max_theta: f64 = 0.0;
-    let ending = run(&mut orbit, impacts, |contact| {
-        max_theta = max_theta.max(contact.state.theta.abs());
-        looks.contact()
-    })?;
-    Some(LaneRunEnd { impacts: orbit.contacts(), outcome: ending.into(), max_theta })
 }

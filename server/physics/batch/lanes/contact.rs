@@ -5,37 +5,49 @@
 
 use super::number::Lane;
 use super::state::{Lanes, Moving, Rods, Scratch, WIDTH};
-use crate::body::general::GeneralBody;
+use crate::body::model::Model;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::rod::Rod;
-use crate::run::ending::Ending;
-use crate::run::orbit::LaneRunState;
-use crate::run::rules::Rules;
-use crate::table::control_law::Steering;
+use crate::bounce::state::State;
+use crate::bounce::tilt::Tilt;
 
 /// A contact point that rises faster does so by more than rounding ([`crate::bounce::strike::Strike::rises`]), at any speed up to the limit, m/s.
 const SURE_RISE: f64 = 1e-8;
 
 /// A kind of contact.
 pub(crate) trait Surface {
-    /// Parameter that differs from lane to lane.
-    type Of: Copy;
-
-    /// That of a lane that idles.
-    const IDLE: Self::Of;
-
-    /// Puts another into a lane.
-    fn set(&mut self, lane: usize, of: Self::Of);
+    /// Puts the contact of a body into a lane.
+    fn load(&mut self, lane: usize, body: &Model);
 
     /// The velocities after the strike, in all lanes; those whose run may end here are set apart.
     fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch);
-
-    /// One contact of one lane by the map itself: where the run is then, or why it ends.
-    fn contact(&self, rods: &Rods, lane: usize, midst: LaneRunState) -> Result<LaneRunState, Ending>;
 }
 
-/// Without friction, with one energy feedback in all lanes; rounding is kept off the energy, but not where a run can settle.
+/// The strike of a lane without friction: velocities after it, and the energy that the run should have then. Rounding is kept off the
+/// energy, but not where a run can settle.
+#[expect(clippy::too_many_arguments, reason = "the numbers of a lane stand in arrays")]
+#[inline(always)]
+pub(super) fn strike_smooth<L: Lane>(
+    lane: usize,
+    rod: &Rod<L>,
+    before: &State<L>,
+    tilt: &Tilt<L>,
+    leverage: L,
+    rods: &Rods,
+    moving: &Moving,
+    next: &mut Moving,
+    scratch: &mut Scratch,
+) {
+    let number = L::from_f64;
+    let mut strike = rod.strike_with(before, tilt, leverage);
+    // A run that may settle holds no energy: its own energy leaves the strike uncorrected.
+    let held = if rods.settles(lane) { strike.energy } else { number(moving.energy[lane]) };
+    let energy = rod.hold_energy(&mut strike, held);
+    next.struck(lane, &strike, energy.to_f64(), SURE_RISE, scratch);
+}
+
+/// Without friction, with one energy feedback in all lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Smooth(pub(crate) EnergyFeedback);
 
@@ -49,25 +61,18 @@ impl Smooth {
         next: &mut Moving,
         scratch: &mut Scratch,
     ) {
-        let number = L::from_f64;
         for lane in 0..WIDTH {
             let rod = Rod { energy_feedback, ..rods.rod(lane).lift::<L>() };
             let tilt = scratch.tilt::<L>(lane);
-            let mut strike = rod.strike_with(&moving.state(lane).map(number), &tilt, number(rods.leverage(lane)));
-            // A run that may settle holds no energy: its own energy leaves the strike uncorrected.
-            let held = if rods.settles(lane) { strike.energy } else { number(moving.energy[lane]) };
-            let energy = rod.hold_energy(&mut strike, held);
-            next.struck(lane, &strike, energy.to_f64(), SURE_RISE, scratch);
+            let before = moving.state(lane).map(L::from_f64);
+            let leverage = L::from_f64(rods.leverage(lane));
+            strike_smooth(lane, &rod, &before, &tilt, leverage, rods, moving, next, scratch);
         }
     }
 }
 
 impl Surface for Smooth {
-    type Of = ();
-    const IDLE: () = ();
-
-    #[inline(always)]
-    fn set(&mut self, _: usize, (): ()) {}
+    fn load(&mut self, _: usize, _: &Model) {}
 
     #[inline(always)]
     fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) {
@@ -82,28 +87,29 @@ impl Surface for Smooth {
         }
         by!(Vertical, Total, OneStrike);
     }
-
-    fn contact(&self, rods: &Rods, lane: usize, midst: LaneRunState) -> Result<LaneRunState, Ending> {
-        let rod = Rod { energy_feedback: self.0, ..rods.rod(lane) };
-        midst.advance(rod, Rules { holds_energy: !rods.settles(lane), ..rods.rules(lane) })
-    }
 }
 
 /// Same as [`SURE_RISE`], for a contact with friction and l = 0: 1 + l²/ρ² times as much for others ([`crate::bounce::friction::rise_rounding`]).
 const ROUGH_SURE_RISE: f64 = 10.0 * SURE_RISE;
 
-/// With friction, of one law and one way to slide in all lanes.
+/// With friction, of one law and one way to slide in all lanes, and one energy feedback.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(crate) struct Rough {
     coefficient: Lanes,
     law: RestitutionLaw,
     slide: Slide,
+    /// True if the tables measure the total energy; else the vertical one.
+    total: bool,
 }
 
+/// Coefficient of a lane that idles.
+const IDLE_COEFFICIENT: f64 = 1.0;
+
 impl Rough {
-    pub(crate) fn new(law: RestitutionLaw, slide: Slide) -> Self {
-        Self { coefficient: [Self::IDLE; WIDTH], law, slide }
+    /// One strike to the target is for contacts without friction.
+    pub(crate) fn new(law: RestitutionLaw, slide: Slide, energy_feedback: EnergyFeedback) -> Self {
+        Self { coefficient: [IDLE_COEFFICIENT; WIDTH], law, slide, total: energy_feedback == EnergyFeedback::Total }
     }
 
     /// The loop for one law and way to slide, which are constants in it.
@@ -118,8 +124,9 @@ impl Rough {
         scratch: &mut Scratch,
     ) {
         let number = L::from_f64;
+        let energy_feedback = if self.total { EnergyFeedback::Total } else { EnergyFeedback::Vertical };
         for lane in 0..WIDTH {
-            let rod = rods.rod(lane).lift::<L>();
+            let rod = Rod { energy_feedback, ..rods.rod(lane).lift::<L>() };
             let tilt = scratch.tilt::<L>(lane);
             let friction = Friction { coefficient: self.coefficient[lane], law, slide };
             let before = moving.state(lane).map(number);
@@ -131,12 +138,8 @@ impl Rough {
 }
 
 impl Surface for Rough {
-    type Of = f64;
-    const IDLE: f64 = 1.0;
-
-    #[inline(always)]
-    fn set(&mut self, lane: usize, coefficient: f64) {
-        self.coefficient[lane] = coefficient;
+    fn load(&mut self, lane: usize, body: &Model) {
+        self.coefficient[lane] = body.friction().map_or(IDLE_COEFFICIENT, |friction| friction.coefficient);
     }
 
     #[inline(always)]
@@ -151,18 +154,5 @@ impl Surface for Rough {
             };
         }
         by!(Poisson None, Poisson Matched, Newton None, Newton Matched, Stronge None, Stronge Matched);
-    }
-
-    fn contact(&self, rods: &Rods, lane: usize, midst: LaneRunState) -> Result<LaneRunState, Ending> {
-        let friction = Friction { coefficient: self.coefficient[lane], law: self.law, slide: self.slide };
-        let general = GeneralBody {
-            rod: rods.rod(lane),
-            steering: Steering::TiltGain,
-            program: None,
-            friction: Some(friction),
-            noise: None,
-            outline: None,
-        };
-        midst.advance(general, rods.rules(lane))
     }
 }

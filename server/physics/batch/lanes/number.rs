@@ -1,17 +1,23 @@
 //! A number in a lane: the bits of `f64`, without a branch.
 
 use crate::numbers::number::{Number, Real};
-use crate::numbers::trig;
+use crate::numbers::{arctangent, trig};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number that knows how far its sine and cosine reach.
 pub(crate) trait Lane: Real {
     /// Largest angle, rad; beyond it they are wrong, and the caller has to look.
     const REACH: f64;
+
+    /// Largest argument of [`Lane::arctangent`].
+    const RATIO: f64;
+
+    /// Arctangent, rad, of a number from 0 to [`Lane::RATIO`].
+    fn arctangent(self) -> Self;
 }
 
 macro_rules! lane {
-    ($(#[$doc:meta])* $name:ident, $reach:expr, $sincos:expr, $sin_versine:expr) => {
+    ($(#[$doc:meta])* $name:ident, $reach:expr, $sincos:expr, $sin_versine:expr, $ratio:expr, $arctangent:expr) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub(crate) struct $name(f64);
@@ -64,6 +70,12 @@ macro_rules! lane {
 
         impl Lane for $name {
             const REACH: f64 = $reach;
+            const RATIO: f64 = $ratio;
+
+            #[inline(always)]
+            fn arctangent(self) -> Self {
+                Self($arctangent(self.0))
+            }
         }
     };
     ($name:ident, $($trait:ident $method:ident $operator:tt),*) => {
@@ -82,12 +94,16 @@ lane!(
     Near,
     trig::SMALL,
     |angle| (trig::sin_small(angle), trig::cos_small(angle)),
-    |angle| (trig::sin_small(angle), trig::versine_small(angle))
+    |angle| (trig::sin_small(angle), trig::versine_small(angle)),
+    arctangent::SMALL,
+    arctangent::arctangent_small
 );
 lane!(
     /// For angles that do.
     Far,
     trig::REDUCIBLE,
     trig::sin_cos_reducible,
-    trig::sin_versine_reducible
+    trig::sin_versine_reducible,
+    arctangent::REDUCIBLE,
+    arctangent::arctangent_reducible
 );

@@ -1,12 +1,11 @@
 //! The rods in the lanes, the state of their runs, and what the parts of a bounce hand on.
 
-use super::number::Lane;
+use super::number::{Lane, Near};
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::tilt::Tilt;
-use crate::run::orbit::LaneRunState;
 use crate::run::rules::{LaneContact, Rules};
 
 /// Number of rods that bounce side by side: two vectors of eight, or four of four, which the CPU overlaps.
@@ -64,6 +63,12 @@ pub(crate) struct Scratch {
     pub(super) found: [u64; WIDTH],
     /// 1 where this was not a common bounce.
     pub(crate) apart: [u64; WIDTH],
+}
+
+/// 1 unless it holds, which it does not where something is not a number.
+#[inline(always)]
+pub(super) fn unless(common: bool) -> u64 {
+    u64::from(!common)
 }
 
 /// Stands for the first flight until it is over, s: so short that no flight is too short beside it, and its share still normal.
@@ -147,15 +152,9 @@ impl Rods {
         self.first_flight[lane] != 0.0
     }
 
-    /// Rules that end the run in a lane.
-    pub(super) fn rules(&self, lane: usize) -> Rules {
-        Rules { topple_angle: self.topple_angle[lane], settles: self.settles(lane), holds_energy: false, limits: None }
-    }
-
-    /// State of the run in a lane.
-    pub(crate) fn midst(&self, moving: &Moving, lane: usize) -> LaneRunState {
-        let first_flight = Some(self.first_flight[lane]).filter(|&flight| flight != BEFORE_FLIGHT).unwrap_or(0.0);
-        LaneRunState { state: moving.state(lane), energy: moving.energy[lane], first_flight }
+    /// First flight of the run in a lane, s; 0 until it is over, and for runs that cannot settle.
+    pub(crate) fn first_flight(&self, lane: usize) -> f64 {
+        Some(self.first_flight[lane]).filter(|&flight| flight != BEFORE_FLIGHT).unwrap_or(0.0)
     }
 }
 
@@ -192,6 +191,25 @@ impl Moving {
         self.y_dot[lane] = state.y_dot;
         self.theta_dot[lane] = state.theta_dot;
         self.energy[lane] = energy;
+    }
+
+    /// Begins the bounce of a lane, at a table tilted by `alpha`: notes the largest angle, and sets the lane apart where the run may end
+    /// there or an angle is beyond the reach of `L`. Tells whether the angles are near.
+    #[inline(always)]
+    pub(super) fn tilted<L: Lane>(
+        &mut self,
+        lane: usize,
+        alpha: L,
+        rods: &Rods,
+        moving: &Moving,
+        scratch: &mut Scratch,
+    ) -> bool {
+        let size = moving.theta[lane].abs();
+        self.max_theta[lane] = if size > moving.max_theta[lane] { size } else { moving.max_theta[lane] };
+        let largest = size + alpha.magnitude().to_f64();
+        let contact = LaneContact { size, topple_angle: rods.topple_angle[lane], ..LaneContact::GOES_ON };
+        scratch.apart[lane] = unless((largest <= L::REACH) & contact.passes_all());
+        largest <= Near::REACH
     }
 
     /// Puts what a strike gives into a lane, with the energy that the run should have after it; sets it apart where the run may end

@@ -4,37 +4,34 @@
 //! chains of neighbours only where they fit into its window together.
 
 use super::contact::Surface;
+use super::model::Bounced;
 use super::number::{Lane, Near};
-use super::state::{Moving, Rods, Scratch, WIDTH};
+use super::state::{Moving, Rods, Scratch, WIDTH, unless};
+use super::steering::{SteeringLanes, tilt_by_gain};
 use crate::bounce::contact_time;
 use crate::bounce::contact_time::NewtonStep;
 use crate::bounce::flight::Flight;
 use crate::bounce::state::State;
+use crate::bounce::tilt::Tilt;
 use crate::run::rules::LaneContact;
 
 /// Most Newton steps of a common bounce: nearly all take one, few two.
 const STEPS: u32 = 3;
 
-/// Result of a bounce of all lanes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Bounced {
-    /// True where all angles were in the reach of [`Near`].
-    pub(crate) near: bool,
-    /// True where it was a common one in all lanes; else see [`Scratch::apart`].
-    pub(crate) common: bool,
-}
-
-/// The bounce of all lanes from `moving` to `next`, but not of those that it sets apart: their run may end here, an angle may
-/// be beyond the reach of `L`, or their contact time is not a common one.
+/// The bounce of all lanes from `moving` to `next`, but not of those that it sets apart: as [`super::model::LaneModel::bounce`].
 #[inline(always)]
-pub(crate) fn bounce_lanes<L: Lane, S: Surface>(
+pub(super) fn bounce_rods<L: Lane, S: Surface>(
     surface: &S,
+    steering: &SteeringLanes,
     rods: &Rods,
     moving: &Moving,
     next: &mut Moving,
     scratch: &mut Scratch,
 ) -> Bounced {
-    let tilted_near = tilt::<L>(rods, moving, next, scratch);
+    let tilted_near = match steering {
+        SteeringLanes::TiltGain => tilt::<L>(rods, moving, next, scratch, |lane| tilt_by_gain(rods, moving, lane)),
+        SteeringLanes::Feedback(feedback) => tilt::<L>(rods, moving, next, scratch, |lane| feedback.tilt(moving, lane)),
+    };
     surface.strike::<L>(rods, moving, next, scratch);
     guess::<L>(rods, moving, next, scratch);
     let mut fallen = fall::<L>(rods, moving, next, scratch, true);
@@ -46,6 +43,12 @@ pub(crate) fn bounce_lanes<L: Lane, S: Surface>(
         fallen = fall::<L>(rods, moving, next, scratch, false);
         fallen.near &= near;
     }
+    Bounced { near: tilted_near & fallen.near, common: !any_apart(rods, scratch) }
+}
+
+/// Sets apart the lanes whose flight is not found or may be their last. Tells whether any lane is apart.
+#[inline(always)]
+pub(super) fn any_apart(rods: &Rods, scratch: &mut Scratch) -> bool {
     let mut any = 0;
     for lane in 0..WIDTH {
         let contact = LaneContact {
@@ -57,27 +60,28 @@ pub(crate) fn bounce_lanes<L: Lane, S: Surface>(
         scratch.apart[lane] |= unless(contact.passes_all());
         any |= scratch.apart[lane];
     }
-    Bounced { near: tilted_near & fallen.near, common: any == 0 }
+    any != 0
 }
 
 /// The sines of θ, α and θ − α: whether all were near.
 #[inline(always)]
-fn tilt<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) -> bool {
+fn tilt<L: Lane>(
+    rods: &Rods,
+    moving: &Moving,
+    next: &mut Moving,
+    scratch: &mut Scratch,
+    tilt_in: impl Fn(usize) -> Tilt<L>,
+) -> bool {
     let mut near = true;
     for lane in 0..WIDTH {
-        let tilt = rods.rod(lane).lift::<L>().tilt(L::from_f64(moving.theta[lane]));
+        let tilt = tilt_in(lane);
         scratch.alpha[lane] = tilt.alpha.to_f64();
         scratch.sin_theta[lane] = tilt.sin_theta.to_f64();
         scratch.versine_theta[lane] = tilt.versine_theta.to_f64();
         scratch.sin_alpha[lane] = tilt.sin_alpha.to_f64();
         scratch.cos_alpha[lane] = tilt.cos_alpha.to_f64();
         scratch.sin_beta[lane] = tilt.sin_beta.to_f64();
-        let size = moving.theta[lane].abs();
-        next.max_theta[lane] = if size > moving.max_theta[lane] { size } else { moving.max_theta[lane] };
-        let largest = size + tilt.alpha.magnitude().to_f64();
-        near &= largest <= Near::REACH;
-        let contact = LaneContact { size, topple_angle: rods.topple_angle[lane], ..LaneContact::GOES_ON };
-        scratch.apart[lane] = unless((largest <= L::REACH) & contact.passes_all());
+        near &= next.tilted(lane, tilt.alpha, rods, moving, scratch);
     }
     near
 }
@@ -130,12 +134,6 @@ fn fall<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut 
         next.y_dot[lane] = end.y_dot.to_f64();
     }
     Fallen { near, all: all == 1 }
-}
-
-/// 1 unless it holds, which it does not where something is not a number.
-#[inline(always)]
-fn unless(common: bool) -> u64 {
-    u64::from(!common)
 }
 
 #[inline(always)]

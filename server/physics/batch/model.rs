@@ -1,0 +1,87 @@
+//! The model that all runs of a batch share, and which run fits into which batch.
+
+use crate::body::general::GeneralBody;
+use crate::body::model::Model;
+use crate::bounce::energy_feedback::EnergyFeedback;
+use crate::bounce::friction::{RestitutionLaw, Slide};
+use crate::run::rules::Rules;
+use crate::table::control_law::Steering;
+
+/// Model that all runs of a batch share. Their numbers differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BatchModel {
+    /// Bodies with an angle.
+    Rod {
+        /// Their contacts.
+        contact: BatchContact,
+        /// The energy feedback of their tables.
+        energy_feedback: EnergyFeedback,
+        /// Control law of the tilt.
+        law: TiltLaw,
+    },
+    /// Point masses, with the energy feedback of their tables.
+    Point(EnergyFeedback),
+}
+
+/// Kind of contact of all runs of a batch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BatchContact {
+    /// Without friction, on tables that move along their normal only.
+    Smooth,
+    /// With friction of one law and one way to slide.
+    Rough(RestitutionLaw, Slide),
+}
+
+/// Kind of [`Steering`], without its numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TiltLaw {
+    /// [`Steering::TiltGain`].
+    TiltGain,
+    /// [`Steering::Feedback`].
+    Feedback,
+}
+
+impl From<&Steering> for TiltLaw {
+    fn from(steering: &Steering) -> Self {
+        match steering {
+            Steering::TiltGain => Self::TiltGain,
+            Steering::Feedback(_) => Self::Feedback,
+        }
+    }
+}
+
+impl BatchModel {
+    /// Rods without friction on tables with a tilt gain.
+    pub fn rods(energy_feedback: EnergyFeedback) -> Self {
+        Self::Rod { contact: BatchContact::Smooth, energy_feedback, law: TiltLaw::TiltGain }
+    }
+
+    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits of the table, noise, vertices
+    /// of polygons, or programs of heights.
+    pub fn of(body: &Model, rules: &Rules) -> Option<Self> {
+        let Rules { settles, holds_energy, limits, .. } = *rules;
+        // Lanes hold the energy of every run that cannot settle and has no friction.
+        let holds = !settles && body.friction().is_none();
+        if limits.is_some() || body.program().is_some() || holds_energy != holds {
+            return None;
+        }
+        let energy_feedback = body.rod().energy_feedback;
+        match body {
+            Model::Rod(_) => Some(Self::rods(energy_feedback)),
+            Model::Point(_) => Some(Self::Point(energy_feedback)),
+            Model::General(GeneralBody { steering, friction, noise: None, outline: None, .. }) => {
+                let contact =
+                    friction.map_or(BatchContact::Smooth, |friction| BatchContact::Rough(friction.law, friction.slide));
+                let law = steering.into();
+                match (contact, energy_feedback) {
+                    // Their law is for contacts without friction.
+                    (BatchContact::Rough(..), EnergyFeedback::OneStrike) => None,
+                    (BatchContact::Smooth, _) | (BatchContact::Rough(..), _) => {
+                        Some(Self::Rod { contact, energy_feedback, law })
+                    }
+                }
+            }
+            Model::General(_) => None,
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Arctangent of a positive number without a branch, for lanes: the bits of [`crate::numbers::trig::atan2`].
+//!
+//! Polynomial and constants: fdlibm (Sun Microsystems, 1993).
+
+/// Largest number that needs no reduction: the last one below 7/16.
+pub(crate) const SMALL: f64 = 0.437_499_999_999_999_94;
+
+/// Largest number that [`arctangent_reducible`] takes: far beyond it the arctangent is π/2.
+pub(crate) const REDUCIBLE: f64 = 1e15;
+
+/// Arctangent of 0 ≤ x ≤ [`SMALL`].
+#[inline(always)]
+pub(crate) fn arctangent_small(x: f64) -> f64 {
+    x - x * bend(x)
+}
+
+/// Arctangent of 0 ≤ x ≤ [`REDUCIBLE`].
+///
+/// atan x = atan c + atan((x − c)/(1 + cx)), for the nearest c of 1/2, 1, 3/2 and ∞.
+#[inline(always)]
+pub(crate) fn arctangent_reducible(x: f64) -> f64 {
+    // Arctangent of c, in two parts, and the quotient's two sides.
+    let mut near = (ARCTANGENTS[3], -1.0, x);
+    near = if x < 2.4375 { (ARCTANGENTS[2], x - 1.5, 1.0 + 1.5 * x) } else { near };
+    near = if x < 1.1875 { (ARCTANGENTS[1], x - 1.0, x + 1.0) } else { near };
+    near = if x < 0.6875 { (ARCTANGENTS[0], 2.0 * x - 1.0, 2.0 + x) } else { near };
+    let ([high, low], above, below) = near;
+    let reduced = above / below;
+    let far = high - ((reduced * bend(reduced) - low) - reduced);
+    if x <= SMALL { arctangent_small(x) } else { far }
+}
+
+/// Arctangents of 1/2, 1, 3/2 and ∞, each a double and what it leaves out.
+const ARCTANGENTS: [[f64; 2]; 4] = [
+    [4.636_476_090_008_061e-1, 2.269_877_745_296_168_7e-17],
+    [std::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17],
+    [9.827_937_232_473_29e-1, 1.390_331_103_123_099_8e-17],
+    [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17],
+];
+
+/// 1 − (atan x)/x for |x| ≤ 7/16.
+#[inline(always)]
+fn bend(x: f64) -> f64 {
+    const A: [f64; 11] = [
+        3.333_333_333_333_293e-1,
+        -1.999_999_999_987_648_3e-1,
+        1.428_571_427_250_346_6e-1,
+        -1.111_111_040_546_235_6e-1,
+        9.090_887_133_436_507e-2,
+        -7.691_876_205_044_83e-2,
+        6.661_073_137_387_531e-2,
+        -5.833_570_133_790_573_5e-2,
+        4.976_877_994_615_932e-2,
+        -3.653_157_274_421_691_6e-2,
+        1.628_582_011_536_578_2e-2,
+    ];
+    let z = x * x;
+    let w = z * z;
+    let odd = z * (A[0] + w * (A[2] + w * (A[4] + w * (A[6] + w * (A[8] + w * A[10])))));
+    let even = w * (A[1] + w * (A[3] + w * (A[5] + w * (A[7] + w * A[9]))));
+    odd + even
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numbers::trig::atan2;
+
+    #[test]
+    fn the_bits_are_those_of_libm() {
+        let mut x = 1e-300;
+        while x < REDUCIBLE {
+            assert_eq!(arctangent_reducible(x).to_bits(), atan2(x, 1.0).to_bits(), "{x}");
+            x *= if x < 1e-3 { 1.37 } else { 1.000_071 };
+        }
+        assert_eq!(arctangent_reducible(0.0).to_bits(), 0);
+    }
+
+    #[test]
+    fn without_reduction_the_bits_are_the_same() {
+        for step in 0..100_000 {
+            let x = SMALL * f64::from(step) / 1e5;
+            assert_eq!(arctangent_small(x).to_bits(), arctangent_reducible(x).to_bits(), "{x}");
+        }
+    }
+
+    #[test]
+    fn the_ends_of_the_ranges_are_those_of_libm() {
+        assert_eq!(SMALL.next_up(), 7.0 / 16.0);
+        for end in [SMALL, 0.6875, 1.1875, 2.4375] {
+            for x in [end.next_down(), end, end.next_up()] {
+                assert_eq!(arctangent_reducible(x).to_bits(), atan2(x, 1.0).to_bits(), "{x}");
+            }
+        }
+    }
+}
