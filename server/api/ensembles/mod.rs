@@ -12,7 +12,7 @@ use crate::api::ensembles::request::EnsembleRequest;
 use crate::api::formats::{ProgressFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::shared::progress::Progress;
-use crate::compute::{TimeSlice, TimeSlices};
+use crate::compute::{Cancelled, TimeSlice, TimeSlices};
 use crate::http::{BodyWriter, Format, Problem};
 use crate::limits;
 
@@ -39,9 +39,21 @@ fn compute(
     // The blocks depend on the request alone, never on the machine.
     let block = (limits::ENSEMBLE_BLOCK_WORK / ensemble.impacts).max(1);
     let (numbers, all) = (request.numbers(), request.runs());
+    let only_run = if ensemble.is_uniform() {
+        let first = |slice: &TimeSlice| ensemble.runs(0..1, &mut || slice.should_continue()).ok_or(Cancelled);
+        let runs = slices.run_one(first)??;
+        bounces.inc_by(runs.ends.iter().map(|end| end.impacts).sum());
+        Some(runs)
+    } else {
+        None
+    };
     let compute = |number: usize, slice: &TimeSlice| {
         let first = numbers.start + number as u64 * block;
-        let runs = ensemble.runs(first..(first + block).min(numbers.end), &mut || slice.should_continue())?;
+        let range = first..(first + block).min(numbers.end);
+        if let Some(run) = &only_run {
+            return Some(run.repeated((range.end - range.start) as usize));
+        }
+        let runs = ensemble.runs(range, &mut || slice.should_continue())?;
         bounces.inc_by(runs.ends.iter().map(|end| end.impacts).sum());
         Some(runs)
     };

@@ -82,9 +82,14 @@ impl EnsembleRequest {
     fn work(&self) -> u64 {
         let Ensemble { scene, impacts, angle_contacts, .. } = &self.ensemble;
         let bounces = impacts.saturating_mul(bounce_price(scene));
+        // One run stands for all of a uniform ensemble.
+        let computed = if self.ensemble.is_uniform() { 1 } else { self.runs() };
         let angles = limits::ENSEMBLE_ANGLE_PRICE * angle_contacts.min(impacts);
-        let runs = self.runs().saturating_mul(bounces + limits::ENSEMBLE_RUN_PRICE + angles);
-        runs.saturating_add(impacts * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
+        let runs = self.runs().saturating_mul(limits::ENSEMBLE_RUN_PRICE + angles);
+        computed
+            .saturating_mul(bounces)
+            .saturating_add(runs)
+            .saturating_add(impacts * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
     }
 
     /// Maximum number of angles in the answer.

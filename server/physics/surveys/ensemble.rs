@@ -68,6 +68,11 @@ impl Ensemble {
         (0..count).map(|index| 1 + index * (self.impacts - 1) / count.saturating_sub(1).max(1)).collect()
     }
 
+    /// Tells whether all runs are the same, because no noise tells them apart.
+    pub fn is_uniform(&self) -> bool {
+        self.scene.noise.is_none()
+    }
+
     /// Some of the runs, counted from 0; `None` if `go_on` said `false`, which is asked every hundred contacts.
     pub fn runs(&self, numbers: Range<u64>, go_on: &mut dyn FnMut() -> bool) -> Option<EnsembleRuns> {
         let watched = self.watched();
@@ -101,6 +106,12 @@ impl Ensemble {
 }
 
 impl EnsembleRuns {
+    /// These runs so many times: of one run of a uniform ensemble, as many of its runs.
+    #[must_use]
+    pub fn repeated(&self, count: usize) -> Self {
+        Self { ends: self.ends.repeat(count), angles: self.angles.iter().map(|angles| angles.repeat(count)).collect() }
+    }
+
     /// Adds the runs that come after these.
     pub fn append(&mut self, others: Self) {
         self.ends.extend(others.ends);
@@ -280,6 +291,8 @@ mod tests {
             assert_eq!(angles.len(), if *n < last { 3 } else { 0 }, "{n}: {last}");
         }
         assert_eq!(runs.angles[0], [0.1; 3]);
+        assert!(ensemble.is_uniform());
+        assert_eq!(ensemble.runs(0..1, &mut || true).unwrap().repeated(3), runs);
         let mut parts = EnsembleRuns::default();
         for number in 0..3 {
             parts.append(ensemble.runs(number..number + 1, &mut || true).unwrap());
