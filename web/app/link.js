@@ -62,7 +62,7 @@ export function readLink(search, fields, cases) {
       if (Number.isFinite(value) && value >= 0) run.set(key, text);
       else link.dropped.push(`the start “${shown(text)}”, which is not a time in ms`);
     } else if (
-      /^(interventions\.\d+\.(impact|(set|kick|catch|throw)\.[\w.]+)|clock\.\d+\.(wall|run|speed))$/.test(key)
+      /^(interventions\.\d+\.(impact|(set|kick|catch|throw)\.[\w.]+)|clock\.\d+\.(wall|run|speed)|hold)$/.test(key)
     ) {
       if (Number.isFinite(value) || isChoice(key, text, fields)) run.set(key, text);
       else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
@@ -79,7 +79,7 @@ export function readLink(search, fields, cases) {
     dropScene('the vertices, which are not whole');
   }
   if (run.size > 0 && !whole) link.dropped.push('the run itself, since its scene is not whole');
-  else if (run.size > 0) {
+  else {
     const kept = wholeRun(run, fields, link.dropped);
     if (kept.size > 0) link.run = kept;
   }
@@ -139,9 +139,8 @@ function readField(path, text, fields, changes) {
  * @param {string[]} dropped
  */
 function wholeRun(run, fields, dropped) {
-  const kept = new URLSearchParams();
   const epoch = run.get('epoch');
-  if (epoch !== null) kept.set('epoch', epoch);
+  const kept = new URLSearchParams([...run].filter(([key]) => /^(epoch|hold)$/.test(key)));
   const interventions = interventionsOf(run);
   const whole = interventions.filter(
     ({ impact, set, kick, guide }) =>
@@ -163,13 +162,11 @@ function wholeRun(run, fields, dropped) {
   );
   if (complete.length < marks.length)
     dropped.push(
-      epoch === null
-        ? 'a pause or a change of speed, which belongs to a run with a start'
-        : 'a pause or a change of speed, which is not whole',
+      `a pause or a change of speed, which ${epoch === null ? 'belongs to a run with a start' : 'is not whole'}`,
     );
   complete.forEach((mark, index) => {
     for (const part of ['wall', 'run', 'speed'])
-      kept.set(`clock.${index}.${part}`, /** @type {string} */ (run.get(`clock.${mark}.${part}`)));
+      kept.set(`clock.${index}.${part}`, run.get(`clock.${mark}.${part}`) ?? '');
   });
   return kept;
 }

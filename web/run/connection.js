@@ -15,6 +15,19 @@ import { LiveStream } from './live-stream.js';
 
 /** An impact may be this late, in wall time, before a connection that says nothing counts as lost. */
 const OVERDUE_S = 5;
+/** Time for which a run goes on in contact after its bounces, s, where its address names no other. */
+const HOLD_S = 6;
+
+/** A query of the page as one of the live run. @param {URLSearchParams} query */
+function liveQuery(query) {
+  const live = new URLSearchParams(query);
+  if (!live.has('hold')) live.set('hold', String(HOLD_S));
+  return live;
+}
+
+/** The outcome of a run; one that went on in contact ends with it. @param {import('contract').LiveEnd} end */
+const endOf = ({ outcome, hold_end: contact }) =>
+  contact ? { ...outcome, t: contact.t, detail: `${outcome.detail}; then ${contact.detail}` } : outcome;
 
 export class Connection {
   #run;
@@ -34,7 +47,7 @@ export class Connection {
   constructor(run, whole, refused) {
     this.#run = run;
     this.#whole = whole;
-    const first = new URLSearchParams(run.query);
+    const first = liveQuery(run.query);
     if (first.has('epoch') && whole) first.set('from', '1');
     this.#stream = new LiveStream(`v1/live?${first}`, () => this.#resumption(), {
       message: (message) => this.#hear(message),
@@ -48,7 +61,7 @@ export class Connection {
 
   #resumption() {
     const { impacts, query: replay } = this.#run;
-    const query = new URLSearchParams(replay);
+    const query = liveQuery(replay);
     if (impacts.last || this.#whole) query.set('from', String((impacts.last?.n ?? 0) + 1));
     return `v1/live?${query}`;
   }
@@ -107,7 +120,7 @@ export class Connection {
         run.impacts.missing += message.to - message.from + 1;
         break;
       case 'end':
-        run.outcome = message.outcome;
+        run.outcome = endOf(message);
         this.close();
         run.become('ended');
         break;
@@ -122,6 +135,7 @@ export class Connection {
     run.clock.read(message);
     run.query = new URLSearchParams(message.url.split('?')[1] ?? '');
     run.query.delete('from');
+    if (Number(run.query.get('hold')) === HOLD_S) run.query.delete('hold');
     run.interventions = interventionsOf(run.query);
     run.rebuild();
     if (!run.outcome) run.become(message.paused ? 'paused' : 'running');
