@@ -253,7 +253,11 @@ pub const REGION_PLAIN_PRICE: u64 = 6;
 /// Price of a region besides its cells and its linear boundary, in bounces in lanes: the picture, about 5 ms.
 pub const REGION_ANSWER_PRICE: u64 = 400_000;
 
-/// Price of a bounce outside lanes, in bounces in lanes: a polygon takes 17, one with noise 25.
+/// Price of a bounce in lanes on a table that errs, in other bounces in lanes.
+pub const REGION_NOISE_PRICE: u64 = 4;
+
+/// Price of a bounce outside lanes, in bounces in lanes: on a table with limits or a program of heights it takes 12, on one that errs in
+/// its plan 35.
 pub const REGION_ALONE_PRICE: u64 = 20;
 
 /// Cells of one block: enough to fill the lanes, and few enough that rows are sent as they are done.

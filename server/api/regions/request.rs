@@ -179,7 +179,10 @@ impl RegionRequest {
                 (limits::REGION_CELL_PRICE + limits::REGION_PLAIN_PRICE * catch_price(&self.map.catch), 0)
             }
             MapQuantity::Residue | MapQuantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),
-            MapQuantity::Survival | MapQuantity::MaxTheta if self.map.fits_lanes() => (limits::REGION_CELL_PRICE, 1),
+            MapQuantity::Survival | MapQuantity::MaxTheta if self.map.fits_lanes() => {
+                let bounce = if self.map.errs() { limits::REGION_NOISE_PRICE } else { 1 };
+                (limits::REGION_CELL_PRICE, bounce)
+            }
             MapQuantity::Survival | MapQuantity::MaxTheta => {
                 (limits::REGION_ALONE_CELL_PRICE, limits::REGION_ALONE_PRICE)
             }

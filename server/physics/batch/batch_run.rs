@@ -4,7 +4,8 @@
 //! orbit at once, so that dead cells cost nothing; a bounce that is not a common one is done alone, by the orbit itself.
 
 use crate::batch::lanes::{
-    Bounced, Far, LaneModel, Moving, Near, PointLanes, RodLanes, Rods, Rough, Scratch, Smooth, SteeringLanes, WIDTH,
+    Bounced, Far, LaneModel, Moving, Near, NoisyLanes, OutlineLanes, PointLanes, RodLanes, Rods, Rough, Scratch,
+    Smooth, SteeringLanes, WIDTH,
 };
 use crate::batch::model::{BatchContact, BatchModel};
 use crate::body::model::Model;
@@ -128,12 +129,16 @@ pub fn run_batch_on(
         };
     }
     match model {
-        BatchModel::Rod { contact, energy_feedback, law } => {
-            let steering = SteeringLanes::new(law);
+        BatchModel::Rod { contact, energy_feedback, law, errs, has_vertices } => {
+            let (steering, outline) = (SteeringLanes::new(law), has_vertices.then(OutlineLanes::new));
             match contact {
-                BatchContact::Smooth => run!(RodLanes { surface: Smooth(energy_feedback), steering }),
+                BatchContact::Smooth => {
+                    let rods = RodLanes { surface: Smooth(energy_feedback), steering, outline };
+                    if errs { run!(NoisyLanes::new(rods)) } else { run!(rods) }
+                }
                 BatchContact::Rough(law, slide) => {
-                    run!(RodLanes { surface: Rough::new(law, slide, energy_feedback), steering })
+                    let rods = RodLanes { surface: Rough::new(law, slide, energy_feedback), steering, outline };
+                    if errs { run!(NoisyLanes::new(rods)) } else { run!(rods) }
                 }
             }
         }

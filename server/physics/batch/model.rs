@@ -6,6 +6,7 @@ use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::run::rules::Rules;
 use crate::table::control_law::Steering;
+use crate::table::noise::{Noise, NoiseModel};
 
 /// Model that all runs of a batch share. Their numbers differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +19,10 @@ pub enum BatchModel {
         energy_feedback: EnergyFeedback,
         /// Control law of the tilt.
         law: TiltLaw,
+        /// True if the tables err, in time or in the angle that they sense.
+        errs: bool,
+        /// True if the bodies are polygons, whose other vertices are looked at.
+        has_vertices: bool,
     },
     /// Point masses, with the energy feedback of their tables.
     Point(EnergyFeedback),
@@ -53,15 +58,21 @@ impl From<&Steering> for TiltLaw {
 impl BatchModel {
     /// Rods without friction on tables with a tilt gain.
     pub fn rods(energy_feedback: EnergyFeedback) -> Self {
-        Self::Rod { contact: BatchContact::Smooth, energy_feedback, law: TiltLaw::TiltGain }
+        Self::Rod {
+            contact: BatchContact::Smooth,
+            energy_feedback,
+            law: TiltLaw::TiltGain,
+            errs: false,
+            has_vertices: false,
+        }
     }
 
-    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits of the table, noise, vertices
-    /// of polygons, or programs of heights.
+    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits of the table, plans
+    /// of a table that errs, or programs of heights.
     pub fn of(body: &Model, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, .. } = *rules;
-        // Lanes hold the energy of every run that cannot settle and has no friction.
-        let holds = !settles && body.friction().is_none();
+        // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
+        let holds = !settles && body.friction().is_none() && body.noise().is_none();
         if limits.is_some() || body.program().is_some() || holds_energy != holds {
             return None;
         }
@@ -69,7 +80,8 @@ impl BatchModel {
         match body {
             Model::Rod(_) => Some(Self::rods(energy_feedback)),
             Model::Point(_) => Some(Self::Point(energy_feedback)),
-            Model::General(GeneralBody { steering, friction, noise: None, outline: None, .. }) => {
+            Model::General(GeneralBody { noise: Some(Noise { model: NoiseModel::Plan, .. }), .. }) => None,
+            Model::General(GeneralBody { steering, friction, noise, outline, .. }) => {
                 let contact =
                     friction.map_or(BatchContact::Smooth, |friction| BatchContact::Rough(friction.law, friction.slide));
                 let law = steering.into();
@@ -77,11 +89,11 @@ impl BatchModel {
                     // Their law is for contacts without friction.
                     (BatchContact::Rough(..), EnergyFeedback::OneStrike) => None,
                     (BatchContact::Smooth, _) | (BatchContact::Rough(..), _) => {
-                        Some(Self::Rod { contact, energy_feedback, law })
+                        let (errs, has_vertices) = (noise.is_some(), outline.is_some());
+                        Some(Self::Rod { contact, energy_feedback, law, errs, has_vertices })
                     }
                 }
             }
-            Model::General(_) => None,
         }
     }
 }

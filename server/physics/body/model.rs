@@ -4,12 +4,14 @@
 
 use crate::body::general::GeneralBody;
 use crate::body::point::PointMass;
+use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::table::control_law::{Gains, Steering};
+use crate::table::noise::Noise;
 use crate::table::program::HeightProgram;
 
 /// The model that runs a scene.
@@ -60,6 +62,22 @@ impl Model {
         match self {
             Self::Rod(_) | Self::Point(_) => None,
             Self::General(general) => general.friction,
+        }
+    }
+
+    /// Errors of its table, if there are any.
+    pub fn noise(&self) -> Option<Noise> {
+        match self {
+            Self::Rod(_) | Self::Point(_) => None,
+            Self::General(general) => general.noise,
+        }
+    }
+
+    /// Outline of a polygon.
+    pub fn outline(&self) -> Option<&Outline> {
+        match self {
+            Self::Rod(_) | Self::Point(_) => None,
+            Self::General(general) => general.outline.as_ref(),
         }
     }
 

@@ -142,7 +142,8 @@ pub(crate) fn guess<N: Number>(flight: &Flight<N>) -> N {
 }
 
 /// Start of the search on a flight from above the table: the root of the gap to second order.
-fn guess_from_above(flight: &Flight) -> f64 {
+#[inline(always)]
+pub(crate) fn guess_from_above(flight: &Flight) -> f64 {
     let (sin, cos) = flight.sin_cos_theta;
     let v = flight.start.y_dot + flight.contact_distance * flight.start.theta_dot * sin;
     let a = flight.gravity - flight.bulge() * cos;
@@ -152,7 +153,8 @@ fn guess_from_above(flight: &Flight) -> f64 {
 }
 
 /// The time by which the centre of gravity has fallen to y = −l, so that the contact came before or is there.
-fn latest_contact(flight: &Flight) -> f64 {
+#[inline(always)]
+pub(crate) fn latest_contact(flight: &Flight) -> f64 {
     passes(flight, room(flight)).1
 }
 
@@ -166,6 +168,7 @@ fn earliest_contact(flight: &Flight) -> Option<f64> {
 }
 
 /// Height of the centre of gravity above y = −l at the start, m.
+#[inline(always)]
 fn room(flight: &Flight) -> f64 {
     let (sin, cos) = flight.sin_cos_theta;
     // 1 + cos θ, near a rod that stands on its head too.
@@ -175,6 +178,7 @@ fn room(flight: &Flight) -> f64 {
 
 /// Times at which the centre of gravity was and will be `drop`, m, lower than at the start, s: the roots of ½Gt² − ẏt − d, neither from a
 /// difference, which would leave a fall in little gravity few digits.
+#[inline(always)]
 fn passes(flight: &Flight, drop: f64) -> (f64, f64) {
     let y_dot = flight.start.y_dot;
     let sum = y_dot.abs() + (y_dot * y_dot + 2.0 * flight.gravity * drop).max(0.0).sqrt();

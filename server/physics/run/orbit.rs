@@ -349,6 +349,8 @@ pub(crate) struct LaneRunState {
     pub(crate) n: u64,
     /// Just before the coming contact.
     pub(crate) state: State,
+    /// Height of the contact point there, as in [`Arrival`], m.
+    pub(crate) clearance: f64,
     /// Horizontal place of the centre of gravity there, m.
     pub(crate) x: CompensatedSum,
     /// Energy that the run should have there, m²/s².
@@ -361,13 +363,14 @@ impl<B: Body> Orbit<B> {
     /// The run as a lane keeps it.
     pub(crate) fn lane_state(&self) -> LaneRunState {
         let energy = self.energy.unwrap_or_else(|| self.foresee().1.energy);
-        LaneRunState { n: self.n, state: self.state, x: self.x, energy, first_flight: self.flights.first }
+        let Self { n, state, clearance, x, .. } = *self;
+        LaneRunState { n, state, clearance, x, energy, first_flight: self.flights.first }
     }
 
     /// Goes on where a lane has brought the run. Its time is not kept in lanes.
     pub(crate) fn set_lane_state(&mut self, midst: &LaneRunState) {
-        let LaneRunState { n, state, x, energy, first_flight } = *midst;
-        (self.n, self.state, self.x, self.energy) = (n, state, x, Some(energy));
+        let LaneRunState { n, state, clearance, x, energy, first_flight } = *midst;
+        (self.n, self.state, self.clearance, self.x, self.energy) = (n, state, clearance, x, Some(energy));
         self.flights = FlightTimes { first: first_flight, last: 0.0 };
     }
 

@@ -139,9 +139,18 @@ impl StabilityMap {
 
     /// Tells whether all runs fit in lanes, judged by the corners of the map. Runs outside lanes take many times as long.
     pub fn fits_lanes(&self) -> bool {
+        self.corners().all(|scene| BatchModel::of(&scene.running_model(), &scene.rules()).is_some())
+    }
+
+    /// Tells whether the table errs in any run, judged by the corners of the map. In lanes such runs take some three times as long.
+    pub fn errs(&self) -> bool {
+        self.corners().any(|scene| scene.running_model().noise().is_some())
+    }
+
+    /// The valid scenes at the corners.
+    fn corners(&self) -> impl Iterator<Item = Scene> {
         let corners = [(0, 0), (self.x.count - 1, 0), (0, self.y.count - 1), (self.x.count - 1, self.y.count - 1)];
-        let fits = |scene: Scene| BatchModel::of(&scene.running_model(), &scene.rules()).is_some();
-        corners.into_iter().all(|(column, row)| self.scene(column, row).is_none_or(fits))
+        corners.into_iter().filter_map(|(column, row)| self.scene(column, row))
     }
 
     /// Computes the cells with these numbers, counted row after row. `None` once `go_on` returns `false`; it is called every

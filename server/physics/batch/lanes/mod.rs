@@ -5,7 +5,9 @@
 
 mod contact;
 mod model;
+mod noisy;
 mod number;
+mod outline;
 mod point;
 mod rod;
 mod state;
@@ -14,7 +16,9 @@ mod step;
 
 pub(crate) use contact::{Rough, Smooth};
 pub(crate) use model::{Bounced, LaneModel};
+pub(crate) use noisy::NoisyLanes;
 pub(crate) use number::{Far, Near};
+pub(crate) use outline::OutlineLanes;
 pub(crate) use point::PointLanes;
 pub(crate) use rod::RodLanes;
 pub(crate) use state::{Moving, Rods, Scratch, WIDTH};

@@ -3,6 +3,7 @@
 use super::contact::Surface;
 use super::model::{Bounced, LaneModel};
 use super::number::Lane;
+use super::outline::OutlineLanes;
 use super::state::{Moving, Rods, Scratch};
 use super::steering::SteeringLanes;
 use super::step::bounce_rods;
@@ -16,6 +17,8 @@ use crate::run::orbit::LaneRunState;
 pub(crate) struct RodLanes<S> {
     pub(crate) surface: S,
     pub(crate) steering: SteeringLanes,
+    /// Outlines of polygons.
+    pub(crate) outline: Option<OutlineLanes>,
 }
 
 /// A rod that bounces upright, for ever.
@@ -41,11 +44,14 @@ impl<S: Surface> LaneModel for RodLanes<S> {
     fn load(&mut self, lane: usize, body: &Model, midst: &LaneRunState) {
         self.surface.load(lane, body);
         self.steering.load(lane, body, midst);
+        if let Some(outline) = &mut self.outline {
+            outline.load(lane, body.outline());
+        }
     }
 
     #[inline(always)]
     fn bounce<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) -> Bounced {
-        bounce_rods::<L, S>(&self.surface, &self.steering, rods, moving, next, scratch)
+        bounce_rods::<L, S>(self, rods, moving, next, scratch)
     }
 
     #[inline(always)]

@@ -61,6 +61,12 @@ pub(crate) struct Scratch {
     pub(super) t: Lanes,
     /// 1 where t is the time of flight.
     pub(super) found: [u64; WIDTH],
+    /// Error of the time at which a table strikes that errs, s.
+    pub(super) timing_error: Lanes,
+    /// Error of the angle that it senses there, rad.
+    pub(super) angle_error: Lanes,
+    /// Height of the contact point there, m.
+    pub(super) clearance: Lanes,
     /// 1 where this was not a common bounce.
     pub(crate) apart: [u64; WIDTH],
 }
@@ -276,6 +282,9 @@ impl Scratch {
             sin_beta: zero,
             y_dot: zero,
             t: zero,
+            timing_error: zero,
+            angle_error: zero,
+            clearance: zero,
             found: [0; WIDTH],
             apart: [0; WIDTH],
         }

@@ -4,6 +4,7 @@ use super::number::Lane;
 use super::state::{Lanes, Moving, Rods, Scratch, WIDTH};
 use crate::batch::model::TiltLaw;
 use crate::body::model::Model;
+use crate::bounce::state::State;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::compensated_sum::CompensatedSum;
 use crate::run::orbit::LaneRunState;
@@ -97,9 +98,9 @@ impl FeedbackLanes {
         (self.x[lane], self.lost[lane]) = (place.value, place.lost);
     }
 
-    /// The tilt in a lane.
+    /// The tilt in a lane, the angle sensed with an error (rad).
     #[inline(always)]
-    pub(super) fn tilt<L: Lane>(&self, moving: &Moving, lane: usize) -> Tilt<L> {
+    pub(super) fn tilt<L: Lane>(&self, moving: &Moving, lane: usize, error: f64) -> Tilt<L> {
         let number = L::from_f64;
         let gains = Gains {
             x: number(self.x_gain[lane]),
@@ -108,7 +109,8 @@ impl FeedbackLanes {
             theta_dot: number(self.theta_dot[lane]),
         };
         let state = moving.state(lane).map(number);
-        let alpha = gains.tilt(number(self.x[lane]), &state);
+        let sensed = State { theta: state.theta + number(error), ..state };
+        let alpha = gains.tilt(number(self.x[lane]), &sensed);
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
 }

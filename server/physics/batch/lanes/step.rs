@@ -6,6 +6,7 @@
 use super::contact::Surface;
 use super::model::Bounced;
 use super::number::{Lane, Near};
+use super::rod::RodLanes;
 use super::state::{Moving, Rods, Scratch, WIDTH, unless};
 use super::steering::{SteeringLanes, tilt_by_gain};
 use crate::bounce::contact_time;
@@ -13,6 +14,7 @@ use crate::bounce::contact_time::NewtonStep;
 use crate::bounce::flight::Flight;
 use crate::bounce::state::State;
 use crate::bounce::tilt::Tilt;
+use crate::numbers::number::Number;
 use crate::run::rules::LaneContact;
 
 /// Most Newton steps of a common bounce: nearly all take one, few two.
@@ -21,29 +23,49 @@ const STEPS: u32 = 3;
 /// The bounce of all lanes from `moving` to `next`, but not of those that it sets apart: as [`super::model::LaneModel::bounce`].
 #[inline(always)]
 pub(super) fn bounce_rods<L: Lane, S: Surface>(
-    surface: &S,
-    steering: &SteeringLanes,
+    model: &RodLanes<S>,
     rods: &Rods,
     moving: &Moving,
     next: &mut Moving,
     scratch: &mut Scratch,
 ) -> Bounced {
+    let RodLanes { surface, steering, outline } = model;
     let tilted_near = match steering {
         SteeringLanes::TiltGain => tilt::<L>(rods, moving, next, scratch, |lane| tilt_by_gain(rods, moving, lane)),
-        SteeringLanes::Feedback(feedback) => tilt::<L>(rods, moving, next, scratch, |lane| feedback.tilt(moving, lane)),
+        SteeringLanes::Feedback(feedback) => {
+            tilt::<L>(rods, moving, next, scratch, |lane| feedback.tilt(moving, lane, 0.0))
+        }
     };
     surface.strike::<L>(rods, moving, next, scratch);
     guess::<L>(rods, moving, next, scratch);
-    let mut fallen = fall::<L>(rods, moving, next, scratch, true);
-    for _ in 1..STEPS {
+    let fallen_near = fall_to_table::<L>(STEPS, rods, moving, next, scratch, |_| 0.0);
+    if let Some(outline) = outline {
+        outline.watch(rods, moving, next, scratch);
+    }
+    Bounced { near: tilted_near & fallen_near, common: !any_apart(rods, scratch) }
+}
+
+/// Times of flight from the guesses, in at most so many steps, and the states at their ends. The contact points start at a height, m, of
+/// each lane. Tells whether all angles were near.
+#[inline(always)]
+pub(super) fn fall_to_table<L: Lane>(
+    steps: u32,
+    rods: &Rods,
+    moving: &Moving,
+    next: &mut Moving,
+    scratch: &mut Scratch,
+    clearance: impl Fn(usize) -> f64,
+) -> bool {
+    let mut fallen = fall::<L>(rods, moving, next, scratch, true, &clearance);
+    for _ in 1..steps {
         if fallen.all {
             break;
         }
         let near = fallen.near;
-        fallen = fall::<L>(rods, moving, next, scratch, false);
+        fallen = fall::<L>(rods, moving, next, scratch, false, &clearance);
         fallen.near &= near;
     }
-    Bounced { near: tilted_near & fallen.near, common: !any_apart(rods, scratch) }
+    fallen.near
 }
 
 /// Sets apart the lanes whose flight is not found or may be their last. Tells whether any lane is apart.
@@ -65,7 +87,7 @@ pub(super) fn any_apart(rods: &Rods, scratch: &mut Scratch) -> bool {
 
 /// The sines of θ, α and θ − α: whether all were near.
 #[inline(always)]
-fn tilt<L: Lane>(
+pub(super) fn tilt<L: Lane>(
     rods: &Rods,
     moving: &Moving,
     next: &mut Moving,
@@ -90,7 +112,7 @@ fn tilt<L: Lane>(
 #[inline(always)]
 fn guess<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &mut Scratch) {
     for lane in 0..WIDTH {
-        let flight = flight::<L>(rods, moving, next, scratch, lane);
+        let flight = flight::<L>(rods, moving, next, scratch, lane, 0.0);
         scratch.t[lane] = contact_time::guess(&flight).to_f64();
         scratch.apart[lane] |= unless(flight.bulge().to_f64() <= rods.gravity[lane]);
     }
@@ -104,10 +126,18 @@ struct Fallen {
 
 /// One step towards the time of flight, of the lanes that have not found it, and the state at its end.
 #[inline(always)]
-fn fall<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch, first: bool) -> Fallen {
+fn fall<L: Lane>(
+    rods: &Rods,
+    moving: &Moving,
+    next: &mut Moving,
+    scratch: &mut Scratch,
+    first: bool,
+    clearance: impl Fn(usize) -> f64,
+) -> Fallen {
     let (mut near, mut all) = (true, 1);
     for lane in 0..WIDTH {
-        let flight = flight::<L>(rods, moving, next, scratch, lane);
+        let clearance = clearance(lane);
+        let flight = flight::<L>(rods, moving, next, scratch, lane, clearance);
         let t = scratch.t[lane];
         let gap = flight.gap(L::from_f64(t));
         let step = NewtonStep::new(&flight, L::from_f64(t), &gap);
@@ -115,8 +145,13 @@ fn fall<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut 
         near &= turned <= Near::REACH;
         let refined = step.left_out.to_f64() <= step.negligible.to_f64();
         let better = if refined { step.refined.to_f64() } else { t + step.newton.to_f64() };
-        // As where `contact_time::first_contact` does not start from the guess.
-        let close = !first | (gap.value.to_f64() > 0.25 * t * gap.slope.to_f64());
+        // As where `contact_time::first_contact` does not start from the guess. From below the search starts right of the last root.
+        let close = if clearance < 0.0 {
+            (gap.value.to_f64() <= 0.0) & (t > 0.0)
+        } else {
+            gap.value.to_f64() > 0.25 * t * gap.slope.to_f64()
+        };
+        let close = !first | close;
         let apart = scratch.apart[lane] | unless((turned <= L::REACH) & (gap.slope.to_f64() < 0.0) & close);
         if first {
             scratch.t[lane] = better;
@@ -136,9 +171,17 @@ fn fall<L: Lane>(rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut 
     Fallen { near, all: all == 1 }
 }
 
+/// The flight after the strike in a lane, from a height of the contact point, m.
 #[inline(always)]
-fn flight<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &Scratch, lane: usize) -> Flight<L> {
-    let number = L::from_f64;
+pub(super) fn flight<N: Number>(
+    rods: &Rods,
+    moving: &Moving,
+    next: &Moving,
+    scratch: &Scratch,
+    lane: usize,
+    clearance: f64,
+) -> Flight<N> {
+    let number = N::from_f64;
     Flight {
         start: State {
             theta: number(moving.theta[lane]),
@@ -147,7 +190,7 @@ fn flight<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &Scratc
             theta_dot: number(next.theta_dot[lane]),
         },
         sin_cos_theta: (number(scratch.sin_theta[lane]), number(1.0 - scratch.versine_theta[lane])),
-        clearance: number(0.0),
+        clearance: number(clearance),
         contact_distance: number(rods.contact_distance[lane]),
         gravity: number(rods.gravity[lane]),
     }

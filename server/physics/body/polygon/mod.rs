@@ -10,5 +10,6 @@ mod vertices;
 
 pub use bounds::{FARTHEST, LENGTHS, MAX_VERTICES};
 pub use error::PolygonError;
+pub(crate) use outline::ClearAngles;
 pub use outline::{FLUSH, Outline, VertexClearance};
 pub use vertices::Vertices;

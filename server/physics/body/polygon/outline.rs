@@ -29,9 +29,25 @@ pub struct Outline {
     size: f64,
     /// Distance of the farthest vertex from the centre of gravity, m.
     reach: f64,
-    /// Smallest and largest angle from the table's normal, rad, between which no other vertex is below the table that the contact vertex
-    /// touches.
-    clear_angles: (f64, f64),
+    clear_angles: ClearAngles,
+}
+
+/// Angles of a body from the table's normal, rad, between which no other vertex is below the table that the contact vertex touches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ClearAngles {
+    pub(crate) least: f64,
+    pub(crate) greatest: f64,
+}
+
+impl ClearAngles {
+    /// Those of a body without other vertices.
+    pub(crate) const ALL: Self = Self { least: f64::NEG_INFINITY, greatest: f64::INFINITY };
+
+    /// Tells whether an angle is one of them. At an angle where a vertex may be below, it is false too.
+    #[inline(always)]
+    pub(crate) fn contain(&self, angle: f64) -> bool {
+        (self.least < angle) & (angle < self.greatest)
+    }
 }
 
 /// A vertex near the table.
@@ -79,7 +95,7 @@ impl Outline {
             radius_of_gyration,
             size: 0.0,
             reach: 0.0,
-            clear_angles: (0.0, 0.0),
+            clear_angles: ClearAngles::ALL,
         };
         // Seen from a corner of the hull, all lies within less than half a turn.
         let (mut left, mut right) = (0.0_f64, 0.0_f64);
@@ -95,7 +111,7 @@ impl Outline {
         }
         (outline.size, outline.reach) = (size, reach);
         // A vertex r from the contact vertex, at an angle a from the body's axis, is r cos(a − β) above the table.
-        outline.clear_angles = (right - FRAC_PI_2, left + FRAC_PI_2);
+        outline.clear_angles = ClearAngles { least: right - FRAC_PI_2, greatest: left + FRAC_PI_2 };
         Ok(outline)
     }
 
@@ -139,17 +155,25 @@ impl Outline {
         nearest
     }
 
-    /// Tells whether no other vertex is below the table that the contact vertex touches, at an angle β (rad) from its normal. At an angle
-    /// where one may be, it is false too.
-    #[inline(always)]
-    fn is_clear_at(&self, beta: f64) -> bool {
-        (self.clear_angles.0 < beta) & (beta < self.clear_angles.1)
+    /// Angles at which no other vertex is below the table.
+    pub(crate) fn clear_angles(&self) -> ClearAngles {
+        self.clear_angles
+    }
+
+    /// Distance of the farthest vertex from the centre of gravity, m.
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Distance from the contact vertex to the one farthest from it, m.
+    pub(crate) fn size(&self) -> f64 {
+        self.size
     }
 
     /// [`Outline::nearest`] at an angle β (rad) from the table's normal, where it is below the table by more than [`FLUSH`] of the body's
     /// size: an edge may lie on it.
     pub fn below_table(&self, beta: f64) -> Option<VertexClearance> {
-        if self.is_clear_at(beta) {
+        if self.clear_angles.contain(beta) {
             return None;
         }
         let nearest = self.nearest(trig::sin_cos(beta));
@@ -170,7 +194,8 @@ impl Outline {
         let (end_sin, end_cos) = trig::sin_cos(end_theta);
         // The common case, of all vertices at once: each has a height without inflection, and ends no lower than the contact vertex.
         let contact_is_up = drop + fall - self.contact_distance * end_cos >= -0.5 * FLUSH * self.size;
-        if contact_is_up && self.is_clear_at(end_theta) && self.reach * theta_dot * theta_dot <= flight.gravity {
+        if contact_is_up && self.clear_angles.contain(end_theta) && self.reach * theta_dot * theta_dot <= flight.gravity
+        {
             return Ok(None);
         }
         let mut first: Option<Touch> = None;

@@ -1,0 +1,262 @@
+//! Lanes of polygons and of tables that err, and their orbits alone, are the same: outcome, number of contacts and largest angle, bit for
+//! bit, over random bodies and on every kind of instructions.
+
+use equipoise_physics::batch::batch_run::{LaneRunEnd, run_batch_on};
+use equipoise_physics::batch::model::{BatchContact, BatchModel, TiltLaw};
+use equipoise_physics::body::Release;
+use equipoise_physics::body::general::GeneralBody;
+use equipoise_physics::body::polygon::{Outline, Vertices};
+use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
+use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::numbers::dispatch::InstructionSet;
+use equipoise_physics::run::ending::EndingKind;
+use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::run::rules::Rules;
+use equipoise_physics::scene::model::Model;
+use equipoise_physics::table::control_law::{Gains, Steering};
+use equipoise_physics::table::noise::{Noise, NoiseModel};
+use proptest::prelude::*;
+use std::f64::consts::FRAC_PI_2;
+
+const TRIANGLE: [[f64; 2]; 3] = [[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]];
+
+/// Properties that all runs of a batch share.
+#[derive(Clone, Copy, Debug)]
+struct Kind {
+    feedback: bool,
+    contact: Option<(RestitutionLaw, Slide)>,
+    energy_feedback: EnergyFeedback,
+    errs: bool,
+    has_vertices: bool,
+}
+
+prop_compose! {
+    fn kinds()(
+        feedback in prop::bool::weighted(0.3), rough in prop::bool::weighted(0.4),
+        law in prop_oneof![Just(RestitutionLaw::Poisson), Just(RestitutionLaw::Newton), Just(RestitutionLaw::Stronge)],
+        slide in prop_oneof![Just(Slide::None), Just(Slide::Matched)],
+        energy_feedback in prop_oneof![
+            Just(EnergyFeedback::Vertical), Just(EnergyFeedback::Total), Just(EnergyFeedback::OneStrike)
+        ],
+        (errs, has_vertices) in prop_oneof![Just((true, false)), Just((false, true)), Just((true, true))],
+    ) -> Kind {
+        let contact = rough.then_some((law, slide));
+        let is_one_strike = energy_feedback == EnergyFeedback::OneStrike;
+        let energy_feedback = if rough && is_one_strike { EnergyFeedback::Vertical } else { energy_feedback };
+        Kind { feedback, contact, energy_feedback, errs, has_vertices }
+    }
+}
+
+/// Numbers of a run that its kind may need.
+#[derive(Clone, Debug)]
+struct Numbers {
+    rod: Rod,
+    gains: Gains,
+    coefficient: f64,
+    noise: Noise,
+    places: Vec<[f64; 2]>,
+    release: Release,
+    topple_angle: f64,
+}
+
+prop_compose! {
+    /// A polygon on the vertex at 0: wide ones soon touch the table with another one.
+    fn polygons()(wide in 0.1..1.2_f64, spokes in prop::collection::vec(0.05..0.4_f64, 3..8)) -> Vec<[f64; 2]> {
+        let last = spokes.len() as f64 - 1.0;
+        let ray = |(place, length): (usize, &f64)| {
+            let angle = wide * (1.0 - 2.0 * place as f64 / last);
+            [length * angle.sin(), length * angle.cos()]
+        };
+        std::iter::once([0.0, 0.0]).chain(spokes.iter().enumerate().map(ray)).collect()
+    }
+}
+
+prop_compose! {
+    fn noises()(
+        timing_sd in prop_oneof![Just(0.0), 1e-6..0.03_f64], angle_sd in prop_oneof![Just(0.0), 1e-6..0.03_f64],
+        seed in any::<u64>(), run in any::<u64>(),
+    ) -> Noise {
+        Noise { timing_sd, angle_sd, model: NoiseModel::Strike, seed, run }
+    }
+}
+
+prop_compose! {
+    fn numbers()(
+        (length, ratio) in (0.02..2.0_f64, 0.2..1.5), (tilt_gain, near) in (-0.5..2.5, any::<bool>()),
+        (theta, x_dot, y_dot, theta_dot) in (-1.0..1.0, -1.0..1.0, -4.0..1.0, -30.0..30.0),
+        energy_gain in prop_oneof![Just(0.0), -0.2..0.3], restitution in 0.2..1.0, above in 1.01..3.0_f64,
+        still in prop::bool::weighted(0.2), noise in noises(), places in polygons(), coefficient in 0.0..1.0,
+        (theta_gain, x_gain) in (-2.5..0.5_f64, -0.05..0.05_f64), topple_angle in 0.5..FRAC_PI_2,
+    ) -> Numbers {
+        let scale = if near { 0.05 } else { 1.0 };
+        let energy_gain = if still { 0.0 } else { energy_gain };
+        let rod = Rod {
+            contact_distance: length,
+            radius_of_gyration: length * ratio,
+            gravity: 9.81,
+            restitution,
+            tilt_gain,
+            strike_gain: if still { 1.0 + restitution } else { 2.0 },
+            strike_gain_per_energy: (1.0 + restitution) * energy_gain,
+            target_energy: 9.81 * length * above,
+            energy_feedback: EnergyFeedback::Vertical,
+        };
+        let gains = Gains { x: x_gain, theta: theta_gain, x_dot: x_gain, theta_dot: -x_gain };
+        let state = State { theta: theta * scale, x_dot: x_dot * scale, y_dot, theta_dot: theta_dot * scale };
+        let release = Release { x: 0.1 * x_dot, height: length * above, state };
+        Numbers { rod, gains, coefficient, noise, places, release, topple_angle }
+    }
+}
+
+/// The run of these numbers; `None` for no polygon, and without a first contact.
+fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit<Model>> {
+    let Numbers { mut rod, gains, coefficient, noise, places, mut release, topple_angle } = numbers.clone();
+    let outline = match kind.has_vertices {
+        true => Some(Outline::new(&Vertices::new(&places).ok()?, 0).ok()?),
+        false => None,
+    };
+    if let Some(outline) = &outline {
+        let above = release.height / rod.contact_distance;
+        (rod.contact_distance, rod.radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
+        (rod.target_energy, release.height) =
+            (9.81 * rod.contact_distance * above, rod.contact_distance * above.max(1.01));
+    }
+    rod.energy_feedback = kind.energy_feedback;
+    let friction = kind.contact.map(|(law, slide)| Friction { coefficient, law, slide });
+    let steers = rod.strike_gain_per_energy != 0.0 || kind.energy_feedback == EnergyFeedback::OneStrike;
+    let settles = rod.strike_gain < 2.0 || steers || friction.is_some();
+    let holds_energy = !settles && !kind.errs;
+    let body = GeneralBody {
+        rod,
+        steering: if kind.feedback { Steering::Feedback(gains) } else { Steering::TiltGain },
+        program: None,
+        friction,
+        noise: kind.errs.then_some(noise),
+        outline,
+    };
+    Orbit::new(Model::General(body), Rules { topple_angle, settles, holds_energy, limits: None }, &release).ok()
+}
+
+fn alone(mut orbit: Orbit<Model>, impacts: u64) -> LaneRunEnd {
+    let mut max_theta: f64 = 0.0;
+    let ending = run(&mut orbit, impacts, |contact| {
+        max_theta = max_theta.max(contact.state.theta.abs());
+        true
+    });
+    LaneRunEnd { impacts: orbit.contacts(), outcome: ending.unwrap().into(), max_theta }
+}
+
+fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit<Model>], impacts: u64) -> Vec<Option<LaneRunEnd>> {
+    let mut ends = vec![None; orbits.len()];
+    let mut next = orbits.iter().copied().enumerate();
+    run_batch_on(path, model, impacts, &mut || next.next(), &mut |number, end| ends[number] = Some(end), &mut || true);
+    ends
+}
+
+fn paths() -> impl Iterator<Item = InstructionSet> {
+    InstructionSet::ALL.into_iter().filter(|path| path.is_there())
+}
+
+fn model_of(kind: Kind) -> BatchModel {
+    let contact = kind.contact.map_or(BatchContact::Smooth, |(law, slide)| BatchContact::Rough(law, slide));
+    let law = if kind.feedback { TiltLaw::Feedback } else { TiltLaw::TiltGain };
+    let Kind { energy_feedback, errs, has_vertices, .. } = kind;
+    BatchModel::Rod { contact, energy_feedback, law, errs, has_vertices }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn lanes_are_orbits(
+        kind in kinds(), numbers in prop::collection::vec(numbers(), 1..60), impacts in 1..300_u64
+    ) {
+        let numbers: Vec<_> = numbers.iter().filter_map(|numbers| Some((numbers, orbit(kind, numbers)?))).collect();
+        let orbits: Vec<_> = numbers.iter().map(|(_, orbit)| *orbit).collect();
+        let expected: Vec<_> = orbits.iter().map(|orbit| Some(alone(*orbit, impacts))).collect();
+        for path in paths() {
+            let ends = in_lanes(path, model_of(kind), &orbits, impacts);
+            for ((numbers, _), (end, expected)) in numbers.iter().zip(ends.iter().zip(&expected)) {
+                prop_assert_eq!(end, expected, "{:?} {:?} {:?}", path, kind, numbers);
+            }
+        }
+    }
+}
+
+/// A map of the paper's triangle, plain and on tables that err, hashed (FNV-1a over contacts, outcome and the bits of the largest angle):
+/// the same number on every path and on every CPU. It changes only when the numbers of answers do, and then CHANGELOG says so.
+#[test]
+fn every_kind_of_instructions_gives_the_same_bits() {
+    const GOLDEN: [(bool, bool, u64); 3] = [
+        (false, true, 0x9f0c_0b10_c8e3_61fc),
+        (true, false, 0xae1a_c55f_a937_fbf7),
+        (true, true, 0x371f_0796_e7cd_d02e),
+    ];
+    for (errs, has_vertices, golden) in GOLDEN {
+        let kind =
+            Kind { feedback: false, contact: None, energy_feedback: EnergyFeedback::Vertical, errs, has_vertices };
+        let orbits: Vec<_> = (0..40 * 30_u64)
+            .map(|cell| {
+                let (column, row) = ((cell % 40) as f64, (cell / 40) as f64);
+                let numbers = Numbers {
+                    rod: Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.0 + column * 0.006),
+                    gains: Gains::default(),
+                    coefficient: 0.0,
+                    noise: Noise { timing_sd: 0.001, angle_sd: 0.0002, model: NoiseModel::Strike, seed: 7, run: cell },
+                    places: TRIANGLE.to_vec(),
+                    release: Release {
+                        x: 0.0,
+                        height: 0.2,
+                        state: State { theta: row * 0.0175, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 },
+                    },
+                    topple_angle: 1.5,
+                };
+                orbit(kind, &numbers).unwrap()
+            })
+            .collect();
+        let completed = orbits.iter().filter(|orbit| alone(**orbit, 300).outcome == EndingKind::Completed).count();
+        assert!((100..1100).contains(&completed), "{kind:?}: {completed}");
+        for path in paths() {
+            let hash = hash(&in_lanes(path, model_of(kind), &orbits, 300));
+            assert_eq!(hash, golden, "{path:?}, {kind:?}: {hash:#x}");
+        }
+    }
+}
+
+fn hash(ends: &[Option<LaneRunEnd>]) -> u64 {
+    let words = ends.iter().flatten().flat_map(|end| [end.impacts, end.outcome as u64, end.max_theta.to_bits()]);
+    words
+        .flat_map(u64::to_le_bytes)
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+}
+
+#[test]
+fn a_batch_takes_what_lanes_see() {
+    let noise = Noise { timing_sd: 0.01, angle_sd: 0.0, model: NoiseModel::Strike, seed: 0, run: 0 };
+    let rules = |holds_energy| Rules { topple_angle: 1.5, settles: false, holds_energy, limits: None };
+    let body = |noise, outline| {
+        Model::General(GeneralBody {
+            rod: Rod::lossless(0.4 / 3.0, 0.094, 1.1),
+            steering: Steering::TiltGain,
+            program: None,
+            friction: None,
+            noise,
+            outline,
+        })
+    };
+    let outline = Outline::new(&Vertices::new(&TRIANGLE).unwrap(), 0).unwrap();
+    for (noise, outline) in [(None, Some(outline)), (Some(noise), None), (Some(noise), Some(outline))] {
+        let kind = Kind {
+            feedback: false,
+            contact: None,
+            energy_feedback: EnergyFeedback::Vertical,
+            errs: noise.is_some(),
+            has_vertices: outline.is_some(),
+        };
+        assert_eq!(BatchModel::of(&body(noise, outline), &rules(noise.is_none())), Some(model_of(kind)));
+    }
+    let plan = Noise { model: NoiseModel::Plan, ..noise };
+    assert_eq!(BatchModel::of(&body(Some(plan), None), &rules(false)), None);
+}
