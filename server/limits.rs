@@ -275,6 +275,12 @@ pub const ENSEMBLE_RUNS_IN_TILES: u64 = 1_000_000_000;
 /// Work of one block of an ensemble, in bounces: about 10 ms, as for regions. A single run may take more.
 pub const ENSEMBLE_BLOCK_WORK: u64 = 50_000;
 
+/// Fewest runs of a block in lanes, a hundredth of all between these: enough to fill the lanes, and few enough that progress is told.
+pub const ENSEMBLE_BLOCK_RUNS: RangeInclusive<u64> = 16..=64;
+
+/// Bounces in lanes on a table that errs for the price of one of the plain rod.
+pub const ENSEMBLE_LANE_BOUNCES: u64 = 2;
+
 /// Price of an ensemble besides its runs, in bounces: the summary and the picture, about 6 ms.
 pub const ENSEMBLE_ANSWER_PRICE: u64 = 80_000;
 

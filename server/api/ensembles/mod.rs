@@ -14,7 +14,6 @@ use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::shared::progress::Progress;
 use crate::compute::{Cancelled, TimeSlice, TimeSlices};
 use crate::http::{BodyWriter, Format, Problem};
-use crate::limits;
 
 /// The resource.
 #[derive(Debug)]
@@ -37,7 +36,7 @@ fn compute(
 ) -> Result<(), Problem> {
     let ensemble = request.ensemble;
     // The blocks depend on the request alone, never on the machine.
-    let block = (limits::ENSEMBLE_BLOCK_WORK / ensemble.impacts).max(1);
+    let block = request.block_runs();
     let (numbers, all) = (request.numbers(), request.runs());
     let only_run = if ensemble.is_uniform() {
         let first = |slice: &TimeSlice| ensemble.runs(0..1, &mut || slice.should_continue()).ok_or(Cancelled);

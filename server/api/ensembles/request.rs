@@ -78,16 +78,33 @@ impl EnsembleRequest {
         numbers.end - numbers.start
     }
 
+    /// Number of runs in a block, which depends on the request alone.
+    pub fn block_runs(&self) -> u64 {
+        let runs = limits::ENSEMBLE_BLOCK_WORK / self.run_price().max(1);
+        let (least, most) = limits::ENSEMBLE_BLOCK_RUNS.into_inner();
+        let fewest = if self.ensemble.fits_lanes() { (self.runs() / 100).clamp(least, most) } else { 1 };
+        runs.max(fewest)
+    }
+
+    /// Price of the bounces of a run, in bounces of the plain rod.
+    fn run_price(&self) -> u64 {
+        let Ensemble { scene, impacts, .. } = &self.ensemble;
+        if self.ensemble.fits_lanes() && !self.ensemble.is_uniform() {
+            impacts.div_ceil(limits::ENSEMBLE_LANE_BOUNCES)
+        } else {
+            impacts.saturating_mul(bounce_price(scene))
+        }
+    }
+
     /// Price, in bounces of the plain rod.
     fn work(&self) -> u64 {
-        let Ensemble { scene, impacts, angle_contacts, .. } = &self.ensemble;
-        let bounces = impacts.saturating_mul(bounce_price(scene));
+        let Ensemble { impacts, angle_contacts, .. } = &self.ensemble;
         // One run stands for all of a uniform ensemble.
         let computed = if self.ensemble.is_uniform() { 1 } else { self.runs() };
         let angles = limits::ENSEMBLE_ANGLE_PRICE * angle_contacts.min(impacts);
         let runs = self.runs().saturating_mul(limits::ENSEMBLE_RUN_PRICE + angles);
         computed
-            .saturating_mul(bounces)
+            .saturating_mul(self.run_price())
             .saturating_add(runs)
             .saturating_add(impacts * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
     }

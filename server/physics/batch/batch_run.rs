@@ -7,6 +7,7 @@ use crate::batch::lanes::{
     Bounced, Far, LaneModel, Moving, Near, NoisyLanes, OutlineLanes, PointLanes, RodLanes, Rods, Rough, Scratch,
     Smooth, SteeringLanes, WIDTH,
 };
+use crate::batch::mask::{Mask, bits};
 use crate::batch::model::{BatchContact, BatchModel};
 use crate::body::model::Model;
 use crate::bounce::state::State;
@@ -33,6 +34,14 @@ pub type NextOrbit<'a> = dyn FnMut() -> Option<(usize, Orbit<Model>)> + 'a;
 /// Takes runs as they end, in any order.
 pub type RunDone<'a> = dyn FnMut(usize, LaneRunEnd) + 'a;
 
+/// Contacts of each run at which angles are looked at.
+pub struct Watch<'a> {
+    /// Numbers of the contacts, from 1, in order.
+    pub contacts: &'a [u64],
+    /// Takes the number of a run and θ, rad, just before such a contact; of each run in the order of its contacts. The run may end there.
+    pub see: &'a mut dyn FnMut(usize, f64),
+}
+
 /// Makes runs of up to `impacts` contacts, in lanes where they fit ([`BatchModel::of`]). Returns false once `go_on` did: it is asked
 /// every few thousand bounces, and every hundred contacts outside lanes.
 pub fn run_all(
@@ -41,14 +50,25 @@ pub fn run_all(
     done: &mut RunDone<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> bool {
-    let mut others = run_those_like_the_first(impacts, next, done, go_on);
+    run_watched(impacts, &mut Watch { contacts: &[], see: &mut |_, _| () }, next, done, go_on)
+}
+
+/// [`run_all`] of runs that are watched.
+pub fn run_watched(
+    impacts: u64,
+    watch: &mut Watch<'_>,
+    next: &mut NextOrbit<'_>,
+    done: &mut RunDone<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> bool {
+    let mut others = run_those_like_the_first(impacts, watch, next, done, go_on);
     loop {
         match others {
             None => return false,
             Some(left) if left.is_empty() => return true,
             Some(left) => {
                 let mut left = left.into_iter();
-                others = run_those_like_the_first(impacts, &mut || left.next(), done, go_on);
+                others = run_those_like_the_first(impacts, watch, &mut || left.next(), done, go_on);
             }
         }
     }
@@ -58,6 +78,7 @@ pub fn run_all(
 /// `go_on` returned false.
 fn run_those_like_the_first(
     impacts: u64,
+    watch: &mut Watch<'_>,
     next: &mut NextOrbit<'_>,
     done: &mut RunDone<'_>,
     go_on: &mut dyn FnMut() -> bool,
@@ -79,20 +100,29 @@ fn run_those_like_the_first(
         })
     };
     let is_done = match model {
-        Some(model) => run_batch(model, impacts, &mut alike, done, go_on),
-        None => run_alone(impacts, &mut alike, done, go_on),
+        Some(model) => run_batch_watched(best_path(), model, impacts, watch, &mut alike, done, go_on),
+        None => run_alone(impacts, watch, &mut alike, done, go_on),
     };
     is_done.then_some(others)
 }
 
 /// Makes one run after the other. Returns false once `go_on` did.
-fn run_alone(impacts: u64, next: &mut NextOrbit<'_>, done: &mut RunDone<'_>, go_on: &mut dyn FnMut() -> bool) -> bool {
+fn run_alone(
+    impacts: u64,
+    watch: &mut Watch<'_>,
+    next: &mut NextOrbit<'_>,
+    done: &mut RunDone<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> bool {
     let mut looks = CancellationCheck::new(go_on);
     while let Some((number, mut orbit)) = next() {
-        let mut max_theta: f64 = 0.0;
+        let (mut max_theta, mut watched) = (0.0_f64, watch.contacts.iter().peekable());
         let ending = looks.begin().then(|| {
             run(&mut orbit, impacts, |contact| {
                 max_theta = max_theta.max(contact.state.theta.abs());
+                if watched.next_if_eq(&&contact.n).is_some() {
+                    (watch.see)(number, contact.state.theta);
+                }
                 looks.contact()
             })
         });
@@ -110,8 +140,11 @@ pub fn run_batch(
     done: &mut RunDone<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> bool {
-    let best = InstructionSet::ALL.into_iter().find(|path| path.is_there()).unwrap_or(InstructionSet::Portable);
-    run_batch_on(best, model, impacts, next, done, go_on)
+    run_batch_on(best_path(), model, impacts, next, done, go_on)
+}
+
+fn best_path() -> InstructionSet {
+    InstructionSet::ALL.into_iter().find(|path| path.is_there()).unwrap_or(InstructionSet::Portable)
 }
 
 /// [`run_batch`] with one kind of instructions, to hold all of them together.
@@ -123,9 +156,22 @@ pub fn run_batch_on(
     done: &mut RunDone<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> bool {
+    run_batch_watched(path, model, impacts, &mut Watch { contacts: &[], see: &mut |_, _| () }, next, done, go_on)
+}
+
+/// [`run_batch_on`] of runs that are watched.
+pub fn run_batch_watched(
+    path: InstructionSet,
+    model: BatchModel,
+    impacts: u64,
+    watch: &mut Watch<'_>,
+    next: &mut NextOrbit<'_>,
+    done: &mut RunDone<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> bool {
     macro_rules! run {
         ($model:expr) => {
-            dispatch_on(path, BatchRun { model: $model, impacts, next, done, go_on })
+            dispatch_on(path, BatchRun { model: $model, impacts, watch, next, done, go_on })
         };
     }
     match model {
@@ -146,9 +192,10 @@ pub fn run_batch_on(
     }
 }
 
-struct BatchRun<'a, 'n, 'd, M> {
+struct BatchRun<'a, 'w, 'n, 'd, M> {
     model: M,
     impacts: u64,
+    watch: &'a mut Watch<'w>,
     next: &'a mut NextOrbit<'n>,
     done: &'a mut RunDone<'d>,
     go_on: &'a mut dyn FnMut() -> bool,
@@ -157,12 +204,12 @@ struct BatchRun<'a, 'n, 'd, M> {
 /// Bounces of all lanes between two questions whether to go on.
 const LOOK: u64 = 256;
 
-impl<M: LaneModel> Kernel for BatchRun<'_, '_, '_, M> {
+impl<M: LaneModel> Kernel for BatchRun<'_, '_, '_, '_, M> {
     type Output = bool;
 
     #[inline(always)]
     fn call(self) -> bool {
-        let mut runs = LaneRuns::idle(self.model, self.impacts);
+        let mut runs = LaneRuns::idle(self.model, self.impacts, self.watch.contacts);
         for lane in 0..WIDTH {
             runs.load(lane, (self.next)());
         }
@@ -173,6 +220,10 @@ impl<M: LaneModel> Kernel for BatchRun<'_, '_, '_, M> {
                 if !(self.go_on)() {
                     return false;
                 }
+            }
+            for lane in bits(runs.watched() & runs.busy) {
+                (self.watch.see)(runs.number[lane], runs.moving.state(lane).theta);
+                runs.look_ahead(lane);
             }
             let apart = runs.together(LOOK) & runs.busy;
             let mut ended = runs.completed();
@@ -191,22 +242,8 @@ impl<M: LaneModel> Kernel for BatchRun<'_, '_, '_, M> {
     }
 }
 
-/// A bit for each lane.
-type Mask = u16;
-
-/// The lanes of a mask.
-fn bits(mut mask: Mask) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = mask.trailing_zeros() as usize;
-        (mask != 0).then(|| {
-            mask &= mask - 1;
-            lane
-        })
-    })
-}
-
 /// Runs side by side.
-struct LaneRuns<M> {
+struct LaneRuns<'w, M> {
     model: M,
     rods: Rods,
     moving: Moving,
@@ -222,6 +259,11 @@ struct LaneRuns<M> {
     last: [u64; WIDTH],
     outcome: [EndingKind; WIDTH],
     number: [usize; WIDTH],
+    /// Contacts at which runs are watched.
+    watch: &'w [u64],
+    /// Place in `watch` of the next one of each lane, and the turn before it.
+    place: [usize; WIDTH],
+    look: [u64; WIDTH],
     busy: Mask,
     /// Lanes before the first flight of a run that can settle.
     fresh: Mask,
@@ -233,8 +275,8 @@ struct LaneRuns<M> {
 const IDLE_RULES: Rules = Rules { topple_angle: 1.0, settles: false, holds_energy: true, limits: None };
 const IDLE_STATE: State = State { theta: 0.0, x_dot: 0.0, y_dot: -1.0, theta_dot: 0.0 };
 
-impl<M: LaneModel> LaneRuns<M> {
-    fn idle(model: M, impacts: u64) -> Self {
+impl<'w, M: LaneModel> LaneRuns<'w, M> {
+    fn idle(model: M, impacts: u64, watch: &'w [u64]) -> Self {
         let orbit = Orbit::at(model.idle(), IDLE_RULES, IDLE_STATE);
         Self {
             rods: Rods::all(orbit.body.rod(), &IDLE_RULES),
@@ -247,6 +289,9 @@ impl<M: LaneModel> LaneRuns<M> {
             last: [u64::MAX; WIDTH],
             outcome: [EndingKind::Completed; WIDTH],
             number: [0; WIDTH],
+            watch,
+            place: [0; WIDTH],
+            look: [u64::MAX; WIDTH],
             busy: 0,
             fresh: 0,
             far: false,
@@ -278,6 +323,24 @@ impl<M: LaneModel> LaneRuns<M> {
         self.fresh |= u16::from(rules.settles) << lane;
         (self.first[lane], self.last[lane]) = (self.turn, last);
         self.outcome[lane] = EndingKind::Completed;
+        (self.place[lane], self.look[lane]) = (0, self.turn_before(lane, 0));
+    }
+
+    /// The turn before a watched contact of a lane; the last of all turns beyond them.
+    fn turn_before(&self, lane: usize, place: usize) -> u64 {
+        let contact = self.watch.get(place).filter(|_| self.busy & 1 << lane != 0);
+        contact.map_or(u64::MAX, |contact| self.first[lane].saturating_add(contact - 1))
+    }
+
+    /// Goes on to the next watched contact of a lane.
+    fn look_ahead(&mut self, lane: usize) {
+        self.place[lane] += 1;
+        self.look[lane] = self.turn_before(lane, self.place[lane]);
+    }
+
+    /// The lanes whose coming contact is watched.
+    fn watched(&self) -> Mask {
+        (0..WIDTH).filter(|&lane| self.turn == self.look[lane]).fold(0, |mask, lane| mask | 1 << lane)
     }
 
     fn end(&self, lane: usize) -> LaneRunEnd {
@@ -293,11 +356,12 @@ impl<M: LaneModel> LaneRuns<M> {
         (0..WIDTH).filter(|&lane| self.turn >= self.last[lane]).fold(0, |mask, lane| mask | 1 << lane)
     }
 
-    /// Computes contacts of all lanes with the flights after them: at most `most`, and only up to the next contact that is the last of a
-    /// run or not a common one. Returns the lanes that stopped before such a contact.
+    /// Computes contacts of all lanes with the flights after them: at most `most`, and only up to the next contact that is watched, the last
+    /// of a run, or not a common one. Returns the lanes that stopped before such a contact.
     #[inline(always)]
     fn together(&mut self, most: u64) -> Mask {
-        let most = self.last.iter().map(|last| last - self.turn).fold(most, u64::min);
+        let stops = self.last.iter().chain(&self.look);
+        let most = stops.map(|turn| turn - self.turn).fold(most, u64::min);
         let (mut next, mut scratch) = (self.moving, Scratch::new());
         for _ in 0..most {
             self.turn += 1;

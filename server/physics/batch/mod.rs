@@ -2,4 +2,5 @@
 
 pub mod batch_run;
 mod lanes;
+mod mask;
 pub mod model;

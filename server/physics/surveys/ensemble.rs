@@ -4,10 +4,9 @@
 //! Every run is watched for the same number of contacts, so none is lost sight of before the last: the survival curve of
 //! Kaplan and Meier is the share of runs still going, and its intervals are binomial. Not here: which threads do it.
 
-use crate::run::cancellation::CancellationCheck;
-use crate::run::ending::Ending;
+use crate::batch::batch_run::{LaneRunEnd, Watch, run_watched};
+use crate::batch::model::BatchModel;
 use crate::run::ending::EndingKind;
-use crate::run::orbit::run;
 use crate::scene::Scene;
 use std::ops::Range;
 
@@ -73,33 +72,48 @@ impl Ensemble {
         self.scene.noise.is_none()
     }
 
-    /// Some of the runs, counted from 0; `None` if `go_on` said `false`, which is asked every hundred contacts.
+    /// Tells whether its runs fit in lanes. Outside lanes they take some ten times as long.
+    pub fn fits_lanes(&self) -> bool {
+        BatchModel::of(&self.scene.running_model(), &self.scene.rules()).is_some()
+    }
+
+    /// Some of the runs, counted from 0; `None` if `go_on` said `false`, which is asked every hundred contacts, in lanes every few thousand.
     pub fn runs(&self, numbers: Range<u64>, go_on: &mut dyn FnMut() -> bool) -> Option<EnsembleRuns> {
         let watched = self.watched();
-        let mut found = EnsembleRuns { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
-        let mut looks = CancellationCheck::new(go_on);
-        for number in numbers {
-            if !looks.begin() {
-                return None;
+        let count = numbers.clone().count();
+        let mut unstarted = Vec::new();
+        let mut numbered = numbers.enumerate();
+        let mut orbits = || {
+            for (index, number) in numbered.by_ref() {
+                match self.scene.orbit_of(number) {
+                    Ok(orbit) => return Some((index, orbit)),
+                    Err(no_contact) => unstarted.push((index, no_contact)),
+                }
             }
-            let mut orbit = match self.scene.orbit_of(number) {
-                Ok(orbit) => orbit,
-                Err(no_contact) => {
-                    found.ends.push(RunEnd { impacts: 0, outcome: no_contact.ending(0.0, 0.0).into() });
-                    continue;
+            None
+        };
+        // Runs end in any order.
+        let (mut ends, mut angles) = (vec![None; count], vec![Vec::new(); count]);
+        let mut see = |index: usize, theta: f64| angles[index].push(theta.abs());
+        let mut done =
+            |index: usize, LaneRunEnd { impacts, outcome, .. }| ends[index] = Some(RunEnd { impacts, outcome });
+        let mut watch = Watch { contacts: &watched, see: &mut see };
+        if !run_watched(self.impacts, &mut watch, &mut orbits, &mut done, go_on) {
+            return None;
+        }
+        for (index, no_contact) in unstarted {
+            ends[index] = Some(RunEnd { impacts: 0, outcome: no_contact.ending(0.0, 0.0).into() });
+        }
+        let mut found = EnsembleRuns { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
+        for (end, seen) in ends.into_iter().zip(angles) {
+            let end = end?;
+            found.ends.push(end);
+            let went_on = |contact: &u64| *contact < end.impacts || end.outcome == EndingKind::Completed;
+            for ((contact, angle), angles) in watched.iter().zip(seen).zip(&mut found.angles) {
+                if went_on(contact) {
+                    angles.push(angle);
                 }
-            };
-            let mut next = 0;
-            let ending = run(&mut orbit, self.impacts, |contact| {
-                if watched.get(next) == Some(&contact.n) {
-                    if matches!(contact.ending, None | Some(Ending::Completed)) {
-                        found.angles[next].push(contact.state.theta.abs());
-                    }
-                    next += 1;
-                }
-                looks.contact()
-            })?;
-            found.ends.push(RunEnd { impacts: orbit.contacts(), outcome: ending.into() });
+            }
         }
         go_on().then_some(found)
     }

@@ -1,7 +1,9 @@
 //! Noise in runs: case 1 with a table that errs by 10 ms, under both readings.
 
+use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
+use equipoise_physics::surveys::ensemble::{Ensemble, EnsembleRuns, RunEnd};
 
 mod paper;
 
@@ -47,6 +49,30 @@ fn survival_is_that_of_the_readings() {
     assert!((survival(&strike) - 0.45).abs() < 0.08);
     assert!((survival(&plan) - 0.07).abs() < 0.03);
     assert_eq!(survival(&narrow), 1.0);
+}
+
+/// Runs in lanes and their angles are those of the runs alone, in the order of the runs, whether they fall early or stand.
+#[test]
+fn an_ensemble_is_its_runs() {
+    for (model, timing_sd, runs) in [("strike", 0.01, 150), ("strike", 0.002, 40), ("plan", 0.002, 20)] {
+        let ensemble = Ensemble { scene: case_1(model, timing_sd, 0.3), runs, impacts: 200, angle_contacts: 30 };
+        assert_eq!(ensemble.fits_lanes(), model == "strike");
+        let watched = ensemble.watched();
+        let numbers = 3..runs;
+        let mut expected = EnsembleRuns { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
+        for number in numbers.clone() {
+            let mut orbit = ensemble.scene.orbit_of(number).unwrap();
+            let ending = run(&mut orbit, ensemble.impacts, |contact| {
+                let went_on = matches!(contact.ending, None | Some(Ending::Completed));
+                if let (true, Ok(place)) = (went_on, watched.binary_search(&contact.n)) {
+                    expected.angles[place].push(contact.state.theta.abs());
+                }
+                true
+            });
+            expected.ends.push(RunEnd { impacts: orbit.contacts(), outcome: ending.unwrap().into() });
+        }
+        assert_eq!(ensemble.runs(numbers, &mut || true), Some(expected), "{model} {timing_sd}");
+    }
 }
 
 #[test]
