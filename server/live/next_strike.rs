@@ -51,6 +51,8 @@ impl NextStrike {
 mod tests {
     use super::*;
     use crate::runs::run::tests::case;
+    use equipoise_physics::body::Kick;
+    use equipoise_physics::catching::settings::{CatchSettings, Strategy};
     use equipoise_physics::scene::{Name, Value};
 
     /// Compares each foreseen strike with the contact that comes.
@@ -75,6 +77,15 @@ mod tests {
         for preset in crate::api::scene::presets::all() {
             follow(&case(preset.name), 300);
         }
+    }
+
+    #[test]
+    fn strikes_of_a_catch_come_as_they_were_foreseen() {
+        let mut run = case("case-1");
+        run.catch(3, CatchSettings { strategy: Some(Strategy::BounceDown), ..CatchSettings::default() }).unwrap();
+        run.kick(5, Kick { theta_dot: 0.2, ..Kick::default() }).unwrap();
+        run.set(6, &[(Name::Restitution, Value::Number(0.9))]).unwrap();
+        follow(&run, 300);
     }
 
     #[test]

@@ -202,11 +202,11 @@ mod tests {
         #[test]
         fn a_url_reads_back_as_the_same_run(
             preset in 0..crate::api::scene::presets::all().len(), speed in 0.05..=20.0, epoch in 0..LARGEST_EXACT / 2,
-            from in proptest::option::of(1_u64..1000),
+            from in proptest::option::of(1_u64..1000), hold in prop_oneof![Just(0.0), 0.0..=60.0],
             all in proptest::collection::vec((0_u64..3, 0_u64..100_000, did()), 0..40),
         ) {
             let scene = crate::api::scene::presets::all()[preset].draft().build().unwrap();
-            let mut live = LiveRun { run: Run::new(scene), clock: Clock::new(epoch, speed) };
+            let mut live = LiveRun { run: Run::new(scene).holding(hold), clock: Clock::new(epoch, speed) };
             let (mut impact, mut wall) = (1, epoch);
             for (impacts, time, did) in all {
                 (impact, wall) = (impact + impacts, wall + time);

@@ -285,7 +285,8 @@ pub(crate) mod tests {
         assert!(run.kick(over, Kick::default()).unwrap_err().contains("which is the limit"));
         let early = run.restarted(10);
         assert_eq!(early.scene().value(Name::TiltGain), Some(Value::Number(1.01)));
-        let again = run.restarted(u64::MAX);
+        let again = run.holding(1.5).restarted(u64::MAX);
+        assert_eq!(again.hold(), 1.5);
         assert_eq!(again.interventions().len(), 0);
         assert_eq!(again.scene().value(Name::TiltGain), Some(Value::Number(1.1)));
     }
