@@ -1,8 +1,10 @@
-//! Requests per second of the server and of bare axum handlers: `cargo bench --bench http`.
+//! Requests per second of the server and of bare axum handlers: `cargo bench --bench http`; `-- --only TEXT` measures targets with this
+//! text alone, and `-- --seconds N` each of them for about so long.
 //!
 //! First answers that are asked for again, beside a handler that sends the same bytes from memory; then `/v1/trajectories` computed
-//! each time, beside a handler that serializes the same columns from memory. Both sides are measured in turns over the same number of
-//! connections on loopback, so that the ratio holds on a noisy machine.
+//! each time, beside handlers that send the same bytes from memory and that serialize the same columns. Both sides are measured in
+//! turns over the same number of connections on loopback, so that the ratio holds on a noisy machine. The server has its own transport,
+//! log and allocator, as in the program. Clients share the cores, so every rate contains their time too.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -16,12 +18,13 @@ use axum::{Json, Router};
 use clap::Parser;
 use equipoise::api::App;
 use equipoise::config::Config;
+use equipoise::logging::LogFormat;
+use equipoise::{logging, router, transport};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 
 const CONNECTIONS: usize = 8;
-const ROUND: Duration = Duration::from_millis(800);
-const ROUNDS: usize = 7;
+const ROUND: Duration = Duration::from_millis(200);
 const PATH: &str = "/v1/trajectories?preset=case-1&impacts=100";
 
 /// Answers that are asked for again, with their media types.
@@ -34,38 +37,82 @@ const AGAIN: [(&str, &str); 6] = [
     ("/v1/controllers?preset=case-1", "application/json"),
 ];
 
+/// As in the program.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
+/// The command line.
+#[derive(Parser)]
+struct Options {
+    /// Text in the targets to measure.
+    #[arg(long, default_value = "")]
+    only: String,
+    /// Time for each target, s.
+    #[arg(long, default_value = "12")]
+    seconds: f64,
+    /// Given by cargo.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
 #[tokio::main]
 async fn main() -> std::io::Result<()> {
-    let ours = serve(equipoise::router::router(App::new(&Config::parse_from(["equipoise"])))).await?;
-    println!("{CONNECTIONS} connections, {ROUNDS} rounds of {ROUND:?}; medians");
-    for (path, media_type) in AGAIN {
-        let bytes = Bytes::from(ask(ours, path).await?);
-        let answer = move || {
-            let bytes = bytes.clone();
-            async move { ([(header::CONTENT_TYPE, media_type)], bytes) }
-        };
-        let bare = serve(Router::new().route(path.split('?').next().unwrap_or(path), get(answer))).await?;
-        compare(path, ours, bare, path).await;
+    let options = Options::parse();
+    logging::init(LogFormat::Text).expect("RUST_LOG can be read");
+    let rounds = (options.seconds / (2.0 * ROUND.as_secs_f64())).ceil() as usize;
+    println!("{CONNECTIONS} connections, {rounds} rounds of {ROUND:?}; medians");
+    let ours = serve_ours(&["equipoise"]).await?;
+    for (path, media_type) in AGAIN.into_iter().filter(|(path, _)| path.contains(&options.only)) {
+        let bare = serve_bytes(path, media_type, ask(ours, path).await?.into()).await?;
+        compare(path, ours, bare, path, rounds).await;
     }
-    let ours =
-        serve(equipoise::router::router(App::new(&Config::parse_from(["equipoise", "--answer-cache", "0"])))).await?;
-    let columns: serde_json::Value = serde_json::from_slice(&ask(ours, PATH).await?)?;
+    if !format!("computed {PATH}").contains(&options.only) {
+        return Ok(());
+    }
+    let ours = serve_ours(&["equipoise", "--answer-cache", "0"]).await?;
+    let bytes = Bytes::from(ask(ours, PATH).await?);
+    let bare = serve_bytes(PATH, "application/json", bytes.clone()).await?;
+    compare("computed each time, beside the bytes from memory", ours, bare, PATH, rounds).await;
+    let columns: serde_json::Value = serde_json::from_slice(&bytes)?;
     let columns: Arc<Columns> = Arc::new(serde_json::from_value(columns["impacts"].clone())?);
     let answer = move || async move { Json(Columns::clone(&columns)) };
     let bare = serve(Router::new().route("/v1/trajectories", get(answer))).await?;
-    compare("computed each time, beside columns serialized from memory", ours, bare, PATH).await;
+    compare("computed each time, beside columns serialized from memory", ours, bare, PATH, rounds).await;
     Ok(())
 }
 
+/// The server as the program serves it.
+async fn serve_ours(command: &[&str]) -> std::io::Result<SocketAddr> {
+    let listener = TcpListener::bind("127.0.0.1:0").await?;
+    let address = listener.local_addr()?;
+    let config = Config::parse_from(command);
+    let router = router::router(App::new(&config));
+    tokio::spawn(async move { transport::serve(listener, router, &config.limits, std::future::pending()).await });
+    Ok(address)
+}
+
+/// A bare handler that sends these bytes.
+async fn serve_bytes(path: &str, media_type: &'static str, bytes: Bytes) -> std::io::Result<SocketAddr> {
+    let answer = move || {
+        let bytes = bytes.clone();
+        async move { ([(header::CONTENT_TYPE, media_type)], bytes) }
+    };
+    serve(Router::new().route(path.split('?').next().unwrap_or(path), get(answer))).await
+}
+
 /// Measures both servers in turns, and prints the medians.
-async fn compare(title: &str, ours: SocketAddr, bare: SocketAddr, path: &'static str) {
-    let mut rounds = Vec::new();
-    for _ in 0..ROUNDS {
+async fn compare(title: &str, ours: SocketAddr, bare: SocketAddr, path: &'static str, rounds: usize) {
+    let mut columns: [Vec<f64>; 3] = Default::default();
+    for _ in 0..rounds {
         let (ours, bare) = (rate(ours, path).await, rate(bare, path).await);
-        rounds.push((ours, bare, ours / bare));
+        for (column, value) in columns.iter_mut().zip([ours, bare, ours / bare]) {
+            column.push(value);
+        }
     }
-    rounds.sort_by(|one, other| one.2.total_cmp(&other.2));
-    let (ours, bare, ratio) = rounds[ROUNDS / 2];
+    let [ours, bare, ratio] = columns.map(|mut column| {
+        column.sort_by(f64::total_cmp);
+        column[rounds / 2]
+    });
     println!("{title}: equipoise {ours:.0}/s, bare axum {bare:.0}/s, ratio {ratio:.2}");
 }
 
@@ -78,6 +125,7 @@ struct Columns {
     numbers: std::collections::BTreeMap<String, Vec<Option<f64>>>,
 }
 
+/// A bare axum server.
 async fn serve(router: Router) -> std::io::Result<SocketAddr> {
     let listener = TcpListener::bind("127.0.0.1:0").await?;
     let address = listener.local_addr()?;

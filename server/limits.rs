@@ -377,6 +377,15 @@ pub const KEPT_ANSWER_OVERHEAD: usize = 256;
 /// Size of a typical kept answer, bytes, from which the tables for them are sized.
 pub const ANSWER_CACHE_TYPICAL_BYTES: usize = 16 * 1024;
 
+/// Share of the memory for kept answers that goes to the requests for them: one part in so many.
+pub const REPEATS_SHARE: usize = 8;
+
+/// Bytes of a request for a kept answer besides its name and that of the answer.
+pub const REPEAT_OVERHEAD: usize = 512;
+
+/// Size of a typical request for a kept answer, bytes, from which the table for them is sized.
+pub const REPEAT_TYPICAL_BYTES: usize = 2 * 1024;
+
 /// Parts of the memory for kept answers, each with a lock. An answer has room in one of them.
 pub const ANSWER_CACHE_SHARDS: usize = 4;
 

@@ -1,27 +1,30 @@
 //! All middleware, in one place and in order.
 
 use std::any::Any;
+use std::convert::Infallible;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Instant;
 
 use axum::Router;
-use axum::body::{Body, to_bytes};
-use axum::extract::{ConnectInfo, MatchedPath, Request, State};
+use axum::body::{Body, HttpBody, to_bytes};
+use axum::extract::{ConnectInfo, MatchedPath, Request};
 use axum::http::uri::PathAndQuery;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, Version, header};
-use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Redirect, Response};
-use tower::ServiceBuilder;
-use tower::util::option_layer;
-use tower_http::catch_panic::CatchPanicLayer;
+use axum::routing::Route;
+use futures_util::FutureExt;
+use tower::{Layer, Service, ServiceBuilder, service_fn};
+use tower_http::catch_panic::{CatchPanic, CatchPanicLayer};
 use tower_http::cors::CorsLayer;
-use tracing::Instrument;
+use tracing::{Instrument, Span};
 
 use crate::api::App;
 use crate::compute::Peer;
 use crate::config::Config;
 use crate::http::problem::{MEDIA_TYPE, shortened};
+use crate::http::response::repeats;
+use crate::http::response::repeats::KeptAnswer;
 use crate::http::security::{host, site};
 use crate::http::{HostName, Origin, Problem, REQUEST_ID, RequestContext, Token, peer, transfer};
 use crate::logging::{AccessLogEntry, request_span};
@@ -29,40 +32,51 @@ use crate::{BUILD, limits};
 
 /// Surrounds a router with middleware, from the outside in:
 ///
-/// 1. `identify` gives each request its id, peer, origin and span, and each answer its common headers, and writes the access log.
-///    Within the span it refuses requests for other servers or in an unsupported form. This comes before CORS, which would permit
-///    pages of a foreign name.
+/// 1. `identify` gives each request its id, peer and origin, and each answer its common headers, and writes the access log. It refuses
+///    requests for other servers or in an unsupported form. This comes before CORS, which would permit pages of a foreign name.
 /// 2. CORS, if origins are allowed. It comes before the token, which a browser does not send in a preflight.
-/// 3. `guard` refuses requests without the token, if there is one, and work for pages of other sites. It turns errors of libraries
-///    into problems: 405, refused upgrades and others. The layers up to here surround the router as a whole, because it adds
-///    `Allow` outside the layers of its routes.
+/// 3. `guard` refuses requests without the token, if there is one, and work for pages of other sites. A request that repeats an
+///    earlier one is answered from memory. Others go on in a span of the log. It turns errors of libraries into problems: 405, refused
+///    upgrades and others. The layers up to here surround the router as a whole, because it adds `Allow` outside the layers of its
+///    routes.
 /// 4. `measure` counts requests. It needs the route's template, so it is inside the router, and it is outside panics, to count them
 ///    too. It refuses a long URL before it is read.
 /// 5. A panic becomes a 500.
 ///
-/// A layer costs about a microsecond for each request, so checks share one where their order permits it.
+/// A layer of axum costs about a microsecond for each request, most of it for copies of the layers within. So these are functions that
+/// call the next one, and checks share one where their order permits it.
 ///
 /// HEAD needs no layer: the router answers it like GET without the body. Bodies are bounded where they are read.
 pub fn apply_layers(router: Router<App>, app: App) -> Router {
     let hosts = app.config.hosts().map(Into::into);
-    let edge = Arc::new(EdgeConfig { base: app.base_path.clone(), config: app.config.clone(), hosts });
-    let origins = &app.config.allow_origin;
-    let cors = (!origins.is_empty()).then(|| cors(origins));
+    let edge = Arc::new(EdgeConfig { base: app.base_path.clone(), hosts, app: app.clone() });
+    let measured = app.clone();
     let within = ServiceBuilder::new()
-        .layer(from_fn_with_state(app.clone(), measure))
-        .layer(CatchPanicLayer::custom(panic_to_problem));
-    let around = ServiceBuilder::new()
-        .layer(from_fn_with_state(edge.clone(), identify))
-        .layer(option_layer(cors))
-        .layer(from_fn_with_state(edge, guard));
-    Router::new().fallback_service(router.layer(within).with_state(app)).layer(around)
+        .layer_fn(move |mut route: CatchPanic<Route, PanicToProblem>| {
+            let app = measured.clone();
+            // The route begins when its answer is awaited.
+            service_fn(move |request| measure(app.clone(), Measured::of(&request), route.call(request)))
+        })
+        .layer(CatchPanicLayer::custom(panic_to_problem as PanicToProblem));
+    let routes = router.layer(within).with_state(app.clone());
+    let guarding = edge.clone();
+    let guarded = service_fn(move |request| guard(guarding.clone(), request, routes.clone()).map(Ok));
+    let origins = &app.config.allow_origin;
+    if origins.is_empty() {
+        Router::new().fallback_service(service_fn(move |request| identify(edge.clone(), request, guarded.clone())))
+    } else {
+        let guarded = cors(origins).layer(guarded);
+        Router::new().fallback_service(service_fn(move |request| identify(edge.clone(), request, guarded.clone())))
+    }
 }
+
+type PanicToProblem = fn(Box<dyn Any + Send + 'static>) -> Response;
 
 /// Settings of the outer layers.
 #[derive(Debug)]
 struct EdgeConfig {
     base: Arc<str>,
-    config: Arc<Config>,
+    app: App,
     /// Host names that are answered; None if every name is.
     hosts: Option<Vec<HostName>>,
 }
@@ -72,7 +86,7 @@ impl EdgeConfig {
     fn is_from_proxy(&self, request: &Request) -> bool {
         // Compares the whole address: an IPv6 peer is a network.
         let from = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(from)| from.ip());
-        from.is_some_and(|from| self.config.trust_proxy.iter().any(|proxies| proxies.has(from)))
+        from.is_some_and(|from| self.app.config.trust_proxy.iter().any(|proxies| proxies.has(from)))
     }
 
     /// The client: the peer of the connection or, behind a trusted proxy, the one that the proxy names.
@@ -106,32 +120,36 @@ fn cors(origins: &[Origin]) -> CorsLayer {
         .max_age(limits::PREFLIGHT_TIME)
 }
 
-async fn identify(State(edge): State<Arc<EdgeConfig>>, mut request: Request, next: Next) -> Response {
-    let begin = Instant::now();
+async fn identify(
+    edge: Arc<EdgeConfig>,
+    mut request: Request,
+    mut next: impl Service<Request, Response = Response, Error = Infallible>,
+) -> Result<Response, Infallible> {
     let peer = edge.peer(&request);
     request.extensions_mut().insert(peer);
     if edge.is_from_proxy(&request) {
         request.extensions_mut().insert(host::FromProxy);
     }
-    let logged = edge.config.access_log.then(|| (request.method().clone(), request.uri().clone()));
+    let logged = edge.app.config.access_log.then(|| (Instant::now(), request.method().clone(), request.uri().clone()));
     let context = RequestContext::new(request.headers(), edge.base.clone());
+    let id = context.header();
     let mut response = match strip_base(request.uri_mut(), &edge.base) {
         Ok(()) => {
             let answer = async {
                 match check_address(&edge, &request) {
-                    Ok(()) => next.run(request).await,
-                    Err(problem) => problem.into_response(),
+                    Ok(()) => next.call(request).await,
+                    Err(problem) => Ok(problem.into_response()),
                 }
             };
-            context.clone().scope(answer).instrument(request_span(&context.id)).await
+            context.scope(answer).await?
         }
         Err(elsewhere) => elsewhere.into_response(),
     };
     add_common_headers(response.headers_mut());
-    response.headers_mut().insert(REQUEST_ID, context.header());
-    if let Some((method, uri)) = logged {
+    response.headers_mut().insert(REQUEST_ID, id);
+    if let Some((begin, method, uri)) = logged {
         let entry = AccessLogEntry {
-            id: &context.id,
+            id: response.headers()[REQUEST_ID].to_str().unwrap_or_default(),
             peer: peer.address(),
             method: method.as_str(),
             target: &redacted(&uri),
@@ -140,7 +158,7 @@ async fn identify(State(edge): State<Arc<EdgeConfig>>, mut request: Request, nex
         };
         entry.write();
     }
-    response
+    Ok(response)
 }
 
 /// The target up to a token in it, however the parameter's name is encoded.
@@ -190,16 +208,19 @@ fn strip_base(uri: &mut Uri, base: &str) -> Result<(), Redirect> {
 
 const BUILD_HEADER: HeaderName = HeaderName::from_static("equipoise-build");
 
+/// Headers that every answer has.
+const COMMON_HEADERS: [(HeaderName, HeaderValue); 4] = [
+    (BUILD_HEADER, HeaderValue::from_static(BUILD)),
+    (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(CONTENT_SECURITY_POLICY)),
+    (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
+    (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
+];
+
 /// Adds the headers that every answer has.
 pub fn add_common_headers(headers: &mut HeaderMap) {
-    for (name, value) in [
-        (BUILD_HEADER, BUILD),
-        (header::CONTENT_SECURITY_POLICY, CONTENT_SECURITY_POLICY),
-        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
-        (header::REFERRER_POLICY, "no-referrer"),
-    ] {
+    for (name, value) in COMMON_HEADERS {
         // A page may have a policy of its own.
-        headers.entry(name).or_insert(HeaderValue::from_static(value));
+        headers.entry(name).or_insert(value);
     }
 }
 
@@ -216,16 +237,43 @@ fn check_address(edge: &EdgeConfig, request: &Request) -> Result<(), Problem> {
     transfer::check(headers)
 }
 
-async fn guard(State(edge): State<Arc<EdgeConfig>>, request: Request, next: Next) -> Response {
+async fn guard(edge: Arc<EdgeConfig>, request: Request, mut routes: Router) -> Response {
     let (method, uri) = (request.method().clone(), request.uri().clone());
-    let response = match refusal(&edge.config, &request) {
+    let response = match refusal(&edge.app.config, &request) {
         Some(answer) => answer,
-        None => next.run(request).await,
+        None => {
+            let app = &edge.app;
+            let name = repeats::name_of(&request);
+            if let Some(again) = name.as_ref().and_then(|name| repeated(app, &request, name)) {
+                return again;
+            }
+            let id = RequestContext::current().map_or_else(Span::none, |context| request_span(context.id()));
+            let Ok(mut response) = async { routes.call(request).await }.instrument(id).await;
+            if let (Some(name), Some(kept)) = (name, response.extensions_mut().remove::<KeptAnswer>()) {
+                app.answers.expect_again(name, kept);
+            }
+            response
+        }
     };
     let status = response.status();
     let is_error = status.is_client_error() || status.is_server_error();
     let is_problem = !is_error || response.headers().get(header::CONTENT_TYPE) == Some(&MEDIA_TYPE);
     if is_problem { response } else { to_problem(response, &method, &uri).await }
+}
+
+/// The answer from memory to a request that repeats an earlier one. It is counted as if it had been read again.
+fn repeated(app: &App, request: &Request, name: &[u8]) -> Option<Response> {
+    let begin = Instant::now();
+    let kept = app.answers.repeated(name)?;
+    let client = (peer(request.extensions()), kept.tag.if_none_match(request.headers()));
+    let mut response = kept.respond(&app.answers, client)?;
+    // As the router does.
+    if let Some(bytes) = response.body().size_hint().exact() {
+        response.headers_mut().insert(header::CONTENT_LENGTH, bytes.into());
+    }
+    let (method, status) = (request.method().as_str(), response.status().as_u16());
+    app.metrics.record(method, kept.route.clone().into(), status, begin.elapsed());
+    Some(response)
 }
 
 /// Refuses a request without the token, or work for a page of another site. A browser that brings the token is redirected with its
@@ -257,13 +305,41 @@ fn require_token(token: &Token, request: &Request) -> Option<Response> {
     Some(Problem::unauthorized().into_response())
 }
 
-async fn measure(State(app): State<App>, route: Option<MatchedPath>, request: Request, next: Next) -> Response {
-    let (begin, method) = (Instant::now(), request.method().clone());
-    let bytes = request.uri().path_and_query().map_or(0, |path| path.as_str().len());
-    let response =
-        if bytes > limits::URL_BYTES { Problem::url_too_long(bytes).into_response() } else { next.run(request).await };
+/// Part of a request that is counted, or refused for its length.
+struct Measured {
+    begin: Instant,
+    method: Method,
+    route: Option<MatchedPath>,
+    /// Length of the target.
+    bytes: usize,
+}
+
+impl Measured {
+    fn of(request: &Request) -> Self {
+        Self {
+            begin: Instant::now(),
+            method: request.method().clone(),
+            route: request.extensions().get().cloned(),
+            bytes: request.uri().path_and_query().map_or(0, |path| path.as_str().len()),
+        }
+    }
+}
+
+async fn measure<A: IntoResponse>(
+    app: App,
+    Measured { begin, method, route, bytes }: Measured,
+    answer: impl Future<Output = Result<A, Infallible>>,
+) -> Result<Response, Infallible> {
+    let mut response = if bytes > limits::URL_BYTES {
+        Problem::url_too_long(bytes).into_response()
+    } else {
+        answer.await?.into_response()
+    };
+    if let Some(kept) = response.extensions_mut().get_mut::<KeptAnswer>() {
+        kept.route.clone_from(&route);
+    }
     app.metrics.record(method.as_str(), route.into(), response.status().as_u16(), begin.elapsed());
-    response
+    Ok(response)
 }
 
 /// Turns an error of a library into a problem.

@@ -1,5 +1,6 @@
 //! The state that all routes share: the pool, the configuration, what is counted, and the way to a clean stop.
 
+use std::ops::Deref;
 use std::sync::Arc;
 
 use axum::extract::FromRef;
@@ -13,7 +14,11 @@ use crate::limits::Limits;
 
 /// State of the server, shared by all routes. Cheap to clone.
 #[derive(Debug, Clone)]
-pub struct App {
+pub struct App(Arc<AppState>);
+
+/// See [`App`].
+#[derive(Debug)]
+pub struct AppState {
     /// Runs CPU-bound work.
     pub pool: Pool,
     /// Answers of pure work, in memory and under way.
@@ -26,7 +31,15 @@ pub struct App {
     pub base_path: Arc<str>,
     /// Counters shown at `/metrics`.
     pub metrics: Arc<Metrics>,
-    closing: Arc<watch::Sender<bool>>,
+    closing: watch::Sender<bool>,
+}
+
+impl Deref for App {
+    type Target = AppState;
+
+    fn deref(&self) -> &AppState {
+        &self.0
+    }
 }
 
 impl App {
@@ -34,15 +47,15 @@ impl App {
     pub fn new(config: &Config) -> Self {
         let pool = Pool::new(config.permits(), &config.limits);
         let answers = Answers::new(&pool, config.limits.answer_cache);
-        Self {
+        Self(Arc::new(AppState {
             metrics: Arc::new(Metrics::new(&pool, answers.counts())),
             pool,
             answers,
             live_quota: FairQuota::new(config.limits.live_sessions),
             config: Arc::new(config.clone()),
             base_path: config.base_path.as_str().into(),
-            closing: Arc::new(watch::Sender::new(false)),
-        }
+            closing: watch::Sender::new(false),
+        }))
     }
 
     /// Announces that the server is about to stop: it is no longer ready, and live runs end.

@@ -25,6 +25,13 @@ use crate::limits::Limits;
 /// Admits work and runs it. Cheap to clone; clones share their permits.
 #[derive(Debug, Clone)]
 pub struct Pool {
+    shared: Arc<SharedPool>,
+    /// The client that the work is for.
+    peer: Peer,
+}
+
+#[derive(Debug)]
+struct SharedPool {
     /// Quota of jobs that run or wait.
     admission: FairQuota,
     /// Permits to run.
@@ -35,8 +42,6 @@ pub struct Pool {
     results: FairQuota,
     count: usize,
     queue_time: Duration,
-    /// The client that the work is for.
-    peer: Peer,
     running: Gauge,
     queued: Gauge,
 }
@@ -81,17 +86,17 @@ impl std::error::Error for Overloaded {}
 impl Pool {
     /// A pool that runs `permits` jobs at a time.
     pub fn new(permits: usize, limits: &Limits) -> Self {
-        Self {
+        let shared = SharedPool {
             admission: FairQuota::new(permits * (1 + limits.queue)),
             queue: FairQueue::new(permits),
             inline: InlineSlots::new(permits),
             results: FairQuota::new(limits.held_bytes),
             count: permits,
             queue_time: limits.queue_time,
-            peer: Peer::NOBODY,
             running: Gauge::default(),
             queued: Gauge::default(),
-        }
+        };
+        Self { shared: Arc::new(shared), peer: Peer::NOBODY }
     }
 
     /// The same pool, for the work of this peer.
@@ -101,17 +106,17 @@ impl Pool {
 
     /// Accounts an answer to the peer until it is dropped.
     pub fn hold<T: AsRef<[u8]>>(&self, result: T) -> HeldBytes<T> {
-        HeldBytes { _reservation: self.results.charge(self.peer, result.as_ref().len()), result }
+        HeldBytes { _reservation: self.shared.results.charge(self.peer, result.as_ref().len()), result }
     }
 
     /// Number of running jobs.
     pub fn running(&self) -> &Gauge {
-        &self.running
+        &self.shared.running
     }
 
     /// Number of waiting jobs.
     pub fn queued(&self) -> &Gauge {
-        &self.queued
+        &self.shared.queued
     }
 
     /// Runs `work`: at once on this thread if its price is low, else on a worker thread. Work that takes longer than its price says
@@ -137,7 +142,7 @@ impl Pool {
     /// Runs `work` on this thread as soon as the peer has a slot. Returns None if it takes too long.
     pub async fn run_inline<T>(&self, work: impl FnOnce(&TimeSlice) -> T) -> Option<T> {
         let _slot = self.inline_slot().await;
-        let _running = GaugeGuard::new(&self.running);
+        let _running = GaugeGuard::new(&self.shared.running);
         let slice = TimeSlice::inline();
         let result = work(&slice);
         (!slice.overran()).then_some(result)
@@ -145,7 +150,7 @@ impl Pool {
 
     /// Waits for the right to work on this thread, up to the next await.
     pub async fn inline_slot(&self) -> InlineSlot {
-        self.inline.acquire(self.peer).await
+        self.shared.inline.acquire(self.peer).await
     }
 
     /// Runs `work` on a worker thread, in time slices. Cancellation and panics are as in [`Pool::run`].
@@ -158,7 +163,7 @@ impl Pool {
         E: From<Overloaded> + Send + 'static,
     {
         let (reservation, permit) = self.admit().await?;
-        let (queue, key, runtime) = (self.queue.clone(), QueueKey::Short(self.peer), Handle::current());
+        let (queue, key, runtime) = (self.shared.queue.clone(), QueueKey::Short(self.peer), Handle::current());
         // The permit goes to the worker: it becomes free when the work ends, not when the future is dropped.
         let work = move |cancel: &CancelFlag| work(&TimeSlice::permitted(cancel.clone(), permit, queue, key, runtime));
         self.spawn_worker(reservation, work).await
@@ -175,7 +180,8 @@ impl Pool {
         E: From<Overloaded> + Send + 'static,
     {
         let (reservation, _) = self.admit().await?;
-        let (queue, peer, threads, runtime) = (self.queue.clone(), self.peer, self.count, Handle::current());
+        let (queue, peer, threads, runtime) =
+            (self.shared.queue.clone(), self.peer, self.shared.count, Handle::current());
         let work =
             move |cancel: &CancelFlag| work(&TimeSlices { cancel: cancel.clone(), queue, peer, threads, runtime });
         self.spawn_worker(reservation, work).await
@@ -193,7 +199,7 @@ impl Pool {
     {
         let waiting = CancelOnDrop(CancelFlag::default());
         let cancel = waiting.0.clone();
-        let running = GaugeGuard::new(&self.running);
+        let running = GaugeGuard::new(&self.shared.running);
         let span = Span::current();
         let task = spawn_blocking(move || {
             let _held = (held, running);
@@ -208,15 +214,15 @@ impl Pool {
     }
 
     async fn admit(&self) -> Result<(Reservation, Permit), Overloaded> {
-        self.results.check(self.peer).map_err(Overloaded::UnreadAnswers)?;
-        let reservation = self.admission.try_reserve(self.peer).map_err(Overloaded::QueueFull)?;
-        if let Some(permit) = self.queue.try_acquire() {
+        self.shared.results.check(self.peer).map_err(Overloaded::UnreadAnswers)?;
+        let reservation = self.shared.admission.try_reserve(self.peer).map_err(Overloaded::QueueFull)?;
+        if let Some(permit) = self.shared.queue.try_acquire() {
             return Ok((reservation, permit));
         }
-        let _queued = GaugeGuard::new(&self.queued);
-        match timeout(self.queue_time, self.queue.acquire(QueueKey::Short(self.peer))).await {
+        let _queued = GaugeGuard::new(&self.shared.queued);
+        match timeout(self.shared.queue_time, self.shared.queue.acquire(QueueKey::Short(self.peer))).await {
             Ok(permit) => Ok((reservation, permit)),
-            Err(_) => Err(Overloaded::QueueTimeout { waited_s: self.queue_time.as_secs() }),
+            Err(_) => Err(Overloaded::QueueTimeout { waited_s: self.shared.queue_time.as_secs() }),
         }
     }
 }

@@ -205,7 +205,7 @@ impl Serialize for Problem {
             map.serialize_entry("errors", &parts.errors)?;
         }
         if let Some(context) = &context {
-            map.serialize_entry("request_id", &*context.id)?;
+            map.serialize_entry("request_id", context.id())?;
         }
         map.end()
     }

@@ -15,10 +15,12 @@ use tower_http::set_header::SetResponseHeaderLayer;
 
 use crate::api::app::App;
 use crate::api::ops::link_preview;
-use crate::http::Problem;
+use crate::http::response::etag::EntityTag;
 use crate::http::response::negotiate::Encoding;
+use crate::http::response::repeats::KeptAnswer;
 use crate::http::response::static_asset::StaticAsset;
-use crate::http::response::{gzip, negotiate, static_asset};
+use crate::http::response::{gzip, negotiate};
+use crate::http::{Problem, peer};
 
 include!(concat!(env!("OUT_DIR"), "/assets.rs"));
 
@@ -92,9 +94,18 @@ async fn page(
     (media_type, html): (&'static str, &'static [u8]),
 ) -> Result<Response<Body>, Problem> {
     let encoding = negotiate::encoding(&parts.headers)?;
-    let name = link_preview::name(app, parts, encoding);
-    if let Some(kept) = app.answers.kept(&name) {
-        return Ok(static_asset::answer_encoded(media_type, (encoding, &kept), &parts.headers));
+    let name = Bytes::from(link_preview::name(app, parts, encoding));
+    let kept = |bytes: &Bytes| {
+        let tag = EntityTag::of(&[media_type.as_bytes(), bytes]);
+        KeptAnswer { name: name.clone(), is_permanent: false, media_type, encoding, tag, route: None }
+    };
+    let held = |kept: &KeptAnswer| (peer(&parts.extensions), kept.tag.if_none_match(&parts.headers));
+    if let Some(page) = app.answers.find(false, &name) {
+        let kept = kept(&page);
+        let client = held(&kept);
+        if let Some(response) = kept.respond_repeatably(&app.answers, client) {
+            return Ok(response);
+        }
     }
     let tags = link_preview::tags(app, parts).await;
     let page = link_preview::with_tags(html, &tags.html);
@@ -103,9 +114,10 @@ async fn page(
         Encoding::Gzip => gzip::gzip_best(&page),
     });
     if tags.is_whole {
-        app.answers.keep(name.into(), sent.clone());
+        app.answers.keep(name.clone(), sent.clone());
     }
-    Ok(static_asset::answer_encoded(media_type, (encoding, &sent), &parts.headers))
+    let kept = kept(&sent);
+    Ok(kept.with_bytes(&app.answers, held(&kept), sent))
 }
 
 /// The files of a folder and its folders, by their paths from `root`. Skips what cannot be read and names with a brace, which

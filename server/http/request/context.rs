@@ -19,8 +19,8 @@ tokio::task_local! {
 /// The context of a request, which problems show.
 #[derive(Debug, Clone)]
 pub struct RequestContext {
-    /// Id of the request: letters, digits and `-._`.
-    pub id: Arc<str>,
+    /// Id of the request as the value of a header: letters, digits and `-._`.
+    id: HeaderValue,
     /// Path in front of every other path, as clients see it.
     pub base: Arc<str>,
 }
@@ -28,10 +28,11 @@ pub struct RequestContext {
 impl RequestContext {
     /// The context of a request with these headers. The id is the one that a proxy or the client chose, or a new one.
     pub fn new(headers: &HeaderMap, base: Arc<str>) -> Self {
-        let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._".contains(&byte);
-        let is_fine = |id: &&str| (1..=limits::REQUEST_ID_BYTES).contains(&id.len()) && id.bytes().all(is_plain);
-        let chosen = headers.get(REQUEST_ID).and_then(|id| id.to_str().ok()).filter(is_fine);
-        Self { id: chosen.map_or_else(fresh, Arc::from), base }
+        let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"-._".contains(byte);
+        let is_fine = |id: &&HeaderValue| {
+            (1..=limits::REQUEST_ID_BYTES).contains(&id.len()) && id.as_bytes().iter().all(is_plain)
+        };
+        Self { id: headers.get(REQUEST_ID).filter(is_fine).cloned().unwrap_or_else(fresh), base }
     }
 
     /// Runs `future` in this context.
@@ -44,20 +45,28 @@ impl RequestContext {
         CURRENT.try_with(Clone::clone).ok()
     }
 
+    /// Id of the request: letters, digits and `-._`.
+    pub fn id(&self) -> &str {
+        self.id.to_str().expect(IS_PLAIN)
+    }
+
     /// The id as the value of a header.
     pub fn header(&self) -> HeaderValue {
-        HeaderValue::from_str(&self.id).expect("an id is letters, digits and -._")
+        self.id.clone()
     }
 }
 
+const IS_PLAIN: &str = "an id is letters, digits and -._";
+
 /// A new id. It is unique in this process, and very probably elsewhere.
-fn fresh() -> Arc<str> {
+fn fresh() -> HeaderValue {
     static COUNT: AtomicU64 = AtomicU64::new(1);
-    static PROCESS: LazyLock<u64> = LazyLock::new(|| {
+    static PROCESS: LazyLock<String> = LazyLock::new(|| {
         let begin = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
-        xxhash_rust::xxh3::xxh3_64(format!("{begin} {}", std::process::id()).as_bytes())
+        format!("{:016x}-", xxhash_rust::xxh3::xxh3_64(format!("{begin} {}", std::process::id()).as_bytes()))
     });
-    format!("{:016x}-{}", *PROCESS, COUNT.fetch_add(1, Ordering::Relaxed)).into()
+    let id = [PROCESS.as_str(), &COUNT.fetch_add(1, Ordering::Relaxed).to_string()].concat();
+    HeaderValue::try_from(id).expect(IS_PLAIN)
 }
 
 #[cfg(test)]
@@ -68,9 +77,9 @@ mod tests {
     fn an_id_is_taken_only_where_it_can_stand_in_a_log() {
         let id = |value: &'static [u8]| {
             let headers = [(REQUEST_ID, HeaderValue::from_bytes(value).unwrap())].into_iter().collect();
-            RequestContext::new(&headers, "".into()).id
+            RequestContext::new(&headers, "".into()).id().to_owned()
         };
-        assert_eq!(&*id(b"a-1.b_2"), "a-1.b_2");
+        assert_eq!(id(b"a-1.b_2"), "a-1.b_2");
         for hostile in [b"".as_slice(), b"a b", b"a\"b", b"\xff", &[b'x'; 65]] {
             let made = id(hostile);
             assert!(made.len() > 16 && made.bytes().all(|byte| byte.is_ascii_hexdigit() || byte == b'-'), "{made}");

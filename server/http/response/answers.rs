@@ -7,6 +7,7 @@
 
 use std::collections::HashMap;
 use std::fmt;
+use std::panic::AssertUnwindSafe;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
 
@@ -20,6 +21,7 @@ use quick_cache::{OptionsBuilder, Weighter};
 
 use crate::compute::{Peer, Pool};
 use crate::http::problem::Problem;
+use crate::http::response::repeats::{KeptAnswer, NameHash, Repeats};
 use crate::limits;
 
 /// Kept answers, answers under way, and the pool that computes them. Cheap to clone; clones share their answers.
@@ -39,13 +41,15 @@ pub struct AnswerCounts {
     pub misses: Counter,
     /// Requests that waited for an answer which another one had begun.
     pub joined: Counter,
-    /// Bytes of kept answers, with their names.
+    /// Bytes of kept answers, with their names and the requests for them.
     pub bytes: Gauge,
 }
 
 struct SharedAnswers {
     /// None if no memory is granted.
-    kept: Option<Cache<Bytes, Bytes, InBytes>>,
+    kept: Option<Cache<Bytes, Bytes, InBytes, NameHash>>,
+    /// Requests for kept answers; None as above.
+    repeats: Option<Repeats>,
     /// Answers that depend on the build alone. They are few, and never dropped.
     permanent: RwLock<HashMap<Bytes, Bytes>>,
     /// Answers under way by name; of several with one name the newest.
@@ -65,17 +69,24 @@ struct Running {
 impl Answers {
     /// No answers yet, in at most so many bytes of memory. Without memory, each request is computed for itself.
     pub fn new(pool: &Pool, bytes: usize) -> Self {
+        let for_repeats = bytes / limits::REPEATS_SHARE;
+        let for_answers = bytes - for_repeats;
         let options = || {
             OptionsBuilder::new()
                 .shards(limits::ANSWER_CACHE_SHARDS)
-                .estimated_items_capacity(bytes.div_ceil(limits::ANSWER_CACHE_TYPICAL_BYTES))
-                .weight_capacity(bytes as u64)
+                .estimated_items_capacity(for_answers.div_ceil(limits::ANSWER_CACHE_TYPICAL_BYTES))
+                .weight_capacity(for_answers as u64)
                 .build()
                 .expect("both capacities are set")
         };
-        let kept = (bytes > 0).then(|| Cache::with_options(options(), InBytes, Default::default(), Default::default()));
-        let counts = AnswerCounts::default();
-        let shared = SharedAnswers { kept, permanent: RwLock::default(), running: Mutex::default(), counts };
+        let is_on = bytes > 0;
+        let shared = SharedAnswers {
+            kept: is_on.then(|| Cache::with_options(options(), InBytes, NameHash::default(), Default::default())),
+            repeats: is_on.then(|| Repeats::new(for_repeats)),
+            permanent: RwLock::default(),
+            running: Mutex::default(),
+            counts: AnswerCounts::default(),
+        };
         Self { pool: pool.clone(), shared: Arc::new(shared), is_permanent: false }
     }
 
@@ -94,13 +105,26 @@ impl Answers {
         self.pool.for_peer(peer)
     }
 
-    /// The kept answer of this name.
-    pub(crate) fn kept(&self, name: &[u8]) -> Option<Bytes> {
-        let answer = self.find(name);
+    /// Tells whether [`Answers::permanent`] was called.
+    pub(crate) fn is_permanent(&self) -> bool {
+        self.is_permanent
+    }
+
+    /// The kept answer of this name, to be sent.
+    pub(crate) fn kept(&self, is_permanent: bool, name: &[u8]) -> Option<Bytes> {
+        let answer = self.find(is_permanent, name);
         if answer.is_some() {
             self.shared.counts.hits.inc();
         }
         answer
+    }
+
+    /// The kept answer of this name, not counted.
+    pub(crate) fn find(&self, is_permanent: bool, name: &[u8]) -> Option<Bytes> {
+        if is_permanent {
+            return self.shared.permanent.read().unwrap_or_else(PoisonError::into_inner).get(name).cloned();
+        }
+        self.shared.kept.as_ref()?.get(name)
     }
 
     /// Keeps an answer, if it is not too large.
@@ -112,24 +136,33 @@ impl Answers {
         let Some(kept) = self.shared.kept.as_ref() else { return };
         if answer.len() <= limits::KEPT_ANSWER_BYTES {
             kept.insert(name, answer);
-            self.shared.counts.bytes.set(i64::try_from(kept.weight()).unwrap_or(i64::MAX));
+            self.shared.count_bytes();
         }
     }
 
-    /// The answer of this name: from memory, from the computation of another request, or computed by `compute`.
+    /// The kept answer to a request that is known by this name (see [`repeats::name_of`]).
+    pub(crate) fn repeated(&self, request: &[u8]) -> Option<Arc<KeptAnswer>> {
+        self.shared.repeats.as_ref()?.find(request)
+    }
+
+    /// Keeps the answer to a request that is known by this name.
+    pub(crate) fn expect_again(&self, request: Vec<u8>, answer: KeptAnswer) {
+        if let Some(repeats) = &self.shared.repeats {
+            repeats.insert(request, answer);
+            self.shared.count_bytes();
+        }
+    }
+
+    /// The answer of this name, which was not in memory: from the computation of another request, or computed by `compute`.
     pub(crate) async fn once<Work>(
         &self,
         peer: Peer,
-        name: Vec<u8>,
+        name: Bytes,
         compute: impl FnOnce(Pool, Ticket) -> Work,
     ) -> Result<Bytes, Problem>
     where
         Work: Future<Output = Result<Vec<u8>, Problem>> + Send + 'static,
     {
-        if let Some(answer) = self.kept(&name) {
-            return Ok(answer);
-        }
-        let name = Bytes::from(name.into_boxed_slice());
         let ticket = || Ticket { answers: self.clone(), name: name.clone(), has_begun: Arc::default() };
         if !self.is_permanent && self.shared.kept.is_none() {
             return compute(self.pool(peer), ticket()).await.map(Bytes::from);
@@ -145,8 +178,7 @@ impl Answers {
                 }
                 None => {
                     // It may have been kept since it was looked for: answers are kept first, and then no longer under way.
-                    if let Some(answer) = self.find(&name) {
-                        self.shared.counts.hits.inc();
+                    if let Some(answer) = self.kept(self.is_permanent, &name) {
                         return Ok(answer);
                     }
                     self.shared.counts.misses.inc();
@@ -169,7 +201,12 @@ impl Answers {
     ) -> Shared<Computation> {
         let entry = RunningEntry(ticket.clone());
         let computation = async move {
-            let answer = Bytes::from(work.await?.into_boxed_slice());
+            // A panic would leave the other requests waiting. The panic itself is already in the log.
+            let computed = AssertUnwindSafe(work).catch_unwind().await.unwrap_or_else(|_| {
+                tracing::error!("the request failed with a panic");
+                Err(Problem::internal())
+            });
+            let answer = Bytes::from(computed?.into_boxed_slice());
             let RunningEntry(Ticket { answers, name, .. }) = &entry;
             answers.keep(name.clone(), answer.clone());
             Ok(answer)
@@ -177,15 +214,16 @@ impl Answers {
         computation.boxed().shared()
     }
 
-    fn find(&self, name: &[u8]) -> Option<Bytes> {
-        if self.is_permanent {
-            return self.shared.permanent.read().unwrap_or_else(PoisonError::into_inner).get(name).cloned();
-        }
-        self.shared.kept.as_ref()?.get(name)
-    }
-
     fn running(&self) -> MutexGuard<'_, HashMap<Bytes, Running>> {
         self.shared.running.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl SharedAnswers {
+    fn count_bytes(&self) {
+        let kept = self.kept.as_ref().map_or(0, Cache::weight);
+        let repeats = self.repeats.as_ref().map_or(0, Repeats::bytes);
+        self.counts.bytes.set(i64::try_from(kept + repeats).unwrap_or(i64::MAX));
     }
 }
 
@@ -208,11 +246,11 @@ impl Ticket {
     /// has kept it meanwhile.
     pub(crate) fn begin(&self) -> Option<Bytes> {
         self.has_begun.store(true, Ordering::Relaxed);
-        self.answers.find(&self.name)
+        self.answers.find(self.answers.is_permanent, &self.name)
     }
 }
 
-/// Removes a computation from those under way when it ends, is cancelled or panics.
+/// Removes a computation from those under way when it ends or is cancelled.
 struct RunningEntry(Ticket);
 
 impl Drop for RunningEntry {
@@ -232,5 +270,60 @@ struct InBytes;
 impl Weighter<Bytes, Bytes> for InBytes {
     fn weight(&self, name: &Bytes, answer: &Bytes) -> u64 {
         (name.len() + answer.len() + limits::KEPT_ANSWER_OVERHEAD) as u64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::Limits;
+    use tokio::sync::oneshot;
+
+    /// Two requests of one client for an answer that is computed by `work` once both wait.
+    async fn waiting_for(
+        answers: &Answers,
+        work: impl FnOnce() -> Result<Vec<u8>, Problem> + Send + 'static,
+    ) -> [Result<Bytes, Problem>; 2] {
+        let (go, wait) = oneshot::channel();
+        let ask = |answers: Answers| async move {
+            let compute = |_, ticket: Ticket| async move {
+                ticket.begin();
+                wait.await.unwrap();
+                work()
+            };
+            answers.once(Peer::NOBODY, Bytes::from_static(b"name"), compute).await
+        };
+        let first = tokio::spawn(ask(answers.clone()));
+        while answers.counts().misses.get() == 0 {
+            tokio::task::yield_now().await;
+        }
+        let again = answers.clone();
+        let second = tokio::spawn(async move {
+            let never = async |_: Pool, _: Ticket| -> Result<Vec<u8>, Problem> { unreachable!("it joins the first") };
+            again.once(Peer::NOBODY, Bytes::from_static(b"name"), never).await
+        });
+        while answers.counts().joined.get() == 0 {
+            tokio::task::yield_now().await;
+        }
+        go.send(()).unwrap();
+        [first.await.unwrap(), second.await.unwrap()]
+    }
+
+    #[tokio::test]
+    async fn all_who_wait_get_the_answer_the_error_or_the_panic() {
+        type Work = fn() -> Result<Vec<u8>, Problem>;
+        let works: [(Work, Result<&[u8], u16>); 3] = [
+            (|| Ok(b"answer".to_vec()), Ok(b"answer")),
+            (|| Err(Problem::not_readable("on purpose")), Err(400)),
+            (|| panic!("on purpose"), Err(500)),
+        ];
+        for (work, expected) in works {
+            let answers = Answers::new(&Pool::new(1, &Limits::default()), 1 << 20);
+            for answer in waiting_for(&answers, work).await {
+                assert_eq!(answer.as_deref().map_err(|problem| problem.status().as_u16()), expected);
+            }
+            assert!(answers.running().is_empty());
+            assert_eq!(answers.find(false, b"name").is_some(), expected.is_ok());
+        }
     }
 }

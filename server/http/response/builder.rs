@@ -1,29 +1,50 @@
 //! Responses without the headers of a resource: a body with its description, or a status alone.
 
 use axum::body::Body;
-use axum::http::{HeaderValue, Response, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, Response, StatusCode, header};
 
+use crate::http::response::etag::EntityTag;
 use crate::http::response::negotiate::Encoding;
 
 /// `Cache-Control` of answers that may be kept and are revalidated at each use, which costs no work.
-pub(crate) const REVALIDATED: HeaderValue = HeaderValue::from_static("public, max-age=0, must-revalidate");
+const REVALIDATED: HeaderValue = HeaderValue::from_static("public, max-age=0, must-revalidate");
+
+const VARY: HeaderValue = HeaderValue::from_static("Accept, Accept-Encoding");
+
+const GZIP: HeaderValue = HeaderValue::from_static("gzip");
+
+/// Headers of most answers. A map that grows is made anew.
+const HEADERS: usize = 12;
 
 /// 200 with a body and the headers that describe it.
 pub(crate) fn ok(media_type: &'static str, encoding: Encoding, bytes: impl Into<Body>) -> Response<Body> {
-    let mut response = Response::new(bytes.into());
+    let mut response = with_room(bytes.into());
     let headers = response.headers_mut();
     headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(media_type));
-    headers.insert(header::VARY, HeaderValue::from_static("Accept, Accept-Encoding"));
+    headers.insert(header::VARY, VARY);
     if encoding == Encoding::Gzip {
-        headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
+        headers.insert(header::CONTENT_ENCODING, GZIP);
     }
     response
 }
 
 /// A status without a body, with the same `Vary`.
 pub(crate) fn status_only(status: StatusCode) -> Response<Body> {
-    let mut response = Response::new(Body::empty());
+    let mut response = with_room(Body::empty());
     *response.status_mut() = status;
-    response.headers_mut().insert(header::VARY, HeaderValue::from_static("Accept, Accept-Encoding"));
+    response.headers_mut().insert(header::VARY, VARY);
+    response
+}
+
+/// A response with its entity tag, to be revalidated.
+pub(crate) fn with_tag(mut response: Response<Body>, tag: &EntityTag) -> Response<Body> {
+    response.headers_mut().insert(header::ETAG, tag.header());
+    response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);
+    response
+}
+
+fn with_room(body: Body) -> Response<Body> {
+    let mut response = Response::new(body);
+    *response.headers_mut() = HeaderMap::with_capacity(HEADERS);
     response
 }

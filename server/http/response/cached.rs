@@ -6,16 +6,17 @@
 use axum::body::{Body, Bytes};
 use axum::http::{HeaderValue, Response, StatusCode, header};
 
-use crate::compute::{Pool, Price, TimeSlice, TimeSlices};
+use crate::compute::{Peer, Pool, Price, TimeSlice, TimeSlices};
 use crate::http::problem::Problem;
 use crate::http::request::api_request::ApiRequest;
 use crate::http::request::scalar::Source;
 use crate::http::response::answers::{Answers, Ticket};
-use crate::http::response::builder::{REVALIDATED, ok, status_only};
+use crate::http::response::builder::{ok, status_only, with_tag};
 use crate::http::response::etag::{EntityTag, IfNoneMatch};
 use crate::http::response::gzip;
 use crate::http::response::negotiate;
 use crate::http::response::negotiate::{Encoding, Format};
+use crate::http::response::repeats::KeptAnswer;
 use crate::http::response::streaming::{BodyWriter, collect_in_slices, stream_in_slices, stream_on_worker};
 use crate::{BUILD, limits};
 
@@ -44,8 +45,7 @@ impl ApiRequest {
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
         let work = |pool, ticket| compute_whole(pool, ticket, (format, encoding), price, compute);
-        let answer = self.kept_or_computed(answers, resource, (format, encoding), canonical, work);
-        self.with_entity_tag(resource, (format, encoding), canonical, answer).await
+        self.kept_or_computed(answers, resource, (format, encoding), canonical, work).await
     }
 
     /// The same for long work, which `compute` does in time slices. Formats in `streamed` are sent piece by piece, and are not kept.
@@ -60,16 +60,21 @@ impl ApiRequest {
         let (format, encoding) = self.negotiate(resource)?;
         if streamed.contains(&format) {
             let pool = answers.pool(self.peer);
-            let answer = stream_in_slices(&pool, (format, encoding), compute);
-            return self.with_entity_tag(resource, (format, encoding), canonical, answer).await;
+            let tag = tag(resource, (format, encoding), canonical);
+            let answer = || stream_in_slices(&pool, (format, encoding), compute);
+            let response = match self.held(&tag) {
+                IfNoneMatch::Match => status_only(StatusCode::NOT_MODIFIED),
+                // Only then is it known that there is an answer.
+                IfNoneMatch::Any => answer().await.map(|_| status_only(StatusCode::NOT_MODIFIED))?,
+                IfNoneMatch::NoMatch => answer().await?,
+            };
+            return Ok(with_tag(response, &tag));
         }
         let work = |pool, ticket: Ticket| collect_in_slices(pool, ticket, (format, encoding), compute);
-        let answer = self.kept_or_computed(answers, resource, (format, encoding), canonical, work);
-        self.with_entity_tag(resource, (format, encoding), canonical, answer).await
+        self.kept_or_computed(answers, resource, (format, encoding), canonical, work).await
     }
 
-    /// An answer from memory, from the computation of another request, or computed by `work`. It counts as the client's until it is
-    /// sent.
+    /// 304 if the client has the answer, else the answer: from memory, from the computation of another request, or computed by `work`.
     async fn kept_or_computed<Work: Future<Output = Result<Vec<u8>, Problem>> + Send + 'static>(
         &self,
         answers: &Answers,
@@ -80,32 +85,21 @@ impl ApiRequest {
     ) -> Result<Response<Body>, Problem> {
         // Zeros separate the words, none of which has one.
         let words = [resource.name, format.name(), encoding.name()].map(str::as_bytes);
-        let name = [words[0], words[1], words[2], canonical].join(&0);
+        let name = Bytes::from([words[0], words[1], words[2], canonical].join(&0).into_boxed_slice());
+        let tag = tag(resource, (format, encoding), canonical);
+        let client = (self.peer, self.held(&tag));
+        let (is_permanent, media_type) = (answers.is_permanent(), format.media_type());
+        let kept = KeptAnswer { name: name.clone(), is_permanent, media_type, encoding, tag, route: None };
+        if let Some(response) = kept.clone().respond_repeatably(answers, client) {
+            return Ok(response);
+        }
         let bytes = answers.once(self.peer, name, work).await?;
-        Ok(ok(format.media_type(), encoding, Bytes::from_owner(answers.pool(self.peer).hold(bytes))))
+        Ok(kept.with_bytes(answers, client, bytes))
     }
 
-    /// An answer with its entity tag, or a 304 without computing it.
-    async fn with_entity_tag(
-        &self,
-        resource: &Resource,
-        (format, encoding): (Format, Encoding),
-        canonical: &[u8],
-        answer: impl Future<Output = Result<Response<Body>, Problem>>,
-    ) -> Result<Response<Body>, Problem> {
-        let parts = [resource.name, BUILD, format.name(), encoding.name()].map(str::as_bytes);
-        let tag = EntityTag::of(&[parts[0], parts[1], parts[2], parts[3], canonical]);
-        // A query means GET or HEAD. On POST the precondition has no such meaning.
-        let held = if self.source == Source::Query { tag.if_none_match(&self.headers) } else { IfNoneMatch::NoMatch };
-        let mut response =
-            if held == IfNoneMatch::Match { status_only(StatusCode::NOT_MODIFIED) } else { answer.await? };
-        if held == IfNoneMatch::Any {
-            // Only now is it known that there is an answer.
-            response = status_only(StatusCode::NOT_MODIFIED);
-        }
-        response.headers_mut().insert(header::ETAG, tag.header());
-        response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);
-        Ok(response)
+    /// Compares an answer with those that the client says it has. A query means GET or HEAD. On POST the precondition has no such meaning.
+    fn held(&self, tag: &EntityTag) -> IfNoneMatch {
+        if self.source == Source::Query { tag.if_none_match(&self.headers) } else { IfNoneMatch::NoMatch }
     }
 
     /// The answer of a measurement: `no-store` and without an entity tag, because the next one differs. Formats in `streamed` are
@@ -141,6 +135,47 @@ impl ApiRequest {
         let encoding = negotiate::encoding(&self.headers)?;
         Ok((format, if format.is_compressible() { encoding } else { Encoding::Identity }))
     }
+}
+
+impl KeptAnswer {
+    /// 304 if the client has the answer, else the answer from memory; None if it is not there. Its bytes count as the client's until
+    /// they are sent.
+    pub(crate) fn respond(&self, answers: &Answers, (peer, held): (Peer, IfNoneMatch)) -> Option<Response<Body>> {
+        if held == IfNoneMatch::Match {
+            return Some(with_tag(status_only(StatusCode::NOT_MODIFIED), &self.tag));
+        }
+        let bytes = answers.kept(self.is_permanent, &self.name)?;
+        Some(self.with_bytes(answers, (peer, held), bytes))
+    }
+
+    /// The same, with itself among the extensions, from which the middleware learns how to answer the next request like this one.
+    pub(crate) fn respond_repeatably(self, answers: &Answers, client: (Peer, IfNoneMatch)) -> Option<Response<Body>> {
+        let mut response = self.respond(answers, client)?;
+        response.extensions_mut().insert(self);
+        Some(response)
+    }
+
+    /// The answer with these bytes, for a client that does not have them by this tag.
+    pub(crate) fn with_bytes(
+        &self,
+        answers: &Answers,
+        (peer, held): (Peer, IfNoneMatch),
+        bytes: Bytes,
+    ) -> Response<Body> {
+        let response = match held {
+            IfNoneMatch::Any | IfNoneMatch::Match => status_only(StatusCode::NOT_MODIFIED),
+            IfNoneMatch::NoMatch => {
+                ok(self.media_type, self.encoding, Bytes::from_owner(answers.pool(peer).hold(bytes)))
+            }
+        };
+        with_tag(response, &self.tag)
+    }
+}
+
+/// The entity tag of an answer.
+fn tag(resource: &Resource, (format, encoding): (Format, Encoding), canonical: &[u8]) -> EntityTag {
+    let parts = [resource.name, BUILD, format.name(), encoding.name()].map(str::as_bytes);
+    EntityTag::of(&[parts[0], parts[1], parts[2], parts[3], canonical])
 }
 
 async fn compute_whole(

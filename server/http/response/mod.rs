@@ -6,5 +6,6 @@ pub mod cached;
 pub mod etag;
 pub mod gzip;
 pub mod negotiate;
+pub(crate) mod repeats;
 pub mod static_asset;
 pub mod streaming;

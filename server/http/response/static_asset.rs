@@ -3,10 +3,10 @@
 use std::sync::OnceLock;
 
 use axum::body::{Body, Bytes};
-use axum::http::{HeaderMap, Response, StatusCode, header};
+use axum::http::{HeaderMap, Response, StatusCode};
 
 use crate::http::problem::Problem;
-use crate::http::response::builder::{REVALIDATED, ok, status_only};
+use crate::http::response::builder::{ok, status_only, with_tag};
 use crate::http::response::etag::{EntityTag, IfNoneMatch};
 use crate::http::response::gzip;
 use crate::http::response::negotiate;
@@ -61,34 +61,23 @@ impl StaticAsset {
     }
 }
 
-/// The answer of an asset in one encoding, for an asset that is kept elsewhere.
-pub fn answer_encoded(
-    media_type: &'static str,
-    (encoding, bytes): (Encoding, &Bytes),
-    headers: &HeaderMap,
-) -> Response<Body> {
-    respond(media_type, (encoding, bytes), &EntityTag::of(&[media_type.as_bytes(), bytes]), headers)
-}
-
 fn respond(
     media_type: &'static str,
     (encoding, bytes): (Encoding, &Bytes),
     tag: &EntityTag,
     headers: &HeaderMap,
 ) -> Response<Body> {
-    let mut response = match tag.if_none_match(headers) {
+    let response = match tag.if_none_match(headers) {
         IfNoneMatch::Match | IfNoneMatch::Any => status_only(StatusCode::NOT_MODIFIED),
         IfNoneMatch::NoMatch => ok(media_type, encoding, bytes.clone()),
     };
-    response.headers_mut().insert(header::ETAG, tag.header());
-    response.headers_mut().insert(header::CACHE_CONTROL, REVALIDATED);
-    response
+    with_tag(response, tag)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use axum::http::HeaderValue;
+    use axum::http::{HeaderValue, header};
 
     fn accepting_gzip() -> HeaderMap {
         [(header::ACCEPT_ENCODING, HeaderValue::from_static("gzip"))].into_iter().collect()

@@ -4,6 +4,7 @@
 //! the answers for the page's own, and neither CORS nor `Origin` protects them; only `Host` still has the page's name. Such a page
 //! can have neither the name `localhost` nor an address for its name.
 
+use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};
 use std::net::{Ipv4Addr, Ipv6Addr};
 use std::str::FromStr;
@@ -21,7 +22,7 @@ impl FromStr for HostName {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let name = plain(text);
+        let name = plain(text).into_owned();
         let is_label = |label: &str| {
             !label.is_empty() && label.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-_".contains(&byte))
         };
@@ -37,8 +38,10 @@ impl Display for HostName {
     }
 }
 
-fn plain(name: &str) -> String {
-    name.strip_suffix('.').unwrap_or(name).to_ascii_lowercase()
+fn plain(name: &str) -> Cow<'_, str> {
+    let name = name.strip_suffix('.').unwrap_or(name);
+    let is_lower = !name.bytes().any(|byte| byte.is_ascii_uppercase());
+    if is_lower { name.into() } else { name.to_ascii_lowercase().into() }
 }
 
 /// Refuses a request without `Host` or with several: 400 (RFC 9112, section 3.2). HTTP/1.0 needs none.
@@ -63,7 +66,7 @@ pub fn check_form(version: Version, headers: &HeaderMap) -> Result<(), Problem> 
 
 /// The name in `name:port`; None if it has another form. A URL allows commas and other punctuation in a name, but no name that
 /// resolves has them.
-fn name_of(host: &str) -> Option<String> {
+fn name_of(host: &str) -> Option<Cow<'_, str>> {
     let is_name = |byte: u8| byte.is_ascii_alphanumeric() || b"-._".contains(&byte);
     // Nearly all requests name a host without a port, or with one.
     let (name, port) = host.split_once(':').unwrap_or((host, ""));
@@ -71,8 +74,10 @@ fn name_of(host: &str) -> Option<String> {
         return Some(plain(name));
     }
     let authority: Authority = host.parse().ok()?;
-    let name = authority.host();
-    let port = host.strip_prefix(name)?;
+    let (name, port) = host.split_at_checked(authority.host().len())?;
+    if name != authority.host() {
+        return None;
+    }
     let is_port =
         port.is_empty() || port.strip_prefix(':').is_some_and(|port| port.bytes().all(|byte| byte.is_ascii_digit()));
     let is_fine = name.starts_with('[') || !name.is_empty() && name.bytes().all(is_name);
@@ -116,7 +121,7 @@ impl Display for PublicOrigin {
 pub fn check_name(uri: &Uri, headers: &HeaderMap, allowed: &[HostName]) -> Result<(), Problem> {
     let said = headers.get(header::HOST).and_then(|host| name_of(host.to_str().ok()?));
     let targeted = uri.host().map(plain);
-    let is_fine = |name: &String| is_local(name) || allowed.iter().any(|allowed| allowed.0 == *name);
+    let is_fine = |name: &str| is_local(name) || allowed.iter().any(|allowed| allowed.0 == name);
     let Some(name) = said.into_iter().chain(targeted).find(|name| !is_fine(name)) else { return Ok(()) };
     let name = shortened(&name);
     let detail = format!(
