@@ -178,7 +178,6 @@ async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
         "drift_speed",
         "rotation_number",
         "chaos",
-        "basin",
         "margins.tilt_gain",
         "margins.holds",
     ];
@@ -217,8 +216,8 @@ async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
         (matched, &["boundary"]),
         (json!({"table": law}), &feedback),
         (json!({"noise": {"timing_sd": 0.001}}), &FIELDS),
-        (json!({"table": {"limits": {"tilt": 1}}}), &["basin"]),
-        (json!({"body": {"vertices": triangle}, "table": {"tilt_gain": 1.07}}), &["basin"]),
+        (json!({"table": {"limits": {"tilt": 1}}}), &[]),
+        (json!({"body": {"vertices": triangle}, "table": {"tilt_gain": 1.07}}), &[]),
         (json!({"body": {"point": true}, "table": {"tilt_gain": 0.4}, "release": {"theta": null}}), &point),
         (json!({"contact": {"restitution": 0.8}, "table": {"strike": "still"}}), &lossy),
     ] {

@@ -58,10 +58,15 @@ impl CanonicalRequest for StabilityRequest {
 
 impl StabilityRequest {
     /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs
-    /// cost a quarter in lanes.
+    /// cost a quarter in lanes, and those of a polygon twice, once for each side.
     fn work(&self) -> u64 {
         let Self { ref scene, impacts, basin, tolerances, .. } = *self;
-        let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + impacts / 4) } else { 0 };
+        let basin_run = if basin::runs_in_lanes(&scene.with_tilt_law()) {
+            impacts / 4
+        } else {
+            impacts * bounce_price(scene) * if scene.outline().is_some() { 2 } else { 1 }
+        };
+        let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + basin_run) } else { 0 };
         let run = impacts * bounce_price(scene) + 4 * impacts.min(WATCHED);
         limits::ANSWER_PRICE + run + basin + if tolerances.is_some() { MARGINS_PRICE } else { 0 }
     }

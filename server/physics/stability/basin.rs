@@ -1,6 +1,6 @@
 //! The basin of a scene: the release angles from which a run survives.
 //!
-//! A scan in lanes and a search of its edges. Not a map over two fields, and no proof: between two angles of the scan a
+//! A scan and a search of its edges, in lanes where they hold the model. Not a map over two fields, and no proof: between two angles of the scan a
 //! narrow hole stays unseen.
 
 use crate::batch::batch_run::{LaneRunEnd, run_all};
@@ -9,8 +9,8 @@ use crate::body::Release;
 use crate::bounce::state::State;
 use crate::run::ending::EndingKind;
 use crate::run::orbit::Orbit;
-use crate::scene::Scene;
 use crate::scene::model::{Model, ModelLevel};
+use crate::scene::{Name, Scene, Value};
 use std::cell::Cell;
 
 /// Angles of the rough scan, over all there are, and of the fine one, over those that matter.
@@ -24,7 +24,8 @@ const ROUNDS: usize = 4;
 /// Runs that one basin takes at most.
 pub const RUNS: u64 = (ROUGH + FINE + 2 * TRIED * ROUNDS) as u64;
 
-/// The release angles from which a run at rest survives, by the mirror symmetry the same on both sides.
+/// The release angles from which a run at rest survives, the same on both sides: by the mirror symmetry, and for a polygon those that
+/// survive on both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReleaseBasin {
     /// The largest angle found that survives, rad.
@@ -59,27 +60,18 @@ pub enum NoBasin {
 /// [`NoBasin`].
 pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<ReleaseBasin, NoBasin> {
     let because = |why: String| NoBasin::Because(why);
-    if let Some(error) = scene.beyond(&[ModelLevel::Friction]) {
+    if let Some(error) = scene.beyond(&[ModelLevel::Friction, ModelLevel::Rod, ModelLevel::RodWithX]) {
         return Err(because(error.detail));
     }
-    if scene.rules().limits.is_some() {
-        return Err(because("it is looked for in lanes of rods, which do not see the limits of a table".to_owned()));
-    }
-    if scene.outline().is_some() {
-        return Err(because(
-            "it is looked for in lanes of rods, which do not see the vertices of a polygon".to_owned(),
-        ));
-    }
-    let (body, rules) = (scene.model(), scene.rules());
+    let (body, rules) = (scene.running_model(), scene.rules());
     if matches!(body, Model::Point(_)) {
         return Err(because("a point mass has no angle to be released at".to_owned()));
     }
-    if body.program().is_some() {
-        return Err(because("it is looked for in lanes of rods, which have no program of heights".to_owned()));
-    }
+    let is_polygon = scene.outline().is_some();
     let orbit = |theta: f64| {
         let state = State { theta, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
-        Orbit::new(body, rules, &Release { x: 0.0, height: scene.release.height, state }).ok()
+        let may_start = !is_polygon || may_be_released_at(scene, theta);
+        Orbit::new(body, rules, &Release { x: 0.0, height: scene.release.height, state }).ok().filter(|_| may_start)
     };
     if scene.is_lossy() {
         return Err(because("every bounce loses energy, so all runs end".to_owned()));
@@ -91,14 +83,8 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
             body.rod().contact_distance
         )));
     }
-    if BatchModel::of(&body, &rules).is_none() {
-        return Err(because(
-            "it is looked for in lanes of rods, where one strike brings the energy to its target without friction only"
-                .to_owned(),
-        ));
-    }
     let bounces = Cell::new(0);
-    let mut survive = |angles: &[f64]| {
+    let mut run_from = |angles: &[f64]| {
         let mut survivors = vec![false; angles.len()];
         let mut orbits = angles.iter().enumerate().filter_map(|(index, theta)| Some((index, orbit(*theta)?)));
         let mut done = |index: usize, end: LaneRunEnd| {
@@ -107,6 +93,15 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
         };
         let is_done = run_all(impacts, &mut || orbits.next(), &mut done, &mut go_on);
         if is_done { Ok(survivors) } else { Err(NoBasin::Stopped) }
+    };
+    let mut survive = |angles: &[f64]| {
+        let mut survivors = run_from(angles)?;
+        if is_polygon {
+            let mirrored: Vec<f64> = angles.iter().map(|theta| -theta).collect();
+            let others = run_from(&mirrored)?;
+            survivors.iter_mut().zip(others).for_each(|(survives, other)| *survives &= other);
+        }
+        Ok(survivors)
     };
     let grid =
         |count: usize, span: f64| -> Vec<f64> { (1..=count).map(|index| span * index as f64 / count as f64).collect() };
@@ -155,4 +150,15 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
     }
     let tolerance = (0..ROUNDS).fold(spacing, |width, _| width / (TRIED as f64 + 1.0));
     Ok(ReleaseBasin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: bounces.get() })
+}
+
+/// Tells whether a scene can be released at an angle, rad: whether no vertex of its polygon is below the table there.
+fn may_be_released_at(scene: &Scene, theta: f64) -> bool {
+    let mut draft = scene.draft();
+    draft.set(Name::Theta, Some(Value::Number(theta))).is_ok() && draft.build().is_ok()
+}
+
+/// Tells whether the runs of a scene's basin fit into lanes. Other runs are made one by one.
+pub fn runs_in_lanes(scene: &Scene) -> bool {
+    BatchModel::of(&scene.running_model(), &scene.rules()).is_some()
 }

@@ -2,9 +2,12 @@
 
 mod paper;
 
+use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::stability::basin::{NoBasin, find_basin};
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
+use equipoise_physics::table::program::HeightProgram;
 use paper::scene;
 
 fn survives(tilt_gain: f64, theta: f64, impacts: u64) -> bool {
@@ -39,4 +42,51 @@ fn edges_and_holes_are_where_runs_fall() {
 fn below_one_nothing_survives_and_a_search_can_be_stopped() {
     assert!(find_basin(&scene(0.9, 0.01), 1000, || true).unwrap().theta < 1e-4);
     assert_eq!(find_basin(&scene(1.1, 0.01), 100_000, || false), Err(NoBasin::Stopped));
+}
+
+/// A scene with other values; those of `Name::TiltGain` and of lengths may be cleared.
+fn with(base: &Scene, values: &[(Name, Option<f64>)], vertices: Option<Vertices>) -> Scene {
+    let mut draft = base.draft();
+    for &(name, number) in values {
+        draft.set(name, number.map(Value::Number)).unwrap();
+    }
+    if vertices.is_some() {
+        draft.set_vertices(vertices);
+    }
+    draft.build().unwrap()
+}
+
+/// Runs that lanes do not hold are made one by one, and the edges are where they fall.
+#[test]
+fn feedback_limits_polygons_and_programs_have_a_basin_too() {
+    let case_1 = scene(1.1, 0.01);
+    let law = [(Name::FeedbackTheta, Some(-1.1)), (Name::FeedbackThetaDot, Some(-0.02)), (Name::TiltGain, None)];
+    let limited = with(&case_1, &[(Name::TiltLimit, Some(0.2))], None);
+    // The third vertex hangs low on one side.
+    let lengths = [(Name::ContactDistance, None), (Name::RadiusOfGyration, None)];
+    let vertices = Vertices::new(&[[0.0, 0.0], [0.08, 0.02], [0.05, 0.2], [-0.05, 0.2]]).unwrap();
+    let polygon = with(&case_1, &[lengths[0], lengths[1], (Name::TiltGain, Some(1.03))], Some(vertices));
+    let mut juggling = case_1.draft();
+    juggling.set(Name::EnergyLaw, Some(Value::Choice("one_strike"))).unwrap();
+    juggling.set(Name::Program, HeightProgram::new(&[0.2, 0.25]).map(Value::Numbers)).unwrap();
+    for (name, base) in [
+        ("feedback", with(&case_1, &law, None)),
+        ("limits", limited),
+        ("polygon", polygon),
+        ("program", juggling.build().unwrap()),
+    ] {
+        let basin = find_basin(&base, 300, || true).unwrap();
+        println!("{name}: {basin:?}");
+        assert!(basin.unbroken > 0.02 && basin.theta < 1.5, "{name}: {basin:?}");
+        let survives = |theta: f64| {
+            let at = |theta: f64| with(&base, &[(Name::Theta, Some(theta))], None);
+            let lasts = |theta| run_nonlinear(&at(theta), 300, || true).unwrap().ending == Ending::Completed;
+            lasts(theta) && (base.outline().is_none() || lasts(-theta))
+        };
+        assert!(survives(basin.unbroken) && survives(basin.theta), "{name}");
+        assert!((1..=21).any(|step| !survives(basin.unbroken + basin.tolerance * f64::from(step) / 20.0)), "{name}");
+        assert_eq!(find_basin(&base, 100_000, || false), Err(NoBasin::Stopped), "{name}");
+    }
+    let noisy = with(&case_1, &[(Name::TimingSd, Some(0.01))], None);
+    assert!(matches!(find_basin(&noisy, 300, || true), Err(NoBasin::Because(why)) if why.contains("with noise")));
 }
