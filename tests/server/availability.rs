@@ -213,7 +213,7 @@ async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
         (json!({"release": {"theta": 0}}), &["chaos"]),
         (json!({"table": {"tilt_gain": 1}}), &["drift_speed", "rotation_number", "chaos"]),
         (json!({"contact": {"friction": 0.3}}), &held),
-        (matched, &["boundary"]),
+        (matched, &[]),
         (json!({"table": law}), &feedback),
         (json!({"noise": {"timing_sd": 0.001}}), &FIELDS),
         (json!({"table": {"limits": {"tilt": 1}}}), &[]),

@@ -60,8 +60,10 @@ async fn a_matched_table_is_judged_by_its_own_boundary() {
     let critical = answer["linear"]["tilt_gain"]["critical"].as_f64().unwrap();
     assert!((critical - 2.5).abs() < 1e-12, "{critical}");
     let notes = answer["notes"].to_string();
-    assert!(notes.contains("stick cone") && notes.contains("boundary is null"), "{notes}");
-    assert!(answer["boundary"].is_null() && answer["rotation_number"]["measured"].is_number());
+    assert!(notes.contains("stick cone"), "{notes}");
+    // 1/2 + ap + 2a²/3 with a = 1.5 and p = 1/3.
+    assert!((answer["boundary"]["coefficient"].as_f64().unwrap() - 2.5).abs() < 1e-12, "{}", answer["boundary"]);
+    assert!(answer["boundary"]["kind"] == "soft" && answer["rotation_number"]["measured"].is_number());
     let jacobian = server.get(&format!("/v1/jacobians?{wide}")).await.json();
     assert_eq!((&jacobian["smooth"], &jacobian["contact_mode"]), (&json!(true), &json!("stick")));
     assert_eq!(jacobian["residue"], answer["linear"]["residue"]);

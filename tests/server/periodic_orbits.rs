@@ -106,3 +106,24 @@ async fn eigenvalues_are_those_that_jacobians_gives_at_the_same_state() {
         }
     }
 }
+
+#[tokio::test]
+async fn a_matched_table_with_friction_has_its_branch_and_a_tilting_one_its_orbit() {
+    let server = Server::start();
+    let rough = "preset=case-1&scene.contact.friction=0.3";
+    let matched = format!(
+        "/v1/periodic-orbits?{rough}&scene.table.slide=matched&family=symmetric&theta=0.05&sweep.parameter=table.tilt_gain&sweep.from=2.4\
+         &sweep.to=2.7&sweep.points=60"
+    );
+    let answer = server.get(&matched).await.expect(200).json();
+    let change = &answer["changes"][0];
+    assert_eq!(change["kind"], "period_doubling");
+    assert!((change["parameter"].as_f64().unwrap() - 2.5).abs() < 1e-6, "{change}");
+    assert!(answer["notes"].to_string().contains("two eigenvalues are 1"), "{}", answer["notes"]);
+    server.get(&format!("{matched}&format=svg")).await.expect(200);
+    let upright = server.get(&format!("/v1/periodic-orbits?{rough}&period=1")).await.expect(200).json();
+    assert_eq!(upright["stable"], false, "{upright}");
+    let refused = server.get(&format!("/v1/periodic-orbits?{rough}&family=symmetric&theta=0.1")).await.expect(422);
+    assert!(refused.text().contains("sticks to a table that moves along with it"), "{}", refused.text());
+    assert_eq!(refused.pointers(), ["/theta"]);
+}

@@ -89,10 +89,17 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             Some(branch) => branch.points[branch.start].orbit.clone(),
             None => one(scene, &setting, period, request.start, &mut notes).map_err(refuse)?,
         };
+        let ones = orbit.multipliers.eigenvalues.iter().filter(|value| **value == Complex::new(1.0, 0.0)).count();
         notes.push(
-            if setting.energy.is_some() {
+            if setting.friction.is_some_and(|friction| friction.coefficient != 0.0) {
+                match ones {
+                    0 => "with friction no eigenvalue of this orbit is 1: nothing of its motion is free",
+                    1 => "one eigenvalue is 1: one direction of its motion is free",
+                    _ => "two eigenvalues are 1, as without friction: the contact sticks to a table that moves along with it",
+                }
+            } else if setting.energy.is_some() {
                 "one eigenvalue is 1 by the drift, and one more by the energy, which nothing sets"
-            } else if orbit.multipliers.eigenvalues.contains(&Complex::new(1.0, 0.0)) {
+            } else if ones > 0 {
                 "one eigenvalue is 1 by the drift"
             } else {
                 "with energy feedback no eigenvalue of this orbit is 1: neither its energy nor its drift is free"
@@ -168,9 +175,16 @@ fn one(
         BranchStart::Upright => find(setting, period, &setting.upright()),
         BranchStart::Near(state) => find(setting, period, &state),
         BranchStart::Symmetric(theta) => {
-            let state = symmetric(&setting.rod, theta).ok_or_else(|| {
+            let state = symmetric(&setting.rod, setting.friction, theta).ok_or_else(|| {
                 let kappa = setting.rod.tilt_gain;
-                OrbitFailure::Scene(format!("no mirror-symmetric orbit passes theta {theta} rad at tilt_gain {kappa}"))
+                let where_it_sticks = if setting.friction.is_some() {
+                    " where the contact sticks to a table that moves along with it"
+                } else {
+                    ""
+                };
+                OrbitFailure::Scene(format!(
+                    "no mirror-symmetric orbit passes theta {theta} rad at tilt_gain {kappa}{where_it_sticks}"
+                ))
             })?;
             if setting.energy.is_none() {
                 has_target_height(scene, theta)?;

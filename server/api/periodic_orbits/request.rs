@@ -1,11 +1,12 @@
 //! The request for `periodic-orbits`: an orbit, or a branch of orbits along a field of the scene.
 
 use equipoise_physics::periodic_orbits::branch::BranchStart;
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Field, FieldKind, Name, Scene, Value, field};
 use serde::{Serialize, Serializer};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::read_frictionless_scene;
+use crate::api::scene::read_scene_within;
 use crate::api::shared::state::read_state;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
@@ -46,7 +47,7 @@ pub struct PeriodicOrbitRequest {
 
 impl ResourceRequest for PeriodicOrbitRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_frictionless_scene(reader);
+        let scene = read_scene_within(reader, &[ModelLevel::Friction]);
         let before = reader.errors().len();
         let cycle = scene.as_ref().and_then(Scene::program).map_or(1, |program| program.heights().len() as u64);
         let period = reader.integer("period", 1..=limits::ORBIT_PERIOD);

@@ -12,6 +12,7 @@ use crate::periodic_orbits::problem::{OrbitFailure, SOLVED};
 use crate::run::ending::Ending;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
+use crate::scene::model::Model;
 use nalgebra::{DMatrix, DVector, Matrix4};
 
 /// Speed at the contacts, in parts of the scene's, up to which a body rests on the table.
@@ -60,9 +61,9 @@ impl ClosedEquations {
         for contact in 1..=period as u64 {
             let before = values(&state);
             states.push(before);
-            let struck = problem.at_strike(&problem.rod, contact);
-            let (_, root) = advance(&struck, before).map_err(|ending| OrbitFailure::Ends { contact, ending })?;
-            let flight: Flight<Five> = rod.flight(&problem.at_strike(&rod, contact).strike(&state));
+            let (_, root) = advance(problem.body_at_strike(contact), before)
+                .map_err(|ending| OrbitFailure::Ends { contact, ending })?;
+            let flight: Flight<Five> = rod.flight(&problem.strike(&rod, contact, &state));
             let flight_time = flight.lift_root(root);
             state = flight.end(flight_time);
             x = x + state.x_dot * flight_time;
@@ -206,8 +207,8 @@ pub(super) fn correct(
 }
 
 /// The state after a number of contacts and the contact at which it could not go on, if there is one.
-fn advance(rod: &Rod, state: State) -> Result<(State, f64), Ending> {
-    let mut orbit = Orbit::at(*rod, Rules::BARE_MAP, state);
+fn advance(body: Model, state: State) -> Result<(State, f64), Ending> {
+    let mut orbit = Orbit::at(body, Rules::BARE_MAP, state);
     let contact = orbit.advance();
     match (contact.flight_time, contact.ending) {
         (Some(flight_time), _) => Ok((*orbit.state(), flight_time)),

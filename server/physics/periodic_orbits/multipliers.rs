@@ -11,6 +11,9 @@ use nalgebra::{Complex, Matrix3, Matrix4, Schur};
 /// det(I − M) up to which an eigenvalue of M is 1, for an M of entries about 1.
 const ONE: f64 = 1e-11;
 
+/// The slope of the characteristic polynomial at 1, up to which an eigenvalue 1 is double.
+const ONE_TWICE: f64 = 1e-9;
+
 /// The eigenvalues of an orbit that are 1 for a reason known beforehand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TrivialMultipliers {
@@ -18,6 +21,20 @@ pub(super) enum TrivialMultipliers {
     EnergyAndDrift,
     /// At most one, of the drift: with energy feedback.
     Drift,
+}
+
+impl TrivialMultipliers {
+    /// Those of an orbit with friction, by its derivative: a contact that sticks to a matched table is reversible, as one without friction,
+    /// and has both; contacts that slide, or stick to a table that only tilts, may have none.
+    pub(super) fn with_friction(product: &Matrix4<f64>) -> Self {
+        let trace = product.trace();
+        let second = 0.5 * (trace * trace - (product * product).trace());
+        let at_one = (Matrix4::identity() - product).determinant();
+        // The slope of the characteristic polynomial at 1.
+        let slope = 3.0 - 2.0 * trace + second - product.determinant() + at_one;
+        let is_double = has_one(product) && slope.abs() <= ONE_TWICE * (1.0 + product.norm_squared());
+        if is_double { Self::EnergyAndDrift } else { Self::Drift }
+    }
 }
 
 /// The verdict on an orbit.

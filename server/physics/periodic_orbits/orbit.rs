@@ -6,6 +6,7 @@ use crate::periodic_orbits::multipliers::{Multipliers, TrivialMultipliers};
 use crate::periodic_orbits::parameter_path::ParameterPath;
 use crate::periodic_orbits::problem::{OrbitFailure, OrbitProblem};
 use crate::run::ending::Ending;
+use crate::stability::jacobian::jacobian;
 
 /// A periodic orbit with its evidence.
 #[derive(Clone, Debug)]
@@ -51,8 +52,16 @@ impl PeriodicOrbit {
         };
         let repeats = |shift: usize| (0..period).all(|n| far(&states[n], &states[(n + shift) % period]) < SAME);
         let least_period = (1..=period).find(|&n| period.is_multiple_of(n) && repeats(n)).unwrap_or(period);
-        let known =
-            if problem.energy.is_some() { TrivialMultipliers::EnergyAndDrift } else { TrivialMultipliers::Drift };
+        if on_kink(problem, &states) {
+            return Err(OrbitFailure::Scene(
+                "a contact of this orbit is at the switch between two modes of friction, where the map has no derivative".to_owned(),
+            ));
+        }
+        let known = match (problem.friction, problem.energy) {
+            (Some(friction), _) if friction.coefficient != 0.0 => TrivialMultipliers::with_friction(&closed.product()),
+            (_, Some(_)) => TrivialMultipliers::EnergyAndDrift,
+            (_, None) => TrivialMultipliers::Drift,
+        };
         let multipliers = Multipliers::new(&closed.product(), known).ok_or_else(|| {
             OrbitFailure::Scene("the eigenvalues of this orbit are beyond double precision".to_owned())
         })?;
@@ -76,6 +85,14 @@ impl PeriodicOrbit {
             }),
         }
     }
+}
+
+/// Tells whether a contact of an orbit is at a switch between two modes of friction.
+fn on_kink(problem: &OrbitProblem, states: &[State]) -> bool {
+    problem.friction.is_some()
+        && states.iter().zip(1..).any(|(state, n)| {
+            jacobian(&problem.body_at_strike(n), state, 1).is_ok_and(|contact| !contact.one_sided.is_empty())
+        })
 }
 
 /// The orbit of `period` contacts near a state, at the problem's energy and without drift.

@@ -1,13 +1,17 @@
 //! The problem that a periodic orbit solves: a rod with the energy and the drift that close its equations; and the reasons for which
 //! there is no orbit.
 
+use crate::body::general::GeneralBody;
+use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
 use crate::numbers::number::Number;
 use crate::run::ending::Ending;
 use crate::scene::Scene;
-use crate::scene::model::Model;
+use crate::scene::model::{Model, ModelLevel};
 use crate::stability::fixed_point::find_bounce_without_drift;
+use crate::table::control_law::Steering;
 use crate::table::program::HeightProgram;
 
 /// Remainder of the equations, in parts of the scene's speed, up to which they count as solved.
@@ -18,6 +22,8 @@ pub(super) const SOLVED: f64 = 1e-11;
 pub struct OrbitProblem {
     /// The rod.
     pub rod: Rod,
+    /// Friction of its contact, and how the table moves along itself.
+    pub friction: Option<Friction>,
     /// Energy per unit mass that orbits must have, ½|v|² + Gy at a contact, m²/s²; `None` if feedback sets it.
     pub energy: Option<f64>,
     /// V of the upright bounce, m/s: the scale of velocities.
@@ -35,13 +41,13 @@ impl OrbitProblem {
     /// # Errors
     /// A sentence that says why the scene has no periodic orbits.
     pub fn of(scene: &Scene) -> Result<Self, String> {
-        if let Some(error) = scene.beyond(&[]) {
+        if let Some(error) = scene.beyond(&[ModelLevel::Friction]) {
             return Err(error.detail);
         }
-        let (rod, program) = match scene.model() {
-            Model::Rod(rod) => (rod, None),
+        let (rod, program, friction) = match scene.model() {
+            Model::Rod(rod) => (rod, None, None),
             // `beyond` has refused all else that such a body can have.
-            Model::General(general) => (general.rod, general.program),
+            Model::General(general) => (general.rod, general.program, general.friction),
             Model::Point(_) => {
                 return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
             }
@@ -53,6 +59,7 @@ impl OrbitProblem {
         let energy = 0.5 * speed * speed + rod.gravity * rod.contact_distance;
         Ok(Self {
             rod,
+            friction,
             energy: (!scene.steers_energy()).then_some(energy),
             speed,
             topple_angle: scene.topple_angle,
@@ -63,6 +70,31 @@ impl OrbitProblem {
     /// A rod of the problem at strike `n` of an orbit.
     pub(super) fn at_strike<N: Number>(&self, rod: &Rod<N>, n: u64) -> Rod<N> {
         self.program.map_or(*rod, |program| program.applied(rod, n))
+    }
+
+    /// The body of the problem at strike `n` of an orbit.
+    pub(super) fn body_at_strike(&self, n: u64) -> Model {
+        let rod = self.at_strike(&self.rod, n);
+        match self.friction {
+            None => Model::Rod(rod),
+            friction => Model::General(GeneralBody {
+                rod,
+                steering: Steering::TiltGain,
+                program: None,
+                friction,
+                noise: None,
+                outline: None,
+            }),
+        }
+    }
+
+    /// The strike of the problem at strike `n` of an orbit, in the mode that the contact takes.
+    pub(super) fn strike<N: Number>(&self, rod: &Rod<N>, n: u64, before: &State<N>) -> Strike<N> {
+        let rod = self.at_strike(rod, n);
+        match &self.friction {
+            None => rod.strike(before),
+            Some(friction) => friction.strike_by_tilt_gain(&rod, before),
+        }
     }
 
     /// The upright bounce, which is the orbit of period 1; with a program, the bounce before its first strike.

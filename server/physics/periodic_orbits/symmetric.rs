@@ -3,14 +3,28 @@
 //! They branch off the upright bounce at κ_c; at a fixed energy as κ − κ_c ≈ a C θ².
 
 use crate::bounce::energy_feedback::EnergyFeedback;
+use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::trig;
 use crate::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};
-use crate::periodic_orbits::problem::OrbitFailure;
+use crate::periodic_orbits::problem::{OrbitFailure, OrbitProblem};
+use crate::stability::boundary::symmetric_orbit;
 
-/// The orbit through an angle, rad, at the energy that it has; `None` if V² would not be positive.
-pub fn symmetric(rod: &Rod, theta: f64) -> Option<State> {
+/// The orbit through an angle, rad, at the energy that it has; `None` if V² would not be positive, and with friction unless the contact
+/// sticks to a table that moves along with it.
+pub fn symmetric(rod: &Rod, friction: Option<Friction>, theta: f64) -> Option<State> {
+    if let Some(friction) = friction.filter(|friction| friction.coefficient != 0.0) {
+        let matched = friction.slide == Slide::Matched;
+        let orbit = symmetric_orbit(rod, Some(friction.coefficient), theta).filter(|_| matched)?;
+        let speed = orbit.speed_squared.sqrt();
+        return Some(State {
+            theta,
+            x_dot: orbit.slope * speed,
+            y_dot: -speed,
+            theta_dot: rod.gravity * theta / speed,
+        });
+    }
     let (_, cos) = trig::sin_cos(rod.tilt_gain * theta);
     let (sin, _) = trig::sin_cos((rod.tilt_gain - 1.0) * theta);
     let rho = rod.radius_of_gyration;
@@ -21,6 +35,10 @@ pub fn symmetric(rod: &Rod, theta: f64) -> Option<State> {
 fn along(rod: &Rod, theta: f64, speed: f64) -> State {
     let (sin, cos) = trig::sin_cos(rod.tilt_gain * theta);
     State { theta, x_dot: speed * sin / cos, y_dot: -speed, theta_dot: rod.gravity * theta / speed }
+}
+
+fn symmetric_of(problem: &OrbitProblem, theta: f64) -> Option<State> {
+    symmetric(&problem.rod, problem.friction, theta)
 }
 
 /// Cells in which a range is searched for the symmetric orbit through an angle.
@@ -46,7 +64,7 @@ pub(super) fn symmetric_orbit_on_path(path: &ParameterPath<'_>, theta: f64) -> R
                 }
             }
             let share = 0.5 * (left + right);
-            if let Some(state) = symmetric(&path.problem(share)?.rod, theta) {
+            if let Some(state) = symmetric_of(&path.problem(share)?, theta) {
                 return Ok(path.place(&state, share));
             }
         }
@@ -62,7 +80,7 @@ pub(super) fn symmetric_orbit_on_path(path: &ParameterPath<'_>, theta: f64) -> R
 /// Excess of energy, or with feedback of height, of the symmetric orbit over the required one.
 fn excess(path: &ParameterPath<'_>, theta: f64, share: f64) -> Option<f64> {
     let problem = path.problem(share).ok()?;
-    let state = symmetric(&problem.rod, theta)?;
+    let state = symmetric_of(&problem, theta)?;
     Some(match problem.energy {
         Some(energy) => problem.rod.energy(&state) - energy,
         // At a strike gain of 2 a strike keeps the energy.

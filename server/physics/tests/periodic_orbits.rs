@@ -1,11 +1,14 @@
 //! Periodic orbits against what is known of them exactly: the symmetric family, κ_c, the sign and size of C.
 
 mod paper;
+#[path = "support/random.rs"]
+mod random;
 
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};
 use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
 use equipoise_physics::run::orbit::Orbit;
+use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::basin::find_basin;
@@ -14,6 +17,7 @@ use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::{eigenvalues, jacobian};
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::Complex;
+use random::Random;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
     let mut draft = Draft::default();
@@ -52,7 +56,7 @@ fn the_symmetric_family_is_a_solution_as_it_stands() {
     for (kappa, theta) in [(1.55, 0.1), (1.55, 0.4), (1.3, 0.2), (1.7, -0.6), (1.52, 1e-3)] {
         let scene = scene(&[(Name::TiltGain, kappa)]);
         let setting = OrbitProblem::of(&scene).unwrap();
-        let state = symmetric(&setting.rod, theta).unwrap();
+        let state = symmetric(&setting.rod, None, theta).unwrap();
         let own = OrbitProblem { energy: Some(setting.rod.energy(&state)), ..setting };
         let orbit = find(&own, 2, &state).unwrap();
         assert!(orbit.residual < 1e-12, "{kappa} {theta}: {}", orbit.residual);
@@ -243,7 +247,11 @@ fn a_body_at_rest_is_no_orbit() {
 
 /// The largest difference between the eigenvalues of an orbit and those of the derivative over its period.
 fn off_the_jacobian(setting: &OrbitProblem, orbit: &PeriodicOrbit) -> f64 {
-    let matrix = jacobian(&Model::Rod(setting.rod), &orbit.states[0], orbit.states.len() as u64).unwrap().matrix;
+    off_the_jacobian_of(&Model::Rod(setting.rod), orbit)
+}
+
+fn off_the_jacobian_of(model: &Model, orbit: &PeriodicOrbit) -> f64 {
+    let matrix = jacobian(model, &orbit.states[0], orbit.states.len() as u64).unwrap().matrix;
     let mut expected = eigenvalues(&matrix).unwrap();
     let mut largest: f64 = 0.0;
     for found in &orbit.multipliers.eigenvalues {
@@ -280,4 +288,86 @@ fn with_energy_feedback_eigenvalues_are_those_of_the_derivative() {
     }
     let upright = find(&setting, 1, &setting.upright()).unwrap();
     assert!(upright.multipliers.eigenvalues.contains(&one) && off_the_jacobian(&setting, &upright) < 1e-12);
+}
+
+fn rough(slide: &'static str, values: &[(Name, f64)]) -> Scene {
+    let mut draft = scene(values).draft();
+    draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
+    draft.build().unwrap()
+}
+
+/// The largest change of a state over a period of the map itself.
+fn off_the_map(scene: &Scene, orbit: &PeriodicOrbit) -> f64 {
+    let mut run = Orbit::at(scene.model(), Rules::BARE_MAP, orbit.states[0]);
+    orbit.states.iter().for_each(|_| assert_eq!(run.advance().ending, None));
+    let (after, before) = (*run.state(), orbit.states[0]);
+    [
+        after.theta - before.theta,
+        after.x_dot - before.x_dot,
+        after.y_dot - before.y_dot,
+        after.theta_dot - before.theta_dot,
+    ]
+    .into_iter()
+    .fold(0.0, |most: f64, off| most.max(off.abs()))
+}
+
+#[test]
+fn a_matched_contact_that_sticks_has_the_symmetric_family_too() {
+    let mut random = Random::new(3);
+    let (mut found, mut slides) = (0, 0);
+    while found < 200 {
+        let l = random.between(0.05, 0.4);
+        let rho = l * random.between(0.2, 1.2);
+        let values = [
+            (Name::ContactDistance, l),
+            (Name::RadiusOfGyration, rho),
+            (Name::Height, l * random.between(1.2, 3.0)),
+            (Name::Friction, random.between(0.1, 0.9)),
+            (Name::Restitution, random.between(0.2, 1.0)),
+            (Name::TiltGain, random.between(1.2, 4.0)),
+        ];
+        let scene = rough("matched", &values);
+        let setting = OrbitProblem::of(&scene).unwrap();
+        let theta = random.between(-0.5, 0.5);
+        let Some(state) = symmetric(&setting.rod, setting.friction, theta) else {
+            slides += 1;
+            continue;
+        };
+        let own = OrbitProblem { energy: Some(setting.rod.energy(&state)), ..setting };
+        let Ok(orbit) = find(&own, 2, &state) else { continue };
+        found += 1;
+        assert!((orbit.states[0].theta - theta).abs() < 1e-9 && orbit.residual < 1e-11, "{scene:?}");
+        assert!(off_the_map(&scene, &orbit) < 1e-9, "{scene:?}");
+        // As without friction, two eigenvalues are 1.
+        let ones = orbit.multipliers.eigenvalues.iter().filter(|value| **value == Complex::new(1.0, 0.0)).count();
+        assert_eq!(ones, 2, "{:?} {scene:?}", orbit.multipliers);
+        let size = orbit.multipliers.spectral_radius();
+        assert!(off_the_jacobian_of(&scene.model(), &orbit) < 1e-3 * size, "{:?} {scene:?}", orbit.multipliers);
+    }
+    assert!(slides > 20, "{slides}");
+}
+
+#[test]
+fn orbits_with_friction_are_followed_and_are_those_of_the_map() {
+    // Softly beyond κ_c = 2.5 of the paper's body on a matched table, and orbits of period 4 of one that only tilts, with energy feedback.
+    let matched = rough("matched", &[(Name::Friction, 0.3), (Name::TiltGain, 2.5)]);
+    let branch = tilt(&matched, 2, BranchStart::Symmetric(0.05), 2.45, 2.7, 60).unwrap();
+    assert!(branch.points.len() > 20);
+    for point in &branch.points {
+        let there = rough("matched", &[(Name::Friction, 0.3), (Name::TiltGain, point.parameter)]);
+        assert!(off_the_map(&there, &point.orbit) < 1e-9, "{}", point.parameter);
+        assert!(
+            point.change.is_some() || point.orbit.multipliers.stable == Some(true),
+            "{:?}",
+            point.orbit.multipliers
+        );
+    }
+    let springs = branch.points.iter().find(|point| point.springs).expect("the branch springs from the upright bounce");
+    assert!((springs.parameter - 2.5).abs() < 1e-6, "{}", springs.parameter);
+    let tilting = rough("none", &[(Name::Friction, 0.05), (Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2)]);
+    let setting = OrbitProblem::of(&tilting).unwrap();
+    let upright = find(&setting, 1, &setting.upright()).unwrap();
+    assert!(off_the_map(&tilting, &upright) < 1e-12 && upright.multipliers.stable == Some(false), "{upright:?}");
+    assert!(off_the_jacobian_of(&tilting.model(), &upright) < 1e-9, "{:?}", upright.multipliers);
+    assert_eq!(symmetric(&setting.rod, setting.friction, 0.1), None);
 }

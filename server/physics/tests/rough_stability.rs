@@ -1,16 +1,20 @@
 //! Stability with friction: eigenvalues against the derivative, drift and energy against long runs, the stick cone, and a table
 //! that only tilts.
 
+#[path = "support/random.rs"]
+mod random;
+
 use equipoise_physics::body::Body;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::ending::EndingKind;
-use equipoise_physics::run::orbit::run;
+use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::basin::find_basin;
-use equipoise_physics::stability::boundary::boundary_coefficient;
+use equipoise_physics::stability::boundary::{boundary_coefficient, period_two_angle, symmetric_orbit};
 use equipoise_physics::stability::contact_regime::{
     ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
 };
@@ -20,6 +24,7 @@ use equipoise_physics::stability::linear_verdict::{AngleClass, linear_verdict};
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapOutcome, MapQuantity, StabilityMap};
+use random::Random;
 
 const L: f64 = 0.4 / 3.0;
 const RHO: f64 = 0.094_280_904_158_206_35;
@@ -205,4 +210,94 @@ fn a_matched_table_has_a_basin_and_one_that_only_tilts_has_none() {
     let basin = |slide| find_basin(&scene(slide, &[(Name::TiltGain, 1.3)]), 300, || true).unwrap();
     let (matched, held) = (basin("matched"), basin("none"));
     assert!(matched.unbroken > 0.1 && held.theta < 1e-3, "{matched:?} {held:?}");
+}
+
+/// Tests that a state turns into its mirror image over one bounce.
+fn is_mirrored(scene: &Scene, state: State) -> bool {
+    let mut orbit = Orbit::at(scene.model(), Rules::BARE_MAP, state);
+    orbit.advance();
+    let after = *orbit.state();
+    let off = [
+        after.theta + state.theta,
+        after.x_dot + state.x_dot,
+        after.y_dot - state.y_dot,
+        after.theta_dot + state.theta_dot,
+    ];
+    off.iter().all(|off| off.abs() < 1e-12)
+}
+
+/// κ − κ_c ≈ aCθ² on the orbits of period 2, on the quantity that the table conserves to second order, or at its target height.
+#[test]
+fn the_coefficient_at_the_boundary_is_that_of_the_orbits_that_branch_off() {
+    let mut random = Random::new(11);
+    let (mut soft, mut hard) = (0, 0);
+    for _ in 0..300 {
+        let l = random.between(0.05, 0.4);
+        let rho = l * random.between(0.1, 1.2);
+        let height = l * (1.0 + random.between(0.2, 2.0));
+        let steered = random.between(0.0, 1.0) < 0.5;
+        let gain = if steered { 0.3 / (2.0 * 9.81 * (height - l)) } else { 0.0 };
+        let mut values = vec![
+            (Name::ContactDistance, l),
+            (Name::RadiusOfGyration, rho),
+            (Name::Friction, random.between(0.1, 0.9)),
+            (Name::Height, height),
+            (Name::TiltGain, 1.1),
+            (Name::Restitution, random.between(0.2, 1.0)),
+        ];
+        if steered {
+            values.extend([(Name::EnergyGain, gain), (Name::TargetHeight, height)]);
+        }
+        let upright = scene("matched", &values);
+        let point = find_fixed_point(&upright).unwrap();
+        let critical = linear_verdict(&upright, &point).critical_tilt_gain;
+        let coefficient = boundary_coefficient(&upright.model(), &point).unwrap().coefficient;
+        if critical > 50.0 || coefficient.abs() < 0.05 {
+            continue;
+        }
+        if coefficient > 0.0 {
+            soft += 1
+        } else {
+            hard += 1
+        }
+        let at = |share: f64| {
+            let kappa = critical + (critical - 1.0) * coefficient * share * share;
+            let mut draft = upright.draft();
+            draft.set(Name::TiltGain, Some(Value::Number(kappa))).unwrap();
+            draft.build().unwrap()
+        };
+        let small = 2e-3 / (1.0 + critical);
+        let there = at(small);
+        let theta = period_two_angle(&there.model(), 1.5, &point).unwrap();
+        assert!((theta / small - 1.0).abs() < 1e-3, "{theta} {small} {coefficient} {critical}");
+        // The orbit itself, by the map.
+        let friction = there.model().friction().map(|friction| friction.coefficient);
+        let orbit = symmetric_orbit(&there.parameters(), friction, theta).unwrap();
+        let speed = orbit.speed_squared.sqrt();
+        let (x_dot, theta_dot) = (orbit.slope * speed, there.gravity() * theta / speed);
+        let state = State { theta, x_dot, y_dot: -speed, theta_dot };
+        // With a gain on the energy the height must be the target's, which the angle is found for.
+        assert!(is_mirrored(&there, state), "{there:?}");
+    }
+    assert!(soft > 50 && hard > 50, "{soft} {hard}");
+}
+
+/// At κ_c a soft loss keeps small starts bounded, and a hard one lets them fall.
+#[test]
+fn runs_at_the_boundary_of_a_matched_table_do_as_the_coefficient_says() {
+    for (rho, height, energy_gain) in [(RHO, 0.2, 0.0), (0.3 * L, 0.16, 0.0), (RHO, 0.2, 0.1), (0.3 * L, 0.145, 0.0)] {
+        let mut values = vec![(Name::RadiusOfGyration, rho), (Name::Height, height), (Name::TiltGain, 1.1)];
+        if energy_gain != 0.0 {
+            values.extend([(Name::EnergyGain, energy_gain), (Name::TargetHeight, height)]);
+        }
+        let upright = scene("matched", &values);
+        let point = find_fixed_point(&upright).unwrap();
+        let critical = linear_verdict(&upright, &point).critical_tilt_gain;
+        let coefficient = boundary_coefficient(&upright.model(), &point).unwrap().coefficient;
+        values[2].1 = critical;
+        values.push((Name::Theta, 1e-4));
+        let run = run_nonlinear(&scene("matched", &values), 20_000, || true).unwrap();
+        println!("κ_c {critical} C {coefficient}: {:?} at {} with {}", run.ending, run.impacts, run.max_theta);
+        assert_eq!(coefficient > 0.0, run.ending == Ending::Completed, "{coefficient}");
+    }
 }
