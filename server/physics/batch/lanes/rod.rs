@@ -51,7 +51,7 @@ impl<S: Surface> LaneModel for RodLanes<S> {
 
     #[inline(always)]
     fn bounce<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) -> Bounced {
-        bounce_rods::<L, S>(self, rods, moving, next, scratch)
+        bounce_rods::<L, S>(&self.surface, &self.steering, self.outline.as_ref(), rods, moving, next, scratch)
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@
 use super::contact::Surface;
 use super::model::Bounced;
 use super::number::{Lane, Near};
-use super::rod::RodLanes;
+use super::outline::OutlineLanes;
 use super::state::{Moving, Rods, Scratch, WIDTH, unless};
 use super::steering::{SteeringLanes, tilt_by_gain};
 use crate::bounce::contact_time;
@@ -23,13 +23,14 @@ const STEPS: u32 = 3;
 /// The bounce of all lanes from `moving` to `next`, but not of those that it sets apart: as [`super::model::LaneModel::bounce`].
 #[inline(always)]
 pub(super) fn bounce_rods<L: Lane, S: Surface>(
-    model: &RodLanes<S>,
+    surface: &S,
+    steering: &SteeringLanes,
+    outline: Option<&OutlineLanes>,
     rods: &Rods,
     moving: &Moving,
     next: &mut Moving,
     scratch: &mut Scratch,
 ) -> Bounced {
-    let RodLanes { surface, steering, outline } = model;
     let tilted_near = match steering {
         SteeringLanes::TiltGain => tilt::<L>(rods, moving, next, scratch, |lane| tilt_by_gain(rods, moving, lane)),
         SteeringLanes::Feedback(feedback) => {
