@@ -60,6 +60,7 @@ test('the run goes on in contact up to its end, which the time line has', async 
   const scrubbed = await pose(page);
   assert.ok(scrubbed.t > settled && scrubbed.t < last, `${scrubbed.t}`);
   assertHeld(scrubbed, run);
+  assert.doesNotMatch(await told(page), /the end of the run/);
   await page.click('#step-back');
   assert.ok(Math.abs((await pose(page)).t - run.outcome.t) < 1e-4);
   // The address names the run, and the contact belongs to it.

@@ -205,7 +205,8 @@ export class Timeline {
     const t = Number.isFinite(run.shown) ? run.shown : 0;
     const place = this.place;
     const n = place === null ? 0 : run.impacts.at('n', place);
-    const here = run.past === null ? [] : this.bar.marks.filter((mark) => mark.n === n).map(({ words }) => words);
+    const marks = run.past === null ? [] : this.bar.marks.filter((mark) => mark.n === n && mark.t <= t);
+    const here = marks.map(({ words }) => words);
     if (run.past !== null && run.replayed === SLOW) here.push('at a tenth of the speed');
     const whole = [unbroken(`n ${fixed(n, 0)}`), unbroken(`${fixed(t, 2)} s`), ...here].join(' · ');
     if (this.#told.textContent !== whole) this.#told.textContent = whole;
