@@ -6,7 +6,7 @@
 //! and the modulated height pumps or damps the swing. A table that holds the energy itself does nothing of this: ℓ is 0.
 
 use crate::scene::Scene;
-use crate::stability::fixed_point::FixedPoint;
+use crate::stability::fixed_point::{FixedPoint, drift_speed};
 use crate::stability::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC};
 use crate::stability::normal_form::{RESONANT, UprightBounce};
 use nalgebra::Complex;
@@ -44,11 +44,24 @@ pub struct LyapunovCoefficient {
     pub amplitude: f64,
     /// Distance of the rotation from a quarter turn a bounce, in turns: the strong resonance at which ℓ is not defined.
     pub from_quarter: f64,
+    /// |c|/V of the drift beside the bounce, which ℓ leaves out.
+    pub drift: f64,
 }
 
+/// |c|/V up to which the contacts until a swing has left are within about 1 %. A drift changes ℓ in proportion to c²/V², by up to some
+/// 25 times that on random scenes (`server/physics/tests/feedback_drift.rs`).
+pub const SMALL_DRIFT: f64 = 0.02;
+
+/// |c|/V beyond which a drift may turn the sign of ℓ.
+pub const LARGE_DRIFT: f64 = 0.2;
+
 impl LyapunovCoefficient {
-    /// 1/(2ℓA₀²), contacts after which a swing like this release's has left; `None` if it does not leave.
+    /// 1/(2ℓA₀²), contacts after which a swing like this release's has left; `None` if it does not leave, and if the drift is larger than
+    /// [`SMALL_DRIFT`].
     pub fn escape_impacts(&self) -> Option<u64> {
+        if self.drift > SMALL_DRIFT {
+            return None;
+        }
         let contacts = 0.5 / (self.coefficient * self.amplitude * self.amplitude);
         // A cast keeps to the range of the type.
         (self.kind == SwingFate::Repelling && contacts.is_finite()).then_some(contacts as u64)
@@ -95,6 +108,12 @@ pub fn lyapunov_coefficient(
             "it is derived for a bounce in place, and the energy that the table holds has a drift of {drift} m/s in it"
         ));
     }
+    let drift = drift_speed(scene).unwrap_or(0.0).abs() / fixed_point.speed;
+    if coefficient != 0.0 && drift > LARGE_DRIFT {
+        return Err(format!(
+            "it is derived for a bounce in place, and the drift is {drift} of the bounce's speed: beyond {LARGE_DRIFT} it may change the sign"
+        ));
+    }
     let kind = if coefficient > 0.0 {
         SwingFate::Repelling
     } else if coefficient < 0.0 {
@@ -103,7 +122,7 @@ pub fn lyapunov_coefficient(
         SwingFate::Neutral
     };
     let turns = linear.rotation.unwrap_or_default() / std::f64::consts::TAU;
-    Ok(LyapunovCoefficient { coefficient, kind, amplitude: cubic.amplitude, from_quarter: (turns - 0.25).abs() })
+    Ok(LyapunovCoefficient { coefficient, kind, amplitude: cubic.amplitude, from_quarter: (turns - 0.25).abs(), drift })
 }
 
 /// (ρθ, ẋ, ρθ̇, x) just before the first contact of a scene's run.

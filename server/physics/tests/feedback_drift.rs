@@ -1,4 +1,5 @@
-//! The drift that a state feedback of θ and θ̇ alone leaves to the body: fixed point, linear verdict and verdict against long runs.
+//! The drift that a state feedback of θ and θ̇ alone leaves to the body: fixed point, linear verdict and verdict against long runs; and the
+//! growth of a swing beside a drift.
 
 #[path = "support/random.rs"]
 mod random;
@@ -10,6 +11,7 @@ use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::stability::linear_verdict::linear_verdict;
+use equipoise_physics::stability::lyapunov::{LARGE_DRIFT, SMALL_DRIFT, lyapunov_coefficient};
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::verdict::{Assessment, HigherOrder, Verdict, assess};
 use random::Random;
@@ -141,4 +143,68 @@ fn runs_settle_on_the_drift_and_the_height_said() {
         assert_eq!(judge(&scene).verdict, Verdict::StableDrifting);
     }
     assert!(worst.iter().all(|worst| *worst < 0.2) && judged.iter().all(|count| *count > 30), "{worst:?} {judged:?}");
+}
+
+/// The growth of 1/A² over a run, by the largest |θ| of its first and last contacts, per contact; `None` if the run ends early.
+fn growth(scene: &Scene, impacts: u64) -> Option<f64> {
+    const WINDOW: u64 = 4000;
+    let mut largest = [0.0_f64; 2];
+    let ending = run(&mut scene.orbit().unwrap(), impacts, |contact| {
+        if contact.n <= WINDOW {
+            largest[0] = largest[0].max(contact.state.theta.abs());
+        } else if contact.n > impacts - WINDOW {
+            largest[1] = largest[1].max(contact.state.theta.abs());
+        }
+        true
+    });
+    let [first, last] = largest.map(|theta| 1.0 / (theta * theta));
+    (ending == Some(Ending::Completed)).then_some(0.5 * (first - last) / (impacts - WINDOW) as f64)
+}
+
+/// A drift c changes ℓ by a multiple of c²/V²; up to [`SMALL_DRIFT`] by less than 1 %.
+#[test]
+fn the_lyapunov_coefficient_holds_up_to_the_drift_that_is_said() {
+    const IMPACTS: u64 = 60_000;
+    let mut random = Random::new(5);
+    let (mut compared, mut turned) = (0, 0);
+    while compared < 25 {
+        let l = random.between(0.05, 0.4);
+        let rho = l * random.between(0.2, 1.2);
+        let above = l * random.between(0.2, 2.0);
+        let speed_squared = 2.0 * 9.81 * above;
+        let residue = random.between(0.05, 0.95);
+        let restitution = random.between(0.3, 1.0);
+        let numbers = [
+            (Name::ContactDistance, l),
+            (Name::RadiusOfGyration, rho),
+            (Name::Height, l + above),
+            (Name::TargetHeight, l + above),
+            (Name::TiltGain, 1.0 + residue * rho * rho / (2.0 * above * l)),
+            (Name::Restitution, restitution),
+            (Name::EnergyGain, random.between(0.1, 1.6) / ((1.0 + restitution) * speed_squared)),
+            (Name::XDot, 0.0),
+            (Name::Theta, 0.01),
+        ];
+        let found = |scene: &Scene| {
+            let fixed_point = find_fixed_point(scene).unwrap();
+            lyapunov_coefficient(scene, &fixed_point, &linear_verdict(scene, &fixed_point))
+        };
+        let Some(scene) = with(&case_1(), &numbers, &[]) else { continue };
+        let Ok(own) = found(&scene) else { continue };
+        let amplitude = (0.1 / (own.coefficient.abs() * IMPACTS as f64)).sqrt();
+        if own.from_quarter < 0.03 || amplitude > 0.05 {
+            continue;
+        }
+        let theta = (Name::Theta, 0.01 * amplitude / own.amplitude);
+        let drifting = |share: f64| with(&scene, &[theta, (Name::XDot, share * speed_squared.sqrt())], &[]).unwrap();
+        let Some(still) = growth(&drifting(0.0), IMPACTS) else { continue };
+        let slow = growth(&drifting(0.99 * SMALL_DRIFT), IMPACTS).unwrap();
+        assert!((slow / still - 1.0).abs() < 0.01, "{} {scene:?}", slow / still);
+        assert_eq!(found(&drifting(0.99 * SMALL_DRIFT)).unwrap().escape_impacts().is_some(), own.coefficient > 0.0);
+        assert_eq!(found(&drifting(1.01 * SMALL_DRIFT)).unwrap().escape_impacts(), None);
+        assert!(found(&drifting(1.01 * LARGE_DRIFT)).unwrap_err().contains("may change the sign"));
+        turned += u32::from(growth(&drifting(2.0 * LARGE_DRIFT), IMPACTS).is_none_or(|fast| fast * still < 0.0));
+        compared += 1;
+    }
+    assert!(turned > 3, "{turned}");
 }
