@@ -174,8 +174,10 @@ impl ErrorLanes {
             (scratch.timing_error[lane], scratch.angle_error[lane]) = (timing, angle);
         }
         let mut near = true;
+        // A copy, as in the steps of a flight.
+        scratch.before = scratch.t;
         for lane in 0..WIDTH {
-            let (t, timing) = (scratch.t[lane], scratch.timing_error[lane]);
+            let (t, timing) = (scratch.before[lane], scratch.timing_error[lane]);
             let struck = if timing == 0.0 { t } else { (t + timing).max(LEAST_FLIGHT) };
             let turned = (next.theta_dot[lane] * struck).abs();
             near &= turned <= Near::REACH;

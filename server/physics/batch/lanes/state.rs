@@ -59,6 +59,8 @@ pub(crate) struct Scratch {
     /// After the strike.
     pub(super) y_dot: Lanes,
     pub(super) t: Lanes,
+    /// The same before it is changed.
+    pub(super) before: Lanes,
     /// 1 where t is the time of flight.
     pub(super) found: [u64; WIDTH],
     /// Error of the time at which a table strikes that errs, s.
@@ -282,6 +284,7 @@ impl Scratch {
             sin_beta: zero,
             y_dot: zero,
             t: zero,
+            before: zero,
             timing_error: zero,
             angle_error: zero,
             clearance: zero,

@@ -136,10 +136,12 @@ fn fall<L: Lane>(
     clearance: impl Fn(usize) -> f64,
 ) -> Fallen {
     let (mut near, mut all) = (true, 1);
+    // A copy: where a lane may keep its time, a store beside the load would be a masked one, which takes tens of cycles with AVX2.
+    scratch.before = scratch.t;
     for lane in 0..WIDTH {
         let clearance = clearance(lane);
         let flight = flight::<L>(rods, moving, next, scratch, lane, clearance);
-        let t = scratch.t[lane];
+        let t = scratch.before[lane];
         let gap = flight.gap(L::from_f64(t));
         let step = NewtonStep::new(&flight, L::from_f64(t), &gap);
         let turned = (next.theta_dot[lane] * t).abs();
