@@ -241,6 +241,9 @@ pub const REGION_BLOCK_WORK: u64 = 1_000_000;
 /// Price of a cell of a region besides its bounces, in bounces in lanes: the scene, the first flight, and writing.
 pub const REGION_CELL_PRICE: u64 = 60;
 
+/// Price of a bounce of a table with a program of heights, in bounces in lanes: every strike has its own height.
+pub const REGION_PROGRAM_PRICE: u64 = 2;
+
 /// Price of a cell that cannot run in lanes, besides its bounces, in bounces in lanes.
 pub const REGION_ALONE_CELL_PRICE: u64 = 350;
 

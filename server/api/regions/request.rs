@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use equipoise_physics::scene::{FieldKind, Scene, field};
+use equipoise_physics::scene::{FieldKind, Name, Scene, field};
 use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
@@ -180,7 +180,14 @@ impl RegionRequest {
             }
             MapQuantity::Residue | MapQuantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),
             MapQuantity::Survival | MapQuantity::MaxTheta if self.map.fits_lanes() => {
-                let bounce = if self.map.errs() { limits::REGION_NOISE_PRICE } else { 1 };
+                let has_program = self.map.scene.get(Name::Program).is_some();
+                let bounce = if self.map.errs() {
+                    limits::REGION_NOISE_PRICE
+                } else if has_program {
+                    limits::REGION_PROGRAM_PRICE
+                } else {
+                    1
+                };
                 (limits::REGION_CELL_PRICE, bounce)
             }
             MapQuantity::Survival | MapQuantity::MaxTheta => {

@@ -9,6 +9,7 @@ use crate::batch::lanes::{
 };
 use crate::batch::mask::{Mask, bits};
 use crate::batch::model::{BatchContact, BatchModel};
+use crate::batch::programs::ProgramLanes;
 use crate::body::model::Model;
 use crate::bounce::state::State;
 use crate::numbers::dispatch::{InstructionSet, Kernel, dispatch_on};
@@ -267,6 +268,7 @@ struct LaneRuns<'w, M> {
     busy: Mask,
     /// Lanes before the first flight of a run that can settle.
     fresh: Mask,
+    programs: ProgramLanes,
     /// True where an angle was too large for [`Near`] lately.
     far: bool,
 }
@@ -294,6 +296,7 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
             look: [u64::MAX; WIDTH],
             busy: 0,
             fresh: 0,
+            programs: ProgramLanes::new(),
             far: false,
         }
     }
@@ -319,6 +322,7 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
         self.model.load(lane, &orbit.body, &midst);
         self.moving.set(lane, &midst.state, midst.energy);
         self.moving.max_theta[lane] = 0.0;
+        self.programs.load(lane, orbit.body.rod(), orbit.body.program());
         self.fresh &= !(1 << lane);
         self.fresh |= u16::from(rules.settles) << lane;
         (self.first[lane], self.last[lane]) = (self.turn, last);
@@ -365,6 +369,9 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
         let (mut next, mut scratch) = (self.moving, Scratch::new());
         for _ in 0..most {
             self.turn += 1;
+            if self.programs.lanes != 0 {
+                self.programs.aim(&mut self.rods);
+            }
             let mut bounced = Bounced { near: false, common: false };
             if !self.far {
                 bounced = self.model.bounce::<Near>(&self.rods, &self.moving, &mut next, &mut scratch);

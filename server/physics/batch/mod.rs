@@ -4,3 +4,4 @@ pub mod batch_run;
 mod lanes;
 mod mask;
 pub mod model;
+mod programs;

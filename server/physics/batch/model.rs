@@ -67,13 +67,13 @@ impl BatchModel {
         }
     }
 
-    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits of the table, plans
-    /// of a table that errs, or programs of heights.
+    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits of the table, or
+    /// plans of a table that errs.
     pub fn of(body: &Model, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, .. } = *rules;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
         let holds = !settles && body.friction().is_none() && body.noise().is_none();
-        if limits.is_some() || body.program().is_some() || holds_energy != holds {
+        if limits.is_some() || holds_energy != holds {
             return None;
         }
         let energy_feedback = body.rod().energy_feedback;

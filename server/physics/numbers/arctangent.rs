@@ -11,7 +11,7 @@ pub(crate) const REDUCIBLE: f64 = 1e15;
 /// Arctangent of 0 ≤ x ≤ [`SMALL`].
 #[inline(always)]
 pub(crate) fn arctangent_small(x: f64) -> f64 {
-    x - x * bend(x)
+    x - x * bend(x * x)
 }
 
 /// Arctangent of 0 ≤ x ≤ [`REDUCIBLE`].
@@ -26,7 +26,7 @@ pub(crate) fn arctangent_reducible(x: f64) -> f64 {
     near = if x < 0.6875 { (ARCTANGENTS[0], 2.0 * x - 1.0, 2.0 + x) } else { near };
     let ([high, low], above, below) = near;
     let reduced = above / below;
-    let far = high - ((reduced * bend(reduced) - low) - reduced);
+    let far = high - ((reduced * bend(reduced * reduced) - low) - reduced);
     if x <= SMALL { arctangent_small(x) } else { far }
 }
 
@@ -38,9 +38,9 @@ const ARCTANGENTS: [[f64; 2]; 4] = [
     [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17],
 ];
 
-/// 1 − (atan x)/x for |x| ≤ 7/16.
+/// 1 − (atan x)/x for z = x², |x| ≤ 7/16.
 #[inline(always)]
-fn bend(x: f64) -> f64 {
+fn bend(z: f64) -> f64 {
     const A: [f64; 11] = [
         3.333_333_333_333_293e-1,
         -1.999_999_999_987_648_3e-1,
@@ -54,7 +54,6 @@ fn bend(x: f64) -> f64 {
         -3.653_157_274_421_691_6e-2,
         1.628_582_011_536_578_2e-2,
     ];
-    let z = x * x;
     let w = z * z;
     let odd = z * (A[0] + w * (A[2] + w * (A[4] + w * (A[6] + w * (A[8] + w * A[10])))));
     let even = w * (A[1] + w * (A[3] + w * (A[5] + w * (A[7] + w * A[9]))));

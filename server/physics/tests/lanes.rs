@@ -14,6 +14,8 @@ use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::table::control_law::{Gains, Steering};
+use equipoise_physics::table::noise::{Noise, NoiseModel};
+use equipoise_physics::table::program::HeightProgram;
 use proptest::prelude::*;
 
 /// A rod and the start of its run.
@@ -177,6 +179,31 @@ proptest! {
         };
         let orbits: Vec<_> = starts.into_iter().map(orbit).collect();
         assert_alike(&orbits, &Rules { holds_energy: false, ..RULES_OF_A_KIND }, impacts)?;
+    }
+
+    #[test]
+    fn lanes_with_programs_are_orbits(
+        starts in prop::collection::vec((starts(), feedbacks(), prop::collection::vec(0.1..1.0_f64, 1..7)), 1..60),
+        impacts in 1..400_u64, energy_feedback in energy_feedbacks(), feeds_back in any::<bool>(), errs in any::<bool>(),
+    ) {
+        let noise = Noise { timing_sd: 2e-3, angle_sd: 1e-3, model: NoiseModel::Strike, seed: 5, run: 0 };
+        let noise = errs.then_some(noise);
+        let orbit = |(start, feedback, heights): (Start, _, Vec<f64>)| {
+            let steering = if feeds_back { feedback } else { Steering::TiltGain };
+            let start = steered(start, energy_feedback, 2.0);
+            let start = Start { rules: Rules { settles: true, holds_energy: false, ..start.rules }, ..start };
+            let body = GeneralBody {
+                rod: start.rod,
+                steering,
+                program: HeightProgram::new(&heights),
+                friction: None,
+                noise,
+                outline: None,
+            };
+            Orbit::at(Model::General(body), start.rules, start.state)
+        };
+        let orbits: Vec<_> = starts.into_iter().map(orbit).collect();
+        assert_alike(&orbits, &Rules { settles: true, holds_energy: false, ..RULES_OF_A_KIND }, impacts)?;
     }
 
     #[test]

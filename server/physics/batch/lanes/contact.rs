@@ -9,8 +9,7 @@ use crate::body::model::Model;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::Strike;
 
 /// A contact point that rises faster does so by more than rounding ([`crate::bounce::strike::Strike::rises`]), at any speed up to the limit, m/s.
 const SURE_RISE: f64 = 1e-8;
@@ -24,25 +23,20 @@ pub(crate) trait Surface {
     fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch);
 }
 
-/// The strike of a lane without friction: velocities after it, and the energy that the run should have then. Rounding is kept off the
-/// energy, but not where a run can settle.
-#[expect(clippy::too_many_arguments, reason = "the numbers of a lane stand in arrays")]
+/// Puts what a strike without friction gives into a lane, and the energy that the run should have then. Rounding is kept off the energy,
+/// but not where a run can settle.
 #[inline(always)]
-pub(super) fn strike_smooth<L: Lane>(
+pub(super) fn struck_smooth<L: Lane>(
     lane: usize,
     rod: &Rod<L>,
-    before: &State<L>,
-    tilt: &Tilt<L>,
-    leverage: L,
+    mut strike: Strike<L>,
     rods: &Rods,
     moving: &Moving,
     next: &mut Moving,
     scratch: &mut Scratch,
 ) {
-    let number = L::from_f64;
-    let mut strike = rod.strike_with(before, tilt, leverage);
     // A run that may settle holds no energy: its own energy leaves the strike uncorrected.
-    let held = if rods.settles(lane) { strike.energy } else { number(moving.energy[lane]) };
+    let held = if rods.settles(lane) { strike.energy } else { L::from_f64(moving.energy[lane]) };
     let energy = rod.hold_energy(&mut strike, held);
     next.struck(lane, &strike, energy.to_f64(), SURE_RISE, scratch);
 }
@@ -65,8 +59,8 @@ impl Smooth {
             let rod = Rod { energy_feedback, ..rods.rod(lane).lift::<L>() };
             let tilt = scratch.tilt::<L>(lane);
             let before = moving.state(lane).map(L::from_f64);
-            let leverage = L::from_f64(rods.leverage(lane));
-            strike_smooth(lane, &rod, &before, &tilt, leverage, rods, moving, next, scratch);
+            let strike = rod.strike_with(&before, &tilt, L::from_f64(rods.leverage(lane)));
+            struck_smooth(lane, &rod, strike, rods, moving, next, scratch);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Point masses in lanes: as rods of no length ([`crate::body::point`]), without what is zero for them.
 
-use super::contact::strike_smooth;
+use super::contact::struck_smooth;
 use super::model::{Bounced, LaneModel};
 use super::number::{Lane, Near};
 use super::rod::IDLE;
@@ -42,15 +42,22 @@ impl PointLanes {
         let (number, zero) = (L::from_f64, L::from_f64(0.0));
         let mut near = true;
         for lane in 0..WIDTH {
-            let rod = Rod { contact_distance: zero, radius_of_gyration: number(1.0), ..rods.rod(lane).lift::<L>() };
-            let before = State { theta_dot: zero, ..moving.state(lane).map(number) };
-            let alpha = rod.tilt_gain * before.theta;
-            let (sin_alpha, cos_alpha) = alpha.sincos();
+            let rod = Rod {
+                contact_distance: zero,
+                radius_of_gyration: number(1.0),
+                energy_feedback,
+                ..rods.rod(lane).lift::<L>()
+            };
+            let State { theta, x_dot, y_dot, .. } = moving.state(lane).map(number);
+            let alpha = rod.tilt_gain * theta;
+            near &= next.tilted::<L>(lane, alpha, rods, moving, scratch);
+            let (sin_alpha, cos_alpha) = at_least(alpha, TINY).sincos();
             // The others have no effect, since the body has no length.
             let tilt = Tilt { alpha, sin_theta: zero, versine_theta: zero, sin_alpha, cos_alpha, sin_beta: zero };
-            near &= next.tilted::<L>(lane, alpha, rods, moving, scratch);
-            let rod = Rod { energy_feedback, ..rod };
-            strike_smooth(lane, &rod, &before, &tilt, number(1.0), rods, moving, next, scratch);
+            let before = State { theta, x_dot: at_least(x_dot, TINY * y_dot.to_f64().abs()), y_dot, theta_dot: zero };
+            let mut strike = rod.strike_with(&before, &tilt, number(1.0));
+            strike.after.x_dot = x_dot - strike.impulse_normal * unless_tiny(alpha, sin_alpha);
+            struck_smooth(lane, &rod, strike, rods, moving, next, scratch);
         }
         near
     }
@@ -80,8 +87,9 @@ impl PointLanes {
             // Falls, so that the angle of the velocity is that of its two parts without a sign.
             let falls = end.y_dot.to_f64() < 0.0;
             let ratio = (end.x_dot / -end.y_dot).magnitude();
-            let theta = ratio.arctangent().to_f64().copysign(end.x_dot.to_f64());
             let size = ratio.to_f64();
+            let theta = unless_tiny(ratio, L::from_f64(size.max(TINY)).arctangent());
+            let theta = theta.to_f64().copysign(end.x_dot.to_f64());
             near &= size <= Near::RATIO;
             scratch.found[lane] = u64::from(refined);
             scratch.t[lane] = step.refined.to_f64();
@@ -92,6 +100,22 @@ impl PointLanes {
         }
         near
     }
+}
+
+/// An angle, rad, far below those that are their own sine, tangent and arctangent in doubles. On a good table the velocity of a point mass
+/// comes as near to the vertical as numbers allow. Products of smaller angles would be too small for doubles, which takes time.
+const TINY: f64 = 1e-30;
+
+/// The number, or `least` where its size is below that.
+#[inline(always)]
+fn at_least<L: Lane>(number: L, least: f64) -> L {
+    if number.to_f64().abs() > least { number } else { L::from_f64(least) }
+}
+
+/// `value`, or the number itself where it is tiny.
+#[inline(always)]
+fn unless_tiny<L: Lane>(number: L, value: L) -> L {
+    if number.to_f64().abs() < TINY { number } else { value }
 }
 
 impl LaneModel for PointLanes {

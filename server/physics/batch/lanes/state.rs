@@ -121,6 +121,11 @@ impl Rods {
         self.first_flight[lane] = before_flight(rules);
     }
 
+    /// Gives the table in a lane another target energy, m²/s².
+    pub(crate) fn aim(&mut self, lane: usize, target_energy: f64) {
+        self.target_energy[lane] = target_energy;
+    }
+
     /// A run has made its first flight, of so many seconds; 0 where it cannot settle.
     pub(crate) fn begin(&mut self, lane: usize, first_flight: f64) {
         self.first_flight[lane] = first_flight;
