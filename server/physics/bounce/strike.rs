@@ -72,25 +72,49 @@ pub struct Strike<N = f64> {
     pub energy_gain: N,
 }
 
+impl<N: Copy> Strike<N> {
+    /// The same strike in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Strike<M> {
+        let pair = |(one, other): (N, N)| (function(one), function(other));
+        Strike {
+            after: self.after.map(&function),
+            alpha: function(self.alpha),
+            sin_cos_theta: pair(self.sin_cos_theta),
+            normal_velocity: function(self.normal_velocity),
+            push: function(self.push),
+            approach: function(self.approach),
+            table_velocity: pair(self.table_velocity),
+            impulse_normal: function(self.impulse_normal),
+            impulse_tangential: function(self.impulse_tangential),
+            mode: self.mode,
+            contact_rise: function(self.contact_rise),
+            speed_squared: function(self.speed_squared),
+            energy: function(self.energy),
+            energy_gain: function(self.energy_gain),
+        }
+    }
+}
+
 /// Quantities of a strike from which its gain follows.
 #[derive(Clone, Copy, Debug)]
-struct MeasuredBounce<N> {
+pub(crate) struct MeasuredBounce<N> {
     /// G l cos θ, m²/s².
-    potential: N,
+    pub(crate) potential: N,
     /// ẏ, m/s.
-    y_dot: N,
+    pub(crate) y_dot: N,
     /// |v|², m²/s².
-    speed_squared: N,
+    pub(crate) speed_squared: N,
     /// v_nc, m/s.
-    normal_velocity: N,
+    pub(crate) normal_velocity: N,
     /// B.
-    mobility: N,
+    pub(crate) mobility: N,
 }
 
 impl<N: Number> Rod<N> {
     /// γ, the strike gain.
     #[inline(always)]
-    fn gain(&self, bounce: &MeasuredBounce<N>) -> N {
+    pub(crate) fn gain(&self, bounce: &MeasuredBounce<N>) -> N {
         let (half, one, two) = (N::from_f64(0.5), N::from_f64(1.0), N::from_f64(2.0));
         let MeasuredBounce { potential, y_dot, speed_squared, normal_velocity, mobility } = *bounce;
         match self.energy_feedback {

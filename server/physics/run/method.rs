@@ -11,12 +11,12 @@ use crate::bounce::strike::Strike;
 use crate::numbers::double_double::DoubleDouble;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
-use crate::run::error_estimate::ErrorEstimate;
+use crate::run::error_estimate::{ErrorEstimate, run_with_bounds};
 use crate::run::linear_solution::LinearSolution;
 use crate::run::orbit::Contact;
 use crate::run::rules;
 use crate::run::rules::{Checked, FlightTimes, Rules};
-use crate::run::{extended, linear_solution, orbit};
+use crate::run::{extended, linear_solution};
 use crate::scene::Scene;
 use crate::scene::model::ModelLevel;
 use crate::stability::fixed_point::find_fixed_point;
@@ -216,14 +216,11 @@ pub fn run_by(
             Ok(run_linear(scene, &solution, impacts, visit))
         }
         RunMethod::Map => {
-            let mut orbit = match scene.orbit() {
+            let orbit = match scene.orbit() {
                 Ok(orbit) => orbit,
                 Err(no_contact) => return Ok(Some(no_contact.ending(0.0, 0.0))),
             };
-            let mut estimate = ErrorEstimate::of_scene(scene, orbit.t());
-            Ok(orbit::run(&mut orbit, impacts, |contact| {
-                let error_estimate = estimate.bound();
-                estimate.pass(contact);
+            Ok(run_with_bounds(scene, &orbit, impacts, |contact, error_estimate| {
                 visit(&ComputedImpact { contact: *contact, error_estimate, extended: None })
             }))
         }

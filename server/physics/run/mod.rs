@@ -1,6 +1,7 @@
 //! Runs from contact to contact: how they go on and end, how they are computed (doubles, 31 digits, closed form), and how large
 //! their errors are.
 
+pub(crate) mod bounce_derivative;
 pub mod cancellation;
 pub mod ending;
 pub mod error_estimate;
@@ -8,5 +9,7 @@ pub mod extended;
 pub mod linear_solution;
 pub mod method;
 pub mod orbit;
+mod plain_rod;
 pub mod rules;
 pub mod settling;
+pub(crate) mod state_errors;

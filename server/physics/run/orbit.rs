@@ -96,6 +96,12 @@ impl<B: Body> Orbit<B> {
         self
     }
 
+    /// The same run with its body as another type.
+    pub(crate) fn with_body<C>(&self, body: C) -> Orbit<C> {
+        let Self { rules, state, clearance, plan, n, t, x, flights, energy, last, .. } = *self;
+        Orbit { body, rules, state, clearance, plan, n, t, x, flights, energy, last }
+    }
+
     /// Angle and velocities just before the coming contact.
     pub fn state(&self) -> &State {
         &self.state
@@ -424,20 +430,21 @@ pub(crate) fn visit_contacts<C: ContactByContact>(
 /// Visits contact after contact up to number `impacts`, which ends as [`Ending::Completed`] unless it ended otherwise;
 /// the visitor may stop it early by returning `false`, and then there is no ending.
 pub fn run<B: Body>(orbit: &mut Orbit<B>, impacts: u64, visit: impl FnMut(&Contact) -> bool) -> Option<Ending> {
-    dispatch(RunLoop { orbit, impacts, visit })
+    dispatch(RunLoop { run: orbit, impacts, visit })
 }
 
-struct RunLoop<'a, B, V> {
-    orbit: &'a mut Orbit<B>,
-    impacts: u64,
-    visit: V,
+/// [`visit_contacts`] as a kernel.
+pub(crate) struct RunLoop<'a, C, V> {
+    pub(crate) run: &'a mut C,
+    pub(crate) impacts: u64,
+    pub(crate) visit: V,
 }
 
-impl<B: Body, V: FnMut(&Contact) -> bool> Kernel for RunLoop<'_, B, V> {
+impl<C: ContactByContact, V: FnMut(&Contact<C::Number>) -> bool> Kernel for RunLoop<'_, C, V> {
     type Output = Option<Ending>;
 
     #[inline(always)]
     fn call(mut self) -> Self::Output {
-        visit_contacts(self.orbit, self.impacts, &mut self.visit)
+        visit_contacts(self.run, self.impacts, &mut self.visit)
     }
 }
