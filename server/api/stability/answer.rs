@@ -11,7 +11,7 @@ use equipoise_physics::stability::fixed_point::{
     LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, find_fixed_point, height_error,
 };
 use equipoise_physics::stability::linear_verdict::{LinearVerdict, linear_verdict};
-use equipoise_physics::stability::nonlinear_run::{NonlinearRun, run_nonlinear};
+use equipoise_physics::stability::nonlinear_run::{NonlinearRun, run_watched};
 use equipoise_physics::stability::verdict::{Assessment, HigherOrder, Verdict, assess};
 use serde::Serialize;
 
@@ -152,7 +152,8 @@ impl<'a> StabilityAnswer<'a> {
     /// Judges a scene by its linear verdict and a run, and looks for its basin on request. None if `go_on` returned false.
     pub fn compute(request: &'a StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
         let StabilityRequest { ref scene, impacts, basin, dial, tolerances } = *request;
-        let run = run_nonlinear(scene, impacts, &mut go_on)?;
+        let watched = run_watched(scene, impacts, &mut go_on)?;
+        let run = watched.summary;
         let mut notes = Vec::new();
         let judged = &scene.with_tilt_law();
         if judged.model().feedback().is_none() && scene.model().feedback().is_some() {
@@ -230,7 +231,7 @@ impl<'a> StabilityAnswer<'a> {
             Ok(fixed_point) => {
                 let linear = linear_verdict(judged, &fixed_point);
                 let higher = HigherOrder::of(judged, &fixed_point, &linear);
-                let evidence = Evidence::new(judged, &fixed_point, &linear, impacts);
+                let evidence = Evidence::new(judged, &watched, &fixed_point, &linear);
                 let Assessment { verdict, decided_by, agree, reason } =
                     assess(judged, &fixed_point, &linear, &higher, &run, evidence.chaos());
                 answer.verdict = Some(words(verdict, &run));

@@ -4,7 +4,8 @@ use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::fixed_point::FixedPoint;
 use equipoise_physics::stability::linear_verdict::LinearVerdict;
 use equipoise_physics::stability::loss_of_stability::SettledMotion;
-use equipoise_physics::stability::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED, measure_regularity};
+use equipoise_physics::stability::nonlinear_run::WatchedRun;
+use equipoise_physics::stability::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
 use equipoise_physics::stability::{basin, loss_of_stability, lyapunov, regularity};
 use serde::Serialize;
 
@@ -132,8 +133,8 @@ impl From<&loss_of_stability::StabilityLoss> for LossOfStability {
 pub(crate) struct Evidence(Option<Regularity>);
 
 impl Evidence {
-    pub(crate) fn new(scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict, impacts: u64) -> Self {
-        Self(scene.orbit().ok().and_then(|orbit| measure_regularity(orbit, fixed_point, linear, impacts)))
+    pub(crate) fn new(scene: &Scene, run: &WatchedRun, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Self {
+        Self(run.regularity(scene, fixed_point, linear))
     }
 
     pub(crate) fn bounces(&self) -> u64 {

@@ -7,6 +7,7 @@ use crate::body::general::GeneralBody;
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
+use crate::numbers::dispatch::{Kernel, dispatch};
 use crate::numbers::dual::Dual;
 use crate::numbers::trig;
 use crate::run::orbit::Orbit;
@@ -96,15 +97,19 @@ impl Regularity {
     }
 }
 
-/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback, noise or a program of heights.
-pub fn measure_regularity(
-    mut orbit: Orbit<Model>,
-    fixed_point: &FixedPoint,
-    linear: &LinearVerdict,
-    impacts: u64,
-) -> Option<Regularity> {
-    let (rod, friction) = match orbit.body {
-        Model::Rod(rod) => (rod, None),
+/// A contact that is watched, and the flight after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WatchedContact {
+    /// Angle and velocities just before it.
+    pub state: State,
+    /// Length of the flight, s.
+    pub flight_time: f64,
+}
+
+/// Rod and friction of a model that can be watched.
+fn watched_rod(model: &Model) -> Option<(Rod, Option<Friction>)> {
+    match *model {
+        Model::Rod(rod) => Some((rod, None)),
         Model::General(GeneralBody {
             rod,
             steering: Steering::TiltGain,
@@ -112,31 +117,58 @@ pub fn measure_regularity(
             friction,
             noise: None,
             outline: _,
-        }) => (rod, friction),
-        Model::General(_) | Model::Point(_) => return None,
-    };
-    let undisturbed = orbit.state().theta == 0.0 && orbit.state().theta_dot == 0.0;
-    let mut tangents = Tangents::new(&rod, friction, fixed_point.flight_time);
-    let mut turns = RotationCounter::new(fixed_point, linear);
-    let (mut advances, mut growth) = (Vec::new(), Vec::new());
-    // MEGNO: Y(n) = (2/n) Σ k ln(δ_k/δ_{k−1}), and its mean over n.
-    let (mut weighted, mut means, mut last, mut largest) = (0.0, 0.0, 0.0, 0.0);
-    for n in 1..=impacts.min(WATCHED) {
+        }) => Some((rod, friction)),
+        Model::General(_) | Model::Point(_) => None,
+    }
+}
+
+/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback, noise or a program of heights.
+pub fn measure_regularity(
+    mut orbit: Orbit<Model>,
+    fixed_point: &FixedPoint,
+    linear: &LinearVerdict,
+    impacts: u64,
+) -> Option<Regularity> {
+    watched_rod(&orbit.body)?;
+    let mut contacts = Vec::new();
+    for _ in 0..impacts.min(WATCHED) {
         let contact = orbit.advance();
         let Some(flight_time) = contact.flight_time else { break };
+        contacts.push(WatchedContact { state: contact.state, flight_time });
+    }
+    regularity_of(&orbit.body, &contacts, fixed_point, linear)
+}
+
+/// [`measure_regularity`] of contacts that have been computed, at most [`WATCHED`] from the first one on.
+pub fn regularity_of(
+    model: &Model,
+    contacts: &[WatchedContact],
+    fixed_point: &FixedPoint,
+    linear: &LinearVerdict,
+) -> Option<Regularity> {
+    let (rod, friction) = watched_rod(model)?;
+    let undisturbed = contacts.first().is_some_and(|first| first.state.theta == 0.0 && first.state.theta_dot == 0.0);
+    let mut tangents = Tangents::new(&rod, friction, fixed_point.flight_time);
+    let norms = dispatch(TangentLoop { tangents: &mut tangents, contacts });
+    let growth: Vec<f64> =
+        norms.into_iter().map(|norm| tangents.grow(norm)).take_while(|now| now.is_finite()).collect();
+    let mut advances = Vec::with_capacity(contacts.len());
+    let mut turns = RotationCounter::new(fixed_point, linear);
+    // One contact more than was passed, if its growth was no number.
+    for contact in &contacts[..contacts.len().min(growth.len() + 1)] {
         advances.extend(turns.as_mut().and_then(|turns| turns.next(&contact.state)));
-        tangents.pass(&contact.state, flight_time);
-        let now = tangents.growth();
-        if !now.is_finite() {
-            break;
-        }
-        let n = n as f64;
+    }
+    // MEGNO: Y(n) = (2/n) Σ k ln(δ_k/δ_{k−1}), and its mean over n.
+    let (mut weighted, mut means, mut last, mut largest) = (0.0, 0.0, 0.0, 0.0);
+    let largest_growth = |(index, now): (usize, &f64)| {
+        let n = (index + 1) as f64;
         weighted += n * (now - last);
         means += 2.0 * weighted / n;
-        last = now;
-        largest = f64::max(largest, now);
-        growth.push(largest);
-    }
+        last = *now;
+        largest = f64::max(largest, *now);
+        largest
+    };
+    let growth: Vec<f64> = growth.iter().enumerate().map(largest_growth).collect();
     let watched = growth.len() as u64;
     let rotation = turns.and(linear.rotation).map(|rotation| {
         let linear = rotation / TAU;
@@ -148,6 +180,25 @@ pub fn measure_regularity(
         ChaosIndicator { indicator, chaotic: indicator > CHAOTIC, impacts: watched }
     });
     Some(Regularity { rotation, chaos, growth })
+}
+
+/// Carries tangents over contacts, and gives their norm after each. Logarithms follow later, out of the loop.
+struct TangentLoop<'a> {
+    tangents: &'a mut Tangents,
+    contacts: &'a [WatchedContact],
+}
+
+impl Kernel for TangentLoop<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let mut norms = Vec::with_capacity(self.contacts.len());
+        for contact in self.contacts {
+            norms.push(self.tangents.carry(&contact.state, contact.flight_time));
+        }
+        norms
+    }
 }
 
 /// The nearest rational with a denominator of at most [`HIGHEST_ORDER`]; the smaller denominator wins a tie.
@@ -247,6 +298,19 @@ impl Tangents {
 
     /// Carries the tangents over a contact and the flight after it.
     pub fn pass(&mut self, before: &State, flight_time: f64) {
+        let norm = self.carry(before, flight_time);
+        self.grow(norm);
+    }
+
+    /// The growth after tangents of this norm.
+    fn grow(&mut self, norm: f64) -> f64 {
+        self.growth += libm::log(norm);
+        self.growth
+    }
+
+    /// Carries the tangents over a contact and the flight after it, and gives the norm by which they are divided.
+    #[inline(always)]
+    fn carry(&mut self, before: &State, flight_time: f64) -> f64 {
         let dual = |value, row: usize| Dual { value, partials: self.rows[row] };
         let State { theta, x_dot, y_dot, theta_dot } = *before;
         let state = State {
@@ -270,9 +334,9 @@ impl Tangents {
             }
         }
         let norm = norm_squared.sqrt();
-        self.growth += libm::log(norm);
         for partial in self.rows.iter_mut().flatten() {
             *partial /= norm;
         }
+        norm
     }
 }
