@@ -1,8 +1,10 @@
-//! Time of one bounce on one core: `cargo bench --bench bounce`. Each sample is 1000 bounces; read ns per item.
+//! Time of one bounce on one core: `cargo bench --bench bounce`. Each sample is 1000 bounces; read ns per item. Two ratios follow, each
+//! measured in turns: the error estimate over the bounce, and a verdict in bounces.
 
 mod case_1;
 
 use std::hint::black_box;
+use std::time::Instant;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as bench_all};
@@ -19,15 +21,64 @@ use equipoise_physics::run::method::{RunMethod, run_by};
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::jacobian;
+use equipoise_physics::stability::linear_verdict::linear_verdict;
+use equipoise_physics::stability::nonlinear_run::run_watched;
+use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 
 const BOUNCES: u64 = 1000;
 
 const RELEASE: Release =
     Release { x: 0.0, height: 0.2, state: State { theta: 0.3, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 } };
 
+/// Number of impacts of a verdict, as `stability` has by default.
+const WATCHED_FOR: u64 = 2000;
+
+const ROUNDS: usize = 100;
+
 fn main() {
     bench_all();
+    ratios();
+}
+
+/// Prints the time with the error estimate over that of the bare bounce, and the time of a verdict over that of a bounce.
+fn ratios() {
+    let scene = case_1();
+    let works: [&dyn Fn(); 3] = [
+        &|| {
+            let mut orbit = Orbit::new(black_box(case_1::ROD), case_1::RULES, &RELEASE).expect("a contact");
+            black_box(run(&mut orbit, BOUNCES, |_| true));
+        },
+        &|| {
+            let run = run_by(black_box(&scene), RunMethod::Map, BOUNCES, |impact| impact.error_estimate < 1.0);
+            assert!(run.is_ok_and(|ending| ending.is_some()), "a run that ended early would look fast");
+        },
+        &|| {
+            black_box(verdict(black_box(&scene)));
+        },
+    ];
+    let mut fastest = [f64::INFINITY; 3];
+    for _ in 0..ROUNDS {
+        for (fastest, work) in fastest.iter_mut().zip(works) {
+            let clock = Instant::now();
+            work();
+            *fastest = fastest.min(clock.elapsed().as_secs_f64());
+        }
+    }
+    let [bounces, estimated, verdict] = fastest;
+    println!("error estimate with its bounce over the bounce: {:.2}", estimated / bounces);
+    println!("verdict over {WATCHED_FOR} impacts: {:.0} bounces", verdict / bounces * BOUNCES as f64);
+}
+
+/// Run, linear verdict, normal forms, regularity and verdict, as `stability` answers.
+fn verdict(scene: &Scene) -> Option<Verdict> {
+    let run = run_watched(scene, WATCHED_FOR, || true)?;
+    let fixed_point = find_fixed_point(scene).ok()?;
+    let linear = linear_verdict(scene, &fixed_point);
+    let higher = HigherOrder::of(scene, &fixed_point, &linear);
+    let chaos = run.regularity(scene, &fixed_point, &linear).and_then(|regularity| regularity.chaos);
+    Some(assess(scene, &fixed_point, &linear, &higher, &run.summary, chaos).verdict)
 }
 
 /// States only, endings checked, energy held, as `stability` runs.
