@@ -116,7 +116,7 @@ const ENSEMBLE: &str = "/v1/ensembles?preset=case-1-noise&scene.release.theta=0.
 async fn who_hears_of_progress_may_leave() {
     let (app, address) = start().await;
     let precision = "/v1/precision?preset=case-1&impacts=1000";
-    for (target, some) in [(ENSEMBLE, "\"done\":200,\"of\":20000}"), (precision, "\"done\":20,\"of\":")] {
+    for (target, some) in [(ENSEMBLE, "\"done\":256,\"of\":20000}"), (precision, "\"done\":20,\"of\":")] {
         let mut socket = ask(address, &format!("{target}&format=progress")).await;
         let heard = read_until(&mut socket, some).await;
         assert!(heard.contains("{\"progress\":{\"done\":0,") && !heard.contains("\"end\""), "{heard}");
@@ -167,7 +167,7 @@ async fn progress_is_not_kept_back_by_its_compression() {
     assert_eq!(response.headers()["content-encoding"], "gzip");
     let mut body = response.into_body();
     let mut decoder = flate2::write::GzDecoder::new(Vec::new());
-    for line in ["{\"progress\":{\"done\":0,\"of\":20000}}\n", "{\"progress\":{\"done\":200,\"of\":20000}}\n"] {
+    for line in ["{\"progress\":{\"done\":0,\"of\":20000}}\n", "{\"progress\":{\"done\":256,\"of\":20000}}\n"] {
         let piece = timeout(SOON, body.frame()).await.expect("the server is silent").unwrap().unwrap();
         decoder.write_all(&piece.into_data().unwrap()).unwrap();
         decoder.flush().unwrap();
