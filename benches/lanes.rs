@@ -62,7 +62,7 @@ impl Bodies {
                 Orbit::at(Model::Point(PointMass::new(rod)), rules, PointMass::state(state.theta, state.y_dot))
             }
             Self::Fed => {
-                let gains = Gains { x: 0.018, theta: -0.85 - 0.2 * rod.tilt_gain, x_dot: 0.023, theta_dot: -0.031 };
+                let gains = Gains { x: 0.018, theta: -0.88 - 0.2 * rod.tilt_gain, x_dot: 0.023, theta_dot: -0.031 };
                 Orbit::at(Model::General(GeneralBody { steering: Steering::Feedback(gains), ..general }), RULES, state)
             }
             Self::Rough(law, slide) => {
