@@ -28,7 +28,7 @@ const PRICE: f64 = 0.05;
 const TILT_GAIN: &str = "&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&y.parameter=release.theta&y.from=0&y.to=0.5";
 
 /// The maps that are measured: name, scene, axes, impacts, quantity.
-const MAPS: [Map; 16] = [
+const MAPS: [Map; 18] = [
     Map::new("rod", "preset=case-1", TILT_GAIN, 1000, "survival"),
     Map::new("rod, 100 impacts", "preset=case-1", TILT_GAIN, 100, "survival"),
     Map::new("rod, 10,000 impacts", "preset=case-1", TILT_GAIN, 10_000, "survival"),
@@ -63,6 +63,8 @@ const MAPS: [Map; 16] = [
     Map::new("rod, residue", "preset=case-1", TILT_GAIN, 1000, "residue"),
     Map::new("rod, spectral radius", "preset=case-1", TILT_GAIN, 1000, "spectral_radius"),
     Map::new("rod with losses, residue", "preset=case-4", TILT_GAIN, 1000, "residue"),
+    Map::new("state feedback, all of whose runs survive", FEEDBACK, SMALL_FEEDBACK, 1000, "survival"),
+    Map::new("small noise, all of whose runs survive", SMALL_NOISE, SMALL, 1000, "survival"),
 ];
 
 const SMALL: &str = "&x.parameter=table.tilt_gain&x.from=1.05&x.to=1.4&y.parameter=release.theta&y.from=0&y.to=0.05";
@@ -70,6 +72,9 @@ const FEEDBACK: &str = "scene.body.contact_distance=0.13333&scene.body.radius_of
                         &scene.table.feedback.x=0.018&scene.table.feedback.x_dot=0.023&scene.table.feedback.theta_dot=-0.031";
 const FEEDBACK_AXES: &str =
     "&x.parameter=table.feedback.theta&x.from=-1.6&x.to=-0.95&y.parameter=release.theta&y.from=0&y.to=0.5";
+const SMALL_FEEDBACK: &str =
+    "&x.parameter=table.feedback.theta&x.from=-1.2&x.to=-1.1&y.parameter=release.theta&y.from=0&y.to=0.02";
+const SMALL_NOISE: &str = "preset=case-1-noise&scene.noise.timing_sd=0.0001";
 const POINT_AXES: &str =
     "&x.parameter=table.tilt_gain&x.from=0.1&x.to=0.9&y.parameter=release.height&y.from=0.1&y.to=0.4";
 
