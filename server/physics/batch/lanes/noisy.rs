@@ -8,7 +8,7 @@ use super::number::{Lane, Near};
 use super::rod::RodLanes;
 use super::state::{Lanes, Moving, Rods, Scratch, WIDTH, unless};
 use super::steering::SteeringLanes;
-use super::step::{any_apart, fall_to_table, flight, tilt};
+use super::step::{any_apart, fall_to_table, flight, tilted};
 use crate::body::general::LEAST_FLIGHT;
 use crate::body::model::Model;
 use crate::bounce::contact_time::{guess, guess_from_above, latest_contact};
@@ -70,14 +70,21 @@ impl<S: Surface> LaneModel for NoisyLanes<S> {
     #[inline(always)]
     fn bounce<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) -> Bounced {
         let errors = &self.errors;
-        let mut near = match &self.rods.steering {
+        let mut near = true;
+        match &self.rods.steering {
             SteeringLanes::TiltGain => {
-                tilt::<L>(rods, moving, next, scratch, |lane| errors.tilt_by_gain(rods, moving, lane))
+                for lane in 0..WIDTH {
+                    let tilt = errors.tilt_by_gain::<L>(rods, moving, lane);
+                    near &= tilted(lane, &tilt, rods, moving, next, scratch);
+                }
             }
             SteeringLanes::Feedback(feedback) => {
-                tilt::<L>(rods, moving, next, scratch, |lane| feedback.tilt(moving, lane, errors.angle[lane]))
+                for lane in 0..WIDTH {
+                    let tilt = feedback.tilt::<L>(moving, lane, errors.angle[lane]);
+                    near &= tilted(lane, &tilt, rods, moving, next, scratch);
+                }
             }
-        };
+        }
         self.rods.surface.strike::<L>(&errors.seen(rods), moving, next, scratch);
         errors.guess(rods, moving, next, scratch);
         near &= fall_to_table::<L>(STEPS, rods, moving, next, scratch, |lane| errors.clearance[lane]);

@@ -31,12 +31,21 @@ pub(super) fn bounce_rods<L: Lane, S: Surface>(
     next: &mut Moving,
     scratch: &mut Scratch,
 ) -> Bounced {
-    let tilted_near = match steering {
-        SteeringLanes::TiltGain => tilt::<L>(rods, moving, next, scratch, |lane| tilt_by_gain(rods, moving, lane)),
-        SteeringLanes::Feedback(feedback) => {
-            tilt::<L>(rods, moving, next, scratch, |lane| feedback.tilt(moving, lane, 0.0))
+    let mut tilted_near = true;
+    match steering {
+        SteeringLanes::TiltGain => {
+            for lane in 0..WIDTH {
+                let tilt = tilt_by_gain::<L>(rods, moving, lane);
+                tilted_near &= tilted(lane, &tilt, rods, moving, next, scratch);
+            }
         }
-    };
+        SteeringLanes::Feedback(feedback) => {
+            for lane in 0..WIDTH {
+                let tilt = feedback.tilt::<L>(moving, lane, 0.0);
+                tilted_near &= tilted(lane, &tilt, rods, moving, next, scratch);
+            }
+        }
+    }
     surface.strike::<L>(rods, moving, next, scratch);
     guess::<L>(rods, moving, next, scratch);
     let fallen_near = fall_to_table::<L>(STEPS, rods, moving, next, scratch, |_| 0.0);
@@ -86,27 +95,25 @@ pub(super) fn any_apart(rods: &Rods, scratch: &mut Scratch) -> bool {
     any != 0
 }
 
-/// The sines of θ, α and θ − α: whether all were near.
+/// Keeps the sines of θ, α and θ − α in a lane. Tells whether its angles were near.
+///
+/// Its callers loop over the lanes: a closure in their place need not be compiled into the loop, and stays outside the vectors then.
 #[inline(always)]
-pub(super) fn tilt<L: Lane>(
+pub(super) fn tilted<L: Lane>(
+    lane: usize,
+    tilt: &Tilt<L>,
     rods: &Rods,
     moving: &Moving,
     next: &mut Moving,
     scratch: &mut Scratch,
-    tilt_in: impl Fn(usize) -> Tilt<L>,
 ) -> bool {
-    let mut near = true;
-    for lane in 0..WIDTH {
-        let tilt = tilt_in(lane);
-        scratch.alpha[lane] = tilt.alpha.to_f64();
-        scratch.sin_theta[lane] = tilt.sin_theta.to_f64();
-        scratch.versine_theta[lane] = tilt.versine_theta.to_f64();
-        scratch.sin_alpha[lane] = tilt.sin_alpha.to_f64();
-        scratch.cos_alpha[lane] = tilt.cos_alpha.to_f64();
-        scratch.sin_beta[lane] = tilt.sin_beta.to_f64();
-        near &= next.tilted(lane, tilt.alpha, rods, moving, scratch);
-    }
-    near
+    scratch.alpha[lane] = tilt.alpha.to_f64();
+    scratch.sin_theta[lane] = tilt.sin_theta.to_f64();
+    scratch.versine_theta[lane] = tilt.versine_theta.to_f64();
+    scratch.sin_alpha[lane] = tilt.sin_alpha.to_f64();
+    scratch.cos_alpha[lane] = tilt.cos_alpha.to_f64();
+    scratch.sin_beta[lane] = tilt.sin_beta.to_f64();
+    next.tilted(lane, tilt.alpha, rods, moving, scratch)
 }
 
 /// Start of the search for the time of flight.
