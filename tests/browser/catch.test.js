@@ -161,7 +161,8 @@ test('a live run is caught, held and drawn; its link replays it', async () => {
 });
 
 test('from the hold a throw goes on, and juggling strikes to two heights in turn', async () => {
-  const { page, clean } = await open('?preset=case-1&catch.hold=60');
+  // What the law leaves out grows with the square of the angle.
+  const { page, clean } = await open('?preset=case-1&scene.release.theta=0.1&catch.hold=60');
   await hold(page, '#catch-it');
   const struck = await page.evaluate(() => document.querySelector('#plane-angle .readout').textContent);
   const n = Number(/^n\s(\d+)/.exec(struck)[1]);
@@ -187,8 +188,8 @@ test('from the hold a throw goes on, and juggling strikes to two heights in turn
   // The top of the flight before each of the last strikes; the law leaves out the drop of the centre of gravity by the angle.
   const apexes = [-3, -2, -1].map((at) => (0.4 / 3) * Math.cos(theta.at(at)) + down.at(at) ** 2 / (2 * 9.81));
   for (const [index, apex] of apexes.entries())
-    assert.ok(Math.min(Math.abs(apex - 0.2), Math.abs(apex - 0.3)) < 1e-2, `apex ${index}: ${apex}`);
-  assert.ok(Math.abs(apexes[0] - apexes[1]) > 0.08, 'in turn');
+    assert.ok(Math.min(Math.abs(apex - 0.2), Math.abs(apex - 0.3)) < 5e-3, `apex ${index}: ${apex}`);
+  assert.ok(Math.abs(apexes[0] - apexes[1]) > 0.09, 'in turn');
   clean();
 });
 

@@ -101,7 +101,7 @@ export class Row {
     this.#help.replaceChildren(this.helpWords().join(' '));
   }
 
-  /** Its limits with the unit; '' where it has none. */
+  /** The limits with the unit; '' for a field without them. */
   get limits() {
     const { minimum, maximum, unit } = this.field;
     return minimum == null || maximum == null

@@ -71,7 +71,7 @@ fn holds_height(rod: &Rod) -> bool {
 /// The boundary coefficient C at κ_c, with a = κ_c − 1 and γ = Gl/V²: (1+a)²/2 + a²/6 − (1−a)γ, and with a positive
 /// energy gain that holds η and not the energy, −(1+a)²/2 + a²/6 − γ.
 ///
-/// Where a matched contact sticks, with p = ρ²/(ρ² + l²): 1/2 + ap + 2a²/3 at the quantity that the table conserves to second order
+/// A matched contact that sticks has, with p = ρ²/(ρ² + l²), 1/2 + ap + 2a²/3 at the quantity that the table conserves to second order
 /// ([`crate::stability::fixed_point`]), and −1/2 − a − a²/3 where η is held.
 ///
 /// `None` for a point mass, for friction on a table that only tilts, with state feedback, with a drift in the energy that is held, and where

@@ -7,7 +7,7 @@ use crate::body::polygon::{ClearAngles, Outline};
 /// ([`crate::body::polygon::FLUSH`]).
 const FARTHEST_WAY: f64 = 1e4;
 
-/// What a common bounce needs of the outlines.
+/// Numbers of the outlines that a common bounce needs.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(crate) struct OutlineLanes {

@@ -97,7 +97,7 @@ pub(super) fn any_apart(rods: &Rods, scratch: &mut Scratch) -> bool {
 
 /// Keeps the sines of θ, α and θ − α in a lane. Tells whether its angles were near.
 ///
-/// Its callers loop over the lanes: a closure in their place need not be compiled into the loop, and stays outside the vectors then.
+/// Called in loops over the lanes. A closure handed to one loop may be compiled for itself, without vectors.
 #[inline(always)]
 pub(super) fn tilted<L: Lane>(
     lane: usize,
