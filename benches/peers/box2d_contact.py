@@ -1,8 +1,6 @@
 """Box2D: a circle at the rod's end on a tilting box, restitution 1."""
 
-import math
-
-from scene import HEIGHT, L, RHO, THETA, G, Engine, drive, main, report
+from scene import HEIGHT, L, RHO, THETA, G, Engine, main, report_steps
 
 # Below 1 m/s Box2D gives nothing back, and it tolerates 0.005 m: the rod is built 20 times as long, where both are less.
 SCALE = 20.0
@@ -13,7 +11,8 @@ def run():
     import Box2D
 
     class Rod(Engine):
-        def __init__(self):
+        def __init__(self, dt):
+            self.dt = dt
             self.world = Box2D.b2World(gravity=(0.0, -G * SCALE))
             end = Box2D.b2CircleShape(pos=(0.0, -L * SCALE), radius=RADIUS)
             fixture = Box2D.b2FixtureDef(shape=end, density=1.0, restitution=1.0, friction=0.0)
@@ -37,8 +36,8 @@ def run():
         def step(self):
             self.world.Step(self.dt, 8, 3)
 
-    setting = f"step {Engine.dt:g} s, single precision, driven from Python, {SCALE:g} times the size"
-    report("Box2D", Box2D.__version__, setting, lambda: drive(Rod()))
+    setting = f", single precision, driven from Python, {SCALE:g} times the size"
+    report_steps("Box2D", Box2D.__version__, setting, Rod)
 
 
 if __name__ == "__main__":

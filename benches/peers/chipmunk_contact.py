@@ -1,8 +1,6 @@
 """Chipmunk (pymunk): a circle at the rod's end on a tilting segment, elasticity 1."""
 
-import math
-
-from scene import HEIGHT, L, RHO, THETA, G, Engine, drive, main, report
+from scene import HEIGHT, L, RHO, THETA, G, Engine, main, report_steps
 
 RADIUS = 1e-3
 
@@ -11,7 +9,8 @@ def run():
     import pymunk
 
     class Rod(Engine):
-        def __init__(self):
+        def __init__(self, dt):
+            self.dt = dt
             self.space = pymunk.Space()
             self.space.gravity = (0.0, -G)
             self.space.collision_slop = 1e-6
@@ -35,7 +34,7 @@ def run():
         def step(self):
             self.space.step(self.dt)
 
-    report("Chipmunk (pymunk)", pymunk.version, f"step {Engine.dt:g} s, driven from Python", lambda: drive(Rod()))
+    report_steps("Chipmunk (pymunk)", pymunk.version, ", driven from Python", Rod)
 
 
 if __name__ == "__main__":
