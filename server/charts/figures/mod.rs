@@ -17,5 +17,5 @@ pub use closed_loop::{Loop, closed_loop};
 pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalue_dial, eigenvalues};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use phase_planes::{PhasePlanes, phase_planes};
-pub use speed_accuracy::{CostAndError, SYMBOLS, Series, SpeedAccuracy, speed_accuracy};
+pub use speed_accuracy::{CostAndError, SYMBOLS, Series, SpeedAccuracy, Symbol, speed_accuracy};
 pub use survival::{AnglesAt, SurvivalAt, SurvivalCurve, survival_curve};

@@ -59,10 +59,18 @@ pub struct CostAndError {
 pub struct Symbol {
     colour: &'static str,
     outline: &'static [Point],
+    is_open: bool,
+}
+
+impl Symbol {
+    /// The symbol without its filling.
+    pub const fn open(self) -> Self {
+        Self { is_open: true, ..self }
+    }
 }
 
 const fn symbol(colour: &'static str, outline: &'static [Point]) -> Symbol {
-    Symbol { colour, outline }
+    Symbol { colour, outline, is_open: false }
 }
 
 /// The symbols, one for each method.
@@ -118,18 +126,22 @@ pub const SYMBOLS: [Symbol; 11] = [
 /// Size of a symbol, px.
 const SIZE: f64 = 5.0;
 
-/// Space between lines of the legend, px.
+/// Largest space between lines of the legend, px.
 const LEADING: f64 = 23.0;
 
+/// Height of the legend, px.
+const LEGEND: f64 = 450.0;
+
 /// Draws a symbol. `mark` is the method of a point, for pages that read the chart; a legend has none.
-fn draw_symbol(svg: &mut Svg, (x, y): Point, Symbol { colour, outline }: Symbol, mark: Option<&str>) {
+fn draw_symbol(svg: &mut Svg, (x, y): Point, Symbol { colour, outline, is_open }: Symbol, mark: Option<&str>) {
     let corner = |(index, (right, down)): (usize, &Point)| {
         let kind = if index == 0 { "M" } else { "L" };
         format!("{kind}{} {}", fixed(x + SIZE * right), fixed(y + SIZE * down))
     };
     let path: String = outline.iter().enumerate().map(corner).collect();
-    let tag = svg.tag("path").word("d", &format!("{path}Z")).word("fill", colour);
-    let tag = tag.word("stroke", PAPER).number("stroke-width", 0.8);
+    let (fill, edge, width) = if is_open { (PAPER, colour, 1.6) } else { (colour, PAPER, 0.8) };
+    let tag = svg.tag("path").word("d", &format!("{path}Z")).word("fill", fill);
+    let tag = tag.word("stroke", edge).number("stroke-width", width);
     match mark {
         Some(method) => tag.word("data-mark", method).end(),
         None => tag.end(),
@@ -186,10 +198,12 @@ pub fn speed_accuracy(drawn: &SpeedAccuracy<'_>) -> String {
 
     let left = right + 26.0;
     let mut y = frame.top + 12.0;
+    // The front and the rounding have lines too.
+    let leading = LEADING.min(LEGEND / (drawn.series.len() + 2) as f64);
     let mut label = |svg: &mut Svg, text: &str, draw: &dyn Fn(&mut Svg, f64)| {
         draw(svg, y);
         svg.text(left + 26.0, y + 4.3, Type::new(12.5, SOFT_INK), &[Span::Plain(text)]);
-        y += LEADING;
+        y += leading;
     };
     for series in drawn.series {
         label(&mut svg, series.label, &|svg, y| draw_symbol(svg, (left + 8.0, y), series.symbol, None));
