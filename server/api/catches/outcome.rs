@@ -42,36 +42,47 @@ impl CatchOutcomeAnswer {
 
     /// The outcome of a catch whose contact began at `contact_from` and was followed up to `end`, s.
     pub fn new(outcome: &CatchOutcome, contact_from: Option<f64>, end: f64, friction: f64) -> Self {
-        let from = contact_from.map_or_else(String::new, |t| format!(" from t = {t} s"));
+        let from = contact_from.map_or_else(String::new, |t| format!(" from t = {} s", three(t)));
         let (t, detail, decided): (f64, String, Option<Decision>) = match *outcome {
-            CatchOutcome::Held => {
-                (end, format!("the body stays in contact{from} to the end of the time asked for, t = {end} s"), None)
-            }
-            CatchOutcome::RestsOnEdge { vertices: [first, second] } => (
+            CatchOutcome::Held => (
                 end,
-                format!("at t = {end} s, the body rests on the edge from vertex {first} to vertex {second}"),
+                format!("the body stays in contact{from} to the end of the time asked for, t = {} s", three(end)),
                 None,
             ),
+            CatchOutcome::RestsOnEdge { vertices: [first, second] } => {
+                (end, format!("{}, the body rests on the edge from vertex {first} to vertex {second}", at(end)), None)
+            }
             CatchOutcome::Fell { t, fall: Fall::Toppled { theta, limit } } => (
                 t,
-                format!("at t = {t} s, the angle {theta} rad had reached topple_angle {limit} rad"),
+                {
+                    let [theta, limit] = apart(theta, limit);
+                    format!("{}, the angle {theta} rad had reached topple_angle {limit} rad", at(t))
+                },
                 Some(("theta", theta, limit, "rad")),
             ),
             CatchOutcome::Fell { t, fall: Fall::OtherVertex(Touch { vertex, .. }) } => {
-                (t, format!("at t = {t} s, vertex {vertex} of the body met the table"), None)
+                (t, format!("{}, vertex {vertex} of the body met the table", at(t)), None)
             }
             CatchOutcome::Slipped { t, needed } => (
                 t,
-                format!(
-                    "at t = {t} s, the contact slips: it needs a coefficient of friction of {needed}, and contact.friction is {friction}"
-                ),
+                {
+                    let [needed, friction] = apart(needed, friction);
+                    format!(
+                        "{}, the contact slips: it needs a coefficient of friction of {needed}, and contact.friction is {friction}",
+                        at(t)
+                    )
+                },
                 Some(("friction", needed, friction, "")),
             ),
             CatchOutcome::BeyondLimits { t, violation: LimitViolation { quantity, value, limit, unit } } => (
                 t,
-                format!(
-                    "at t = {t} s, the catch asks for a {quantity} of {value} {unit}; table.limits.{quantity} is {limit} {unit}"
-                ),
+                {
+                    let [value, limit] = apart(value, limit);
+                    format!(
+                        "{}, the catch asks for a {quantity} of {value} {unit}; table.limits.{quantity} is {limit} {unit}",
+                        at(t)
+                    )
+                },
                 Some((quantity, value, limit, unit)),
             ),
             CatchOutcome::NotCaught { t, escape } => escaped(t, escape),
@@ -98,47 +109,76 @@ impl CatchOutcomeAnswer {
 
 /// The reason for which a body was not caught although it did not fall.
 fn escaped(t: f64, escape: Escape) -> (f64, String, Option<Decision>) {
-    let at = format!("at t = {t} s");
     match escape {
-        Escape::Missed => (t, format!("after t = {t} s, the body never meets the table as it was planned"), None),
+        Escape::Missed => {
+            (t, format!("after t = {} s, the body never meets the table as it was planned", three(t)), None)
+        }
         Escape::Separating(speed) => (
             t,
-            format!("{at}, the contact point left the table at {speed} m/s along its normal: it could only pull"),
+            format!(
+                "{}, the contact point left the table at {} m/s along its normal: it could only pull",
+                at(t),
+                three(speed)
+            ),
             Some(("approach", speed, 0.0, "m/s")),
         ),
-        Escape::NoLift(alpha) => {
-            (t, format!("{at}, a strike at a tilt of {alpha} rad pushes the contact point down, at any speed"), None)
-        }
+        Escape::NoLift(alpha) => (
+            t,
+            format!(
+                "{}, a strike at a tilt of {} rad pushes the contact point down, at any speed",
+                at(t),
+                three(alpha)
+            ),
+            None,
+        ),
         Escape::NoLaw(speed) => (
             t,
             format!(
-                "{at}, no feedback is known for a contact speed of {speed} m/s: its Riccati equation was not solved"
+                "{}, no feedback is known for a contact speed of {} m/s: its Riccati equation was not solved",
+                at(t),
+                three(speed)
             ),
             None,
         ),
         Escape::NoPlan(failure) => {
-            (t, format!("{at}, no plan was found that brings the body to rest: {failure}"), None)
+            (t, format!("{}, no plan was found that brings the body to rest: {failure}", at(t)), None)
         }
         Escape::Diverged(speed) => (
             t,
-            format!("{at}, the strike gave a speed of {speed} m/s, beyond what doubles resolve"),
+            format!("{}, the strike gave a speed of {} m/s, beyond what doubles resolve", at(t), three(speed)),
             Some(("speed", speed, SPEED_LIMIT, "m/s")),
         ),
         Escape::TooManyStrikes(strikes) => {
-            (t, format!("{at}, the bounces had not ended after {strikes} strikes, the most of one catch"), None)
+            (t, format!("{}, the bounces had not ended after {strikes} strikes, the most of one catch", at(t)), None)
         }
         Escape::ContactLost(lost) => {
-            (lost, format!("at t = {lost} s, the body leaves the table: only a pull would keep it there"), None)
+            (lost, format!("{}, the body leaves the table: only a pull would keep it there", at(lost)), None)
         }
         Escape::HoldTooLong(end) => {
-            (end, format!("at t = {end} s, the motion in contact had taken the most steps of one catch"), None)
+            (end, format!("{}, the motion in contact had taken the most steps of one catch", at(end)), None)
         }
     }
 }
 
+/// A number in words: three significant digits.
+fn three(value: f64) -> String {
+    significant(value, 3)
+}
+
+/// A time in words, s.
+fn at(t: f64) -> String {
+    format!("at t = {} s", three(t))
+}
+
+/// A value beside its limit in words: three significant digits, or as many as tell them apart.
+fn apart(value: f64, limit: f64) -> [String; 2] {
+    const MOST: usize = 17;
+    let told = (3..=MOST).map(|digits| [value, limit].map(|number| significant(number, digits)));
+    told.into_iter().find(|[value, limit]| value != limit).unwrap_or_else(|| [value, limit].map(three))
+}
+
 /// A fact about a catch, in a sentence.
 pub fn note_text(note: &CatchNote) -> String {
-    let three = |value: f64| significant(value, 3);
     match *note {
         CatchNote::EnergyFeedbackNeverSettles { time } => format!(
             "the scene's own table would not catch: with table.energy_gain and this target the speed falls only as 1/t, and passes 5 mm/s after \
@@ -185,5 +225,17 @@ pub fn note_text(note: &CatchNote) -> String {
             "at the end of the hold the body was at {} rad, not within 1 mrad of upright; a longer `hold` shows the rest",
             three(theta)
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::apart;
+
+    #[test]
+    fn words_have_three_digits_or_as_many_as_tell_a_value_from_its_limit() {
+        assert_eq!(apart(1.623_456, std::f64::consts::FRAC_PI_2), ["1.62", "1.57"]);
+        assert_eq!(apart(0.300_041, 0.3), ["0.30004", "0.3"]);
+        assert_eq!(apart(0.3, 0.3), ["0.3", "0.3"]);
     }
 }
