@@ -9,6 +9,7 @@ use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Number;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::extended::{ExtendedBody, ExtendedOrbit};
 use equipoise_physics::run::linear_solution::LinearSolution;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
@@ -231,7 +232,9 @@ impl<'a> Subject<'a> {
 }
 
 fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::ExtendedContact) -> bool) -> Option<Ending> {
-    let mut orbit = scene.extended_orbit().ok()?;
+    // General methods look neither at other vertices nor at the limits of the table.
+    let body = ExtendedBody { outline: None, ..scene.extended_body() };
+    let mut orbit = ExtendedOrbit::new(body, Rules { limits: None, ..scene.rules() }, scene.release()).ok()?;
     extended::run(&mut orbit, impacts, visit)
 }
 

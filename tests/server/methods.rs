@@ -65,6 +65,39 @@ async fn extended_gives_the_references_digit_by_digit() {
     }
 }
 
+/// Scenes beyond the plain rod: the first impacts are those of the map, but for rounding, and both runs end alike.
+#[tokio::test]
+async fn extended_takes_every_scene() {
+    let server = Server::start();
+    let feedback =
+        json!({"tilt_gain": null, "feedback": {"x": 0.05, "theta": -1.2, "x_dot": 0.06, "theta_dot": -0.02}});
+    for scene in [
+        json!({"table": feedback}),
+        json!({"table": feedback, "contact": {"friction": 0.3}, "release": {"theta": 0.05}}),
+        json!({"noise": {"timing_sd": 0.005, "angle_sd": 0.002}}),
+        json!({"noise": {"timing_sd": 0.005, "angle_sd": 0.002, "model": "plan"}, "table": feedback}),
+        json!({"table": {"limits": {"tilt": 0.25}}}),
+    ] {
+        let run = async |method: &str| {
+            let request = json!({"preset": "case-1", "scene": scene, "impacts": 40, "method": method});
+            server.post("/v1/trajectories", &request).await.expect(200).json()
+        };
+        let (map, exact) = (run("map").await, run("extended").await);
+        assert_eq!(map["outcome"]["kind"], exact["outcome"]["kind"], "{scene}");
+        assert_eq!(map["outcome"]["impacts"], exact["outcome"]["impacts"], "{scene}");
+        for quantity in ["t", "x", "theta", "x_dot", "y_dot", "theta_dot", "alpha", "energy"] {
+            let (ours, its) = (column(&map, quantity), column(&exact, quantity));
+            for (ours, its) in ours.into_iter().zip(its).take(5) {
+                assert!((ours - its).to_f64().abs() <= 1e-11, "{quantity}: {ours} and {its}, {scene}");
+            }
+        }
+        let (ours, its) = (&map["impacts"]["clearance"], &exact["impacts"]["clearance"]);
+        for (ours, its) in ours.as_array().unwrap().iter().zip(its.as_array().unwrap()).take(5) {
+            assert!((ours.as_f64().unwrap() - its.as_f64().unwrap()).abs() <= 1e-12, "{ours} and {its}, {scene}");
+        }
+    }
+}
+
 #[tokio::test]
 async fn error_estimates_hold_and_are_not_idle() {
     let server = Server::start();

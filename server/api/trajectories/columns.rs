@@ -209,7 +209,7 @@ pub static COLUMNS: [ImpactColumn; 22] = [
     )
     .scope(ColumnScope::Live),
     column("alpha", "rad", "Angle of the table, in radians.", Read::Number(|row| row.contact.alpha))
-        .digits(|row| Some(row.orbit.rod().tilt_gain * row.contact.state.theta)),
+        .digits(|row| Some(row.contact.alpha)),
     column(
         "table_velocity_x",
         "m/s",
@@ -251,7 +251,7 @@ pub static COLUMNS: [ImpactColumn; 22] = [
         "Kinetic and potential energy per unit mass just before the impact, in metres squared per second squared.",
         Read::Number(|row| row.energy),
     )
-    .digits(|row| Some(row.orbit.energy(&row.contact.state))),
+    .digits(|row| Some(row.orbit.energy(&row.contact.state) + row.orbit.rod().gravity * row.contact.clearance)),
     column(
         "flight_time",
         "s",

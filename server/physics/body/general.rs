@@ -9,12 +9,13 @@ use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::contact_time::{first_contact, first_descent};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
-use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
+use crate::bounce::friction::{Friction, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::bounce::tilt::Tilt;
+use crate::numbers::number::Number;
 use crate::table::control_law::Steering;
 use crate::table::noise::{Noise, NoiseModel, NoiseSample};
 use crate::table::program::HeightProgram;
@@ -45,22 +46,23 @@ pub trait Guide {
     fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion>;
 }
 
-/// A contact without friction, for a table that moves as planned.
-const SMOOTH: Friction = Friction { coefficient: 0.0, law: RestitutionLaw::Poisson, slide: Slide::None };
+/// Motion of a table that follows its own law, for a state that it foresees at this tilt.
+pub(crate) fn own_motion<N: Number>(
+    rod: &Rod<N>,
+    friction: Option<Friction>,
+    seen: &State<N>,
+    tilt: &Tilt<N>,
+) -> PlannedTableMotion<N> {
+    let Tilt { alpha, sin_alpha, cos_alpha, .. } = *tilt;
+    let (table_x, table_y) = rod.strike_with(seen, tilt, rod.leverage()).table_velocity;
+    PlannedTableMotion {
+        alpha,
+        normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
+        tangential_velocity: friction.map_or(N::from_f64(0.0), |friction| friction.table_speed(rod, seen, tilt)),
+    }
+}
 
 impl GeneralBody {
-    /// The table's tilt at a place and a state, the angle sensed with an error (rad).
-    fn tilt(&self, x: f64, state: &State, error: f64) -> Tilt<f64> {
-        let sensed = State { theta: state.theta + error, ..*state };
-        let alpha = match self.steering {
-            // The rod's own, without the rounding of θ − κθ.
-            Steering::TiltGain if error == 0.0 => return self.rod.tilt(state.theta),
-            Steering::TiltGain => self.rod.tilt_gain * sensed.theta,
-            Steering::Feedback(gains) => gains.tilt(x, &sensed),
-        };
-        Tilt::new(state.theta, alpha, state.theta - alpha)
-    }
-
     /// The rod at strike `n`.
     pub(crate) fn at_strike(&self, n: u64) -> Rod {
         self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
@@ -116,7 +118,10 @@ impl GeneralBody {
             // A guide that does not plan follows the body.
             Some(NoiseModel::Plan) if is_guided && guided.is_none() => Ok((t, flight.end(t)).into()),
             Some(NoiseModel::Plan) => {
-                let plan = guided.unwrap_or_else(|| self.own_motion(&seen, angle));
+                let plan = guided.unwrap_or_else(|| {
+                    let tilt = self.steering.sensed_tilt(&self.rod, seen.x, &state, angle);
+                    own_motion(&self.at_strike(n), self.friction, &state, &tilt)
+                });
                 match self.meet(flight, struck, &state, plan) {
                     // Released onto the table: it is on the plane, whatever was planned for later.
                     Err(NoContact::Missed) if t == 0.0 => Ok((LEAST_FLIGHT, flight.end(LEAST_FLIGHT)).into()),
@@ -126,46 +131,9 @@ impl GeneralBody {
         }
     }
 
-    /// Motion of a table that follows its own law, for the contact that it foresees.
-    fn own_motion(&self, seen: &PreImpact, error: f64) -> PlannedTableMotion {
-        let tilt = self.tilt(seen.x, &seen.state, error);
-        let Tilt { alpha, sin_alpha, cos_alpha, .. } = tilt;
-        let (table_x, table_y) =
-            self.at_strike(seen.n).strike_with(&seen.state, &tilt, self.rod.leverage()).table_velocity;
-        PlannedTableMotion {
-            alpha,
-            normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
-            tangential_velocity: self
-                .friction
-                .map_or(0.0, |friction| friction.table_speed(&self.rod, &seen.state, &tilt)),
-        }
-    }
-
-    /// End of a flight at the table that was set out to strike at time `struck` the state `seen`, with its contact at y = 0: a plane
-    /// that moves along its normal.
-    ///
-    /// Seen from the plane, the body flies as over a level table: with β for θ, and gravity's part along the normal.
+    /// End of a flight at the table that was set out to strike at time `struck` the state `seen`, with its contact at y = 0.
     fn meet(&self, flight: &Flight, struck: f64, seen: &State, plan: PlannedTableMotion) -> Result<Arrival, NoContact> {
-        let alpha = plan.alpha;
-        let Tilt { sin_theta, sin_alpha, cos_alpha, .. } = Tilt::new(seen.theta, alpha, seen.theta - alpha);
-        let length = flight.contact_distance;
-        let State { theta, x_dot, y_dot, theta_dot } = flight.start;
-        let (sin, cos) = flight.sin_cos_theta;
-        // The contact point at the start of the flight, from the planned one at the planned time.
-        let across = length * (sin - sin_theta) - x_dot * struck;
-        let above = flight.clearance * cos_alpha - sin_alpha * across + plan.normal_velocity * struck;
-        let relative = Flight {
-            start: State {
-                theta: theta - alpha,
-                x_dot: 0.0,
-                y_dot: cos_alpha * y_dot - sin_alpha * x_dot - plan.normal_velocity,
-                theta_dot,
-            },
-            sin_cos_theta: (sin * cos_alpha - cos * sin_alpha, cos * cos_alpha + sin * sin_alpha),
-            clearance: above,
-            contact_distance: length,
-            gravity: flight.gravity * cos_alpha,
-        };
+        let relative = plan.relative(flight, struck, seen);
         if relative.gravity <= 0.0 {
             return Err(NoContact::Missed);
         }
@@ -218,12 +186,12 @@ impl Body for GeneralBody {
         let rod = self.seen_at(*n, *clearance);
         let tilt = match plan {
             Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
-            None => self.tilt(*x, state, self.noise.map_or(0.0, |noise| noise.angle_error(*n))),
+            None => self.steering.sensed_tilt(&rod, *x, state, self.noise.map_or(0.0, |noise| noise.angle_error(*n))),
         };
         match (&self.friction, plan) {
             (None, None) => rod.strike_with(state, &tilt, rod.leverage()),
             (friction, plan) => {
-                let friction = friction.as_ref().unwrap_or(&SMOOTH);
+                let friction = friction.as_ref().unwrap_or(&Friction::SMOOTH);
                 friction.strike(&rod, state, &tilt, plan.as_ref(), rod.leverage(), actual_branch)
             }
         }

@@ -12,6 +12,7 @@ use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
+use crate::numbers::number::Number;
 
 /// Start of a run: a free body at t = 0, before its first contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,37 +49,37 @@ impl Kick {
 
 /// End of a flight: just before a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arrival {
+pub struct Arrival<N = f64> {
     /// Time since the flight began, s.
-    pub t: f64,
+    pub t: N,
     /// Angle and velocities.
-    pub state: State,
+    pub state: State<N>,
     /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
-    pub clearance: f64,
+    pub clearance: N,
     /// Planned motion of the table, if it planned ahead.
-    pub plan: Option<PlannedTableMotion>,
+    pub plan: Option<PlannedTableMotion<N>>,
 }
 
-impl From<(f64, State)> for Arrival {
+impl<N: Number> From<(N, State<N>)> for Arrival<N> {
     #[inline(always)]
-    fn from((t, state): (f64, State)) -> Self {
-        Self { t, state, clearance: 0.0, plan: None }
+    fn from((t, state): (N, State<N>)) -> Self {
+        Self { t, state, clearance: N::from_f64(0.0), plan: None }
     }
 }
 
 /// A contact that is about to happen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PreImpact {
+pub struct PreImpact<N = f64> {
     /// Number of the contact, from 1.
     pub n: u64,
     /// Horizontal place of the centre of gravity, m.
-    pub x: f64,
+    pub x: N,
     /// Angle and velocities just before it.
-    pub state: State,
+    pub state: State<N>,
     /// Same as in [`Arrival`], m.
-    pub clearance: f64,
+    pub clearance: N,
     /// Same as in [`Arrival`].
-    pub plan: Option<PlannedTableMotion>,
+    pub plan: Option<PlannedTableMotion<N>>,
 }
 
 impl PreImpact {

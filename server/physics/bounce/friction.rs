@@ -109,6 +109,9 @@ impl<N: Number> Mobility<N> {
 }
 
 impl Friction {
+    /// A contact without friction, for a table that moves as planned.
+    pub(crate) const SMOOTH: Self = Self { coefficient: 0.0, law: RestitutionLaw::Poisson, slide: Slide::None };
+
     /// Routh's impulse at velocities relative to the table just before, along it and along its normal, the latter < 0.
     ///
     /// v_n grows with P_n from v_n0, with one slope up to the end of sliding, and with another beyond. As long as it
@@ -258,9 +261,9 @@ impl Friction {
     }
 
     /// The table's velocity along itself where nothing delays it, m/s.
-    pub(crate) fn table_speed(&self, rod: &Rod, before: &State, tilt: &Tilt<f64>) -> f64 {
+    pub(crate) fn table_speed<N: Number>(&self, rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
         match self.slide {
-            Slide::None => 0.0,
+            Slide::None => N::from_f64(0.0),
             Slide::Matched => tangential_velocity(rod, before, tilt),
         }
     }

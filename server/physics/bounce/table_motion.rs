@@ -1,5 +1,10 @@
 //! The motion of a table that was planned before the contact.
 
+use crate::bounce::flight::Flight;
+use crate::bounce::state::State;
+use crate::bounce::tilt::Tilt;
+use crate::numbers::number::Number;
+
 /// A table that moves as it was planned before the contact, whatever it then meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedTableMotion<N = f64> {
@@ -9,4 +14,34 @@ pub struct PlannedTableMotion<N = f64> {
     pub normal_velocity: N,
     /// The table's velocity along itself, m/s.
     pub tangential_velocity: N,
+}
+
+impl<N: Number> PlannedTableMotion<N> {
+    /// A flight as seen from the planned table, a plane that moves along its normal. It was set out to strike the state `seen` at the time
+    /// `struck` (s), with the contact at y = 0.
+    ///
+    /// The body flies as over a level table: with β for θ, and gravity's part along the normal.
+    #[inline(always)]
+    pub(crate) fn relative(&self, flight: &Flight<N>, struck: N, seen: &State<N>) -> Flight<N> {
+        let alpha = self.alpha;
+        let Tilt { sin_theta, sin_alpha, cos_alpha, .. } = Tilt::new(seen.theta, alpha, seen.theta - alpha);
+        let length = flight.contact_distance;
+        let State { theta, x_dot, y_dot, theta_dot } = flight.start;
+        let (sin, cos) = flight.sin_cos_theta;
+        // The contact point at the start of the flight, from the planned one at the planned time.
+        let across = length * (sin - sin_theta) - x_dot * struck;
+        let above = flight.clearance * cos_alpha - sin_alpha * across + self.normal_velocity * struck;
+        Flight {
+            start: State {
+                theta: theta - alpha,
+                x_dot: N::from_f64(0.0),
+                y_dot: cos_alpha * y_dot - sin_alpha * x_dot - self.normal_velocity,
+                theta_dot,
+            },
+            sin_cos_theta: (sin * cos_alpha - cos * sin_alpha, cos * cos_alpha + sin * sin_alpha),
+            clearance: above,
+            contact_distance: length,
+            gravity: flight.gravity * cos_alpha,
+        }
+    }
 }

@@ -18,7 +18,6 @@ use crate::run::rules;
 use crate::run::rules::{Checked, FlightTimes, Rules};
 use crate::run::{extended, linear_solution};
 use crate::scene::Scene;
-use crate::scene::model::ModelLevel;
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::{AngleClass, linear_verdict};
 use crate::table::actuator_load::ActuatorLoad;
@@ -198,16 +197,15 @@ pub fn run_by(
     impacts: u64,
     mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Result<Option<Ending>, String> {
-    if method != RunMethod::Map {
-        let known: &[ModelLevel] = if method == RunMethod::Extended { &[ModelLevel::Friction] } else { &[] };
-        if let Some(error) = scene.beyond(known) {
+    if method == RunMethod::Linear {
+        if let Some(error) = scene.beyond(&[]) {
             return Err(error.detail);
         }
         if scene.limits.is_some() {
-            return Err("the limits of the table are looked at by the map alone".to_owned());
+            return Err("the linear solution does not look at the limits of the table".to_owned());
         }
         if scene.outline.is_some() {
-            return Err("the vertices of a polygon are looked at by the map alone".to_owned());
+            return Err("the linear solution does not look at the vertices of a polygon".to_owned());
         }
     }
     match method {
@@ -225,21 +223,30 @@ pub fn run_by(
             }))
         }
         RunMethod::Extended => {
-            let mut orbit = scene.extended_orbit().map_err(|_| "the first contact is not found".to_owned())?;
+            let mut orbit = match scene.extended_orbit() {
+                Ok(orbit) => orbit,
+                Err(no_contact) => return Ok(Some(no_contact.ending(0.0, 0.0))),
+            };
             let (rod, body) = (orbit, scene.model());
             let mut estimate = ErrorEstimate::of_extended_run(scene, orbit.t().to_f64());
             Ok(extended::run(&mut orbit, impacts, |contact| {
                 let error_estimate = estimate.bound();
                 estimate.pass_extended(contact);
-                let coming = PreImpact::at(contact.n, contact.x.to_f64(), extended::in_doubles(&contact.state));
-                let strike = body.strike(&coming);
+                let clearance = contact.clearance.to_f64();
+                let state = extended::in_doubles(&contact.state);
+                let coming = PreImpact { clearance, ..PreImpact::at(contact.n, contact.x.to_f64(), state) };
+                // A planned table is known to the run alone.
+                let strike = match (contact.strike, scene.noise) {
+                    (Some(strike), Some(_)) => strike.map(DoubleDouble::to_f64),
+                    (None, _) | (_, None) => body.strike(&coming),
+                };
                 let rounded = Contact {
                     n: contact.n,
                     t: contact.t.to_f64(),
                     x: coming.x,
                     state: coming.state,
-                    clearance: 0.0,
-                    alpha: strike.alpha,
+                    clearance,
+                    alpha: if scene.noise.is_some() { contact.alpha.to_f64() } else { strike.alpha },
                     strike: contact.strike.map(|_| strike),
                     flight_time: contact.flight_time.map(DoubleDouble::to_f64),
                     ending: contact.ending,

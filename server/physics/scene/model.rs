@@ -5,11 +5,10 @@ use crate::body::general::GeneralBody;
 pub use crate::body::model::Model;
 use crate::body::point::PointMass;
 use crate::body::polygon::Outline;
-use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
 use crate::numbers::number::Number;
-use crate::run::extended;
+use crate::run::extended::{ExtendedBody, ExtendedOrbit};
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::energy::energy_reason;
@@ -207,14 +206,25 @@ impl Scene {
         Orbit::new(self.running_model(), self.rules(), &self.release)
     }
 
+    /// The body of its runs with 31 digits.
+    pub fn extended_body(&self) -> ExtendedBody {
+        ExtendedBody {
+            rod: self.parameters(),
+            steering: self.steering,
+            program: self.program,
+            friction: self.contact_friction(),
+            noise: self.noise,
+            outline: self.outline,
+            is_point: self.body == BodyShape::Point,
+        }
+    }
+
     /// The run of the scene from its release with 31 digits.
     ///
     /// # Errors
-    /// [`TooManyPieces`], which the ranges of a scene exclude.
-    pub fn extended_orbit(&self) -> Result<extended::ExtendedOrbit, TooManyPieces> {
-        let is_point = self.body == BodyShape::Point;
-        let friction = self.contact_friction();
-        extended::ExtendedOrbit::new(self.parameters(), self.program, friction, is_point, self.rules(), &self.release)
+    /// The reason for which there is no first contact.
+    pub fn extended_orbit(&self) -> Result<ExtendedOrbit, NoContact> {
+        ExtendedOrbit::new(self.extended_body(), self.rules(), &self.release)
     }
 
     /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.

@@ -27,6 +27,15 @@ pub struct Gains<N = f64> {
     pub theta_dot: N,
 }
 
+impl Gains {
+    #[inline(always)]
+    fn lift<N: Number>(&self) -> Gains<N> {
+        let Self { x, theta, x_dot, theta_dot } = *self;
+        let [x, theta, x_dot, theta_dot] = [x, theta, x_dot, theta_dot].map(N::from_f64);
+        Gains { x, theta, x_dot, theta_dot }
+    }
+}
+
 impl<N: Number> Gains<N> {
     /// α, rad, at a place of the centre of gravity (m) and a state.
     #[inline(always)]
@@ -39,8 +48,20 @@ impl Steering {
     /// The table's tilt at a place and a state, in any kind of number.
     pub(crate) fn tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>) -> Tilt<N> {
         let Self::Feedback(gains) = self else { return rod.tilt(state.theta) };
-        let [x_gain, theta, x_dot, theta_dot] = [gains.x, gains.theta, gains.x_dot, gains.theta_dot].map(N::from_f64);
-        let alpha = Gains { x: x_gain, theta, x_dot, theta_dot }.tilt(x, state);
+        let alpha = gains.lift().tilt(x, state);
+        Tilt::new(state.theta, alpha, state.theta - alpha)
+    }
+
+    /// [`Steering::tilt`] with an error of the sensed angle, rad.
+    #[inline(always)]
+    pub(crate) fn sensed_tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>, error: f64) -> Tilt<N> {
+        let sensed = State { theta: state.theta + N::from_f64(error), ..*state };
+        let alpha = match self {
+            // The rod's own, without the rounding of θ − κθ.
+            Self::TiltGain if error == 0.0 => return rod.tilt(state.theta),
+            Self::TiltGain => rod.tilt_gain * sensed.theta,
+            Self::Feedback(gains) => gains.lift().tilt(x, &sensed),
+        };
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
 }

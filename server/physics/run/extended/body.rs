@@ -1,0 +1,194 @@
+//! A body with 31 digits: its falls, strikes and flights, by the formulas of the bodies in doubles.
+//!
+//! Numbers that are drawn or given as doubles, such as the errors of a table, are the same here. Other vertices of a polygon are looked
+//! for in doubles: they end runs and change no bounce.
+
+use crate::body::general::{LEAST_FLIGHT, own_motion};
+use crate::body::polygon::Outline;
+use crate::body::{Arrival, NoContact, PreImpact, Release, Touch};
+use crate::bounce::flight::Flight;
+use crate::bounce::friction;
+use crate::bounce::friction::{Friction, actual_branch};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
+use crate::bounce::tilt::Tilt;
+use crate::numbers::double_double::{DoubleDouble, ROUNDING};
+use crate::numbers::number::Number;
+use crate::numbers::trig;
+use crate::run::extended::contact_time::{first_contact, first_descent, in_doubles};
+use crate::table::control_law::Steering;
+use crate::table::noise::{Noise, NoiseModel, NoiseSample};
+use crate::table::program::HeightProgram;
+
+/// A body with 31 digits.
+#[derive(Clone, Copy, Debug)]
+pub struct ExtendedBody {
+    /// The rod and its table; of a point mass, a rod of no length.
+    pub rod: Rod<DoubleDouble>,
+    /// Control law of the tilt.
+    pub steering: Steering,
+    /// Target heights of its strikes, where they differ.
+    pub program: Option<HeightProgram>,
+    /// Friction and a table that moves along itself.
+    pub friction: Option<Friction>,
+    /// Timing and sensing errors.
+    pub noise: Option<Noise>,
+    /// The vertices of a polygon.
+    pub outline: Option<Outline>,
+    /// True for a point mass, whose angle is that of its velocity.
+    pub is_point: bool,
+}
+
+impl ExtendedBody {
+    /// Same as [`crate::body::Body::fall`].
+    ///
+    /// # Errors
+    /// The reason if there is no first contact; likewise in [`ExtendedBody::fly`].
+    pub fn fall(&self, release: &Release) -> Result<Arrival<DoubleDouble>, NoContact> {
+        let zero = DoubleDouble::from_f64(0.0);
+        let start = release.state.map(DoubleDouble::from);
+        let (sin, cos) = start.theta.sincos();
+        let height = self.rod.contact_distance * cos;
+        let clearance = DoubleDouble::from_f64(release.height) - height;
+        // As in doubles: a height typed as l cos θ means a contact.
+        let typed = 4.0 * f64::EPSILON * f64::max(release.height.abs(), height.to_f64().abs());
+        let flight = Flight {
+            start,
+            sin_cos_theta: (sin, cos),
+            clearance: if clearance.to_f64() <= typed { zero } else { clearance },
+            contact_distance: self.rod.contact_distance,
+            gravity: self.rod.gravity,
+        };
+        let gap = flight.gap(zero);
+        let falls = gap.slope < zero || (gap.slope == zero && gap.bend <= zero);
+        let t = if flight.clearance == zero && falls { zero } else { first_contact(&flight)? };
+        self.arrive(&flight, t, 1, release.x.into())
+    }
+
+    /// Same as [`crate::body::Body::strike`].
+    pub fn strike(&self, coming: &PreImpact<DoubleDouble>) -> Strike<DoubleDouble> {
+        let PreImpact { n, x, state, clearance, plan } = coming;
+        let mut rod = self.at_strike(*n);
+        if self.noise.is_some() {
+            rod.target_energy = rod.target_energy - rod.gravity * *clearance;
+        }
+        let tilt = match plan {
+            Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
+            None => self.steering.sensed_tilt(&rod, *x, state, self.noise.map_or(0.0, |noise| noise.angle_error(*n))),
+        };
+        match (&self.friction, plan) {
+            (None, None) => rod.strike_with(state, &tilt, rod.leverage()),
+            (friction, plan) => {
+                let friction = friction.as_ref().unwrap_or(&Friction::SMOOTH);
+                friction.strike(&rod, state, &tilt, plan.as_ref(), rod.leverage(), actual_branch)
+            }
+        }
+    }
+
+    /// Same as [`crate::body::Body::fly`].
+    ///
+    /// # Errors
+    /// Same as [`ExtendedBody::fall`].
+    pub fn fly(
+        &self,
+        from: &PreImpact<DoubleDouble>,
+        strike: &Strike<DoubleDouble>,
+    ) -> Result<Arrival<DoubleDouble>, NoContact> {
+        let flight = Flight { clearance: from.clearance, ..self.rod.flight(strike) };
+        let t = if flight.clearance.to_f64() < 0.0 {
+            first_descent(&flight)?.ok_or(NoContact::Sinking)?
+        } else {
+            first_contact(&flight)?
+        };
+        self.arrive(&flight, t, from.n + 1, from.x)
+    }
+
+    /// Same as [`crate::body::Body::touches`].
+    pub(super) fn touches(&self, theta: DoubleDouble, alpha: DoubleDouble) -> Option<Touch> {
+        let nearest = self.outline.as_ref()?.below_table((theta - alpha).to_f64())?;
+        Some(Touch { vertex: nearest.vertex, t: 0.0 })
+    }
+
+    /// Same as [`crate::body::Body::rise_rounding`].
+    pub(super) fn rise_rounding(&self, before: &State<DoubleDouble>, strike: &Strike<DoubleDouble>) -> f64 {
+        match self.friction {
+            None => strike.rise_rounding(before.y_dot, ROUNDING),
+            Some(_) => friction::rise_rounding(&self.rod, before, strike, ROUNDING),
+        }
+    }
+
+    fn at_strike(&self, n: u64) -> Rod<DoubleDouble> {
+        self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
+    }
+
+    /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`.
+    fn arrive(
+        &self,
+        flight: &Flight<DoubleDouble>,
+        t: DoubleDouble,
+        n: u64,
+        x: DoubleDouble,
+    ) -> Result<Arrival<DoubleDouble>, NoContact> {
+        let mut arrival = match &self.noise {
+            None => Arrival::from((t, flight.end(t))),
+            Some(noise) => self.meet_timed(noise, flight, t, n, x)?,
+        };
+        if let Some(outline) = &self.outline
+            && let Some(touch) = outline.first_touch(&in_doubles(flight), t.to_f64().min(arrival.t.to_f64()))?
+        {
+            return Err(NoContact::OtherVertex(touch));
+        }
+        if self.is_point {
+            arrival.state.theta = fall_angle(&arrival.state);
+        }
+        Ok(arrival)
+    }
+
+    /// End of a flight at a table that errs about the time `t`, when the contact point is at y = 0.
+    fn meet_timed(
+        &self,
+        noise: &Noise,
+        flight: &Flight<DoubleDouble>,
+        t: DoubleDouble,
+        n: u64,
+        x: DoubleDouble,
+    ) -> Result<Arrival<DoubleDouble>, NoContact> {
+        let NoiseSample { timing, angle } = noise.draw(n);
+        let least = DoubleDouble::from_f64(LEAST_FLIGHT);
+        let later = |time: DoubleDouble| if time < least { least } else { time };
+        let struck = if timing == 0.0 { t } else { later(t + DoubleDouble::from_f64(timing)) };
+        let state = flight.end(struck);
+        let clearance = if timing == 0.0 { DoubleDouble::from_f64(0.0) } else { flight.gap(struck).value };
+        match noise.model {
+            NoiseModel::Strike => Ok(Arrival { t: struck, state, clearance, plan: None }),
+            NoiseModel::Plan => {
+                let rod = self.at_strike(n);
+                let tilt = self.steering.sensed_tilt(&rod, x + state.x_dot * struck, &state, angle);
+                let plan = own_motion(&rod, self.friction, &state, &tilt);
+                let relative = plan.relative(flight, struck, &state);
+                let met = if relative.gravity.to_f64() > 0.0 { first_descent(&relative)? } else { None };
+                match met {
+                    Some(met) => {
+                        let t = later(met);
+                        Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan) })
+                    }
+                    // Released onto the table: it is on the plane, whatever was planned for later.
+                    None if t.to_f64() == 0.0 => Ok((least, flight.end(least)).into()),
+                    None => Err(NoContact::Missed),
+                }
+            }
+        }
+    }
+}
+
+/// The angle of a velocity from straight down, rad: that in doubles, turned by the little that is left. Its square is lost.
+fn fall_angle(state: &State<DoubleDouble>) -> DoubleDouble {
+    let State { x_dot, y_dot, .. } = *state;
+    if x_dot == DoubleDouble::from_f64(0.0) && y_dot == x_dot {
+        return x_dot;
+    }
+    let angle = DoubleDouble::from_f64(trig::atan2(x_dot.to_f64(), -y_dot.to_f64()));
+    let (sin, cos) = angle.sincos();
+    angle + (x_dot * cos + y_dot * sin) / (x_dot * sin - y_dot * cos)
+}
