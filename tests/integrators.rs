@@ -6,6 +6,8 @@ use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::run::orbit::{Contact, Orbit, run};
 use equipoise_physics::run::rules::Rules;
+use equipoise_physics::scene::model::Model;
+use equipoise_physics::scene::{Draft, Name, Value};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::SplitMix64;
 
@@ -45,7 +47,7 @@ const STEPS: u64 = 20_000_000;
 
 impl Scene {
     fn by(&self, method: Integrator, impacts: u64) -> Simulation {
-        simulate(method, (&self.rod, &self.rules, &self.release), impacts, STEPS, &mut || true).unwrap()
+        simulate(method, (&Model::Rod(self.rod), &self.rules, &self.release), impacts, STEPS, &mut || true).unwrap()
     }
 
     fn exact(&self, impacts: u64) -> (Vec<Contact>, &'static str) {
@@ -326,7 +328,7 @@ fn every_run_ends() {
             ];
             for method in methods {
                 let limit = 10_000;
-                let input = (&scene.rod, &scene.rules, &scene.release);
+                let input = (&Model::Rod(scene.rod), &scene.rules, &scene.release);
                 let simulation = simulate(method, input, 20_000, limit, &mut || true).unwrap();
                 assert!(simulation.work.steps <= limit, "{method:?}");
                 let mut asked = 0;
@@ -336,6 +338,68 @@ fn every_run_ends() {
                 });
                 assert!(stopped.is_none() || asked < 4, "{method:?}");
             }
+        }
+    }
+}
+
+/// Scenes whose strikes are not those of the plain rod: with state feedback, friction, and a program of heights.
+#[test]
+fn methods_strike_as_the_map_does() {
+    let number = |value| Some(Value::Number(value));
+    let plain = [
+        (Name::ContactDistance, 0.4 / 3.0),
+        (Name::RadiusOfGyration, PRINTED),
+        (Name::Height, 0.2),
+        (Name::Theta, 0.1),
+        (Name::Restitution, 0.8),
+    ];
+    let feedback = [
+        (Name::FeedbackX, 0.05),
+        (Name::FeedbackTheta, -1.2),
+        (Name::FeedbackXDot, 0.06),
+        (Name::FeedbackThetaDot, -0.02),
+    ];
+    for (with_feedback, friction, law, slide) in [
+        (true, 0.0, "poisson", "none"),
+        (false, 0.05, "newton", "none"),
+        (false, 0.3, "stronge", "matched"),
+        (true, 0.2, "poisson", "none"),
+        (true, 0.1, "stronge", "matched"),
+    ] {
+        let mut draft = Draft::default();
+        for (name, value) in plain.into_iter().chain(with_feedback.then_some(feedback).into_iter().flatten()) {
+            draft.set(name, number(value)).unwrap();
+        }
+        if !with_feedback {
+            draft.set(Name::TiltGain, number(1.1)).unwrap();
+        }
+        draft.set(Name::Friction, number(friction)).unwrap();
+        draft.set(Name::Law, Some(Value::Choice(law))).unwrap();
+        draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
+        let scene = draft.build().unwrap();
+        let mut exact = Vec::new();
+        run(&mut scene.orbit().unwrap(), 3, |contact| {
+            exact.push(*contact);
+            true
+        });
+        let (body, rules) = (scene.model(), scene.rules());
+        let error = |method: Integrator| {
+            let simulation = simulate(method, (&body, &rules, scene.release()), 3, STEPS, &mut || true).unwrap();
+            simulation.impacts.last().map_or(f64::INFINITY, |impact| distance(&exact[2], impact))
+        };
+        let case = format!("feedback {with_feedback}, friction {friction}, {law}, {slide}");
+        for method in [runge_kutta(Location::Bisection)(1e-3), adaptive(1e-9), sampling(1e-3)] {
+            assert!(error(method) < 1e-11, "{case}: {method:?} is off by {:e}", error(method));
+        }
+        // The place of a contact within its step is as good as random.
+        let converges = |method: fn(f64) -> Integrator| {
+            let sum = |step: f64| (0..8).map(|n| error(method(step * (1.0 + 0.07 * f64::from(n))))).sum::<f64>();
+            let (coarse, fine) = (sum(1e-4), sum(1e-5));
+            assert!(fine < 0.25 * coarse, "{case}: off by {coarse:e}, then {fine:e}, in eight runs");
+        };
+        converges(time_stepping);
+        if friction == 0.0 {
+            converges(penalty);
         }
     }
 }

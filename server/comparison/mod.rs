@@ -116,10 +116,10 @@ pub fn chart(
         progress(points.len() as u64, of);
     }
     if scene.rules().limits.is_some() {
-        notes.push("table.limits end none of these runs: no method but the map looks at them".to_owned());
+        notes.push("table.limits end none of these runs: general methods do not look at them".to_owned());
     }
     if scene.vertices().is_some() {
-        notes.push("no other vertex ends any of these runs: no method but the map looks for them".to_owned());
+        notes.push("no other vertex ends any of these runs: general methods do not look for them".to_owned());
     }
     if let Some(coarsest) = left_out.into_iter().reduce(f64::max) {
         notes.push(format!(

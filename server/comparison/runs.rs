@@ -3,7 +3,6 @@
 use std::hint::black_box;
 
 use equipoise_physics::bounce::contact_time;
-use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Number;
@@ -96,9 +95,8 @@ impl<'a> Subject<'a> {
     /// The largest part, as a length or a velocity; a point mass has velocities only.
     fn size(&self, &[theta, x_dot, y_dot, theta_dot]: &[f64; 4]) -> f64 {
         let rho = match self.model {
-            Model::Rod(rod) => rod.radius_of_gyration,
             Model::Point(_) => 0.0,
-            Model::General(general) => general.rod.radius_of_gyration,
+            Model::Rod(_) | Model::General(_) => self.model.rod().radius_of_gyration,
         };
         let parts = [rho * theta, x_dot, y_dot, rho * theta_dot].map(f64::abs);
         if parts.iter().any(|part| part.is_nan()) { f64::NAN } else { parts.into_iter().fold(0.0, f64::max) }
@@ -129,9 +127,9 @@ impl<'a> Subject<'a> {
                 steps: self.impacts,
                 evaluations: Some(self.impacts),
             }),
-            MethodKind::Integrator(integrator) => match self.rod_of_integrators() {
-                Ok(rod) => Ok(self.simulated(with_setting(integrator, setting), &rod, slice)?),
-                Err(reason) => Err(reason),
+            MethodKind::Integrator(integrator) => match self.lacks(integrator) {
+                None => Ok(self.simulated(with_setting(integrator, setting), slice)?),
+                Some(reason) => Err(reason.to_owned()),
             },
         })
     }
@@ -152,9 +150,9 @@ impl<'a> Subject<'a> {
                 }
             }
             MethodKind::Integrator(integrator) => {
-                if let Ok(rod) = self.rod_of_integrators() {
+                if self.lacks(integrator).is_none() {
                     let method = with_setting(integrator, setting);
-                    _ = black_box(self.simulate(method, &rod, &mut || !cancel.is_set()));
+                    _ = black_box(self.simulate(method, &mut || !cancel.is_set()));
                 }
             }
         }
@@ -193,32 +191,29 @@ impl<'a> Subject<'a> {
         Some((n, state, ending.name()))
     }
 
-    /// The rod that integrators move.
-    fn rod_of_integrators(&self) -> Result<Rod, String> {
-        match self.model {
-            Model::Rod(rod) => Ok(rod),
-            Model::General(_) => {
-                Err("general methods are compared on one target height, and program has several".to_owned())
-            }
-            Model::Point(_) => {
-                Err("general methods move a body with an angle of its own, and a point mass has none".to_owned())
-            }
+    /// Reason for which a general method does not apply to the body, if there is one.
+    fn lacks(&self, integrator: IntegratorKind) -> Option<&'static str> {
+        if matches!(self.model, Model::Point(_)) {
+            return Some("general methods move a body with an angle of its own, and a point mass has none");
         }
+        let has_friction = self.model.friction().is_some_and(|friction| friction.coefficient != 0.0);
+        (integrator == IntegratorKind::Penalty && has_friction).then_some(
+            "its spring and damper push along the table's normal alone, and the contact has friction along the table",
+        )
     }
 
     fn simulate(
         &self,
         method: integrators::Integrator,
-        rod: &Rod,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Option<integrators::Simulation> {
         let (rules, release) = (self.rules(), self.scene.release());
         let most = limits::PRECISION_STEPS;
-        simulate(method, (rod, &rules, release), self.impacts, most, go_on)
+        simulate(method, (&self.model, &rules, release), self.impacts, most, go_on)
     }
 
-    fn simulated(&self, method: integrators::Integrator, rod: &Rod, slice: &TimeSlice) -> Result<MethodRun, Cancelled> {
-        let simulation = self.simulate(method, rod, &mut || slice.should_continue()).ok_or(Cancelled)?;
+    fn simulated(&self, method: integrators::Integrator, slice: &TimeSlice) -> Result<MethodRun, Cancelled> {
+        let simulation = self.simulate(method, &mut || slice.should_continue()).ok_or(Cancelled)?;
         let last = simulation.impacts.last();
         let work = simulation.work;
         Ok(MethodRun {

@@ -1,7 +1,8 @@
 //! The bounce by general simulation methods, as people use them, to be charted against the exact map.
 //!
-//! Answers about a user's scene do not use them. The strike is [`Rod::strike`] throughout; methods differ in how they move the
-//! rod and how they notice that it meets the table. Times are in s, lengths in m, angles in rad.
+//! Answers about a user's scene do not use them. The strike is that of the map, [`Body::strike`](equipoise_physics::body::Body::strike),
+//! throughout; methods differ in how they move the rod and how they notice that it meets the table. Times are in s, lengths in m, angles
+//! in rad.
 
 mod adaptive;
 mod marching;
@@ -13,8 +14,8 @@ mod simulation_run;
 mod time_stepping;
 
 use equipoise_physics::body::Release;
-use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::run::rules::Rules;
+use equipoise_physics::scene::model::Model;
 
 use simulation_run::{Halt, SimulationRun};
 
@@ -74,12 +75,12 @@ impl Integrator {
 /// The reasons for which a run ends are those of [`equipoise_physics::run::orbit::Orbit`], in the same order. Steps that are not positive end as `out_of_steps`.
 pub fn simulate(
     method: Integrator,
-    (rod, rules, release): (&Rod, &Rules, &Release),
+    (body, rules, release): (&Model, &Rules, &Release),
     impacts: u64,
     most_steps: u64,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Option<Simulation> {
-    let mut run = SimulationRun::new(*rod, *rules, *release, impacts, most_steps, go_on);
+    let mut run = SimulationRun::new(*body, *rules, *release, impacts, most_steps, go_on);
     let Err(halt) = match method {
         Integrator::RungeKutta { step, location } => marching::simulate(&mut run, step, location),
         Integrator::Adaptive { tolerance } => adaptive::simulate(&mut run, tolerance),

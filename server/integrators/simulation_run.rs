@@ -2,7 +2,7 @@
 //!
 //! Not here: how they move the rod.
 
-use equipoise_physics::body::{NoContact, Release, Touch};
+use equipoise_physics::body::{Body, NoContact, PreImpact, Release, Touch};
 use equipoise_physics::bounce::rebound::Rebound;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
@@ -10,6 +10,7 @@ use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules;
 use equipoise_physics::run::rules::{Checked, FlightTimes, Rules};
+use equipoise_physics::scene::model::Model;
 use equipoise_physics::table::actuator_load::ActuatorLoad;
 
 use crate::integrators::motion::Motion;
@@ -34,7 +35,10 @@ const STEPS_PER_QUESTION: u64 = 128;
 
 /// A run that a method is on.
 pub(crate) struct SimulationRun<'a> {
+    /// Lengths and gravity of the body.
     pub(crate) rod: Rod,
+    /// The body that is struck.
+    body: Model,
     pub(crate) release: Release,
     pub(crate) impacts: Vec<SimulatedImpact>,
     pub(crate) work: WorkCount,
@@ -50,7 +54,7 @@ pub(crate) struct SimulationRun<'a> {
 
 impl<'a> SimulationRun<'a> {
     pub(crate) fn new(
-        rod: Rod,
+        body: Model,
         rules: Rules,
         release: Release,
         wanted: u64,
@@ -58,7 +62,8 @@ impl<'a> SimulationRun<'a> {
         go_on: &'a mut dyn FnMut() -> bool,
     ) -> Self {
         Self {
-            rod,
+            rod: *body.rod(),
+            body,
             release,
             impacts: Vec::new(),
             work: WorkCount::default(),
@@ -107,6 +112,11 @@ impl<'a> SimulationRun<'a> {
         Ok(())
     }
 
+    /// The strike of the coming contact, if it is now.
+    pub(crate) fn foresee(&self, motion: &Motion) -> Strike {
+        self.body.strike(&PreImpact::at(self.impacts.len() as u64 + 1, motion.place[0], motion.state()))
+    }
+
     /// A contact: records it and gives the strike. The checks before a strike are made here. That the flight before was too short is
     /// known only now, and ends the run at the contact before.
     pub(crate) fn contact(&mut self, t: f64, motion: &Motion) -> Result<Strike, Halt> {
@@ -119,8 +129,8 @@ impl<'a> SimulationRun<'a> {
             self.flights.last = flown.flight_time;
         }
         go_on(rules::completed(contacts, self.wanted))?;
+        let strike = self.foresee(motion);
         self.impacts.push(SimulatedImpact { n: contacts + 1, t, x: motion.place[0], state });
-        let strike = self.rod.strike(&state);
         let struck = AtContact { push: strike.push, approach: strike.approach, ..self.at_contact(state) };
         go_on(self.check(struck, rules::before_strike))?;
         Ok(strike)
@@ -170,7 +180,7 @@ impl<'a> SimulationRun<'a> {
 
     /// Rebound of the contact point from a contact without duration.
     pub(crate) fn rebound_of(&self, strike: &Strike, before: &Motion) -> Rebound {
-        strike.rebound(self.rod.contact_distance, strike.rise_rounding(before.velocity[1], f64::EPSILON))
+        strike.rebound(self.rod.contact_distance, self.body.rise_rounding(&before.state(), strike))
     }
 }
 

@@ -2,8 +2,8 @@
 //! gap at its middle, Newton's restitution between the velocities at its ends.
 //!
 //! With U the relative velocity along the normal, 0 ≤ U⁺ + e U⁻ ⊥ P ≥ 0 while the gap is closed. The table moves as the strike says,
-//! so that impulse comes from [`Rod::strike`](equipoise_physics::bounce::rod::Rod::strike); a step's share of gravity is added, which a
-//! closed contact has to carry too. A contact is known to half a step: the method is of order 1.
+//! so that impulse comes from the strike of the map, with its part along the table where there is friction; a step's share of gravity is
+//! added, which a closed contact has to carry too. A contact is known to half a step: the method is of order 1.
 
 use std::convert::Infallible;
 
@@ -30,7 +30,7 @@ pub(crate) fn simulate(run: &mut SimulationRun, step: f64) -> Result<Infallible,
         let mut velocity = motion.velocity;
         velocity[1] -= gravity * step;
         // While a contact stays closed, only a table that is approached strikes again.
-        if closed && (!was_closed || run.rod.strike(&middle.state()).push < 0.0) {
+        if closed && (!was_closed || run.foresee(&middle).push < 0.0) {
             let strike = run.contact(t + half, &middle)?;
             run.leave(&strike.after, run.rebound_of(&strike, &middle))?;
             let direction = per_impulse(&middle.state(), &strike);
@@ -49,7 +49,7 @@ fn drift(motion: &Motion, time: f64) -> Motion {
     Motion { place: std::array::from_fn(|row| motion.place[row] + time * motion.velocity[row]), ..*motion }
 }
 
-/// Change of the velocities by a unit of impulse along the table's normal; the strike shows it.
+/// Change of the velocities by a unit of impulse along the table's normal, with what comes along the table by it; the strike shows it.
 pub(crate) fn per_impulse(before: &State, strike: &Strike) -> [f64; 3] {
     let after = strike.after;
     [after.x_dot - before.x_dot, after.y_dot - before.y_dot, after.theta_dot - before.theta_dot]

@@ -314,5 +314,5 @@ fn precision_on_random_scenes() {
         object(vec![("impacts", Some(json!(impacts))), ("methods", Some(json!(methods)))])
     });
     let points = |json: &Value| length(&json["points"]);
-    hold(&Resource { measures: true, plain: true, ..resource("/v1/precision", points) }, parameters, 8);
+    hold(&Resource { measures: true, ..resource("/v1/precision", points) }, parameters, 8);
 }

@@ -154,6 +154,39 @@ async fn what_cannot_run_says_why() {
     assert_eq!(done, [0, 1, 2, 3, 4, 5, 6, 12]);
 }
 
+/// Friction, state feedback and a program of heights, each with its unavailable methods.
+#[tokio::test]
+async fn larger_models_are_compared_too() {
+    let server = Server::start();
+    let feedback =
+        json!({"tilt_gain": null, "feedback": {"x": 0.05, "theta": -1.2, "x_dot": 0.06, "theta_dot": -0.02}});
+    let matched =
+        json!({"contact": {"friction": 0.3, "restitution": 0.7}, "table": {"slide": "matched", "tilt_gain": 1.5}});
+    for (preset, scene, without) in [
+        ("case-1", json!({"table": feedback}), vec!["linear"]),
+        ("case-1", json!({"contact": {"friction": 0.05}}), vec!["linear", "penalty"]),
+        ("case-1", matched, vec!["linear", "penalty"]),
+        ("juggling", json!({}), vec!["linear"]),
+    ] {
+        let body = json!({"preset": preset, "scene": scene, "impacts": 6});
+        let answer = server.post("/v1/precision", &body).await.expect(200);
+        let points = points(&answer);
+        for name in NAMES {
+            let own = of(&points, name);
+            assert!(!own.is_empty(), "{name}");
+            let unavailable = own.iter().all(|point| point["outcome"] == "unavailable" && point["reason"].is_string());
+            assert_eq!(unavailable, without.contains(&name), "{name}: {body} {}", own[0]);
+        }
+        for name in ["map", "map_free", "adaptive", "runge_kutta_bisection", "sampling"] {
+            for point in of(&points, name) {
+                assert!(error(&point) < 1e-10, "{body}: {point}");
+            }
+        }
+    }
+    let noisy = server.get("/v1/precision?preset=case-1-noise&impacts=6").await.expect(422);
+    assert!(noisy.pointers()[0].starts_with("/scene/noise"), "{}", noisy.text());
+}
+
 #[tokio::test]
 async fn unknown_methods_are_refused_with_those_there_are() {
     let server = Server::start();

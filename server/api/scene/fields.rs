@@ -53,7 +53,7 @@ pub fn field_text(name: Name) -> FieldText {
         },
         Name::Restitution => FieldText { example: "1", ..text("Restitution", "e", "Coefficient of restitution") },
         Name::Friction => FieldText {
-            detail: "A value above 0 is taken by `trajectories`, `live`, `live/events`, `jacobians`, `stability`, `regions`, `periodic-orbits`, `ladder`, `ensembles`, `controllers`, `catches`, `throws`, `previews` and batches of them. `precision` and the method `linear` answer 422",
+            detail: "A value above 0 is taken by `trajectories`, `live`, `live/events`, `jacobians`, `stability`, `regions`, `periodic-orbits`, `ladder`, `ensembles`, `controllers`, `catches`, `throws`, `previews`, `precision` and batches of them. Requests with the method `linear` answer 422",
             example: "0",
             ..text("Friction", "μ", "Coefficient of Coulomb friction")
         },
@@ -95,7 +95,7 @@ pub fn field_text(name: Name) -> FieldText {
             ..text("Strike", "", "Motion of the table along its normal at a strike")
         },
         Name::Slide => FieldText {
-            detail: "`matched`: as fast as the contact point just before the strike. Resources that refuse `contact.friction` refuse `matched` too",
+            detail: "`matched`: as fast as the contact point just before the strike. The method `linear` refuses it",
             example: "none",
             ..text("Slide", "", "Motion of the table along itself at a strike")
         },

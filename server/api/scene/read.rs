@@ -42,11 +42,6 @@ pub fn read_scene_without_law(reader: &mut Reader<'_, '_>) -> Option<Scene> {
     build_scene(draft, &pointer, reader.errors())
 }
 
-/// [`read_scene`] for resources that are derived for frictionless contacts only.
-pub fn read_frictionless_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
-    read_scene_within(reader, &[])
-}
-
 /// [`read_scene`] for resources that are derived for the plain rod and the levels in `known`.
 pub fn read_scene_within(reader: &mut Reader<'_, '_>, known: &[ModelLevel]) -> Option<Scene> {
     let scene = read_scene(reader)?;
