@@ -10,7 +10,6 @@ mod tiles;
 
 use std::fmt::Write;
 use std::io;
-use std::process::Command;
 use std::time::Instant;
 
 use program::{Program, load_average};
@@ -200,8 +199,7 @@ fn write_servers(text: &mut String) -> io::Result<()> {
         for ((servers, permits), rates) in set_ups.iter().zip(&mut found) {
             let mut running = Vec::new();
             for _ in 0..*servers {
-                let mut command = Command::new(env!("CARGO_BIN_EXE_equipoise"));
-                running.push(Program::spawn(command.args(["--listen", "127.0.0.1:0", "--permits", permits]))?);
+                running.push(Program::start_with(&["--permits", permits])?);
             }
             rates.push(MAPS[0].measure_by_clock(&running)?);
         }

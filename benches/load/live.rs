@@ -19,12 +19,13 @@ use crate::program::Program;
 
 const TIME: Duration = Duration::from_secs(20);
 
-pub(crate) async fn measure() -> io::Result<String> {
+pub(crate) async fn measure(short: bool) -> io::Result<String> {
+    let time = if short { TIME / 10 } else { TIME };
     let mut text = format!(
         "## Live runs\n\nRuns of case 1 over WebSockets, released one after the other, watched for {} s (`--only live`). p50, p99 and \
          p99.9 are delays from\nthe moment of an impact to its arrival at the client, which includes the clients' own use of the cores.\n\n\
          | clients | speed | impacts per second | p50 | p99 | p99.9 | server CPU | server memory |\n|---|---|---|---|---|---|---|---|\n",
-        TIME.as_secs(),
+        time.as_secs(),
     );
     for (clients, speed) in [(1, 1), (1000, 1), (1000, 5)] {
         let server = Program::start()?;
@@ -35,7 +36,7 @@ pub(crate) async fn measure() -> io::Result<String> {
         sleep(Duration::from_secs(6)).await;
         let (begin, before) = (Instant::now(), server.cpu_s());
         counts.store(true, Ordering::Relaxed);
-        sleep(TIME).await;
+        sleep(time).await;
         counts.store(false, Ordering::Relaxed);
         let (cpu, memory) = ((server.cpu_s() - before) / begin.elapsed().as_secs_f64(), server.memory_mib());
         drop(server);
@@ -43,7 +44,7 @@ pub(crate) async fn measure() -> io::Result<String> {
         for client in watching {
             late.append(client.await.expect("no client panics").map_err(io::Error::other)?);
         }
-        let rate = late.count() as f64 / TIME.as_secs_f64();
+        let rate = late.count() as f64 / time.as_secs_f64();
         let [p50, p99, p999] = [0.5, 0.99, 0.999].map(|share| late.quantile(share));
         let _ = writeln!(
             text,

@@ -1,5 +1,6 @@
 //! The server under load. `cargo bench --bench load` measures everything and writes `docs/load.md`. With `-- --only rates`, `overload`,
-//! `live`, `slow`, `spinning` or `soak` it measures one part and prints it.
+//! `live`, `slow`, `spinning` or `soak` it measures one part and prints it. `-- --short` takes about a tenth of the time, to see that
+//! all parts run, and prints too.
 //!
 //! The server is a separate process on the same machine as its clients, so every figure contains the clients' time. Ratios hold on a noisy
 //! machine; absolute figures need a quiet one.
@@ -25,6 +26,10 @@ struct Arguments {
     /// Measure only this part, and print it
     #[arg(long)]
     only: Option<Part>,
+
+    /// Take about a tenth of the time, and print
+    #[arg(long)]
+    short: bool,
 
     /// Minutes of mixed load
     #[arg(long, default_value_t = 30.0)]
@@ -58,23 +63,25 @@ async fn main() -> io::Result<()> {
     // Ten thousand connections need as many open files.
     let maximum = getrlimit(Resource::Nofile).maximum;
     let _ = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
+    let short = arguments.short;
+    let soak = Duration::from_secs_f64(60.0 * arguments.minutes / if short { 60.0 } else { 1.0 });
     let mut report = introduction();
     for part in [Part::Rates, Part::Overload, Part::Live, Part::Slow, Part::Spinning, Part::Soak] {
         if arguments.only.is_some_and(|only| only != part) {
             continue;
         }
         let section = match part {
-            Part::Rates => rates::measure().await?,
-            Part::Overload => overload::measure().await?,
-            Part::Live => live::measure().await?,
-            Part::Slow => slow::measure().await?,
-            Part::Spinning => spinning::measure().await?,
-            Part::Soak => soak::measure(Duration::from_secs_f64(60.0 * arguments.minutes)).await?,
+            Part::Rates => rates::measure(short).await?,
+            Part::Overload => overload::measure(short).await?,
+            Part::Live => live::measure(short).await?,
+            Part::Slow => slow::measure(short).await?,
+            Part::Spinning => spinning::measure(short).await?,
+            Part::Soak => soak::measure(soak).await?,
         };
         println!("{section}");
         report += &section;
     }
-    if arguments.only.is_none() {
+    if arguments.only.is_none() && !short {
         std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/load.md"), report)?;
     }
     Ok(())

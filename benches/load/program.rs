@@ -11,9 +11,15 @@ pub(crate) struct Program {
 }
 
 impl Program {
+    /// Starts the server with its defaults.
     pub(crate) fn start() -> io::Result<Self> {
+        Self::start_with(&[])
+    }
+
+    /// Starts the server with further flags.
+    pub(crate) fn start_with(flags: &[&str]) -> io::Result<Self> {
         let mut command = Command::new(env!("CARGO_BIN_EXE_equipoise"));
-        Self::spawn(command.args(["--listen", "127.0.0.1:0"]))
+        Self::spawn(command.args(["--listen", "127.0.0.1:0"]).args(flags))
     }
 
     /// Starts a command whose first line is `… http://ADDRESS/`.

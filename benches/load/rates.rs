@@ -1,4 +1,4 @@
-//! Requests per second of each resource, beside a bare axum handler that sends the same bytes from memory.
+//! Requests per second of each resource, from memory and computed each time, beside a bare axum handler that sends the same bytes.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -34,36 +34,50 @@ const TARGETS: [&str; 9] = [
     "/v1/controllers?preset=case-1",
 ];
 
-pub(crate) async fn measure() -> io::Result<String> {
-    let ours = Program::start()?;
+pub(crate) async fn measure(short: bool) -> io::Result<String> {
+    let (rounds, round_time) = if short { (2, ROUND / 6) } else { (ROUNDS, ROUND) };
+    let kept = Program::start()?;
+    let computing = Program::start_with(&["--answer-cache", "0"])?;
     let mut command = Command::new(std::env::current_exe()?);
-    let bare = Program::spawn(command.args(["--bare", &ours.address.to_string()]))?;
+    let bare = Program::spawn(command.args(["--bare", &kept.address.to_string()]))?;
     let mut text = format!(
-        "## Requests per second\n\n{CONNECTIONS} connections, {ROUNDS} rounds of {} s, in turns with a bare axum handler that sends the \
-         same bytes from memory\n(`--only rates`). The ratio is the median over the rounds.\n\n\
-         | | answer | per second | bare | ratio | p50 | p99 | bare p50 | bare p99 |\n|---|---|---|---|---|---|---|---|---|\n",
-        ROUND.as_secs_f64(),
+        "## Requests per second\n\n{CONNECTIONS} connections, {rounds} rounds of {} s, in turns: the server with answers in memory, the \
+         server with `--answer-cache 0`, which\ncomputes each answer, and a bare axum handler that sends the same bytes from memory \
+         (`--only rates`). Ratios are over the bare handler,\nmedians over the rounds. Health, the page and `/v1/scenes` are not computed \
+         for a request on either server.\n\n\
+         | | answer | from memory, per second | ratio | p50 | p99 | computed, per second | ratio | p50 | p99 | bare, per second | p50 | p99 |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        round_time.as_secs_f64(),
     );
+    let addresses = [kept.address, computing.address, bare.address];
     for target in TARGETS {
-        let bytes = Connection::open(ours.address).await?.get(target).await?.body.len();
-        let (mut all, mut rates, mut ratios) = ([Times::default(), Times::default()], [0.0; 2], Vec::new());
-        for _ in 0..ROUNDS {
-            let mut round = [0.0; 2];
-            for (index, address) in [ours.address, bare.address].into_iter().enumerate() {
-                let times = ask(address, target, CONNECTIONS, ROUND, Duration::ZERO).await?;
-                round[index] = times.count() as f64 / ROUND.as_secs_f64();
-                rates[index] += round[index] / ROUNDS as f64;
-                all[index].append(times);
+        let bytes = Connection::open(kept.address).await?.get(target).await?.body.len();
+        let mut times: [Times; 3] = Default::default();
+        let (mut rates, mut ratios): ([f64; 3], [Vec<f64>; 2]) = Default::default();
+        for _ in 0..rounds {
+            let mut round = [0.0; 3];
+            for (index, address) in addresses.into_iter().enumerate() {
+                let asked = ask(address, target, CONNECTIONS, round_time, Duration::ZERO).await?;
+                round[index] = asked.count() as f64 / round_time.as_secs_f64();
+                rates[index] += round[index] / rounds as f64;
+                times[index].append(asked);
             }
-            ratios.push(round[0] / round[1]);
+            ratios[0].push(round[0] / round[2]);
+            ratios[1].push(round[1] / round[2]);
         }
-        let [own, other] = &mut all;
-        let quantiles = [own.quantile(0.5), own.quantile(0.99), other.quantile(0.5), other.quantile(0.99)];
-        let [p50, p99, bare_p50, bare_p99] = quantiles.map(|ms| format!("{ms:.2} ms"));
-        let (kb, [rate, bare], ratio) = (bytes as f64 / 1e3, rates, median(ratios));
+        let delays =
+            times.map(|mut times| [0.5, 0.99].map(|share| format!("{:.2} ms", times.quantile(share))).join(" | "));
+        let [kept, computed] = ratios.map(median);
         let _ = writeln!(
             text,
-            "| `{target}` | {kb:.1} kB | {rate:.0} | {bare:.0} | {ratio:.2} | {p50} | {p99} | {bare_p50} | {bare_p99} |"
+            "| `{target}` | {:.1} kB | {:.0} | {kept:.2} | {} | {:.0} | {computed:.2} | {} | {:.0} | {} |",
+            bytes as f64 / 1e3,
+            rates[0],
+            delays[0],
+            rates[1],
+            delays[1],
+            rates[2],
+            delays[2],
         );
     }
     Ok(text + "\n")

@@ -18,18 +18,19 @@ const ROUND: Duration = Duration::from_secs(10);
 const ROUNDS: usize = 3;
 const TARGET: &str = "/v1/trajectories?preset=case-1&impacts=100";
 
-pub(crate) async fn measure() -> io::Result<String> {
+pub(crate) async fn measure(short: bool) -> io::Result<String> {
+    let (rounds, round_time) = if short { (1, ROUND / 5) } else { (ROUNDS, ROUND) };
     let mut text = format!(
         "## Slow and silent connections\n\n{SLOW} connections. Every second one is silent; the others send a byte of a head every five \
          seconds. Connections that the server closes\nare opened again. Beside them 8 clients send 100 requests a second each for \
-         `{TARGET}`\non persistent connections (`--only slow`).\n\n\
+         `{TARGET}`,\nanswered from memory, on persistent connections (`--only slow`).\n\n\
          | round | p50 before | p99 before | p50 beside them | p99 beside them | ratio of p99 | server CPU for slow connections | server memory |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     let server = Program::start()?;
-    let others = async || ask(server.address, TARGET, 8, ROUND, Duration::from_millis(9)).await;
+    let others = async || ask(server.address, TARGET, 8, round_time, Duration::from_millis(9)).await;
     let mut ratios = Vec::new();
-    for round in 1..=ROUNDS {
+    for round in 1..=rounds {
         let begin_s = server.cpu_s();
         let mut before = others().await?;
         let alone_s = server.cpu_s() - begin_s;
@@ -37,7 +38,7 @@ pub(crate) async fn measure() -> io::Result<String> {
         sleep(Duration::from_secs(10)).await;
         let begin_s = server.cpu_s();
         let mut beside = others().await?;
-        let cpu = (server.cpu_s() - begin_s - alone_s) / ROUND.as_secs_f64();
+        let cpu = (server.cpu_s() - begin_s - alone_s) / round_time.as_secs_f64();
         let memory = server.memory_mib();
         slow.iter().for_each(JoinHandle::abort);
         sleep(Duration::from_secs(3)).await;

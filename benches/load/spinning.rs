@@ -22,13 +22,14 @@ const SCENE: &str = "scene.gravity=0.1&scene.incline=0.01&scene.body.contact_dis
                      &scene.release.height=100&scene.release.theta_dot=164.18&scene.release.x_dot=59.06&scene.release.y_dot=100\
                      &scene.noise.model=plan&scene.noise.timing_sd=0.01&scene.noise.angle_sd=0.01";
 
-pub(crate) async fn measure() -> io::Result<String> {
+pub(crate) async fn measure(short: bool) -> io::Result<String> {
+    let (time, tries) = if short { (TIME / 5, 1) } else { (TIME, TRIES) };
     let server = Program::start()?;
     let mut text = format!(
         "## Spinning bodies\n\nA body that spins fast in little gravity, over a table that is planned nearly vertical (`--only spinning`). \
          {CONNECTIONS} connections of one\naddress request runs of it, each as soon as the last is answered. Another client requests \
          `/health/live` every 5 ms for {} s.\n\n| | p50 | p99 | most | answers per second to the {CONNECTIONS} |\n|---|---|---|---|---|\n",
-        TIME.as_secs()
+        time.as_secs()
     );
     let run = format!("/v1/trajectories?{SCENE}&scene.noise.seed=1&scene.noise.run=22&impacts=1");
     for (name, target) in [("alone", None), ("beside them", Some(run))] {
@@ -41,7 +42,7 @@ pub(crate) async fn measure() -> io::Result<String> {
         let begin = Instant::now();
         let (mut times, mut most) = (Times::default(), 0.0_f64);
         let mut asking = Connection::open(server.address).await?;
-        while begin.elapsed() < TIME {
+        while begin.elapsed() < time {
             let asked = Instant::now();
             asking.get("/health/live").await?;
             times.add(asked);
@@ -53,14 +54,14 @@ pub(crate) async fn measure() -> io::Result<String> {
         let [p50, p99] = [0.5, 0.99].map(|share| times.quantile(share));
         let _ = writeln!(text, "| {name} | {p50:.2} ms | {p99:.2} ms | {most:.1} ms | {answers:.0} |");
     }
-    text += &leaving(server.address).await?;
+    text += &leaving(server.address, tries).await?;
     Ok(text)
 }
 
 /// Measures how long a core goes on computing for a client that has hung up.
-async fn leaving(address: SocketAddr) -> io::Result<String> {
+async fn leaving(address: SocketAddr, tries: u32) -> io::Result<String> {
     let mut text = format!(
-        "\nTime from when a client hangs up to when its work has stopped; the longest of {TRIES} tries, each hung up at another time.\n\n\
+        "\nTime from when a client hangs up to when its work has stopped; the longest of {tries} tries, each hung up at another time.\n\n\
          | | free after |\n|---|---|\n"
     );
     let axes = "x.parameter=release.theta_dot&x.from=100&x.to=200&x.count=400&y.parameter=release.x_dot&y.from=1&y.to=100&y.count=400";
@@ -82,7 +83,7 @@ async fn leaving(address: SocketAddr) -> io::Result<String> {
         let mut longest = Duration::ZERO;
         let mut metrics = Connection::open(address).await?;
         let mut held = 0;
-        for share in 1..=TRIES {
+        for share in 1..=tries {
             let mut socket = TcpStream::connect(address).await?;
             socket.write_all(format!("GET {target} HTTP/1.1\r\nhost: localhost\r\n\r\n").as_bytes()).await?;
             sleep(Duration::from_millis(120) * share).await;
@@ -94,7 +95,7 @@ async fn leaving(address: SocketAddr) -> io::Result<String> {
             }
             longest = longest.max(left.elapsed());
         }
-        let note = if held < TRIES { format!(" ({held} were still computed)") } else { String::new() };
+        let note = if held < tries { format!(" ({held} were still computed)") } else { String::new() };
         let _ = writeln!(text, "| {name} | {:.0} ms{note} |", longest.as_secs_f64() * 1e3);
     }
     Ok(text + "\n")
