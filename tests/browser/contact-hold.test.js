@@ -50,6 +50,11 @@ test('the run goes on in contact up to its end, which the time line has', async 
   assert.ok(Math.abs(end.theta - run.hold.theta.at(-1)) < 1e-3);
   assertHeld(end, run);
   assert.match(await told(page), new RegExp(`^n ${run.outcome.impacts} · 0\\.${run.hold_end.t.toFixed(2).slice(2)} s`));
+  // The headline says what the contact did, and the body has fallen.
+  const headline = plain(await page.locator('#outcome .headline').innerText());
+  assert.equal(headline, `Stopped bouncing and fell over after bounce ${run.outcome.impacts}`);
+  assert.equal(await page.locator('#outcome .run-reason').innerText(), 'Its bounces died out; then it tipped over.');
+  assert.match(await page.locator('#this-run').getAttribute('class'), /\bfell\b/);
   await page.locator('#outcome summary').click();
   assert.match(plain(await page.locator('#outcome p.muted').innerText()), /the bounces end at .*; then at t = /);
   // Scrubbed into the contact, and back to the last bounce.

@@ -25,9 +25,9 @@ function liveQuery(query) {
   return live;
 }
 
-/** The outcome of a run; one that went on in contact ends with it. @param {import('contract').LiveEnd} end */
+/** The outcome of a run, with its end in contact if it has one. @param {import('contract').LiveEnd} end */
 const endOf = ({ outcome, hold_end: contact }) =>
-  contact ? { ...outcome, t: contact.t, detail: `${outcome.detail}; then ${contact.detail}` } : outcome;
+  contact ? { ...outcome, contact, t: contact.t, detail: `${outcome.detail}; then ${contact.detail}` } : outcome;
 
 export class Connection {
   #run;

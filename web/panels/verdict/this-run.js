@@ -4,6 +4,7 @@ import { h } from '../../dom/elements.js';
 import { number } from '../../dom/numbers.js';
 import { capitalized, prose } from '../../dom/typeset.js';
 import { UNITS } from '../../dom/units.js';
+import { fallInContact } from './contact-end.js';
 import { endedAs, reasonOf } from './plain-words.js';
 import { RunExtent } from './run-extent.js';
 
@@ -31,7 +32,9 @@ export function runWords(run, fields) {
   const { phase, outcome, impacts } = run;
   if (phase === 'ended' && outcome) {
     const { kind, impacts: count } = outcome;
-    return capitalized(endedAs(kind, count)) + doneTo(run, count, fields);
+    const fall = fallInContact(outcome);
+    const words = fall ? `stopped bouncing and ${fall.deed} after bounce ${number(count, 8)}` : endedAs(kind, count);
+    return capitalized(words) + doneTo(run, count, fields);
   }
   if (phase === 'idle') return 'Not released yet';
   if (phase === 'connecting') return 'Connecting…';
@@ -79,12 +82,14 @@ export class ThisRun {
     const told = ended ? outcome.kind : `${phase} ${impacts.missing}`;
     if (this.#root.dataset.told === told) return words;
     this.#root.dataset.told = told;
+    const fall = ended ? fallInContact(outcome) : null;
     this.#root.classList.toggle(
       'fell',
-      ended && !['completed', 'settled', 'held', 'rests_on_edge'].includes(outcome.kind),
+      ended && (fall !== null || !['completed', 'settled', 'held', 'rests_on_edge'].includes(outcome.kind)),
     );
     const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} impacts were skipped over.` : '';
-    this.#reason.textContent = ended ? `${capitalized(reasonOf(outcome.kind))}.` : skipped;
+    const then = fall ? `; then ${fall.reason}` : '';
+    this.#reason.textContent = ended ? `${capitalized(reasonOf(outcome.kind))}${then}.` : skipped;
     this.#details.hidden = !ended;
     // At an end the reason takes their place.
     if (ended) this.#details.append(this.#extent.element);
