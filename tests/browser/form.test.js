@@ -193,6 +193,23 @@ test('a polygon stays with what is typed beside it, until its vertices are taken
   assert.equal(await page.locator('#field-body-vertices-error').innerText(), '');
 });
 
+test('an emptied length of the body says that it is needed, with limits and unit, and is put back', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  for (const [path, title, value] of [
+    ['contact_distance', 'Contact distance', '0.1333'],
+    ['radius_of_gyration', 'Radius of gyration', '0.09428'],
+  ]) {
+    const told = async () => (await page.locator(`#field-body-${path}-error`).innerText()).replace(/\s/g, ' ');
+    await page.locator(`#field-body-${path}`).fill('');
+    await page.locator(`#field-body-${path}-error`, { hasText: 'needed' }).waitFor();
+    assert.equal(await told(), `${title} is needed: 0.001 to 10 m.`);
+    await page.locator(`#field-body-${path}`).blur();
+    assert.equal(await told(), `${value} m was put back: ${title} is needed: 0.001 to 10 m.`);
+  }
+  clean();
+});
+
 test('a polygon is typed, runs, and is in the link', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
   await verdict(page);

@@ -105,9 +105,9 @@ export class Form {
     }
   }
 
-  /** True when a field has to have a value; a table that a state feedback tilts needs no tilt gain. @param {Field} field */
+  /** True when an enabled field has to have a value; a table that a state feedback tilts needs no tilt gain. @param {Field} field */
   #needs({ path, required }) {
-    if (!required || path.startsWith('body.')) return false;
+    if (!required) return false;
     const feedback = [...this.#rows.values()].some(
       ({ field, value }) => field.path.startsWith('table.feedback.') && value !== undefined,
     );
