@@ -67,7 +67,7 @@ pub(crate) async fn measure(time: Duration) -> io::Result<String> {
         .collect();
     let mut book = std::mem::take(&mut *book.lock().expect("nobody panics with it"));
     let mut text = format!(
-        "## Mixed load\n\nFor {:.0} minutes {ASKING} clients send requests of all kinds and prices, {LIVE} watch live runs for a while \
+        "## Mixed load\n\nFor {:.0} minutes {ASKING} clients send requests of all kinds and prices, half of them new, {LIVE} watch live runs for a while \
          each, {LEAVING} hang up in the\nmiddle of expensive answers, and {SLOW} connections are slow or silent (`--only soak --minutes {:.0}`). \
          The load average was {}.\n\n",
         time.as_secs_f64() / 60.0,
@@ -93,8 +93,11 @@ pub(crate) async fn measure(time: Duration) -> io::Result<String> {
 
 /// A request of a kind, by number.
 fn target(number: u64) -> String {
-    // The scene changes all the time.
-    let gain = 1.0 + 0.5 * ((number % 997) as f64 / 997.0);
+    // Half of the scenes are new, and computed. The others have been asked for before, and are in memory.
+    const KNOWN: u64 = 997;
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    let draw = if number.is_multiple_of(2) { number } else { number % KNOWN };
+    let gain = 1.0 + 0.5 * (draw as f64 * GOLDEN).fract();
     let scene = format!("preset=case-1&scene.table.tilt_gain={gain}");
     match number % 9 {
         0 => format!("/v1/trajectories?{scene}&impacts=100"),
