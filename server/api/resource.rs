@@ -1,5 +1,7 @@
 //! One route for all resources that compute an answer: read the request, price it, compute the answer and write it.
 
+use std::sync::Arc;
+
 use axum::Router;
 use axum::body::Body;
 use axum::extract::State;
@@ -122,7 +124,8 @@ impl Endpoint {
 }
 
 async fn answer<R: ComputedResource>(app: App, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
-    let request = api_request.read(R::Request::read)?;
+    // Shared, because a request with a scene is large, and futures are copied with all that they hold.
+    let request = Arc::new(api_request.read(R::Request::read)?);
     let price = request.price(&app.config.limits)?;
     let resource = Resource { name: R::NAME, formats: R::Format::FORMATS };
     let bounces = app.metrics.bounces.clone();

@@ -82,7 +82,7 @@ pub enum Step {
 impl Playback {
     /// A run at its release, completed after impact number `last`. A run without any contact has ended.
     pub fn new(run: &Run, last: u64) -> Self {
-        let scene = *run.scene();
+        let scene = run.scene().clone();
         let (orbit, outcome) = match scene.orbit() {
             Ok(orbit) => (orbit, None),
             Err(no_contact) => {
@@ -90,8 +90,7 @@ impl Playback {
                 (nowhere, Some(Arc::new(Outcome::new(no_contact.ending(0.0, 0.0), 0, 0.0))))
             }
         };
-        let (scene, tracker) = (Arc::new(scene), LoadTracker::default());
-        Self { orbit, scene, outcome, tracker, last, caught: None, rest: None, foreseen: None }
+        Self { orbit, scene, outcome, tracker: LoadTracker::default(), last, caught: None, rest: None, foreseen: None }
     }
 
     /// Time of the next step, s; `None` after the end.

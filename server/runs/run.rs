@@ -2,6 +2,8 @@
 //!
 //! `interventions` reads and writes it, `playback` computes it.
 
+use std::sync::Arc;
+
 use equipoise_physics::body::Kick;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw::ThrowTarget;
@@ -44,13 +46,13 @@ pub struct ThrowOrder {
     pub t: Option<f64>,
 }
 
-/// A run. Equal runs have equal impacts.
+/// A run. Equal runs have equal impacts. Cheap to clone: clones share their scenes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    scene: Scene,
+    scene: Arc<Scene>,
     interventions: Vec<Intervention>,
     /// The scene with all interventions in force.
-    last: Scene,
+    last: Arc<Scene>,
     /// Time for which the run goes on in contact after its bounces, s.
     hold: f64,
 }
@@ -58,7 +60,8 @@ pub struct Run {
 impl Run {
     /// A run without interventions.
     pub fn new(scene: Scene) -> Self {
-        Self { scene, interventions: Vec::new(), last: scene, hold: 0.0 }
+        let scene = Arc::new(scene);
+        Self { scene: scene.clone(), interventions: Vec::new(), last: scene, hold: 0.0 }
     }
 
     /// The same run, which goes on in contact for `hold` s after its bounces have ended.
@@ -73,7 +76,7 @@ impl Run {
     }
 
     /// The scene at the release.
-    pub fn scene(&self) -> &Scene {
+    pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
@@ -101,7 +104,7 @@ impl Run {
             set.push((*name, *value));
         }
         set.sort_by_key(|(name, _)| *name as usize);
-        changed.last = if is_last { with(&self.last, changes)? } else { changed.scene_at(u64::MAX)? };
+        changed.last = Arc::new(if is_last { with(&self.last, changes)? } else { changed.scene_at(u64::MAX)? });
         *self = changed;
         Ok(())
     }
@@ -111,7 +114,7 @@ impl Run {
         let before = self.interventions.iter().take_while(|intervention| intervention.impact <= impact);
         before
             .filter(|intervention| !intervention.set.is_empty())
-            .try_fold(self.scene, |scene, intervention| with(&scene, &intervention.set))
+            .try_fold(*self.scene, |scene, intervention| with(&scene, &intervention.set))
     }
 
     /// Kicks the body just after an impact. Kicks at one impact add up.
@@ -178,7 +181,7 @@ impl Run {
     /// The run released again: fields set up to impact `reached` are in force from the start; no other intervention is kept.
     pub fn restarted(&self, reached: u64) -> Self {
         // `set` has built each of these scenes before, so this does not fail.
-        Self::new(self.scene_at(reached).unwrap_or(self.last)).holding(self.hold)
+        Self::new(self.scene_at(reached).unwrap_or(*self.last)).holding(self.hold)
     }
 
     fn entry(&mut self, impact: u64) -> Result<&mut Intervention, String> {

@@ -26,10 +26,10 @@ impl ComputedResource for Trajectories {
         canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, bounces| {
             let run = &request.run;
-            let mut playback = Playback::new(run, request.impacts);
             // Without interventions, and where the body never meets the table, it is the scene's own run.
-            let changed = (!run.interventions().is_empty() && run.scene().orbit().is_ok()).then_some(&mut playback);
-            let answer = TrajectoryAnswer::compute(request, changed, || slice.should_continue())?;
+            let is_changed = !run.interventions().is_empty() && run.scene().orbit().is_ok();
+            let mut playback = is_changed.then(|| Playback::new(run, request.impacts));
+            let answer = TrajectoryAnswer::compute(request, playback.as_mut(), || slice.should_continue())?;
             bounces.inc_by(answer.outcome.impacts);
             format.write(&answer, slice)
         },
