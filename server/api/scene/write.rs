@@ -1,6 +1,9 @@
 //! Writes a scene with all its defaults, as JSON or as dotted query parameters that read back to the same scene.
 
-use equipoise_physics::scene::{FIELDS, Field, Scene, VERTICES, Value as FieldValue};
+use std::sync::LazyLock;
+
+use equipoise_physics::scene::{FIELDS, Field, Name, Scene, VERTICES, Value as FieldValue};
+use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
@@ -10,17 +13,86 @@ pub struct Resolved<'a>(pub &'a Scene);
 
 impl Serialize for Resolved<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        scene_to_json(self.0).serialize(serializer)
+        Group { scene: self.0, places: &PLACES, depth: 0 }.serialize(serializer)
     }
 }
 
 /// [`Resolved`] as a JSON value.
 pub fn scene_to_json(scene: &Scene) -> Value {
-    let vertices = scene
-        .vertices()
-        .map(|vertices| (VERTICES, Value::from_iter(vertices.places().iter().map(|place| Value::from_iter(*place)))));
-    let values = FIELDS.iter().filter_map(|row| Some((row.path, value_to_json(scene.value(row.name)?))));
-    nested(values.chain(vertices))
+    // A scene has finite numbers and text keys, so this does not fail.
+    serde_json::to_value(Resolved(scene)).unwrap_or_default()
+}
+
+/// A place of a scene in JSON.
+#[derive(Debug)]
+struct Place {
+    /// The parts of its path.
+    path: Vec<&'static str>,
+    /// The field there; None for the vertices.
+    field: Option<Name>,
+}
+
+/// All places, sorted by path: groups are together, and keys are in the order of JSON.
+static PLACES: LazyLock<Vec<Place>> = LazyLock::new(|| {
+    let fields = FIELDS.iter().map(|row| (row.path, Some(row.name)));
+    let places = fields.chain([(VERTICES, None)]);
+    let mut places: Vec<_> = places.map(|(path, field)| Place { path: path.split('.').collect(), field }).collect();
+    places.sort_by(|one, other| one.path.cmp(&other.path));
+    places
+});
+
+impl Place {
+    /// The value of a scene here, if it has one.
+    fn value(&self, scene: &Scene) -> Option<PlaceValue> {
+        match self.field {
+            Some(name) => scene.value(name).map(PlaceValue::Field),
+            None => scene.vertices().map(|vertices| PlaceValue::Vertices(vertices.places().to_vec())),
+        }
+    }
+}
+
+/// The value at a place.
+enum PlaceValue {
+    Field(FieldValue),
+    Vertices(Vec<[f64; 2]>),
+}
+
+impl Serialize for PlaceValue {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Field(FieldValue::Number(number)) => serializer.serialize_f64(*number),
+            Self::Field(FieldValue::Integer(number)) => serializer.serialize_u64(*number),
+            Self::Field(FieldValue::Choice(word)) => serializer.serialize_str(word),
+            Self::Field(FieldValue::Flag(flag)) => serializer.serialize_bool(*flag),
+            Self::Field(FieldValue::Numbers(list)) => list.heights().serialize(serializer),
+            Self::Vertices(places) => places.serialize(serializer),
+        }
+    }
+}
+
+/// The values of a scene at places with the same parts of their paths up to a depth. Places without a value are left out.
+struct Group<'a> {
+    scene: &'a Scene,
+    places: &'a [Place],
+    depth: usize,
+}
+
+impl Serialize for Group<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { scene, places, depth } = *self;
+        let mut map = serializer.serialize_map(None)?;
+        for places in places.chunk_by(|one, other| one.path[depth] == other.path[depth]) {
+            let (first, key) = (&places[0], places[0].path[depth]);
+            if first.path.len() == depth + 1 {
+                if let Some(value) = first.value(scene) {
+                    map.serialize_entry(key, &value)?;
+                }
+            } else if places.iter().any(|place| place.value(scene).is_some()) {
+                map.serialize_entry(key, &Group { scene, places, depth: depth + 1 })?;
+            }
+        }
+        map.end()
+    }
 }
 
 /// Nests values by their dotted paths.
@@ -44,13 +116,8 @@ pub(super) fn nested<'a>(values: impl Iterator<Item = (&'a str, Value)>) -> Valu
 
 /// The value of a field as JSON.
 pub fn value_to_json(value: FieldValue) -> Value {
-    match value {
-        FieldValue::Number(number) => Value::from(number),
-        FieldValue::Integer(number) => Value::from(number),
-        FieldValue::Choice(word) => Value::from(word),
-        FieldValue::Flag(flag) => Value::from(flag),
-        FieldValue::Numbers(list) => Value::from(list.heights()),
-    }
+    // Finite numbers and words, so this does not fail.
+    serde_json::to_value(PlaceValue::Field(value)).unwrap_or_default()
 }
 
 /// The scene as dotted query parameters (`scene.table.tilt_gain`, `1.1`), which read back to the same scene.
