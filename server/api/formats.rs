@@ -65,6 +65,11 @@ pub trait Tabular: Serialize {
 
     /// Last line of NDJSON: the part of the answer outside the columns.
     fn end(&self) -> impl Serialize;
+
+    /// Number of cells in JSON, if it is known. Memory is reserved for so many.
+    fn cells(&self) -> usize {
+        0
+    }
 }
 
 /// An answer that can be drawn.
@@ -97,7 +102,7 @@ pub trait WriteAnswer<A>: FormatSet {
 impl<A: Tabular> WriteAnswer<A> for TableFormat {
     fn write(self, answer: &A, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
-            Self::Json => write::json(answer, slice),
+            Self::Json => write::json_with_table(answer, answer.cells(), slice),
             Self::Csv => write::csv(&answer.to_table(), slice),
             Self::Ndjson => write::ndjson(&answer.to_table(), &answer.end(), slice),
         }

@@ -15,16 +15,17 @@ pub struct OutputBuffer<'a> {
     is_cancelled: bool,
 }
 
-/// Returns the bytes that `write` writes, and asks `should_continue` now and then.
+/// Returns the bytes that `write` writes, and asks `should_continue` now and then. About `room` bytes are expected.
 ///
 /// # Errors
 /// A cancellation once `should_continue` is false; an internal error if `write` fails for another reason.
 pub fn write_to_memory(
+    room: usize,
     should_continue: &dyn Fn() -> bool,
     write: impl FnOnce(&mut OutputBuffer<'_>) -> io::Result<()>,
 ) -> Result<Vec<u8>, Problem> {
-    let mut output =
-        OutputBuffer { bytes: Vec::new(), should_continue, next_check: limits::WRITE_STEP_BYTES, is_cancelled: false };
+    let (bytes, next_check) = (Vec::with_capacity(room), limits::WRITE_STEP_BYTES);
+    let mut output = OutputBuffer { bytes, should_continue, next_check, is_cancelled: false };
     match write(&mut output) {
         Ok(()) => Ok(output.bytes),
         Err(_) if output.is_cancelled => Err(Cancelled.into()),
@@ -64,7 +65,7 @@ mod tests {
 
     #[test]
     fn bytes_come_out_as_they_go_in() {
-        let bytes = write_to_memory(&|| true, |out| {
+        let bytes = write_to_memory(0, &|| true, |out| {
             (0..100_000_u32).try_for_each(|number| out.write_all(number.to_string().as_bytes()))
         });
         let all: String = (0..100_000_u32).map(|number| number.to_string()).collect();
@@ -84,13 +85,13 @@ mod tests {
                 out.write_all(&[b'0'; 1000])?;
             }
         };
-        assert_eq!(write_to_memory(&|| !has_left.get(), endless).unwrap_err().status(), 503);
+        assert_eq!(write_to_memory(0, &|| !has_left.get(), endless).unwrap_err().status(), 503);
         assert!(rows <= 100 + limits::WRITE_STEP_BYTES / 1000 + 1, "{rows}");
     }
 
     #[test]
     fn other_failures_are_the_servers_own() {
-        let failed = write_to_memory(&|| true, |_| Err(io::Error::other("on purpose")));
+        let failed = write_to_memory(0, &|| true, |_| Err(io::Error::other("on purpose")));
         assert_eq!(failed.unwrap_err().status(), 500);
     }
 }

@@ -114,7 +114,7 @@ pub fn of_strikes() -> impl Iterator<Item = CatchColumn<CatchStrike>> {
 pub fn to_table<Row>(columns: impl Iterator<Item = CatchColumn<Row>>, rows: &[Row]) -> Table {
     let column = |CatchColumn { name, unit, read, .. }: CatchColumn<Row>| {
         let mut values = Gathered::with_capacity(read, rows.len());
-        rows.iter().for_each(|row| values.push(row));
+        values.extend(rows);
         Column { name, unit, cells: values.into_cells() }
     };
     Table(columns.map(column).collect())

@@ -10,19 +10,35 @@ use crate::compute::{Cancelled, TimeSlice};
 use crate::http::Problem;
 use crate::http::output::write_to_memory;
 
+/// Length of a cell as text, bytes: a number of 17 digits with sign, point and comma.
+const CELL_BYTES: usize = 20;
+
+/// Length of an answer besides its table, bytes, of most answers.
+const OTHER_BYTES: usize = 2048;
+
+/// Room for a table of so many cells, bytes.
+fn room(cells: usize) -> usize {
+    OTHER_BYTES + CELL_BYTES * cells
+}
+
 /// An answer as JSON.
 pub(crate) fn json(answer: &impl Serialize, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
-    write_to_memory(&|| slice.should_continue(), |out| Ok(serde_json::to_writer(out, answer)?))
+    json_with_table(answer, 0, slice)
+}
+
+/// An answer with a table of so many cells as JSON.
+pub(crate) fn json_with_table(answer: &impl Serialize, cells: usize, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+    write_to_memory(room(cells), &|| slice.should_continue(), |out| Ok(serde_json::to_writer(out, answer)?))
 }
 
 /// A table as CSV.
 pub(crate) fn csv(table: &Table, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
-    write_to_memory(&|| slice.should_continue(), |out| table.write_csv(out))
+    write_to_memory(room(table.cells()), &|| slice.should_continue(), |out| table.write_csv(out))
 }
 
 /// A table as NDJSON, with `end` in its last line.
 pub(crate) fn ndjson(table: &Table, end: &impl Serialize, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
-    write_to_memory(&|| slice.should_continue(), |out| table.write_ndjson(end, out))
+    write_to_memory(room(table.cells()), &|| slice.should_continue(), |out| table.write_ndjson(end, out))
 }
 
 /// An SVG in pixels, as PNG.

@@ -166,7 +166,7 @@ impl<'a> TrajectoryAnswer<'a> {
                 ..ImpactRow::new(&body, has_angle, *contact)
             };
             let extended = impact.extended.map(|(orbit, contact)| ExtendedRow { orbit, contact, has_angle });
-            rows.push(&row, extended.as_ref());
+            rows.push(row, extended.as_ref());
             if let Some(flights) = &mut flights {
                 if contact.n == 1 {
                     let release = scene.release();
@@ -298,5 +298,9 @@ impl Tabular for TrajectoryAnswer<'_> {
         let (outcome, method, hold_end, notes) = (outcome.clone(), method.clone(), hold_end.clone(), notes.clone());
         let (predictable_impacts, demand, nearest_vertex) = (*predictable_impacts, *demand, *nearest_vertex);
         End { outcome, method, predictable_impacts, hold_end, demand, nearest_vertex, notes }
+    }
+
+    fn cells(&self) -> usize {
+        [Some(&self.impacts), self.flights.as_ref(), self.hold.as_ref()].into_iter().flatten().map(Table::cells).sum()
     }
 }

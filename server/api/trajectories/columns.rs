@@ -39,7 +39,7 @@ impl ImpactRow {
     /// A number of the strike. None without a strike, or if the run has diverged beyond doubles.
     fn struck(&self, read: impl FnOnce(&Strike) -> f64) -> Option<f64> {
         // + 0.0 turns −0, the velocity of a table at rest, into 0.
-        self.contact.strike.map(|strike| read(&strike) + 0.0).filter(|value| value.is_finite())
+        self.contact.strike.as_ref().map(|strike| read(strike) + 0.0).filter(|value| value.is_finite())
     }
 
     /// An angular velocity. A point mass has none.
@@ -49,7 +49,7 @@ impl ImpactRow {
 
     /// The velocities just after.
     pub fn after(&self) -> Option<After> {
-        let State { x_dot, y_dot, theta_dot, .. } = self.contact.strike?.after;
+        let State { x_dot, y_dot, theta_dot, .. } = self.contact.strike.as_ref()?.after;
         let exist = [x_dot, y_dot, theta_dot].iter().all(|value| value.is_finite());
         exist.then(|| After { x_dot, y_dot, theta_dot: self.angle(theta_dot) })
     }
@@ -76,7 +76,7 @@ impl ImpactRow {
 
     /// Name of the contact mode.
     pub fn contact_mode(&self) -> Option<&'static str> {
-        self.contact.strike.map(|strike| strike.mode.name())
+        self.contact.strike.as_ref().map(|strike| strike.mode.name())
     }
 }
 
@@ -104,7 +104,7 @@ pub struct ExtendedRow<'a> {
 
 impl ExtendedRow<'_> {
     fn struck(&self, read: impl FnOnce(&Strike<DoubleDouble>) -> DoubleDouble) -> Option<DoubleDouble> {
-        self.contact.strike.map(|strike| read(&strike))
+        self.contact.strike.as_ref().map(read)
     }
 }
 

@@ -54,12 +54,17 @@ impl<Row> Gathered<Row> {
 
     /// Adds the value of a row.
     pub fn push(&mut self, row: &Row) {
+        self.extend(std::slice::from_ref(row));
+    }
+
+    /// Adds the values of rows. Many at once cost less.
+    pub fn extend(&mut self, rows: &[Row]) {
         match self {
-            Self::Counts(read, cells) => cells.push(read(row)),
-            Self::SparseCounts(read, cells) => cells.push(read(row)),
-            Self::Numbers(read, cells) => cells.push(read(row)),
-            Self::Sparse(read, cells) => cells.push(read(row)),
-            Self::Words(read, cells) => cells.push(read(row)),
+            Self::Counts(read, cells) => cells.extend(rows.iter().map(*read)),
+            Self::SparseCounts(read, cells) => cells.extend(rows.iter().map(*read)),
+            Self::Numbers(read, cells) => cells.extend(rows.iter().map(*read)),
+            Self::Sparse(read, cells) => cells.extend(rows.iter().map(*read)),
+            Self::Words(read, cells) => cells.extend(rows.iter().map(*read)),
         }
     }
 

@@ -152,6 +152,11 @@ impl Table {
         self.0.first().map_or(0, |column| column.cells.len())
     }
 
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.rows() * self.0.len()
+    }
+
     /// Writes CSV by RFC 4180, with a header. A value that does not exist is an empty cell.
     ///
     /// # Errors
