@@ -13,8 +13,10 @@ pub(crate) struct FairQueue(Mutex<QueueState>);
 
 #[derive(Debug)]
 struct QueueState {
-    /// Free permits. Not zero only while nobody waits.
-    free: usize,
+    /// Number of permits.
+    permits: usize,
+    /// Permits that are held. More than there are only after some were taken away; fewer only while nobody waits.
+    held: usize,
     /// Waiting entries by key; the next key is at the front.
     keys: VecDeque<(QueueKey, VecDeque<oneshot::Sender<Permit>>)>,
 }
@@ -34,22 +36,28 @@ pub(crate) struct Permit(Option<Arc<FairQueue>>);
 
 impl FairQueue {
     pub(crate) fn new(permits: usize) -> Arc<Self> {
-        Arc::new(Self(Mutex::new(QueueState { free: permits, keys: VecDeque::new() })))
+        Arc::new(Self(Mutex::new(QueueState { permits, held: 0, keys: VecDeque::new() })))
     }
 
     /// Takes a permit if one is free.
     pub(crate) fn try_acquire(self: &Arc<Self>) -> Option<Permit> {
-        let mut state = self.state();
-        state.free = state.free.checked_sub(1)?;
-        Some(Permit(Some(self.clone())))
+        self.state().take().then(|| Permit(Some(self.clone())))
+    }
+
+    /// Changes the number of permits. New ones go to the entries that wait. Of those that are taken away, held ones end when they are
+    /// dropped.
+    pub(crate) fn set_permits(self: &Arc<Self>, permits: usize) {
+        self.state().permits = permits;
+        while self.state().take_for_waiting() {
+            self.hand_over();
+        }
     }
 
     /// Waits for a permit. Dropping the future leaves the queue.
     pub(crate) async fn acquire(self: &Arc<Self>, key: QueueKey) -> Permit {
         let receiver = {
             let mut state = self.state();
-            if state.free > 0 {
-                state.free -= 1;
+            if state.take() {
                 return Permit(Some(self.clone()));
             }
             let (sender, receiver) = oneshot::channel();
@@ -90,6 +98,18 @@ impl FairQueue {
 }
 
 impl QueueState {
+    /// Takes a permit if one is free.
+    fn take(&mut self) -> bool {
+        let is_free = self.held < self.permits;
+        self.held += usize::from(is_free);
+        is_free
+    }
+
+    /// Takes a permit if one is free and there are entries.
+    fn take_for_waiting(&mut self) -> bool {
+        !self.keys.is_empty() && self.take()
+    }
+
     /// Waiting entries of a key.
     fn waiting(&mut self, key: QueueKey) -> &mut VecDeque<oneshot::Sender<Permit>> {
         let place = self.keys.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
@@ -99,9 +119,11 @@ impl QueueState {
         &mut self.keys[place].1
     }
 
-    /// Takes the next entry. If there is none, a permit becomes free.
+    /// Takes the next entry for a held permit. If there is none, or the permit was taken away, it is held no more.
     fn next(&mut self) -> Option<oneshot::Sender<Permit>> {
-        while let Some((key, mut waiting)) = self.keys.pop_front() {
+        while self.held <= self.permits
+            && let Some((key, mut waiting)) = self.keys.pop_front()
+        {
             let next = std::iter::from_fn(|| waiting.pop_front()).find(|next| !next.is_closed());
             if !waiting.is_empty() {
                 self.keys.push_back((key, waiting));
@@ -110,7 +132,7 @@ impl QueueState {
                 return next;
             }
         }
-        self.free += 1;
+        self.held -= 1;
         None
     }
 }
@@ -176,6 +198,24 @@ mod tests {
         assert!(held.is_some() && (&mut own).now_or_never().is_none());
         drop(held);
         assert!(own.now_or_never().is_some());
+    }
+
+    #[test]
+    fn permits_come_and_go() {
+        let queue = FairQueue::new(1);
+        let only = queue.try_acquire().unwrap();
+        let mut waiting = [1, 2, 3].map(|last| Box::pin(queue.acquire(QueueKey::Short(peer(last)))));
+        assert!(waiting.iter_mut().all(|permit| permit.now_or_never().is_none()));
+        queue.set_permits(3);
+        let given = waiting.each_mut().map(|permit| permit.now_or_never());
+        assert_eq!(given.each_ref().map(Option::is_some), [true, true, false]);
+        queue.set_permits(1);
+        drop((only, given));
+        let last = (&mut waiting[2]).now_or_never();
+        assert!(last.is_some() && queue.try_acquire().is_none());
+        drop(last);
+        let one = queue.try_acquire();
+        assert!(one.is_some() && queue.try_acquire().is_none());
     }
 
     #[test]

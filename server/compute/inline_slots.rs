@@ -1,14 +1,17 @@
-//! Slots for work on the async threads. One peer has at most half of them at a time, so that the threads keep answering others.
+//! Slots for work on the async threads. One peer has at most half of them at a time, so that the threads keep answering others. A peer
+//! that has been the only one for a while has all of them, until another one asks.
 //!
 //! Work that waits for a slot is not refused, and does not wait behind other peers.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::time::Instant;
 
 use tokio::task::yield_now;
 
 use crate::compute::fair_queue::{FairQueue, Permit, QueueKey};
 use crate::compute::peer::Peer;
+use crate::limits;
 
 /// Slots on the async threads. Clones share them.
 #[derive(Debug, Clone)]
@@ -16,10 +19,20 @@ pub(crate) struct InlineSlots(Arc<SlotQueues>);
 
 #[derive(Debug)]
 struct SlotQueues {
+    threads: usize,
+    state: Mutex<SlotState>,
+}
+
+#[derive(Debug)]
+struct SlotState {
     /// Slots of one peer.
     most: usize,
     /// The queue of each peer that has a slot or waits for one.
-    queues: Mutex<BTreeMap<Peer, Weak<FairQueue>>>,
+    queues: BTreeMap<Peer, Weak<FairQueue>>,
+    /// The last peer that asked, and the time at which another one did so before.
+    last: Option<(Peer, Option<Instant>)>,
+    /// Time of the last request.
+    last_time: Instant,
 }
 
 /// The right to compute on an async thread up to the next await.
@@ -31,12 +44,18 @@ pub struct InlineSlot {
 impl InlineSlots {
     /// Slots on so many threads.
     pub(crate) fn new(threads: usize) -> Self {
-        Self(Arc::new(SlotQueues { most: threads.div_ceil(2), queues: Mutex::default() }))
+        let state =
+            SlotState { most: threads.div_ceil(2), queues: BTreeMap::new(), last: None, last_time: Instant::now() };
+        Self(Arc::new(SlotQueues { threads, state: Mutex::new(state) }))
     }
 
     /// Waits for a slot for `peer`.
     pub(crate) async fn acquire(&self, peer: Peer) -> InlineSlot {
-        let queue = self.queue(peer);
+        self.acquire_at(peer, Instant::now()).await
+    }
+
+    async fn acquire_at(&self, peer: Peer, now: Instant) -> InlineSlot {
+        let queue = self.queue(peer, now);
         if let Some(permit) = queue.try_acquire() {
             return InlineSlot { _permit: permit };
         }
@@ -46,15 +65,41 @@ impl InlineSlots {
         InlineSlot { _permit: permit }
     }
 
-    fn queue(&self, peer: Peer) -> Arc<FairQueue> {
-        let mut queues = self.0.queues.lock().unwrap_or_else(PoisonError::into_inner);
+    fn queue(&self, peer: Peer, now: Instant) -> Arc<FairQueue> {
+        let mut state = self.0.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_alone = state.is_alone(peer, now);
+        state.set_most(if is_alone { self.0.threads } else { self.0.threads.div_ceil(2) });
+        let SlotState { most, queues, .. } = &mut *state;
         if let Some(queue) = queues.get(&peer).and_then(Weak::upgrade) {
             return queue;
         }
         queues.retain(|_, queue| queue.strong_count() > 0);
-        let queue = FairQueue::new(self.0.most);
+        let queue = FairQueue::new(*most);
         queues.insert(peer, Arc::downgrade(&queue));
         queue
+    }
+}
+
+impl SlotState {
+    /// Tells whether no other peer has asked for a while, and notes the request.
+    fn is_alone(&mut self, peer: Peer, now: Instant) -> bool {
+        let before = self.last_time;
+        self.last_time = now;
+        let other = match self.last {
+            None => None,
+            Some((last, other)) if last == peer => other,
+            Some(_) => Some(before),
+        };
+        self.last = Some((peer, other));
+        other.is_none_or(|other| now.saturating_duration_since(other) >= limits::ALONE_TIME)
+    }
+
+    /// Changes the number of slots of one peer.
+    fn set_most(&mut self, most: usize) {
+        if self.most != most {
+            self.most = most;
+            self.queues.values().filter_map(Weak::upgrade).for_each(|queue| queue.set_permits(most));
+        }
     }
 }
 
@@ -66,14 +111,33 @@ mod tests {
     #[test]
     fn one_peer_has_half_of_the_threads_and_others_have_theirs() {
         let (slots, [one, other]) = (InlineSlots::new(4), [1, 2].map(|last| Peer::at([192, 0, 2, last].into())));
-        let acquire = |peer| slots.acquire(peer).now_or_never();
+        let now = Instant::now();
+        let acquire = |peer| slots.acquire_at(peer, now).now_or_never();
+        assert!(acquire(other).is_some());
         let held = [acquire(one), acquire(one)];
         assert!(held.iter().all(Option::is_some) && acquire(one).is_none());
         assert!(acquire(other).is_some());
-        let mut waiting = Box::pin(slots.acquire(one));
+        let mut waiting = Box::pin(slots.acquire_at(one, now));
         assert!((&mut waiting).now_or_never().is_none());
         drop(held);
-        assert_eq!(slots.0.queues.lock().unwrap().len(), 2);
+        assert_eq!(slots.0.state.lock().unwrap().queues.len(), 2);
+    }
+
+    #[test]
+    fn a_peer_alone_has_all_threads_until_another_one_asks() {
+        let (slots, [one, other]) = (InlineSlots::new(4), [1, 2].map(|last| Peer::at([192, 0, 2, last].into())));
+        let now = Instant::now();
+        let acquire = |peer, now| slots.acquire_at(peer, now).now_or_never();
+        let mut held = vec![acquire(one, now), acquire(one, now), acquire(one, now), acquire(one, now)];
+        assert!(held.iter().all(Option::is_some) && acquire(one, now).is_none());
+        assert!(acquire(other, now).is_some());
+        held.truncate(2);
+        assert!(acquire(one, now).is_none(), "the other one has just asked");
+        let later = now + limits::ALONE_TIME;
+        held.push(acquire(one, later));
+        assert!(held.iter().all(Option::is_some));
+        assert!(acquire(other, later).is_some());
+        assert!(acquire(one, later).is_none());
     }
 
     #[tokio::test]
@@ -89,7 +153,7 @@ mod tests {
         drop(held);
         next.await.unwrap();
         let other = slots.acquire(Peer::at([192, 0, 2, 1].into())).await;
-        assert_eq!(slots.0.queues.lock().unwrap().len(), 1, "the line of {peer:?} is kept");
+        assert_eq!(slots.0.state.lock().unwrap().queues.len(), 1, "the line of {peer:?} is kept");
         drop(other);
     }
 }
