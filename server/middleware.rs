@@ -20,6 +20,7 @@ use tower_http::cors::CorsLayer;
 use tracing::{Instrument, Span};
 
 use crate::api::App;
+use crate::api::ops::{health, metrics};
 use crate::compute::Peer;
 use crate::config::Config;
 use crate::http::problem::{MEDIA_TYPE, shortened};
@@ -35,10 +36,10 @@ use crate::{BUILD, limits};
 /// 1. `identify` gives each request its id, peer and origin, and each answer its common headers, and writes the access log. It refuses
 ///    requests for other servers or in an unsupported form. This comes before CORS, which would permit pages of a foreign name.
 /// 2. CORS, if origins are allowed. It comes before the token, which a browser does not send in a preflight.
-/// 3. `guard` refuses requests without the token, if there is one, and work for pages of other sites. A request that repeats an
-///    earlier one is answered from memory. Others go on in a span of the log. It turns errors of libraries into problems: 405, refused
-///    upgrades and others. The layers up to here surround the router as a whole, because it adds `Allow` outside the layers of its
-///    routes.
+/// 3. `guard` refuses requests without the token, if there is one, and work for pages of other sites. It answers liveness probes, and
+///    requests that repeat an earlier one, from memory. Others go on in a span of the log. It turns errors of libraries into problems:
+///    405, refused upgrades and others. The layers up to here surround the router as a whole, because it adds `Allow` outside the
+///    layers of its routes.
 /// 4. `measure` counts requests. It needs the route's template, so it is inside the router, and it is outside panics, to count them
 ///    too. It refuses a long URL before it is read.
 /// 5. A panic becomes a 500.
@@ -126,8 +127,8 @@ async fn identify(
     mut next: impl Service<Request, Response = Response, Error = Infallible>,
 ) -> Result<Response, Infallible> {
     let peer = edge.peer(&request);
-    request.extensions_mut().insert(peer);
     if edge.is_from_proxy(&request) {
+        request.extensions_mut().insert(peer);
         request.extensions_mut().insert(host::FromProxy);
     }
     let logged = edge.app.config.access_log.then(|| (Instant::now(), request.method().clone(), request.uri().clone()));
@@ -243,6 +244,9 @@ async fn guard(edge: Arc<EdgeConfig>, request: Request, mut routes: Router) -> R
         Some(answer) => answer,
         None => {
             let app = &edge.app;
+            if let Some(alive) = liveness(app, &request) {
+                return alive;
+            }
             let name = repeats::name_of(&request);
             if let Some(again) = name.as_ref().and_then(|name| repeated(app, &request, name)) {
                 return again;
@@ -266,14 +270,24 @@ fn repeated(app: &App, request: &Request, name: &[u8]) -> Option<Response> {
     let begin = Instant::now();
     let kept = app.answers.repeated(name)?;
     let client = (peer(request.extensions()), kept.tag.if_none_match(request.headers()));
-    let mut response = kept.respond(&app.answers, client)?;
-    // As the router does.
+    let response = kept.respond(&app.answers, client)?;
+    Some(counted(app, request.method(), kept.route.clone().into(), begin, response))
+}
+
+/// The answer to a liveness probe by GET, which tells only that requests are answered.
+fn liveness(app: &App, request: &Request) -> Option<Response> {
+    let begin = Instant::now();
+    let is_probe = *request.method() == Method::GET && request.uri().path_and_query()? == health::LIVE;
+    is_probe.then(|| counted(app, request.method(), metrics::Route::Fixed(health::LIVE), begin, health::healthy()))
+}
+
+/// Does what the router does with an answer, for one that did not come from it.
+fn counted(app: &App, method: &Method, route: metrics::Route, begin: Instant, mut response: Response) -> Response {
     if let Some(bytes) = response.body().size_hint().exact() {
         response.headers_mut().insert(header::CONTENT_LENGTH, bytes.into());
     }
-    let (method, status) = (request.method().as_str(), response.status().as_u16());
-    app.metrics.record(method, kept.route.clone().into(), status, begin.elapsed());
-    Some(response)
+    app.metrics.record(method.as_str(), route, response.status().as_u16(), begin.elapsed());
+    response
 }
 
 /// Refuses a request without the token, or work for a page of another site. A browser that brings the token is redirected with its

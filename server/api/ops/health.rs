@@ -5,18 +5,22 @@ use std::sync::LazyLock;
 use axum::Router;
 use axum::body::Bytes;
 use axum::extract::State;
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
+use axum::http::{HeaderValue, header};
+use axum::response::Response;
 use axum::routing::get;
 use serde_json::json;
 
 use crate::BUILD;
 use crate::api::app::App;
 use crate::http::Problem;
+use crate::http::response::builder::with_room;
+
+/// Path of the liveness probe.
+pub const LIVE: &str = "/health/live";
 
 /// The routes.
 pub fn routes() -> Router<App> {
-    Router::new().route("/health/live", get(live)).route("/health/ready", get(ready))
+    Router::new().route(LIVE, get(live)).route("/health/ready", get(ready))
 }
 
 async fn live() -> Response {
@@ -27,11 +31,14 @@ async fn ready(State(app): State<App>) -> Result<Response, Problem> {
     if app.is_closing() { Err(Problem::overloaded("the server is shutting down")) } else { Ok(healthy()) }
 }
 
-fn healthy() -> Response {
+/// The answer to a liveness probe.
+pub fn healthy() -> Response {
     static BODY: LazyLock<Bytes> = LazyLock::new(|| {
         let body = json!({"status": "ok", "build": BUILD, "version": env!("CARGO_PKG_VERSION")});
         body.to_string().into()
     });
-    let headers = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
-    (headers, BODY.clone()).into_response()
+    let mut response = with_room(BODY.clone().into());
+    response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static("application/json"));
+    response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+    response
 }

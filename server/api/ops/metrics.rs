@@ -49,20 +49,30 @@ struct RouteLabels {
     route: Route,
 }
 
-/// The template of a request's route. It shares the router's text.
+/// The template of a request's route.
 #[derive(Debug, Clone)]
-pub struct Route(Option<MatchedPath>);
+pub enum Route {
+    /// It shares the router's text.
+    Matched(MatchedPath),
+    /// The route of an answer without the router.
+    Fixed(&'static str),
+    /// Outside all routes.
+    None,
+}
 
 impl Route {
-    /// The template, or `none` outside all routes.
     fn as_str(&self) -> &str {
-        self.0.as_ref().map_or("none", MatchedPath::as_str)
+        match self {
+            Self::Matched(path) => path.as_str(),
+            Self::Fixed(path) => path,
+            Self::None => "none",
+        }
     }
 }
 
 impl From<Option<MatchedPath>> for Route {
     fn from(path: Option<MatchedPath>) -> Self {
-        Self(path)
+        path.map_or(Self::None, Self::Matched)
     }
 }
 
@@ -161,8 +171,8 @@ mod tests {
     #[test]
     fn what_is_counted_is_shown() {
         let metrics = Metrics::new(&Pool::new(1, &crate::limits::Limits::default()), &AnswerCounts::default());
-        metrics.record("GET", Route(None), 404, Duration::from_millis(1));
-        metrics.record("BREW", Route(None), 405, Duration::from_millis(1));
+        metrics.record("GET", Route::None, 404, Duration::from_millis(1));
+        metrics.record("BREW", Route::None, 405, Duration::from_millis(1));
         metrics.bounces.inc_by(7);
         let text = metrics.to_open_metrics().unwrap();
         for line in [

@@ -43,7 +43,8 @@ pub(crate) fn with_tag(mut response: Response<Body>, tag: &EntityTag) -> Respons
     response
 }
 
-fn with_room(body: Body) -> Response<Body> {
+/// 200 with a body and room for headers.
+pub(crate) fn with_room(body: Body) -> Response<Body> {
     let mut response = Response::new(body);
     *response.headers_mut() = HeaderMap::with_capacity(HEADERS);
     response
