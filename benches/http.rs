@@ -2,9 +2,11 @@
 //! text alone, and `-- --seconds N` each of them for about so long.
 //!
 //! First answers that are asked for again, beside a handler that sends the same bytes from memory; then `/v1/trajectories` computed
-//! each time, beside handlers that send the same bytes from memory and that serialize the same columns. Both sides are measured in
-//! turns over the same number of connections on loopback, so that the ratio holds on a noisy machine. The server has its own transport,
-//! log and allocator, as in the program. Clients share the cores, so every rate contains their time too.
+//! each time, beside handlers that send the same bytes from memory, that serialize the same columns, and that compute the same run and
+//! serialize its columns with nothing around it. The last of these is measured beside the bytes from memory too: no server that
+//! computes its answers gets further. Both sides are measured in turns over the same number of connections on loopback, so that the
+//! ratio holds on a noisy machine. The server has its own transport, log and allocator, as in the program. Clients share the cores, so
+//! every rate contains their time too.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -17,15 +19,21 @@ use axum::routing::get;
 use axum::{Json, Router};
 use clap::Parser;
 use equipoise::api::App;
+use equipoise::api::scene::presets;
+use equipoise::api::shared::table::gather::Gathered;
+use equipoise::api::shared::table::{Column, Table};
+use equipoise::api::trajectories::columns::{ImpactColumn, ImpactRow, of_trajectories};
 use equipoise::config::Config;
 use equipoise::logging::LogFormat;
 use equipoise::{logging, router, transport};
+use equipoise_physics::run::method::{RunMethod, run_by};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 
 const CONNECTIONS: usize = 8;
 const ROUND: Duration = Duration::from_millis(200);
 const PATH: &str = "/v1/trajectories?preset=case-1&impacts=100";
+const IMPACTS: usize = 100;
 
 /// Answers that are asked for again, with their media types.
 const AGAIN: [(&str, &str); 6] = [
@@ -71,14 +79,39 @@ async fn main() -> std::io::Result<()> {
     }
     let ours = serve_ours(&["equipoise", "--answer-cache", "0"]).await?;
     let bytes = Bytes::from(ask(ours, PATH).await?);
-    let bare = serve_bytes(PATH, "application/json", bytes.clone()).await?;
-    compare("computed each time, beside the bytes from memory", ours, bare, PATH, rounds).await;
+    let in_memory = serve_bytes(PATH, "application/json", bytes.clone()).await?;
+    compare("computed each time, beside the bytes from memory", ours, in_memory, PATH, rounds).await;
     let columns: serde_json::Value = serde_json::from_slice(&bytes)?;
     let columns: Arc<Columns> = Arc::new(serde_json::from_value(columns["impacts"].clone())?);
     let answer = move || async move { Json(Columns::clone(&columns)) };
     let bare = serve(Router::new().route("/v1/trajectories", get(answer))).await?;
     compare("computed each time, beside columns serialized from memory", ours, bare, PATH, rounds).await;
+    let answer = || async { Json(computed()) };
+    let columns_alone = serve(Router::new().route("/v1/trajectories", get(answer))).await?;
+    compare("computed each time, beside a run and its columns alone", ours, columns_alone, PATH, rounds).await;
+    compare("a run and its columns alone, beside the bytes from memory", columns_alone, in_memory, PATH, rounds).await;
     Ok(())
+}
+
+/// The columns of the run, computed without a server around it.
+fn computed() -> Table {
+    let scene = presets::find("case-1").expect("a preset").draft().build().expect("a test builds every preset");
+    let body = scene.model();
+    let mut rows = Vec::with_capacity(IMPACTS);
+    let run = run_by(&scene, RunMethod::Map, IMPACTS as u64, |impact| {
+        rows.push(ImpactRow {
+            error_estimate: Some(impact.error_estimate),
+            ..ImpactRow::new(&body, true, impact.contact)
+        });
+        true
+    });
+    run.expect("the map applies to every scene");
+    let column = |column: &'static ImpactColumn| {
+        let mut values = Gathered::with_capacity(column.read, rows.len());
+        values.extend(&rows);
+        Column { name: column.name, unit: column.unit, cells: values.into_cells() }
+    };
+    Table(of_trajectories(false).map(column).collect())
 }
 
 /// The server as the program serves it.
