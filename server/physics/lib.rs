@@ -6,7 +6,7 @@
 //! From the ground up: [`numbers`] are kinds of arithmetic; [`bounce`] is one strike and one flight; [`table`] steers and what it
 //! is asked for; [`body`] is any body that bounces; [`run`] goes from contact to contact and ends; [`scene`] is the set of values a user
 //! may give, with the smallest model that is exact for it; [`batch`] runs many scenes at once. On these stand the analyses:
-//! [`stability`], [`control`], [`periodic_orbits`], [`surveys`] and [`catching`].
+//! [`stability`], [`control`], [`periodic_orbits`], [`surveys`], [`catching`] and [`fitting`].
 
 pub mod batch;
 pub mod body;
@@ -14,6 +14,7 @@ pub mod bounce;
 pub mod catching;
 pub mod contact;
 pub mod control;
+pub mod fitting;
 pub mod numbers;
 pub mod periodic_orbits;
 pub mod run;

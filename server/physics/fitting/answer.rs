@@ -1,0 +1,94 @@
+//! A request for a fit, and the answer.
+
+use super::confidence::Estimate;
+use super::impact_map::STATES;
+use super::measured::{DataError, Measured};
+use super::quality::Quality;
+use super::solver::Cancelled;
+use crate::scene::{FieldError, Name, Scene};
+
+/// Most unknown fields of a fit.
+pub const MOST_UNKNOWNS: usize = 8;
+
+/// A request for a fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitRequest {
+    /// The scene, with first values of the unknown fields.
+    pub scene: Scene,
+    /// The data.
+    pub measured: Measured,
+    /// Unknown fields.
+    pub unknown: Vec<Name>,
+    /// Standard deviation of each column of [`COLUMNS`]; `None` where it is estimated from the residuals.
+    pub sd: [Option<f64>; STATES],
+}
+
+/// Reason for which there is no fit.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FitFailure {
+    /// A fault of the data.
+    Data(DataError),
+    /// A field that cannot be unknown: its index, and a sentence.
+    Unknown(usize, String),
+    /// The scene contradicts itself where the search came.
+    Scene(Vec<FieldError>),
+    /// Too few values for so many unknowns.
+    TooFew {
+        /// Values.
+        values: usize,
+        /// Unknowns, those of the windows included.
+        unknowns: usize,
+    },
+    /// The run of the model ends among the measured impacts.
+    RunEnds,
+    /// Work was cancelled.
+    Cancelled,
+}
+
+impl From<Cancelled> for FitFailure {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+/// A measured impact beside the fitted one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FittedRow {
+    /// Number of the impact.
+    pub n: u64,
+    /// Index of its row in the data.
+    pub row: usize,
+    /// Index of its window.
+    pub window: usize,
+    /// Measured minus fitted value of each column; `None` where nothing was measured.
+    pub residuals: [Option<f64>; STATES],
+    /// True for values that were left out as outliers.
+    pub outliers: [bool; STATES],
+}
+
+/// A fit.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The fitted fields.
+    pub estimates: Vec<Estimate>,
+    /// Covariance of the estimates, in their units; 0 where the data do not tell.
+    pub covariance: Vec<Vec<f64>>,
+    /// The scene with the fitted fields.
+    pub scene: Scene,
+    /// The impacts.
+    pub rows: Vec<FittedRow>,
+    /// Standard deviation of each column, given or estimated; `None` of columns that were not measured.
+    pub sd: [Option<f64>; STATES],
+    /// Sum of squares over their variances.
+    pub chi_squared: f64,
+    /// Number of values less that of unknowns.
+    pub degrees_of_freedom: f64,
+    /// Number of windows.
+    pub windows: usize,
+    /// Judgement of the fit.
+    pub quality: Quality,
+    /// Sentences on what was done to the data and found beside the estimates.
+    pub notes: Vec<String>,
+    /// Iterations of all stages together.
+    pub iterations: usize,
+}

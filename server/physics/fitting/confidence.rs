@@ -1,0 +1,173 @@
+//! Standard deviations, intervals and correlations of fitted fields, and the fields that the data do not tell.
+
+use super::elimination::Block;
+use super::impact_map::range;
+use super::statistics::{normal_quantile, student_quantile};
+use crate::scene::{Draft, Name, Value};
+use nalgebra::{DMatrix, SVD};
+
+/// A fitted field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Field.
+    pub name: Name,
+    /// Best value, in the unit of the field.
+    pub value: f64,
+    /// Standard deviation; `None` if the data do not tell.
+    pub sd: Option<f64>,
+    /// Ends of the 95 % interval, cut to the range of the field; `None` if the data do not tell.
+    pub interval: Option<(f64, f64)>,
+    /// Reason why the data do not tell, or what was done to the interval.
+    pub detail: Option<String>,
+}
+
+impl Estimate {
+    /// True if the data tell the value.
+    pub fn is_identifiable(&self) -> bool {
+        self.sd.is_some()
+    }
+}
+
+/// Change of the data, in standard deviations, below which a field that moves by its whole scale does not act on the motion.
+const NO_EFFECT: f64 = 1e-3;
+
+/// Least singular value that is told from rounding.
+const LEAST_SINGULAR: f64 = 1e-6;
+
+/// Share of a direction from which a field takes part in it.
+const TAKES_PART: f64 = 0.2;
+
+/// Covariance of the fields by the data, in units of their scales.
+#[derive(Clone, Debug)]
+pub(super) struct Information {
+    /// Scale of each field: a standard deviation as large tells nothing.
+    pub(super) scales: Vec<f64>,
+    /// Covariance over the scales.
+    covariance: DMatrix<f64>,
+    /// Reason for which a field is not told, if it is not.
+    pub(super) untold: Vec<Option<String>>,
+}
+
+/// Size of a field beside which a standard deviation is large.
+pub(super) fn scale(name: Name, value: f64, typed: f64) -> f64 {
+    let (minimum, maximum) = range(name);
+    value.abs().max(typed.abs()).max((maximum - minimum) / 200.0)
+}
+
+impl Information {
+    /// By the factor of (J_p | r) with the windows' own unknowns eliminated, and the blocks before that.
+    pub(super) fn new(
+        draft: &Draft,
+        names: &[Name],
+        (values, typed): (&[f64], &[f64]),
+        reduced: &DMatrix<f64>,
+        blocks: &[Block],
+    ) -> Self {
+        let fields = names.len();
+        let scales: Vec<f64> = (0..fields).map(|field| scale(names[field], values[field], typed[field])).collect();
+        let acts: Vec<bool> = (0..fields)
+            .map(|field| {
+                let squares: f64 = blocks.iter().map(|block| block.rows.column(block.own + field).norm_squared()).sum();
+                squares.sqrt() * scales[field] > NO_EFFECT
+            })
+            .collect();
+        let acting: Vec<usize> = (0..fields).filter(|&field| acts[field]).collect();
+        let mut untold: Vec<Option<String>> =
+            (0..fields).map(|field| (!acts[field]).then(|| no_effect(draft, names[field]))).collect();
+        let mut covariance = DMatrix::zeros(fields, fields);
+        let matrix =
+            DMatrix::from_fn(fields, acting.len(), |row, place| reduced[(row, acting[place])] * scales[acting[place]]);
+        let Some(SVD { v_t: Some(directions), singular_values, .. }) =
+            SVD::try_new(matrix, false, true, f64::EPSILON, 10_000)
+        else {
+            let untold = vec![Some("the linear algebra of the intervals did not converge".to_owned()); fields];
+            return Self { scales, covariance, untold };
+        };
+        for (direction, value) in singular_values.iter().enumerate() {
+            let value = value.max(LEAST_SINGULAR);
+            for (row, &one) in acting.iter().enumerate() {
+                for (column, &other) in acting.iter().enumerate() {
+                    let share = directions[(direction, row)] * directions[(direction, column)];
+                    covariance[(one, other)] += share / (value * value);
+                }
+            }
+        }
+        for (place, &field) in acting.iter().enumerate() {
+            if covariance[(field, field)] <= 1.0 {
+                continue;
+            }
+            let weak = (0..acting.len())
+                .max_by(|&a, &b| {
+                    let part = |direction: usize| {
+                        directions[(direction, place)].abs() / singular_values[direction].max(LEAST_SINGULAR)
+                    };
+                    part(a).total_cmp(&part(b))
+                })
+                .unwrap_or(0);
+            let partners: Vec<&str> = (0..acting.len())
+                .filter(|&other| other != place && directions[(weak, other)].abs() > TAKES_PART)
+                .map(|other| names[acting[other]].row().path)
+                .collect();
+            let row = names[field].row();
+            let sd = covariance[(field, field)].sqrt() * scales[field];
+            untold[field] = Some(if partners.is_empty() {
+                format!(
+                    "the data leave {} open: its standard deviation would be {sd:e} {}, as large as the value itself or a 200th of its range",
+                    row.path, row.unit
+                )
+            } else {
+                format!(
+                    "only a combination of {} with {} acts on the measured motion; say one of them",
+                    row.path,
+                    partners.join(" and ")
+                )
+            });
+        }
+        Self { scales, covariance, untold }
+    }
+
+    /// Standard deviation of a field at unit variance of the data.
+    pub(super) fn sd(&self, field: usize) -> f64 {
+        self.covariance[(field, field)].sqrt() * self.scales[field]
+    }
+
+    /// Covariance of two fields, in their units; 0 if one of them is not told.
+    pub(super) fn covariance(&self, one: usize, other: usize) -> f64 {
+        if self.untold[one].is_some() || self.untold[other].is_some() {
+            return 0.0;
+        }
+        self.covariance[(one, other)] * self.scales[one] * self.scales[other]
+    }
+
+    /// The estimates. With standard deviations that were estimated too, intervals are Student's with `freedom` degrees of freedom.
+    pub(super) fn estimates(&self, names: &[Name], values: &[f64], estimated: bool, freedom: f64) -> Vec<Estimate> {
+        let width = if estimated { student_quantile(freedom) } else { normal_quantile() };
+        let of_field = |field: usize| {
+            let (name, value) = (names[field], values[field]);
+            if let Some(detail) = &self.untold[field] {
+                return Estimate { name, value, sd: None, interval: None, detail: Some(detail.clone()) };
+            }
+            let sd = self.sd(field);
+            let (minimum, maximum) = range(name);
+            let (low, high) = (value - width * sd, value + width * sd);
+            let is_cut = low < minimum || high > maximum;
+            let detail = is_cut
+                .then(|| format!("the interval is cut to the range of {}, {}", name.row().path, name.row().limits()));
+            Estimate { name, value, sd: Some(sd), interval: Some((low.max(minimum), high.min(maximum))), detail }
+        };
+        (0..names.len()).map(of_field).collect()
+    }
+}
+
+/// Reason why a field has no effect on the motion.
+fn no_effect(draft: &Draft, name: Name) -> String {
+    let path = name.row().path;
+    let is_compensated = draft.get(Name::Strike) != Some(Value::Choice("still"));
+    if name == Name::Restitution && is_compensated && draft.get(Name::AssumedRestitution).is_none() {
+        return format!(
+            "the table makes up what {path} loses (table.strike `compensated`, and it believes the true value), so it drops out of the \
+             motion; measure with a table that stands still, or give table.assumed_restitution"
+        );
+    }
+    format!("the measured motion does not depend on {path}")
+}

@@ -1,0 +1,25 @@
+//! Fields of a scene from measured impacts: multiple shooting (Bock 1987) with windows of impacts whose initial states are unknown too,
+//! solved by the method of Levenberg (1944) and Marquardt (1963) with weights of Huber (1964) against outliers.
+//!
+//! Section 18 of `docs/physics.md` has the method. Not here: reading data, and the verdict on the fitted scene.
+
+mod answer;
+mod confidence;
+mod elimination;
+mod fit;
+mod impact_map;
+mod measured;
+mod numbering;
+mod quality;
+mod report;
+mod search;
+mod solver;
+mod statistics;
+mod windows;
+
+pub use answer::{Fit, FitFailure, FitRequest, FittedRow, MOST_UNKNOWNS};
+pub use confidence::Estimate;
+pub use fit::fit;
+pub use measured::{COLUMNS, DataError, Measured};
+pub use quality::{Quality, QualityKind};
+pub use statistics::chi_squared_quantile;

@@ -1,0 +1,262 @@
+//! The end of a fit: outliers left out, values far from the best looked at, intervals, residuals and the judgement.
+
+use super::answer::{Fit, FitFailure, FittedRow};
+use super::confidence::{Estimate, Information};
+use super::elimination::reduced;
+use super::impact_map::{ImpactMap, STATES, Vector, range};
+use super::measured::{COLUMNS, Measured, MeasuredRow};
+use super::quality::{FitFacts, QualityKind, judge};
+use super::search::Search;
+use super::solver::{Minimum, Point};
+use super::statistics::OUTLIER;
+use crate::scene::{Draft, FieldError, Scene, Value};
+
+/// The same at the minimum: estimates move by a hundredth of their standard deviation.
+const FINE: (usize, f64) = (60, 1e-4);
+/// The same beside the minimum, where the size of the rise counts.
+const BESIDE: (usize, f64) = (5, 1.0);
+/// Most rounds of leaving out outliers.
+const OUTLIER_ROUNDS: usize = 5;
+/// Share of the values up to which outliers are single. Beyond it the model is wrong, not the data.
+const MOST_OUTLIERS: f64 = 0.1;
+/// Distance, in standard deviations, at which the rise of χ² is looked at.
+const PROFILE: f64 = 6.0;
+/// Distances, in scales of the field, at which it is looked at for other minima.
+const FAR: [f64; 4] = [-0.25, -0.06, 0.06, 0.25];
+/// Standard deviation, over the scale of the field and the number of impacts to the power −3/2, below which no swing that is noise is told:
+/// the error of a frequency falls like that power.
+const SHARP: f64 = 0.2;
+/// Effort there.
+const FAR_OFF: (usize, f64) = (9, 0.9);
+/// Rise of χ² of which a share is enough, however far off.
+const MOST_RISE: f64 = 100.0;
+/// Share of the rise of a parabola that tells an estimate from any other value.
+const LEAST_RISE: f64 = 0.25;
+
+impl Search<'_> {
+    /// Leaves out outliers, one round after another until they stay the same.
+    pub(super) fn leave_out(
+        &mut self,
+        mut point: Point,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Minimum, FitFailure> {
+        let mut before = None;
+        for _ in 0..OUTLIER_ROUNDS {
+            self.update_sd(&point, before.is_none(), go_on)?;
+            let Some(predicted) = self.problem.predict(&point) else { return Err(FitFailure::RunEnds) };
+            let residuals = self.problem.residuals(&predicted);
+            let far: Vec<[bool; STATES]> =
+                residuals.iter().map(|row| row.map(|residual| residual.abs() > OUTLIER)).collect();
+            let count = far.iter().flatten().filter(|far| **far).count();
+            let values = self.problem.rows.iter().flat_map(|row| row.values).filter(|value| !value.is_nan()).count();
+            let are_single = count as f64 <= (MOST_OUTLIERS * values as f64).max(2.0);
+            for (row, far) in self.problem.rows.iter_mut().zip(&far) {
+                row.outlier = if are_single { *far } else { [false; STATES] };
+            }
+            self.problem.robust = false;
+            let problem = self.problem.clone();
+            let found = self.minimize(&problem, point, FINE, go_on)?.ok_or(FitFailure::RunEnds)?;
+            let is_same = before.as_ref() == Some(&far);
+            if is_same || (!are_single && before.is_some()) {
+                return Ok(found);
+            }
+            (before, point) = (Some(far), found.point);
+        }
+        let problem = self.problem.clone();
+        self.minimize(&problem, point, FINE, go_on)?.ok_or(FitFailure::RunEnds)
+    }
+
+    pub(super) fn information(
+        &self,
+        point: &Point,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Information, FitFailure> {
+        let blocks = self.problem.linearize(point, go_on)?.ok_or(FitFailure::RunEnds)?;
+        let (factor, _) = reduced(&blocks, self.problem.names.len());
+        let values = (point.fields.as_slice(), self.typed.as_slice());
+        Ok(Information::new(&self.problem.draft, &self.problem.names, values, &factor, &blocks))
+    }
+
+    /// Looks at χ² some standard deviations away from each estimate: an estimate beside which far values fit as well is none. Gives a better
+    /// minimum, if it meets one.
+    pub(super) fn profile(
+        &mut self,
+        minimum: &Minimum,
+        information: &mut Information,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Minimum>, FitFailure> {
+        for field in 0..self.problem.names.len() {
+            if information.untold[field].is_some() {
+                continue;
+            }
+            let (sd, value) = (information.sd(field), minimum.point.fields[field]);
+            let (low, high) = range(self.problem.names[field]);
+            let near = [-PROFILE * sd, PROFILE * sd].map(|off| (off, BESIDE));
+            // Far off lie the other minima of a swing whose phase is lost in noise.
+            let rows = self.problem.rows.len() as f64;
+            let is_sharp = sd < SHARP * information.scales[field] / (rows * rows.sqrt());
+            let far = FAR.iter().filter(|_| !is_sharp).map(|off| (off * information.scales[field], FAR_OFF));
+            for (off, effort) in near.into_iter().chain(far) {
+                let aside = (value + off).clamp(low, high);
+                let distance = (aside - value) / sd;
+                if distance.abs() < 0.5 * PROFILE || (effort == FAR_OFF && distance.abs() < 2.0 * PROFILE) {
+                    continue;
+                }
+                let promised = (distance * distance).min(MOST_RISE);
+                let mut start = minimum.point.clone();
+                for (other, value) in start.fields.iter_mut().enumerate() {
+                    let slope = information.covariance(field, other) / (sd * sd);
+                    let (low, high) = range(self.problem.names[other]);
+                    *value = if other == field {
+                        aside
+                    } else {
+                        (*value + slope * (aside - minimum.point.fields[field])).clamp(low, high)
+                    };
+                }
+                if effort == FAR_OFF {
+                    let Some(mut map) =
+                        self.problem.draft_at(&start.fields).and_then(|draft| ImpactMap::new(&draft).ok())
+                    else {
+                        continue;
+                    };
+                    let guessed = Self::guessed(&mut self.problem.clone(), &mut map, start.fields.clone());
+                    if guessed.starts.len() == start.starts.len() {
+                        start = guessed;
+                    }
+                }
+                let mut held = self.problem.clone();
+                held.held[field] = true;
+                let Some(found) = self.minimize(&held, start, effort, go_on)? else { continue };
+                let rise = found.cost - minimum.cost;
+                if rise < -1e-3 * minimum.cost.max(1.0) {
+                    let problem = self.problem.clone();
+                    return self.minimize(&problem, found.point, FINE, go_on);
+                }
+                if rise < LEAST_RISE * promised {
+                    let row = self.problem.names[field].row();
+                    information.untold[field] = Some(format!(
+                        "values far from the best fit the data nearly as well: at {aside} {} chi_squared is {rise} larger, where its \
+                         curvature promises {promised} or more",
+                        if row.unit == "1" { "" } else { row.unit }
+                    ));
+                    break;
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    pub(super) fn finish(
+        mut self,
+        point: Point,
+        mut notes: Vec<String>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Fit, FitFailure> {
+        let mut minimum = self.leave_out(point, go_on)?;
+        let (values, unknowns) = (self.values(&self.problem), self.unknowns(&self.problem));
+        if values < unknowns + 3 {
+            return Err(FitFailure::TooFew { values, unknowns });
+        }
+        let mut information = self.information(&minimum.point, go_on)?;
+        if let Some(better) = self.profile(&minimum.clone(), &mut information, go_on)? {
+            minimum = self.leave_out(better.point, go_on)?;
+            information = self.information(&minimum.point, go_on)?;
+            self.profile(&minimum.clone(), &mut information, go_on)?;
+        }
+        let estimated = (0..STATES).any(|column| self.measured[column] && self.request.sd[column].is_none());
+        let all_given = !estimated;
+        let freedom = (values - unknowns) as f64;
+        let names = self.problem.names.clone();
+        let mut estimates = information.estimates(&names, &minimum.point.fields, estimated, freedom);
+        let rows = self.fitted_rows(&minimum.point)?;
+        name_outliers(&rows, &self.request.measured, &mut notes);
+        let facts = FitFacts {
+            converged: minimum.converged,
+            chi_squared: minimum.cost,
+            freedom,
+            all_given,
+            longest_window: self.problem.windows.iter().map(|range| range.len()).max().unwrap_or(0),
+            is_followed: self.is_followed,
+        };
+        let quality = judge(&facts, neighbours(&rows));
+        if matches!(quality.kind, QualityKind::NotConverged) {
+            for estimate in &mut estimates {
+                (estimate.sd, estimate.interval) = (None, None);
+                estimate.detail = Some(quality.detail.clone());
+            }
+        }
+        let draft: Draft =
+            fitted_draft(&self.request.scene, &estimates).map_err(|error| FitFailure::Scene(vec![error]))?;
+        let fields = 0..names.len();
+        let sd = std::array::from_fn(|column| self.measured[column].then_some(self.problem.sd[column]));
+        Ok(Fit {
+            covariance: fields
+                .clone()
+                .map(|one| fields.clone().map(|other| information.covariance(one, other)).collect())
+                .collect(),
+            estimates,
+            scene: draft.build().map_err(FitFailure::Scene)?,
+            rows,
+            sd,
+            chi_squared: minimum.cost,
+            degrees_of_freedom: freedom,
+            windows: self.problem.windows.len(),
+            quality,
+            notes,
+            iterations: self.iterations,
+        })
+    }
+
+    pub(super) fn fitted_rows(&self, point: &Point) -> Result<Vec<FittedRow>, FitFailure> {
+        let predicted = self.problem.predict(point).ok_or(FitFailure::RunEnds)?;
+        let window_of = |row: usize| self.problem.windows.iter().position(|range| range.contains(&row)).unwrap_or(0);
+        let fitted = |(place, (row, predicted)): (usize, (&MeasuredRow, &Vector))| FittedRow {
+            n: row.n,
+            row: row.index,
+            window: window_of(place),
+            residuals: std::array::from_fn(|column| {
+                Some(row.values[column] - predicted[column]).filter(|residual| !residual.is_nan())
+            }),
+            outliers: row.outlier,
+        };
+        Ok(self.problem.rows.iter().zip(&predicted).enumerate().map(fitted).collect())
+    }
+}
+
+/// The scene with the estimates that the data tell.
+fn fitted_draft(scene: &Scene, estimates: &[Estimate]) -> Result<Draft, FieldError> {
+    let mut draft = scene.draft();
+    for estimate in estimates.iter().filter(|estimate| estimate.is_identifiable()) {
+        draft.set(estimate.name, Some(Value::Number(estimate.value)))?;
+    }
+    Ok(draft)
+}
+
+fn name_outliers(rows: &[FittedRow], measured: &Measured, notes: &mut Vec<String>) {
+    for row in rows {
+        for (column, (name, unit)) in COLUMNS.iter().enumerate().filter(|(column, _)| row.outliers[*column]) {
+            let value = measured.columns[column].get(row.row).copied().flatten().unwrap_or(f64::NAN);
+            notes.push(format!(
+                "{name} of row {} ({value} {unit}) is an outlier, left out: it is {} {unit} from the fit",
+                row.row + 1,
+                row.residuals[column].unwrap_or(f64::NAN)
+            ));
+        }
+    }
+}
+
+/// The strongest correlation of neighbouring residuals of a column, and their number.
+fn neighbours(rows: &[FittedRow]) -> Option<(&'static str, f64, usize)> {
+    /// Fewer say nothing.
+    const LEAST: usize = 20;
+    let of_column = |column: usize| {
+        let value = |row: &FittedRow| row.residuals[column].filter(|_| !row.outliers[column]);
+        let squares: f64 = rows.iter().filter_map(value).map(|residual| residual * residual).sum();
+        let pairs = rows.windows(2).filter_map(|pair| Some(value(&pair[0])? * value(&pair[1])?));
+        let count = pairs.clone().count();
+        let correlation = pairs.sum::<f64>() / squares;
+        (count >= LEAST && correlation.is_finite()).then_some((COLUMNS[column].0, correlation, count))
+    };
+    let strength = |found: &(&str, f64, usize)| found.1.abs() * (found.2 as f64).sqrt();
+    (0..STATES).filter_map(of_column).max_by(|a, b| strength(a).total_cmp(&strength(b)))
+}

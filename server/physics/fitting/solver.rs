@@ -1,0 +1,312 @@
+//! The least squares over fields and the initial states of windows, by the method of Levenberg (1944) and Marquardt (1963).
+//!
+//! `levenberg-marquardt` 0.15 is built on another nalgebra than ours, and takes one dense Jacobian of all unknowns: time would grow with the cube
+//! of the number of windows. So the loop over the damping stands here; the linear algebra is nalgebra's.
+
+use super::confidence::scale;
+use super::elimination;
+use super::elimination::Block;
+use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, range};
+use super::measured::MeasuredRow;
+use super::statistics::{loss, weight};
+use crate::scene::{Draft, Name, Value};
+use nalgebra::DMatrix;
+use std::ops::Range;
+
+/// Work was cancelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Cancelled;
+
+/// Impacts between two looks at the clock.
+const LOOK_EVERY: usize = 64;
+
+/// The problem at one stage of a fit.
+#[derive(Clone, Debug)]
+pub(super) struct Problem {
+    pub(super) rows: Vec<MeasuredRow>,
+    /// The scene that is fitted.
+    pub(super) draft: Draft,
+    pub(super) names: Vec<Name>,
+    /// Standard deviation of each column.
+    pub(super) sd: Vector,
+    /// True while outliers are held back by Huber's weights.
+    pub(super) robust: bool,
+    pub(super) windows: Vec<Range<usize>>,
+    /// Unknown components of the state at the beginning of a window.
+    pub(super) active: Vec<usize>,
+    /// True if the first window begins at the release of the scene.
+    pub(super) from_release: bool,
+    /// Fields that keep their value.
+    pub(super) held: Vec<bool>,
+}
+
+/// Values of all unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Point {
+    pub(super) fields: Vec<f64>,
+    /// State at the beginning of each window. Of one that begins at the release, the time alone counts.
+    pub(super) starts: Vec<Vector>,
+}
+
+/// The end of a minimization.
+#[derive(Clone, Debug)]
+pub(super) struct Minimum {
+    pub(super) point: Point,
+    /// Sum of squares over their variances, or Huber's loss in place of it.
+    pub(super) cost: f64,
+    /// False if the iterations ran out.
+    pub(super) converged: bool,
+    pub(super) iterations: usize,
+}
+
+impl Problem {
+    /// The scene with values of the fields.
+    pub(super) fn draft_at(&self, fields: &[f64]) -> Option<Draft> {
+        let mut draft = self.draft;
+        for (&name, &value) in self.names.iter().zip(fields) {
+            draft.set(name, Some(Value::Number(value))).ok()?;
+        }
+        Some(draft)
+    }
+
+    /// Number of the first impact of a window.
+    fn first(&self, window: usize) -> u64 {
+        if self.is_released(window) { 1 } else { self.rows[self.windows[window].start].n }
+    }
+
+    fn is_released(&self, window: usize) -> bool {
+        self.from_release && window == 0
+    }
+
+    /// Unknown components of the state at the beginning of a window.
+    pub(super) fn unknowns_of(&self, window: usize) -> &[usize] {
+        // The clock is the last.
+        if self.is_released(window) { &self.active[self.active.len() - 1..] } else { &self.active }
+    }
+
+    /// The state at the beginning of a window, at its first row.
+    pub(super) fn start_of(&self, window: usize, point: &Point, map: &DifferentiatedMap) -> Vector {
+        if !self.is_released(window) {
+            return point.starts[window];
+        }
+        let mut map = map.clone();
+        let Some((mut at, _)) = map.release() else { return point.starts[window] };
+        at[T] += point.starts[window][T];
+        for n in 1..self.rows[self.windows[window].start].n {
+            let Some(derivative) = map.next(n, &at) else { return point.starts[window] };
+            at = derivative.next;
+        }
+        at
+    }
+
+    /// Values of the rows as the model gives them; `None` where a run ends.
+    pub(super) fn predict(&self, point: &Point) -> Option<Vec<Vector>> {
+        let mut map = ImpactMap::new(&self.draft_at(&point.fields)?).ok()?;
+        let mut values = Vec::with_capacity(self.rows.len());
+        for (window, range) in self.windows.iter().enumerate() {
+            let mut at = point.starts[window];
+            if self.is_released(window) {
+                let clock = at[T];
+                at = map.release?;
+                at[T] += clock;
+            }
+            let mut n = self.first(window);
+            for row in &self.rows[range.clone()] {
+                while n < row.n {
+                    at = map.next(n, &at)?;
+                    n += 1;
+                }
+                values.push(at);
+            }
+        }
+        Some(values)
+    }
+
+    /// Residuals over their standard deviations, NaN where there is no value.
+    pub(super) fn residuals(&self, predicted: &[Vector]) -> Vec<Vector> {
+        let of_row = |(row, predicted): (&MeasuredRow, &Vector)| {
+            std::array::from_fn(|column| (predicted[column] - row.values[column]) / self.sd[column])
+        };
+        self.rows.iter().zip(predicted).map(of_row).collect()
+    }
+
+    /// Sum of squares, or Huber's loss; `None` where a run ends.
+    pub(super) fn cost(&self, point: &Point) -> Option<f64> {
+        let residuals = self.residuals(&self.predict(point)?);
+        let mut sum = 0.0;
+        for (row, residuals) in self.rows.iter().zip(&residuals) {
+            for column in (0..STATES).filter(|&column| row.counts(column)) {
+                let residual = residuals[column];
+                sum += if self.robust { loss(residual) } else { residual * residual };
+            }
+        }
+        Some(sum).filter(|sum: &f64| sum.is_finite())
+    }
+
+    /// The linearized rows of each window; `Ok(None)` where a run ends.
+    pub(super) fn linearize(
+        &self,
+        point: &Point,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Block>>, Cancelled> {
+        let Some(map) = self.draft_at(&point.fields).and_then(|draft| DifferentiatedMap::new(&draft, &self.names).ok())
+        else {
+            return Ok(None);
+        };
+        let mut map = map;
+        let mut blocks = Vec::with_capacity(self.windows.len());
+        for window in 0..self.windows.len() {
+            match self.linearize_window(window, point, &mut map, go_on)? {
+                Some(block) => blocks.push(block),
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(blocks))
+    }
+
+    fn linearize_window(
+        &self,
+        window: usize,
+        point: &Point,
+        map: &mut DifferentiatedMap,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Block>, Cancelled> {
+        let (own, fields) = (self.unknowns_of(window), self.names.len());
+        let (mut at, mut by_field) = (point.starts[window], vec![[0.0; STATES]; fields]);
+        if self.is_released(window) {
+            let Some((release, by)) = map.release() else { return Ok(None) };
+            (at, by_field) = (release, by);
+            at[T] += point.starts[window][T];
+        }
+        // Columns are derivatives by the window's own unknowns.
+        let mut by_own: Vec<Vector> = own
+            .iter()
+            .map(|&unknown| {
+                let mut unit = [0.0; STATES];
+                unit[unknown] = 1.0;
+                unit
+            })
+            .collect();
+        let rows = &self.rows[self.windows[window].clone()];
+        let count = rows.iter().map(|row| (0..STATES).filter(|&column| row.counts(column)).count()).sum();
+        let mut matrix = DMatrix::zeros(count, own.len() + fields + 1);
+        let (mut n, mut line) = (self.first(window), 0);
+        for (place, row) in rows.iter().enumerate() {
+            if place % LOOK_EVERY == 0 && !go_on() {
+                return Err(Cancelled);
+            }
+            while n < row.n {
+                let Some(derivative) = map.next(n, &at) else { return Ok(None) };
+                for column in by_own.iter_mut().chain(&mut by_field) {
+                    let before = *column;
+                    for (sum, row) in column.iter_mut().zip(&derivative.by_state) {
+                        *sum = row.iter().zip(&before).map(|(factor, before)| factor * before).sum();
+                    }
+                }
+                for (column, by) in by_field.iter_mut().zip(&derivative.by_field) {
+                    for (sum, term) in column.iter_mut().zip(by) {
+                        *sum += term;
+                    }
+                }
+                at = derivative.next;
+                n += 1;
+            }
+            for column in (0..STATES).filter(|&column| row.counts(column)) {
+                let residual = (at[column] - row.values[column]) / self.sd[column];
+                let share = if self.robust { weight(residual).sqrt() } else { 1.0 };
+                let scale = share / self.sd[column];
+                for (place, by) in by_own.iter().chain(&by_field).enumerate() {
+                    matrix[(line, place)] = by[column] * scale;
+                }
+                matrix[(line, own.len() + fields)] = residual * share;
+                line += 1;
+            }
+        }
+        let is_finite = matrix.iter().all(|value| value.is_finite());
+        Ok(is_finite.then(|| Block::new(own.len(), matrix)))
+    }
+
+    /// Least and greatest change of each field.
+    fn bounds(&self, point: &Point) -> Vec<(f64, f64)> {
+        let of_field = |((&name, &held), &value): ((&Name, &bool), &f64)| {
+            let (minimum, maximum) = range(name);
+            if held { (0.0, 0.0) } else { (minimum - value, maximum - value) }
+        };
+        self.names.iter().zip(&self.held).zip(&point.fields).map(of_field).collect()
+    }
+
+    fn moved(&self, point: &Point, own: &[Vec<f64>], fields: &[f64]) -> Point {
+        let mut moved = point.clone();
+        for ((value, change), &name) in moved.fields.iter_mut().zip(fields).zip(&self.names) {
+            let (minimum, maximum) = range(name);
+            *value = (*value + change).clamp(minimum, maximum);
+        }
+        for (window, (start, changes)) in moved.starts.iter_mut().zip(own).enumerate() {
+            for (&component, change) in self.unknowns_of(window).iter().zip(changes) {
+                start[component] += change;
+            }
+        }
+        moved
+    }
+
+    /// Minimizes the squares from a point, until a step promises a fall of less than `negligible`; `Ok(None)` if a run ends there already.
+    pub(super) fn minimize(
+        &self,
+        start: Point,
+        (most_iterations, negligible): (usize, f64),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Minimum>, Cancelled> {
+        let Some(mut cost) = self.cost(&start) else { return Ok(None) };
+        let (mut point, mut damping) = (start, 1e-3);
+        for iteration in 0..most_iterations {
+            let Some(blocks) = self.linearize(&point, go_on)? else {
+                return Ok(Some(Minimum { point, cost, converged: false, iterations: iteration }));
+            };
+            let bounds = self.bounds(&point);
+            let ridges: Vec<f64> = (self.names.iter().zip(&point.fields))
+                .map(|(&name, &value)| RIDGE / scale(name, value, value))
+                .collect();
+            let squares: f64 =
+                blocks.iter().map(|block| block.rows.column(block.rows.ncols() - 1).norm_squared()).sum();
+            let mut looked_ahead = false;
+            loop {
+                let step = elimination::step(&blocks, &bounds, &ridges, damping);
+                let tiny = squares - step.left <= negligible;
+                let moved = self.moved(&point, &step.own, &step.fields);
+                let there = self.cost(&moved);
+                let mut found = there.filter(|found| *found <= cost).map(|found| (moved.clone(), found));
+                if found.is_none() && !looked_ahead && there.is_some_and(|there| there < UPHILL * (cost + UPHILL)) {
+                    // In a bent valley the step leaves its floor, and the next one comes back to it, farther on.
+                    looked_ahead = true;
+                    if let Some(blocks) = self.linearize(&moved, go_on)? {
+                        let back = elimination::step(&blocks, &self.bounds(&moved), &ridges, damping);
+                        let moved = self.moved(&moved, &back.own, &back.fields);
+                        found = self.cost(&moved).filter(|found| *found <= cost).map(|found| (moved, found));
+                    }
+                }
+                let has_moved = found.is_some();
+                if let Some(found) = found {
+                    (point, cost) = found;
+                    damping = (damping * 0.1).max(1e-10);
+                }
+                if tiny && (damping < 1.0 || !has_moved) {
+                    return Ok(Some(Minimum { point, cost, converged: true, iterations: iteration + 1 }));
+                }
+                if has_moved {
+                    break;
+                }
+                damping *= 8.0;
+                if damping > 1e12 || !go_on() {
+                    return Ok(Some(Minimum { point, cost, converged: false, iterations: iteration + 1 }));
+                }
+            }
+        }
+        Ok(Some(Minimum { point, cost, converged: false, iterations: most_iterations }))
+    }
+}
+
+/// Rise of the sum of squares, as a factor and in itself, up to which a step is followed by another before both are judged.
+const UPHILL: f64 = 10.0;
+
+/// Weight, over the scale of a field, of the wish that it does not move in place of data that say nothing about it.
+const RIDGE: f64 = 1e-5;

@@ -1,0 +1,370 @@
+//! Fits of scenes to runs with noise added: estimates, intervals, outliers, missed and doubled impacts, faults of the data.
+
+#[path = "support/random.rs"]
+mod random;
+
+use equipoise_physics::fitting::{DataError, Fit, FitFailure, FitRequest, Measured, QualityKind, fit};
+use equipoise_physics::run::orbit::run;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use random::Random;
+
+const THETA: usize = 0;
+const X: usize = 4;
+const T: usize = 5;
+/// Noise of a lab: 2 mrad, 1 mm, 1 ms.
+const NOISE: [f64; 6] = [2e-3, 1e-2, 1e-2, 5e-2, 1e-3, 1e-3];
+const LENGTHS: [(Name, f64); 2] = [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 0.094_280_904)];
+
+fn scene(numbers: &[(Name, f64)], words: &[(Name, &'static str)]) -> Scene {
+    let mut draft = Draft::default();
+    for &(name, number) in LENGTHS.iter().chain(numbers) {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    for &(name, word) in words {
+        draft.set(name, Some(Value::Choice(word))).unwrap();
+    }
+    draft.build().unwrap()
+}
+
+fn with(scene: &Scene, name: Name, value: f64) -> Scene {
+    let mut draft = scene.draft();
+    draft.set(name, Some(Value::Number(value))).unwrap();
+    draft.build().unwrap()
+}
+
+/// A normal deviate: the sum of twelve uniform ones is too short in its tails, so Box and Muller's.
+fn normal(random: &mut Random) -> f64 {
+    let radius = (-2.0 * random.between(f64::MIN_POSITIVE, 1.0).ln()).sqrt();
+    radius * (std::f64::consts::TAU * random.between(0.0, 1.0)).cos()
+}
+
+/// Impacts of a run with noise, on a clock that does not start at the release.
+fn measure(scene: &Scene, impacts: u64, columns: &[usize], noise: f64, random: &mut Random) -> Measured {
+    let mut measured = Measured::default();
+    run(&mut scene.orbit().unwrap(), impacts, |contact| {
+        let state = contact.state;
+        let values = [state.theta, state.x_dot, state.y_dot, state.theta_dot, contact.x, contact.t + 12.3];
+        for &column in columns {
+            measured.columns[column].push(Some(values[column] + noise * NOISE[column] * normal(random)));
+        }
+        true
+    });
+    measured
+}
+
+fn request(scene: &Scene, measured: Measured, unknown: &[Name]) -> FitRequest {
+    FitRequest { scene: *scene, measured, unknown: unknown.to_vec(), sd: [None; 6] }
+}
+
+fn fitted(request: &FitRequest) -> Fit {
+    fit(request, &mut || true).unwrap()
+}
+
+fn case_1() -> Scene {
+    scene(&[(Name::TiltGain, 1.1), (Name::Height, 0.2), (Name::Theta, 0.2)], &[])
+}
+
+/// A kind of run, its unknown fields, and the columns that are measured.
+type Case = (&'static str, Scene, &'static [Name], &'static [usize]);
+
+/// Rods, with friction, feedback, energy feedback on an incline, a wrong belief and a still table.
+fn cases() -> Vec<Case> {
+    let still = [(Name::TiltGain, 1.05), (Name::Restitution, 0.985), (Name::Theta, 0.01), (Name::Height, 0.5)];
+    let incline = [
+        (Name::Incline, std::f64::consts::FRAC_PI_4),
+        (Name::Restitution, 0.5),
+        (Name::Theta, 0.2),
+        (Name::TiltGain, 1.1),
+        (Name::EnergyGain, 0.165),
+        (Name::TargetHeight, 0.25),
+        (Name::Height, 0.2),
+    ];
+    let rough = [
+        (Name::TiltGain, 1.3),
+        (Name::Height, 0.2),
+        (Name::Theta, 0.1),
+        (Name::Friction, 0.5),
+        (Name::Restitution, 0.8),
+    ];
+    let feedback =
+        [(Name::FeedbackTheta, -1.1), (Name::FeedbackThetaDot, -0.01), (Name::Height, 0.2), (Name::Theta, 0.2)];
+    let wrong = [
+        (Name::Restitution, 0.795),
+        (Name::AssumedRestitution, 0.8),
+        (Name::Theta, 0.1),
+        (Name::TiltGain, 1.1),
+        (Name::Height, 0.3),
+    ];
+    let sliding = [
+        (Name::TiltGain, 1.1),
+        (Name::Restitution, 0.8),
+        (Name::Height, 0.2),
+        (Name::Theta, 0.1),
+        (Name::Friction, 0.02),
+    ];
+    vec![
+        ("rod", case_1(), &[Name::TiltGain, Name::Gravity], &[THETA, T]),
+        ("release", case_1(), &[Name::TiltGain, Name::Height, Name::Theta], &[THETA, T]),
+        (
+            "rough",
+            scene(&rough, &[(Name::Slide, "matched")]),
+            &[Name::TiltGain, Name::RadiusOfGyration],
+            &[THETA, X, T],
+        ),
+        ("feedback", scene(&feedback, &[]), &[Name::FeedbackTheta, Name::FeedbackThetaDot], &[THETA, T]),
+        ("incline", scene(&incline, &[]), &[Name::TiltGain, Name::EnergyGain, Name::TargetHeight], &[THETA, T]),
+        ("wrong belief", scene(&wrong, &[]), &[Name::Restitution, Name::TiltGain], &[THETA, T]),
+        ("still", scene(&still, &[(Name::Strike, "still")]), &[Name::Restitution, Name::TiltGain], &[THETA, T]),
+        ("falling", scene(&sliding, &[]), &[Name::Friction, Name::TiltGain], &[THETA, X, T]),
+    ]
+}
+
+/// Fits of `sets` data sets of each case; the share of 95 % intervals that hold the true value, and the mean error of each unknown over its
+/// standard deviation.
+fn coverage(sets: usize, impacts: &[u64], random: &mut Random) -> (f64, Vec<(&'static str, Name, f64, usize)>) {
+    let (mut inside, mut told, mut errors) = (0, 0, Vec::new());
+    for (case, scene, unknown, columns) in cases() {
+        let mut sums = vec![(0.0, 0); unknown.len()];
+        for set in 0..sets {
+            let measured = measure(&scene, impacts[set % impacts.len()], columns, 1.0, random);
+            let first = unknown.iter().fold(scene, |scene_so_far, &name| {
+                let value = scene.number(name).unwrap() * random.between(0.93, 1.07);
+                let (minimum, maximum) = if name == Name::Restitution { (0.0, 1.0) } else { (-100.0, 100.0) };
+                with(&scene_so_far, name, value.clamp(minimum, maximum))
+            });
+            let mut asked = request(&first, measured, unknown);
+            if set % 2 == 0 {
+                asked.sd = std::array::from_fn(|column| columns.contains(&column).then_some(NOISE[column]));
+            }
+            let found = fitted(&asked);
+            if found.quality.kind != QualityKind::Good {
+                continue;
+            }
+            for (estimate, sum) in found.estimates.iter().zip(&mut sums) {
+                let (Some(sd), Some((low, high))) = (estimate.sd, estimate.interval) else { continue };
+                let truth = scene.number(estimate.name).unwrap();
+                told += 1;
+                inside += usize::from((low..=high).contains(&truth));
+                *sum = (sum.0 + (estimate.value - truth) / sd, sum.1 + 1);
+                let error = (estimate.value - truth) / sd;
+                assert!(error.abs() < 6.5, "{case}: {estimate:?} for {truth}, {:?}", found.quality);
+            }
+        }
+        let names = unknown.iter().zip(sums);
+        errors.extend(names.map(|(&name, (sum, count))| (case, name, sum / f64::from(count.max(1)), count as usize)));
+    }
+    let sets = (sets * cases().iter().map(|case| case.2.len()).sum::<usize>()) as f64;
+    assert!(f64::from(told) > 0.9 * sets, "{told} of {sets} estimates are told");
+    (inside as f64 / f64::from(told), errors)
+}
+
+#[test]
+fn intervals_hold_the_true_value_as_often_as_they_say() {
+    let (share, errors) = coverage(40, &[20, 40, 60, 100], &mut Random::new(18));
+    assert!((0.92..=0.98).contains(&share), "{share}");
+    for (case, name, mean, count) in errors {
+        // A fifth of a standard deviation, and what a mean of so many is off by itself.
+        assert!(mean.abs() < 0.2 + 3.0 / (count as f64).sqrt(), "{case} {name:?}: {mean}");
+    }
+}
+
+#[test]
+#[ignore = "takes a minute: 1000 data sets"]
+fn intervals_of_a_thousand_data_sets_hold_the_true_value() {
+    let (share, errors) = coverage(125, &[20, 60, 100, 200], &mut Random::new(5));
+    assert!((0.92..=0.98).contains(&share), "{share}");
+    for (case, name, mean, count) in errors {
+        assert!(mean.abs() < 0.2 + 2.5 / (count as f64).sqrt(), "{case} {name:?}: {mean}");
+    }
+}
+
+#[test]
+fn exact_data_give_the_exact_fields() {
+    for (case, scene, unknown, columns) in cases() {
+        let measured = measure(&scene, 30, columns, 0.0, &mut Random::new(1));
+        let first = unknown.iter().fold(scene, |found, &name| with(&found, name, scene.number(name).unwrap() * 0.97));
+        let found = fitted(&request(&first, measured, unknown));
+        for estimate in &found.estimates {
+            let truth = scene.number(estimate.name).unwrap();
+            assert!((estimate.value / truth - 1.0).abs() < 1e-5, "{case}: {estimate:?} for {truth}");
+            assert_eq!(found.scene.number(estimate.name), Some(estimate.value));
+        }
+    }
+}
+
+#[test]
+fn a_release_far_from_the_data_does_not_matter_where_it_is_not_asked_for() {
+    let scene = case_1();
+    let measured = measure(&scene, 40, &[THETA, T], 1.0, &mut Random::new(3));
+    let elsewhere = with(&with(&scene, Name::Theta, -0.05), Name::TiltGain, 1.2);
+    let found = fitted(&request(&elsewhere, measured, &[Name::TiltGain]));
+    let (low, high) = found.estimates[0].interval.unwrap();
+    assert!(low < 1.1 && 1.1 < high && high - low < 0.05, "{:?}", found.estimates[0]);
+}
+
+#[test]
+fn outliers_are_found_and_named() {
+    for (seed, column, row, size) in [(1, THETA, 10, 0.1), (2, T, 25, 0.02), (3, THETA, 0, -0.05), (4, THETA, 39, 0.2)]
+    {
+        let scene = case_1();
+        let mut measured = measure(&scene, 40, &[THETA, T], 1.0, &mut Random::new(seed));
+        let clean = fitted(&request(&scene, measured.clone(), &[Name::TiltGain]));
+        measured.columns[column][row] = measured.columns[column][row].map(|value| value + size);
+        let found = fitted(&request(&scene, measured, &[Name::TiltGain]));
+        let outliers: Vec<(usize, usize)> = (found.rows.iter())
+            .flat_map(|row| (0..6).filter(|&column| row.outliers[column]).map(|column| (row.row, column)))
+            .collect();
+        assert_eq!(outliers, [(row, column)], "{:?}", found.notes);
+        assert!(found.notes.iter().any(|note| note.contains(&format!("row {}", row + 1))), "{:?}", found.notes);
+        let (clean, found) = (&clean.estimates[0], &found.estimates[0]);
+        assert!((found.value - clean.value).abs() < clean.sd.unwrap(), "{found:?} {clean:?}");
+    }
+}
+
+#[test]
+fn missed_and_doubled_impacts_are_found_and_named() {
+    for (case, scene, unknown, columns) in cases() {
+        let clean = measure(&scene, 40, columns, 1.0, &mut Random::new(9));
+        if clean.rows() < 40 || case == "still" {
+            continue;
+        }
+        let mut missed = clean.clone();
+        let mut doubled = clean.clone();
+        for &column in columns {
+            missed.columns[column].remove(17);
+            let again = clean.columns[column][22].map(|value| if column == T { value + 0.03 } else { value });
+            doubled.columns[column].insert(23, again);
+        }
+        let best = fitted(&request(&scene, clean, unknown));
+        for (measured, word) in [(missed, "missed"), (doubled, "doubled")] {
+            let found = fitted(&request(&scene, measured, unknown));
+            assert!(found.notes.iter().any(|note| note.contains(word)), "{case} {word}: {:?}", found.notes);
+            assert_eq!(found.rows.last().unwrap().n, 40, "{case} {word}");
+            for (found, best) in found.estimates.iter().zip(&best.estimates) {
+                let Some(sd) = best.sd else { continue };
+                assert!((found.value - best.value).abs() < 2.0 * sd, "{case} {word}: {found:?} {best:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn numbers_with_gaps_are_honoured() {
+    let scene = case_1();
+    let full = measure(&scene, 60, &[THETA, T], 1.0, &mut Random::new(4));
+    let mut measured = Measured::default();
+    for row in (0..60).filter(|row| row % 5 != 2) {
+        measured.n.push(row as u64 + 1);
+        for column in [THETA, T] {
+            measured.columns[column].push(full.columns[column][row].filter(|_| row % 7 != 3 || column == T));
+        }
+    }
+    let found = fitted(&request(&scene, measured, &[Name::TiltGain, Name::Gravity]));
+    assert_eq!(found.quality.kind, QualityKind::Good, "{:?}", found.quality);
+    for estimate in found.estimates {
+        let (low, high) = estimate.interval.unwrap();
+        assert!((low..=high).contains(&scene.number(estimate.name).unwrap()), "{estimate:?}");
+    }
+}
+
+#[test]
+fn a_field_without_effect_is_not_told() {
+    // Restitution drops out where the table makes up the loss, by the strike gain 2.
+    let scene = scene(&[(Name::TiltGain, 1.1), (Name::Height, 0.2), (Name::Theta, 0.2), (Name::Restitution, 0.6)], &[]);
+    let measured = measure(&scene, 50, &[THETA, T], 1.0, &mut Random::new(6));
+    let found = fitted(&request(&scene, measured, &[Name::Restitution, Name::TiltGain]));
+    assert!(!found.estimates[0].is_identifiable() && found.estimates[1].is_identifiable());
+    assert!(found.estimates[0].detail.as_ref().unwrap().contains("makes up"), "{:?}", found.estimates[0]);
+    assert_eq!(found.scene.number(Name::Restitution), Some(0.6));
+}
+
+#[test]
+fn a_tilt_gain_without_any_tilt_is_not_told() {
+    for seed in 0..20 {
+        let scene = with(&case_1(), Name::Theta, 0.0);
+        let measured = measure(&scene, 60, &[THETA, T], 1.0, &mut Random::new(seed));
+        let found = fitted(&request(&scene, measured, &[Name::TiltGain]));
+        let is_good = found.quality.kind == QualityKind::Good;
+        assert!(!(is_good && found.estimates[0].is_identifiable()), "{seed}: {:?}", found.estimates[0]);
+    }
+}
+
+#[test]
+fn fields_of_which_only_a_combination_acts_are_not_told() {
+    // The motion of a lossless rod depends on its lengths through l/ρ² and l alone, and times and angles have no length in them but by gravity.
+    let scene = case_1();
+    let measured = measure(&scene, 50, &[THETA, T], 1.0, &mut Random::new(8));
+    let unknown = [Name::ContactDistance, Name::RadiusOfGyration, Name::Gravity];
+    let found = fitted(&request(&scene, measured, &unknown));
+    assert!(found.estimates.iter().all(|estimate| !estimate.is_identifiable()), "{:?}", found.estimates);
+}
+
+#[test]
+fn a_wrong_model_is_said_to_be_wrong() {
+    let scene = scene(
+        &[
+            (Name::TiltGain, 1.1),
+            (Name::Height, 0.3),
+            (Name::Theta, 0.1),
+            (Name::Restitution, 0.8),
+            (Name::AssumedRestitution, 0.82),
+        ],
+        &[],
+    );
+    let measured = measure(&scene, 60, &[THETA, T], 1.0, &mut Random::new(2));
+    let mut draft = scene.draft();
+    draft.set(Name::AssumedRestitution, None).unwrap();
+    let mut asked = request(&draft.build().unwrap(), measured, &[Name::TiltGain]);
+    asked.sd = [Some(NOISE[THETA]), None, None, None, None, Some(NOISE[T])];
+    let found = fitted(&asked);
+    let kind = found.quality.kind;
+    assert!(matches!(kind, QualityKind::NotExplained | QualityKind::NotFollowed), "{:?}", found.quality);
+}
+
+#[test]
+fn faults_of_the_data_are_named() {
+    let scene = case_1();
+    let clean = measure(&scene, 20, &[THETA, T], 1.0, &mut Random::new(2));
+    let fault = |change: &dyn Fn(&mut Measured)| {
+        let mut measured = clean.clone();
+        change(&mut measured);
+        match fit(&request(&scene, measured, &[Name::TiltGain]), &mut || true) {
+            Err(FitFailure::Data(DataError { column, row, detail })) => (column, row, detail),
+            other => panic!("{other:?}"),
+        }
+    };
+    let (column, row, _) = fault(&|measured| measured.columns[T].swap(4, 5));
+    assert_eq!((column, row), ("t", Some(5)));
+    let (column, _, detail) =
+        fault(&|measured| measured.columns[T].iter_mut().for_each(|t| *t = t.map(|t| t * 1000.0)));
+    assert!(column == "t" && detail.contains("ms"), "{detail}");
+    let (column, _, detail) =
+        fault(&|measured| measured.columns[THETA].iter_mut().for_each(|theta| *theta = theta.map(f64::to_degrees)));
+    assert!(column == "theta" && detail.contains("degrees"), "{detail}");
+    let (_, _, detail) = fault(&|measured| measured.columns.iter_mut().for_each(|column| column.truncate(1)));
+    assert!(detail.contains("at least 2"), "{detail}");
+    let (column, _, _) = fault(&|measured| measured.columns[T].clear());
+    assert_eq!(column, "t");
+    let (column, row, _) = fault(&|measured| measured.n = vec![3; 20]);
+    assert_eq!((column, row), ("n", Some(1)));
+}
+
+#[test]
+fn fields_that_cannot_be_unknown_are_refused() {
+    let scene = case_1();
+    let measured = measure(&scene, 20, &[THETA, T], 1.0, &mut Random::new(2));
+    for unknown in
+        [&[Name::TiltGain, Name::TiltGain] as &[Name], &[Name::Law], &[Name::AssumedRestitution], &[Name::TimingSd]]
+    {
+        let refused = fit(&request(&scene, measured.clone(), unknown), &mut || true);
+        assert!(matches!(refused, Err(FitFailure::Unknown(_, _))), "{unknown:?}: {refused:?}");
+    }
+    let cancelled = fit(&request(&scene, measured.clone(), &[Name::TiltGain]), &mut || false);
+    assert_eq!(cancelled.unwrap_err(), FitFailure::Cancelled);
+    let few = Measured {
+        columns: measured.columns.map(|column| column.into_iter().take(3).collect()),
+        ..Measured::default()
+    };
+    let few = fit(&request(&scene, few, &[Name::TiltGain]), &mut || true);
+    assert!(matches!(few, Err(FitFailure::TooFew { .. })), "{few:?}");
+}
