@@ -59,9 +59,9 @@ impl Connection {
     }
 }
 
-/// Response times of many requests.
+/// Response times of many requests, ms, and the number of those that were refused as too many.
 #[derive(Default)]
-pub(crate) struct Times(Vec<f64>);
+pub(crate) struct Times(Vec<f64>, u64);
 
 impl Times {
     pub(crate) fn add(&mut self, begin: Instant) {
@@ -74,10 +74,16 @@ impl Times {
 
     pub(crate) fn append(&mut self, mut others: Self) {
         self.0.append(&mut others.0);
+        self.1 += others.1;
     }
 
     pub(crate) fn count(&self) -> usize {
         self.0.len()
+    }
+
+    /// Number of refusals, which have no time.
+    pub(crate) fn refused(&self) -> u64 {
+        self.1
     }
 
     /// Quantile of the times, ms.
@@ -108,9 +114,10 @@ pub(crate) async fn ask(
                 while begin.elapsed() < time {
                     let asked = Instant::now();
                     let answer = connection.get(&target).await?;
-                    times.add(asked);
-                    if answer.status != 200 {
-                        return Err(io::Error::other(answer.head));
+                    match answer.status {
+                        200 => times.add(asked),
+                        503 => times.1 += 1,
+                        _ => return Err(io::Error::other(answer.head)),
                     }
                     if !pause.is_zero() {
                         tokio::time::sleep(pause).await;

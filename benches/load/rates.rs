@@ -12,6 +12,7 @@ use axum::Router;
 use axum::body::Bytes;
 use axum::http::{StatusCode, Uri, header};
 use axum::response::IntoResponse;
+use equipoise::limits::KEPT_ANSWER_BYTES;
 use tokio::net::TcpListener;
 
 use crate::client::{Connection, Times, ask, median};
@@ -44,10 +45,11 @@ pub(crate) async fn measure(short: bool) -> io::Result<String> {
         "## Requests per second\n\n{CONNECTIONS} connections, {rounds} rounds of {} s, in turns: the server with answers in memory, the \
          server with `--answer-cache 0`, which\ncomputes each answer, and a bare axum handler that sends the same bytes from memory \
          (`--only rates`). Ratios are over the bare handler,\nmedians over the rounds. Health, the page and `/v1/scenes` are not computed \
-         for a request on either server.\n\n\
+         for a request on either server. Answers of more than {:.0} MiB are not kept. Refusals are not\ncounted.\n\n\
          | | answer | from memory, per second | ratio | p50 | p99 | computed, per second | ratio | p50 | p99 | bare, per second | p50 | p99 |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         round_time.as_secs_f64(),
+        KEPT_ANSWER_BYTES as f64 / 1_048_576.0,
     );
     let addresses = [kept.address, computing.address, bare.address];
     for target in TARGETS {
@@ -65,12 +67,14 @@ pub(crate) async fn measure(short: bool) -> io::Result<String> {
             ratios[0].push(round[0] / round[2]);
             ratios[1].push(round[1] / round[2]);
         }
+        let refused: u64 = times.iter().map(Times::refused).sum();
+        let note = if refused > 0 { format!(" ({refused} × 503)") } else { String::new() };
         let delays =
             times.map(|mut times| [0.5, 0.99].map(|share| format!("{:.2} ms", times.quantile(share))).join(" | "));
         let [kept, computed] = ratios.map(median);
         let _ = writeln!(
             text,
-            "| `{target}` | {:.1} kB | {:.0} | {kept:.2} | {} | {:.0} | {computed:.2} | {} | {:.0} | {} |",
+            "| `{target}`{note} | {:.1} kB | {:.0} | {kept:.2} | {} | {:.0} | {computed:.2} | {} | {:.0} | {} |",
             bytes as f64 / 1e3,
             rates[0],
             delays[0],

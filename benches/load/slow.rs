@@ -44,6 +44,9 @@ pub(crate) async fn measure(short: bool) -> io::Result<String> {
         sleep(Duration::from_secs(3)).await;
         let [[p50, p99], [beside_p50, beside_p99]] =
             [&mut before, &mut beside].map(|times| [0.5, 0.99].map(|share| times.quantile(share)));
+        if before.refused() + beside.refused() > 0 {
+            return Err(io::Error::other("a request was refused"));
+        }
         let ratio = beside_p99 / p99;
         ratios.push(ratio);
         let _ = writeln!(

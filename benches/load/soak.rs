@@ -65,6 +65,10 @@ pub(crate) async fn measure(time: Duration) -> io::Result<String> {
         .iter()
         .filter_map(|name| metrics.lines().find_map(|line| line.strip_prefix("equipoise_")?.strip_prefix(name)))
         .collect();
+    let kept: f64 = metrics
+        .lines()
+        .find_map(|line| line.strip_prefix("equipoise_answer_cache_bytes ")?.parse().ok())
+        .unwrap_or(f64::NAN);
     let mut book = std::mem::take(&mut *book.lock().expect("nobody panics with it"));
     let mut text = format!(
         "## Mixed load\n\nFor {:.0} minutes {ASKING} clients send requests of all kinds and prices, half of them new, {LIVE} watch live runs for a while \
@@ -77,11 +81,12 @@ pub(crate) async fn measure(time: Duration) -> io::Result<String> {
     let _ = writeln!(
         text,
         "- Memory: {begin:.0} MiB after {:.0} s; means over each tenth of the time {} MiB; from the first three to the last three \
-         {:+.1} %. CPU {:.0} % of a core.",
+         {:+.1} %. CPU {:.0} % of a core.\n- Answers kept in memory at the end: {:.0} MiB.",
         warm.as_secs_f64(),
         tenths.map(|mean| format!("{mean:.0}")).join(", "),
         100.0 * growth,
-        100.0 * cpu
+        100.0 * cpu,
+        kept / 1_048_576.0,
     );
     let [p50, p99] = [0.5, 0.99].map(|share| book.times.quantile(share));
     let _ = writeln!(text, "- Response times: p50 {p50:.1} ms, p99 {p99:.0} ms.");
