@@ -68,7 +68,8 @@ fn ratios() {
     }
     let [bounces, estimated, verdict] = fastest;
     println!("error estimate with its bounce over the bounce: {:.2}", estimated / bounces);
-    println!("verdict over {WATCHED_FOR} impacts: {:.0} bounces", verdict / bounces * BOUNCES as f64);
+    let in_bounces = verdict / bounces * BOUNCES as f64;
+    println!("verdict over {WATCHED_FOR} impacts: {in_bounces:.0} bounces, {:.0} µs", 1e6 * verdict);
 }
 
 /// Run, linear verdict, normal forms, regularity and verdict, as `stability` answers.

@@ -1,5 +1,6 @@
 //! The cost of a large map. `cargo bench --bench cost` measures cells per second of one core over HTTP, by scene, quantity and number
-//! of impacts, and the bytes of a cell. It writes `docs/cost.md` with the cost of a map of 10⁹ cells; with `-- --print` it only prints it.
+//! of impacts, and the bytes of a cell. It writes `docs/cost.md` with the cost of a map of 10⁹ cells; with `-- --print` it only prints it,
+//! and with `-- --short` it prints rough figures, to see that all parts run.
 //!
 //! Core-seconds are the CPU time of the server as the system counts it, so other work on the machine disturbs them little. Only the
 //! part about several servers measures wall time and needs a quiet machine.
@@ -27,7 +28,7 @@ const PRICE: f64 = 0.05;
 const TILT_GAIN: &str = "&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&y.parameter=release.theta&y.from=0&y.to=0.5";
 
 /// The maps that are measured: name, scene, axes, impacts, quantity.
-const MAPS: [Map; 18] = [
+const MAPS: [Map; 19] = [
     Map::new("rod", "preset=case-1", TILT_GAIN, 1000, "survival"),
     Map::new("rod, 100 impacts", "preset=case-1", TILT_GAIN, 100, "survival"),
     Map::new("rod, 10,000 impacts", "preset=case-1", TILT_GAIN, 10_000, "survival"),
@@ -64,6 +65,13 @@ const MAPS: [Map; 18] = [
     Map::new("rod with losses, residue", "preset=case-4", TILT_GAIN, 1000, "residue"),
     Map::new("state feedback, all of whose runs survive", FEEDBACK, SMALL_FEEDBACK, 1000, "survival"),
     Map::new("small noise, all of whose runs survive", SMALL_NOISE, SMALL, 1000, "survival"),
+    Map::new(
+        "polygon, a triangle, all of whose runs survive",
+        "preset=triangle-polygon",
+        SMALL_TRIANGLE,
+        1000,
+        "survival",
+    ),
 ];
 
 const SMALL: &str = "&x.parameter=table.tilt_gain&x.from=1.05&x.to=1.4&y.parameter=release.theta&y.from=0&y.to=0.05";
@@ -73,21 +81,25 @@ const FEEDBACK_AXES: &str =
     "&x.parameter=table.feedback.theta&x.from=-1.6&x.to=-0.95&y.parameter=release.theta&y.from=0&y.to=0.5";
 const SMALL_FEEDBACK: &str =
     "&x.parameter=table.feedback.theta&x.from=-1.2&x.to=-1.1&y.parameter=release.theta&y.from=0&y.to=0.02";
+const SMALL_TRIANGLE: &str =
+    "&x.parameter=table.tilt_gain&x.from=1.02&x.to=1.1&y.parameter=release.theta&y.from=0&y.to=0.02";
 const SMALL_NOISE: &str = "preset=case-1-noise&scene.noise.timing_sd=0.0001";
 const POINT_AXES: &str =
     "&x.parameter=table.tilt_gain&x.from=0.1&x.to=0.9&y.parameter=release.height&y.from=0.1&y.to=0.4";
 
 fn main() -> io::Result<()> {
+    let is_given = |flag: &str| std::env::args().any(|argument| argument == flag);
+    let short = is_given("--short");
     let mut text = introduction();
     let server = Program::start()?;
-    let rates = write_rates(&server, &mut text)?;
+    let rates = write_rates(&server, short, &mut text)?;
     let bytes = write_bytes(&server, &mut text)?;
     let overhead_s = write_overhead(&server, &mut text)?;
     drop(server);
     write_servers(&mut text)?;
     write_whole(&rates, &bytes, overhead_s, &mut text);
     print!("{text}");
-    if !std::env::args().any(|argument| argument == "--print") {
+    if !short && !is_given("--print") {
         std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/cost.md"), text)?;
     }
     Ok(())
@@ -108,7 +120,7 @@ fn introduction() -> String {
 }
 
 /// Measures cells per second of one core, over whole tiles from all over each map. Returns the rates in the order of [`MAPS`].
-fn write_rates(server: &Program, text: &mut String) -> io::Result<Vec<f64>> {
+fn write_rates(server: &Program, short: bool, text: &mut String) -> io::Result<Vec<f64>> {
     text.push_str(
         "## Cells per second of one core\n\n\
          Typical maps over tilt gain and release. Many of their runs fall early, which makes cells cheap. In the rows \"all of whose runs \
@@ -117,7 +129,7 @@ fn write_rates(server: &Program, text: &mut String) -> io::Result<Vec<f64>> {
     );
     let mut rates = Vec::new();
     for map in &MAPS {
-        let found = map.measure(server)?;
+        let found = map.measure(server, short)?;
         let (impacts, quantity) = (map.impacts, map.quantity);
         let _ = writeln!(
             text,
