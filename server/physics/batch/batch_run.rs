@@ -4,8 +4,8 @@
 //! orbit at once, so that dead cells cost nothing; a bounce that is not a common one is done alone, by the orbit itself.
 
 use crate::batch::lanes::{
-    Bounced, Far, LaneModel, Moving, Near, NoisyLanes, OutlineLanes, PointLanes, RodLanes, Rods, Rough, Scratch,
-    Smooth, SteeringLanes, WIDTH,
+    Bounced, Far, LaneModel, LaneNumbers, Near, NoisyLanes, OutlineLanes, PointLanes, RodLanes, Rough, Smooth,
+    SteeringLanes, WIDTH,
 };
 use crate::batch::mask::{Mask, bits};
 use crate::batch::model::{BatchContact, BatchModel};
@@ -223,7 +223,7 @@ impl<M: LaneModel> Kernel for BatchRun<'_, '_, '_, '_, M> {
                 }
             }
             for lane in bits(runs.watched() & runs.busy) {
-                (self.watch.see)(runs.number[lane], runs.moving.state(lane).theta);
+                (self.watch.see)(runs.number[lane], runs.numbers.moving.state(lane).theta);
                 runs.look_ahead(lane);
             }
             let apart = runs.together(LOOK) & runs.busy;
@@ -246,8 +246,7 @@ impl<M: LaneModel> Kernel for BatchRun<'_, '_, '_, '_, M> {
 /// Runs side by side.
 struct LaneRuns<'w, M> {
     model: M,
-    rods: Rods,
-    moving: Moving,
+    numbers: LaneNumbers,
     /// The run of each lane, as it was at its last contact that was done alone.
     orbits: [Orbit<Model>; WIDTH],
     /// Contacts of each run.
@@ -281,8 +280,7 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
     fn idle(model: M, impacts: u64, watch: &'w [u64]) -> Self {
         let orbit = Orbit::at(model.idle(), IDLE_RULES, IDLE_STATE);
         Self {
-            rods: Rods::all(orbit.body.rod(), &IDLE_RULES),
-            moving: Moving::all(&IDLE_STATE, orbit.lane_state().energy),
+            numbers: LaneNumbers::all(orbit.body.rod(), &IDLE_RULES, &IDLE_STATE, orbit.lane_state().energy),
             model,
             orbits: [orbit; WIDTH],
             impacts,
@@ -318,13 +316,13 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
         };
         let orbit = &self.orbits[lane];
         let (rules, midst) = (*orbit.rules(), orbit.lane_state());
-        self.rods.set(lane, orbit.body.rod(), &rules);
+        self.numbers.rods.set(lane, orbit.body.rod(), &rules);
         self.model.load(lane, &orbit.body, &midst);
-        self.moving.set(lane, &midst.state, midst.energy);
-        self.moving.max_theta[lane] = 0.0;
+        self.numbers.moving.set(lane, &midst.state, midst.energy);
+        self.numbers.moving.max_theta[lane] = 0.0;
         self.programs.load(lane, orbit.body.rod(), orbit.body.program());
         self.fresh &= !(1 << lane);
-        self.fresh |= u16::from(rules.settles) << lane;
+        self.fresh |= Mask::from(rules.settles) << lane;
         (self.first[lane], self.last[lane]) = (self.turn, last);
         self.outcome[lane] = EndingKind::Completed;
         (self.place[lane], self.look[lane]) = (0, self.turn_before(lane, 0));
@@ -351,7 +349,7 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
         LaneRunEnd {
             impacts: self.turn - self.first[lane],
             outcome: self.outcome[lane],
-            max_theta: self.moving.max_theta[lane],
+            max_theta: self.numbers.moving.max_theta[lane],
         }
     }
 
@@ -366,50 +364,52 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
     fn together(&mut self, most: u64) -> Mask {
         let stops = self.last.iter().chain(&self.look);
         let most = stops.map(|turn| turn - self.turn).fold(most, u64::min);
-        let (mut next, mut scratch) = (self.moving, Scratch::new());
         for _ in 0..most {
             self.turn += 1;
+            let LaneNumbers { rods, moving, next, scratch } = &mut self.numbers;
             if self.programs.lanes != 0 {
-                self.programs.aim(&mut self.rods);
+                self.programs.aim(rods);
             }
             let mut bounced = Bounced { near: false, common: false };
             if !self.far {
-                bounced = self.model.bounce::<Near>(&self.rods, &self.moving, &mut next, &mut scratch);
+                bounced = self.model.bounce::<Near>(rods, moving, next, scratch);
                 self.far = !bounced.near;
             }
             if self.far {
-                bounced = self.model.bounce::<Far>(&self.rods, &self.moving, &mut next, &mut scratch);
+                bounced = self.model.bounce::<Far>(rods, moving, next, scratch);
                 self.far = !bounced.near;
             }
             if self.fresh != 0 {
-                self.begin(&scratch);
+                self.begin();
             }
             if !bounced.common {
-                return self.take_common(&next, &scratch);
+                return self.take_common();
             }
-            self.moving = next;
-            self.model.arrive(&self.moving, &scratch);
+            let LaneNumbers { moving, next, scratch, .. } = &mut self.numbers;
+            moving.take_all(next);
+            self.model.arrive(moving, scratch);
         }
         0
     }
 
     /// Keeps the first flights of runs that can settle; those that were no common ones are made alone.
     #[inline(never)]
-    fn begin(&mut self, scratch: &Scratch) {
+    fn begin(&mut self) {
         for lane in bits(std::mem::take(&mut self.fresh)) {
-            if let Some(first_flight) = scratch.flight_time(lane) {
-                self.rods.begin(lane, first_flight);
+            if let Some(first_flight) = self.numbers.scratch.flight_time(lane) {
+                self.numbers.rods.begin(lane, first_flight);
             }
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn take_common(&mut self, next: &Moving, scratch: &Scratch) -> Mask {
+    fn take_common(&mut self) -> Mask {
+        let LaneNumbers { moving, next, scratch, .. } = &mut self.numbers;
         let mut mask = 0;
         for lane in 0..WIDTH {
             if scratch.apart[lane] == 0 {
-                self.moving.take(lane, next);
+                moving.take(lane, next);
                 self.model.arrive_in(lane, next, scratch);
             } else {
                 mask |= 1 << lane;
@@ -422,15 +422,15 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
     #[cold]
     #[inline(never)]
     fn alone(&mut self, lane: usize) -> Option<EndingKind> {
-        let state = self.moving.state(lane);
-        let max_theta = &mut self.moving.max_theta[lane];
+        let state = self.numbers.moving.state(lane);
+        let max_theta = &mut self.numbers.moving.max_theta[lane];
         *max_theta = max_theta.max(state.theta.abs());
         let orbit = &mut self.orbits[lane];
         let mut midst = LaneRunState {
             n: self.turn - self.first[lane] - 1,
             state,
-            energy: self.moving.energy[lane],
-            first_flight: self.rods.first_flight(lane),
+            energy: self.numbers.moving.energy[lane],
+            first_flight: self.numbers.rods.first_flight(lane),
             ..orbit.lane_state()
         };
         self.model.save(lane, &mut midst);
@@ -439,8 +439,8 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
             return Some(ending.into());
         }
         let midst = orbit.lane_state();
-        self.moving.set(lane, &midst.state, midst.energy);
-        self.rods.begin(lane, midst.first_flight);
+        self.numbers.moving.set(lane, &midst.state, midst.energy);
+        self.numbers.rods.begin(lane, midst.first_flight);
         self.model.load(lane, &orbit.body, &midst);
         None
     }

@@ -21,5 +21,5 @@ pub(crate) use number::{Far, Near};
 pub(crate) use outline::OutlineLanes;
 pub(crate) use point::PointLanes;
 pub(crate) use rod::RodLanes;
-pub(crate) use state::{Moving, Rods, Scratch, WIDTH};
+pub(crate) use state::{LaneNumbers, Rods, WIDTH};
 pub(crate) use steering::SteeringLanes;

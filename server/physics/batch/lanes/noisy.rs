@@ -87,7 +87,7 @@ impl<S: Surface> LaneModel for NoisyLanes<S> {
         }
         self.rods.surface.strike::<L>(&errors.seen(rods), moving, next, scratch);
         errors.guess(rods, moving, next, scratch);
-        near &= fall_to_table::<L>(STEPS, rods, moving, next, scratch, |lane| errors.clearance[lane]);
+        near &= fall_to_table::<L>(STEPS, rods, moving, next, scratch, |lane| errors.clearance[lane]).near;
         if let Some(outline) = &self.rods.outline {
             // Where no other vertex comes down before the contact point would, none does before an early strike.
             outline.watch(rods, moving, next, scratch);
@@ -162,7 +162,6 @@ impl ErrorLanes {
             let flight = flight::<f64>(rods, moving, next, scratch, lane, clearance);
             let above = if clearance == 0.0 { guess(&flight) } else { guess_from_above(&flight) };
             scratch.t[lane] = if clearance < 0.0 { latest_contact(&flight) } else { above };
-            scratch.apart[lane] |= unless(flight.bulge() <= rods.gravity[lane]);
         }
     }
 

@@ -4,7 +4,7 @@ use super::contact::struck_smooth;
 use super::model::{Bounced, LaneModel};
 use super::number::{Lane, Near};
 use super::rod::IDLE;
-use super::state::{Lanes, Moving, Rods, Scratch, WIDTH, unless};
+use super::state::{Lanes, Moving, Rods, Scratch, WIDTH, mask};
 use super::step::any_apart;
 use crate::body::model::Model;
 use crate::body::point::PointMass;
@@ -91,10 +91,10 @@ impl PointLanes {
             let theta = unless_tiny(ratio, L::from_f64(size.max(TINY)).arctangent());
             let theta = theta.to_f64().copysign(end.x_dot.to_f64());
             near &= size <= Near::RATIO;
-            scratch.found[lane] = u64::from(refined);
+            scratch.found[lane] = mask(refined);
             scratch.t[lane] = step.refined.to_f64();
             let common = close & (gap.slope.to_f64() < 0.0) & falls & (size <= L::RATIO);
-            scratch.apart[lane] |= unless(common);
+            scratch.apart[lane] = scratch.apart_before_flight(lane) | mask(!common);
             next.theta[lane] = theta;
             next.y_dot[lane] = end.y_dot.to_f64();
         }

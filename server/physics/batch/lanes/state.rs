@@ -14,27 +14,43 @@ pub(crate) const WIDTH: usize = 16;
 /// A number for each of them.
 pub(crate) type Lanes = [f64; WIDTH];
 
+/// All numbers of the lanes in one piece.
+///
+/// A CPU takes a load for one of a store that it has not finished if their addresses differ by a multiple of 4096 bytes, and waits. So the
+/// arrays stand together, in an order in which those so far apart are not used one soon after the other: the places of the arrays of
+/// [`Rods`] come again from [`Scratch::alpha`] on.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct LaneNumbers {
+    pub(crate) rods: Rods,
+    /// State of the runs before a bounce.
+    pub(crate) moving: Moving,
+    /// State after it.
+    pub(crate) next: Moving,
+    pub(crate) scratch: Scratch,
+}
+
 /// Rods in the lanes, and the angles at which they topple.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(C, align(64))]
 pub(crate) struct Rods {
-    pub(super) contact_distance: Lanes,
+    pub(super) restitution: Lanes,
     pub(super) radius_of_gyration: Lanes,
     pub(super) leverage: Lanes,
-    pub(super) gravity: Lanes,
-    pub(super) restitution: Lanes,
-    pub(super) tilt_gain: Lanes,
     pub(super) strike_gain: Lanes,
     pub(super) strike_gain_per_energy: Lanes,
     pub(super) target_energy: Lanes,
+    pub(super) tilt_gain: Lanes,
     pub(super) topple_angle: Lanes,
+    pub(super) contact_distance: Lanes,
+    pub(super) gravity: Lanes,
     /// First flight of runs that can settle, s: [`BEFORE_FLIGHT`] until it is over; 0 for those that cannot.
     pub(super) first_flight: Lanes,
 }
 
 /// State of the runs in the lanes.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
+#[repr(C, align(64))]
 pub(crate) struct Moving {
     pub(super) theta: Lanes,
     pub(super) x_dot: Lanes,
@@ -48,9 +64,8 @@ pub(crate) struct Moving {
 
 /// Results that one part of a bounce leaves for the next.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(C, align(64))]
 pub(crate) struct Scratch {
-    pub(super) alpha: Lanes,
     pub(super) sin_theta: Lanes,
     pub(super) versine_theta: Lanes,
     pub(super) sin_alpha: Lanes,
@@ -58,22 +73,36 @@ pub(crate) struct Scratch {
     pub(super) sin_beta: Lanes,
     /// After the strike.
     pub(super) y_dot: Lanes,
-    pub(super) t: Lanes,
-    /// The same before it is changed.
+    /// Not 0 where the tilt, or the strike, was not that of a common bounce.
+    pub(super) tilted_apart: [u64; WIDTH],
+    pub(super) struck_apart: [u64; WIDTH],
+    /// sin u and 1 − cos u of the angle u that a body turns in its flight.
+    pub(super) sin_turned: Lanes,
+    pub(super) alpha: Lanes,
+    pub(super) versine_turned: Lanes,
+    /// t before it is changed.
     pub(super) before: Lanes,
-    /// 1 where t is the time of flight.
+    pub(super) t: Lanes,
+    /// Not 0 where t is the time of flight.
     pub(super) found: [u64; WIDTH],
+    /// Not 0 where this was not a common bounce.
+    pub(crate) apart: [u64; WIDTH],
     /// Error of the time at which a table strikes that errs, s.
     pub(super) timing_error: Lanes,
     /// Error of the angle that it senses there, rad.
     pub(super) angle_error: Lanes,
     /// Height of the contact point there, m.
     pub(super) clearance: Lanes,
-    /// 1 where this was not a common bounce.
-    pub(crate) apart: [u64; WIDTH],
 }
 
-/// 1 unless it holds, which it does not where something is not a number.
+/// All bits where it holds, else none: a comparison of vectors as it is.
+#[inline(always)]
+pub(super) fn mask(holds: bool) -> u64 {
+    u64::from(holds).wrapping_neg()
+}
+
+/// 1 unless it holds, which it does not where something is not a number. For an "or" with what stands in a lane, which would become a
+/// masked store with [`mask`]: loads wait for those.
 #[inline(always)]
 pub(super) fn unless(common: bool) -> u64 {
     u64::from(!common)
@@ -87,9 +116,17 @@ fn before_flight(rules: &Rules) -> f64 {
     if rules.settles { BEFORE_FLIGHT } else { 0.0 }
 }
 
+impl LaneNumbers {
+    /// All the same, at the same contact.
+    pub(crate) fn all(rod: &Rod, rules: &Rules, state: &State, energy: f64) -> Self {
+        let moving = Moving::all(state, energy);
+        Self { rods: Rods::all(rod, rules), moving, next: moving, scratch: Scratch::new() }
+    }
+}
+
 impl Rods {
     /// All the same.
-    pub(crate) fn all(rod: &Rod, rules: &Rules) -> Self {
+    fn all(rod: &Rod, rules: &Rules) -> Self {
         let Rod { contact_distance, radius_of_gyration, gravity, restitution, tilt_gain, .. } = *rod;
         Self {
             contact_distance: [contact_distance; WIDTH],
@@ -173,7 +210,7 @@ impl Rods {
 
 impl Moving {
     /// All the same.
-    pub(crate) fn all(state: &State, energy: f64) -> Self {
+    fn all(state: &State, energy: f64) -> Self {
         let State { theta, x_dot, y_dot, theta_dot } = *state;
         Self {
             theta: [theta; WIDTH],
@@ -221,7 +258,7 @@ impl Moving {
         self.max_theta[lane] = if size > moving.max_theta[lane] { size } else { moving.max_theta[lane] };
         let largest = size + alpha.magnitude().to_f64();
         let contact = LaneContact { size, topple_angle: rods.topple_angle[lane], ..LaneContact::GOES_ON };
-        scratch.apart[lane] = unless((largest <= L::REACH) & contact.passes_all());
+        scratch.tilted_apart[lane] = mask(!((largest <= L::REACH) & contact.passes_all()));
         largest <= Near::REACH
     }
 
@@ -237,7 +274,10 @@ impl Moving {
         scratch: &mut Scratch,
     ) {
         let after = strike.after.map(L::to_f64);
-        self.set(lane, &after, energy);
+        // The angle and ẏ of the coming contact follow from the flight.
+        self.x_dot[lane] = after.x_dot;
+        self.theta_dot[lane] = after.theta_dot;
+        self.energy[lane] = energy;
         scratch.y_dot[lane] = after.y_dot;
         let contact = LaneContact {
             push: strike.push.to_f64(),
@@ -247,7 +287,18 @@ impl Moving {
             sure_rise,
             ..LaneContact::GOES_ON
         };
-        scratch.apart[lane] |= u64::from(!contact.passes_all());
+        scratch.struck_apart[lane] = mask(!contact.passes_all());
+    }
+
+    /// Takes all lanes from another, one kind of number after the other: short enough for the compiler to copy without a call.
+    #[inline(always)]
+    pub(crate) fn take_all(&mut self, other: &Self) {
+        self.theta = other.theta;
+        self.x_dot = other.x_dot;
+        self.y_dot = other.y_dot;
+        self.theta_dot = other.theta_dot;
+        self.energy = other.energy;
+        self.max_theta = other.max_theta;
     }
 
     /// Takes a lane from another.
@@ -258,6 +309,12 @@ impl Moving {
 }
 
 impl Scratch {
+    /// Not 0 where the bounce of a lane was not a common one up to its flight.
+    #[inline(always)]
+    pub(super) fn apart_before_flight(&self, lane: usize) -> u64 {
+        self.tilted_apart[lane] | self.struck_apart[lane]
+    }
+
     /// The flight of a lane, s, if its bounce was a common one.
     pub(crate) fn flight_time(&self, lane: usize) -> Option<f64> {
         (self.apart[lane] == 0).then_some(self.t[lane])
@@ -278,7 +335,7 @@ impl Scratch {
     }
 
     /// Nothing in it.
-    pub(crate) fn new() -> Self {
+    fn new() -> Self {
         let zero = [0.0; WIDTH];
         Self {
             alpha: zero,
@@ -290,10 +347,14 @@ impl Scratch {
             y_dot: zero,
             t: zero,
             before: zero,
+            sin_turned: zero,
+            versine_turned: zero,
             timing_error: zero,
             angle_error: zero,
             clearance: zero,
             found: [0; WIDTH],
+            tilted_apart: [0; WIDTH],
+            struck_apart: [0; WIDTH],
             apart: [0; WIDTH],
         }
     }

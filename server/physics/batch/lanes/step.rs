@@ -7,7 +7,7 @@ use super::contact::Surface;
 use super::model::Bounced;
 use super::number::{Lane, Near};
 use super::outline::OutlineLanes;
-use super::state::{Moving, Rods, Scratch, WIDTH, unless};
+use super::state::{Moving, Rods, Scratch, WIDTH, mask, unless};
 use super::steering::{SteeringLanes, tilt_by_gain};
 use crate::bounce::contact_time;
 use crate::bounce::contact_time::NewtonStep;
@@ -48,15 +48,16 @@ pub(super) fn bounce_rods<L: Lane, S: Surface>(
     }
     surface.strike::<L>(rods, moving, next, scratch);
     guess::<L>(rods, moving, next, scratch);
-    let fallen_near = fall_to_table::<L>(STEPS, rods, moving, next, scratch, |_| 0.0);
+    let mut fallen = fall_to_table::<L>(STEPS, rods, moving, next, scratch, |_| 0.0);
     if let Some(outline) = outline {
         outline.watch(rods, moving, next, scratch);
+        fallen.common = false;
     }
-    Bounced { near: tilted_near & fallen_near, common: !any_apart(rods, scratch) }
+    Bounced { near: tilted_near & fallen.near, common: fallen.common || !any_apart(rods, scratch) }
 }
 
 /// Times of flight from the guesses, in at most so many steps, and the states at their ends. The contact points start at a height, m, of
-/// each lane. Tells whether all angles were near.
+/// each lane.
 #[inline(always)]
 pub(super) fn fall_to_table<L: Lane>(
     steps: u32,
@@ -65,17 +66,27 @@ pub(super) fn fall_to_table<L: Lane>(
     next: &mut Moving,
     scratch: &mut Scratch,
     clearance: impl Fn(usize) -> f64,
-) -> bool {
+) -> Fallen {
     let mut fallen = fall::<L>(rods, moving, next, scratch, true, &clearance);
     for _ in 1..steps {
-        if fallen.all {
+        if fallen.common || none_falls(scratch) {
             break;
         }
         let near = fallen.near;
         fallen = fall::<L>(rods, moving, next, scratch, false, &clearance);
         fallen.near &= near;
     }
-    fallen.near
+    fallen
+}
+
+/// Tells whether all lanes have found their time of flight or are apart.
+#[inline(always)]
+fn none_falls(scratch: &Scratch) -> bool {
+    let mut all = true;
+    for lane in 0..WIDTH {
+        all &= scratch.found[lane] | scratch.apart[lane] != 0;
+    }
+    all
 }
 
 /// Sets apart the lanes whose flight is not found or may be their last. Tells whether any lane is apart.
@@ -84,7 +95,7 @@ pub(super) fn any_apart(rods: &Rods, scratch: &mut Scratch) -> bool {
     let mut any = 0;
     for lane in 0..WIDTH {
         let contact = LaneContact {
-            found: scratch.found[lane] == 1,
+            found: scratch.found[lane] != 0,
             flight_time: scratch.t[lane],
             first_flight: rods.first_flight[lane],
             ..LaneContact::GOES_ON
@@ -122,14 +133,15 @@ fn guess<L: Lane>(rods: &Rods, moving: &Moving, next: &Moving, scratch: &mut Scr
     for lane in 0..WIDTH {
         let flight = flight::<L>(rods, moving, next, scratch, lane, 0.0);
         scratch.t[lane] = contact_time::guess(&flight).to_f64();
-        scratch.apart[lane] |= unless(flight.bulge().to_f64() <= rods.gravity[lane]);
     }
 }
 
-struct Fallen {
-    near: bool,
-    /// True where all lanes have found their time of flight or are apart.
-    all: bool,
+/// Result of the flights of all lanes.
+pub(super) struct Fallen {
+    /// True where all angles were near.
+    pub(super) near: bool,
+    /// True where all lanes have found their time of flight and none is apart.
+    pub(super) common: bool,
 }
 
 /// One step towards the time of flight, of the lanes that have not found it, and the state at its end.
@@ -142,14 +154,21 @@ fn fall<L: Lane>(
     first: bool,
     clearance: impl Fn(usize) -> f64,
 ) -> Fallen {
-    let (mut near, mut all) = (true, 1);
+    let (mut near, mut common) = (true, true);
     // A copy: where a lane may keep its time, a store beside the load would be a masked one, which takes tens of cycles with AVX2.
-    scratch.before = scratch.t;
+    for lane in 0..WIDTH {
+        let t = scratch.t[lane];
+        let (sin, versine) = (L::from_f64(next.theta_dot[lane]) * L::from_f64(t)).sin_versine();
+        scratch.before[lane] = t;
+        scratch.sin_turned[lane] = sin.to_f64();
+        scratch.versine_turned[lane] = versine.to_f64();
+    }
     for lane in 0..WIDTH {
         let clearance = clearance(lane);
         let flight = flight::<L>(rods, moving, next, scratch, lane, clearance);
         let t = scratch.before[lane];
-        let gap = flight.gap(L::from_f64(t));
+        let turned = (L::from_f64(scratch.sin_turned[lane]), L::from_f64(scratch.versine_turned[lane]));
+        let gap = flight.gap_turned(L::from_f64(t), turned);
         let step = NewtonStep::new(&flight, L::from_f64(t), &gap);
         let turned = (next.theta_dot[lane] * t).abs();
         near &= turned <= Near::REACH;
@@ -162,23 +181,30 @@ fn fall<L: Lane>(
             gap.value.to_f64() > 0.25 * t * gap.slope.to_f64()
         };
         let close = !first | close;
-        let apart = scratch.apart[lane] | unless((turned <= L::REACH) & (gap.slope.to_f64() < 0.0) & close);
-        if first {
-            scratch.t[lane] = better;
-            scratch.found[lane] = u64::from(refined);
+        let (t, found) = if first {
+            (better, refined)
         } else {
             // In the order of `contact_time::newton`.
-            let back = !refined & (step.newton.to_f64() >= 0.0);
-            scratch.t[lane] = if (scratch.found[lane] == 1) | back { t } else { better };
-            scratch.found[lane] |= u64::from(refined | back);
-        }
+            let (found, back) = (scratch.found[lane] != 0, !refined & (step.newton.to_f64() >= 0.0));
+            (if found | back { t } else { better }, found | refined | back)
+        };
+        let contact = LaneContact { flight_time: t, first_flight: rods.first_flight[lane], ..LaneContact::GOES_ON };
+        let goes_on = (turned <= L::REACH)
+            & (gap.slope.to_f64() < 0.0)
+            & close
+            & (flight.bulge().to_f64() <= rods.gravity[lane])
+            & contact.passes_all();
+        let before = if first { scratch.apart_before_flight(lane) } else { scratch.apart[lane] };
+        let apart = before | mask(!goes_on);
+        common &= found & (apart == 0);
+        scratch.t[lane] = t;
+        scratch.found[lane] = mask(found);
         scratch.apart[lane] = apart;
-        all &= scratch.found[lane] | apart;
-        let end = flight.end(L::from_f64(scratch.t[lane]));
+        let end = flight.end(L::from_f64(t));
         next.theta[lane] = end.theta.to_f64();
         next.y_dot[lane] = end.y_dot.to_f64();
     }
-    Fallen { near, all: all == 1 }
+    Fallen { near, common }
 }
 
 /// The flight after the strike in a lane, from a height of the contact point, m.
