@@ -85,14 +85,14 @@ impl BatchModel {
                 let contact =
                     friction.map_or(BatchContact::Smooth, |friction| BatchContact::Rough(friction.law, friction.slide));
                 let law = steering.into();
-                match (contact, energy_feedback) {
-                    // Their law is for contacts without friction.
-                    (BatchContact::Rough(..), EnergyFeedback::OneStrike) => None,
-                    (BatchContact::Smooth, _) | (BatchContact::Rough(..), _) => {
-                        let (errs, has_vertices) = (noise.is_some(), outline.is_some());
-                        Some(Self::Rod { contact, energy_feedback, law, errs, has_vertices })
-                    }
-                }
+                let fits = match (contact, energy_feedback) {
+                    // Its law is for contacts without friction.
+                    (BatchContact::Rough(..), EnergyFeedback::OneStrike) => false,
+                    (BatchContact::Rough(..), EnergyFeedback::Vertical | EnergyFeedback::Total)
+                    | (BatchContact::Smooth, _) => true,
+                };
+                let (errs, has_vertices) = (noise.is_some(), outline.is_some());
+                fits.then_some(Self::Rod { contact, energy_feedback, law, errs, has_vertices })
             }
         }
     }
