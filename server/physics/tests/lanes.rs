@@ -1,6 +1,6 @@
 //! Lanes and one orbit alone are the same: outcome, number of contacts and largest angle, bit for bit, over random rods.
 
-use equipoise_physics::batch::batch_run::{LaneRunEnd, run_all, run_batch, run_batch_on};
+use equipoise_physics::batch::batch_run::{LaneRunEnd, Watch, run_all, run_batch, run_batch_on, run_watched};
 use equipoise_physics::batch::model::BatchModel;
 use equipoise_physics::body::general::GeneralBody;
 use equipoise_physics::body::model::Model;
@@ -17,6 +17,11 @@ use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{Noise, NoiseModel};
 use equipoise_physics::table::program::HeightProgram;
 use proptest::prelude::*;
+
+#[path = "support/lone_runs.rs"]
+mod lone_runs;
+
+use lone_runs::{alone, changes_energy, paths, rods};
 
 /// A rod and the start of its run.
 #[derive(Clone, Copy, Debug)]
@@ -47,26 +52,12 @@ impl Start {
 
 prop_compose! {
     fn starts()(
-        length in 0.02..2.0_f64, ratio in 0.2..1.5, tilt_gain in -0.5..2.5, near in any::<bool>(),
-        theta in -1.0..1.0, x_dot in -1.0..1.0, y_dot in -4.0..-0.2, theta_dot in -30.0..30.0,
-        energy_gain in prop_oneof![Just(0.0), -0.2..0.3], restitution in 0.2..1.0, above in 1.2..3.0,
-        still in prop::bool::weighted(0.2),
+        rod in rods(1.2), near in any::<bool>(), theta in -1.0..1.0_f64, x_dot in -1.0..1.0, y_dot in -4.0..-0.2,
+        theta_dot in -30.0..30.0,
     ) -> Start {
-        let scale = if near { 0.05 } else { 1.0 };
-        let energy_gain = if still { 0.0 } else { energy_gain };
-        let settles = still || energy_gain != 0.0;
+        let (scale, settles) = (if near { 0.05 } else { 1.0 }, changes_energy(&rod));
         Start {
-            rod: Rod {
-                contact_distance: length,
-                radius_of_gyration: length * ratio,
-                gravity: 9.81,
-                restitution,
-                tilt_gain,
-                strike_gain: if still { 1.0 + restitution } else { 2.0 },
-                strike_gain_per_energy: (1.0 + restitution) * energy_gain,
-                target_energy: 9.81 * length * above,
-                energy_feedback: EnergyFeedback::Vertical,
-            },
+            rod,
             rules: Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles, holds_energy: !settles, limits: None },
             state: State { theta: theta * scale, x_dot: x_dot * scale, y_dot, theta_dot: theta_dot * scale },
         }
@@ -98,15 +89,6 @@ fn steered(start: Start, energy_feedback: EnergyFeedback, believed: f64) -> Star
     Start { rod, rules: Rules { settles: true, holds_energy: false, ..start.rules }, ..start }
 }
 
-fn alone(mut orbit: Orbit<Model>, impacts: u64) -> LaneRunEnd {
-    let mut max_theta: f64 = 0.0;
-    let ending = run(&mut orbit, impacts, |contact| {
-        max_theta = max_theta.max(contact.state.theta.abs());
-        true
-    });
-    LaneRunEnd { impacts: orbit.contacts(), outcome: ending.unwrap().into(), max_theta }
-}
-
 fn model_of(orbits: &[Orbit<Model>], rules: &Rules) -> BatchModel {
     BatchModel::of(&orbits[0].body, rules).expect("they fit into lanes")
 }
@@ -117,10 +99,6 @@ fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit<Model>], im
     let mut done = |number: usize, end| ends[number] = Some(end);
     assert!(run_batch_on(path, model, impacts, &mut || next.next(), &mut done, &mut || true));
     ends.into_iter().map(|end| end.expect("each run ends")).collect()
-}
-
-fn paths() -> impl Iterator<Item = InstructionSet> {
-    InstructionSet::ALL.into_iter().filter(|path| path.is_there())
 }
 
 /// Holds lanes of all paths against the runs alone.
@@ -204,6 +182,28 @@ proptest! {
         };
         let orbits: Vec<_> = starts.into_iter().map(orbit).collect();
         assert_alike(&orbits, &Rules { settles: true, holds_energy: false, ..RULES_OF_A_KIND }, impacts)?;
+    }
+
+    #[test]
+    fn watched_angles_are_those_of_orbits(
+        starts in prop::collection::vec(starts(), 1..40), impacts in 1..400_u64, step in 1..40_usize,
+    ) {
+        let orbits: Vec<_> = starts.iter().map(Start::orbit).collect();
+        let contacts: Vec<u64> = (1..=impacts).step_by(step).collect();
+        let mut seen = vec![Vec::new(); orbits.len()];
+        let mut watch = Watch { contacts: &contacts, see: &mut |number, theta: f64| seen[number].push(theta.to_bits()) };
+        let mut next = orbits.iter().copied().enumerate();
+        prop_assert!(run_watched(impacts, &mut watch, &mut || next.next(), &mut |_, _| (), &mut || true));
+        for (mut orbit, seen) in orbits.into_iter().zip(seen) {
+            let mut expected = Vec::new();
+            run(&mut orbit, impacts, |contact| {
+                if contacts.contains(&contact.n) {
+                    expected.push(contact.state.theta.to_bits());
+                }
+                true
+            });
+            prop_assert_eq!(seen, expected, "{:?}", orbit);
+        }
     }
 
     #[test]

@@ -12,13 +12,18 @@ use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::ending::EndingKind;
-use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{Noise, NoiseModel};
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
+
+#[path = "support/lone_runs.rs"]
+mod lone_runs;
+
+use lone_runs::{alone, changes_energy, paths, rods};
 
 const TRIANGLE: [[f64; 2]; 3] = [[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]];
 
@@ -84,28 +89,15 @@ prop_compose! {
 
 prop_compose! {
     fn numbers()(
-        (length, ratio) in (0.02..2.0_f64, 0.2..1.5), (tilt_gain, near) in (-0.5..2.5, any::<bool>()),
+        rod in rods(1.01), near in any::<bool>(), above in 1.01..3.0_f64,
         (theta, x_dot, y_dot, theta_dot) in (-1.0..1.0, -1.0..1.0, -4.0..1.0, -30.0..30.0),
-        energy_gain in prop_oneof![Just(0.0), -0.2..0.3], restitution in 0.2..1.0, above in 1.01..3.0_f64,
-        still in prop::bool::weighted(0.2), noise in noises(), places in polygons(), coefficient in 0.0..1.0,
+        noise in noises(), places in polygons(), coefficient in 0.0..1.0,
         (theta_gain, x_gain) in (-2.5..0.5_f64, -0.05..0.05_f64), topple_angle in 0.5..FRAC_PI_2,
     ) -> Numbers {
         let scale = if near { 0.05 } else { 1.0 };
-        let energy_gain = if still { 0.0 } else { energy_gain };
-        let rod = Rod {
-            contact_distance: length,
-            radius_of_gyration: length * ratio,
-            gravity: 9.81,
-            restitution,
-            tilt_gain,
-            strike_gain: if still { 1.0 + restitution } else { 2.0 },
-            strike_gain_per_energy: (1.0 + restitution) * energy_gain,
-            target_energy: 9.81 * length * above,
-            energy_feedback: EnergyFeedback::Vertical,
-        };
         let gains = Gains { x: x_gain, theta: theta_gain, x_dot: x_gain, theta_dot: -x_gain };
         let state = State { theta: theta * scale, x_dot: x_dot * scale, y_dot, theta_dot: theta_dot * scale };
-        let release = Release { x: 0.1 * x_dot, height: length * above, state };
+        let release = Release { x: 0.1 * x_dot, height: rod.contact_distance * above, state };
         Numbers { rod, gains, coefficient, noise, places, release, topple_angle }
     }
 }
@@ -125,8 +117,7 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit<Model>> {
     }
     rod.energy_feedback = kind.energy_feedback;
     let friction = kind.contact.map(|(law, slide)| Friction { coefficient, law, slide });
-    let steers = rod.strike_gain_per_energy != 0.0 || kind.energy_feedback == EnergyFeedback::OneStrike;
-    let settles = rod.strike_gain < 2.0 || steers || friction.is_some();
+    let settles = changes_energy(&rod) || kind.energy_feedback == EnergyFeedback::OneStrike || friction.is_some();
     let holds_energy = !settles && !kind.errs;
     let body = GeneralBody {
         rod,
@@ -139,24 +130,11 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit<Model>> {
     Orbit::new(Model::General(body), Rules { topple_angle, settles, holds_energy, limits: None }, &release).ok()
 }
 
-fn alone(mut orbit: Orbit<Model>, impacts: u64) -> LaneRunEnd {
-    let mut max_theta: f64 = 0.0;
-    let ending = run(&mut orbit, impacts, |contact| {
-        max_theta = max_theta.max(contact.state.theta.abs());
-        true
-    });
-    LaneRunEnd { impacts: orbit.contacts(), outcome: ending.unwrap().into(), max_theta }
-}
-
 fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit<Model>], impacts: u64) -> Vec<Option<LaneRunEnd>> {
     let mut ends = vec![None; orbits.len()];
     let mut next = orbits.iter().copied().enumerate();
     run_batch_on(path, model, impacts, &mut || next.next(), &mut |number, end| ends[number] = Some(end), &mut || true);
     ends
-}
-
-fn paths() -> impl Iterator<Item = InstructionSet> {
-    InstructionSet::ALL.into_iter().filter(|path| path.is_there())
 }
 
 fn model_of(kind: Kind) -> BatchModel {
