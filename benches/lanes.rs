@@ -1,5 +1,6 @@
-//! Cost of endings, energy and bookkeeping over a bare loop of lanes, of other models over the rod, and of a region on two threads:
-//! `cargo bench --bench lanes`. All are measured in turns in one run, so that ratios hold on a noisy machine.
+//! Cost of endings, energy and bookkeeping over a bare loop of lanes, of other models over the rod, of runs on two threads, and of a whole
+//! region as PNG over bare loops on all cores: `cargo bench --bench lanes`. All are measured in turns in one run, so that ratios hold on a
+//! noisy machine.
 
 mod case_1;
 
@@ -7,7 +8,14 @@ use std::hint::black_box;
 use std::thread;
 use std::time::Instant;
 
+use axum::Router;
+use axum::body::Body;
+use axum::http::{Request, StatusCode};
 use case_1::{ROD, RULES};
+use clap::Parser;
+use equipoise::api::App;
+use equipoise::config::Config;
+use equipoise::router;
 use equipoise_physics::batch::batch_run::run_batch_on;
 use equipoise_physics::batch::model::BatchModel;
 use equipoise_physics::body::general::GeneralBody;
@@ -20,6 +28,8 @@ use equipoise_physics::numbers::dispatch::{InstructionSet, Kernel, dispatch_on};
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::table::control_law::{Gains, Steering};
+use http_body_util::BodyExt;
+use tower::ServiceExt;
 
 const RUNS: usize = 64;
 const BOUNCES: u64 = 2000;
@@ -180,6 +190,37 @@ fn sin_cos(x: f64) -> (f64, f64) {
     (x * sin, cos)
 }
 
+/// A map of 256 × 256 runs, all of which survive their 1000 impacts.
+const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=1.05&x.to=1.4&x.count=256\
+                   &y.parameter=release.theta&y.from=0&y.to=0.05&y.count=256&impacts=1000&format=png";
+const MAP_BOUNCES: f64 = 256.0 * 256.0 * 1000.0;
+
+/// Wall time of [`MAP`] from request to last byte, per bounce, ns. The server keeps no answers.
+fn whole_map(runtime: &tokio::runtime::Runtime, server: &Router) -> f64 {
+    let request = Request::get(MAP).header("host", "localhost").body(Body::empty()).expect("a request");
+    let clock = Instant::now();
+    let (status, answer) = runtime.block_on(async {
+        let answer = server.clone().oneshot(request).await.expect("the router never fails");
+        (answer.status(), answer.into_body().collect().await.expect("the whole answer"))
+    });
+    let elapsed = clock.elapsed();
+    assert_eq!((status, &answer.to_bytes()[1..4]), (StatusCode::OK, &b"PNG"[..]));
+    elapsed.as_secs_f64() * 1e9 / MAP_BOUNCES
+}
+
+/// Wall time per bounce of bare loops on all cores, as many bounces as those of [`MAP`], ns.
+fn bare_on_all_cores(path: InstructionSet) -> f64 {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let loops = (MAP_BOUNCES / (cores as f64 * RUNS as f64 * BOUNCES as f64)).ceil() as usize;
+    let clock = Instant::now();
+    thread::scope(|scope| {
+        for _ in 0..cores {
+            scope.spawn(|| (0..loops).map(|_| bare(path, 0.001)).sum::<f64>());
+        }
+    });
+    clock.elapsed().as_secs_f64() * 1e9 / (cores * loops * RUNS * BOUNCES as usize) as f64
+}
+
 /// Measures both in turns. Returns their medians and the median of their ratios.
 fn compare(first: impl Fn() -> f64, second: impl Fn() -> f64) -> [f64; 3] {
     let pairs: Vec<(f64, f64)> = (0..ROUNDS).map(|_| (first(), second())).collect();
@@ -228,4 +269,13 @@ fn main() {
         let [one, two, ratio] = compare(|| work(best, 0.001), || two(work));
         println!("{name}, two threads side by side: {two:.2} a bounce for {one:.2} on one, {ratio:.2} times as fast");
     }
+    let runtime = tokio::runtime::Runtime::new().expect("threads of the server");
+    let server = {
+        let _inside = runtime.enter();
+        router::router(App::new(&Config::parse_from(["equipoise", "--answer-cache", "0"])))
+    };
+    let [map, bare, ratio] = compare(|| whole_map(&runtime, &server), || bare_on_all_cores(best));
+    println!(
+        "256 × 256 × 1000 survival as PNG: {map:.2} a bounce, bare loops on all cores {bare:.2}, ratio {ratio:.2}"
+    );
 }
