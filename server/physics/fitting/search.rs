@@ -17,8 +17,8 @@ const ROWS_OF_STARTS: usize = 40;
 /// Most iterations, and the fall of the sum of squares that counts as none, on the way to the minimum: estimates move by a tenth of their
 /// standard deviation.
 const ROUGH: (usize, f64) = (20, 1e-2);
-/// Rows of a window that is not halved again.
-const SHORTEST: usize = 2;
+/// Least share of the values that unknowns leave in a start that is compared with others.
+const LEAST_LEFT: f64 = 0.2;
 /// Starts beside the typed one: share of its scale by which each unknown is off, alternating in sign where the second number is −1.
 const STARTS: [(f64, f64); 3] = [(0.2, 1.0), (-0.2, 1.0), (0.2, -1.0)];
 
@@ -66,7 +66,7 @@ impl Search<'_> {
         let mut windows: Vec<Range<usize>> = problem.windows.iter().rev().cloned().collect();
         let mut halved = Vec::new();
         while let Some(range) = windows.pop() {
-            if range.len() >= 2 * SHORTEST && ends(&range, map) && !(released && range.start == 0) {
+            if range.len() > 1 && ends(&range, map) && !(released && range.start == 0) {
                 let middle = range.start + range.len() / 2;
                 windows.extend([middle..range.end, range.start..middle]);
             } else {
@@ -120,8 +120,11 @@ impl Search<'_> {
             part.windows = split(part.rows.len(), length);
             let point = Self::guessed(&mut part, &mut map, tried);
             let Some(found) = self.minimize(&part, point, ROUGH, go_on)? else { continue };
-            // More windows take more unknowns, and each of them a share of the squares.
-            let cost = found.cost + self.unknowns(&part) as f64;
+            // More windows take more unknowns, and each of them a share of the squares. Windows of hardly any impacts follow any data.
+            let (values, unknowns) = (self.values(&part) as f64, self.unknowns(&part) as f64);
+            let left = (values - unknowns).max(LEAST_LEFT * values);
+            let cost =
+                found.cost * values / left + if unknowns > values * (1.0 - LEAST_LEFT) { values * values } else { 0.0 };
             if best.is_none_or(|best| cost < 0.99 * best) {
                 (best, fields) = (Some(cost), found.point.fields);
             }
