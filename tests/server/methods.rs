@@ -76,7 +76,7 @@ async fn extended_takes_every_scene() {
         json!({"table": feedback, "contact": {"friction": 0.3}, "release": {"theta": 0.05}}),
         json!({"noise": {"timing_sd": 0.005, "angle_sd": 0.002}}),
         json!({"noise": {"timing_sd": 0.005, "angle_sd": 0.002, "model": "plan"}, "table": feedback}),
-        json!({"table": {"limits": {"tilt": 0.25}}}),
+        json!({"table": {"limits": {"tilt": 0.5, "speed": 3}}}),
     ] {
         let run = async |method: &str| {
             let request = json!({"preset": "case-1", "scene": scene, "impacts": 40, "method": method});
@@ -90,6 +90,18 @@ async fn extended_takes_every_scene() {
             for (ours, its) in ours.into_iter().zip(its).take(5) {
                 assert!((ours - its).to_f64().abs() <= 1e-11, "{quantity}: {ours} and {its}, {scene}");
             }
+        }
+        let estimates = map["impacts"]["error_estimate"].as_array().unwrap();
+        for (n, (error, estimate)) in errors(&map, &exact).into_iter().zip(estimates).enumerate() {
+            let Some(estimate) = estimate.as_f64().filter(|estimate| *estimate < 1e-3) else { continue };
+            assert!(error <= estimate, "contact {} is off by {error:e}, estimated {estimate:e}, {scene}", n + 1);
+        }
+        assert!(estimates[2].as_f64().is_some_and(|estimate| estimate < 1e-9), "{scene}: {}", estimates[2]);
+        for (tolerance, method) in [(1e-8, "map"), (1e-20, "extended")] {
+            let request = json!({"preset": "case-1", "scene": scene, "impacts": 5, "tolerance": tolerance});
+            let answer = server.post("/v1/trajectories", &request).await.expect(200).json();
+            assert_eq!(answer["method"]["name"], method, "{scene}");
+            assert_eq!(answer["predictable_impacts"], Value::Null, "{scene}");
         }
         let (ours, its) = (&map["impacts"]["clearance"], &exact["impacts"]["clearance"]);
         for (ours, its) in ours.as_array().unwrap().iter().zip(its.as_array().unwrap()).take(5) {

@@ -8,7 +8,6 @@ use equipoise_physics::run::method;
 use equipoise_physics::run::method::{ComputedImpact, RunMethod, choose_method, run_by};
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::table::actuator_load::LoadTracker;
 use serde::Serialize;
 
@@ -76,9 +75,6 @@ impl MethodAnswer {
     ) -> Result<(RunMethod, Self), Refusal> {
         let TrajectoryRequest { impacts, method, tolerance, .. } = *request;
         if let (None, Some(tolerance)) = (method, tolerance) {
-            if let Some(error) = scene.beyond(&[ModelLevel::Friction]) {
-                return Err(Refusal::At("/tolerance", format!("no method bounds its error: {}", error.detail)));
-            }
             let choice = choose_method(scene, impacts, tolerance, go_on)
                 .ok_or(Refusal::Cancelled)?
                 .map_err(|refusal| ("/tolerance", refusal.detail))?;
@@ -235,11 +231,6 @@ impl<'a> TrajectoryAnswer<'a> {
         }
         if was_changed {
             notes.push(format!("error_estimate is null and predictable_impacts 0: {NO_BOUND}"));
-        } else if let Some(error) = scene.beyond(&[ModelLevel::Friction]) {
-            notes.push(format!(
-                "error_estimate is null and predictable_impacts 0, since no bound is derived: {}",
-                error.detail
-            ));
         } else if unknown > 0 {
             notes.push(format!(
                 "error_estimate is null at {unknown} impacts: past a graze, or once rounding has grown to the \

@@ -276,8 +276,8 @@ pub static COLUMNS: [ImpactColumn; 22] = [
         "error_estimate",
         "m/s",
         "Bound on the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇|, in metres (per second); for a point mass, of \
-             |δẋ| and |δẏ|. Null if no bound is known: with state feedback, noise or interventions, past a graze, \
-             and once rounding has grown to the size of the run.",
+             |δẋ| and |δẏ|. Null if no bound is known: with interventions, past a graze, in a fast spin with state \
+             feedback or noise, and once rounding has grown to the size of the run.",
         Read::Sparse(|row| row.error_estimate),
     )
     .scope(ColumnScope::Trajectories),

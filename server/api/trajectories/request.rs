@@ -1,5 +1,6 @@
 //! The request for `trajectories`: a run, the method that computes it, and the numbers that are asked for.
 
+use equipoise_physics::run::full_error_estimate::is_needed as needs_full_estimate;
 use equipoise_physics::run::method::{RunMethod, deviations_circle};
 use equipoise_physics::scene::{Name, Scene};
 
@@ -39,6 +40,9 @@ const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-30..=1.0;
 const LINEAR_ONCE: u64 = 2500;
 const MAP_PRICE: u64 = 8;
 const EXTENDED_PRICE: u64 = 50;
+
+/// What an error estimate with state feedback or noise costs more, in bounces: its derivatives have more states.
+const FULL_ESTIMATE_PRICE: u64 = 120;
 
 /// Price of writing and compressing a contact, in bounces; of a contact with 31 digits; and of a sample of a flight.
 const ROW_PRICE: u64 = 24;
@@ -111,6 +115,12 @@ impl TrajectoryRequest {
                 (LINEAR_ONCE, linear + MAP_PRICE + 2 * EXTENDED_PRICE + LONG_ROW_PRICE)
             }
         };
+        let full = match (self.method, self.tolerance) {
+            (Some(RunMethod::Linear), _) => 0,
+            (Some(RunMethod::Map | RunMethod::Extended), _) | (None, None) => FULL_ESTIMATE_PRICE,
+            (None, Some(_)) => 3 * FULL_ESTIMATE_PRICE,
+        };
+        let impact = if needs_full_estimate(scene) { impact + full } else { impact };
         let each = impact + SAMPLE_PRICE * self.samples_per_flight;
         self.impacts.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once + self.run.guidance_price())
     }

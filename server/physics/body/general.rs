@@ -4,6 +4,7 @@
 //! A body of its own, so that the plain rod pays for none of it. Each part is another module's: [`crate::bounce::friction`],
 //! [`crate::table::noise`], [`crate::body::polygon`]; here they meet.
 
+use crate::body::lifted::own_motion;
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::contact_time::{first_contact, first_descent};
@@ -15,7 +16,6 @@ use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::bounce::tilt::Tilt;
-use crate::numbers::number::Number;
 use crate::table::control_law::Steering;
 use crate::table::noise::{Noise, NoiseModel, NoiseSample};
 use crate::table::program::HeightProgram;
@@ -44,22 +44,6 @@ pub struct GeneralBody {
 pub trait Guide {
     /// Motion for the contact that the table foresees, with an error of the sensed angle (rad); `None` if it will not strike.
     fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion>;
-}
-
-/// Motion of a table that follows its own law, for a state that it foresees at this tilt.
-pub(crate) fn own_motion<N: Number>(
-    rod: &Rod<N>,
-    friction: Option<Friction>,
-    seen: &State<N>,
-    tilt: &Tilt<N>,
-) -> PlannedTableMotion<N> {
-    let Tilt { alpha, sin_alpha, cos_alpha, .. } = *tilt;
-    let (table_x, table_y) = rod.strike_with(seen, tilt, rod.leverage()).table_velocity;
-    PlannedTableMotion {
-        alpha,
-        normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
-        tangential_velocity: friction.map_or(N::from_f64(0.0), |friction| friction.table_speed(rod, seen, tilt)),
-    }
 }
 
 impl GeneralBody {

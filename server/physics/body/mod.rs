@@ -3,6 +3,7 @@
 //! Not here: the other bodies ([`crate::body::point`], [`crate::body::general`]) and how their runs go on ([`crate::run::orbit`]).
 
 pub mod general;
+pub mod lifted;
 pub mod model;
 pub mod point;
 pub mod polygon;

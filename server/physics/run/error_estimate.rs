@@ -36,13 +36,13 @@ pub const SAFETY: f64 = 3.0;
 
 /// Share of every rounding that is taken to be the same at each bounce: where a run comes to rest or repeats, so do they, and
 /// what would grow with the root of the number of bounces grows with the number.
-const REPEATING: f64 = 0.15;
+pub(crate) const REPEATING: f64 = 0.15;
 
 /// Half a unit in the last place, as a share: the most that one rounding is off.
-const ROUNDING: f64 = 0.5 * f64::EPSILON;
+pub(crate) const ROUNDING: f64 = 0.5 * f64::EPSILON;
 
 /// A contact is too near to grazing for a derivative to say anything when the bound on its speed is this share of it.
-const GRAZING_SHARE: f64 = 0.25;
+pub(crate) const GRAZING_SHARE: f64 = 0.25;
 
 type Number8 = Dual<WIDTH>;
 

@@ -6,6 +6,7 @@ pub mod cancellation;
 pub mod ending;
 pub mod error_estimate;
 pub mod extended;
+pub mod full_error_estimate;
 pub mod linear_solution;
 pub mod method;
 pub mod orbit;

@@ -2,6 +2,7 @@
 
 use crate::body::NoContact;
 use crate::body::general::GeneralBody;
+use crate::body::lifted::LiftedBody;
 pub use crate::body::model::Model;
 use crate::body::point::PointMass;
 use crate::body::polygon::Outline;
@@ -208,14 +209,17 @@ impl Scene {
 
     /// The body of its runs with 31 digits.
     pub fn extended_body(&self) -> ExtendedBody {
-        ExtendedBody {
+        ExtendedBody { lifted: self.lifted_body(), outline: self.outline, is_point: self.body == BodyShape::Point }
+    }
+
+    /// The body of its bounces in any kind of number.
+    pub(crate) fn lifted_body<N: Number>(&self) -> LiftedBody<N> {
+        LiftedBody {
             rod: self.parameters(),
             steering: self.steering,
             program: self.program,
             friction: self.contact_friction(),
             noise: self.noise,
-            outline: self.outline,
-            is_point: self.body == BodyShape::Point,
         }
     }
 

@@ -1,6 +1,7 @@
 //! Runs with 31 digits of scenes beyond the plain rod: state feedback, friction, drawn errors, polygons and tables with limits, by exact
 //! identities at each of their contacts and against the map in doubles.
 
+use equipoise_physics::body::lifted::LiftedBody;
 use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::bounce::friction::{RestitutionLaw, Slide};
 use equipoise_physics::bounce::state::State;
@@ -9,76 +10,23 @@ use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Number;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::extended;
-use equipoise_physics::run::extended::{ExtendedBody, ExtendedContact};
+use equipoise_physics::run::extended::ExtendedContact;
 use equipoise_physics::run::orbit;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Draft, Name, Scene};
 use equipoise_physics::table::control_law::Steering;
 use equipoise_physics::table::noise::NoiseModel;
+use mixes::{MIXES, number, scene};
 use random::Random;
-use scenes::Kind;
 
+#[path = "support/mixes.rs"]
+mod mixes;
 #[path = "support/random.rs"]
 mod random;
 #[path = "support/scenes.rs"]
 mod scenes;
 
 /// Bound on the remainder of an identity whose terms are about 1.
-const EXACT: f64 = 1e-30;
-
-/// Parts of a scene beyond the plain rod.
-#[derive(Clone, Copy, Debug, Default)]
-struct Parts {
-    feedback: bool,
-    friction: bool,
-    noise: Option<&'static str>,
-}
-
-const MIXES: [Parts; 8] = [
-    Parts { feedback: true, friction: false, noise: None },
-    Parts { feedback: false, friction: true, noise: None },
-    Parts { feedback: true, friction: true, noise: None },
-    Parts { feedback: false, friction: false, noise: Some("strike") },
-    Parts { feedback: false, friction: false, noise: Some("plan") },
-    Parts { feedback: true, friction: true, noise: Some("strike") },
-    Parts { feedback: true, friction: true, noise: Some("plan") },
-    Parts { feedback: false, friction: true, noise: Some("plan") },
-];
-
-fn number(draft: &mut Draft, name: Name, number: f64) {
-    draft.set(name, Some(Value::Number(number))).unwrap();
-}
-
-/// A random scene with these parts, of a kind that keeps its bounces.
-fn scene(random: &mut Random, parts: Parts) -> Scene {
-    let kinds = [Kind::Regular, Kind::Feedback, Kind::Total, Kind::Juggling];
-    let kinds = if parts.friction { &kinds[..3] } else { &kinds[..] };
-    let kind = kinds[random.between(0.0, kinds.len() as f64) as usize];
-    let plain = scenes::scene(random, kind);
-    let mut draft = plain.draft();
-    if parts.feedback {
-        let kappa = plain.number(Name::TiltGain).unwrap();
-        draft.set(Name::TiltGain, None).unwrap();
-        number(&mut draft, Name::FeedbackTheta, -kappa);
-        number(&mut draft, Name::FeedbackX, random.size(0.003, 0.3));
-        number(&mut draft, Name::FeedbackXDot, random.size(0.003, 0.3));
-        number(&mut draft, Name::FeedbackThetaDot, random.size(0.001, 0.1));
-        number(&mut draft, Name::X, random.size(0.001, 0.5));
-    }
-    if parts.friction {
-        number(&mut draft, Name::Friction, random.between(0.02, 0.8));
-        let law = ["poisson", "newton", "stronge"][random.between(0.0, 3.0) as usize];
-        draft.set(Name::Law, Some(Value::Choice(law))).unwrap();
-        let slide = ["none", "matched"][random.between(0.0, 2.0) as usize];
-        draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
-    }
-    if let Some(model) = parts.noise {
-        draft.set(Name::NoiseModel, Some(Value::Choice(model))).unwrap();
-        number(&mut draft, Name::TimingSd, random.size(1e-4, 1e-2).abs());
-        number(&mut draft, Name::AngleSd, random.size(1e-4, 1e-2).abs());
-        draft.set(Name::Seed, Some(Value::Integer(random.between(0.0, 1e6) as u64))).unwrap();
-    }
-    draft.build().unwrap()
-}
+const EXACT: f64 = 1e-29;
 
 fn contacts(scene: &Scene, impacts: u64) -> (Vec<ExtendedContact>, Option<Ending>) {
     let mut contacts = Vec::new();
@@ -97,7 +45,7 @@ fn from(value: f64) -> DoubleDouble {
 }
 
 /// Remainders of the identities at one contact, each with its name.
-fn remainders(body: &ExtendedBody, here: &ExtendedContact) -> Vec<(&'static str, DoubleDouble)> {
+fn remainders(body: &LiftedBody<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'static str, DoubleDouble)> {
     let rod = &body.rod;
     let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
     let Some(strike) = here.strike else { return Vec::new() };
@@ -161,7 +109,7 @@ fn remainders(body: &ExtendedBody, here: &ExtendedContact) -> Vec<(&'static str,
 
 /// Remainders of the identities of the flight between two contacts.
 fn of_flight(
-    body: &ExtendedBody,
+    body: &LiftedBody<DoubleDouble>,
     from_contact: &ExtendedContact,
     to: &ExtendedContact,
 ) -> Vec<(&'static str, DoubleDouble)> {
@@ -192,7 +140,7 @@ fn every_contact_fulfils_the_identities() {
     for (mix, parts) in MIXES.into_iter().enumerate() {
         for _ in 0..60 {
             let scene = scene(&mut random, parts);
-            let body = scene.extended_body();
+            let body = scene.extended_body().lifted;
             let (contacts, _) = contacts(&scene, 30);
             for (index, here) in contacts.iter().enumerate() {
                 let State { x_dot, y_dot, theta_dot, .. } = extended::in_doubles(&here.state);

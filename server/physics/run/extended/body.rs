@@ -3,37 +3,25 @@
 //! Numbers that are drawn or given as doubles, such as the errors of a table, are the same here. Other vertices of a polygon are looked
 //! for in doubles: they end runs and change no bounce.
 
-use crate::body::general::{LEAST_FLIGHT, own_motion};
+use crate::body::general::LEAST_FLIGHT;
+use crate::body::lifted::LiftedBody;
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, NoContact, PreImpact, Release, Touch};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
-use crate::bounce::friction::{Friction, actual_branch};
-use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
-use crate::bounce::tilt::Tilt;
 use crate::numbers::double_double::{DoubleDouble, ROUNDING};
 use crate::numbers::number::Number;
 use crate::numbers::trig;
 use crate::run::extended::contact_time::{first_contact, first_descent, in_doubles};
-use crate::table::control_law::Steering;
 use crate::table::noise::{Noise, NoiseModel, NoiseSample};
-use crate::table::program::HeightProgram;
 
 /// A body with 31 digits.
 #[derive(Clone, Copy, Debug)]
 pub struct ExtendedBody {
-    /// The rod and its table; of a point mass, a rod of no length.
-    pub rod: Rod<DoubleDouble>,
-    /// Control law of the tilt.
-    pub steering: Steering,
-    /// Target heights of its strikes, where they differ.
-    pub program: Option<HeightProgram>,
-    /// Friction and a table that moves along itself.
-    pub friction: Option<Friction>,
-    /// Timing and sensing errors.
-    pub noise: Option<Noise>,
+    /// All of it but the vertices.
+    pub lifted: LiftedBody<DoubleDouble>,
     /// The vertices of a polygon.
     pub outline: Option<Outline>,
     /// True for a point mass, whose angle is that of its velocity.
@@ -49,7 +37,7 @@ impl ExtendedBody {
         let zero = DoubleDouble::from_f64(0.0);
         let start = release.state.map(DoubleDouble::from);
         let (sin, cos) = start.theta.sincos();
-        let height = self.rod.contact_distance * cos;
+        let height = self.lifted.rod.contact_distance * cos;
         let clearance = DoubleDouble::from_f64(release.height) - height;
         // As in doubles: a height typed as l cos θ means a contact.
         let typed = 4.0 * f64::EPSILON * f64::max(release.height.abs(), height.to_f64().abs());
@@ -57,8 +45,8 @@ impl ExtendedBody {
             start,
             sin_cos_theta: (sin, cos),
             clearance: if clearance.to_f64() <= typed { zero } else { clearance },
-            contact_distance: self.rod.contact_distance,
-            gravity: self.rod.gravity,
+            contact_distance: self.lifted.rod.contact_distance,
+            gravity: self.lifted.rod.gravity,
         };
         let gap = flight.gap(zero);
         let falls = gap.slope < zero || (gap.slope == zero && gap.bend <= zero);
@@ -68,22 +56,7 @@ impl ExtendedBody {
 
     /// Same as [`crate::body::Body::strike`].
     pub fn strike(&self, coming: &PreImpact<DoubleDouble>) -> Strike<DoubleDouble> {
-        let PreImpact { n, x, state, clearance, plan } = coming;
-        let mut rod = self.at_strike(*n);
-        if self.noise.is_some() {
-            rod.target_energy = rod.target_energy - rod.gravity * *clearance;
-        }
-        let tilt = match plan {
-            Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
-            None => self.steering.sensed_tilt(&rod, *x, state, self.noise.map_or(0.0, |noise| noise.angle_error(*n))),
-        };
-        match (&self.friction, plan) {
-            (None, None) => rod.strike_with(state, &tilt, rod.leverage()),
-            (friction, plan) => {
-                let friction = friction.as_ref().unwrap_or(&Friction::SMOOTH);
-                friction.strike(&rod, state, &tilt, plan.as_ref(), rod.leverage(), actual_branch)
-            }
-        }
+        self.lifted.strike(coming)
     }
 
     /// Same as [`crate::body::Body::fly`].
@@ -95,7 +68,7 @@ impl ExtendedBody {
         from: &PreImpact<DoubleDouble>,
         strike: &Strike<DoubleDouble>,
     ) -> Result<Arrival<DoubleDouble>, NoContact> {
-        let flight = Flight { clearance: from.clearance, ..self.rod.flight(strike) };
+        let flight = Flight { clearance: from.clearance, ..self.lifted.rod.flight(strike) };
         let t = if flight.clearance.to_f64() < 0.0 {
             first_descent(&flight)?.ok_or(NoContact::Sinking)?
         } else {
@@ -112,14 +85,10 @@ impl ExtendedBody {
 
     /// Same as [`crate::body::Body::rise_rounding`].
     pub(super) fn rise_rounding(&self, before: &State<DoubleDouble>, strike: &Strike<DoubleDouble>) -> f64 {
-        match self.friction {
+        match self.lifted.friction {
             None => strike.rise_rounding(before.y_dot, ROUNDING),
-            Some(_) => friction::rise_rounding(&self.rod, before, strike, ROUNDING),
+            Some(_) => friction::rise_rounding(&self.lifted.rod, before, strike, ROUNDING),
         }
-    }
-
-    fn at_strike(&self, n: u64) -> Rod<DoubleDouble> {
-        self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
     }
 
     /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`.
@@ -130,7 +99,7 @@ impl ExtendedBody {
         n: u64,
         x: DoubleDouble,
     ) -> Result<Arrival<DoubleDouble>, NoContact> {
-        let mut arrival = match &self.noise {
+        let mut arrival = match &self.lifted.noise {
             None => Arrival::from((t, flight.end(t))),
             Some(noise) => self.meet_timed(noise, flight, t, n, x)?,
         };
@@ -163,9 +132,7 @@ impl ExtendedBody {
         match noise.model {
             NoiseModel::Strike => Ok(Arrival { t: struck, state, clearance, plan: None }),
             NoiseModel::Plan => {
-                let rod = self.at_strike(n);
-                let tilt = self.steering.sensed_tilt(&rod, x + state.x_dot * struck, &state, angle);
-                let plan = own_motion(&rod, self.friction, &state, &tilt);
+                let plan = self.lifted.planned_motion(n, x + state.x_dot * struck, &state, angle);
                 let relative = plan.relative(flight, struck, &state);
                 let met = if relative.gravity.to_f64() > 0.0 { first_descent(&relative)? } else { None };
                 match met {

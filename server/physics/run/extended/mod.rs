@@ -86,20 +86,20 @@ impl ExtendedOrbit {
 
     /// Body that bounces; its parameters are those of a rod of no length where it is a point mass.
     pub fn rod(&self) -> &Rod<DoubleDouble> {
-        &self.body.rod
+        &self.body.lifted.rod
     }
 
     /// Energy per unit mass ½|v|² + Gy at a contact, m²/s².
     pub fn energy(&self, state: &State<DoubleDouble>) -> DoubleDouble {
-        let spin = self.body.rod.radius_of_gyration * state.theta_dot;
+        let spin = self.body.lifted.rod.radius_of_gyration * state.theta_dot;
         let speed_squared = state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin;
         DoubleDouble::from(0.5) * speed_squared
-            + self.body.rod.gravity * self.body.rod.contact_distance * state.theta.sincos().1
+            + self.body.lifted.rod.gravity * self.body.lifted.rod.contact_distance * state.theta.sincos().1
     }
 
     /// ẏ_c = ẏ + l θ̇ sin θ, vertical velocity of the contact point, m/s.
     pub fn contact_speed(&self, state: &State<DoubleDouble>) -> DoubleDouble {
-        state.y_dot + self.body.rod.contact_distance * state.theta_dot * state.theta.sincos().0
+        state.y_dot + self.body.lifted.rod.contact_distance * state.theta_dot * state.theta.sincos().0
     }
 
     /// The coming contact. After one with an ending, call it no more: the state stays that of the last contact.
@@ -133,11 +133,11 @@ impl ExtendedOrbit {
         }
         if rules.holds_energy {
             let energy = here.orbit.energy.unwrap_or(here.strike.energy);
-            here.orbit.energy = Some(here.orbit.body.rod.hold_energy(&mut here.strike, energy));
+            here.orbit.energy = Some(here.orbit.body.lifted.rod.hold_energy(&mut here.strike, energy));
         }
         let strike = here.strike;
         contact.strike = Some(strike);
-        let spin = (here.orbit.body.rod.contact_distance * strike.after.theta_dot).to_f64();
+        let spin = (here.orbit.body.lifted.rod.contact_distance * strike.after.theta_dot).to_f64();
         here.speed_squared = rules::speed_squared(strike.after.x_dot.to_f64(), strike.after.y_dot.to_f64(), spin);
         if let Some(ending) = rules::after_strike(&mut here) {
             contact.ending = Some(ending);
@@ -225,7 +225,7 @@ impl Checked for ExtendedAtContact<'_> {
     }
 
     fn rebound(&self) -> Rebound {
-        self.strike.rebound(self.orbit.body.rod.contact_distance, self.rise_rounding())
+        self.strike.rebound(self.orbit.body.lifted.rod.contact_distance, self.rise_rounding())
     }
 
     fn no_contact(&self) -> Option<NoContact> {

@@ -1,0 +1,92 @@
+//! The rod with all that a scene may ask beyond the plain one, in any kind of number: the strike, and the motion that a table plans.
+//!
+//! Branches are decided in doubles. Not here: falls and flights, whose ends are found in other ways for other numbers.
+
+use crate::body::PreImpact;
+use crate::bounce::friction::{Friction, actual_branch};
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
+use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::tilt::Tilt;
+use crate::numbers::number::Number;
+use crate::table::control_law::Steering;
+use crate::table::noise::Noise;
+use crate::table::program::HeightProgram;
+
+/// A rod in some kind of number, with what a scene asks for beyond the plain one.
+#[derive(Clone, Copy, Debug)]
+pub struct LiftedBody<N> {
+    /// The rod and its table; of a point mass, a rod of no length.
+    pub rod: Rod<N>,
+    /// Control law of the tilt.
+    pub steering: Steering,
+    /// Target heights of its strikes, where they differ.
+    pub program: Option<HeightProgram>,
+    /// Friction and a table that moves along itself.
+    pub friction: Option<Friction>,
+    /// Timing and sensing errors.
+    pub noise: Option<Noise>,
+}
+
+impl<N: Number> LiftedBody<N> {
+    /// Same as [`crate::body::Body::strike`].
+    pub fn strike(&self, coming: &PreImpact<N>) -> Strike<N> {
+        self.strike_at(coming, &self.tilt(coming))
+    }
+
+    /// The table's tilt at a contact.
+    pub(crate) fn tilt(&self, coming: &PreImpact<N>) -> Tilt<N> {
+        let PreImpact { n, x, state, plan, .. } = coming;
+        match plan {
+            Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
+            None => self.sensed_tilt(*x, state, self.noise.map_or(0.0, |noise| noise.angle_error(*n))),
+        }
+    }
+
+    /// The strike of a table at this tilt.
+    pub(crate) fn strike_at(&self, coming: &PreImpact<N>, tilt: &Tilt<N>) -> Strike<N> {
+        let PreImpact { n, state, clearance, plan, .. } = coming;
+        let mut rod = self.at_strike(*n);
+        if self.noise.is_some() {
+            // The energy of a bounce counts from its contact.
+            rod.target_energy = rod.target_energy - rod.gravity * *clearance;
+        }
+        match (&self.friction, plan) {
+            (None, None) => rod.strike_with(state, tilt, rod.leverage()),
+            (friction, plan) => {
+                let friction = friction.as_ref().unwrap_or(&Friction::SMOOTH);
+                friction.strike(&rod, state, tilt, plan.as_ref(), rod.leverage(), actual_branch)
+            }
+        }
+    }
+
+    /// Motion of a table that plans for contact `n` with the state that it foresees, its angle sensed with an error (rad).
+    pub(crate) fn planned_motion(&self, n: u64, x: N, seen: &State<N>, error: f64) -> PlannedTableMotion<N> {
+        own_motion(&self.at_strike(n), self.friction, seen, &self.sensed_tilt(x, seen, error))
+    }
+
+    fn sensed_tilt(&self, x: N, state: &State<N>, error: f64) -> Tilt<N> {
+        self.steering.sensed_tilt(&self.rod, x, state, error)
+    }
+
+    fn at_strike(&self, n: u64) -> Rod<N> {
+        self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
+    }
+}
+
+/// Motion of a table that follows its own law, for a state that it foresees at this tilt.
+pub(crate) fn own_motion<N: Number>(
+    rod: &Rod<N>,
+    friction: Option<Friction>,
+    seen: &State<N>,
+    tilt: &Tilt<N>,
+) -> PlannedTableMotion<N> {
+    let Tilt { alpha, sin_alpha, cos_alpha, .. } = *tilt;
+    let (table_x, table_y) = rod.strike_with(seen, tilt, rod.leverage()).table_velocity;
+    PlannedTableMotion {
+        alpha,
+        normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
+        tangential_velocity: friction.map_or(N::from_f64(0.0), |friction| friction.table_speed(rod, seen, tilt)),
+    }
+}
