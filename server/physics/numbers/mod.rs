@@ -9,5 +9,6 @@ pub mod dual;
 pub(crate) mod logarithm;
 pub mod number;
 pub mod second_order;
+pub(crate) mod symmetric;
 pub mod taylor;
 pub mod trig;

@@ -16,9 +16,10 @@ use crate::numbers::double_double;
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
+use crate::numbers::trig::sin_cos;
 use crate::run::bounce_derivative;
 use crate::run::bounce_derivative::{
-    ENERGY, FlightDerivative, OF_GAIN, OF_GRAVITY, OF_GYRATION, StrikeAngles, THETA, THETA_DOT, WIDTH, X_DOT, Y_DOT,
+    FlightDerivative, HeldEnergy, OF_GAIN, OF_GRAVITY, OF_GYRATION, STATES, StrikeAngles, UncertainRod, WIDTH,
 };
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
@@ -49,15 +50,18 @@ type Number8 = Dual<WIDTH>;
 /// The error of a run just before its coming contact, carried along beside its orbit.
 #[derive(Clone, Copy, Debug)]
 pub struct ErrorEstimate {
-    /// Parameters, with one standard deviation of each in its direction.
-    rod: Rod<Number8>,
+    rod: UncertainRod,
     program: Option<HeightProgram>,
     friction: Option<Friction>,
     is_point: bool,
     holds_energy: bool,
     errors: StateErrors,
-    /// True before the first contact, from which on energy is held.
-    is_first: bool,
+    energy: HeldEnergy,
+    /// True from a strike, just after which these errors are, to the end of the flight that follows.
+    is_flying: bool,
+    /// The last flight and its length, s.
+    flight: Flight,
+    flight_time: f64,
     /// The most that one rounding is off, as a share.
     unit: f64,
     /// Standard deviation of a rounding, as a share, at this bounce.
@@ -80,9 +84,18 @@ impl<B: Body> ContactByContact for EstimatedOrbit<'_, B> {
 
     #[inline(always)]
     fn next_contact(&mut self) -> Contact {
-        let contact = self.orbit.advance();
-        self.bound.set(self.estimate.bound());
-        self.estimate.pass(&contact);
+        let estimate = &mut self.estimate;
+        // The errors of the last flight are carried between strike and flight: the CPU does it while the bounce waits for its own numbers.
+        let contact = self.orbit.advance_disturbed(
+            #[inline(always)]
+            |_, strike| estimate.pass_flight(strike.sin_cos_theta),
+        );
+        // A run may end before the strike.
+        if estimate.is_flying {
+            estimate.pass_flight(estimate.end_of_flight());
+        }
+        self.bound.set(estimate.bound());
+        estimate.pass_strike(&contact);
         contact
     }
 }
@@ -152,20 +165,23 @@ impl ErrorEstimate {
         lifted.gravity.partials[OF_GRAVITY] = if sloped { 2.0 * unit * rod.gravity } else { 0.0 };
         lifted.radius_of_gyration.partials[OF_GYRATION] = 1.5 * unit * rod.radius_of_gyration;
         if let Some(height) = scene.target_height {
-            lifted.target_energy = target_energy(&lifted, height, unit);
+            lifted.target_energy = target_energy(lifted.gravity, rod.contact_distance, height, unit);
         }
         if rod.strike_gain != 2.0 {
             lifted.strike_gain.partials[OF_GAIN] = 2.0 * unit * rod.strike_gain;
         }
         let release = scene.release();
         let mut estimate = Self {
-            rod: lifted,
+            rod: UncertainRod::new(lifted),
             program: scene.program,
             friction: scene.contact_friction(),
             is_point: matches!(model, Model::Point(_)),
             holds_energy: scene.rules().holds_energy,
             errors: StateErrors::NONE,
-            is_first: true,
+            energy: None,
+            is_flying: false,
+            flight: rod.flight_from(release),
+            flight_time: first,
             unit,
             rounding: unit,
             // Not derived for more than friction.
@@ -173,7 +189,8 @@ impl ErrorEstimate {
         };
         if first > 0.0 {
             let doubt = 2.0 * (release.height.abs() + 2.0 * rod.contact_distance);
-            estimate.fly(&StateErrors::NONE, &rod.flight_from(release), first, doubt);
+            let end = estimate.flight.end(first);
+            estimate.fly(sin_cos(end.theta), doubt);
         }
         estimate
     }
@@ -185,10 +202,10 @@ impl ErrorEstimate {
         if self.lost {
             return f64::INFINITY;
         }
-        let rho = self.rod.radius_of_gyration.value;
-        let variance = |state: usize| self.errors.variance(state);
-        let turned = if self.is_point { 0.0 } else { rho * rho * variance(THETA) };
-        let (x_dot, y_dot, spin) = (variance(X_DOT), variance(Y_DOT), rho * rho * variance(THETA_DOT));
+        let rho = self.rod.plain.radius_of_gyration;
+        let [theta, x_dot, y_dot, theta_dot] = self.errors.variances();
+        let turned = if self.is_point { 0.0 } else { rho * rho * theta };
+        let spin = rho * rho * theta_dot;
         if (turned + x_dot + y_dot + spin).is_finite() {
             SAFETY * turned.max(x_dot).max(y_dot).max(spin).sqrt()
         } else {
@@ -199,6 +216,13 @@ impl ErrorEstimate {
     /// Goes on over a contact of the run and the flight after it; over one without a flight it does nothing.
     #[inline(always)]
     pub fn pass(&mut self, contact: &Contact) {
+        self.pass_strike(contact);
+        self.pass_flight(self.end_of_flight());
+    }
+
+    /// Goes on over the strike of a contact; [`ErrorEstimate::pass_flight`] has to follow.
+    #[inline(always)]
+    fn pass_strike(&mut self, contact: &Contact) {
         if let (Some(strike), Some(flight_time)) = (&contact.strike, contact.flight_time) {
             self.bounce(contact.n, &contact.state, strike, flight_time);
         }
@@ -209,6 +233,7 @@ impl ErrorEstimate {
         if let (Some(strike), Some(flight_time)) = (&contact.strike, contact.flight_time) {
             let state = extended::in_doubles(&contact.state);
             self.bounce(contact.n, &state, &strike.map(DoubleDouble::to_f64), flight_time.to_f64());
+            self.pass_flight(self.end_of_flight());
         }
     }
 
@@ -218,119 +243,145 @@ impl ErrorEstimate {
             return;
         }
         if let Some(program) = &self.program {
-            self.rod.target_energy = target_energy(&self.rod, program.at(n), self.unit);
+            let Rod { gravity, .. } = self.rod.lifted;
+            let energy = target_energy(gravity, self.rod.plain.contact_distance, program.at(n), self.unit);
+            self.rod.set_target_energy(energy);
         }
         self.rounding = self.unit * (1.0 + 2.0 * REPEATING * REPEATING * n as f64).sqrt();
-        let angles = StrikeAngles::new(strike);
+        let angles = StrikeAngles::new(&self.rod, strike);
         let derivative = match &self.friction {
             None => {
-                let holds = self.holds_energy.then_some(self.is_first);
-                bounce_derivative::of_strike(&self.rod, state, strike, &angles, holds)
+                let held = self.holds_energy.then_some(self.energy);
+                bounce_derivative::of_strike(&self.rod, state, strike, &angles, held)
             }
-            Some(friction) => bounce_derivative::of_strike_with_friction(friction, &self.rod, state),
+            Some(friction) => bounce_derivative::of_strike_with_friction(friction, &self.rod.lifted, state),
         };
         let mut errors = self.errors.after_strike(&derivative);
+        if let Some(energy) = &derivative.energy {
+            let rounding = self.rounding * self.energy_parts(strike);
+            let held = errors.hold(self.errors, derivative, *energy, rounding * rounding);
+            (errors, self.energy) = (held.0, Some(held.1));
+        }
         self.round_strike(&mut errors, state, strike, &angles);
-        self.is_first = false;
-        let rod: Rod = self.rod.map(|number| number.value);
-        self.fly(&errors, &rod.flight(strike), flight_time, 0.0);
+        self.errors = errors;
+        (self.flight, self.flight_time) = (self.rod.plain.flight(strike), flight_time);
+        self.is_flying = true;
+    }
+
+    /// Goes on to the end of the flight, if there is one, with sin θ and cos θ there.
+    #[inline(always)]
+    fn pass_flight(&mut self, end: (f64, f64)) {
+        if self.is_flying {
+            self.is_flying = false;
+            self.fly(end, 0.0);
+        }
+    }
+
+    /// Sine and cosine of the angle at the end of the flight.
+    fn end_of_flight(&self) -> (f64, f64) {
+        sin_cos(self.flight.end(self.flight_time).theta)
+    }
+
+    /// Terms of the energy before a strike, m²/s².
+    #[inline(always)]
+    fn parts(&self, strike: &Strike) -> f64 {
+        let weight = self.rod.plain.gravity * self.rod.plain.contact_distance;
+        1.5 * strike.speed_squared + 2.0 * weight * (1.0 - strike.sin_cos_theta.1)
+    }
+
+    /// Terms of the held energy that a strike rounds, which are those that it changes, m²/s².
+    fn energy_parts(&self, strike: &Strike) -> f64 {
+        if self.energy.is_none() {
+            self.parts(strike)
+        } else if strike.energy_gain != 0.0 {
+            (strike.energy + strike.energy_gain).abs() + 4.0 * strike.energy_gain.abs()
+        } else {
+            0.0
+        }
     }
 
     /// Adds what the strike rounds: the impulse along its own direction, the energy along the velocity, the tilt, and each sum.
     #[inline(always)]
     fn round_strike(&self, errors: &mut StateErrors, before: &State, strike: &Strike, angles: &StrikeAngles) {
-        let (l, rho) = (self.rod.contact_distance.value, self.rod.radius_of_gyration.value);
-        let StrikeAngles { sin_alpha, cos_alpha, sin_beta, cos_beta } = *angles;
-        let per_rho_squared = 1.0 / (rho * rho);
-        let (impulse, turn) = (strike.impulse_normal, l * sin_beta * per_rho_squared);
+        let l = self.rod.plain.contact_distance;
+        let StrikeAngles { sin_alpha, cos_alpha, cos_beta, arm, turn, per_mobility, per_square, .. } = *angles;
+        let impulse = strike.impulse_normal;
         let State { x_dot, y_dot, theta_dot, .. } = strike.after;
-        let terms = (cos_alpha * before.y_dot).abs()
-            + (sin_alpha * before.x_dot).abs()
-            + (l * sin_beta * before.theta_dot).abs();
-        let gain = impulse.abs() / strike.normal_velocity.abs();
-        let along = self.rounding * (2.0 * gain * terms + 3.0 * impulse.abs());
-        let weight = self.rod.gravity.value * l;
-        let parts = 1.5 * strike.speed_squared + 2.0 * weight * (1.0 - strike.sin_cos_theta.1);
-        let stretch = if self.holds_energy { self.rounding * parts / strike.speed_squared } else { 0.0 };
-        // A held energy is rounded only if the strike changes it.
-        let energy_parts = if !self.holds_energy {
-            0.0
-        } else if self.is_first {
-            parts
-        } else if strike.energy_gain != 0.0 {
-            (strike.energy + strike.energy_gain).abs() + 4.0 * strike.energy_gain.abs()
+        let terms =
+            (cos_alpha * before.y_dot).abs() + (sin_alpha * before.x_dot).abs() + (arm * before.theta_dot).abs();
+        let gain = if self.friction.is_none() && self.rod.is_steady {
+            self.rod.plain.strike_gain.abs() * per_mobility
         } else {
-            0.0
+            impulse.abs() / strike.normal_velocity.abs()
         };
+        let along = self.rounding * (2.0 * gain * terms + 3.0 * impulse.abs());
+        let stretch = if self.holds_energy { self.rounding * self.parts(strike) * per_square } else { 0.0 };
         let of_sums = [
-            (X_DOT, 2.0 * x_dot.abs() + 3.0 * (impulse * sin_alpha).abs()),
-            (Y_DOT, 2.0 * y_dot.abs() + impulse.abs()),
-            (THETA_DOT, 2.0 * theta_dot.abs() + 3.0 * (impulse * turn).abs()),
-            (ENERGY, energy_parts),
+            0.0,
+            2.0 * x_dot.abs() + 3.0 * (impulse * sin_alpha).abs(),
+            2.0 * y_dot.abs() + impulse.abs(),
+            2.0 * theta_dot.abs() + 3.0 * (impulse * turn).abs(),
         ];
-        for (state, parts) in of_sums {
-            let rounding = self.rounding * parts;
-            errors.add(state, rounding * rounding);
-        }
+        errors.add(of_sums.map(|parts| (self.rounding * parts) * (self.rounding * parts)));
         // α and β are rounded before their sines are: a table that is turned a little, by which the impulse changes so much.
-        let beta = (1.0 - self.rod.tilt_gain.value) * before.theta;
+        let beta = (1.0 - self.rod.plain.tilt_gain) * before.theta;
         let turned = self.rounding * (strike.alpha.abs() + beta.abs());
         let across = cos_alpha * before.x_dot + sin_alpha * before.y_dot + l * cos_beta * before.theta_dot;
-        let lever = l * sin_beta * turn;
-        let change = gain * across + 2.0 * impulse * turn * (l * cos_beta) / (1.0 + lever);
+        let change = gain * across + 2.0 * impulse * turn * (l * cos_beta) * per_mobility;
         let mut directions = [
             [-sin_alpha * along, cos_alpha * along, turn * along],
             [x_dot * stretch, y_dot * stretch, theta_dot * stretch],
             [
                 turned * (-cos_alpha * impulse - sin_alpha * change),
                 turned * (-sin_alpha * impulse + cos_alpha * change),
-                turned * (turn * change - l * cos_beta * per_rho_squared * impulse),
+                turned * (turn * change - l * cos_beta * self.rod.leverage * impulse),
             ],
         ];
         if let Some(friction) = self.friction {
             // The impulse along the table takes the place of the energy, which is not held with friction. It follows the normal one, and
             // the sliding, a sum, unless the table matches that.
             let (sin, cos) = (sin_alpha * strike.sin_cos_theta.0, cos_alpha * strike.sin_cos_theta.1);
-            let (arm, tangential) = (l * (cos + sin), strike.impulse_tangential);
+            let (reach, tangential) = (l * (cos + sin), strike.impulse_tangential);
             let terms =
-                (cos_alpha * before.x_dot).abs() + (sin_alpha * before.y_dot).abs() + (arm * before.theta_dot).abs();
+                (cos_alpha * before.x_dot).abs() + (sin_alpha * before.y_dot).abs() + (reach * before.theta_dot).abs();
             let terms = if friction.slide == Slide::Matched { 0.0 } else { terms };
             let aside = self.rounding * (2.0 * terms + 3.0 * tangential.abs())
                 + along * (tangential / impulse).abs()
                 + turned * (2.0 * impulse.abs() + strike.normal_velocity.abs());
-            directions[1] = [cos_alpha * aside, sin_alpha * aside, arm * per_rho_squared * aside];
+            directions[1] = [cos_alpha * aside, sin_alpha * aside, reach * self.rod.leverage * aside];
         }
         for direction in directions {
-            errors.add_along([X_DOT, Y_DOT, THETA_DOT], direction);
+            errors.add_along(direction);
         }
     }
 
-    /// Carries the errors over a flight of length `t`, in which terms of `doubt` m more are rounded.
+    /// Carries the errors over the flight to an end with these sin θ and cos θ. In it terms of `doubt` m more are rounded.
     #[inline(always)]
-    fn fly(&mut self, struck: &StateErrors, flight: &Flight, t: f64, doubt: f64) {
-        let over = FlightDerivative::new(flight, t, self.rod.gravity.partials[OF_GRAVITY]);
-        let (mut errors, time_deviation) = struck.after_flight(&over);
+    fn fly(&mut self, end: (f64, f64), doubt: f64) {
+        let Self { errors: struck, flight, flight_time: t, .. } = *self;
+        let over = FlightDerivative::new(&flight, t, end, self.rod.heavier());
+        let (mut errors, time_variance) = struck.after_flight(&over);
         let FlightDerivative { end, sin_cos_theta: (sin, cos), contact_speed, .. } = over;
         let (l, gravity, speed) = (flight.contact_distance, flight.gravity, contact_speed.abs());
         // ẏ_c = ẏ + l θ̇ sin θ.
-        let of_speed = errors.deviation_of_sum([(l * end.theta_dot * cos, THETA), (1.0, Y_DOT), (l * sin, THETA_DOT)]);
-        let grazing = SAFETY * of_speed / speed;
+        let of_speed = errors.variance_of_sum(l * end.theta_dot * cos, l * sin);
+        let per_speed = over.per_speed.abs();
+        let grazing_squared = SAFETY * SAFETY * of_speed * per_speed * per_speed;
         let turned = (end.theta_dot * t).abs();
         let reach = l * (flight.sin_cos_theta.0.abs() * turned.min(1.0) + (0.5 * turned * turned).min(2.0));
         let parts = t * (flight.start.y_dot.abs() + gravity * t) + 3.0 * reach + doubt;
         // The second order of the contact time: its error times the relative error of the speed it divides by.
-        let late = self.rounding * (t + parts / speed) + time_deviation * grazing;
+        let late = self.rounding * (t + parts * per_speed) + (time_variance * grazing_squared).sqrt();
         let of_theta = self.rounding * if turned > 0.0 { end.theta.abs() + turned } else { 0.0 };
         let of_y_dot = self.rounding * (end.y_dot.abs() + gravity * t);
-        errors.add(THETA, of_theta * of_theta);
-        errors.add(Y_DOT, of_y_dot * of_y_dot);
-        errors.add_along([THETA, Y_DOT, THETA_DOT], [end.theta_dot * late, -gravity * late, 0.0]);
+        errors.add([of_theta * of_theta, 0.0, of_y_dot * of_y_dot, 0.0]);
+        errors.add_along_flight(end.theta_dot * late, -gravity * late);
         if self.is_point {
             errors.set_angle_of_velocity(end.x_dot, end.y_dot);
         }
-        self.lost |= grazing.is_nan()
-            || grazing >= GRAZING_SHARE
-            || (flight.bulge() > gravity && !same_root(struck, flight, t, speed));
+        self.lost |= grazing_squared.is_nan()
+            || grazing_squared >= GRAZING_SHARE * GRAZING_SHARE
+            || (flight.bulge() > gravity && !same_root(struck.variances(), flight, t, speed));
         self.errors = errors;
     }
 }
@@ -339,12 +390,12 @@ impl ErrorEstimate {
 /// more than one.
 #[cold]
 #[inline(never)]
-fn same_root(struck: &StateErrors, flight: &Flight, t: f64, speed: f64) -> bool {
+fn same_root(struck: [f64; STATES], flight: Flight, t: f64, speed: f64) -> bool {
     let l = flight.contact_distance;
-    let [theta, y_dot, theta_dot] = [THETA, Y_DOT, THETA_DOT].map(|state| struck.variance(state).sqrt());
+    let [theta, _, y_dot, theta_dot] = struck.map(f64::sqrt);
     let reach = SAFETY * (y_dot + l * theta_dot + 2.0 * l * theta / t) + ROUNDING * l / t;
     [-reach, reach].into_iter().all(|reach| {
-        let mut aside = *flight;
+        let mut aside = flight;
         aside.start.y_dot += reach;
         (aside.clearance > 0.0 || aside.gap(0.0).slope > 0.0)
             && contact_time::first_contact(&aside)
@@ -353,10 +404,9 @@ fn same_root(struck: &StateErrors, flight: &Flight, t: f64, speed: f64) -> bool 
 }
 
 /// The energy of a target height, m, off by its rounding and that of the energy which it is compared with.
-fn target_energy(rod: &Rod<Number8>, height: f64, unit: f64) -> Number8 {
-    let mut energy = Number8::from_f64(rod.gravity.value * height);
-    let weight = rod.gravity.value * rod.contact_distance.value;
-    energy.partials[OF_GAIN] = unit * (2.0 * energy.value.abs() + weight);
-    energy.partials[OF_GRAVITY] = rod.gravity.partials[OF_GRAVITY] * height;
+fn target_energy(gravity: Number8, contact_distance: f64, height: f64, unit: f64) -> Number8 {
+    let mut energy = Number8::from_f64(gravity.value * height);
+    energy.partials[OF_GAIN] = unit * (2.0 * energy.value.abs() + gravity.value * contact_distance);
+    energy.partials[OF_GRAVITY] = gravity.partials[OF_GRAVITY] * height;
     energy
 }

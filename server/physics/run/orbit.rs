@@ -175,7 +175,7 @@ impl<B: Body> Orbit<B> {
     }
 
     #[inline(always)]
-    fn advance_disturbed(&mut self, disturb: impl FnOnce(&mut Self, &mut Strike)) -> Contact {
+    pub(crate) fn advance_disturbed(&mut self, disturb: impl FnOnce(&mut Self, &mut Strike)) -> Contact {
         self.n += 1;
         let Self { n, state, clearance, plan, .. } = *self;
         let coming = PreImpact { n, x: self.x.value, state, clearance, plan };
