@@ -59,6 +59,7 @@ impl Bodies {
         let general = GeneralBody {
             rod,
             steering: Steering::TiltGain,
+            constant_tilt: 0.0,
             program: None,
             friction: None,
             noise: None,

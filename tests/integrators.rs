@@ -11,8 +11,13 @@ use equipoise_physics::scene::{Draft, Name, Value};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::SplitMix64;
 
-const RULES: Rules =
-    Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None };
+const RULES: Rules = Rules {
+    topple_angle: std::f64::consts::FRAC_PI_2,
+    settles: false,
+    holds_energy: true,
+    limits: None,
+    half_length: f64::INFINITY,
+};
 
 /// A rod of the paper's length and its release at rest in x and y.
 #[derive(Clone, Copy, Debug)]

@@ -7,5 +7,10 @@ use equipoise_physics::run::rules::Rules;
 pub(crate) const ROD: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.1);
 
 /// Rules that end its runs.
-pub(crate) const RULES: Rules =
-    Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None };
+pub(crate) const RULES: Rules = Rules {
+    topple_angle: std::f64::consts::FRAC_PI_2,
+    settles: false,
+    holds_energy: true,
+    limits: None,
+    half_length: f64::INFINITY,
+};

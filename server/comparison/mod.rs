@@ -118,6 +118,9 @@ pub fn chart(
     if scene.rules().limits.is_some() {
         notes.push("table.limits end none of these runs: general methods do not look at them".to_owned());
     }
+    if scene.rules().half_length.is_finite() {
+        notes.push("table.length ends none of these runs: no method but the map looks at it".to_owned());
+    }
     if scene.vertices().is_some() {
         notes.push("no other vertex ends any of these runs: general methods do not look for them".to_owned());
     }

@@ -158,9 +158,9 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// The rules that every method has; only the map checks the limits of the table.
+    /// The rules that every method has; only the map checks the limits and the ends of the table.
     fn rules(&self) -> Rules {
-        Rules { limits: None, ..self.scene.rules() }
+        Rules { limits: None, half_length: f64::INFINITY, ..self.scene.rules() }
     }
 
     fn free(&self) -> Rules {

@@ -185,7 +185,7 @@ fn plane(label: &'static str, style: CurveStyle, scene: &Scene, impacts: u64) ->
     Curve { label, style, points }
 }
 
-fn residue(scene: &Scene) -> MethodClaim {
+pub(super) fn residue(scene: &Scene) -> MethodClaim {
     let linear = linear_verdict(scene, &upright(scene));
     let verdict = if linear.says_bounded() { "bounded" } else { "falls" };
     let detail = format!(

@@ -12,6 +12,7 @@ mod contact;
 mod derivative;
 mod eigenvalue;
 mod horizon;
+mod rig;
 mod scenes;
 mod steps;
 mod swing;
@@ -19,7 +20,7 @@ mod swing;
 pub use case::{FailureCase, Findings, MethodClaim};
 
 /// All cases, in the order in which they are shown.
-pub const CASES: [FailureCase; 18] = [
+pub const CASES: [FailureCase; 19] = [
     boundary::SOFT,
     boundary::HARD,
     boundary::HARD_WITH_FEEDBACK,
@@ -38,6 +39,7 @@ pub const CASES: [FailureCase; 18] = [
     catching::LOW_TARGET,
     swing::SETTLED,
     catching::CONTACT_GAIN,
+    rig::BIAS,
 ];
 
 /// The case of this name.

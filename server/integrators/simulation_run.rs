@@ -210,9 +210,13 @@ impl Checked for AtContact {
         self.t
     }
 
-    // The general methods simulate a rod on a table without limits.
+    // The general methods simulate a rod on a table without limits and ends.
     fn touch(&self) -> Option<Touch> {
         None
+    }
+
+    fn contact_place(&self) -> f64 {
+        0.0
     }
 
     fn load(&mut self) -> ActuatorLoad {

@@ -11,7 +11,7 @@ use futures_util::{Sink, SinkExt, Stream, StreamExt};
 use tokio::sync::mpsc;
 use tokio::time::{sleep_until, timeout};
 
-use crate::api::catches::request::NO_BODY;
+use crate::api::catches::request::never_caught;
 use crate::api::scene::has_angle;
 use crate::api::trajectories::columns::ImpactRow;
 use crate::http::{Problem, ValidationError};
@@ -376,7 +376,7 @@ impl Session {
             }
             ClientMessage::Catch(settings) => {
                 let (n, _) = self.next_impact()?;
-                self.has_body(&live)?;
+                self.can_be_caught(&live)?;
                 if let Some(t) = self.playback.held_until() {
                     let detail = format!("the table holds the body already (until t = {t} s at least); throw it first");
                     return Err(Problem::invalid_at("/type", detail));
@@ -386,7 +386,7 @@ impl Session {
             }
             ClientMessage::Throw(target) => {
                 let (n, _) = self.next_impact()?;
-                self.has_body(&live)?;
+                self.can_be_caught(&live)?;
                 self.playback.try_throw(target).map_err(|failure| Problem::invalid_at("/apex", failure.to_string()))?;
                 let order = ThrowOrder { target: *target, t: self.playback.held_until() };
                 live.run.throw(n, order).map_err(|detail| Problem::invalid_at("", detail))?;
@@ -428,9 +428,9 @@ impl Session {
         Ok(())
     }
 
-    /// Refuses a catch or a throw of a point mass.
-    fn has_body(&self, live: &LiveRun) -> Result<(), Problem> {
-        if has_angle(live.run.scene()) { Ok(()) } else { Err(Problem::invalid_at("/type", NO_BODY)) }
+    /// Refuses a catch or a throw of a body for which there is none.
+    fn can_be_caught(&self, live: &LiveRun) -> Result<(), Problem> {
+        never_caught(live.run.scene()).map_or(Ok(()), |(_, detail)| Err(Problem::invalid_at("/type", detail)))
     }
 
     /// Number and time of the next impact.

@@ -6,7 +6,7 @@ use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::scene::{FIELDS, Field, Name, Value as FieldValue, field};
 use serde_json::{Map, Value};
 
-use crate::api::catches::request::{NO_BODY, read_settings, strategy_name};
+use crate::api::catches::request::{never_caught, read_settings, strategy_name};
 use crate::api::scene::{has_angle, read_scene, read_value, value_to_query};
 use crate::api::throws::request::read_apex;
 use crate::http::request::reader::join;
@@ -79,9 +79,11 @@ fn apply(run: &mut Run, intervention: &InterventionRequest, pointer: &str, error
             errors.push(pointer, detail);
         }
     }
-    if (catch.is_some() || throw.is_some()) && !has_angle(run.scene()) {
+    if (catch.is_some() || throw.is_some())
+        && let Some((_, detail)) = never_caught(run.scene())
+    {
         let name = if catch.is_some() { "catch" } else { "throw" };
-        errors.push(format!("{pointer}/{name}"), NO_BODY);
+        errors.push(format!("{pointer}/{name}"), detail);
         return;
     }
     // A catch takes the place of a throw at the same impact, so it comes first.

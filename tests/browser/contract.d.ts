@@ -7,6 +7,7 @@ export interface components {
         "scene.body.contact_distance": number;
         "scene.body.radius_of_gyration": number;
         "scene.body.point": boolean;
+        "scene.body.offset": number;
         "scene.body.contact_vertex": number;
         "scene.gravity": number;
         "scene.incline": number;
@@ -31,6 +32,11 @@ export interface components {
         "scene.table.feedback.x_dot": number;
         "scene.table.feedback.theta_dot": number;
         "scene.table.assumed_restitution": number;
+        "scene.table.errors.angle_bias": number;
+        "scene.table.errors.tilt_offset": number;
+        "scene.table.errors.tilt_gain": number;
+        "scene.table.errors.speed": number;
+        "scene.table.length": number;
         "scene.table.limits.tilt": number;
         "scene.table.limits.tilt_rate": number;
         "scene.table.limits.speed": number;
@@ -147,6 +153,7 @@ export interface components {
                 contact_distance?: components["schemas"]["scene.body.contact_distance"] | null;
                 radius_of_gyration?: components["schemas"]["scene.body.radius_of_gyration"] | null;
                 point?: components["schemas"]["scene.body.point"] | null;
+                offset?: components["schemas"]["scene.body.offset"] | null;
                 vertices?: components["schemas"]["Vertices"] | null;
                 contact_vertex?: components["schemas"]["scene.body.contact_vertex"] | null;
             } | null;
@@ -173,6 +180,13 @@ export interface components {
                     theta_dot?: components["schemas"]["scene.table.feedback.theta_dot"] | null;
                 } | null;
                 assumed_restitution?: components["schemas"]["scene.table.assumed_restitution"] | null;
+                errors?: {
+                    angle_bias?: components["schemas"]["scene.table.errors.angle_bias"] | null;
+                    tilt_offset?: components["schemas"]["scene.table.errors.tilt_offset"] | null;
+                    tilt_gain?: components["schemas"]["scene.table.errors.tilt_gain"] | null;
+                    speed?: components["schemas"]["scene.table.errors.speed"] | null;
+                } | null;
+                length?: components["schemas"]["scene.table.length"] | null;
                 limits?: {
                     tilt?: components["schemas"]["scene.table.limits.tilt"] | null;
                     tilt_rate?: components["schemas"]["scene.table.limits.tilt_rate"] | null;
@@ -201,6 +215,7 @@ export interface components {
             body: {
                 contact_distance: components["schemas"]["scene.body.contact_distance"];
                 radius_of_gyration: components["schemas"]["scene.body.radius_of_gyration"];
+                offset?: components["schemas"]["scene.body.offset"];
             } | {
                 point: components["schemas"]["scene.body.point"];
             } | {
@@ -230,6 +245,13 @@ export interface components {
                     theta_dot?: components["schemas"]["scene.table.feedback.theta_dot"];
                 } | null;
                 assumed_restitution?: components["schemas"]["scene.table.assumed_restitution"] | null;
+                errors?: {
+                    angle_bias?: components["schemas"]["scene.table.errors.angle_bias"];
+                    tilt_offset?: components["schemas"]["scene.table.errors.tilt_offset"];
+                    tilt_gain?: components["schemas"]["scene.table.errors.tilt_gain"];
+                    speed?: components["schemas"]["scene.table.errors.speed"];
+                };
+                length?: components["schemas"]["scene.table.length"];
                 limits?: {
                     tilt?: components["schemas"]["scene.table.limits.tilt"];
                     tilt_rate?: components["schemas"]["scene.table.limits.tilt_rate"];
@@ -296,6 +318,11 @@ export interface components {
             "table.feedback.x_dot"?: components["schemas"]["scene.table.feedback.x_dot"];
             "table.feedback.theta_dot"?: components["schemas"]["scene.table.feedback.theta_dot"];
             "table.assumed_restitution"?: components["schemas"]["scene.table.assumed_restitution"];
+            "table.errors.angle_bias"?: components["schemas"]["scene.table.errors.angle_bias"];
+            "table.errors.tilt_offset"?: components["schemas"]["scene.table.errors.tilt_offset"];
+            "table.errors.tilt_gain"?: components["schemas"]["scene.table.errors.tilt_gain"];
+            "table.errors.speed"?: components["schemas"]["scene.table.errors.speed"];
+            "table.length"?: components["schemas"]["scene.table.length"];
             "table.limits.tilt"?: components["schemas"]["scene.table.limits.tilt"];
             "table.limits.tilt_rate"?: components["schemas"]["scene.table.limits.tilt_rate"];
             "table.limits.speed"?: components["schemas"]["scene.table.limits.speed"];
@@ -322,6 +349,13 @@ export interface components {
                     theta_dot?: components["schemas"]["scene.table.feedback.theta_dot"];
                 };
                 assumed_restitution?: components["schemas"]["scene.table.assumed_restitution"];
+                errors?: {
+                    angle_bias?: components["schemas"]["scene.table.errors.angle_bias"];
+                    tilt_offset?: components["schemas"]["scene.table.errors.tilt_offset"];
+                    tilt_gain?: components["schemas"]["scene.table.errors.tilt_gain"];
+                    speed?: components["schemas"]["scene.table.errors.speed"];
+                };
+                length?: components["schemas"]["scene.table.length"];
                 limits?: {
                     tilt?: components["schemas"]["scene.table.limits.tilt"];
                     tilt_rate?: components["schemas"]["scene.table.limits.tilt_rate"];
@@ -376,6 +410,7 @@ export interface components {
             other_vertex: number;
             missed: number;
             beyond_limits: number;
+            off_table: number;
             none: number;
         };
         CatchCounts: {
@@ -449,6 +484,7 @@ export interface components {
             other_vertex: number;
             missed: number;
             beyond_limits: number;
+            off_table: number;
         };
         Ensemble: {
             scene: components["schemas"]["Scene"];
@@ -816,7 +852,7 @@ export interface components {
             failures: components["schemas"]["Failure"][];
         };
         /** @enum {string} */
-        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain";
+        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain" | "biased-angle";
         Failure: {
             name: components["schemas"]["FailureName"];
             title: string;
@@ -886,7 +922,7 @@ export interface components {
         };
         Notes: string[];
         /** @enum {string} */
-        OutcomeKind: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "other_vertex" | "missed" | "beyond_limits";
+        OutcomeKind: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "other_vertex" | "missed" | "beyond_limits" | "off_table";
         Outcome: {
             kind: components["schemas"]["OutcomeKind"] | components["schemas"]["CatchOutcomeKind"];
             impacts: number;
@@ -924,7 +960,7 @@ export interface components {
             }[];
         };
         /** @enum {string} */
-        Rung: "point" | "linear" | "rod" | "rod_with_x" | "friction" | "noise" | "polygon";
+        Rung: "point" | "linear" | "rod" | "rod_with_x" | "rig_errors" | "friction" | "noise" | "polygon";
         Forced: {
             rung: components["schemas"]["Rung"];
             field: string;
@@ -1664,6 +1700,7 @@ export interface components {
             decided_by: "linear" | "nonlinear" | "boundary" | "lyapunov" | null;
             reason: string;
             fixed_point: null | {
+                x?: number;
                 theta: number | null;
                 x_dot: number;
                 y_dot: number;
@@ -1703,6 +1740,12 @@ export interface components {
                 t: number;
                 max_theta: number | null;
                 detail: string;
+            };
+            steady_drift?: {
+                theta: number | null;
+                acceleration: number | null;
+                speed: number | null;
+                time_on_table: number | null;
             };
             drift_speed: number | null;
             agree: boolean | null;
@@ -1966,6 +2009,11 @@ export interface components {
             "table.feedback.x_dot"?: components["schemas"]["scene.table.feedback.x_dot"];
             "table.feedback.theta_dot"?: components["schemas"]["scene.table.feedback.theta_dot"];
             "table.assumed_restitution"?: components["schemas"]["scene.table.assumed_restitution"];
+            "table.errors.angle_bias"?: components["schemas"]["scene.table.errors.angle_bias"];
+            "table.errors.tilt_offset"?: components["schemas"]["scene.table.errors.tilt_offset"];
+            "table.errors.tilt_gain"?: components["schemas"]["scene.table.errors.tilt_gain"];
+            "table.errors.speed"?: components["schemas"]["scene.table.errors.speed"];
+            "table.length"?: components["schemas"]["scene.table.length"];
             "table.limits.tilt"?: components["schemas"]["scene.table.limits.tilt"];
             "table.limits.tilt_rate"?: components["schemas"]["scene.table.limits.tilt_rate"];
             "table.limits.speed"?: components["schemas"]["scene.table.limits.speed"];
@@ -2040,6 +2088,7 @@ export interface components {
 export type SceneBodyContactDistance = components['schemas']['scene.body.contact_distance'];
 export type SceneBodyRadiusOfGyration = components['schemas']['scene.body.radius_of_gyration'];
 export type SceneBodyPoint = components['schemas']['scene.body.point'];
+export type SceneBodyOffset = components['schemas']['scene.body.offset'];
 export type SceneBodyContactVertex = components['schemas']['scene.body.contact_vertex'];
 export type SceneGravity = components['schemas']['scene.gravity'];
 export type SceneIncline = components['schemas']['scene.incline'];
@@ -2059,6 +2108,11 @@ export type SceneTableFeedbackTheta = components['schemas']['scene.table.feedbac
 export type SceneTableFeedbackXDot = components['schemas']['scene.table.feedback.x_dot'];
 export type SceneTableFeedbackThetaDot = components['schemas']['scene.table.feedback.theta_dot'];
 export type SceneTableAssumedRestitution = components['schemas']['scene.table.assumed_restitution'];
+export type SceneTableErrorsAngleBias = components['schemas']['scene.table.errors.angle_bias'];
+export type SceneTableErrorsTiltOffset = components['schemas']['scene.table.errors.tilt_offset'];
+export type SceneTableErrorsTiltGain = components['schemas']['scene.table.errors.tilt_gain'];
+export type SceneTableErrorsSpeed = components['schemas']['scene.table.errors.speed'];
+export type SceneTableLength = components['schemas']['scene.table.length'];
 export type SceneTableLimitsTilt = components['schemas']['scene.table.limits.tilt'];
 export type SceneTableLimitsTiltRate = components['schemas']['scene.table.limits.tilt_rate'];
 export type SceneTableLimitsSpeed = components['schemas']['scene.table.limits.speed'];

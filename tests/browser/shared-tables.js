@@ -67,7 +67,7 @@ function endings() {
     return `  ${kind}: { verb: '${verb}', reason: '${reason}' },\n`;
   });
   if (rows.length < 13) throw new Error(`${path} has ${rows.length} endings with words`);
-  return `${note(path)}/** The verb of a headline and the reason, by the kind of an ending. @type {Record<string, {verb: string, reason: string}>} */\nexport const ENDINGS = {\n${rows.join('')}};\n`;
+  return `${note(path)}/** Verb and reason, by ending. @type {Record<string, {verb: string, reason: string}>} */\nexport const ENDINGS = {\n${rows.join('')}};\n`;
 }
 
 for (const [path, text] of [

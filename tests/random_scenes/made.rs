@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use serde_json::{Map, Value, json};
 
 /// Typical values of a lab. Other fields are drawn from their whole range.
-pub(super) const USUAL: [(Name, f64, f64); 14] = [
+pub(super) const USUAL: [(Name, f64, f64); 20] = [
     (Name::ContactDistance, 0.05, 0.5),
     (Name::RadiusOfGyration, 0.03, 0.5),
     (Name::Gravity, 1.0, 10.0),
@@ -20,6 +20,12 @@ pub(super) const USUAL: [(Name, f64, f64); 14] = [
     (Name::XDot, -0.5, 0.5),
     (Name::TimingSd, 0.0, 0.002),
     (Name::AngleSd, 0.0, 0.01),
+    (Name::Offset, -0.01, 0.01),
+    (Name::AngleBias, -0.01, 0.01),
+    (Name::TiltOffset, -0.01, 0.01),
+    (Name::TiltGainError, -0.1, 0.1),
+    (Name::SpeedError, -0.1, 0.1),
+    (Name::TableLength, 0.2, 5.0),
 ];
 
 /// Ingredients of a random scene: for each field, its place in its range, if it is set; and the body.
@@ -102,6 +108,11 @@ impl Made {
                 Name::TargetHeight if said(Name::Program) => false,
                 Name::TiltGain => tilts == Tilts::Gain,
                 _ if row.path.starts_with("table.feedback.") => tilts == Tilts::Feedback,
+                // Many resources refuse rigs that are not ideal, so few scenes have one.
+                Name::Offset => self.above > 0.85 && !plain && matches!(self.body, Body::Rod),
+                Name::SpeedError if still || one_strike => false,
+                Name::TableLength => self.above > 0.85 && !plain,
+                _ if row.path.starts_with("table.errors.") => self.above > 0.85 && !plain && !is_point,
                 // Limits of the table end a run soon, so few scenes have them.
                 _ if row.path.starts_with("table.limits.") => self.above < 0.2,
                 _ => group != "noise" || (self.noisy && !is_point),

@@ -39,5 +39,6 @@ mod polygon;
 mod precision;
 mod regions;
 mod repeats;
+mod rig;
 mod streams;
 mod verdict;

@@ -14,8 +14,7 @@ use rapier2d_f64::prelude::*;
 use serde_json::{Value, json};
 
 const CASE_1: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.1);
-const RULES: Rules =
-    Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None };
+const RULES: Rules = Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None, half_length: f64::INFINITY };
 const RELEASE: Release =
     Release { x: 0.0, height: 0.2, state: State { theta: 0.3, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 } };
 const IMPACTS: usize = 100;

@@ -15,7 +15,7 @@ use serde_json::Value as Json;
 
 use crate::api::catches::columns::{OF_HOLD, of_strikes, to_table};
 use crate::api::catches::outcome::{CatchOutcomeAnswer, note_text};
-use crate::api::catches::request::{CatchOptions, NO_BODY};
+use crate::api::catches::request::{CatchOptions, never_caught};
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, scene_to_json};
 use crate::api::shared::model_choice::ModelChoice;
@@ -138,7 +138,7 @@ impl CatchAnswer {
     /// # Errors
     /// The reason for which there is no catch, or cancelled work.
     pub fn compute(scene: &Scene, options: &CatchOptions, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Refusal> {
-        let caught = catch(scene, &options.settings, go_on).map_err(refusal)?;
+        let caught = catch(scene, &options.settings, go_on).map_err(|why| refusal(scene, why))?;
         let friction = scene.number(Name::Friction).unwrap_or(0.0);
         let samples = caught.hold.as_ref().map_or(&[][..], |hold| &hold.samples);
         let end =
@@ -201,10 +201,13 @@ fn thinned(samples: &[HoldSample], most: u64) -> Vec<HoldSample> {
 }
 
 /// The reason for which there is no catch.
-fn refusal(why: CatchFailure) -> Refusal {
+fn refusal(scene: &Scene, why: CatchFailure) -> Refusal {
     match why {
         CatchFailure::Stopped => Refusal::Cancelled,
-        CatchFailure::Point => Refusal::At("/scene/body/point", NO_BODY.to_owned()),
+        // Requests are not read so far with such a scene.
+        CatchFailure::Point | CatchFailure::Rig(_) => {
+            Refusal::At("/scene", never_caught(scene).map_or_else(String::new, |(_, detail)| detail))
+        }
         CatchFailure::NoLaw(why) => {
             Refusal::At("/weights", format!("no state feedback holds the body in contact: {}", no_law(why)))
         }

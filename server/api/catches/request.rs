@@ -44,7 +44,7 @@ const CATCH_BRAKE_PRICE: u64 = 20_000;
 const PLAN_STRIKES: std::ops::RangeInclusive<u64> = FEWEST_STRIKES as u64..=MOST_STRIKES as u64;
 
 /// Error of a catch or a throw of a point mass.
-pub const NO_BODY: &str = "a point mass has no angle to bring to rest; a catch or a throw needs a rod or a polygon";
+const NO_BODY: &str = "a point mass has no angle to bring to rest; a catch or a throw needs a rod or a polygon";
 
 /// Settings of a catch, with the size of its answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -144,14 +144,28 @@ pub fn catch_price(settings: &CatchSettings) -> u64 {
     }
 }
 
-/// Reads the scene of a catch or a throw: every body with an angle.
+/// The field for which the body of a scene is neither caught nor thrown, with the reason.
+pub fn never_caught(scene: &Scene) -> Option<(Name, String)> {
+    if !has_angle(scene) {
+        return Some((Name::PointMass, NO_BODY.to_owned()));
+    }
+    scene.beyond_ideal_rig().map(|name| {
+        let path = name.row().path;
+        (
+            name,
+            format!(
+                "{path} is not known to catches and throws: they are of a table without ends that does what it is told"
+            ),
+        )
+    })
+}
+
+/// Reads the scene of a catch or a throw: every body with an angle, on an ideal table.
 pub fn read_caught_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
     let scene = read_scene_without_law(reader)?;
-    if has_angle(&scene) {
-        return Some(scene);
-    }
-    let pointer = format!("{}/{}", reader.pointer_to("scene"), Name::PointMass.row().path.replace('.', "/"));
-    reader.errors().push(pointer, NO_BODY);
+    let Some((name, detail)) = never_caught(&scene) else { return Some(scene) };
+    let pointer = format!("{}/{}", reader.pointer_to("scene"), name.row().path.replace('.', "/"));
+    reader.errors().push(pointer, detail);
     None
 }
 

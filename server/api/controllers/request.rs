@@ -37,6 +37,13 @@ impl ResourceRequest for ControllerRequest {
         let tilt_gain = complete_law(&mut draft);
         let pointer = reader.pointer_to("scene");
         let scene = build_scene(draft, &pointer, reader.errors())?;
+        if let Some(name) = scene.first_error() {
+            let path = name.row().path;
+            let detail =
+                format!("{path} is not known to the design of a law: it is for a table that does what it is told");
+            reader.errors().push(format!("{pointer}/{}", path.replace('.', "/")), detail);
+            return None;
+        }
         let regime = match sticks {
             None => contact_regime(&scene.model()),
             Some(false) => ContactRegime::Frictionless,

@@ -6,7 +6,7 @@ use equipoise_physics::scene::{FieldKind, Name, Scene, field};
 use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
-use crate::api::catches::request::{canonical_settings, catch_price, read_settings};
+use crate::api::catches::request::{canonical_settings, catch_price, never_caught, read_settings};
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, complete_law, has_angle, read_draft};
 use crate::api::shared::tile::Tile;
@@ -99,6 +99,12 @@ impl ResourceRequest for RegionRequest {
                 "quantity",
                 format!("{} is of a body with an angle; a point mass has none", quantity_name(quantity)),
             );
+            return None;
+        }
+        if quantity.is_of_catches()
+            && let Some((_, detail)) = never_caught(&scene)
+        {
+            reader.refuse("quantity", detail);
             return None;
         }
         Some(Self { map, scene, tile })

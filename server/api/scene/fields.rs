@@ -42,6 +42,11 @@ pub fn field_text(name: Name) -> FieldText {
             detail: "Excludes the other fields of `body`. False means the same as leaving it out",
             ..text("Point mass", "", "A body without an angle: the table tilts by κ times the angle of its velocity")
         },
+        Name::Offset => FieldText {
+            detail: "Positive to the right of an upright axis. `body.contact_distance` is then the distance along the axis. Angles of answers are those of the line from contact point to centre of gravity: the axis leans by arctan(d/a) more, and the table senses the axis",
+            example: "0",
+            ..text("Offset", "d", "Distance of the centre of gravity from the axis of the rod")
+        },
         Name::ContactVertex => FieldText {
             detail: "There is no default if two vertices of the polygon as drawn are equally low. The vertex has to be a corner of the convex hull: otherwise another vertex always touches a flat table before it",
             ..text("Contact vertex", "", "Number of the vertex of a polygon that bounces, from 0; by default the lowest")
@@ -104,6 +109,27 @@ pub fn field_text(name: Name) -> FieldText {
         Name::FeedbackXDot => text("Gain of ẋ", "K_ẋ", "Gain of the state feedback on the horizontal velocity"),
         Name::FeedbackThetaDot => text("Gain of θ̇", "K_θ̇", "Gain of the state feedback on the angular velocity"),
         Name::AssumedRestitution => text("Assumed restitution", "ê", "Restitution that the table assumes; by default the true one"),
+        Name::AngleBias => FieldText {
+            example: "0",
+            ..text("Angle bias", "b", "Constant error of the sensed angle: the table senses θ + b")
+        },
+        Name::TiltOffset => FieldText {
+            example: "0",
+            ..text("Tilt offset", "c", "Constant error of the tilt: the table tilts by c more than it should")
+        },
+        Name::TiltGainError => FieldText {
+            example: "0",
+            ..text("Tilt gain error", "ε_α", "Relative error of the tilt: the table tilts by 1 + ε_α times its law")
+        },
+        Name::SpeedError => FieldText {
+            detail: "Not with `table.strike` `still`, nor with `table.energy_law` `one_strike`",
+            example: "0",
+            ..text("Speed error", "ε_w", "Relative error of the table's speed: it moves along its normal at 1 + ε_w times its law")
+        },
+        Name::TableLength => FieldText {
+            detail: "The outcome is then `off_table`. The middle of the table is at x = 0. Catches, throws and the method `linear` answer 422",
+            ..text("Table length", "L", "Length of the table; a contact beyond one of its ends ends the run")
+        },
         Name::TiltLimit => FieldText {
             detail: "The outcome is then `beyond_limits`",
             example: "0.5",

@@ -71,6 +71,10 @@ impl Outcome {
                 ),
                 Some((quantity, value, limit, unit)),
             ),
+            Ending::OffTable { place, limit } => (
+                format!("{at}, the contact point came down at {place} m, beyond the end of the table at {limit} m"),
+                Some(("place", place.abs(), limit, "m")),
+            ),
             Ending::Missed => {
                 (format!("after contact {impacts}, the body never meets the table as it was planned"), None)
             }
@@ -193,6 +197,7 @@ pub fn headline(ending: EndingKind, impacts: u64) -> String {
         EndingKind::OtherVertex => ("Falls", "another corner touched the table"),
         EndingKind::Missed => ("Falls", "it never met the table again"),
         EndingKind::BeyondLimits => ("Falls", "the strike asks more of the table than its limits allow"),
+        EndingKind::OffTable => ("Falls", "the table ended before it"),
     };
     if impacts == 0 {
         format!("{verb} before its first bounce: {reason}")
@@ -229,5 +234,6 @@ pub fn meaning(ending: EndingKind) -> &'static str {
         }
         EndingKind::Missed => "the planned plane was never met.",
         EndingKind::BeyondLimits => "the strike needed more than `table.limits` allow.",
+        EndingKind::OffTable => "the contact point came down beyond an end of the table (`table.length`).",
     }
 }

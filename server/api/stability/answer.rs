@@ -27,6 +27,7 @@ use crate::api::stability::cycle::cycle_sentence;
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
+use crate::api::stability::rig::{SteadyDriftAnswer, gain_notes};
 
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct TiltGainAnswer {
@@ -89,6 +90,8 @@ pub struct StabilityAnswer<'a> {
     lyapunov: Option<Lyapunov>,
     nonlinear: NonlinearPart,
     drift_speed: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    steady_drift: Option<SteadyDriftAnswer>,
     agree: Option<bool>,
     rotation_number: Option<RotationNumber>,
     chaos: Option<Chaos>,
@@ -124,7 +127,10 @@ impl LinearPart {
     fn new(scene: &Scene, linear: &LinearVerdict) -> Self {
         let kappa = scene.number(Name::TiltGain).unwrap_or_default();
         let energy_gain = scene.number(Name::EnergyGain).unwrap_or_default();
-        let upper = Some(linear.upper_energy_gain).filter(|upper| upper.is_finite());
+        // Limits of the gains as they are set, whatever the table makes of them.
+        let (tilts, moves) = (scene.tilt_factor(), scene.speed_factor());
+        let upper = Some(linear.upper_energy_gain / moves).filter(|upper| upper.is_finite());
+        let (lower_gain, critical_gain) = (linear.lower_tilt_gain / tilts, linear.critical_tilt_gain / tilts);
         Self {
             class: linear.class.name(),
             residue: linear.residue,
@@ -133,10 +139,10 @@ impl LinearPart {
             eigenvalues: linear.eigenvalues.iter().map(|&value| value.into()).collect(),
             tilt_gain: linear.lower_tilt_gain.is_finite().then_some(TiltGainAnswer {
                 value: kappa,
-                lower: linear.lower_tilt_gain,
-                critical: linear.critical_tilt_gain,
-                margin_below: kappa - linear.lower_tilt_gain,
-                margin_above: linear.critical_tilt_gain - kappa,
+                lower: lower_gain,
+                critical: critical_gain,
+                margin_below: kappa - lower_gain,
+                margin_above: critical_gain - kappa,
             }),
             energy_gain: EnergyGainAnswer {
                 value: energy_gain,
@@ -183,6 +189,7 @@ impl<'a> StabilityAnswer<'a> {
                 detail: Outcome::new(run.ending, run.impacts, run.t).detail,
             },
             drift_speed: drift_speed(scene),
+            steady_drift: SteadyDriftAnswer::of(scene),
             agree: None,
             rotation_number: None,
             chaos: None,
@@ -200,6 +207,10 @@ impl<'a> StabilityAnswer<'a> {
                 "max_theta is of the velocity's angle; residue, rotation, boundary and drift_speed are null: a point \
                         mass has no angle of its own, and its drift dies out"
                     .to_owned(),
+            );
+        } else if answer.steady_drift.is_some() {
+            notes.push(
+                "drift_speed is null: the table is level under no upright body in place; see steady_drift".to_owned(),
             );
         } else if judged.model().feedback().is_some() {
             notes.push(if answer.drift_speed.is_some() {
@@ -272,9 +283,8 @@ impl<'a> StabilityAnswer<'a> {
                 if off != 0.0 {
                     let height = find_bounce_without_drift(scene).map_or(f64::NAN, |it| it.apex_height);
                     notes.push(format!(
-                        "the table believes restitution {} and meets {}: {} {height} m, {off} m above target_height",
-                        scene.assumed_restitution(),
-                        scene.number(Name::Restitution).unwrap_or_default(),
+                        "{}: {} {height} m, {off} m above target_height",
+                        scene.belief(),
                         if drifts { "without the drift the height would settle at" } else { "the height settles at" }
                     ));
                 }
@@ -284,6 +294,7 @@ impl<'a> StabilityAnswer<'a> {
                         fixed_point.x_dot, fixed_point.apex_height
                     ));
                 }
+                notes.extend(gain_notes(judged));
                 answer.linear = Some(LinearPart::new(judged, &linear));
                 answer.fixed_point = Some(fixed_point.into());
             }

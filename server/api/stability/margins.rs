@@ -2,7 +2,7 @@
 
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::margins;
-use equipoise_physics::stability::margins::{SampledBody, Tolerances, margins_over_tolerances};
+use equipoise_physics::stability::margins::{SampledBody, Tolerances, ValueRange, margins_over_tolerances};
 use serde::Serialize;
 
 /// The margins of a scene.
@@ -59,7 +59,9 @@ impl MarginsAnswer {
             },
             Ok(margins) => {
                 let SampledBody { contact_distance, radius_of_gyration, restitution } = margins.worst;
-                let critical = margins.critical_tilt_gain;
+                let tilts = scene.tilt_factor();
+                let ValueRange { least, most } = margins.critical_tilt_gain;
+                let critical = ValueRange { least: least / tilts, most: most / tilts };
                 let reason = if margins.holds {
                     "the linear verdict is stable for every body within the tolerances"
                 } else {

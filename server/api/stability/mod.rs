@@ -6,6 +6,7 @@ pub mod evidence;
 pub mod margins;
 pub mod picture;
 pub mod request;
+mod rig;
 
 use crate::api::formats::{ChartFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};

@@ -175,6 +175,7 @@ fn released(scene: &Scene, thrown: &Throw) -> Result<Scene, Refusal> {
 fn refusal(why: ThrowFailure, start: Start) -> Refusal {
     let pointer = match why {
         ThrowFailure::PointMass => "/scene/body/point",
+        ThrowFailure::Rig(_) => "/scene",
         ThrowFailure::TooLow { .. } => "/apex/height",
         ThrowFailure::BeyondLimits(_) => "/scene/table/limits",
         ThrowFailure::Lying { .. } => match start {

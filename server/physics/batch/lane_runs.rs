@@ -50,7 +50,8 @@ pub(super) struct LaneRuns<'w, M> {
 }
 
 /// Rules of a lane that idles, and its state at each contact.
-const IDLE_RULES: Rules = Rules { topple_angle: 1.0, settles: false, holds_energy: true, limits: None };
+const IDLE_RULES: Rules =
+    Rules { topple_angle: 1.0, settles: false, holds_energy: true, limits: None, half_length: f64::INFINITY };
 const IDLE_STATE: State = State { theta: 0.0, x_dot: 0.0, y_dot: -1.0, theta_dot: 0.0 };
 
 impl<'w, M: LaneModel> LaneRuns<'w, M> {

@@ -67,13 +67,13 @@ impl BatchModel {
         }
     }
 
-    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits of the table, or
-    /// plans of a table that errs.
+    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits or
+    /// ends of the table, plans of a table that errs, or a constant error of its tilt.
     pub fn of(body: &Model, rules: &Rules) -> Option<Self> {
-        let Rules { settles, holds_energy, limits, .. } = *rules;
+        let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
         let holds = !settles && body.friction().is_none() && body.noise().is_none();
-        if limits.is_some() || holds_energy != holds {
+        if limits.is_some() || half_length.is_finite() || holds_energy != holds {
             return None;
         }
         let energy_feedback = body.rod().energy_feedback;
@@ -81,6 +81,7 @@ impl BatchModel {
             Model::Rod(_) => Some(Self::rods(energy_feedback)),
             Model::Point(_) => Some(Self::Point(energy_feedback)),
             Model::General(GeneralBody { noise: Some(Noise { model: NoiseModel::Plan, .. }), .. }) => None,
+            Model::General(GeneralBody { constant_tilt, .. }) if *constant_tilt != 0.0 => None,
             Model::General(GeneralBody { steering, friction, noise, outline, .. }) => {
                 let contact =
                     friction.map_or(BatchContact::Smooth, |friction| BatchContact::Rough(friction.law, friction.slide));

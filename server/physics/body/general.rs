@@ -16,6 +16,7 @@ use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::bounce::tilt::Tilt;
+use crate::numbers::number::Number;
 use crate::table::control_law::Steering;
 use crate::table::noise::{Noise, NoiseModel, NoiseSample};
 use crate::table::program::HeightProgram;
@@ -30,6 +31,8 @@ pub struct GeneralBody {
     pub rod: Rod,
     /// Control law of the tilt.
     pub steering: Steering,
+    /// Tilt of the table beside its law, rad ([`crate::table::errors`]).
+    pub constant_tilt: f64,
     /// Target heights of its strikes, where they differ.
     pub program: Option<HeightProgram>,
     /// Friction and a table that moves along itself.
@@ -47,6 +50,14 @@ pub trait Guide {
 }
 
 impl GeneralBody {
+    /// The table's tilt at a place and a state that it senses without random errors, in any kind of number.
+    pub(crate) fn exact_tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>) -> Tilt<N> {
+        match self.constant_tilt {
+            0.0 => self.steering.tilt(rod, x, state),
+            constant => self.steering.sensed_tilt(rod, x, state, 0.0, constant),
+        }
+    }
+
     /// The rod at strike `n`.
     pub(crate) fn at_strike(&self, n: u64) -> Rod {
         self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
@@ -103,7 +114,7 @@ impl GeneralBody {
             Some(NoiseModel::Plan) if is_guided && guided.is_none() => Ok((t, flight.end(t)).into()),
             Some(NoiseModel::Plan) => {
                 let plan = guided.unwrap_or_else(|| {
-                    let tilt = self.steering.sensed_tilt(&self.rod, seen.x, &state, angle);
+                    let tilt = self.steering.sensed_tilt(&self.rod, seen.x, &state, angle, self.constant_tilt);
                     own_motion(&self.at_strike(n), self.friction, &state, &tilt)
                 });
                 match self.meet(flight, struck, &state, plan) {
@@ -170,7 +181,10 @@ impl Body for GeneralBody {
         let rod = self.seen_at(*n, *clearance);
         let tilt = match plan {
             Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
-            None => self.steering.sensed_tilt(&rod, *x, state, self.noise.map_or(0.0, |noise| noise.angle_error(*n))),
+            None => {
+                let error = self.noise.map_or(0.0, |noise| noise.angle_error(*n));
+                self.steering.sensed_tilt(&rod, *x, state, error, self.constant_tilt)
+            }
         };
         match (&self.friction, plan) {
             (None, None) => rod.strike_with(state, &tilt, rod.leverage()),

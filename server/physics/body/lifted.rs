@@ -21,6 +21,8 @@ pub struct LiftedBody<N> {
     pub rod: Rod<N>,
     /// Control law of the tilt.
     pub steering: Steering,
+    /// Tilt of the table beside its law, rad.
+    pub constant_tilt: f64,
     /// Target heights of its strikes, where they differ.
     pub program: Option<HeightProgram>,
     /// Friction and a table that moves along itself.
@@ -67,7 +69,7 @@ impl<N: Number> LiftedBody<N> {
     }
 
     fn sensed_tilt(&self, x: N, state: &State<N>, error: f64) -> Tilt<N> {
-        self.steering.sensed_tilt(&self.rod, x, state, error)
+        self.steering.sensed_tilt(&self.rod, x, state, error, self.constant_tilt)
     }
 
     fn at_strike(&self, n: u64) -> Rod<N> {

@@ -119,6 +119,7 @@ fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
     let body = GeneralBody {
         rod: scene.parameters(),
         steering: Steering::TiltGain,
+        constant_tilt: 0.0,
         program: None,
         friction: friction.map(|friction| Friction { slide: Slide::Matched, ..friction }),
         noise: scene.noise,

@@ -56,6 +56,9 @@ pub fn catch_outcome(
     if scene.body() == BodyShape::Point {
         return Err(CatchFailure::Point);
     }
+    if let Some(name) = scene.beyond_ideal_rig() {
+        return Err(CatchFailure::Rig(name));
+    }
     let (attempt, _) = choose(scene, settings, CatchStart::Release, false, go_on)?;
     let rest = attempt.landed.as_ref().and_then(|landed| match attempt.outcome {
         CatchOutcome::Held => Some(landed.hold.theta_within?.max(landed.hold.x_within?)),
@@ -76,6 +79,9 @@ fn catch_by(
 ) -> Result<Catch, CatchFailure> {
     if scene.body() == BodyShape::Point {
         return Err(CatchFailure::Point);
+    }
+    if let Some(name) = scene.beyond_ideal_rig() {
+        return Err(CatchFailure::Rig(name));
     }
     let (attempt, candidates) = choose(scene, settings, start, true, go_on)?;
     let (contact_from, demand, notes) = (attempt.contact_from(), attempt.demand(), notes::notes(scene, &attempt));

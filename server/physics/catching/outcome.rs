@@ -7,6 +7,7 @@ use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::contact::Hold;
 use crate::control::lqr::DesignFailure;
+use crate::scene::Name;
 use crate::table::actuator_load::{ActuatorLoad, LimitViolation};
 
 /// One strike of a catch.
@@ -311,6 +312,8 @@ pub struct Catch {
 pub enum CatchFailure {
     /// A point mass has no angle to hold.
     Point,
+    /// The rig has a constant error, or a table with ends, by this field.
+    Rig(Name),
     /// The weights give no law in contact.
     NoLaw(DesignFailure),
     /// The caller stopped it.

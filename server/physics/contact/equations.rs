@@ -38,6 +38,7 @@ impl HoldLaw {
         match self {
             Self::TiltGain(gain) => N::from_f64(*gain) * motion[1],
             Self::Feedback(gains) => fed_back(gains, motion),
+            Self::Tilted(gains, constant) => fed_back(gains, motion) + N::from_f64(*constant),
             Self::CartPole(_) | Self::Level => N::from_f64(0.0),
         }
     }
@@ -46,14 +47,17 @@ impl HoldLaw {
     fn acceleration<N: Number>(&self, motion: &Motion<N>) -> N {
         match self {
             Self::CartPole(gains) => fed_back(gains, motion),
-            Self::TiltGain(_) | Self::Feedback(_) | Self::Level => N::from_f64(0.0),
+            Self::TiltGain(_) | Self::Feedback(_) | Self::Tilted(..) | Self::Level => N::from_f64(0.0),
         }
     }
 
     /// α̇, rad/s, from the motion and its derivative.
     pub(super) fn tilt_rate(&self, change: &Motion) -> f64 {
-        // The law is linear, so its rate is the law of the rates.
-        self.tilt(change)
+        match self {
+            Self::Tilted(gains, _) => fed_back(gains, change),
+            // The law is linear, so its rate is the law of the rates.
+            Self::TiltGain(_) | Self::Feedback(_) | Self::CartPole(_) | Self::Level => self.tilt(change),
+        }
     }
 }
 

@@ -31,6 +31,8 @@ pub enum HoldLaw {
     TiltGain(f64),
     /// α = −K·(x, θ, ẋ, θ̇).
     Feedback(Gains),
+    /// α = c − K·(x, θ, ẋ, θ̇): a law with a constant error.
+    Tilted(Gains, f64),
     /// A level table whose surface moves along x with the acceleration a = −K·(x, θ, ẋ, θ̇), m/s²: it balances a contact that sticks.
     CartPole(Gains),
     /// A level table at rest. A polygon rocks on it until an edge rests.
@@ -69,11 +71,13 @@ impl Touching {
 }
 
 impl HoldLaw {
-    /// The law of a scene's own table: its steering with the rod's κ.
-    pub fn of(steering: Steering, rod: &Rod) -> Self {
+    /// The law of a scene's own table: its steering with the rod's κ, and its tilt beside it, rad.
+    pub fn of(steering: Steering, rod: &Rod, constant_tilt: f64) -> Self {
         match steering {
-            Steering::TiltGain => Self::TiltGain(rod.tilt_gain),
-            Steering::Feedback(gains) => Self::Feedback(gains),
+            Steering::TiltGain if constant_tilt == 0.0 => Self::TiltGain(rod.tilt_gain),
+            Steering::Feedback(gains) if constant_tilt == 0.0 => Self::Feedback(gains),
+            Steering::TiltGain => Self::Tilted(Gains { theta: -rod.tilt_gain, ..Gains::default() }, constant_tilt),
+            Steering::Feedback(gains) => Self::Tilted(gains, constant_tilt),
         }
     }
 }

@@ -21,7 +21,7 @@ pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f6
         rod,
         touching: Touching::new(scene.contact_friction()),
         outline: scene.outline,
-        law: HoldLaw::of(scene.steering, &rod),
+        law: HoldLaw::of(scene.steering, &rod, scene.constant_tilt),
         brake_law: None,
         start: ContactStart {
             t: settle_time,

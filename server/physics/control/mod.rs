@@ -10,3 +10,4 @@ pub mod care;
 pub mod lqr;
 pub mod margin;
 pub mod riccati;
+pub mod steady_drift;

@@ -80,6 +80,7 @@ impl OrbitProblem {
             friction => Model::General(GeneralBody {
                 rod,
                 steering: Steering::TiltGain,
+                constant_tilt: 0.0,
                 program: None,
                 friction,
                 noise: None,

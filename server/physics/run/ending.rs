@@ -79,6 +79,13 @@ endings! {
     "missed" => Missed,
     /// The strike asks more of the table than its limits allow.
     "beyond_limits" => BeyondLimits(LimitViolation),
+    /// The contact point came down beyond an end of the table.
+    "off_table" => OffTable {
+        /// Place of the contact point from the middle of the table, m.
+        place: f64,
+        /// Half the length of the table, m.
+        limit: f64,
+    },
 }
 
 impl NoContact {

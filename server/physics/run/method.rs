@@ -205,6 +205,9 @@ pub fn run_by(
         if scene.limits.is_some() {
             return Err("the linear solution does not look at the limits of the table".to_owned());
         }
+        if scene.half_length.is_finite() {
+            return Err("the linear solution does not look at the ends of the table".to_owned());
+        }
         if scene.outline.is_some() {
             return Err("the linear solution does not look at the vertices of a polygon".to_owned());
         }
@@ -293,9 +296,13 @@ impl Checked for LinearContact {
         seconds
     }
 
-    // `run_by` refuses scenes with further vertices or with limits.
+    // `run_by` refuses scenes with further vertices, and tables with limits or ends.
     fn touch(&self) -> Option<Touch> {
         None
+    }
+
+    fn contact_place(&self) -> f64 {
+        0.0
     }
 
     fn load(&mut self) -> ActuatorLoad {

@@ -3,6 +3,7 @@
 
 pub(crate) mod bounce_derivative;
 pub mod cancellation;
+pub mod contact;
 pub mod ending;
 pub mod error_estimate;
 pub mod extended;

@@ -9,33 +9,11 @@ use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::numbers::compensated_sum::CompensatedSum;
 use crate::numbers::dispatch::{Kernel, dispatch};
+pub use crate::run::contact::Contact;
 use crate::run::ending::Ending;
 use crate::run::rules;
 use crate::run::rules::{Checked, FlightTimes, Rules};
 use crate::table::actuator_load::{ActuatorLoad, Pose};
-
-/// One contact of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact<N = f64> {
-    /// Number of the contact, from 1.
-    pub n: u64,
-    /// Time, s after release.
-    pub t: N,
-    /// Horizontal place of the centre of gravity, m.
-    pub x: N,
-    /// Angle and velocities just before it.
-    pub state: State<N>,
-    /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
-    pub clearance: N,
-    /// α, table tilt, rad; of a table that does not strike too.
-    pub alpha: N,
-    /// The strike, unless the run ended before it.
-    pub strike: Option<Strike<N>>,
-    /// Time to the next contact, s; `None` if the run ended.
-    pub flight_time: Option<N>,
-    /// Ending of the run, if it ended here.
-    pub ending: Option<Ending>,
-}
 
 /// A run that is computed contact by contact.
 #[derive(Clone, Copy, Debug)]
@@ -289,6 +267,11 @@ impl<B: Body> Checked for OrbitAtContact<'_, B> {
     #[inline(always)]
     fn theta(&self) -> f64 {
         self.coming.state.theta
+    }
+
+    #[inline(always)]
+    fn contact_place(&self) -> f64 {
+        self.coming.x + self.orbit.body.contact_distance() * self.strike.sin_cos_theta.0
     }
 
     #[inline(always)]

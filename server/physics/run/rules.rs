@@ -28,6 +28,8 @@ pub struct Rules {
     pub holds_energy: bool,
     /// Limits of the table, if it has any.
     pub limits: Option<ActuatorLimits>,
+    /// Half the length of the table, m; infinite if it has no ends.
+    pub half_length: f64,
 }
 
 /// Declares the checks, phase by phase, in the order in which they are made.
@@ -75,6 +77,8 @@ checks! {
         OtherVertex,
         /// |θ| has reached the topple angle.
         Toppled,
+        /// The contact point is beyond an end of the table.
+        OffTable,
         /// The strike needs more of the table than its limits allow.
         BeyondLimits,
         /// The contact point does not approach the moving table.
@@ -109,6 +113,9 @@ pub trait Checked {
 
     /// θ at the contact, rad.
     fn theta(&self) -> f64;
+
+    /// Place of the contact point along x, from the middle of the table, m. Only runs on a table with ends are asked for it.
+    fn contact_place(&self) -> f64;
 
     /// Load of the strike on the table. Only runs with limits are asked for it, once at each contact.
     fn load(&mut self) -> ActuatorLoad;
@@ -152,6 +159,14 @@ fn ending_by(contact: &mut impl Checked, check: Check) -> Option<Ending> {
         Check::Toppled => {
             let (theta, limit) = (contact.theta(), contact.rules().topple_angle);
             (theta.abs() >= limit).then_some(Ending::Toppled { theta, limit })
+        }
+        Check::OffTable => {
+            let limit = contact.rules().half_length;
+            if limit == f64::INFINITY {
+                return None;
+            }
+            let place = contact.contact_place();
+            (place.abs() > limit).then_some(Ending::OffTable { place, limit })
         }
         Check::BeyondLimits => {
             contact.rules().limits.as_ref()?;
@@ -225,8 +240,8 @@ impl LaneContact {
     #[inline(always)]
     fn passes(&self, check: Check) -> bool {
         match check {
-            // Lanes hold rods on tables without limits.
-            Check::OtherVertex | Check::BeyondLimits => true,
+            // Lanes hold rods on tables without limits and ends.
+            Check::OtherVertex | Check::OffTable | Check::BeyondLimits => true,
             Check::Toppled => self.size < self.topple_angle,
             Check::Separating => self.push < 0.0,
             Check::TooFast => (self.x_dot.abs() <= 0.5 * SPEED_LIMIT) & (self.y_dot.abs() <= 0.5 * SPEED_LIMIT),
@@ -276,5 +291,11 @@ impl FlightTimes {
 
 impl Rules {
     /// The map alone: nothing but what the physics itself forbids ends a run, and nothing is corrected.
-    pub const BARE_MAP: Self = Self { topple_angle: f64::INFINITY, settles: false, holds_energy: false, limits: None };
+    pub const BARE_MAP: Self = Self {
+        topple_angle: f64::INFINITY,
+        settles: false,
+        holds_energy: false,
+        limits: None,
+        half_length: f64::INFINITY,
+    };
 }

@@ -13,6 +13,7 @@ use crate::bounce::state::State;
 use crate::numbers::trig;
 use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::{Gains, Steering};
+use crate::table::errors::TableErrors;
 use crate::table::noise::{Noise, NoiseModel};
 use crate::table::program::HeightProgram;
 
@@ -34,10 +35,11 @@ pub struct Scene {
     pub(crate) law: RestitutionLaw,
     pub(crate) slide: Slide,
     pub(crate) steering: Steering,
-    /// κ; 0 with state feedback.
+    /// κ by which the table acts; 0 with state feedback.
     pub(crate) tilt_gain: f64,
-    /// ê, if given.
+    /// ê, if given. With an error of the table's speed: that by which the table acts.
     pub(crate) assumed_restitution: Option<f64>,
+    /// κ_E by which the table acts, s²/m².
     pub(crate) energy_gain: f64,
     pub(crate) energy_feedback: EnergyFeedback,
     /// Target height y* of the first strike, m; only where the table steers the energy.
@@ -48,7 +50,13 @@ pub struct Scene {
     pub(crate) release: Release,
     pub(crate) topple_angle: f64,
     pub(crate) limits: Option<ActuatorLimits>,
+    /// Half the length of the table, m; infinite if it has no ends.
+    pub(crate) half_length: f64,
     pub(crate) noise: Option<Noise>,
+    /// Constant errors. The gains, the laws and the body above have them.
+    pub(crate) errors: TableErrors,
+    /// Tilt of the table beside its law, rad: all that the constant errors do which is no change of a gain.
+    pub(crate) constant_tilt: f64,
     draft: Draft,
 }
 
@@ -101,9 +109,10 @@ impl Scene {
     /// The same scene with a tilt gain, κ = −K_θ, in place of a state feedback of θ alone, which is the same law; other scenes as they are.
     /// Friction on a table that only tilts is left as it is: nothing drifts or circles there.
     pub fn with_tilt_law(&self) -> Self {
-        let Steering::Feedback(Gains { x: 0.0, theta, x_dot: 0.0, theta_dot: 0.0 }) = self.steering else {
+        let Steering::Feedback(Gains { x: 0.0, theta: _, x_dot: 0.0, theta_dot: 0.0 }) = self.steering else {
             return *self;
         };
+        let theta = self.number(Name::FeedbackTheta).unwrap_or(0.0);
         if self.friction != 0.0 && self.slide == Slide::None {
             return *self;
         }
@@ -186,7 +195,8 @@ impl Draft {
                 self.fill(row.name, default);
             }
         }
-        let (body, outline) = self.body(&mut errors);
+        let off = self.table_errors();
+        let (body, outline, lean) = self.body(&off, &mut errors);
         let full_gravity = self.required(Name::Gravity, &mut errors);
         let incline = self.required(Name::Incline, &mut errors);
         let strike = self.chosen(Name::Strike, &mut errors);
@@ -198,7 +208,8 @@ impl Draft {
                 "assumed_restitution moves the table and strike says `still`; leave one of them out".to_owned();
             errors.push(FieldError::new(Name::AssumedRestitution, detail));
         }
-        let steering = self.steering(&mut errors);
+        let steering = self.steering(&off, &mut errors);
+        self.refuse_speed_error(strike, energy.feedback, &mut errors);
         let slide = self.chosen(Name::Slide, &mut errors);
         let noise = self.noise(&mut errors);
         for (name, said) in [
@@ -206,6 +217,8 @@ impl Draft {
             (Name::Slide, slide != Slide::None),
             (Name::FeedbackTheta, steering != Steering::TiltGain),
             (Name::TimingSd, noise.is_some()),
+            (Name::AngleBias, off.angle_bias != 0.0),
+            (Name::TiltOffset, off.tilt_offset != 0.0),
         ] {
             if said && body == BodyShape::Point {
                 let path = name.row().path;
@@ -213,20 +226,31 @@ impl Draft {
                 errors.push(FieldError::new(name, detail));
             }
         }
+        let restitution = self.required(Name::Restitution, &mut errors);
+        let tilt_gain = off.tilting(self.number(Name::TiltGain).unwrap_or(0.0));
+        let angle_gain = match steering {
+            Steering::TiltGain => tilt_gain,
+            Steering::Feedback(gains) => -gains.theta,
+        };
+        let moves_wrong = off.speed != 0.0 && strike == Striking::Compensated;
         let scene = Scene {
             body,
             outline,
             gravity: full_gravity * trig::sin_cos(incline).0,
             full_gravity,
             incline,
-            restitution: self.required(Name::Restitution, &mut errors),
+            restitution,
             friction,
             law: self.chosen(Name::Law, &mut errors),
             slide,
             steering,
-            tilt_gain: self.number(Name::TiltGain).unwrap_or(0.0),
-            assumed_restitution,
-            energy_gain: energy.gain,
+            tilt_gain,
+            assumed_restitution: if moves_wrong {
+                Some(off.acted_restitution(assumed_restitution.unwrap_or(restitution)))
+            } else {
+                assumed_restitution
+            },
+            energy_gain: off.moving(energy.gain),
             energy_feedback: energy.feedback,
             target_height: energy.target_height,
             program: energy.program,
@@ -234,14 +258,17 @@ impl Draft {
             release: self.release(body, outline.as_ref(), &mut errors),
             topple_angle: self.required(Name::ToppleAngle, &mut errors),
             limits: self.limits(),
+            half_length: self.number(Name::TableLength).map_or(f64::INFINITY, |length| 0.5 * length),
             noise,
+            errors: off,
+            constant_tilt: off.constant_tilt(angle_gain, lean),
             draft: self,
         };
         if errors.is_empty() { Ok(scene) } else { Err(errors) }
     }
 
-    /// Law of the tilt: a tilt gain, or state feedback, in which gains that are not given are 0.
-    fn steering(&mut self, errors: &mut Vec<FieldError>) -> Steering {
+    /// Law by which the table tilts, with the error of its gains: a tilt gain, or state feedback, in which gains that are not given are 0.
+    fn steering(&mut self, off: &TableErrors, errors: &mut Vec<FieldError>) -> Steering {
         let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
         let Some(said) = names.into_iter().find(|&name| self.get(name).is_some()) else {
             self.required(Name::TiltGain, errors);
@@ -256,7 +283,7 @@ impl Draft {
         let [x, theta, x_dot, theta_dot] = names.map(|name| {
             let gain = self.number(name).unwrap_or(0.0);
             self.put(name, Some(Value::Number(gain)));
-            gain
+            off.tilting(gain)
         });
         Steering::Feedback(Gains { x, theta, x_dot, theta_dot })
     }
@@ -291,11 +318,13 @@ impl Draft {
         })
     }
 
-    fn body(&mut self, errors: &mut Vec<FieldError>) -> (BodyShape, Option<Outline>) {
+    /// The body with its outline and, for a rod whose centre of gravity is off its axis, the angle of the axis (rad) where that is above the
+    /// contact point.
+    fn body(&mut self, off: &TableErrors, errors: &mut Vec<FieldError>) -> (BodyShape, Option<Outline>, f64) {
         let lengths = [Name::ContactDistance, Name::RadiusOfGyration];
         let said = |name: &Name| self.get(*name).is_some();
         if self.is_point() {
-            for name in lengths.into_iter().chain([Name::ContactVertex]).filter(said) {
+            for name in lengths.into_iter().chain([Name::ContactVertex, Name::Offset]).filter(said) {
                 let key = name.row().key();
                 errors.push(FieldError::new(name, format!("a point mass has no {key}; leave one of them out")));
             }
@@ -303,17 +332,17 @@ impl Draft {
                 let detail = "a point mass has no vertices; leave one of them out".to_owned();
                 errors.push(FieldError::at(VERTICES, detail));
             }
-            return (BodyShape::Point, None);
+            return (BodyShape::Point, None, 0.0);
         }
         if let Some(vertices) = self.vertices {
-            for name in lengths.into_iter().filter(said) {
+            for name in lengths.into_iter().chain([Name::Offset]).filter(said) {
                 let key = name.row().key();
                 let detail = format!("{key} follows from vertices, which are given too; leave one of them out");
                 errors.push(FieldError::new(name, detail));
             }
-            return self.polygon(&vertices, errors).map_or((UNKNOWN, None), |outline| {
+            return self.polygon(&vertices, errors).map_or((UNKNOWN, None, 0.0), |outline| {
                 let (contact_distance, radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
-                (BodyShape::Rod { contact_distance, radius_of_gyration }, Some(outline))
+                (BodyShape::Rod { contact_distance, radius_of_gyration }, Some(outline), 0.0)
             });
         }
         if said(&Name::ContactVertex) {
@@ -325,13 +354,14 @@ impl Draft {
             let detail =
                 "body is missing: give contact_distance and radius_of_gyration in m, vertices, or {\"point\": true}";
             errors.push(FieldError::at("body", detail.to_owned()));
-            return (UNKNOWN, None);
+            return (UNKNOWN, None, 0.0);
         }
+        let along = self.required(Name::ContactDistance, errors);
         let body = BodyShape::Rod {
-            contact_distance: self.required(Name::ContactDistance, errors),
+            contact_distance: off.contact_distance(along),
             radius_of_gyration: self.required(Name::RadiusOfGyration, errors),
         };
-        (body, None)
+        (body, None, off.lean(along))
     }
 
     /// Outline of a polygon; None if the vertices make no body. The default contact vertex is the lowest.

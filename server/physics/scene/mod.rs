@@ -9,6 +9,7 @@ mod error;
 mod fields;
 pub mod model;
 pub mod model_hierarchy;
+mod rig;
 mod words;
 
 pub use build::Scene;

@@ -28,6 +28,8 @@ pub enum ModelLevel {
     Rod,
     /// The rod without friction, on a table that also senses its position.
     RodWithX,
+    /// On a rig with constant errors: of what the table senses and does, and of the place of the centre of gravity.
+    RigErrors,
     /// The rod on a table with friction, or that moves along itself.
     Friction,
     /// On a table that errs in time or in the angle that it senses.
@@ -44,6 +46,7 @@ impl ModelLevel {
             Self::Linear => "linear",
             Self::Rod => "rod",
             Self::RodWithX => "rod_with_x",
+            Self::RigErrors => "rig_errors",
             Self::Friction => "friction",
             Self::Noise => "noise",
             Self::Polygon => "polygon",
@@ -57,7 +60,7 @@ impl ModelLevel {
             Self::Point => 135.0,
             Self::Linear => 120.0,
             Self::Rod => 86.0,
-            Self::RodWithX => 112.0,
+            Self::RodWithX | Self::RigErrors => 112.0,
             Self::Friction => 107.0,
             Self::Noise => 195.0,
             Self::Polygon => 130.0,
@@ -96,31 +99,44 @@ impl Scene {
             return Model::Point(PointMass::new(rod).with_program(program));
         }
         let friction = self.contact_friction();
-        let is_plain = self.steering == Steering::TiltGain && program.is_none();
+        let constant_tilt = self.constant_tilt;
+        let is_plain = self.steering == Steering::TiltGain && program.is_none() && constant_tilt == 0.0;
         if is_plain && friction.is_none() && noise.is_none() && outline.is_none() {
             return Model::Rod(rod);
         }
-        Model::General(GeneralBody { rod, steering: self.steering, program, friction, noise, outline })
+        Model::General(GeneralBody { rod, steering: self.steering, constant_tilt, program, friction, noise, outline })
     }
 
     /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
     /// point mass has those of a rod of no length.
     pub fn parameters<N: Number>(&self) -> Rod<N> {
         let number = N::from_f64;
+        let off = &self.errors;
+        let told = |name, acted: f64| number(self.number(name).unwrap_or(acted));
         let (contact_distance, radius_of_gyration) = match self.body {
-            BodyShape::Rod { contact_distance, radius_of_gyration } => (contact_distance, radius_of_gyration),
-            BodyShape::Point => (0.0, 1.0),
+            BodyShape::Rod { contact_distance, radius_of_gyration } if off.offset != 0.0 => {
+                (off.contact_distance(told(Name::ContactDistance, contact_distance)), radius_of_gyration)
+            }
+            BodyShape::Rod { contact_distance, radius_of_gyration } => (number(contact_distance), radius_of_gyration),
+            BodyShape::Point => (number(0.0), 1.0),
         };
         let restitution = number(self.restitution);
         let one_and_restitution = number(1.0) + restitution;
         let gravity = number(self.full_gravity) * number(self.incline).sincos().0;
         Rod {
-            contact_distance: number(contact_distance),
+            contact_distance,
             radius_of_gyration: number(radius_of_gyration),
             gravity,
             restitution,
-            tilt_gain: number(self.tilt_gain),
+            tilt_gain: match self.steering {
+                Steering::TiltGain => off.tilting(told(Name::TiltGain, self.tilt_gain)),
+                Steering::Feedback(_) => number(self.tilt_gain),
+            },
             strike_gain: match self.strike {
+                // γ = (1 + e)(1 − w/v_nc).
+                Striking::Compensated if off.speed != 0.0 => {
+                    one_and_restitution * (number(1.0) + off.make_up(number(self.told_restitution())))
+                }
                 Striking::Compensated => match self.assumed_restitution {
                     // P = −(1 + e)(v_nc − v_table)/B with the table's velocity by ê.
                     Some(assumed) if assumed != self.restitution => {
@@ -130,7 +146,7 @@ impl Scene {
                 },
                 Striking::Still => one_and_restitution,
             },
-            strike_gain_per_energy: one_and_restitution * number(self.energy_gain),
+            strike_gain_per_energy: one_and_restitution * off.moving(told(Name::EnergyGain, self.energy_gain)),
             target_energy: gravity * number(self.target_height.unwrap_or(0.0)),
             energy_feedback: self.energy_feedback,
         }
@@ -146,10 +162,11 @@ impl Scene {
             settles: !self.keeps_energy() || self.friction != 0.0,
             holds_energy: self.keeps_energy() && !self.is_rough() && self.noise.is_none(),
             limits: self.limits,
+            half_length: self.half_length,
         }
     }
 
-    /// Restitution that the table assumes.
+    /// Restitution that the table assumes; with an error of its speed, the one by which it acts.
     pub fn assumed_restitution(&self) -> f64 {
         self.assumed_restitution.unwrap_or(self.restitution)
     }
@@ -182,13 +199,16 @@ impl Scene {
     /// The first field that takes the scene outside the plain rod and the levels `known`, with a message; `None` if the scene is
     /// within them.
     pub fn beyond(&self, known: &[ModelLevel]) -> Option<FieldError> {
-        let beyond = |level| level != ModelLevel::Polygon && !known.contains(&level);
+        // Errors that only change gains leave the rod a rod.
+        let only_gains = |level| level == ModelLevel::RigErrors && self.constant_tilt == 0.0;
+        let beyond = |level| level != ModelLevel::Polygon && !only_gains(level) && !known.contains(&level);
         let ModelRequirement { level, path, .. } =
             self.requirements().into_iter().find(|requirement| beyond(requirement.level))?;
         let shown = crate::scene::field(path).map_or_else(String::new, |row| self.shown(row.name));
         let feature = match level {
             ModelLevel::Friction => "with friction",
             ModelLevel::Noise => "with noise",
+            ModelLevel::RigErrors => "with a constant error of the tilt",
             ModelLevel::Rod | ModelLevel::RodWithX => "with state feedback",
             ModelLevel::Point | ModelLevel::Linear | ModelLevel::Polygon => "for this body",
         };
@@ -217,6 +237,7 @@ impl Scene {
         LiftedBody {
             rod: self.parameters(),
             steering: self.steering,
+            constant_tilt: self.constant_tilt,
             program: self.program,
             friction: self.contact_friction(),
             noise: self.noise,
@@ -262,6 +283,9 @@ impl Scene {
                 (ModelLevel::RodWithX, Name::FeedbackX, "place, angle and velocities")
             };
             step(level, name, format!("feedback tilts the table by {seen} (α = −K·state), in place of α = κθ"));
+        }
+        if let Some((name, detail)) = self.error_requirement() {
+            step(ModelLevel::RigErrors, name, detail);
         }
         let (friction, slide) = (self.friction, self.shown(Name::Slide));
         if friction != 0.0 {
@@ -309,7 +333,7 @@ impl Scene {
             format!("the table stands still and restitution is {e}, so every bounce loses energy (eq. 24)")
         } else if assumed != e {
             let way = if assumed > e { "loses" } else { "gains" };
-            format!("the table believes restitution {assumed} and meets {e}, so every bounce {way} energy")
+            format!("{}, so every bounce {way} energy", self.belief())
         } else if e == 1.0 {
             "nothing is lost at a bounce (eq. 1), and nothing else was asked for".to_owned()
         } else {

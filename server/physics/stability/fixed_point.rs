@@ -6,13 +6,15 @@ use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::control::angle_feedback::AngleFeedback;
+use crate::control::steady_drift::SteadyDrift;
 use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, lent_by_table};
 use crate::table::program::HeightProgram;
 
 /// The levels above the plain rod that can be judged linearly.
-pub const LINEARLY_JUDGED: [ModelLevel; 3] = [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::Friction];
+pub const LINEARLY_JUDGED: [ModelLevel; 4] =
+    [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::RigErrors, ModelLevel::Friction];
 
 /// Most rounds in which the speed of a bounce and the drift beside it are brought together; each gains some digits.
 const MOST_ROUNDS: u32 = 32;
@@ -23,6 +25,8 @@ const SAME_DRIFT: f64 = 1e-15;
 /// The upright bounce that a scene is to be balanced on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedPoint {
+    /// x*, m: 0 unless the table has a constant tilt c, and then c/K_x, where state feedback of x takes it back.
+    pub x: f64,
     /// ẋ*, m/s: the drift speed c where the table holds the total energy, of which c² is a part; 0 elsewhere, where the bounce in
     /// place belongs to every drift.
     pub x_dot: f64,
@@ -38,6 +42,7 @@ impl FixedPoint {
     fn new(x_dot: f64, speed_squared: f64, gravity: f64, contact_distance: f64) -> Self {
         let speed = speed_squared.sqrt();
         Self {
+            x: 0.0,
             x_dot,
             speed,
             flight_time: 2.0 * speed / gravity,
@@ -58,6 +63,9 @@ impl FixedPoint {
 /// With state feedback of θ and θ̇ alone it is [`AngleFeedback::drift`]; feedback of x or ẋ leaves none.
 pub fn drift_speed(scene: &Scene) -> Option<f64> {
     let scene = &scene.with_tilt_law();
+    if SteadyDrift::of(scene).is_some() {
+        return None;
+    }
     if scene.model().feedback().is_some() {
         return place_and_drift(scene, AngleFeedback::of(scene)?).ok().map(|(_, drift)| drift);
     }
@@ -89,10 +97,12 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
     if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
         return Err(error.detail);
     }
-    if let Some(feedback) = AngleFeedback::of(scene) {
-        return place_and_drift(scene, feedback).map(|(place, _)| place);
-    }
-    upright_bounce(scene, held_drift(scene))
+    let x = place_of_rest(scene)?;
+    let found = match AngleFeedback::of(scene) {
+        Some(feedback) => place_and_drift(scene, feedback)?.0,
+        None => upright_bounce(scene, held_drift(scene))?,
+    };
+    Ok(FixedPoint { x, ..found })
 }
 
 /// The fixed point of the same scene without the drift: [`find_fixed_point`], but with all of a total energy that is held.
@@ -100,7 +110,36 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
 /// # Errors
 /// A sentence that says why there is none.
 pub fn find_bounce_without_drift(scene: &Scene) -> Result<FixedPoint, String> {
-    upright_bounce(&scene.with_tilt_law(), 0.0)
+    let scene = &scene.with_tilt_law();
+    let x = place_of_rest(scene)?;
+    Ok(FixedPoint { x, ..upright_bounce(scene, 0.0)? })
+}
+
+/// x*, m: where the table is level under an upright body. A table without feedback of x and without a constant tilt is so everywhere.
+///
+/// # Errors
+/// A sentence that says why it is level nowhere, or only beyond its ends.
+fn place_of_rest(scene: &Scene) -> Result<f64, String> {
+    let tilt = scene.constant_tilt();
+    if tilt == 0.0 {
+        return Ok(0.0);
+    }
+    let beside = format!("the table tilts by {tilt} rad beside its law (table.errors, body.offset)");
+    if let Some(drift) = SteadyDrift::of(scene) {
+        let ends = drift.time_on_table(scene.half_length).map_or_else(String::new, |time| {
+            format!("; from rest in the middle it leaves a table of {} m after about {time} s", 2.0 * scene.half_length)
+        });
+        return Err(format!("{beside}, so no bounce repeats in place: {drift}{ends}"));
+    }
+    let gain = scene.model().feedback().map_or(0.0, |[x, ..]| x);
+    let x = tilt / gain;
+    if x.abs() > scene.half_length {
+        return Err(format!(
+            "{beside}, and the feedback of x takes that back at x = {x} m, beyond the end of the table at {} m",
+            scene.half_length
+        ));
+    }
+    Ok(x)
 }
 
 /// Tells whether the table holds the total energy, and with it that of the drift.
@@ -133,12 +172,12 @@ fn upright_bounce(scene: &Scene, held: f64) -> Result<FixedPoint, String> {
             "{}: every bounce loses energy, so no bounce repeats",
             match scene.strike {
                 Striking::Still => format!("the table stands still and restitution is {}", scene.restitution),
-                Striking::Compensated => belief(scene),
+                Striking::Compensated => scene.belief(),
             }
         ));
     }
     if !scene.steers_energy() && scene.assumed_restitution() < scene.restitution {
-        return Err(format!("{}: every bounce gains energy, so no bounce repeats", belief(scene)));
+        return Err(format!("{}: every bounce gains energy, so no bounce repeats", scene.belief()));
     }
     let (contact_distance, radius_of_gyration) = match scene.body {
         BodyShape::Rod { contact_distance, radius_of_gyration } => (contact_distance, radius_of_gyration),
@@ -148,10 +187,10 @@ fn upright_bounce(scene: &Scene, held: f64) -> Result<FixedPoint, String> {
         let settled = height + height_error(scene);
         let room = settled - contact_distance;
         if !settled.is_finite() {
-            return Err(format!("{}: every bounce gains energy, so no bounce repeats", belief(scene)));
+            return Err(format!("{}: every bounce gains energy, so no bounce repeats", scene.belief()));
         }
         if room <= 0.0 {
-            let why = if settled == height { String::new() } else { format!(", where {} holds it,", belief(scene)) };
+            let why = if settled == height { String::new() } else { format!(", where {} holds it,", scene.belief()) };
             return Err(format!("target_height {settled} m{why} is not above contact_distance {contact_distance} m"));
         }
         let available = 2.0 * scene.gravity * room;
@@ -186,10 +225,6 @@ fn upright_bounce(scene: &Scene, held: f64) -> Result<FixedPoint, String> {
         available - drift * drift
     };
     Ok(FixedPoint::new(held, speed_squared, scene.gravity, contact_distance))
-}
-
-fn belief(scene: &Scene) -> String {
-    format!("the table believes restitution {} and meets {}", scene.assumed_restitution(), scene.restitution)
 }
 
 fn no_single_bounce(program: &HeightProgram) -> String {

@@ -218,8 +218,8 @@ fn general_jacobians<const K: usize>(
     let lifted: Rod<Dual<K>> = rod.lift();
     let (start, leverage) = (along_all(rod, state), lifted.leverage());
     let place = if K > 4 { Dual::along(x, 4, 1.0) } else { Dual::from_f64(x) };
-    let tilt = general.steering.tilt(&lifted, place, &start);
-    let plain = general.steering.tilt(rod, x, state);
+    let tilt = general.exact_tilt(&lifted, place, &start);
+    let plain = general.exact_tilt(rod, x, state);
     let Some(friction) = &general.friction else {
         let root = first_contact(&rod.flight(&rod.strike_with(state, &plain, rod.leverage()))).ok()?;
         let matrix = after_flight(&lifted, place, &lifted.strike_with(&start, &tilt, leverage), root);

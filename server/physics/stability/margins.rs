@@ -106,7 +106,7 @@ fn bounce_properties(
     [contact_distance, radius_of_gyration, restitution]: [f64; 3],
 ) -> Result<BounceProperties, String> {
     let mut draft = scene.draft();
-    let told = scene.assumed_restitution();
+    let told = scene.told_restitution();
     let mut values = vec![
         (Name::ContactDistance, contact_distance),
         (Name::RadiusOfGyration, radius_of_gyration),

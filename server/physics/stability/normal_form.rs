@@ -75,9 +75,16 @@ impl UprightBounce {
     pub fn of(model: &Model, fixed_point: &FixedPoint) -> Result<Self, String> {
         let (rod, steering, friction) = match *model {
             Model::Rod(rod) => (rod, Steering::TiltGain, None),
-            Model::General(GeneralBody { rod, steering, program: None, friction, noise: None, outline: _ }) => {
-                (rod, steering, friction)
-            }
+            // A fixed point with a constant tilt is that of a table without it, farther on: x counts from there.
+            Model::General(GeneralBody {
+                rod,
+                steering,
+                constant_tilt: _,
+                program: None,
+                friction,
+                noise: None,
+                outline: _,
+            }) => (rod, steering, friction),
             Model::General(GeneralBody { noise: None, .. }) => {
                 return Err("it is not derived for a program of heights".to_owned());
             }

@@ -113,6 +113,7 @@ fn watched_rod(model: &Model) -> Option<(Rod, Option<Friction>)> {
         Model::General(GeneralBody {
             rod,
             steering: Steering::TiltGain,
+            constant_tilt: 0.0,
             program: None,
             friction,
             noise: None,

@@ -156,7 +156,8 @@ pub fn assess(
         let cone = stick_cone(&model).filter(|cone| start.theta.abs() > *cone).map_or_else(String::new, |cone| {
             format!(", and theta {} rad outside the stick cone, |θ| up to about {cone} rad", start.theta)
         });
-        let reason = format!("{fell}, although the linear analysis is stable: the start is outside the basin{cone}");
+        let why = if left_table(run) { NO_ENDS.to_owned() } else { format!("the start is outside the basin{cone}") };
+        let reason = format!("{fell}, although the linear analysis is stable: {why}");
         return assessment(Verdict::Unstable, DecidedBy::Nonlinear, reason);
     }
     if contact_regime(&model) == ContactRegime::Sticking {
@@ -254,6 +255,14 @@ pub fn assess(
     }
 }
 
+/// Reason for which a run left its table although the linear analysis is stable.
+const NO_ENDS: &str = "it knows no ends of the table";
+
+/// Tells whether a run ended beyond an end of the table.
+fn left_table(run: &NonlinearRun) -> bool {
+    matches!(run.ending, Ending::OffTable { .. })
+}
+
 /// The verdict where the swing grows or dies out in third order.
 fn assess_swing(scene: &Scene, found: &LyapunovCoefficient, run: &NonlinearRun, agree: bool) -> Assessment {
     let LyapunovCoefficient { coefficient, amplitude, .. } = found;
@@ -306,7 +315,10 @@ fn assess_feedback(closed: &ClosedLoop, higher: &HigherOrder, run: &NonlinearRun
         (true, false) => (
             Verdict::Unstable,
             DecidedBy::Nonlinear,
-            format!("{fell}, although the closed loop has spectral radius {radius}: the start is outside the basin"),
+            format!(
+                "{fell}, although the closed loop has spectral radius {radius}: {}",
+                if left_table(run) { NO_ENDS } else { "the start is outside the basin" }
+            ),
         ),
         (false, _) => {
             let grows = format!(

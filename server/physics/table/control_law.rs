@@ -52,16 +52,25 @@ impl Steering {
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
 
-    /// [`Steering::tilt`] with an error of the sensed angle, rad.
+    /// [`Steering::tilt`] with an error of the sensed angle and a constant tilt beside the law, both in rad.
     #[inline(always)]
-    pub(crate) fn sensed_tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>, error: f64) -> Tilt<N> {
+    pub(crate) fn sensed_tilt<N: Number>(
+        &self,
+        rod: &Rod<N>,
+        x: N,
+        state: &State<N>,
+        error: f64,
+        constant: f64,
+    ) -> Tilt<N> {
         let sensed = State { theta: state.theta + N::from_f64(error), ..*state };
         let alpha = match self {
             // The rod's own, without the rounding of θ − κθ.
-            Self::TiltGain if error == 0.0 => return rod.tilt(state.theta),
+            Self::TiltGain if error == 0.0 && constant == 0.0 => return rod.tilt(state.theta),
             Self::TiltGain => rod.tilt_gain * sensed.theta,
             Self::Feedback(gains) => gains.lift().tilt(x, &sensed),
         };
+        // A sum with 0 would lose the sign of −0.
+        let alpha = if constant == 0.0 { alpha } else { alpha + N::from_f64(constant) };
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
 }

@@ -2,5 +2,6 @@
 
 pub mod actuator_load;
 pub mod control_law;
+pub mod errors;
 pub mod noise;
 pub mod program;

@@ -58,7 +58,15 @@ fn distance(one: &State, other: &State) -> f64 {
 fn struck_body(body: &BouncingRod, law: RestitutionLaw) -> GeneralBody {
     let friction = Friction { coefficient: body.friction, law, slide: Slide::Matched };
     let friction = (body.friction > 0.0).then_some(friction);
-    GeneralBody { rod: body.rod, steering: Steering::TiltGain, program: None, friction, noise: None, outline: None }
+    GeneralBody {
+        rod: body.rod,
+        steering: Steering::TiltGain,
+        constant_tilt: 0.0,
+        program: None,
+        friction,
+        noise: None,
+        outline: None,
+    }
 }
 
 /// Strikes a plan one by one with the body of a run, and tells the largest error of a joint and of rest at the end.

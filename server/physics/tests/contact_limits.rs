@@ -33,8 +33,15 @@ fn held(touching: Touching, theta: f64, x_dot: f64, duration: f64) -> Hold {
 fn distance_to_bounces(friction: Option<Friction>, theta: f64, x_dot: f64, drop: f64) -> f64 {
     let hold = held(Touching::new(friction), theta, x_dot, 0.3);
     assert_eq!(hold.ending, HoldEnding::Completed);
-    let body =
-        GeneralBody { rod: ROD, steering: Steering::TiltGain, friction, noise: None, outline: None, program: None };
+    let body = GeneralBody {
+        rod: ROD,
+        steering: Steering::TiltGain,
+        constant_tilt: 0.0,
+        friction,
+        noise: None,
+        outline: None,
+        program: None,
+    };
     let mut state = State { theta, x_dot, y_dot: -(2.0 * ROD.gravity * drop).sqrt(), theta_dot: 0.0 };
     let (mut t, mut x, mut worst) = (0.0, 0.0, 0.0_f64);
     loop {

@@ -8,7 +8,8 @@ use equipoise_physics::run::rules::Rules;
 
 const CASE_1: Rod = Rod::lossless(0.4 / 3.0, 0.094, 1.1);
 
-const HOLDING: Rules = Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None };
+const HOLDING: Rules =
+    Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None, half_length: f64::INFINITY };
 
 fn at_contact_20() -> Orbit<Rod> {
     let state = equipoise_physics::bounce::state::State { theta: 0.05, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
@@ -70,7 +71,10 @@ fn another_table_is_in_force_from_the_coming_contact_on() {
 fn a_run_that_begins_to_lose_energy_settles() {
     let mut orbit = at_contact_20();
     let still = Rod { restitution: 0.5, tilt_gain: 0.0, strike_gain: 1.5, ..CASE_1 };
-    orbit.replace(still, Rules { topple_angle: 1.5, settles: true, holds_energy: false, limits: None });
+    orbit.replace(
+        still,
+        Rules { topple_angle: 1.5, settles: true, holds_energy: false, limits: None, half_length: f64::INFINITY },
+    );
     let ending = (0..10_000).find_map(|_| orbit.advance().ending);
     assert!(matches!(ending, Some(Ending::Settled { .. } | Ending::Toppled { .. })), "{ending:?}");
 }

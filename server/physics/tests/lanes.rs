@@ -38,7 +38,15 @@ impl Start {
 
     /// The same run with friction or a feedback.
     fn general(&self, steering: Steering, friction: Option<Friction>) -> Orbit<Model> {
-        let body = GeneralBody { rod: self.rod, steering, program: None, friction, noise: None, outline: None };
+        let body = GeneralBody {
+            rod: self.rod,
+            steering,
+            constant_tilt: 0.0,
+            program: None,
+            friction,
+            noise: None,
+            outline: None,
+        };
         let holds_energy = self.rules.holds_energy && friction.is_none();
         Orbit::at(Model::General(body), Rules { holds_energy, ..self.rules }, self.state)
     }
@@ -58,7 +66,7 @@ prop_compose! {
         let (scale, settles) = (if near { 0.05 } else { 1.0 }, changes_energy(&rod));
         Start {
             rod,
-            rules: Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles, holds_energy: !settles, limits: None },
+            rules: Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles, holds_energy: !settles, limits: None, half_length: f64::INFINITY },
             state: State { theta: theta * scale, x_dot: x_dot * scale, y_dot, theta_dot: theta_dot * scale },
         }
     }
@@ -173,6 +181,7 @@ proptest! {
             let body = GeneralBody {
                 rod: start.rod,
                 steering,
+                constant_tilt: 0.0,
                 program: HeightProgram::new(&heights),
                 friction: None,
                 noise,
@@ -232,8 +241,13 @@ proptest! {
 }
 
 /// Rules of a run without friction that cannot settle; those of one that can have the same batch.
-const RULES_OF_A_KIND: Rules =
-    Rules { topple_angle: std::f64::consts::FRAC_PI_2, settles: false, holds_energy: true, limits: None };
+const RULES_OF_A_KIND: Rules = Rules {
+    topple_angle: std::f64::consts::FRAC_PI_2,
+    settles: false,
+    holds_energy: true,
+    limits: None,
+    half_length: f64::INFINITY,
+};
 
 /// A map of the paper's body, hashed (FNV-1a over contacts, outcome and the bits of the largest angle): the same number on
 /// every path and on every CPU. It changes only when the numbers of answers do, and then CHANGELOG says so.

@@ -122,12 +122,18 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit<Model>> {
     let body = GeneralBody {
         rod,
         steering: if kind.feedback { Steering::Feedback(gains) } else { Steering::TiltGain },
+        constant_tilt: 0.0,
         program: None,
         friction,
         noise: kind.errs.then_some(noise),
         outline,
     };
-    Orbit::new(Model::General(body), Rules { topple_angle, settles, holds_energy, limits: None }, &release).ok()
+    Orbit::new(
+        Model::General(body),
+        Rules { topple_angle, settles, holds_energy, limits: None, half_length: f64::INFINITY },
+        &release,
+    )
+    .ok()
 }
 
 fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit<Model>], impacts: u64) -> Vec<Option<LaneRunEnd>> {
@@ -213,11 +219,18 @@ fn hash(ends: &[Option<LaneRunEnd>]) -> u64 {
 #[test]
 fn a_batch_takes_what_lanes_see() {
     let noise = Noise { timing_sd: 0.01, angle_sd: 0.0, model: NoiseModel::Strike, seed: 0, run: 0 };
-    let rules = |holds_energy| Rules { topple_angle: 1.5, settles: false, holds_energy, limits: None };
+    let rules = |holds_energy| Rules {
+        topple_angle: 1.5,
+        settles: false,
+        holds_energy,
+        limits: None,
+        half_length: f64::INFINITY,
+    };
     let body = |noise, outline| {
         Model::General(GeneralBody {
             rod: Rod::lossless(0.4 / 3.0, 0.094, 1.1),
             steering: Steering::TiltGain,
+            constant_tilt: 0.0,
             program: None,
             friction: None,
             noise,

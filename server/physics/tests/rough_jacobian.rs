@@ -32,6 +32,7 @@ impl RoughRod {
         GeneralBody {
             rod: self.rod,
             steering: Steering::TiltGain,
+            constant_tilt: 0.0,
             program: None,
             friction: Some(self.friction),
             noise: None,

@@ -35,8 +35,15 @@ fn a_strike_reaches_the_ratio_that_was_aimed_for() {
         }
         for law in [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge] {
             let friction = (coefficient > 0.0).then_some(Friction { coefficient, law, slide: Slide::Matched });
-            let body =
-                GeneralBody { rod, steering: Steering::TiltGain, program: None, friction, noise: None, outline: None };
+            let body = GeneralBody {
+                rod,
+                steering: Steering::TiltGain,
+                constant_tilt: 0.0,
+                program: None,
+                friction,
+                noise: None,
+                outline: None,
+            };
             let strike = body.strike(&PreImpact { plan: Some(aim.motion(impulse)), ..PreImpact::at(1, 0.0, state) });
             let wanted = -ratio * rod.contact_speed(&state);
             assert!((strike.contact_rise - wanted).abs() < 1e-13 * (1.0 + impulse), "{body:?} {strike:?} {wanted}");

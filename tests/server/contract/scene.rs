@@ -309,13 +309,15 @@ fn answered() -> String {
 
 /// The three kinds of body, each with all of its fields.
 fn bodies() -> String {
-    let [length, rho, point, contact_vertex] =
-        [Name::ContactDistance, Name::RadiusOfGyration, Name::PointMass, Name::ContactVertex]
+    let [length, rho, offset, point, contact_vertex] =
+        [Name::ContactDistance, Name::RadiusOfGyration, Name::Offset, Name::PointMass, Name::ContactVertex]
             .map(|name| name.row().path);
     let mut text = "        body:\n          oneOf:\n".to_owned();
-    for (title, paths) in
-        [("A rod.", vec![length, rho]), ("A point mass.", vec![point]), ("A polygon.", vec![VERTICES, contact_vertex])]
-    {
+    for (title, paths, optional) in [
+        ("A rod.", vec![length, rho], vec![offset]),
+        ("A point mass.", vec![point], vec![]),
+        ("A polygon.", vec![VERTICES, contact_vertex], vec![]),
+    ] {
         let keys: Vec<&str> = paths.iter().map(|path| path.trim_start_matches("body.")).collect();
         let _ = write!(
             text,
@@ -323,7 +325,8 @@ fn bodies() -> String {
              required: [{}]\n              properties:\n",
             keys.join(", ")
         );
-        for (key, path) in keys.iter().zip(&paths) {
+        let keys = paths.iter().chain(&optional).map(|path| (path.trim_start_matches("body."), path));
+        for (key, path) in keys {
             let _ = writeln!(text, "                {key}: {}", reference(Form::Answer, path));
         }
     }

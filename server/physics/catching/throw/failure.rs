@@ -1,6 +1,7 @@
 //! Reasons for which no strike throws a body to a target, in words with numbers, limits and units.
 
 use crate::body::Touch;
+use crate::scene::Name;
 use crate::table::actuator_load::LimitViolation;
 use std::fmt;
 
@@ -12,6 +13,8 @@ pub const STEEPEST: f64 = 1.4;
 pub enum ThrowFailure {
     /// A point mass has no angle to be thrown to.
     PointMass,
+    /// The rig has a constant error, or a table with ends, by this field.
+    Rig(Name),
     /// The centre of gravity is not above the contact point.
     Lying {
         /// θ, rad.
@@ -72,6 +75,9 @@ impl fmt::Display for ThrowFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::PointMass => write!(f, "a point mass has no angle to be thrown to"),
+            Self::Rig(name) => {
+                write!(f, "a throw is for an ideal rig without ends; leave {} out", name.row().path)
+            }
             Self::Lying { theta } => {
                 write!(f, "the body lies at theta {theta} rad; a throw needs an angle within a quarter turn of upright")
             }

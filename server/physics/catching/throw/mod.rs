@@ -74,6 +74,9 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
     if scene.body() == BodyShape::Point {
         return Err(ThrowFailure::PointMass);
     }
+    if let Some(name) = scene.beyond_ideal_rig() {
+        return Err(ThrowFailure::Rig(name));
+    }
     let body = thrown_body(scene);
     let (wanted, iterations, motion) = plan(&body, scene.assumed_restitution(), coming, target)?;
     let struck = PreImpact { plan: Some(motion), ..*coming };
@@ -155,6 +158,7 @@ fn thrown_body(scene: &Scene) -> GeneralBody {
     GeneralBody {
         rod: scene.parameters(),
         steering: scene.steering,
+        constant_tilt: 0.0,
         program: None,
         friction: scene.contact_friction(),
         noise: None,

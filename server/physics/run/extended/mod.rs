@@ -194,6 +194,10 @@ impl Checked for ExtendedAtContact<'_> {
         self.orbit.body.touches(self.state.theta, self.strike.alpha)
     }
 
+    fn contact_place(&self) -> f64 {
+        (self.orbit.x + self.orbit.body.lifted.rod.contact_distance * self.strike.sin_cos_theta.0).to_f64()
+    }
+
     fn load(&mut self) -> ActuatorLoad {
         let (x, y) = self.strike.table_velocity;
         let pose = Pose { alpha: self.strike.alpha.to_f64(), velocity: (x.to_f64(), y.to_f64()) };

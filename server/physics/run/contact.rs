@@ -1,0 +1,28 @@
+//! A contact of a run, as a run gives it to those who look at it.
+
+use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
+use crate::run::ending::Ending;
+
+/// One contact of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact<N = f64> {
+    /// Number of the contact, from 1.
+    pub n: u64,
+    /// Time, s after release.
+    pub t: N,
+    /// Horizontal place of the centre of gravity, m.
+    pub x: N,
+    /// Angle and velocities just before it.
+    pub state: State<N>,
+    /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
+    pub clearance: N,
+    /// α, table tilt, rad; of a table that does not strike too.
+    pub alpha: N,
+    /// The strike, unless the run ended before it.
+    pub strike: Option<Strike<N>>,
+    /// Time to the next contact, s; `None` if the run ended.
+    pub flight_time: Option<N>,
+    /// Ending of the run, if it ended here.
+    pub ending: Option<Ending>,
+}

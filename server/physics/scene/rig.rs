@@ -1,0 +1,108 @@
+//! The rig as it is: reads the constant errors of a scene, and says what they do.
+
+use super::draft::Draft;
+use super::error::FieldError;
+use super::fields::Name;
+use super::{Scene, Striking};
+use crate::bounce::energy_feedback::EnergyFeedback;
+use crate::table::errors::TableErrors;
+
+/// Fields of the constant errors.
+pub(super) const ERRORS: [Name; 5] =
+    [Name::AngleBias, Name::TiltOffset, Name::TiltGainError, Name::SpeedError, Name::Offset];
+
+impl Draft {
+    /// The constant errors; 0 where a field has no value.
+    pub(super) fn table_errors(&self) -> TableErrors {
+        let [angle_bias, tilt_offset, tilt_gain, speed, offset] = ERRORS.map(|name| self.number(name).unwrap_or(0.0));
+        TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset }
+    }
+
+    /// Refuses an error of the table's speed where the table has none, and for a law without a gain.
+    pub(super) fn refuse_speed_error(&self, strike: Striking, law: EnergyFeedback, errors: &mut Vec<FieldError>) {
+        let Some(error) = self.number(Name::SpeedError).filter(|error| *error != 0.0) else { return };
+        if strike == Striking::Still {
+            let detail = "errors.speed is of a table that moves and strike says `still`; leave one of them out";
+            errors.push(FieldError::new(Name::SpeedError, detail.to_owned()));
+        } else if law == EnergyFeedback::OneStrike {
+            let detail = format!(
+                "errors.speed is {error}, which is derived for energy_law `proportional` and for no energy feedback, and energy_law says \
+                 `one_strike`; leave one of them out"
+            );
+            errors.push(FieldError::new(Name::SpeedError, detail));
+        }
+    }
+}
+
+impl Scene {
+    /// The constant errors of the rig.
+    pub fn table_errors(&self) -> &TableErrors {
+        &self.errors
+    }
+
+    /// Tilt of the table beside its law of the true angle, rad: 0 on a rig without constant errors.
+    pub fn constant_tilt(&self) -> f64 {
+        self.constant_tilt
+    }
+
+    /// 1 + ε_α: the table tilts by so many times its law.
+    pub fn tilt_factor(&self) -> f64 {
+        1.0 + self.errors.tilt_gain
+    }
+
+    /// 1 + ε_w: the table moves at so many times its law.
+    pub fn speed_factor(&self) -> f64 {
+        1.0 + self.errors.speed
+    }
+
+    /// Restitution that the table is told, whatever the error of its speed.
+    pub(crate) fn told_restitution(&self) -> f64 {
+        self.number(Name::AssumedRestitution).unwrap_or(self.restitution)
+    }
+
+    /// The restitution by which the table acts and the one that it meets, in words.
+    pub fn belief(&self) -> String {
+        let (acted, met, error) = (self.assumed_restitution(), self.restitution, self.errors.speed);
+        if error == 0.0 {
+            format!("the table believes restitution {acted} and meets {met}")
+        } else {
+            format!(
+                "the table's speed is {} times its law, as if it believed restitution {acted}, and it meets {met}",
+                1.0 + error
+            )
+        }
+    }
+
+    /// The first field of a constant error that is not 0.
+    pub fn first_error(&self) -> Option<Name> {
+        ERRORS.into_iter().find(|&name| self.number(name).is_some_and(|error| error != 0.0))
+    }
+
+    /// The field that makes the rig other than an ideal one without ends, if one does.
+    pub fn beyond_ideal_rig(&self) -> Option<Name> {
+        let ends = self.number(Name::TableLength).map(|_| Name::TableLength);
+        self.first_error().or(ends)
+    }
+
+    /// The field of a constant error that asks for more than an ideal rig, with a sentence.
+    pub(super) fn error_requirement(&self) -> Option<(Name, String)> {
+        let name = self.first_error()?;
+        let TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset } = self.errors;
+        let mut said = Vec::new();
+        let mut say = |error: f64, words: String| {
+            if error != 0.0 {
+                said.push(words);
+            }
+        };
+        say(angle_bias, format!("the angle is sensed {angle_bias} rad too large"));
+        say(tilt_offset, format!("the table tilts {tilt_offset} rad too far"));
+        say(tilt_gain, format!("the table tilts by {} times its law", 1.0 + tilt_gain));
+        say(speed, format!("the table moves at {} times its law", 1.0 + speed));
+        say(offset, format!("the centre of gravity is {offset} m off the axis"));
+        let effect = match self.constant_tilt {
+            0.0 => "all of it other gains of the table".to_owned(),
+            tilt => format!("the table tilts by {tilt} rad beside its law"),
+        };
+        Some((name, format!("{}: {effect}", said.join(", "))))
+    }
+}

@@ -1,0 +1,343 @@
+//! Constant errors of a rig and the ends of its table: against a simulation of its own, exact reductions, and closed forms of the drift.
+
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::control::bounce_model::BounceModel;
+use equipoise_physics::control::lqr::design_lqr;
+use equipoise_physics::control::steady_drift::SteadyDrift;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::method::{RunMethod, run_by};
+use equipoise_physics::run::orbit::run;
+use equipoise_physics::scene::model::{Model, ModelLevel};
+use equipoise_physics::scene::model_hierarchy::run_hierarchy;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::contact_regime::ContactRegime;
+use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at, jacobian_at};
+use random::Random;
+use rig::Rig;
+
+mod paper;
+#[path = "support/random.rs"]
+mod random;
+#[path = "support/rig.rs"]
+mod rig;
+
+fn with(draft: Draft, values: &[(Name, f64)]) -> Draft {
+    let mut draft = draft;
+    for &(name, number) in values {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft
+}
+
+fn scene(values: &[(Name, f64)]) -> Scene {
+    with(paper::scene(1.1, 0.1).draft(), values).build().unwrap()
+}
+
+/// t, x, θ, ẋ, ẏ, θ̇ at the contacts, and the ending.
+fn states(scene: &Scene, impacts: u64) -> (Vec<[f64; 6]>, Ending) {
+    let mut states = Vec::new();
+    let ending = run(&mut scene.orbit().unwrap(), impacts, |contact| {
+        let state = contact.state;
+        states.push([contact.t, contact.x, state.theta, state.x_dot, state.y_dot, state.theta_dot]);
+        true
+    });
+    (states, ending.unwrap())
+}
+
+fn difference(one: &[[f64; 6]], other: &[[f64; 6]]) -> f64 {
+    assert_eq!(one.len(), other.len());
+    one.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// State feedback that brings the bounce of the paper's rod to rest.
+fn gains() -> [f64; 4] {
+    let scene = paper::scene(1.1, 0.1);
+    let place = find_fixed_point(&scene).unwrap();
+    let model = BounceModel::new(&scene.parameters(), place.speed, ContactRegime::Frictionless);
+    design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain
+}
+
+const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+
+/// The scene with feedback instead of its tilt gain, and more numbers.
+fn fed_back(gains: [f64; 4], values: &[(Name, f64)]) -> Scene {
+    let mut draft = with(paper::scene(1.1, 0.1).draft(), values);
+    draft.set(Name::TiltGain, None).unwrap();
+    with(draft, &[(GAINS[0], gains[0]), (GAINS[1], gains[1]), (GAINS[2], gains[2]), (GAINS[3], gains[3])])
+        .build()
+        .unwrap()
+}
+
+/// Scenes with all constant errors, with a tilt gain or feedback, with and without energy feedback.
+fn random_scene(random: &mut Random) -> Scene {
+    loop {
+        let length = random.between(0.05, 0.3);
+        let rho = length * random.between(0.3, 1.0);
+        let above = length * random.between(0.3, 1.5);
+        let width = rho * rho / (2.0 * above * length);
+        let kappa = 1.0 + random.between(0.1, 0.9) * width;
+        let mut values = vec![
+            (Name::ContactDistance, length),
+            (Name::RadiusOfGyration, rho),
+            (Name::Height, length + above),
+            (Name::Theta, random.size(0.001, 0.05)),
+            (Name::ThetaDot, random.size(0.001, 0.2)),
+            (Name::XDot, random.size(0.001, 0.2)),
+            (Name::X, random.size(0.001, 0.2)),
+            (Name::Restitution, random.between(0.3, 1.0)),
+            (Name::AssumedRestitution, random.between(0.3, 1.0)),
+            (Name::AngleBias, random.size(1e-4, 0.01)),
+            (Name::TiltOffset, random.size(1e-4, 0.01)),
+            (Name::TiltGainError, random.size(1e-3, 0.05)),
+            (Name::SpeedError, random.size(1e-3, 0.2)),
+            (Name::Offset, length * random.size(1e-4, 0.05)),
+        ];
+        if random.between(0.0, 1.0) < 0.5 {
+            values.push((Name::TiltGain, kappa));
+        } else {
+            values.extend([
+                (Name::FeedbackX, random.size(0.01, 0.2)),
+                (Name::FeedbackTheta, -kappa),
+                (Name::FeedbackXDot, random.size(0.001, 0.05)),
+                (Name::FeedbackThetaDot, random.size(0.0001, 0.005)),
+            ]);
+        }
+        if random.between(0.0, 1.0) < 0.5 {
+            values.push((Name::EnergyGain, random.between(0.05, 0.6) / (2.0 * 9.81 * above)));
+            values.push((Name::TargetHeight, length + above * random.between(0.8, 1.3)));
+        }
+        if let Ok(scene) = with(Draft::default(), &values).build() {
+            return scene;
+        }
+    }
+}
+
+#[test]
+fn rigs_with_all_errors_move_as_newton_and_euler_say() {
+    let mut random = Random::new(18);
+    let (mut compared, mut largest) = (0, 0.0_f64);
+    for _ in 0..300 {
+        let scene = random_scene(&mut random);
+        let (course, _) = states(&scene, 12);
+        let other = Rig::of(&scene).course(course.len());
+        for (one, other) in course.iter().zip(&other) {
+            compared += 1;
+            for (a, b) in one.iter().zip(other) {
+                assert!((a - b).abs() < 1e-10 * (1.0 + b.abs()), "{one:?}\n{other:?}\n{scene:?}");
+                largest = largest.max((a - b).abs());
+            }
+        }
+    }
+    assert!(compared > 1500, "{compared} contacts, off by {largest}");
+}
+
+#[test]
+fn an_offset_is_a_longer_rod_whose_angle_is_sensed_wrong() {
+    let (along, across) = (0.12_f64, 0.005_f64);
+    let offset = scene(&[(Name::ContactDistance, along), (Name::Offset, across)]);
+    let (length, lean) = (along.hypot(across), across.atan2(along));
+    let longer = scene(&[(Name::ContactDistance, length), (Name::AngleBias, lean)]);
+    assert!((offset.constant_tilt() - 1.1 * lean).abs() < 1e-16);
+    let ((one, end), (other, same)) = (states(&offset, 40), states(&longer, 40));
+    assert!(difference(&one, &other) < 1e-10, "{}", difference(&one, &other));
+    assert_eq!(end.name(), same.name());
+}
+
+#[test]
+fn an_error_of_the_gain_is_another_gain() {
+    let (wrong, right) = (scene(&[(Name::TiltGainError, 0.25)]), scene(&[(Name::TiltGain, 1.1 * 1.25)]));
+    assert_eq!(states(&wrong, 200), states(&right, 200));
+    assert!(matches!(wrong.model(), Model::Rod(_)), "no constant tilt, so it stays the plain rod");
+    assert_eq!(find_fixed_point(&wrong), find_fixed_point(&right));
+}
+
+#[test]
+fn an_error_of_the_speed_is_another_belief_and_another_energy_gain() {
+    let (e, assumed, error, gain) = (0.5, 0.6, 0.2, 0.1);
+    let energy = [(Name::Restitution, e), (Name::TargetHeight, 0.25)];
+    let told = [(Name::AssumedRestitution, assumed), (Name::EnergyGain, gain), (Name::SpeedError, error)];
+    let wrong = scene(&[&energy[..], &told].concat());
+    let made_up = (1.0 + error) * (1.0 - assumed) / (1.0 + assumed);
+    let acted = (1.0 - made_up) / (1.0 + made_up);
+    let told = [(Name::AssumedRestitution, acted), (Name::EnergyGain, gain * (1.0 + error))];
+    let right = scene(&[&energy[..], &told].concat());
+    assert!(difference(&states(&wrong, 60).0, &states(&right, 60).0) < 1e-10);
+    let (one, other) = (find_fixed_point(&wrong).unwrap(), find_fixed_point(&right).unwrap());
+    assert!((one.apex_height - other.apex_height).abs() < 1e-14);
+    // Without energy feedback the height runs away, and the sentence tells of the speed.
+    let fast = scene(&[(Name::Restitution, e), (Name::SpeedError, error)]);
+    let why = find_fixed_point(&fast).unwrap_err();
+    assert!(why.contains("1.2 times its law") && why.contains("gains energy"), "{why}");
+    // Where nothing is lost the table stands still, and its speed has no error.
+    assert_eq!(states(&scene(&[(Name::SpeedError, error)]), 100), states(&scene(&[]), 100));
+}
+
+#[test]
+fn a_bias_and_an_offset_that_cancel_leave_the_ideal_rig() {
+    // All of these are exact in binary.
+    let (kappa, bias) = (1.25, 1.0 / 256.0);
+    let ideal = scene(&[(Name::TiltGain, kappa)]);
+    let rig = scene(&[(Name::TiltGain, kappa), (Name::AngleBias, bias), (Name::TiltOffset, -kappa * bias)]);
+    assert_eq!(rig.constant_tilt(), 0.0);
+    assert_eq!(states(&rig, 300), states(&ideal, 300));
+}
+
+#[test]
+fn a_rig_seen_in_a_mirror_has_mirrored_errors() {
+    let mut random = Random::new(5);
+    for _ in 0..50 {
+        let scene = random_scene(&mut random);
+        let odd = [Name::Theta, Name::ThetaDot, Name::X, Name::XDot, Name::AngleBias, Name::TiltOffset, Name::Offset];
+        let mirrored = odd.map(|name| (name, -scene.number(name).unwrap()));
+        let (course, ending) = states(&scene, 20);
+        let (other, same) = states(&with(scene.draft(), &mirrored).build().unwrap(), 20);
+        assert_eq!(ending.name(), same.name());
+        for ([t, x, theta, x_dot, y_dot, theta_dot], other) in course.into_iter().zip(other) {
+            assert_eq!([t, -x, -theta, -x_dot, y_dot, -theta_dot], other);
+        }
+    }
+}
+
+#[test]
+fn a_bias_drives_the_body_aside_at_the_acceleration_of_its_lean() {
+    let bias = 1e-4;
+    let rig = scene(&[(Name::AngleBias, bias)]);
+    let why = find_fixed_point(&rig).unwrap_err();
+    let Some(SteadyDrift::Accelerates { theta, acceleration: Some(acceleration) }) = SteadyDrift::of(&rig) else {
+        panic!("{why}")
+    };
+    assert!((theta + 1.1 * bias / 0.1).abs() < 1e-15, "θ* = −c/(κ − 1): {theta}");
+    assert!(why.contains(&acceleration.to_string()), "{why}");
+    // Released at its lean, the body keeps it, and its drift grows with time.
+    let (course, _) = states(&scene(&[(Name::AngleBias, bias), (Name::Theta, theta)]), 60);
+    for [t, _, lean, x_dot, ..] in &course[1..] {
+        assert!((lean - theta).abs() < 0.05 * theta.abs(), "{lean} {theta}");
+        assert!((x_dot - acceleration * (t - course[0][0])).abs() < 0.01 * acceleration * t, "{x_dot} at {t} s");
+    }
+}
+
+#[test]
+fn feedback_of_the_place_takes_a_constant_tilt_back_farther_on() {
+    let gain = gains();
+    let (bias, offset) = (0.002, -0.0005);
+    let tilt = offset - gain[1] * bias;
+    let rig = fed_back(gain, &[(Name::AngleBias, bias), (Name::TiltOffset, offset)]);
+    let place = find_fixed_point(&rig).unwrap();
+    assert!((place.x - tilt / gain[0]).abs() < 1e-15, "x* = c/K_x");
+    let (course, ending) = states(&rig, 2000);
+    let [_, x, theta, x_dot, _, theta_dot] = course[1999];
+    assert_eq!(ending, Ending::Completed);
+    assert!((x - place.x).abs() < 1e-9 && [theta, x_dot, theta_dot].iter().all(|it| it.abs() < 1e-9), "{x}");
+    // The map is the ideal one, moved: its derivative is the same there.
+    let ideal = fed_back(gain, &[]);
+    let state = place.state();
+    let moved = jacobian_at(&rig.model(), place.x, &state, 1).unwrap();
+    let still = jacobian_at(&ideal.model(), 0.0, &state, 1).unwrap();
+    assert!((moved.matrix.clone() - still.matrix).abs().max() < 1e-14);
+    assert!(eigenvalues(&moved.matrix).unwrap().iter().all(|value| value.norm() < 1.0 + 1e-12));
+    // On a table that ends before, there is no such bounce.
+    let why = find_fixed_point(&with(rig.draft(), &[(Name::TableLength, 1.9 * place.x.abs())]).build().unwrap());
+    assert!(why.unwrap_err().contains("beyond the end of the table"));
+}
+
+#[test]
+fn feedback_of_the_velocity_alone_drifts_at_the_speed_that_levels_the_table() {
+    let gain = gains();
+    // The same gains without x; the drift of x is left.
+    let rig = fed_back([0.0, gain[1], gain[2], gain[3]], &[(Name::TiltOffset, 1e-3)]);
+    let Some(SteadyDrift::Moves { speed }) = SteadyDrift::of(&rig) else { panic!("it moves") };
+    let (course, ending) = states(&rig, 3000);
+    let [.., x_dot, _, _] = course[2999];
+    assert!(ending == Ending::Completed && (x_dot - speed).abs() < 1e-6 * speed.abs(), "{x_dot} {speed}");
+    assert!(find_fixed_point(&rig).unwrap_err().contains(&speed.to_string()));
+}
+
+#[test]
+fn the_derivative_has_the_constant_tilt_in_it() {
+    let mut random = Random::new(8);
+    for _ in 0..40 {
+        let scene = random_scene(&mut random);
+        let orbit = scene.orbit().unwrap();
+        let Ok(exact) = jacobian_at(&scene.model(), orbit.x(), orbit.state(), 3) else { continue };
+        let estimate = finite_difference_at(&scene.model(), orbit.x(), orbit.state(), 3, 1e-6).unwrap();
+        let size = exact.matrix.abs().max();
+        assert!((exact.matrix - estimate.matrix).abs().max() < 1e-6 * size, "{scene:?}");
+    }
+}
+
+#[test]
+fn a_run_ends_at_the_first_contact_beyond_the_table() {
+    let endless = scene(&[(Name::AngleBias, 0.002)]);
+    let length = endless.number(Name::ContactDistance).unwrap();
+    let (course, _) = states(&endless, 60);
+    let place = |[_, x, theta, ..]: &[f64; 6]| x + length * theta.sin();
+    for half in [0.005, 0.02, 0.1, 0.2] {
+        let (short, ending) = states(&with(endless.draft(), &[(Name::TableLength, 2.0 * half)]).build().unwrap(), 60);
+        let first = course.iter().position(|contact| place(contact).abs() > half).unwrap();
+        assert_eq!(short, course[..=first]);
+        let Ending::OffTable { place: found, limit } = ending else { panic!("{ending:?}") };
+        assert_eq!(limit, half);
+        assert!((found - place(&course[first])).abs() < 1e-15);
+    }
+    // A body that has fallen over has done so wherever it is; the table's other limits come after its ends.
+    let ended = |values: &[(Name, f64)]| states(&scene(values), 10).1.name();
+    let off = [(Name::X, 1.0), (Name::TableLength, 0.5), (Name::TiltLimit, 0.0)];
+    assert_eq!(ended(&off), "off_table");
+    assert_eq!(ended(&[&off[..], &[(Name::ToppleAngle, 0.05)]].concat()), "toppled");
+}
+
+#[test]
+fn runs_with_31_digits_are_of_the_same_rig() {
+    let mut random = Random::new(31);
+    for _ in 0..40 {
+        let scene = with(random_scene(&mut random).draft(), &[(Name::TableLength, 1.0)]).build().unwrap();
+        let (course, ending) = states(&scene, 12);
+        let mut contacts = Vec::new();
+        let exact = run_by(&scene, RunMethod::Extended, 12, |impact| {
+            let State { theta, x_dot, y_dot, theta_dot } = impact.contact.state;
+            contacts.push([impact.contact.t, impact.contact.x, theta, x_dot, y_dot, theta_dot]);
+            true
+        });
+        assert_eq!(exact.unwrap().unwrap().name(), ending.name());
+        assert!(difference(&course, &contacts) < 1e-10, "{scene:?}");
+    }
+}
+
+#[test]
+fn methods_that_do_not_know_a_rig_say_so() {
+    let refused = |scene: &Scene, method| run_by(scene, method, 10, |_| true).unwrap_err();
+    let (biased, short) = (scene(&[(Name::AngleBias, 0.002)]), scene(&[(Name::TableLength, 0.5)]));
+    assert!(refused(&biased, RunMethod::Linear).contains("table.errors.angle_bias is 0.002"));
+    assert!(refused(&short, RunMethod::Linear).contains("ends of the table"));
+    assert!(biased.beyond(&[ModelLevel::Friction]).is_some());
+    assert!(scene(&[(Name::TiltGainError, 0.1), (Name::SpeedError, 0.1)]).beyond(&[]).is_none(), "gains alone");
+}
+
+#[test]
+fn the_ladder_has_a_level_for_errors() {
+    let rig = scene(&[(Name::AngleBias, 0.002), (Name::Offset, 0.001), (Name::Friction, 0.05)]);
+    let steps = run_hierarchy(&rig, 20, || true).unwrap();
+    let levels: Vec<_> = steps.iter().map(|step| step.level).collect();
+    assert_eq!(levels, [ModelLevel::Linear, ModelLevel::Rod, ModelLevel::RigErrors, ModelLevel::Friction]);
+    let requirement = steps[2].requirement.as_ref().unwrap();
+    assert_eq!(requirement.path, "table.errors.angle_bias");
+    assert!(requirement.detail.contains("0.001 m off the axis"), "{}", requirement.detail);
+    assert_eq!(steps[1].scene.constant_tilt(), 0.0);
+    assert_eq!(steps[2].scene.model_level(), ModelLevel::RigErrors);
+}
+
+#[test]
+fn errors_that_a_rig_cannot_have_are_refused() {
+    let paths = |draft: Draft| draft.build().unwrap_err().iter().map(|error| error.path).collect::<Vec<_>>();
+    let mut still = with(paper::scene(1.1, 0.1).draft(), &[(Name::SpeedError, 0.1)]);
+    still.set(Name::Strike, Some(Value::Choice("still"))).unwrap();
+    assert_eq!(paths(still), ["table.errors.speed"]);
+    let mut one = with(paper::scene(1.1, 0.1).draft(), &[(Name::SpeedError, 0.1), (Name::TargetHeight, 0.2)]);
+    one.set(Name::EnergyLaw, Some(Value::Choice("one_strike"))).unwrap();
+    assert_eq!(paths(one), ["table.errors.speed"]);
+    let errors = [(Name::AngleBias, 0.1), (Name::TiltOffset, 0.1), (Name::Offset, 0.1)];
+    let mut point = with(Draft::default(), &[&[(Name::TiltGain, 0.5), (Name::Height, 0.2)], &errors[..]].concat());
+    point.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
+    assert_eq!(paths(point), ["body.offset", "table.errors.angle_bias", "table.errors.tilt_offset"]);
+}

@@ -1,0 +1,134 @@
+//! A rig simulated from Newton's and Euler's equations, with the axis of its rod for the angle: the table's errors as they stand in the
+//! contract, not as they are reduced.
+
+use equipoise_physics::scene::{Name, Scene};
+
+/// A rod on a table with constant errors, without friction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rig {
+    /// Centre of gravity from the contact point, along the axis and across it, m.
+    along: f64,
+    across: f64,
+    rho: f64,
+    gravity: f64,
+    restitution: f64,
+    assumed: f64,
+    energy_gain: f64,
+    target: f64,
+    /// K of x, θ, ẋ, θ̇.
+    gains: [f64; 4],
+    bias: f64,
+    offset: f64,
+    gain_error: f64,
+    speed_error: f64,
+    /// Place and height of the centre of gravity, angle of the axis, and their velocities.
+    at: [f64; 6],
+}
+
+impl Rig {
+    /// The rig of a scene, as it is released.
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let number = |name| scene.number(name).unwrap_or(0.0);
+        let (along, across) = (number(Name::ContactDistance), number(Name::Offset));
+        let restitution = number(Name::Restitution);
+        let gains = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot].map(number);
+        let gravity = number(Name::Gravity) * number(Name::Incline).sin();
+        Self {
+            along,
+            across,
+            rho: number(Name::RadiusOfGyration),
+            gravity,
+            restitution,
+            assumed: scene.number(Name::AssumedRestitution).unwrap_or(restitution),
+            energy_gain: number(Name::EnergyGain),
+            target: gravity * number(Name::TargetHeight),
+            gains: [gains[0], gains[1] - number(Name::TiltGain), gains[2], gains[3]],
+            bias: number(Name::AngleBias),
+            offset: number(Name::TiltOffset),
+            gain_error: number(Name::TiltGainError),
+            speed_error: number(Name::SpeedError),
+            at: [
+                number(Name::X),
+                number(Name::Height),
+                number(Name::Theta) + (across / along).atan(),
+                number(Name::XDot),
+                number(Name::YDot),
+                number(Name::ThetaDot),
+            ],
+        }
+    }
+
+    /// From the centre of gravity to the contact point, the axis at an angle.
+    fn foot(&self, angle: f64) -> [f64; 2] {
+        let (sin, cos) = angle.sin_cos();
+        [self.along * sin - self.across * cos, -self.along * cos - self.across * sin]
+    }
+
+    /// After a free flight.
+    fn flown(&self, t: f64) -> [f64; 6] {
+        let [x, y, angle, x_dot, y_dot, spin] = self.at;
+        let y_then = y + y_dot * t - 0.5 * self.gravity * t * t;
+        [x + x_dot * t, y_then, angle + spin * t, x_dot, y_dot - self.gravity * t, spin]
+    }
+
+    /// Time until the contact point comes down to 0; its height has one top. `None` if it does not rise.
+    fn flight(&self) -> Option<f64> {
+        let height = |t: f64| {
+            let then = self.flown(t);
+            then[1] + self.foot(then[2])[1]
+        };
+        let reach = 2.0 * self.along.hypot(self.across);
+        let up = self.at[4].abs();
+        let mut high = (up + (up * up + 2.0 * self.gravity * (self.at[1].abs() + reach)).sqrt()) / self.gravity + 0.1;
+        let mut low = 1e-6 * high;
+        if height(low) <= 0.0 {
+            return None;
+        }
+        assert!(height(high) < 0.0);
+        while high - low > f64::EPSILON * high {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if height(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        Some(low)
+    }
+
+    /// Velocities after a strike.
+    fn strike(&mut self) {
+        let [x, _, angle, x_dot, y_dot, spin] = self.at;
+        let sensed = [x, angle + self.bias, x_dot, spin];
+        let law: f64 = -self.gains.iter().zip(sensed).map(|(gain, value)| gain * value).sum::<f64>();
+        let alpha = (1.0 + self.gain_error) * law + self.offset;
+        let normal = [-alpha.sin(), alpha.cos()];
+        let foot = self.foot(angle);
+        let arm = foot[0] * normal[1] - foot[1] * normal[0];
+        let speed = normal[0] * x_dot + normal[1] * y_dot + arm * spin;
+        let energy = 0.5 * y_dot * y_dot - self.gravity * foot[1];
+        let wanted = (1.0 - self.assumed) / (1.0 + self.assumed) + self.energy_gain * (self.target - energy);
+        let table = -(1.0 + self.speed_error) * wanted * speed;
+        let impulse = -(1.0 + self.restitution) * (speed - table) / (1.0 + arm * arm / (self.rho * self.rho));
+        self.at[3] += impulse * normal[0];
+        self.at[4] += impulse * normal[1];
+        self.at[5] += impulse * arm / (self.rho * self.rho);
+    }
+
+    /// t, x, θ, ẋ, ẏ, θ̇ just before so many contacts, or up to the last, θ of the line from contact point to centre of gravity.
+    pub(crate) fn course(mut self, contacts: usize) -> Vec<[f64; 6]> {
+        let lean = (self.across / self.along).atan();
+        let mut t = 0.0;
+        let mut course = Vec::new();
+        for contact in 0..contacts {
+            if contact > 0 {
+                self.strike();
+            }
+            let Some(flight) = self.flight() else { break };
+            t += flight;
+            self.at = self.flown(flight);
+            let [x, _, angle, x_dot, y_dot, spin] = self.at;
+            course.push([t, x, angle - lean, x_dot, y_dot, spin]);
+        }
+        course
+    }
+}

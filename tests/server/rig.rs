@@ -1,0 +1,103 @@
+//! Rigs with constant errors and tables with ends, in every resource that takes a scene.
+
+use crate::failures::{case, number, says};
+use crate::support::Server;
+use serde_json::{Value, json};
+
+const BIASED: &str = "preset=case-1&scene.release.theta=0.05&scene.table.errors.angle_bias=0.002";
+
+async fn ask(target: &str) -> Value {
+    Server::start().get(target).await.expect(200).json()
+}
+
+#[tokio::test]
+async fn a_bias_leaves_no_bounce_in_place_and_the_verdict_says_how_it_drifts() {
+    let answer = ask(&format!("/v1/stability?{BIASED}&scene.table.length=0.5")).await;
+    assert_eq!((&answer["verdict"], &answer["fixed_point"]), (&Value::Null, &Value::Null), "{answer}");
+    let drift = &answer["steady_drift"];
+    // c = κb, θ* = −c/(κ − 1), −G tan θ*.
+    let lean = -1.1 * 0.002 / (1.1 - 1.0);
+    assert!((number(&drift["theta"]) - lean).abs() < 1e-12);
+    let acceleration = -9.81 * lean.tan();
+    assert!((number(&drift["acceleration"]) - acceleration).abs() < 1e-12);
+    assert!((number(&drift["time_on_table"]) - (0.5 / acceleration).sqrt()).abs() < 1e-12);
+    assert_eq!(answer["nonlinear"]["outcome"], "off_table");
+    assert!(answer["reason"].as_str().unwrap().contains("square to the body"), "{answer}");
+    assert_eq!(answer["model"]["name"], "rig_errors");
+}
+
+#[tokio::test]
+async fn an_error_of_a_gain_is_judged_in_terms_of_the_gain_as_it_is_set() {
+    let ideal = ask("/v1/stability?preset=case-1").await;
+    let wrong = ask("/v1/stability?preset=case-1&scene.table.errors.tilt_gain=0.1").await;
+    let gain = |answer: &Value, name: &str| number(&answer["linear"]["tilt_gain"][name]);
+    assert_eq!(gain(&wrong, "value"), 1.1);
+    for limit in ["lower", "critical"] {
+        assert!((gain(&wrong, limit) - gain(&ideal, limit) / 1.1).abs() < 1e-12);
+    }
+    assert!(wrong["notes"].to_string().contains("1.1 times its law"), "{wrong}");
+    let margins =
+        ask("/v1/stability?preset=case-1&scene.table.errors.tilt_gain=0.1&tolerances.contact_distance=0.001").await;
+    assert!((number(&margins["margins"]["tilt_gain"]["critical"]["most"]) - 1.5 / 1.1).abs() < 0.02, "{margins}");
+}
+
+#[tokio::test]
+async fn feedback_of_the_place_moves_the_bounce() {
+    let scene = "preset=case-1&scene.table.tilt_gain=null&scene.table.feedback.x=0.2&scene.table.feedback.theta=-1.9\
+                 &scene.table.feedback.x_dot=0.15&scene.table.feedback.theta_dot=-0.1&scene.release.theta=0.05";
+    let answer = ask(&format!("/v1/stability?{scene}&scene.table.errors.tilt_offset=0.002")).await;
+    assert!((number(&answer["fixed_point"]["x"]) - 0.002 / 0.2).abs() < 1e-15, "{answer}");
+    assert!(answer.get("steady_drift").is_none());
+    let ideal = ask(&format!("/v1/stability?{scene}")).await;
+    assert_eq!(answer["linear"], ideal["linear"]);
+}
+
+#[tokio::test]
+async fn tables_end_runs_of_every_kind() {
+    let server = Server::start();
+    let ended = format!("{BIASED}&scene.table.length=0.2");
+    let run = server.get(&format!("/v1/trajectories?{ended}&impacts=100")).await.expect(200).json();
+    assert_eq!((&run["outcome"]["kind"], &run["outcome"]["quantity"]), (&json!("off_table"), &json!("place")));
+    assert_eq!((&run["outcome"]["limit"], &run["outcome"]["unit"]), (&json!(0.1), &json!("m")));
+    let noisy = format!("/v1/ensembles?{ended}&runs=4&impacts=100&scene.noise.timing_sd=1e-6");
+    assert_eq!(server.get(&noisy).await.expect(200).json()["counts"]["off_table"], 4);
+    let map = "x.parameter=release.theta&x.from=0.01&x.to=0.02&x.count=3&y.parameter=release.x_dot&y.from=0&y.to=0.01&y.count=2";
+    let cells = server.get(&format!("/v1/regions?{ended}&impacts=200&{map}")).await.expect(200).json();
+    assert_eq!(cells["counts"]["off_table"], 6, "{cells}");
+    let ladder = server.get(&format!("/v1/ladder?{ended}&impacts=100")).await.expect(200).json();
+    let rungs = ladder["rungs"].as_array().unwrap();
+    assert_eq!(rungs.last().unwrap()["name"], "rig_errors", "{ladder}");
+    for (query, pointer) in [
+        (format!("/v1/catches?{ended}"), "table.errors.angle_bias"),
+        ("/v1/catches?preset=case-1&scene.table.length=1".to_owned(), "table.length"),
+        (format!("/v1/throws?{ended}&impact=1&apex.height=0.3"), "table.errors.angle_bias"),
+        (format!("/v1/controllers?{BIASED}"), "table.errors.angle_bias"),
+        (format!("/v1/periodic-orbits?{BIASED}"), "table.errors.angle_bias"),
+        (format!("/v1/precision?{BIASED}"), "table.errors.angle_bias"),
+    ] {
+        let refused = server.get(&query).await.expect(422);
+        assert!(refused.text().contains(pointer), "{query}: {}", refused.text());
+    }
+}
+
+#[tokio::test]
+async fn a_point_mass_has_no_angle_to_sense_wrong() {
+    let refused = Server::start().get("/v1/trajectories?preset=point-mass&scene.table.errors.angle_bias=0.01").await;
+    assert!(refused.expect(422).text().contains("a body with an angle"));
+}
+
+#[tokio::test]
+async fn the_gallery_has_a_rig_that_the_ideal_analysis_calls_stable() {
+    let case = case("biased-angle").await;
+    assert_eq!(says(&case, "residue")["right"], false);
+    assert_eq!(says(&case, "lean")["right"], true);
+    let detail = case["truth"]["detail"].as_str().unwrap();
+    assert!(detail.contains("off_table"), "{detail}");
+    // The time on the table of a body at its lean is near that of the run.
+    let run = ask(
+        "/v1/trajectories?preset=case-1&scene.release.theta=0&scene.table.errors.angle_bias=0.002&scene.table.length=1&impacts=100",
+    );
+    let end = number(&run.await["outcome"]["t"]);
+    let lean = -0.022_f64;
+    assert!((end / (1.0 / (9.81 * -lean.tan())).sqrt() - 1.0).abs() < 0.3, "{end}");
+}
