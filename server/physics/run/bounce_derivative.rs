@@ -106,8 +106,13 @@ pub(crate) struct StrikeAngles {
 impl StrikeAngles {
     #[inline(always)]
     pub(crate) fn new(rod: &UncertainRod, strike: &Strike) -> Self {
+        Self::at(rod, strike, crate::numbers::trig::sin_cos(strike.alpha))
+    }
+
+    /// [`StrikeAngles::new`] with sine and cosine of the tilt.
+    #[inline(always)]
+    pub(crate) fn at(rod: &UncertainRod, strike: &Strike, (sin_alpha, cos_alpha): (f64, f64)) -> Self {
         let (sin_theta, cos_theta) = strike.sin_cos_theta;
-        let (sin_alpha, cos_alpha) = crate::numbers::trig::sin_cos(strike.alpha);
         // Sums of angles: what they lose is a rounding of 1, and a derivative needs no more.
         let sin_beta = sin_theta * cos_alpha - cos_theta * sin_alpha;
         let cos_beta = cos_theta * cos_alpha + sin_theta * sin_alpha;

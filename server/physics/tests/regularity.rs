@@ -4,7 +4,12 @@
 mod paper;
 #[path = "support/random.rs"]
 mod random;
+#[path = "support/scenes.rs"]
+mod scenes;
 
+use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::numbers::dual::Dual;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::scene::model::Model;
@@ -14,10 +19,12 @@ use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::regularity::{
-    Regularity, RotationCounter, TOLERANCE, WATCHED, measure_regularity, nearest_resonance, weighted_average,
+    Regularity, RotationCounter, Rows, TOLERANCE, Tangents, WATCHED, measure_regularity, nearest_resonance,
+    weighted_average,
 };
 use paper::scene;
 use random::Random;
+use scenes::Kind;
 
 fn regularity(scene: &Scene) -> Regularity {
     let fixed_point = find_fixed_point(scene).unwrap();
@@ -90,6 +97,86 @@ fn the_horizon_is_where_a_twin_is_lost() {
     assert!(horizon <= 2 * lost && lost <= 2 * horizon, "{horizon} {lost}");
 }
 
+/// Carries tangents over a contact without friction and the flight after it by dual numbers. The flight is given by its length.
+fn carry_by_duals(rod: &Rod, rows: &Rows, before: &State, flight_time: f64) -> Rows {
+    let rod: Rod<Dual<4>> = rod.lift();
+    let [theta, x_dot, y_dot, theta_dot] = *rows;
+    let state = State {
+        theta: Dual { value: before.theta, partials: theta },
+        x_dot: Dual { value: before.x_dot, partials: x_dot },
+        y_dot: Dual { value: before.y_dot, partials: y_dot },
+        theta_dot: Dual { value: before.theta_dot, partials: theta_dot },
+    };
+    let flight = rod.flight(&rod.strike(&state));
+    let end = flight.end(flight.lift_root(flight_time));
+    [end.theta, end.x_dot, end.y_dot, end.theta_dot].map(|number| number.partials)
+}
+
+/// Speed of a contact as a share of ρ/τ, below which tangents are not compared.
+const SLOW: f64 = 1e-2;
+
+/// Largest difference that closed form and dual numbers make over one contact of a run, in tangents with a joint norm of 1 m/s and in the
+/// logarithm of their growth; and the number of contacts.
+fn compare_tangents(scene: &Scene, impacts: u64) -> (f64, u64) {
+    let rod = match scene.model() {
+        Model::Rod(rod) => rod,
+        Model::General(body) => body.rod,
+        Model::Point(_) => unreachable!(),
+    };
+    let mut orbit = scene.orbit().unwrap();
+    let typical = find_fixed_point(scene).map_or(1.0, |fixed_point| fixed_point.flight_time);
+    let rho = rod.radius_of_gyration;
+    let scales = [rho / typical, 1.0, 1.0, rho];
+    let mut ours = Tangents::new(&rod, None, typical);
+    let mut most = 0.0_f64;
+    for n in 0..impacts {
+        let contact = orbit.advance();
+        let Some(flight_time) = contact.flight_time else { return (most, n) };
+        // Slow contacts near rest have lost digits of their speed before either way begins.
+        if rod.contact_speed(&contact.state).abs() < SLOW * scales[0] {
+            return (most, n);
+        }
+        let theirs = carry_by_duals(&rod, ours.rows(), &contact.state, flight_time);
+        let last = ours.growth();
+        ours.pass(&contact.state, flight_time);
+        let scaled = theirs.iter().zip(scales).flat_map(|(row, scale)| row.map(|partial| scale * partial));
+        let norm = scaled.map(|number| number * number).sum::<f64>().sqrt();
+        most = most.max((ours.growth() - last - norm.ln()).abs());
+        for ((ours, theirs), scale) in ours.rows().iter().zip(&theirs).zip(scales) {
+            for (ours, theirs) in ours.iter().zip(theirs) {
+                let difference = scale * (ours - theirs / norm).abs();
+                assert!(difference.is_finite());
+                most = most.max(difference);
+            }
+        }
+    }
+    (most, impacts)
+}
+
+#[test]
+fn tangents_are_those_of_dual_numbers() {
+    let mut random = Random::new(2024);
+    for kind in [
+        Kind::Regular,
+        Kind::Small,
+        Kind::Chaotic,
+        Kind::Still,
+        Kind::Feedback,
+        Kind::Wide,
+        Kind::Total,
+        Kind::OneStrike,
+    ] {
+        let (mut most, mut contacts) = (0.0_f64, 0);
+        for _ in 0..40 {
+            let (difference, passed) = compare_tangents(&scenes::scene(&mut random, kind), WATCHED);
+            most = most.max(difference);
+            contacts += passed;
+        }
+        println!("{kind:?}: at most {most:.1e} over {contacts} contacts");
+        assert!(contacts > 40 && most < 1e-12, "{kind:?}: {most:e}, {contacts} contacts");
+    }
+}
+
 #[test]
 fn the_period_two_orbit_is_one() {
     for tilt_gain in [1.501, 1.51, 1.53] {
@@ -104,12 +191,7 @@ fn the_period_two_orbit_is_one() {
         let speed_squared =
             rod.gravity * rho * rho * theta * alpha.cos() / (length * ((tilt_gain - 1.0) * theta).sin());
         let speed = speed_squared.sqrt();
-        let start = equipoise_physics::bounce::state::State {
-            theta,
-            x_dot: speed * alpha.tan(),
-            y_dot: -speed,
-            theta_dot: rod.gravity * theta / speed,
-        };
+        let start = State { theta, x_dot: speed * alpha.tan(), y_dot: -speed, theta_dot: rod.gravity * theta / speed };
         let mut orbit = Orbit::at(rod, scene.rules(), start);
         let energy = 0.5 * fixed_point.speed * fixed_point.speed + rod.gravity * length;
         assert!((rod.energy(&start) - energy).abs() < 1e-12);
