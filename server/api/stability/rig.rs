@@ -1,4 +1,4 @@
-//! What the constant errors of a rig do to a verdict, as part of the answer.
+//! Effects of the constant errors of a rig on a verdict, as part of the answer.
 
 use equipoise_physics::control::steady_drift::SteadyDrift;
 use equipoise_physics::scene::Scene;

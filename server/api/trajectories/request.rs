@@ -41,7 +41,7 @@ const LINEAR_ONCE: u64 = 2500;
 const MAP_PRICE: u64 = 8;
 const EXTENDED_PRICE: u64 = 50;
 
-/// What an error estimate with state feedback or noise costs more, in bounces: its derivatives have more states.
+/// Price of an error estimate with state feedback or noise, in bounces: its derivatives have more states.
 const FULL_ESTIMATE_PRICE: u64 = 120;
 
 /// Price of writing and compressing a contact, in bounces; of a contact with 31 digits; and of a sample of a flight.

@@ -59,7 +59,7 @@ pub(crate) struct FullErrorEstimate {
     holds_energy: bool,
     /// True before the first contact, from which on energy is held.
     is_first: bool,
-    /// Of the independent errors.
+    /// Covariance of the independent errors.
     covariance: SMatrix<f64, STATES, STATES>,
     /// Error of each state by each parameter, which is off by the same at every bounce.
     of_parameters: SMatrix<f64, STATES, PARAMETERS>,
