@@ -1,6 +1,6 @@
 // Ends of a run in contact, after its bounces.
 
-/** The motion in words, and the reason. @type {Partial<Record<import('contract').HoldEnd['kind'], [string, string]>>} */
+/** The motion, and the reason. @type {Partial<Record<import('contract').HoldEnd['kind'], [string, string]>>} */
 const FALLS = {
   toppled: ['fell over', 'it tipped over'],
   other_vertex: ['fell over', 'another corner touched the table'],
