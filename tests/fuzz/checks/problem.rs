@@ -5,7 +5,7 @@ use equipoise::limits;
 use equipoise_physics::scene::{FIELDS, VERTICES};
 use serde_json::Value;
 
-/// Names that a problem may point to although they were not sent: missing fields.
+/// Names outside `FIELDS` that a problem may point to although they were not sent.
 const NAMES: &[&str] = &["preset", "scene", "body", "type", "value", "impact", "wall", "run", "speed"];
 
 /// Longest sentence about one field, characters. It quotes a part of the input, and known names in full.
@@ -26,9 +26,16 @@ pub(crate) fn hold(problem: &Problem, sent: Option<&Value>, bytes: usize) {
         let escapes = pointer.split('~').skip(1);
         assert!(escapes.into_iter().all(|rest| rest.starts_with(['0', '1'])), "{pointer} is no pointer");
         if let Some(sent) = sent {
-            assert!(sent.pointer(pointer).is_some() || names_a_field(pointer), "{pointer} leads nowhere: {detail}");
+            let leads = sent.pointer(pointer).is_some() || is_missing(sent, pointer, detail) || names_a_field(pointer);
+            assert!(leads, "{pointer} leads nowhere: {detail}");
         }
     }
+}
+
+/// True if `detail` calls a field missing, and the object in which it is missing was sent.
+fn is_missing(sent: &Value, pointer: &str, detail: &str) -> bool {
+    let place = pointer.rsplit_once('/').and_then(|(parent, name)| Some((sent.pointer(parent)?.as_object()?, name)));
+    place.is_some_and(|(object, name)| !object.contains_key(name) && detail == format!("{name} is missing"))
 }
 
 /// True if a pointer ends with the path of a field.
