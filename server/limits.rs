@@ -347,8 +347,8 @@ pub const INLINE_BOUNCES: u64 = 4096;
 /// scenes with slower bounces. One client has at most half of the async threads at a time, unless it is the only one.
 pub const INLINE_TIME: Duration = Duration::from_millis(1);
 
-/// A client that has been the only one to ask for such work for this time has all async threads for it, until another one asks. The
-/// first request of the other one waits for the pieces of work under way.
+/// A client that has been the only one for this time has all async threads for such work, until another one sends any request, which
+/// waits for the pieces of work under way.
 pub const ALONE_TIME: Duration = Duration::from_secs(1);
 
 /// Length of a time slice, after which work passes its permit on. With a few waiting, a request waits some hundredths of a second.

@@ -127,6 +127,7 @@ async fn identify(
     mut next: impl Service<Request, Response = Response, Error = Infallible>,
 ) -> Result<Response, Infallible> {
     let peer = edge.peer(&request);
+    edge.app.pool.note_request(peer);
     if edge.is_from_proxy(&request) {
         request.extensions_mut().insert(peer);
         request.extensions_mut().insert(host::FromProxy);

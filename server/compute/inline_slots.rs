@@ -1,5 +1,5 @@
 //! Slots for work on the async threads. One peer has at most half of them at a time, so that the threads keep answering others. A peer
-//! that has been the only one for a while has all of them, until another one asks.
+//! that has been the only one for a while has all of them, until another one asks for anything.
 //!
 //! Work that waits for a slot is not refused, and does not wait behind other peers.
 
@@ -10,8 +10,8 @@ use std::time::Instant;
 use tokio::task::yield_now;
 
 use crate::compute::fair_queue::{FairQueue, Permit, QueueKey};
+use crate::compute::lone_peer::LonePeer;
 use crate::compute::peer::Peer;
-use crate::limits;
 
 /// Slots on the async threads. Clones share them.
 #[derive(Debug, Clone)]
@@ -20,6 +20,7 @@ pub(crate) struct InlineSlots(Arc<SlotQueues>);
 #[derive(Debug)]
 struct SlotQueues {
     threads: usize,
+    lone: LonePeer,
     state: Mutex<SlotState>,
 }
 
@@ -29,10 +30,6 @@ struct SlotState {
     most: usize,
     /// The queue of each peer that has a slot or waits for one.
     queues: BTreeMap<Peer, Weak<FairQueue>>,
-    /// The last peer that asked, and the time at which another one did so before.
-    last: Option<(Peer, Option<Instant>)>,
-    /// Time of the last request.
-    last_time: Instant,
 }
 
 /// The right to compute on an async thread up to the next await.
@@ -44,9 +41,17 @@ pub struct InlineSlot {
 impl InlineSlots {
     /// Slots on so many threads.
     pub(crate) fn new(threads: usize) -> Self {
-        let state =
-            SlotState { most: threads.div_ceil(2), queues: BTreeMap::new(), last: None, last_time: Instant::now() };
-        Self(Arc::new(SlotQueues { threads, state: Mutex::new(state) }))
+        Self::new_at(threads, Instant::now())
+    }
+
+    fn new_at(threads: usize, now: Instant) -> Self {
+        let state = SlotState { most: threads.div_ceil(2), queues: BTreeMap::new() };
+        Self(Arc::new(SlotQueues { threads, lone: LonePeer::new(now), state: Mutex::new(state) }))
+    }
+
+    /// Notes any request of `peer`.
+    pub(crate) fn note(&self, peer: Peer) {
+        self.0.lone.note(peer, Instant::now);
     }
 
     /// Waits for a slot for `peer`.
@@ -66,8 +71,10 @@ impl InlineSlots {
     }
 
     fn queue(&self, peer: Peer, now: Instant) -> Arc<FairQueue> {
+        // A live run asks for slots long after its request.
+        self.0.lone.note(peer, || now);
+        let is_alone = self.0.lone.is_alone(peer, now);
         let mut state = self.0.state.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_alone = state.is_alone(peer, now);
         state.set_most(if is_alone { self.0.threads } else { self.0.threads.div_ceil(2) });
         let SlotState { most, queues, .. } = &mut *state;
         if let Some(queue) = queues.get(&peer).and_then(Weak::upgrade) {
@@ -81,19 +88,6 @@ impl InlineSlots {
 }
 
 impl SlotState {
-    /// Tells whether no other peer has asked for a while, and notes the request.
-    fn is_alone(&mut self, peer: Peer, now: Instant) -> bool {
-        let before = self.last_time;
-        self.last_time = now;
-        let other = match self.last {
-            None => None,
-            Some((last, other)) if last == peer => other,
-            Some(_) => Some(before),
-        };
-        self.last = Some((peer, other));
-        other.is_none_or(|other| now.saturating_duration_since(other) >= limits::ALONE_TIME)
-    }
-
     /// Changes the number of slots of one peer.
     fn set_most(&mut self, most: usize) {
         if self.most != most {
@@ -106,6 +100,7 @@ impl SlotState {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::limits;
     use futures_util::FutureExt;
 
     #[test]
@@ -113,7 +108,6 @@ mod tests {
         let (slots, [one, other]) = (InlineSlots::new(4), [1, 2].map(|last| Peer::at([192, 0, 2, last].into())));
         let now = Instant::now();
         let acquire = |peer| slots.acquire_at(peer, now).now_or_never();
-        assert!(acquire(other).is_some());
         let held = [acquire(one), acquire(one)];
         assert!(held.iter().all(Option::is_some) && acquire(one).is_none());
         assert!(acquire(other).is_some());
@@ -125,19 +119,21 @@ mod tests {
 
     #[test]
     fn a_peer_alone_has_all_threads_until_another_one_asks() {
-        let (slots, [one, other]) = (InlineSlots::new(4), [1, 2].map(|last| Peer::at([192, 0, 2, last].into())));
         let now = Instant::now();
+        let (slots, [one, other]) =
+            (InlineSlots::new_at(4, now), [1, 2].map(|last| Peer::at([192, 0, 2, last].into())));
         let acquire = |peer, now| slots.acquire_at(peer, now).now_or_never();
-        let mut held = vec![acquire(one, now), acquire(one, now), acquire(one, now), acquire(one, now)];
+        let mut held = vec![acquire(one, now), acquire(one, now)];
         assert!(held.iter().all(Option::is_some) && acquire(one, now).is_none());
-        assert!(acquire(other, now).is_some());
-        held.truncate(2);
-        assert!(acquire(one, now).is_none(), "the other one has just asked");
         let later = now + limits::ALONE_TIME;
-        held.push(acquire(one, later));
-        assert!(held.iter().all(Option::is_some));
+        held.extend([acquire(one, later), acquire(one, later)]);
+        assert!(held.iter().all(Option::is_some) && acquire(one, later).is_none());
+        held.truncate(2);
+        // It asks for something that needs no slot.
+        slots.0.lone.note(other, || later);
+        assert!(acquire(one, later).is_none(), "the other one has just asked");
+        assert!(acquire(one, later + limits::ALONE_TIME).is_some());
         assert!(acquire(other, later).is_some());
-        assert!(acquire(one, later).is_none());
     }
 
     #[tokio::test]

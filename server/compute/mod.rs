@@ -8,6 +8,7 @@ mod time_slices;
 
 mod cancel;
 mod inline_slots;
+mod lone_peer;
 mod peer;
 mod pool;
 mod price;

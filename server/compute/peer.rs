@@ -24,6 +24,14 @@ impl Peer {
         })
     }
 
+    /// A number for this peer: of the IPv4 address, or of the IPv6 network.
+    pub(crate) fn key(self) -> u64 {
+        match self.0 {
+            IpAddr::V4(address) => u64::from(address.to_bits()),
+            IpAddr::V6(network) => (network.to_bits() >> 64) as u64,
+        }
+    }
+
     /// The IPv4 address, or the first address of the IPv6 network.
     pub fn address(self) -> IpAddr {
         self.0

@@ -104,6 +104,11 @@ impl Pool {
         Self { peer, ..self.clone() }
     }
 
+    /// Notes a request of `peer`, even if it needs no work: the threads are no longer for another one alone.
+    pub fn note_request(&self, peer: Peer) {
+        self.shared.inline.note(peer);
+    }
+
     /// Accounts an answer to the peer until it is dropped.
     pub fn hold<T: AsRef<[u8]>>(&self, result: T) -> HeldBytes<T> {
         HeldBytes { _reservation: self.shared.results.charge(self.peer, result.as_ref().len()), result }
