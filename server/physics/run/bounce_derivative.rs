@@ -273,18 +273,19 @@ fn of_gain(
 /// The derivative of a strike with friction, of which no energy is held.
 #[inline(always)]
 pub(crate) fn of_strike_with_friction(friction: &Friction, rod: &Rod<Dual<WIDTH>>, before: &State) -> StrikeDerivative {
-    let State { x_dot, y_dot, theta_dot, .. } = friction.strike_by_tilt_gain(rod, &along_states(before)).after;
+    let State { x_dot, y_dot, theta_dot, .. } =
+        friction.strike_by_tilt_gain(rod, &along_states::<WIDTH>(before, THETA)).after;
     StrikeDerivative { x_dot: x_dot.partials, y_dot: y_dot.partials, theta_dot: theta_dot.partials, energy: None }
 }
 
-/// A state of which each number moves along its own direction.
-pub(crate) fn along_states(state: &State) -> State<Dual<WIDTH>> {
+/// A state of which each number moves along its own direction, θ along number `first`.
+pub(crate) fn along_states<const N: usize>(state: &State, first: usize) -> State<Dual<N>> {
     let State { theta, x_dot, y_dot, theta_dot } = *state;
     State {
-        theta: Dual::along(theta, THETA, 1.0),
-        x_dot: Dual::along(x_dot, X_DOT, 1.0),
-        y_dot: Dual::along(y_dot, Y_DOT, 1.0),
-        theta_dot: Dual::along(theta_dot, THETA_DOT, 1.0),
+        theta: Dual::along(theta, first + THETA, 1.0),
+        x_dot: Dual::along(x_dot, first + X_DOT, 1.0),
+        y_dot: Dual::along(y_dot, first + Y_DOT, 1.0),
+        theta_dot: Dual::along(theta_dot, first + THETA_DOT, 1.0),
     }
 }
 

@@ -322,7 +322,7 @@ mod tests {
     /// Errors over a bounce in closed form, and the derivative of the same bounce by dual numbers.
     fn compare(rod: &Rod<Number>, friction: Option<Friction>, held: Option<HeldEnergy>, before: &State, case: &str) {
         let uncertain = UncertainRod::new(*rod);
-        let (plain, dual) = (uncertain.plain, along_states(before));
+        let (plain, dual) = (uncertain.plain, along_states(before, THETA));
         let (strike, mut lifted) = match friction {
             None => (plain.strike(before), rod.strike(&dual)),
             Some(friction) => (friction.strike_by_tilt_gain(&plain, before), friction.strike_by_tilt_gain(rod, &dual)),

@@ -17,6 +17,7 @@ use crate::bounce::tilt::Tilt;
 use crate::numbers::double_double;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
+use crate::run::bounce_derivative::along_states;
 use crate::run::ending::Ending;
 use crate::run::error_estimate::{GRAZING_SHARE, REPEATING, ROUNDING, SAFETY};
 use crate::run::orbit;
@@ -183,7 +184,7 @@ impl FullErrorEstimate {
             n,
             x: along(x, X),
             clearance: along(clearance, HEIGHT),
-            state: lifted(&state),
+            state: along_states(&state, THETA),
             plan: plan.map(|plan| PlannedTableMotion {
                 alpha: along(plan.alpha, PLAN),
                 normal_velocity: along(plan.normal_velocity, PLAN + 1),
@@ -314,7 +315,7 @@ impl FullErrorEstimate {
         // A plan is made for the coming target.
         self.aim_at(n);
         let along = |value, direction| Number14::along(value, direction, 1.0);
-        let start = lifted(&flight.start);
+        let start = along_states(&flight.start, THETA);
         let flying = Flight {
             start,
             sin_cos_theta: start.theta.sincos(),
@@ -396,17 +397,6 @@ impl FullErrorEstimate {
             + SMatrix::<f64, PARAMETERS, 1>::from_fn(|parameter, _| number.partials[STATES + parameter]);
         let independent = (by_states.transpose() * self.covariance * by_states)[0];
         (independent.max(0.0) + of_parameters.norm_squared()).sqrt()
-    }
-}
-
-/// A state of which each number moves along its own direction.
-fn lifted(state: &State) -> State<Number14> {
-    let State { theta, x_dot, y_dot, theta_dot } = *state;
-    State {
-        theta: Dual::along(theta, THETA, 1.0),
-        x_dot: Dual::along(x_dot, X_DOT, 1.0),
-        y_dot: Dual::along(y_dot, Y_DOT, 1.0),
-        theta_dot: Dual::along(theta_dot, THETA_DOT, 1.0),
     }
 }
 
