@@ -2,6 +2,7 @@
 
 use crate::failures::{case, number, says};
 use crate::support::Server;
+use crate::support::socket::{open, start};
 use serde_json::{Value, json};
 
 const BIASED: &str = "preset=case-1&scene.release.theta=0.05&scene.table.errors.angle_bias=0.002";
@@ -78,6 +79,20 @@ async fn tables_end_runs_of_every_kind() {
         let refused = server.get(&query).await.expect(422);
         assert!(refused.text().contains(pointer), "{query}: {}", refused.text());
     }
+}
+
+#[tokio::test]
+async fn a_live_run_ends_where_its_table_does() {
+    let (_, address) = start().await;
+    let scene = format!("{BIASED}&scene.table.length=0.2");
+    let mut client = open(address, &format!("/v1/live?{scene}&epoch=1000&from=1")).await;
+    let end = client.next_of("end").await;
+    let run = ask(&format!("/v1/trajectories?{scene}&impacts=100")).await;
+    assert_eq!(run["outcome"]["kind"], "off_table");
+    for name in ["kind", "impacts", "t", "limit", "value"] {
+        assert_eq!(end["outcome"][name], run["outcome"][name], "{name} of {end}");
+    }
+    assert_eq!(client.rows.len() as u64, run["outcome"]["impacts"].as_u64().unwrap());
 }
 
 #[tokio::test]
