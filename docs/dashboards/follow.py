@@ -47,7 +47,8 @@ def follow(url):
     """The impacts of the run at an address as they happen, from the first on or from its `from`."""
     given = parse_qs(urlsplit(url).query).get("from")
     first = given[0] if given else "1"
-    url = url if given else f"{url}&from={first}"
+    if not given:
+        url += f"{'&' if urlsplit(url).query else '?'}from={first}"
     last = None
     while True:
         headers = {"Accept": "text/event-stream"}
