@@ -17,7 +17,7 @@ pub struct FitRequest {
     pub scene: Scene,
     /// The data.
     pub measured: Measured,
-    /// Unknown fields.
+    /// Unknown fields: 1 to [`MOST_UNKNOWNS`].
     pub unknown: Vec<Name>,
     /// Standard deviation of each column of [`COLUMNS`]; `None` where it is estimated from the residuals.
     pub sd: [Option<f64>; STATES],
@@ -28,7 +28,7 @@ pub struct FitRequest {
 pub enum FitFailure {
     /// A fault of the data.
     Data(DataError),
-    /// A field that cannot be unknown: its index, and a sentence.
+    /// A field that cannot be unknown, one too many, or none: its index, and a sentence.
     Unknown(usize, String),
     /// The scene contradicts itself where the search came.
     Scene(Vec<FieldError>),

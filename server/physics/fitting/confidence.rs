@@ -65,16 +65,14 @@ impl Information {
     ) -> Self {
         let fields = names.len();
         let scales: Vec<f64> = (0..fields).map(|field| scale(names[field], values[field], typed[field])).collect();
-        let acts: Vec<bool> = (0..fields)
-            .map(|field| {
-                let squares: f64 = blocks.iter().map(|block| block.rows.column(block.own + field).norm_squared()).sum();
-                squares.sqrt() * scales[field] > NO_EFFECT
-            })
-            .collect();
+        let acts: Vec<bool> = (0..fields).map(|field| acts(blocks, field, scales[field])).collect();
         let acting: Vec<usize> = (0..fields).filter(|&field| acts[field]).collect();
         let mut untold: Vec<Option<String>> =
             (0..fields).map(|field| (!acts[field]).then(|| no_effect(draft, names[field]))).collect();
         let mut covariance = DMatrix::zeros(fields, fields);
+        if acting.is_empty() {
+            return Self { scales, covariance, untold };
+        }
         let matrix =
             DMatrix::from_fn(fields, acting.len(), |row, place| reduced[(row, acting[place])] * scales[acting[place]]);
         let Some(SVD { v_t: Some(directions), singular_values, .. }) =
@@ -157,6 +155,12 @@ impl Information {
         };
         (0..names.len()).map(of_field).collect()
     }
+}
+
+/// Tells whether a field changes the data, if it moves by its scale.
+pub(super) fn acts(blocks: &[Block], field: usize, scale: f64) -> bool {
+    let squares: f64 = blocks.iter().map(|block| block.rows.column(block.own + field).norm_squared()).sum();
+    squares.sqrt() * scale > NO_EFFECT
 }
 
 /// Reason why a field has no effect on the motion.

@@ -1,6 +1,6 @@
 //! A fit: checks the request and starts the search.
 
-use super::answer::{Fit, FitFailure, FitRequest};
+use super::answer::{Fit, FitFailure, FitRequest, MOST_UNKNOWNS};
 use super::impact_map::{ImpactMap, STATES, T, Vector, X};
 use super::measured::MeasuredRow;
 use super::search::Search;
@@ -54,6 +54,11 @@ pub fn fit(request: &FitRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Fit,
 /// First values of the unknown fields.
 fn first_values(request: &FitRequest) -> Result<Vec<f64>, FitFailure> {
     let refuse = |index, detail| Err(FitFailure::Unknown(index, detail));
+    let count = request.unknown.len();
+    if !(1..=MOST_UNKNOWNS).contains(&count) {
+        let detail = format!("{count} fields are unknown; a fit takes 1 to {MOST_UNKNOWNS}");
+        return refuse(count.min(MOST_UNKNOWNS), detail);
+    }
     let mut values = Vec::new();
     for (index, &name) in request.unknown.iter().enumerate() {
         let row = name.row();

@@ -1,15 +1,15 @@
 //! The end of a fit: outliers left out, values far from the best looked at, intervals, residuals and the judgement.
 
 use super::answer::{Fit, FitFailure, FittedRow};
-use super::confidence::{Estimate, Information};
+use super::confidence::{Estimate, Information, acts};
 use super::elimination::reduced;
 use super::impact_map::{ImpactMap, STATES, Vector, range};
 use super::measured::{COLUMNS, Measured, MeasuredRow};
 use super::quality::{FitFacts, QualityKind, judge};
 use super::search::Search;
 use super::solver::{Minimum, Point};
-use super::statistics::OUTLIER;
-use crate::scene::{Draft, FieldError, Scene, Value};
+use super::statistics::{OUTLIER, chi_squared_quantile};
+use crate::scene::{Draft, FieldError, Name, Scene, Value};
 
 /// The same at the minimum: estimates move by a hundredth of their standard deviation.
 const FINE: (usize, f64) = (60, 1e-4);
@@ -30,6 +30,12 @@ const SHARP: f64 = 0.2;
 const FAR_OFF: (usize, f64) = (9, 0.9);
 /// Rise of χ² of which a share is enough, however far off.
 const MOST_RISE: f64 = 100.0;
+/// Angle and angular velocity in a state.
+const SWING: [usize; 2] = [0, 3];
+/// Effort of the fit without a swing.
+const STILL: (usize, f64) = (20, 0.1);
+/// Normal deviate beyond which a swing is no chance: one of thirty thousand is beyond it.
+const NO_SWING: f64 = 4.0;
 /// Share of the rise of a parabola that tells an estimate from any other value.
 const LEAST_RISE: f64 = 0.25;
 
@@ -67,14 +73,69 @@ impl Search<'_> {
     }
 
     pub(super) fn information(
-        &self,
-        point: &Point,
+        &mut self,
+        minimum: &Minimum,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Information, FitFailure> {
+        let point = &minimum.point;
         let blocks = self.problem.linearize(point, go_on)?.ok_or(FitFailure::RunEnds)?;
         let (factor, _) = reduced(&blocks, self.problem.names.len());
         let values = (point.fields.as_slice(), self.typed.as_slice());
-        Ok(Information::new(&self.problem.draft, &self.problem.names, values, &factor, &blocks))
+        let mut information = Information::new(&self.problem.draft, &self.problem.names, values, &factor, &blocks);
+        self.doubt_swing(minimum, &mut information, go_on)?;
+        Ok(information)
+    }
+
+    /// Doubts fields that act through the swing alone, where a motion without swing explains the data. The fit then chose the frequency that
+    /// follows the noise best, and its curvature there says nothing (Davies 1977).
+    fn doubt_swing(
+        &mut self,
+        minimum: &Minimum,
+        information: &mut Information,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(), FitFailure> {
+        let (mut still, mut start) = (self.problem.clone(), minimum.point.clone());
+        still.active.retain(|component| !SWING.contains(component));
+        if still.active.len() == self.problem.active.len() {
+            return Ok(());
+        }
+        for at in &mut start.starts {
+            for component in SWING {
+                at[component] = 0.0;
+            }
+        }
+        for (field, name) in still.names.iter().enumerate() {
+            if matches!(name, Name::Theta | Name::ThetaDot) {
+                (still.held[field], start.fields[field]) = (true, 0.0);
+            }
+        }
+        let Some(found) = self.minimize(&still, start, STILL, go_on)? else { return Ok(()) };
+        // Of χ², or of F where standard deviations are estimated from the same residuals.
+        let freedom = self.freedom(&self.problem);
+        let rise = found.cost - minimum.cost;
+        let told = if self.estimates_sd() { freedom * libm::log(1.0 + rise / minimum.cost) } else { rise };
+        // Of a swing at one of as many frequencies as there are impacts.
+        let swings = (SWING.len() * self.problem.windows.len()) as f64;
+        let chance = chi_squared_quantile(swings, NO_SWING) + 2.0 * libm::log(self.problem.rows.len() as f64);
+        if told > chance {
+            return Ok(());
+        }
+        let Some(blocks) = still.linearize(&found.point, go_on)? else { return Ok(()) };
+        for (field, name) in still.names.iter().enumerate() {
+            if information.untold[field].is_none() && !acts(&blocks, field, information.scales[field]) {
+                information.untold[field] = Some(format!(
+                    "{} acts through the swing alone, and a motion without swing explains the data: chi_squared is {told} larger, and up to \
+                     {chance} may be chance; measure a run that swings more",
+                    name.row().path
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Tells whether the standard deviation of a measured column is estimated.
+    fn estimates_sd(&self) -> bool {
+        (0..STATES).any(|column| self.measured[column] && self.request.sd[column].is_none())
     }
 
     /// Looks at χ² some standard deviations away from each estimate: an estimate beside which far values fit as well is none. Gives a better
@@ -157,13 +218,13 @@ impl Search<'_> {
         if values < unknowns + 3 {
             return Err(FitFailure::TooFew { values, unknowns });
         }
-        let mut information = self.information(&minimum.point, go_on)?;
+        let mut information = self.information(&minimum, go_on)?;
         if let Some(better) = self.profile(&minimum.clone(), &mut information, go_on)? {
             minimum = self.leave_out(better.point, go_on)?;
-            information = self.information(&minimum.point, go_on)?;
+            information = self.information(&minimum, go_on)?;
             self.profile(&minimum.clone(), &mut information, go_on)?;
         }
-        let estimated = (0..STATES).any(|column| self.measured[column] && self.request.sd[column].is_none());
+        let estimated = self.estimates_sd();
         let all_given = !estimated;
         let freedom = (values - unknowns) as f64;
         let names = self.problem.names.clone();
