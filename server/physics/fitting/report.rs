@@ -28,6 +28,8 @@ const FAR: [f64; 4] = [-0.25, -0.06, 0.06, 0.25];
 const SHARP: f64 = 0.2;
 /// Effort there.
 const FAR_OFF: (usize, f64) = (9, 0.9);
+/// Effort from the first values, with one field held there.
+const FROM_TYPED: (usize, f64) = (12, 0.9);
 /// Rise of χ² of which a share is enough, however far off.
 const MOST_RISE: f64 = 100.0;
 /// Angle and angular velocity in a state.
@@ -157,10 +159,12 @@ impl Search<'_> {
             let rows = self.problem.rows.len() as f64;
             let is_sharp = sd < SHARP * information.scales[field] / (rows * rows.sqrt());
             let far = FAR.iter().filter(|_| !is_sharp).map(|off| (off * information.scales[field], FAR_OFF));
-            for (off, effort) in near.into_iter().chain(far) {
+            // Along a bent valley, such as κ − 1 ∝ ρ² of a small swing, a fit may slide far from first values that fit as well.
+            let typed = (self.typed[field] - value, FROM_TYPED);
+            for (off, effort) in near.into_iter().chain(far).chain([typed]) {
                 let aside = (value + off).clamp(low, high);
                 let distance = (aside - value) / sd;
-                if distance.abs() < 0.5 * PROFILE || (effort == FAR_OFF && distance.abs() < 2.0 * PROFILE) {
+                if distance.abs() < 0.5 * PROFILE || (effort != BESIDE && distance.abs() < 2.0 * PROFILE) {
                     continue;
                 }
                 let promised = (distance * distance).min(MOST_RISE);
@@ -174,7 +178,10 @@ impl Search<'_> {
                         (*value + slope * (aside - minimum.point.fields[field])).clamp(low, high)
                     };
                 }
-                if effort == FAR_OFF {
+                if effort == FROM_TYPED {
+                    start.fields.clone_from(&self.typed);
+                }
+                if effort != BESIDE {
                     let Some(mut map) =
                         self.problem.draft_at(&start.fields).and_then(|draft| ImpactMap::new(&draft).ok())
                     else {
