@@ -17,7 +17,7 @@ pub(crate) struct Request {
 }
 
 /// The resources that take a scene.
-pub(crate) const RESOURCES: [&str; 12] = [
+pub(crate) const RESOURCES: [&str; 13] = [
     "trajectories",
     "jacobians",
     "stability",
@@ -30,6 +30,7 @@ pub(crate) const RESOURCES: [&str; 12] = [
     "previews",
     "catches",
     "throws",
+    "fits",
 ];
 
 const PRESETS: [&str; 15] = [
@@ -272,6 +273,14 @@ impl Draw {
                 }
                 formats.extend(pictures);
             }
+            "fits" => {
+                set("measured", self.measured());
+                set("unknown", self.unknown());
+                if self.0.random_bool(0.5) {
+                    set("sd", json!({"t": 1e-3, "theta": 2e-3}));
+                }
+                formats.extend(pictures);
+            }
             "controllers" => {
                 if self.0.random_bool(0.5) {
                     set("contact", json!(self.one_of(&["frictionless", "stick"])));
@@ -284,6 +293,42 @@ impl Draw {
             }
         }
         Request { body: Value::Object(body), accept: self.one_of(&formats), gzip: self.0.random_bool(0.5) }
+    }
+}
+
+/// Fields that a fit may have to find.
+const UNKNOWN: [&str; 8] = [
+    "table.tilt_gain",
+    "body.radius_of_gyration",
+    "body.contact_distance",
+    "gravity",
+    "contact.friction",
+    "contact.restitution",
+    "release.theta",
+    "table.errors.tilt_offset",
+];
+
+impl Draw {
+    /// Impacts that swing, with noise. No scene need make them.
+    fn measured(&mut self) -> Value {
+        let (rows, gaps) = (2 + self.count(998), self.0.random_bool(0.2));
+        let (flight, swing, turn) = (0.1 + 0.3 * self.unit(), 0.3 * self.unit(), 1.5 * self.unit());
+        let noise = 10_f64.powf(-2.0 - 2.0 * self.unit());
+        let mut n = 0;
+        let (mut numbers, mut times, mut angles) = (Vec::new(), Vec::new(), Vec::new());
+        for _ in 0..rows {
+            n += if gaps { self.count(20) } else { 1 };
+            numbers.push(n);
+            times.push(n as f64 * flight + 0.3 * flight * noise * self.unit());
+            angles.push(swing * (n as f64 * turn).sin() + noise * (self.unit() - 0.5));
+        }
+        json!({"n": numbers, "t": times, "theta": angles})
+    }
+
+    fn unknown(&mut self) -> Value {
+        let first = self.below(UNKNOWN.len() as u64) as usize;
+        let count = self.count(UNKNOWN.len() as u64) as usize;
+        (0..count).map(|place| json!(UNKNOWN[(first + place) % UNKNOWN.len()])).collect()
     }
 }
 

@@ -124,6 +124,17 @@ impl Information {
         Self { scales, covariance, untold }
     }
 
+    /// Without derivatives, because runs end a step beside the values.
+    pub(super) fn missing(names: &[Name]) -> Self {
+        let reason = "runs of the model end a step beside the best values, so there is no standard deviation";
+        let count = names.len();
+        Self {
+            scales: vec![1.0; count],
+            covariance: DMatrix::zeros(count, count),
+            untold: vec![Some(reason.to_owned()); count],
+        }
+    }
+
     /// Standard deviation of a field at unit variance of the data.
     pub(super) fn sd(&self, field: usize) -> f64 {
         self.covariance[(field, field)].sqrt() * self.scales[field]

@@ -1,23 +1,34 @@
 //! A fit: checks the request and starts the search.
 
 use super::answer::{Fit, FitFailure, FitRequest, MOST_UNKNOWNS};
-use super::impact_map::{ImpactMap, STATES, T, Vector, X};
+use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, X};
 use super::measured::MeasuredRow;
 use super::search::Search;
 use super::solver::Problem;
 use super::windows::guess;
-use crate::scene::{FieldKind, Name};
+use crate::scene::{FieldKind, Name, Scene, Value};
 
 /// Standard deviations to begin with, where none are given.
 const FIRST_SD: Vector = [5e-3, 2e-2, 2e-2, 0.1, 2e-3, 2e-3];
+
+/// Faults of a request that are seen without a fit, all of them: of the data, and of the unknown fields.
+pub fn check(request: &FitRequest) -> Vec<FitFailure> {
+    let is_unknown = |name: Name| request.unknown.contains(&name);
+    let gravity = Some(request.scene.gravity()).filter(|_| !is_unknown(Name::Gravity) && !is_unknown(Name::Incline));
+    let data = request.measured.faults(gravity).into_iter().map(FitFailure::Data);
+    data.chain(unknown_faults(request)).collect()
+}
 
 /// Fits fields of a scene to measured impacts.
 ///
 /// # Errors
 /// The reason for which there is no fit.
 pub fn fit(request: &FitRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Fit, FitFailure> {
-    let rows = request.measured.impacts().map_err(FitFailure::Data)?;
-    let typed = first_values(request)?;
+    if let Some(fault) = check(request).into_iter().next() {
+        return Err(fault);
+    }
+    let rows = request.measured.impacts();
+    let typed: Vec<f64> = request.unknown.iter().filter_map(|&name| first_value(&request.scene, name)).collect();
     let mut draft = request.scene.draft();
     let mut notes = Vec::new();
     if [Name::TimingSd, Name::AngleSd].into_iter().any(|name| request.scene.number(name).is_some_and(|sd| sd > 0.0)) {
@@ -45,38 +56,49 @@ pub fn fit(request: &FitRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Fit,
         from_release,
         held: vec![false; request.unknown.len()],
     };
-    let mut search = Search { request, problem, typed, measured, iterations: 0, is_followed: true };
+    let mut search = Search { request, problem, typed, ends: Vec::new(), measured, iterations: 0, is_followed: true };
     let first = search.first_stage(&mut map, &mut notes, go_on)?;
     let point = search.lengthen(first, go_on)?;
     search.finish(point, notes, go_on)
 }
 
-/// First values of the unknown fields.
-fn first_values(request: &FitRequest) -> Result<Vec<f64>, FitFailure> {
-    let refuse = |index, detail| Err(FitFailure::Unknown(index, detail));
+/// First value of an unknown field; 0 of an error of the rig that the scene leaves out.
+fn first_value(scene: &Scene, name: Name) -> Option<f64> {
+    scene.number(name).or_else(|| name.is_rig_error().then_some(0.0))
+}
+
+/// Faults of the unknown fields.
+fn unknown_faults(request: &FitRequest) -> Vec<FitFailure> {
     let count = request.unknown.len();
     if !(1..=MOST_UNKNOWNS).contains(&count) {
         let detail = format!("{count} fields are unknown; a fit takes 1 to {MOST_UNKNOWNS}");
-        return refuse(count.min(MOST_UNKNOWNS), detail);
+        return vec![FitFailure::Unknown(count.min(MOST_UNKNOWNS), detail)];
     }
-    let mut values = Vec::new();
-    for (index, &name) in request.unknown.iter().enumerate() {
+    let fault = |(index, &name): (usize, &Name)| {
         let row = name.row();
-        if request.unknown[..index].contains(&name) {
-            return refuse(index, format!("{} is there twice", row.path));
-        }
-        if !matches!(row.kind, FieldKind::Number { .. }) || row.group() == "noise" {
-            return refuse(index, format!("{} is no number that a motion without noise depends on", row.path));
-        }
-        let Some(value) = request.scene.number(name) else {
-            return refuse(
-                index,
-                format!("{} has no value in the scene; give a first guess, {}", row.path, row.limits()),
-            );
+        let detail = if request.unknown[..index].contains(&name) {
+            format!("{} is there twice", row.path)
+        } else if !matches!(row.kind, FieldKind::Number { .. }) || row.group() == "noise" {
+            format!("{} is no number that a motion without noise depends on", row.path)
+        } else if let Some(value) = first_value(&request.scene, name) {
+            contradiction(&request.scene, name, value)?
+        } else {
+            format!("{} has no value in the scene; give a first guess, {}", row.path, row.limits())
         };
-        values.push(value);
-    }
-    Ok(values)
+        Some(FitFailure::Unknown(index, detail))
+    };
+    request.unknown.iter().enumerate().filter_map(fault).collect()
+}
+
+/// The contradictions of the scene with a field a step aside, if there are some.
+fn contradiction(scene: &Scene, name: Name, value: f64) -> Option<String> {
+    let mut draft = scene.draft();
+    let errors = match draft.set(name, Some(Value::Number(value))) {
+        Ok(()) => DifferentiatedMap::new(&draft, &[name]).err()?,
+        Err(error) => vec![error],
+    };
+    let details: Vec<String> = errors.into_iter().map(|error| error.detail).collect();
+    Some(format!("{} cannot be unknown in this scene: {}", name.row().path, details.join("; ")))
 }
 
 /// Unknown components of the state at the beginning of a window: all that something measured depends on.

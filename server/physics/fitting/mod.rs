@@ -19,7 +19,7 @@ mod windows;
 
 pub use answer::{Fit, FitFailure, FitRequest, FittedRow, MOST_UNKNOWNS};
 pub use confidence::Estimate;
-pub use fit::fit;
+pub use fit::{check, fit};
 pub use measured::{COLUMNS, DataError, Measured};
 pub use quality::{Quality, QualityKind};
 pub use statistics::chi_squared_quantile;

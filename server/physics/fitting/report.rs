@@ -28,8 +28,8 @@ const FAR: [f64; 4] = [-0.25, -0.06, 0.06, 0.25];
 const SHARP: f64 = 0.2;
 /// Effort there.
 const FAR_OFF: (usize, f64) = (9, 0.9);
-/// Effort from the first values, with one field held there.
-const FROM_TYPED: (usize, f64) = (12, 0.9);
+/// Effort from the first values and from where other starts ended, with one field held there.
+const FROM_START: (usize, f64) = (12, 0.9);
 /// Rise of χ² of which a share is enough, however far off.
 const MOST_RISE: f64 = 100.0;
 /// Angle and angular velocity in a state.
@@ -80,7 +80,9 @@ impl Search<'_> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Information, FitFailure> {
         let point = &minimum.point;
-        let blocks = self.problem.linearize(point, go_on)?.ok_or(FitFailure::RunEnds)?;
+        let Some(blocks) = self.problem.linearize(point, go_on)? else {
+            return Ok(Information::missing(&self.problem.names));
+        };
         let (factor, _) = reduced(&blocks, self.problem.names.len());
         let values = (point.fields.as_slice(), self.typed.as_slice());
         let mut information = Information::new(&self.problem.draft, &self.problem.names, values, &factor, &blocks);
@@ -159,9 +161,12 @@ impl Search<'_> {
             let rows = self.problem.rows.len() as f64;
             let is_sharp = sd < SHARP * information.scales[field] / (rows * rows.sqrt());
             let far = FAR.iter().filter(|_| !is_sharp).map(|off| (off * information.scales[field], FAR_OFF));
-            // Along a bent valley, such as κ − 1 ∝ ρ² of a small swing, a fit may slide far from first values that fit as well.
-            let typed = (self.typed[field] - value, FROM_TYPED);
-            for (off, effort) in near.into_iter().chain(far).chain([typed]) {
+            // Along a bent valley, such as κ − 1 ∝ ρ² of a small swing, a fit may slide far from first values that fit as well, or from where
+            // another start led.
+            let starts: Vec<Vec<f64>> = std::iter::once(&self.typed).chain(&self.ends).cloned().collect();
+            let from_starts = starts.iter().map(|start| (start[field] - value, FROM_START, Some(start)));
+            let beside = near.into_iter().chain(far).map(|(off, effort)| (off, effort, None));
+            for (off, effort, from) in beside.chain(from_starts) {
                 let aside = (value + off).clamp(low, high);
                 let distance = (aside - value) / sd;
                 if distance.abs() < 0.5 * PROFILE || (effort != BESIDE && distance.abs() < 2.0 * PROFILE) {
@@ -178,10 +183,10 @@ impl Search<'_> {
                         (*value + slope * (aside - minimum.point.fields[field])).clamp(low, high)
                     };
                 }
-                if effort == FROM_TYPED {
-                    start.fields.clone_from(&self.typed);
+                if let Some(from) = from {
+                    start.fields.clone_from(from);
                 }
-                if effort != BESIDE {
+                if effort == FAR_OFF || from == Some(&self.typed) {
                     let Some(mut map) =
                         self.problem.draft_at(&start.fields).and_then(|draft| ImpactMap::new(&draft).ok())
                     else {
@@ -256,11 +261,15 @@ impl Search<'_> {
         let draft: Draft =
             fitted_draft(&self.request.scene, &estimates).map_err(|error| FitFailure::Scene(vec![error]))?;
         let fields = 0..names.len();
+        let covariance = |one: usize, other: usize| {
+            let are_told = estimates[one].is_identifiable() && estimates[other].is_identifiable();
+            if are_told { information.covariance(one, other) } else { 0.0 }
+        };
         let sd = std::array::from_fn(|column| self.measured[column].then_some(self.problem.sd[column]));
         Ok(Fit {
             covariance: fields
                 .clone()
-                .map(|one| fields.clone().map(|other| information.covariance(one, other)).collect())
+                .map(|one| fields.clone().map(|other| covariance(one, other)).collect())
                 .collect(),
             estimates,
             scene: draft.build().map_err(FitFailure::Scene)?,

@@ -19,6 +19,8 @@ const ROWS_OF_STARTS: usize = 40;
 const ROUGH: (usize, f64) = (20, 1e-2);
 /// Least share of the values that unknowns leave in a start that is compared with others.
 const LEAST_LEFT: f64 = 0.2;
+/// Most ends of starts that are looked at again beside the minimum, and how much larger their squares may be than the least.
+const ENDS: (usize, f64) = (2, 1.5);
 /// Starts beside the typed one: share of its scale by which each unknown is off, alternating in sign where the second number is −1.
 const STARTS: [(f64, f64); 3] = [(0.2, 1.0), (-0.2, 1.0), (0.2, -1.0)];
 
@@ -27,6 +29,8 @@ pub(super) struct Search<'a> {
     pub(super) request: &'a FitRequest,
     pub(super) problem: Problem,
     pub(super) typed: Vec<f64>,
+    /// Fields at which other starts ended that fit about as well.
+    pub(super) ends: Vec<Vec<f64>>,
     pub(super) measured: [bool; STATES],
     pub(super) iterations: usize,
     /// False if longer windows do not explain the data.
@@ -109,10 +113,9 @@ impl Search<'_> {
         }
         let length = self.shortest();
         self.problem.windows = split(self.problem.rows.len(), length);
-        let mut fields = self.typed.clone();
+        let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
         let mut part = self.problem.clone();
         part.rows.truncate(ROWS_OF_STARTS);
-        let mut best = None::<f64>;
         for start in 0..=STARTS.len() {
             let tried = self.start(start);
             let Some(draft) = part.draft_at(&tried) else { continue };
@@ -125,10 +128,15 @@ impl Search<'_> {
             let left = (values - unknowns).max(LEAST_LEFT * values);
             let cost =
                 found.cost * values / left + if unknowns > values * (1.0 - LEAST_LEFT) { values * values } else { 0.0 };
-            if best.is_none_or(|best| cost < 0.99 * best) {
-                (best, fields) = (Some(cost), found.point.fields);
-            }
+            ends.push((cost, found.point.fields));
         }
+        // The typed start comes first, and stands unless another one is better.
+        let best = ends.iter().map(|end| end.0).reduce(f64::min).unwrap_or(f64::INFINITY);
+        let taken = ends.iter().position(|end| end.0 <= best / 0.99);
+        let fields = taken.map_or_else(|| self.typed.clone(), |taken| ends.remove(taken).1);
+        ends.retain(|end| end.0 <= ENDS.1 * best);
+        ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+        self.ends = ends.into_iter().take(ENDS.0).map(|end| end.1).collect();
         if let Some(mut map) = self.problem.draft_at(&fields).and_then(|draft| ImpactMap::new(&draft).ok()) {
             let point = Self::guessed(&mut self.problem, &mut map, fields);
             let problem = self.problem.clone();

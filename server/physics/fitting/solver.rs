@@ -18,7 +18,7 @@ use std::ops::Range;
 pub(super) struct Cancelled;
 
 /// Impacts between two looks at the clock.
-const LOOK_EVERY: usize = 64;
+const LOOK_EVERY: u64 = 64;
 
 /// The problem at one stage of a fit.
 #[derive(Clone, Debug)]
@@ -191,11 +191,11 @@ impl Problem {
         let count = rows.iter().map(|row| (0..STATES).filter(|&column| row.counts(column)).count()).sum();
         let mut matrix = DMatrix::zeros(count, own.len() + fields + 1);
         let (mut n, mut line) = (self.first(window), 0);
-        for (place, row) in rows.iter().enumerate() {
-            if place % LOOK_EVERY == 0 && !go_on() {
-                return Err(Cancelled);
-            }
+        for row in rows {
             while n < row.n {
+                if n % LOOK_EVERY == 0 && !go_on() {
+                    return Err(Cancelled);
+                }
                 let Some(derivative) = map.next(n, &at) else { return Ok(None) };
                 for column in by_own.iter_mut().chain(&mut by_field) {
                     let before = *column;

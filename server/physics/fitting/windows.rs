@@ -42,7 +42,10 @@ pub(super) fn follow(map: &mut ImpactMap, from: u64, to: u64, state: &Vector) ->
 pub(super) fn guess(rows: &[MeasuredRow], at: usize, map: &mut ImpactMap, carried: Option<Vector>) -> Vector {
     let row = &rows[at];
     let rod = *map.model().rod();
-    let own_run = |map: &mut ImpactMap| map.release.and_then(|release| follow(map, 1, row.n, &release));
+    let own_run = |map: &mut ImpactMap| {
+        let release = map.release.filter(|_| row.n <= LONGEST_OWN_RUN)?;
+        follow(map, 1, row.n, &release)
+    };
     let mut state = carried.or_else(|| own_run(map)).unwrap_or([0.0, 0.0, -1.0, 0.0, 0.0, 0.0]);
     let before = at.checked_sub(1).map(|before| &rows[before]).filter(|before| before.n + 1 == row.n);
     let after = rows.get(at + 1).filter(|after| after.n == row.n + 1);
@@ -70,7 +73,10 @@ pub(super) fn guess(rows: &[MeasuredRow], at: usize, map: &mut ImpactMap, carrie
     state
 }
 
-/// Longest run that a guess follows, impacts.
+/// Longest run from the release that a guess follows, impacts: later the scene's own run says nothing about the rig.
+const LONGEST_OWN_RUN: u64 = 100;
+
+/// Longest run between two rows that a guess follows, impacts.
 const LONGEST_GUESS: u64 = 10_000;
 
 /// Growth of a small deviation over a window, in angle, velocity over that of the bounce, and angular velocity times flight time.

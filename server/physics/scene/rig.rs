@@ -34,6 +34,13 @@ impl Draft {
     }
 }
 
+impl Name {
+    /// Tells whether a field is a constant error of the rig, which is 0 in a scene that leaves it out.
+    pub(crate) fn is_rig_error(self) -> bool {
+        ERRORS.contains(&self)
+    }
+}
+
 impl Scene {
     /// The constant errors of the rig.
     pub fn table_errors(&self) -> &TableErrors {

@@ -9,6 +9,9 @@ use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use random::Random;
 
 const THETA: usize = 0;
+const X_DOT: usize = 1;
+const Y_DOT: usize = 2;
+const THETA_DOT: usize = 3;
 const X: usize = 4;
 const T: usize = 5;
 /// Noise of a lab: 2 mrad, 1 mm, 1 ms.
@@ -95,6 +98,7 @@ fn cases() -> Vec<Case> {
         (Name::TiltGain, 1.1),
         (Name::Height, 0.3),
     ];
+    let rig = [(Name::TiltGain, 1.2), (Name::Height, 0.2), (Name::Theta, 0.1), (Name::TiltOffset, 0.003)];
     let sliding = [
         (Name::TiltGain, 1.1),
         (Name::Restitution, 0.8),
@@ -114,6 +118,7 @@ fn cases() -> Vec<Case> {
         ("feedback", scene(&feedback, &[]), &[Name::FeedbackTheta, Name::FeedbackThetaDot], &[THETA, T]),
         ("incline", scene(&incline, &[]), &[Name::TiltGain, Name::EnergyGain, Name::TargetHeight], &[THETA, T]),
         ("wrong belief", scene(&wrong, &[]), &[Name::Restitution, Name::TiltGain], &[THETA, T]),
+        ("rig", scene(&rig, &[]), &[Name::TiltOffset, Name::TiltGain], &[THETA, X, T]),
         ("still", scene(&still, &[(Name::Strike, "still")]), &[Name::Restitution, Name::TiltGain], &[THETA, T]),
         ("falling", scene(&sliding, &[]), &[Name::Friction, Name::TiltGain], &[THETA, X, T]),
     ]
@@ -282,16 +287,19 @@ fn a_field_without_effect_is_not_told() {
 
 #[test]
 fn a_tilt_gain_without_any_tilt_is_not_told() {
+    let scene = with(&case_1(), Name::Theta, 0.0);
+    let mut told = 0;
     for seed in 0..100 {
-        let scene = with(&case_1(), Name::Theta, 0.0);
-        let measured = measure(&scene, 60, &[THETA, T], 1.0, &mut Random::new(seed));
+        // Gravity is told by the speed of the strikes and the times between them.
+        let measured = measure(&scene, 60, &[THETA, Y_DOT, T], 1.0, &mut Random::new(seed));
         let found = fitted(&request(&scene, measured, &[Name::TiltGain, Name::Gravity]));
         assert!(!found.estimates[0].is_identifiable(), "{seed}: {:?}", found.estimates[0]);
-        assert!(found.estimates[1].is_identifiable(), "{seed}: {:?}", found.estimates[1]);
-        let alone =
-            fitted(&request(&scene, measure(&scene, 60, &[THETA, T], 1.0, &mut Random::new(seed)), &[Name::TiltGain]));
+        told += usize::from(found.estimates[1].is_identifiable());
+        let measured = measure(&scene, 60, &[THETA, T], 1.0, &mut Random::new(seed));
+        let alone = fitted(&request(&scene, measured, &[Name::TiltGain]));
         assert!(!alone.estimates[0].is_identifiable(), "{seed}: {:?}", alone.estimates[0]);
     }
+    assert!(told >= 85, "gravity is told in {told} of 100 data sets");
 }
 
 #[test]
@@ -363,11 +371,54 @@ fn faults_of_the_data_are_named() {
 }
 
 #[test]
+fn other_units_and_signs_are_named() {
+    let clean = measure(&case_1(), 20, &[THETA, X_DOT, Y_DOT, THETA_DOT, X, T], 1.0, &mut Random::new(2));
+    fitted(&request(&case_1(), clean.clone(), &[Name::TiltGain]));
+    for (column, factor, name, word) in [
+        (THETA_DOT, 57.3, "theta_dot", "degrees"),
+        (THETA_DOT, -1.0, "theta_dot", "sign"),
+        (X_DOT, 1e3, "x_dot", "mm or cm"),
+        (X, 100.0, "x_dot", "mm or cm"),
+        (Y_DOT, 100.0, "y_dot", "cm/s"),
+        (Y_DOT, -1.0, "y_dot", "less than 0"),
+        (T, 100.0, "t", "ms"),
+    ] {
+        let mut measured = clean.clone();
+        measured.columns[column].iter_mut().for_each(|value| *value = value.map(|value| value * factor));
+        let refused = fit(&request(&case_1(), measured, &[Name::TiltGain]), &mut || true);
+        let Err(FitFailure::Data(DataError { column, detail, .. })) = refused else { panic!("{name}: {refused:?}") };
+        assert!(column == name && detail.contains(word), "{name}: {column}: {detail}");
+    }
+}
+
+#[test]
+fn errors_of_the_rig_are_0_where_the_scene_leaves_them_out() {
+    let rig = with(&case_1(), Name::TiltOffset, 0.004);
+    let measured = measure(&rig, 60, &[THETA, X, T], 1.0, &mut Random::new(12));
+    let found = fitted(&request(&case_1(), measured.clone(), &[Name::TiltOffset]));
+    let (low, high) = found.estimates[0].interval.unwrap();
+    assert!(low < 0.004 && 0.004 < high && high - low < 0.002, "{:?}", found.estimates[0]);
+    // A bias b of the sensed angle tilts the table by κb, as an offset does.
+    let both = fitted(&request(&case_1(), measured, &[Name::TiltOffset, Name::AngleBias]));
+    for estimate in both.estimates {
+        assert!(estimate.detail.unwrap().contains("only a combination"), "{:?}", estimate.name);
+    }
+}
+
+#[test]
 fn fields_that_cannot_be_unknown_are_refused() {
     let scene = case_1();
     let measured = measure(&scene, 20, &[THETA, T], 1.0, &mut Random::new(2));
     for unknown in
-        [&[Name::TiltGain, Name::TiltGain] as &[Name], &[Name::Law], &[Name::AssumedRestitution], &[Name::TimingSd]]
+        // A gain of the energy needs a target, and a state feedback takes the place of the tilt gain.
+        [
+            &[Name::TiltGain, Name::TiltGain] as &[Name],
+            &[Name::Law],
+            &[Name::AssumedRestitution],
+            &[Name::TimingSd],
+            &[Name::EnergyGain],
+            &[Name::FeedbackX],
+        ]
     {
         let refused = fit(&request(&scene, measured.clone(), unknown), &mut || true);
         assert!(matches!(refused, Err(FitFailure::Unknown(_, _))), "{unknown:?}: {refused:?}");
