@@ -218,6 +218,12 @@ pub const SPINNING_PRICE: u64 = 8;
 /// Price of designing a control law, in bounces: the picture follows the eigenvalues over more than a hundred gains, about 1.5 ms.
 pub const CONTROLLER_PRICE: u64 = 20_000;
 
+/// Measured impacts of one fit. A lab measures some hundred of a run.
+pub const FIT_IMPACTS: usize = 1000;
+
+/// Iterations of a fit by which it is priced: all stages of a slow one together.
+pub const FIT_ITERATIONS: u64 = 200;
+
 /// Longest time in contact after a catch, s: ten times the time in which the default weights bring a body to rest.
 pub const HOLD_TIME: f64 = 60.0;
 

@@ -8,6 +8,7 @@ pub mod catches;
 pub mod controllers;
 pub mod ensembles;
 pub mod failures;
+pub mod fits;
 pub mod formats;
 pub mod jacobians;
 pub mod ladder;
@@ -34,10 +35,11 @@ pub use crate::api::app::App;
 use crate::api::resource::Endpoint;
 
 /// Resources that compute an answer: each at `/v1/<name>`, and for many requests at once at `/v1/batches/<name>`.
-const COMPUTED: [Endpoint; 12] = [
+const COMPUTED: [Endpoint; 13] = [
     Endpoint::of::<catches::Catches>(),
     Endpoint::of::<controllers::Controllers>(),
     Endpoint::of::<ensembles::Ensembles>(),
+    Endpoint::of::<fits::Fits>(),
     Endpoint::of::<jacobians::Jacobians>(),
     Endpoint::of::<ladder::Ladder>(),
     Endpoint::of::<periodic_orbits::PeriodicOrbits>(),

@@ -6,7 +6,7 @@ use axum::Router;
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::Response;
-use axum::routing::get;
+use axum::routing::{get, post};
 use futures_util::FutureExt;
 use futures_util::future::BoxFuture;
 use prometheus_client::metrics::counter::Counter;
@@ -39,6 +39,9 @@ pub trait CanonicalRequest: ResourceRequest {
 pub trait ComputedResource: Sized + 'static {
     /// Name in the paths `/v1/<name>` and `/v1/batches/<name>`.
     const NAME: &'static str;
+
+    /// True if a request is too large for a query, so that there is no GET.
+    const POST_ONLY: bool = false;
 
     /// Formats of the answer.
     type Format: FormatSet;
@@ -103,6 +106,8 @@ pub enum Work<R: ComputedResource> {
 pub struct Endpoint {
     /// See [`ComputedResource::NAME`].
     pub name: &'static str,
+    /// See [`ComputedResource::POST_ONLY`].
+    pub post_only: bool,
     /// Answers one request.
     pub answer: Answer,
 }
@@ -113,13 +118,18 @@ pub type Answer = fn(App, ApiRequest) -> BoxFuture<'static, Result<Response<Body
 impl Endpoint {
     /// The endpoint of a resource.
     pub const fn of<R: ComputedResource>() -> Self {
-        Self { name: R::NAME, answer: |app, api_request| answer::<R>(app, api_request).boxed() }
+        Self {
+            name: R::NAME,
+            post_only: R::POST_ONLY,
+            answer: |app, api_request| answer::<R>(app, api_request).boxed(),
+        }
     }
 
     /// The route `/v1/<name>`.
     pub fn routes(self) -> Router<App> {
         let handler = move |State(app): State<App>, api_request: ApiRequest| (self.answer)(app, api_request);
-        Router::new().route(&format!("/v1/{}", self.name), get(handler).post(handler))
+        let methods = if self.post_only { post(handler) } else { get(handler).post(handler) };
+        Router::new().route(&format!("/v1/{}", self.name), methods)
     }
 }
 

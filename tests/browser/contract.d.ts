@@ -720,6 +720,28 @@ export interface components {
             hold_speed?: components["schemas"]["catches.hold_speed"] | null;
             hold?: components["schemas"]["catches.hold"] | null;
         };
+        FitRequest: {
+            preset?: components["schemas"]["PresetName"] | null;
+            scene?: components["schemas"]["ScenePatch"] | null;
+            measured: {
+                n?: number[] | null;
+                t?: (number | null)[] | null;
+                theta?: (number | null)[] | null;
+                x_dot?: (number | null)[] | null;
+                y_dot?: (number | null)[] | null;
+                theta_dot?: (number | null)[] | null;
+                x?: (number | null)[] | null;
+            };
+            unknown: string[];
+            sd?: {
+                t?: number | null;
+                theta?: number | null;
+                x_dot?: number | null;
+                y_dot?: number | null;
+                theta_dot?: number | null;
+                x?: number | null;
+            } | null;
+        };
         ThrowRequest: {
             preset?: components["schemas"]["PresetName"] | null;
             scene?: components["schemas"]["ScenePatch"] | null;
@@ -1795,6 +1817,88 @@ export interface components {
                 margin: number | null;
             };
         };
+        Fit: {
+            estimates: components["schemas"]["FitEstimate"][];
+            correlation: components["schemas"]["NumbersOrNull"][];
+            residuals: {
+                n: number[];
+                row: number[];
+                window: number[];
+                theta: components["schemas"]["NumbersOrNull"];
+                x_dot: components["schemas"]["NumbersOrNull"];
+                y_dot: components["schemas"]["NumbersOrNull"];
+                theta_dot: components["schemas"]["NumbersOrNull"];
+                x: components["schemas"]["NumbersOrNull"];
+                t: components["schemas"]["NumbersOrNull"];
+                outlier: boolean[];
+            };
+            sd: {
+                theta: number | null;
+                x_dot: number | null;
+                y_dot: number | null;
+                theta_dot: number | null;
+                x: number | null;
+                t: number | null;
+            };
+            chi_squared: number;
+            degrees_of_freedom: number;
+            quality: components["schemas"]["FitQuality"];
+            windows: number;
+            iterations: number;
+            scene: components["schemas"]["Scene"];
+            stability: components["schemas"]["FitStability"];
+            notes: string[];
+        };
+        FitEstimate: {
+            path: string;
+            value: number;
+            sd: number | null;
+            interval: number[] | null;
+            unit: string;
+            identifiable: boolean;
+            detail: string | null;
+        };
+        FitQuality: {
+            /** @enum {string} */
+            kind: "good" | "deviations_too_large" | "not_random" | "not_followed" | "not_explained" | "not_converged";
+            detail: string;
+        };
+        FitStability: {
+            verdict: string | null;
+            decided_by: string | null;
+            reason: string;
+            margins: {
+                /** @enum {string} */
+                name: "tilt_gain_below" | "tilt_gain_above" | "spectral_radius" | "energy_gain";
+                value: number;
+                sd: number;
+                least: number;
+                most: number;
+            }[];
+            holds: boolean | null;
+        };
+        FitLine: {
+            n: number;
+            row: number;
+            window: number;
+            theta: number | null;
+            x_dot: number | null;
+            y_dot: number | null;
+            theta_dot: number | null;
+            x: number | null;
+            t: number | null;
+            outlier: boolean;
+        } | {
+            end: {
+                estimates: components["schemas"]["FitEstimate"][];
+                chi_squared: number;
+                degrees_of_freedom: number;
+                quality: components["schemas"]["FitQuality"];
+                scene: components["schemas"]["Scene"];
+                stability: components["schemas"]["FitStability"];
+                notes: string[];
+            };
+        };
         Health: {
             /** @constant */
             status: "ok";
@@ -2214,6 +2318,7 @@ export type PeriodicOrbitsRequest = components['schemas']['PeriodicOrbitsRequest
 export type ControllerRequest = components['schemas']['ControllerRequest'];
 export type CatchRequest = components['schemas']['CatchRequest'];
 export type RegionCatch = components['schemas']['RegionCatch'];
+export type FitRequest = components['schemas']['FitRequest'];
 export type ThrowRequest = components['schemas']['ThrowRequest'];
 export type Intervention = components['schemas']['Intervention'];
 export type ThrowApex = components['schemas']['ThrowApex'];
@@ -2296,6 +2401,11 @@ export type Controller = components['schemas']['Controller'];
 export type ControllerLine = components['schemas']['ControllerLine'];
 export type Stability = components['schemas']['Stability'];
 export type Linear = components['schemas']['Linear'];
+export type Fit = components['schemas']['Fit'];
+export type FitEstimate = components['schemas']['FitEstimate'];
+export type FitQuality = components['schemas']['FitQuality'];
+export type FitStability = components['schemas']['FitStability'];
+export type FitLine = components['schemas']['FitLine'];
 export type Health = components['schemas']['Health'];
 export type Problem = components['schemas']['Problem'];
 export type ProblemError = components['schemas']['ProblemError'];

@@ -89,6 +89,28 @@ def friction():
     assert slips, text
 
 
+def fit():
+    data = str(SCRIPTS / "measured.csv")
+    unknown = ("--unknown", "table.tilt_gain", "body.radius_of_gyration", "--sd", "t=0.001", "theta=0.002")
+    with tempfile.TemporaryDirectory() as folder:
+        picture = Path(folder) / "residuals.svg"
+        text = printed("fit_my_rig.py", data, *unknown, "--picture", str(picture))
+        assert ElementTree.parse(picture).getroot().tag.endswith("svg")
+        wrong = Path(folder) / "wrong.csv"
+        wrong.write_text("t [s],theta [rad]\n0.1,0.1\n0.3,high\n")
+        assert "line 3: theta is 'high', not a number" in printed("fit_my_rig.py", str(wrong), status=1)
+        wrong.write_text("time,theta\n0.1,0.1\n")
+        assert "it needs t" in printed("fit_my_rig.py", str(wrong), status=1)
+        wrong.write_text("t,theta\n0.1,0.1\n")
+        assert "measured: there is 1 impact" in printed("fit_my_rig.py", str(wrong), status=1)
+    # The simulation of tests/oracle/measured.py. Estimates are within four standard deviations of it.
+    for path, truth in (("table.tilt_gain", 1.12), ("body.radius_of_gyration", 0.097)):
+        value, sd = numbers(rf"{re.escape(path)} = ([\d.]+) \+- ([\d.e-]+)", text)
+        assert abs(value - truth) < 4 * sd and sd < 0.05 * truth, text
+    assert "missed" in text and "theta of row 40" in text and "is an outlier" in text, text
+    assert "every scene at its ends is stable" in text, text
+
+
 def batch():
     # More lines than one body may have, with a blank line and an invalid one among them.
     gains = [1 + 0.4 * number / 4000 for number in range(4000)]
@@ -134,6 +156,6 @@ def cut_off():
     client.SERVER = SERVER
 
 
-for check in (quickstart, margins, tilt_gain, friction, batch, cut_off):
+for check in (quickstart, margins, fit, tilt_gain, friction, batch, cut_off):
     check()
     print(f"ok    {check.__name__}")

@@ -31,11 +31,13 @@ struct Resource {
     draws: bool,
     /// True if it measures clock times, so that no two answers are equal.
     measures: bool,
+    /// True if it takes no GET.
+    post_only: bool,
 }
 
 /// A resource with pictures, whose NDJSON lines are its CSV rows.
 fn resource(path: &'static str, rows: fn(&Value) -> usize) -> Resource {
-    Resource { path, plain: false, rows, lines: rows, draws: true, measures: false }
+    Resource { path, plain: false, rows, lines: rows, draws: true, measures: false, post_only: false }
 }
 
 /// Tries a resource with random scenes and random parameters.
@@ -73,8 +75,12 @@ fn hold_each(
 async fn ask(server: &Server, resource: &Resource, request: &Value, pixels: bool) -> bool {
     let path = resource.path;
     let posted = server.post(path, request).await;
-    let target = format!("{path}?{}", query(request));
-    let asked = server.get(&target).await;
+    let target = format!("{path}?{}", if resource.post_only { String::new() } else { query(request) });
+    let formatted = async |format: &str| match resource.post_only {
+        true => server.post(&format!("{path}?format={format}"), request).await,
+        false => server.get(&format!("{target}&format={format}")).await,
+    };
+    let asked = if resource.post_only { server.post(path, request).await } else { server.get(&target).await };
     assert_eq!(asked.status, posted.status, "{target}: {request}");
     if posted.status == 422 {
         assert_eq!(asked.pointers(), posted.pointers(), "{request}");
@@ -96,13 +102,13 @@ async fn ask(server: &Server, resource: &Resource, request: &Value, pixels: bool
         let word = cell.trim_start_matches('-').to_ascii_lowercase();
         assert!(!["nan", "inf", "infinity"].contains(&word.as_str()), "{cell} in the CSV of {request}");
     }
-    let lines = server.get(&format!("{target}&format=ndjson")).await.expect(200).text().lines().count();
+    let lines = formatted("ndjson").await.expect(200).text().lines().count();
     assert_eq!((resource.lines)(&json) + 1, lines, "rows of JSON and lines of NDJSON, {request}");
     assert_eq!((resource.rows)(&json), table.rows.len(), "rows of JSON and CSV, {request}");
     if resource.draws {
-        picture(server.get(&format!("{target}&format=svg")).await, request);
+        picture(formatted("svg").await, request);
         if pixels {
-            picture(server.get(&format!("{target}&format=png")).await, request);
+            picture(formatted("png").await, request);
         }
     }
     true
@@ -256,6 +262,28 @@ fn controllers_for_random_scenes() {
     let parameters = (prop::option::of(weights), maybe(word(&["frictionless", "stick"])))
         .prop_map(|(weights, contact)| object(vec![("weights", weights), ("contact", contact)]));
     hold(&resource("/v1/controllers", |_| 1), parameters, 40);
+}
+
+#[test]
+fn fits_of_random_scenes() {
+    let flights = prop::collection::vec((0.05..0.6, -0.2..0.2, prop::bool::weighted(0.1)), 2..30);
+    let unknown = prop::collection::vec(0..USUAL.len(), 1..3);
+    let parameters = (flights, unknown, maybe(0.0005..0.01)).prop_map(|(flights, unknown, sd)| {
+        let mut at = 0.0;
+        let mut times = Vec::new();
+        for (flight, ..) in &flights {
+            at += flight;
+            times.push(at);
+        }
+        let angles: Vec<_> = flights.iter().map(|&(_, theta, is_missing)| (!is_missing).then_some(theta)).collect();
+        let paths: Vec<_> = unknown.iter().map(|&field| USUAL[field].0.row().path).collect();
+        object(vec![
+            ("measured", Some(json!({"t": times, "theta": angles}))),
+            ("unknown", Some(json!(paths))),
+            ("sd", sd.map(|sd| json!({"t": sd}))),
+        ])
+    });
+    hold(&Resource { post_only: true, ..resource("/v1/fits", |json| length(&json["residuals"])) }, parameters, 20);
 }
 
 /// Settings of a catch, contradictions included.

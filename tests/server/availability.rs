@@ -37,6 +37,19 @@ fn resources() -> Vec<(&'static str, &'static Value, Value)> {
             "periodic-orbits" => json!({"period": 1}),
             "ensembles" => json!({"runs": 2, "impacts": 5}),
             "catches" | "controllers" | "jacobians" => json!({}),
+            // An upright bounce, which every body and table can make.
+            "fits" => {
+                let jitter = |n: i32| 0.001 * f64::from(n * 7 % 3 - 1);
+                let still: Vec<f64> = (0..8).map(jitter).collect();
+                json!({
+                    "measured": {
+                        "t": (0..8).map(|n| f64::from(n) * 0.23 + jitter(n)).collect::<Vec<_>>(),
+                        "y_dot": (0..8).map(|n| -1.14 + jitter(n + 1)).collect::<Vec<_>>(),
+                        "theta": still, "theta_dot": still, "x": still, "x_dot": still,
+                    },
+                    "unknown": ["gravity"],
+                })
+            }
             "throws" => json!({"apex": {"height": 0.3}}),
             _ => json!({"impacts": 5}),
         };
@@ -56,7 +69,7 @@ fn asked(scene: &Value, beside: &Value) -> Value {
 async fn every_resource_refuses_what_the_contract_lists_and_takes_the_rest() {
     let server = Server::start();
     let resources = resources();
-    assert_eq!(resources.len(), 12);
+    assert_eq!(resources.len(), 13);
     for (resource, operation, beside) in resources {
         let refused: BTreeSet<&str> =
             operation["x-refuses"].as_array().into_iter().flatten().map(|part| part.as_str().unwrap()).collect();

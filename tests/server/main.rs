@@ -22,6 +22,7 @@ mod ensembles;
 mod errors;
 mod events;
 mod failures;
+mod fits;
 mod formats;
 mod friction;
 mod holds;

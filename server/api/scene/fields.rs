@@ -58,7 +58,7 @@ pub fn field_text(name: Name) -> FieldText {
         },
         Name::Restitution => FieldText { example: "1", ..text("Restitution", "e", "Coefficient of restitution") },
         Name::Friction => FieldText {
-            detail: "A value above 0 is taken by `trajectories`, `live`, `live/events`, `jacobians`, `stability`, `regions`, `periodic-orbits`, `ladder`, `ensembles`, `controllers`, `catches`, `throws`, `previews`, `precision` and batches of them. Requests with the method `linear` answer 422",
+            detail: "A value above 0 is taken by `trajectories`, `live`, `live/events`, `jacobians`, `stability`, `regions`, `periodic-orbits`, `ladder`, `ensembles`, `controllers`, `catches`, `throws`, `previews`, `precision`, `fits` and batches of them. Requests with the method `linear` answer 422",
             example: "0",
             ..text("Friction", "μ", "Coefficient of Coulomb friction")
         },

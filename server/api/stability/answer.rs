@@ -47,8 +47,9 @@ struct EnergyGainAnswer {
     margin: Option<f64>,
 }
 
+/// The linear verdict, with the limits of the gains as they are set.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct LinearPart {
+pub struct LinearPart {
     class: &'static str,
     pub(super) residue: Option<f64>,
     pub(super) rotation: Option<f64>,
@@ -124,7 +125,8 @@ fn words(verdict: Verdict, run: &NonlinearRun) -> String {
 }
 
 impl LinearPart {
-    fn new(scene: &Scene, linear: &LinearVerdict) -> Self {
+    /// The linear verdict on a scene with a tilt law.
+    pub fn new(scene: &Scene, linear: &LinearVerdict) -> Self {
         let kappa = scene.number(Name::TiltGain).unwrap_or_default();
         let energy_gain = scene.number(Name::EnergyGain).unwrap_or_default();
         // Limits of the gains as they are set, whatever the table makes of them.
@@ -151,6 +153,15 @@ impl LinearPart {
                 margin: upper.map(|upper| energy_gain.min(upper - energy_gain)),
             },
         }
+    }
+
+    /// Distances from the ends of the linear verdict by name: above 0 where it is stable.
+    pub fn margins(&self) -> Vec<(&'static str, f64)> {
+        let tilt = match &self.tilt_gain {
+            Some(gain) => vec![("tilt_gain_below", gain.margin_below), ("tilt_gain_above", gain.margin_above)],
+            None => vec![("spectral_radius", 1.0 - self.spectral_radius)],
+        };
+        tilt.into_iter().chain(self.energy_gain.margin.map(|margin| ("energy_gain", margin))).collect()
     }
 }
 
@@ -316,6 +327,11 @@ impl<'a> StabilityAnswer<'a> {
         answer.notes = notes;
         answer.dial = dial.then(|| answer.draw_dial()).flatten();
         Some(answer)
+    }
+
+    /// The verdict in words, the evidence that decided, and the reason.
+    pub fn judgement(self) -> (Option<String>, Option<&'static str>, String) {
+        (self.verdict, self.decided_by, self.reason)
     }
 
     /// Number of bounces computed: those of the run, of the watch over it and of the basin.

@@ -28,6 +28,9 @@ pub struct StabilityRequest {
     pub tolerances: Option<Tolerances>,
 }
 
+/// Contacts that the run is watched for, if a request does not say.
+pub const DEFAULT_IMPACTS: u64 = 2000;
+
 /// Price of the margins, in bounces: about ten thousand linear verdicts.
 const MARGINS_PRICE: u64 = 200_000;
 
@@ -37,7 +40,7 @@ const BASIN_RUN_PRICE: u64 = 10;
 impl ResourceRequest for StabilityRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let scene = read_scene(reader);
-        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(2000);
+        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(DEFAULT_IMPACTS);
         let basin = reader.boolean("basin").unwrap_or(false);
         let dial = reader.boolean("dial").unwrap_or(false);
         let tolerances = read_tolerances(reader);

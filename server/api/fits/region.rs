@@ -1,0 +1,141 @@
+//! The verdict on a fitted scene, and its margins over the confidence region of the fitted fields.
+
+use equipoise_physics::fitting::{Estimate, Fit, QualityKind, chi_squared_quantile};
+use equipoise_physics::scene::{Scene, Value};
+use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::linear_verdict::linear_verdict;
+use serde::Serialize;
+
+use crate::api::shared::refusal::Refusal;
+use crate::api::stability::answer::{LinearPart, StabilityAnswer};
+use crate::api::stability::request::{DEFAULT_IMPACTS, StabilityRequest};
+use crate::compute::Cancelled;
+
+/// The verdict with its margins.
+#[derive(Debug, Serialize)]
+pub struct RegionAnswer {
+    verdict: Option<String>,
+    decided_by: Option<&'static str>,
+    reason: String,
+    /// Distances from the ends of the linear verdict; stable where all are above 0.
+    margins: Vec<Margin>,
+    /// True if the linear verdict is stable at the ends of all axes of the 95 % region; `None` without margins, and without a region: of a fit that
+    /// does not explain the data, or that leaves a field open.
+    holds: Option<bool>,
+}
+
+/// A margin over the confidence region.
+#[derive(Debug, Serialize)]
+struct Margin {
+    name: &'static str,
+    value: f64,
+    /// By propagation of the covariance.
+    sd: f64,
+    /// Least and greatest at the ends of the axes of the region.
+    least: f64,
+    most: f64,
+}
+
+/// Share of a standard deviation by which a margin is differentiated.
+const STEP: f64 = 0.05;
+
+/// Normal deviate of the 95 % quantile.
+const UPPER: f64 = 1.644_853_627;
+
+/// Margins of a scene by its linear verdict; `None` without a bounce in place.
+fn margins(scene: &Scene) -> Option<Vec<(&'static str, f64)>> {
+    let judged = scene.with_tilt_law();
+    let linear = LinearPart::new(&judged, &linear_verdict(&judged, &find_fixed_point(&judged).ok()?));
+    let steers = judged.steers_energy();
+    Some(linear.margins().into_iter().filter(|(name, _)| steers || *name != "energy_gain").collect())
+}
+
+/// The fitted scene with its fields moved, within their ranges.
+fn moved(fit: &Fit, by: &[f64]) -> Option<Scene> {
+    let mut draft = fit.scene.draft();
+    for (estimate, by) in fit.estimates.iter().zip(by).filter(|(estimate, _)| estimate.is_identifiable()) {
+        let (name, value) = (estimate.name, estimate.value + by);
+        let kept = Some(Value::Number(value)).filter(|&value| name.row().admits(value));
+        draft.set(name, Some(kept.unwrap_or(Value::Number(estimate.value)))).ok()?;
+    }
+    draft.build().ok()
+}
+
+/// Ends of the axes of the 95 % region, as changes of the fields: those of the columns of a Cholesky factor of the covariance, which lie on its edge.
+fn ends(fit: &Fit) -> Vec<Vec<f64>> {
+    let told = fit.estimates.iter().filter(|estimate| estimate.is_identifiable()).count();
+    let radius = chi_squared_quantile(told.max(1) as f64, UPPER).sqrt();
+    let count = fit.covariance.len();
+    let mut factor = vec![vec![0.0; count]; count];
+    for row in 0..count {
+        for column in 0..=row {
+            let known: f64 = (0..column).map(|k| factor[row][k] * factor[column][k]).sum();
+            let left = fit.covariance[row][column] - known;
+            factor[row][column] = if row == column {
+                left.max(0.0).sqrt()
+            } else if factor[column][column] > 0.0 {
+                left / factor[column][column]
+            } else {
+                0.0
+            };
+        }
+    }
+    let axis = |column: usize, sign: f64| (0..count).map(|row| sign * radius * factor[row][column]).collect();
+    (0..count).flat_map(|column| [axis(column, 1.0), axis(column, -1.0)]).collect()
+}
+
+impl RegionAnswer {
+    /// Judges the fitted scene, and looks at the region.
+    ///
+    /// # Errors
+    /// Cancelled work.
+    pub(super) fn compute(fit: &Fit, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Refusal> {
+        let request = StabilityRequest {
+            scene: fit.scene,
+            impacts: DEFAULT_IMPACTS,
+            basin: false,
+            dial: false,
+            tolerances: None,
+        };
+        let (verdict, decided_by, reason) =
+            StabilityAnswer::compute(&request, &mut *go_on).ok_or(Cancelled)?.judgement();
+        let is_trusted = matches!(fit.quality.kind, QualityKind::Good | QualityKind::DeviationsTooLarge);
+        let has_region = is_trusted && fit.estimates.iter().all(Estimate::is_identifiable);
+        let (found, holds) = Self::margins(fit).map_or((Vec::new(), None), |(found, holds)| (found, Some(holds)));
+        Ok(Self { verdict, decided_by, reason, margins: found, holds: holds.filter(|_| has_region) })
+    }
+
+    fn margins(fit: &Fit) -> Option<(Vec<Margin>, bool)> {
+        let here = margins(&fit.scene)?;
+        let count = fit.estimates.len();
+        // Changes of all margins by a step of each field, over the step.
+        let mut slopes = vec![vec![0.0; count]; here.len()];
+        for (field, estimate) in fit.estimates.iter().enumerate() {
+            let Some(sd) = estimate.sd.filter(|sd| *sd > 0.0) else { continue };
+            let at = |share: f64| {
+                let by: Vec<f64> = (0..count).map(|other| if other == field { share * sd } else { 0.0 }).collect();
+                moved(fit, &by).and_then(|scene| margins(&scene)).filter(|found| found.len() == here.len())
+            };
+            let (high, low) = (at(STEP)?, at(-STEP)?);
+            for (slopes, (high, low)) in slopes.iter_mut().zip(high.iter().zip(&low)) {
+                slopes[field] = (high.1 - low.1) / (2.0 * STEP * sd);
+            }
+        }
+        let judged: Vec<_> = ends(fit).iter().map(|by| margins(&moved(fit, by)?)).collect();
+        // An end without a bounce in place has no margins, so nothing holds there.
+        let all_judged = judged.iter().all(|found| found.as_ref().is_some_and(|found| found.len() == here.len()));
+        let ends: Vec<_> = judged.into_iter().flatten().collect();
+        let of_margin = |(place, (name, value)): (usize, &(&'static str, f64))| {
+            let variance: f64 = (0..count * count)
+                .map(|pair| (pair / count, pair % count))
+                .map(|(one, other)| slopes[place][one] * fit.covariance[one][other] * slopes[place][other])
+                .sum();
+            let values = ends.iter().filter_map(|end| end.get(place)).map(|end| end.1);
+            let (least, most) = values.fold((*value, *value), |(least, most), end| (least.min(end), most.max(end)));
+            Margin { name, value: *value, sd: variance.max(0.0).sqrt(), least, most }
+        };
+        let found: Vec<Margin> = here.iter().enumerate().map(of_margin).collect();
+        let holds = all_judged && !found.is_empty() && found.iter().all(|margin| margin.least > 0.0);
+        Some((found, holds))
+    }
+}

@@ -1,0 +1,129 @@
+//! The request for `fits`: a scene with first values, the measured impacts, the unknown fields, and standard deviations.
+
+use std::sync::Arc;
+
+use equipoise_physics::fitting::{COLUMNS, FitRequest, MOST_UNKNOWNS, Measured, check};
+use equipoise_physics::scene::{Name, field};
+use serde_json::Value;
+
+use crate::api::fits::fault::place;
+use crate::api::resource::{CanonicalRequest, ResourceRequest};
+use crate::api::scene::{bounce_price, read_scene};
+use crate::api::shared::write;
+use crate::api::stability::request::DEFAULT_IMPACTS;
+use crate::compute::{OverBudget, Price};
+use crate::http::Reader;
+use crate::http::request::scalar;
+use crate::limits;
+use crate::limits::Limits;
+
+/// A request for a fit.
+#[derive(Debug, Clone)]
+pub struct FitsRequest {
+    /// The request as the physics takes it.
+    pub fit: Arc<FitRequest>,
+}
+
+/// Standard deviations, in the unit of the column.
+const DEVIATIONS: std::ops::RangeInclusive<f64> = 1e-9..=1e3;
+
+/// Measured values, in the unit of the column.
+const VALUES: std::ops::RangeInclusive<f64> = -1e12..=1e12;
+
+impl ResourceRequest for FitsRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let scene = read_scene(reader);
+        reader.require(&["measured", "unknown"]);
+        let measured = reader.within("measured", read_measured);
+        let unknown = read_unknown(reader);
+        let mut sd = [None; COLUMNS.len()];
+        reader.within("sd", |reader| {
+            for (sd, (name, unit)) in sd.iter_mut().zip(COLUMNS) {
+                *sd = reader.number(name, DEVIATIONS, unit);
+            }
+        });
+        let fit = FitRequest { scene: scene?, measured: measured?, unknown: unknown?, sd };
+        if reader.errors().is_empty() {
+            for (pointer, detail) in check(&fit).into_iter().filter_map(|why| place(&fit, why)) {
+                let pointer = format!("{}{pointer}", reader.pointer());
+                reader.errors().push(pointer, detail);
+            }
+        }
+        Some(Self { fit: Arc::new(fit) })
+    }
+
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        let FitRequest { scene, measured, unknown, .. } = &*self.fit;
+        let first = measured.n.first().copied().unwrap_or(1);
+        let last = measured.n.last().copied().unwrap_or(measured.rows() as u64);
+        let impacts = last.saturating_sub(first).max(measured.rows() as u64);
+        // A derivative steps each component of a state and each field to both sides.
+        let derivative = 2 * (COLUMNS.len() + unknown.len()) as u64 * bounce_price(scene);
+        let stability = (2 + 2 * unknown.len() as u64) * limits::ANSWER_PRICE + DEFAULT_IMPACTS * bounce_price(scene);
+        Price::bounces(limits::ANSWER_PRICE + stability + limits::FIT_ITERATIONS * impacts * derivative)
+            .within(&limits.of_work())
+    }
+}
+
+fn read_measured(reader: &mut Reader<'_, '_>) -> Measured {
+    reader.require(&["t"]);
+    let mut measured = Measured::default();
+    for (column, (name, unit)) in measured.columns.iter_mut().zip(COLUMNS) {
+        let items = reader.array(name, limits::FIT_IMPACTS).unwrap_or_default();
+        let (source, pointer) = (reader.source(), reader.pointer_to(name));
+        for (row, item) in items.iter().enumerate() {
+            let read = match item {
+                Value::Null => Ok(None),
+                item => scalar::number_within(item, source, &VALUES, unit).map(Some),
+            };
+            column.push(read.unwrap_or_else(|error| {
+                reader.errors().push(format!("{pointer}/{row}"), format!("{name} {error}"));
+                None
+            }));
+        }
+    }
+    let items = reader.array("n", limits::FIT_IMPACTS).unwrap_or_default();
+    let (source, pointer) = (reader.source(), reader.pointer_to("n"));
+    for (row, item) in items.iter().enumerate() {
+        match scalar::integer(item, source, &(1..=limits::IMPACTS)) {
+            Ok(n) => measured.n.push(n),
+            Err(error) => reader.errors().push(format!("{pointer}/{row}"), format!("n {error}")),
+        }
+    }
+    measured
+}
+
+fn read_unknown(reader: &mut Reader<'_, '_>) -> Option<Vec<Name>> {
+    let items = reader.array("unknown", MOST_UNKNOWNS)?;
+    if items.is_empty() {
+        reader.refuse(
+            "unknown",
+            format!("unknown is empty; name 1 to {MOST_UNKNOWNS} fields of the scene by their paths"),
+        );
+        return None;
+    }
+    let pointer = reader.pointer_to("unknown");
+    let mut names = Vec::new();
+    for (index, item) in items.iter().enumerate() {
+        match scalar::text(item).map(|path| (path, field(path))) {
+            Ok((_, Some(row))) => names.push(row.name),
+            Ok((path, None)) => {
+                let detail = format!(
+                    "unknown {index} is `{}`, which is no field of a scene; /v1/fields lists them",
+                    crate::http::problem::shortened(path)
+                );
+                reader.errors().push(format!("{pointer}/{index}"), detail);
+            }
+            Err(error) => reader.errors().push(format!("{pointer}/{index}"), format!("unknown {index} {error}")),
+        }
+    }
+    Some(names)
+}
+
+impl CanonicalRequest for FitsRequest {
+    fn canonical(&self) -> Vec<u8> {
+        let FitRequest { scene, measured, unknown, sd } = &*self.fit;
+        let unknown: Vec<&str> = unknown.iter().map(|name| name.row().path).collect();
+        write::canonical(scene, &(&measured.n, &measured.columns, unknown, sd))
+    }
+}
