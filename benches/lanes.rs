@@ -60,6 +60,7 @@ impl Bodies {
             rod,
             steering: Steering::TiltGain,
             constant_tilt: 0.0,
+            turning: None,
             program: None,
             friction: None,
             noise: None,

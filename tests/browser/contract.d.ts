@@ -36,6 +36,10 @@ export interface components {
         "scene.table.errors.tilt_offset": number;
         "scene.table.errors.tilt_gain": number;
         "scene.table.errors.speed": number;
+        /** @enum {string} */
+        "scene.table.tilt_rate": "none" | "follows" | "corrected";
+        "scene.table.pivot.x": number;
+        "scene.table.pivot.depth": number;
         "scene.table.length": number;
         "scene.table.limits.tilt": number;
         "scene.table.limits.tilt_rate": number;
@@ -186,6 +190,11 @@ export interface components {
                     tilt_gain?: components["schemas"]["scene.table.errors.tilt_gain"] | null;
                     speed?: components["schemas"]["scene.table.errors.speed"] | null;
                 } | null;
+                tilt_rate?: components["schemas"]["scene.table.tilt_rate"] | null;
+                pivot?: {
+                    x?: components["schemas"]["scene.table.pivot.x"] | null;
+                    depth?: components["schemas"]["scene.table.pivot.depth"] | null;
+                } | null;
                 length?: components["schemas"]["scene.table.length"] | null;
                 limits?: {
                     tilt?: components["schemas"]["scene.table.limits.tilt"] | null;
@@ -250,6 +259,11 @@ export interface components {
                     tilt_offset?: components["schemas"]["scene.table.errors.tilt_offset"];
                     tilt_gain?: components["schemas"]["scene.table.errors.tilt_gain"];
                     speed?: components["schemas"]["scene.table.errors.speed"];
+                };
+                tilt_rate?: components["schemas"]["scene.table.tilt_rate"];
+                pivot?: {
+                    x?: components["schemas"]["scene.table.pivot.x"];
+                    depth?: components["schemas"]["scene.table.pivot.depth"];
                 };
                 length?: components["schemas"]["scene.table.length"];
                 limits?: {
@@ -322,6 +336,9 @@ export interface components {
             "table.errors.tilt_offset"?: components["schemas"]["scene.table.errors.tilt_offset"];
             "table.errors.tilt_gain"?: components["schemas"]["scene.table.errors.tilt_gain"];
             "table.errors.speed"?: components["schemas"]["scene.table.errors.speed"];
+            "table.tilt_rate"?: components["schemas"]["scene.table.tilt_rate"];
+            "table.pivot.x"?: components["schemas"]["scene.table.pivot.x"];
+            "table.pivot.depth"?: components["schemas"]["scene.table.pivot.depth"];
             "table.length"?: components["schemas"]["scene.table.length"];
             "table.limits.tilt"?: components["schemas"]["scene.table.limits.tilt"];
             "table.limits.tilt_rate"?: components["schemas"]["scene.table.limits.tilt_rate"];
@@ -354,6 +371,11 @@ export interface components {
                     tilt_offset?: components["schemas"]["scene.table.errors.tilt_offset"];
                     tilt_gain?: components["schemas"]["scene.table.errors.tilt_gain"];
                     speed?: components["schemas"]["scene.table.errors.speed"];
+                };
+                tilt_rate?: components["schemas"]["scene.table.tilt_rate"];
+                pivot?: {
+                    x?: components["schemas"]["scene.table.pivot.x"];
+                    depth?: components["schemas"]["scene.table.pivot.depth"];
                 };
                 length?: components["schemas"]["scene.table.length"];
                 limits?: {
@@ -982,7 +1004,7 @@ export interface components {
             }[];
         };
         /** @enum {string} */
-        Rung: "point" | "linear" | "rod" | "rod_with_x" | "rig_errors" | "friction" | "noise" | "polygon";
+        Rung: "point" | "linear" | "rod" | "rod_with_x" | "rig_errors" | "turning_table" | "friction" | "noise" | "polygon";
         Forced: {
             rung: components["schemas"]["Rung"];
             field: string;
@@ -2117,6 +2139,9 @@ export interface components {
             "table.errors.tilt_offset"?: components["schemas"]["scene.table.errors.tilt_offset"];
             "table.errors.tilt_gain"?: components["schemas"]["scene.table.errors.tilt_gain"];
             "table.errors.speed"?: components["schemas"]["scene.table.errors.speed"];
+            "table.tilt_rate"?: components["schemas"]["scene.table.tilt_rate"];
+            "table.pivot.x"?: components["schemas"]["scene.table.pivot.x"];
+            "table.pivot.depth"?: components["schemas"]["scene.table.pivot.depth"];
             "table.length"?: components["schemas"]["scene.table.length"];
             "table.limits.tilt"?: components["schemas"]["scene.table.limits.tilt"];
             "table.limits.tilt_rate"?: components["schemas"]["scene.table.limits.tilt_rate"];
@@ -2216,6 +2241,9 @@ export type SceneTableErrorsAngleBias = components['schemas']['scene.table.error
 export type SceneTableErrorsTiltOffset = components['schemas']['scene.table.errors.tilt_offset'];
 export type SceneTableErrorsTiltGain = components['schemas']['scene.table.errors.tilt_gain'];
 export type SceneTableErrorsSpeed = components['schemas']['scene.table.errors.speed'];
+export type SceneTableTiltRate = components['schemas']['scene.table.tilt_rate'];
+export type SceneTablePivotX = components['schemas']['scene.table.pivot.x'];
+export type SceneTablePivotDepth = components['schemas']['scene.table.pivot.depth'];
 export type SceneTableLength = components['schemas']['scene.table.length'];
 export type SceneTableLimitsTilt = components['schemas']['scene.table.limits.tilt'];
 export type SceneTableLimitsTiltRate = components['schemas']['scene.table.limits.tilt_rate'];

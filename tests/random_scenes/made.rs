@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use serde_json::{Map, Value, json};
 
 /// Typical values of a lab. Other fields are drawn from their whole range.
-pub(super) const USUAL: [(Name, f64, f64); 20] = [
+pub(super) const USUAL: [(Name, f64, f64); 22] = [
     (Name::ContactDistance, 0.05, 0.5),
     (Name::RadiusOfGyration, 0.03, 0.5),
     (Name::Gravity, 1.0, 10.0),
@@ -26,6 +26,8 @@ pub(super) const USUAL: [(Name, f64, f64); 20] = [
     (Name::TiltGainError, -0.1, 0.1),
     (Name::SpeedError, -0.1, 0.1),
     (Name::TableLength, 0.2, 5.0),
+    (Name::PivotX, -0.5, 0.5),
+    (Name::PivotDepth, -0.1, 0.1),
 ];
 
 /// Ingredients of a random scene: for each field, its place in its range, if it is set; and the body.
@@ -112,6 +114,9 @@ impl Made {
                 Name::Offset => self.above > 0.85 && !plain && matches!(self.body, Body::Rod),
                 Name::SpeedError if still || one_strike => false,
                 Name::TableLength => self.above > 0.85 && !plain,
+                // A table does not turn and plan, and nothing is a limit of its motion then.
+                Name::TiltRate | Name::PivotX | Name::PivotDepth => self.above > 0.8 && !plain && !is_point,
+                Name::NoiseModel if self.above > 0.8 => false,
                 _ if row.path.starts_with("table.errors.") => self.above > 0.85 && !plain && !is_point,
                 // Limits of the table end a run soon, so few scenes have them.
                 _ if row.path.starts_with("table.limits.") => self.above < 0.2,

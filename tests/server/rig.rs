@@ -81,6 +81,43 @@ async fn tables_end_runs_of_every_kind() {
     }
 }
 
+const TURNING: &str = "preset=case-1&scene.release.theta=0.05&scene.table.tilt_rate=follows&scene.table.pivot.x=0";
+
+#[tokio::test]
+async fn tables_that_turn_do_so_in_every_run_and_are_refused_elsewhere() {
+    let server = Server::start();
+    let get = async |target: &str| server.get(target).await.expect(200).json();
+    let run = get(&format!("/v1/trajectories?{TURNING}&impacts=30")).await;
+    assert_eq!(run["model"]["name"], "turning_table");
+    let small = "preset=case-1&scene.release.theta=0.05";
+    let ideal = get(&format!("/v1/trajectories?{small}&impacts=30")).await;
+    let last = |answer: &Value| number(&answer["impacts"]["y_dot"].as_array().unwrap()[20]);
+    assert!((last(&run) - last(&ideal)).abs() > 0.01, "{run}");
+    assert!(number(&run["impacts"]["error_estimate"][20]) < 1e-10);
+    // The turning is taken off, or the pivot is under the contact.
+    for scene in ["tilt_rate=corrected&scene.table.pivot.x=0", "tilt_rate=follows&scene.table.pivot.depth=0.1"] {
+        let same = get(&format!("/v1/trajectories?{small}&scene.table.{scene}&impacts=30")).await;
+        for column in ["t", "x", "theta", "x_dot", "y_dot", "theta_dot"] {
+            assert_eq!(same["impacts"][column], ideal["impacts"][column], "{column}");
+        }
+        let verdict = get(&format!("/v1/stability?{small}&scene.table.{scene}")).await;
+        assert_eq!(verdict["linear"], get(&format!("/v1/stability?{small}")).await["linear"]);
+    }
+    let map = "x.parameter=table.pivot.x&x.from=0&x.to=0.2&x.count=3&y.parameter=table.pivot.depth&y.from=0&y.to=0.1&y.count=2";
+    let cells = get(&format!("/v1/regions?{TURNING}&impacts=200&{map}")).await;
+    assert_eq!(cells["counts"]["completed"], 0, "{cells}");
+    let noisy = format!("/v1/ensembles?{TURNING}&runs=4&impacts=100&scene.noise.timing_sd=1e-4");
+    assert_eq!(get(&noisy).await["counts"]["completed"], 4);
+    for resource in ["catches", "controllers", "periodic-orbits", "precision", "throws"] {
+        let rest = if resource == "throws" { "&impact=1&apex.height=0.3" } else { "" };
+        let refused = server.get(&format!("/v1/{resource}?{TURNING}{rest}")).await.expect(422);
+        assert!(refused.text().contains("table.tilt_rate"), "{resource}: {}", refused.text());
+    }
+    let settled = "preset=case-1&scene.contact.restitution=0.5&scene.table.strike=still&scene.release.theta=0.1&scene.table.tilt_rate=follows";
+    let held = get(&format!("/v1/trajectories?{settled}&scene.table.pivot.x=0&impacts=400&hold=0.1")).await;
+    assert!(held["notes"].to_string().contains("hold is absent"), "{held}");
+}
+
 #[tokio::test]
 async fn a_live_run_ends_where_its_table_does() {
     let (_, address) = start().await;

@@ -37,7 +37,7 @@ impl ResourceRequest for ControllerRequest {
         let tilt_gain = complete_law(&mut draft);
         let pointer = reader.pointer_to("scene");
         let scene = build_scene(draft, &pointer, reader.errors())?;
-        if let Some(name) = scene.first_error() {
+        if let Some(name) = scene.beyond_told() {
             let path = name.row().path;
             let detail =
                 format!("{path} is not known to the design of a law: it is for a table that does what it is told");

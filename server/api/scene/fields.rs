@@ -126,6 +126,21 @@ pub fn field_text(name: Name) -> FieldText {
             example: "0",
             ..text("Speed error", "ε_w", "Relative error of the table's speed: it moves along its normal at 1 + ε_w times its law")
         },
+        Name::TiltRate => FieldText {
+            detail: "`none`, also the default: the table does not turn as it strikes. `follows`: it follows α = κθ or its state feedback, so it turns at α̇ = κθ̇ or −(K_xẋ + K_θθ̇), and its surface moves by that besides. `corrected`: it turns so, and its law takes that off its speed, and off its slide with `table.slide` `matched`. It has no effect without `table.pivot`. Not with `noise.model` `plan`, nor with `table.limits` of tilt rate, speed and stroke",
+            example: "follows",
+            ..text("Tilt rate", "α̇", "Turning of the table as it strikes")
+        },
+        Name::PivotX => FieldText {
+            detail: "By default the table turns about a pivot under each contact. It has no effect without `table.tilt_rate`",
+            example: "0",
+            ..text("Pivot", "x_p", "Horizontal place of the pivot about which the table turns")
+        },
+        Name::PivotDepth => FieldText {
+            detail: "Negative above it. Default 0. It has no effect without `table.tilt_rate`",
+            example: "0.05",
+            ..text("Pivot depth", "p", "Depth of the pivot below the surface of the table, along its normal")
+        },
         Name::TableLength => FieldText {
             detail: "The outcome is then `off_table`. The middle of the table is at x = 0. Catches, throws and the method `linear` answer 422",
             ..text("Table length", "L", "Length of the table; a contact beyond one of its ends ends the run")

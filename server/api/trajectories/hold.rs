@@ -76,7 +76,12 @@ impl HoldAnswer {
             return Ok(Err(format!("hold is absent: the run ended as `{}`, not as `settled`", ending.name())));
         };
         let Some(request) = rest_of_run(scene, last, settle_time, duration) else {
-            return Ok(Err("hold is absent: a point mass has no angle in contact".to_owned()));
+            let why = if scene.acting_turn().is_some() {
+                "the motion in contact is not derived for a table that turns as it strikes (table.tilt_rate)"
+            } else {
+                "a point mass has no angle in contact"
+            };
+            return Ok(Err(format!("hold is absent: {why}")));
         };
         let held = hold(&request, go_on);
         if held.ending == HoldEnding::Stopped {

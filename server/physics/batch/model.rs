@@ -68,7 +68,7 @@ impl BatchModel {
     }
 
     /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits or
-    /// ends of the table, plans of a table that errs, or a constant error of its tilt.
+    /// ends of the table, its turning, plans of a table that errs, or a constant error of its tilt.
     pub fn of(body: &Model, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
@@ -82,6 +82,9 @@ impl BatchModel {
             Model::Point(_) => Some(Self::Point(energy_feedback)),
             Model::General(GeneralBody { noise: Some(Noise { model: NoiseModel::Plan, .. }), .. }) => None,
             Model::General(GeneralBody { constant_tilt, .. }) if *constant_tilt != 0.0 => None,
+            Model::General(GeneralBody { turning: Some(turning), friction, .. }) if turning.acts(friction.as_ref()) => {
+                None
+            }
             Model::General(GeneralBody { steering, friction, noise, outline, .. }) => {
                 let contact =
                     friction.map_or(BatchContact::Smooth, |friction| BatchContact::Rough(friction.law, friction.slide));

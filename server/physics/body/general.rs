@@ -1,24 +1,25 @@
-//! The rod with all that a scene may ask beyond the plain one, each part only where it is asked for: state feedback, friction,
-//! noise, the outline of a polygon.
+//! The rod with all that a scene may ask beyond the plain one, each part only where it is asked for: state feedback, a turning table,
+//! friction, noise, the outline of a polygon.
 //!
 //! A body of its own, so that the plain rod pays for none of it. Each part is another module's: [`crate::bounce::friction`],
 //! [`crate::table::noise`], [`crate::body::polygon`]; here they meet.
 
-use crate::body::lifted::own_motion;
+use crate::body::lifted::{own_motion, strike_moving};
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::contact_time::{first_contact, first_descent};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
-use crate::bounce::friction::{Friction, actual_branch};
+use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::table_motion::{PlannedTableMotion, SurfaceMotion, TableMotion};
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 use crate::table::control_law::Steering;
 use crate::table::noise::{Noise, NoiseModel, NoiseSample};
+use crate::table::pivot::TurningTable;
 use crate::table::program::HeightProgram;
 
 /// Least time, s, from one strike to the next: a table that is timed too early strikes then.
@@ -33,6 +34,8 @@ pub struct GeneralBody {
     pub steering: Steering,
     /// Tilt of the table beside its law, rad ([`crate::table::errors`]).
     pub constant_tilt: f64,
+    /// Turning of the table as it strikes.
+    pub turning: Option<TurningTable>,
     /// Target heights of its strikes, where they differ.
     pub program: Option<HeightProgram>,
     /// Friction and a table that moves along itself.
@@ -56,6 +59,22 @@ impl GeneralBody {
             0.0 => self.steering.tilt(rod, x, state),
             constant => self.steering.sensed_tilt(rod, x, state, 0.0, constant),
         }
+    }
+
+    /// Tells whether its strikes depend on its place.
+    pub fn depends_on_place(&self) -> bool {
+        self.steering != Steering::TiltGain || self.turning.is_some_and(|turning| turning.strikes())
+    }
+
+    /// Velocity of the surface by the turning of the table, if it turns, for a body at `x` (m) over a table tilted like this.
+    pub(crate) fn surface<N: Number>(
+        &self,
+        rod: &Rod<N>,
+        x: N,
+        state: &State<N>,
+        tilt: &Tilt<N>,
+    ) -> Option<SurfaceMotion<N>> {
+        self.turning.map(|turning| turning.surface(rod, &self.steering, x, state, tilt))
     }
 
     /// The rod at strike `n`.
@@ -186,13 +205,13 @@ impl Body for GeneralBody {
                 self.steering.sensed_tilt(&rod, *x, state, error, self.constant_tilt)
             }
         };
-        match (&self.friction, plan) {
-            (None, None) => rod.strike_with(state, &tilt, rod.leverage()),
-            (friction, plan) => {
-                let friction = friction.as_ref().unwrap_or(&Friction::SMOOTH);
-                friction.strike(&rod, state, &tilt, plan.as_ref(), rod.leverage(), actual_branch)
-            }
-        }
+        let surface = self.surface(&rod, *x, state, &tilt);
+        let motion = match (plan, &surface) {
+            (Some(plan), _) => TableMotion::Planned(plan),
+            (None, Some(surface)) => TableMotion::Turning(surface),
+            (None, None) => TableMotion::ByLaw,
+        };
+        strike_moving(self.friction.as_ref(), &rod, state, &tilt, motion)
     }
 
     #[inline(never)]

@@ -7,11 +7,12 @@ use crate::bounce::friction::{Friction, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::table_motion::{PlannedTableMotion, SurfaceMotion, TableMotion};
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 use crate::table::control_law::Steering;
 use crate::table::noise::Noise;
+use crate::table::pivot::TurningTable;
 use crate::table::program::HeightProgram;
 
 /// A rod in some kind of number, with what a scene asks for beyond the plain one.
@@ -23,6 +24,8 @@ pub struct LiftedBody<N> {
     pub steering: Steering,
     /// Tilt of the table beside its law, rad.
     pub constant_tilt: f64,
+    /// Turning of the table as it strikes.
+    pub turning: Option<TurningTable>,
     /// Target heights of its strikes, where they differ.
     pub program: Option<HeightProgram>,
     /// Friction and a table that moves along itself.
@@ -48,19 +51,19 @@ impl<N: Number> LiftedBody<N> {
 
     /// The strike of a table at this tilt.
     pub(crate) fn strike_at(&self, coming: &PreImpact<N>, tilt: &Tilt<N>) -> Strike<N> {
-        let PreImpact { n, state, clearance, plan, .. } = coming;
+        let PreImpact { n, x, state, clearance, plan } = coming;
         let mut rod = self.at_strike(*n);
         if self.noise.is_some() {
             // The energy of a bounce counts from its contact.
             rod.target_energy = rod.target_energy - rod.gravity * *clearance;
         }
-        match (&self.friction, plan) {
-            (None, None) => rod.strike_with(state, tilt, rod.leverage()),
-            (friction, plan) => {
-                let friction = friction.as_ref().unwrap_or(&Friction::SMOOTH);
-                friction.strike(&rod, state, tilt, plan.as_ref(), rod.leverage(), actual_branch)
-            }
-        }
+        let surface = self.turning.map(|turning| turning.surface(&rod, &self.steering, *x, state, tilt));
+        let motion = match (plan, &surface) {
+            (Some(plan), _) => TableMotion::Planned(plan),
+            (None, Some(surface)) => TableMotion::Turning(surface),
+            (None, None) => TableMotion::ByLaw,
+        };
+        strike_moving(self.friction.as_ref(), &rod, state, tilt, motion)
     }
 
     /// Motion of a table that plans for contact `n` with the state that it foresees, its angle sensed with an error (rad).
@@ -74,6 +77,30 @@ impl<N: Number> LiftedBody<N> {
 
     fn at_strike(&self, n: u64) -> Rod<N> {
         self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
+    }
+}
+
+/// The strike of a rod over a table tilted and moving like this, with friction or without.
+#[inline(always)]
+pub(crate) fn strike_moving<N: Number>(
+    friction: Option<&Friction>,
+    rod: &Rod<N>,
+    before: &State<N>,
+    tilt: &Tilt<N>,
+    motion: TableMotion<'_, N>,
+) -> Strike<N> {
+    match (friction, motion) {
+        (None, TableMotion::ByLaw) => rod.strike_with(before, tilt, rod.leverage()),
+        (None, TableMotion::Turning(SurfaceMotion { normal: None, tangential, .. })) => {
+            let strike = rod.strike_with(before, tilt, rod.leverage());
+            let (x, y) = strike.table_velocity;
+            let table_velocity = (x + *tangential * tilt.cos_alpha, y + *tangential * tilt.sin_alpha);
+            Strike { table_velocity, ..strike }
+        }
+        (friction, motion) => {
+            let friction = friction.unwrap_or(&Friction::SMOOTH);
+            friction.strike(rod, before, tilt, motion, rod.leverage(), actual_branch)
+        }
     }
 }
 

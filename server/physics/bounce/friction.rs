@@ -8,7 +8,7 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::ContactMode;
 use crate::bounce::strike::{RISE_UNITS, Strike};
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::table_motion::TableMotion;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 
@@ -109,7 +109,7 @@ impl<N: Number> Mobility<N> {
 }
 
 impl Friction {
-    /// A contact without friction, for a table that moves as planned.
+    /// A contact without friction, for a table that does not move by its law alone.
     pub(crate) const SMOOTH: Self = Self { coefficient: 0.0, law: RestitutionLaw::Poisson, slide: Slide::None };
 
     /// Routh's impulse at velocities relative to the table just before, along it and along its normal, the latter < 0.
@@ -203,14 +203,14 @@ impl Friction {
         Impulse { normal: end, tangential: slope * turn + beyond * (end - turn), mode }
     }
 
-    /// The strike of a rod over a table tilted like this, which moves as it was planned if it was.
+    /// The strike of a rod over a table tilted and moving like this.
     #[inline(always)]
     pub(crate) fn strike<N: Number>(
         &self,
         rod: &Rod<N>,
         before: &State<N>,
         tilt: &Tilt<N>,
-        plan: Option<&PlannedTableMotion<N>>,
+        motion: TableMotion<'_, N>,
         leverage: N,
         decide: impl FnMut(Decision) -> bool,
     ) -> Strike<N> {
@@ -219,20 +219,34 @@ impl Friction {
         let Tilt { sin_alpha, cos_alpha, sin_beta, .. } = *tilt;
         let (across, along) = (rod.contact_distance * sin_beta, rod.contact_distance * tilt.cos_beta());
         let velocity = tangential_velocity(rod, before, tilt);
-        if let Some(plan) = plan {
-            let speed = plan.normal_velocity;
-            strike.approach = strike.normal_velocity - speed;
-            strike.push = (one + rod.restitution) * strike.approach;
-            strike.table_velocity = (-(speed * sin_alpha), speed * cos_alpha);
+        match motion {
+            TableMotion::ByLaw => {}
+            TableMotion::Planned(plan) => {
+                let speed = plan.normal_velocity;
+                strike.approach = strike.normal_velocity - speed;
+                strike.push = (one + rod.restitution) * strike.approach;
+                strike.table_velocity = (-(speed * sin_alpha), speed * cos_alpha);
+            }
+            TableMotion::Turning(surface) => {
+                if let Some(speed) = surface.normal {
+                    strike.approach = strike.approach - speed;
+                    strike.push = (one + rod.restitution) * strike.approach;
+                    let (x, y) = strike.table_velocity;
+                    strike.table_velocity = (x - speed * sin_alpha, y + speed * cos_alpha);
+                }
+            }
         }
-        let (table, relative) = match (self.slide, plan) {
-            (Slide::None, _) => (zero, velocity),
+        let (table, relative) = match (self.slide, motion) {
+            (Slide::None, TableMotion::ByLaw | TableMotion::Planned(_)) => (zero, velocity),
+            (Slide::None, TableMotion::Turning(surface)) => (surface.tangential, velocity - surface.tangential),
             // Set, not computed: a difference of rounding would slide.
-            (Slide::Matched, None) => (velocity, zero),
-            (Slide::Matched, Some(plan)) => {
+            (Slide::Matched, TableMotion::ByLaw) => (velocity, zero),
+            (Slide::Matched, TableMotion::Planned(plan)) => {
                 let speed = plan.tangential_velocity;
                 (speed, velocity - speed)
             }
+            (Slide::Matched, TableMotion::Turning(surface)) if surface.is_matched => (velocity, zero),
+            (Slide::Matched, TableMotion::Turning(surface)) => (velocity + surface.tangential, -surface.tangential),
         };
         let mobility = Mobility::new(rod, sin_beta, tilt.cos_beta());
         let impulse = self.impulse(&mobility, relative, strike.approach, rod.restitution, decide);
@@ -257,7 +271,7 @@ impl Friction {
     /// The same over a table that tilts by α = κθ, as it is.
     #[inline(always)]
     pub(crate) fn strike_by_tilt_gain<N: Number>(&self, rod: &Rod<N>, before: &State<N>) -> Strike<N> {
-        self.strike(rod, before, &rod.tilt(before.theta), None, rod.leverage(), actual_branch)
+        self.strike(rod, before, &rod.tilt(before.theta), TableMotion::ByLaw, rod.leverage(), actual_branch)
     }
 
     /// The table's velocity along itself where nothing delays it, m/s.

@@ -1,4 +1,4 @@
-//! The motion of a table that was planned before the contact.
+//! The motion of a table at a strike, where it is not that of its law alone: planned before the contact, or turning as it strikes.
 
 use crate::bounce::flight::Flight;
 use crate::bounce::state::State;
@@ -14,6 +14,28 @@ pub struct PlannedTableMotion<N = f64> {
     pub normal_velocity: N,
     /// The table's velocity along itself, m/s.
     pub tangential_velocity: N,
+}
+
+/// Velocity that a turning table has at the contact beside that of its law, m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceMotion<N = f64> {
+    /// Along its normal; `None` if the law of the table has taken it off, or the pivot is under the contact.
+    pub normal: Option<N>,
+    /// Along itself.
+    pub tangential: N,
+    /// True if a table that moves along itself with the contact point takes this velocity into account.
+    pub is_matched: bool,
+}
+
+/// Motion of the table that a contact meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum TableMotion<'a, N> {
+    /// That of its law.
+    ByLaw,
+    /// One that was planned.
+    Planned(&'a PlannedTableMotion<N>),
+    /// That of its law, and of its turning beside it.
+    Turning(&'a SurfaceMotion<N>),
 }
 
 impl<N: Number> PlannedTableMotion<N> {

@@ -120,6 +120,7 @@ fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
         rod: scene.parameters(),
         steering: Steering::TiltGain,
         constant_tilt: 0.0,
+        turning: None,
         program: None,
         friction: friction.map(|friction| Friction { slide: Slide::Matched, ..friction }),
         noise: scene.noise,

@@ -81,6 +81,7 @@ impl OrbitProblem {
                 rod,
                 steering: Steering::TiltGain,
                 constant_tilt: 0.0,
+                turning: None,
                 program: None,
                 friction,
                 noise: None,

@@ -236,7 +236,7 @@ pub fn run_by(
                 Ok(orbit) => orbit,
                 Err(no_contact) => return Ok(Some(no_contact.ending(0.0, 0.0))),
             };
-            let (rod, body) = (orbit, scene.model());
+            let (rod, body) = (orbit, scene.running_model());
             let first = orbit.t().to_f64();
             let mut estimate = ErrorEstimate::of_extended_run(scene, first);
             let is_full = full_error_estimate::is_needed(scene);
@@ -359,7 +359,7 @@ fn run_linear(
     impacts: u64,
     mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Option<Ending> {
-    let body = scene.model();
+    let body = scene.running_model();
     let mut next = solution.impact(1);
     for n in 1.. {
         let here = next;

@@ -15,6 +15,7 @@ use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::{Gains, Steering};
 use crate::table::errors::TableErrors;
 use crate::table::noise::{Noise, NoiseModel};
+use crate::table::pivot::TurningTable;
 use crate::table::program::HeightProgram;
 
 /// A scene in which every value is in its range and nothing contradicts anything else. Made by [`Draft::build`].
@@ -57,6 +58,8 @@ pub struct Scene {
     pub(crate) errors: TableErrors,
     /// Tilt of the table beside its law, rad: all that the constant errors do which is no change of a gain.
     pub(crate) constant_tilt: f64,
+    /// Turning of the table as it strikes.
+    pub(crate) turning: Option<TurningTable>,
     draft: Draft,
 }
 
@@ -262,6 +265,7 @@ impl Draft {
             noise,
             errors: off,
             constant_tilt: off.constant_tilt(angle_gain, lean),
+            turning: self.turning(body, noise, &mut errors),
             draft: self,
         };
         if errors.is_empty() { Ok(scene) } else { Err(errors) }

@@ -10,6 +10,7 @@ use crate::bounce::energy_feedback::{EnergyLaw, EnergyMeasure};
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::scene::Striking;
 use crate::table::noise::NoiseModel;
+use crate::table::pivot::TiltRate;
 use crate::table::program::{HeightProgram, MOST_HEIGHTS};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
@@ -235,6 +236,9 @@ fields! {
     TiltOffset => Field::number("table.errors.tilt_offset", "rad", -1.0, 1.0).live(),
     TiltGainError => Field::number("table.errors.tilt_gain", "1", -0.9, 1.0).live(),
     SpeedError => Field::number("table.errors.speed", "1", -0.9, 1.0).live(),
+    TiltRate => Field::choice("table.tilt_rate", TiltRate::WORDS).live(),
+    PivotX => Field::number("table.pivot.x", "m", -1000.0, 1000.0).live(),
+    PivotDepth => Field::number("table.pivot.depth", "m", -10.0, 10.0).live(),
     TableLength => Field::number("table.length", "m", 1e-3, 1e4).live(),
     TiltLimit => Field::number("table.limits.tilt", "rad", 0.0, PI).live(),
     TiltRateLimit => Field::number("table.limits.tilt_rate", "rad/s", 0.0, 1e6).live(),

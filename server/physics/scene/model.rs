@@ -16,6 +16,7 @@ use crate::scene::energy::energy_reason;
 use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
 use crate::table::control_law::Steering;
 use crate::table::noise::Noise;
+use crate::table::pivot::TurningTable;
 
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,6 +31,8 @@ pub enum ModelLevel {
     RodWithX,
     /// On a rig with constant errors: of what the table senses and does, and of the place of the centre of gravity.
     RigErrors,
+    /// On a table that turns as it strikes.
+    Turning,
     /// The rod on a table with friction, or that moves along itself.
     Friction,
     /// On a table that errs in time or in the angle that it senses.
@@ -47,6 +50,7 @@ impl ModelLevel {
             Self::Rod => "rod",
             Self::RodWithX => "rod_with_x",
             Self::RigErrors => "rig_errors",
+            Self::Turning => "turning_table",
             Self::Friction => "friction",
             Self::Noise => "noise",
             Self::Polygon => "polygon",
@@ -60,7 +64,7 @@ impl ModelLevel {
             Self::Point => 135.0,
             Self::Linear => 120.0,
             Self::Rod => 86.0,
-            Self::RodWithX | Self::RigErrors => 112.0,
+            Self::RodWithX | Self::RigErrors | Self::Turning => 112.0,
             Self::Friction => 107.0,
             Self::Noise => 195.0,
             Self::Polygon => 130.0,
@@ -82,17 +86,18 @@ pub struct ModelRequirement {
 impl Scene {
     /// The smallest model that is exact for the bounces of this scene.
     ///
-    /// The outline of a polygon is not in it: it ends runs and changes no bounce, so that what is derived for one holds.
+    /// The outline of a polygon is not in it: it ends runs and changes no bounce, so that what is derived for one holds. Neither is a turning
+    /// of the table that moves its surface and no body.
     pub fn model(&self) -> Model {
-        self.model_of(self.noise, None)
+        self.model_of(self.noise, self.acting_turn(), None)
     }
 
     /// The smallest model that is exact for the runs of this scene, and for where they end.
     pub fn running_model(&self) -> Model {
-        self.model_of(self.noise, self.outline)
+        self.model_of(self.noise, self.turning, self.outline)
     }
 
-    fn model_of(&self, noise: Option<Noise>, outline: Option<Outline>) -> Model {
+    fn model_of(&self, noise: Option<Noise>, turning: Option<TurningTable>, outline: Option<Outline>) -> Model {
         let rod = self.parameters();
         let program = self.program;
         if self.body == BodyShape::Point {
@@ -101,10 +106,11 @@ impl Scene {
         let friction = self.contact_friction();
         let constant_tilt = self.constant_tilt;
         let is_plain = self.steering == Steering::TiltGain && program.is_none() && constant_tilt == 0.0;
-        if is_plain && friction.is_none() && noise.is_none() && outline.is_none() {
+        if is_plain && turning.is_none() && friction.is_none() && noise.is_none() && outline.is_none() {
             return Model::Rod(rod);
         }
-        Model::General(GeneralBody { rod, steering: self.steering, constant_tilt, program, friction, noise, outline })
+        let steering = self.steering;
+        Model::General(GeneralBody { rod, steering, constant_tilt, turning, program, friction, noise, outline })
     }
 
     /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
@@ -159,8 +165,11 @@ impl Scene {
                 BodyShape::Rod { .. } => self.topple_angle,
                 BodyShape::Point => f64::INFINITY,
             },
-            settles: !self.keeps_energy() || self.friction != 0.0,
-            holds_energy: self.keeps_energy() && !self.is_rough() && self.noise.is_none(),
+            settles: !self.keeps_energy() || self.friction != 0.0 || self.acting_turn().is_some(),
+            holds_energy: self.keeps_energy()
+                && !self.is_rough()
+                && self.noise.is_none()
+                && self.acting_turn().is_none(),
             limits: self.limits,
             half_length: self.half_length,
         }
@@ -199,9 +208,19 @@ impl Scene {
     /// The first field that takes the scene outside the plain rod and the levels `known`, with a message; `None` if the scene is
     /// within them.
     pub fn beyond(&self, known: &[ModelLevel]) -> Option<FieldError> {
-        // Errors that only change gains leave the rod a rod.
-        let only_gains = |level| level == ModelLevel::RigErrors && self.constant_tilt == 0.0;
-        let beyond = |level| level != ModelLevel::Polygon && !only_gains(level) && !known.contains(&level);
+        // Errors that only change gains leave the rod a rod, and so does a turning that changes no bounce.
+        let idle = |level| match level {
+            ModelLevel::RigErrors => self.constant_tilt == 0.0,
+            ModelLevel::Turning => self.acting_turn().is_none(),
+            ModelLevel::Polygon => true,
+            ModelLevel::Point
+            | ModelLevel::Linear
+            | ModelLevel::Rod
+            | ModelLevel::RodWithX
+            | ModelLevel::Friction
+            | ModelLevel::Noise => false,
+        };
+        let beyond = |level| !idle(level) && !known.contains(&level);
         let ModelRequirement { level, path, .. } =
             self.requirements().into_iter().find(|requirement| beyond(requirement.level))?;
         let shown = crate::scene::field(path).map_or_else(String::new, |row| self.shown(row.name));
@@ -209,6 +228,7 @@ impl Scene {
             ModelLevel::Friction => "with friction",
             ModelLevel::Noise => "with noise",
             ModelLevel::RigErrors => "with a constant error of the tilt",
+            ModelLevel::Turning => "with a table that turns as it strikes",
             ModelLevel::Rod | ModelLevel::RodWithX => "with state feedback",
             ModelLevel::Point | ModelLevel::Linear | ModelLevel::Polygon => "for this body",
         };
@@ -238,6 +258,7 @@ impl Scene {
             rod: self.parameters(),
             steering: self.steering,
             constant_tilt: self.constant_tilt,
+            turning: self.turning,
             program: self.program,
             friction: self.contact_friction(),
             noise: self.noise,
@@ -258,7 +279,7 @@ impl Scene {
     /// Same as [`Scene::orbit`].
     pub fn orbit_of(&self, run: u64) -> Result<Orbit<Model>, NoContact> {
         let noise = self.noise.map(|noise| Noise { run, ..noise });
-        Orbit::new(self.model_of(noise, self.outline), self.rules(), &self.release)
+        Orbit::new(self.model_of(noise, self.turning, self.outline), self.rules(), &self.release)
     }
 
     /// The level of the ladder that the scene needs.
@@ -286,6 +307,9 @@ impl Scene {
         }
         if let Some((name, detail)) = self.error_requirement() {
             step(ModelLevel::RigErrors, name, detail);
+        }
+        if let Some(detail) = self.turning_detail() {
+            step(ModelLevel::Turning, Name::TiltRate, detail);
         }
         let (friction, slide) = (self.friction, self.shown(Name::Slide));
         if friction != 0.0 {

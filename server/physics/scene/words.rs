@@ -6,6 +6,7 @@ use crate::bounce::energy_feedback::{EnergyLaw, EnergyMeasure};
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::scene::Striking;
 use crate::table::noise::NoiseModel;
+use crate::table::pivot::TiltRate;
 
 /// An alternative that a scene names by a word.
 pub(super) trait Alternative: Copy + 'static {
@@ -46,4 +47,5 @@ words!(Striking: Compensated => "compensated", Still => "still");
 words!(Slide: None => "none", Matched => "matched");
 words!(EnergyMeasure: Vertical => "vertical", Total => "total");
 words!(EnergyLaw: Proportional => "proportional", OneStrike => "one_strike");
+words!(TiltRate: None => "none", Follows => "follows", Corrected => "corrected");
 words!(NoiseModel: Strike => "strike", Plan => "plan");

@@ -1,11 +1,12 @@
 //! The derivative of the map from contact to contact, at any state, by differentiating its formulas with the contact
 //! time implicit; and the same by finite differences, only to compare.
 //!
-//! A state is (ρθ, ẋ, ẏ, ρθ̇) just before a contact, followed by x if the table has state feedback. The state of a point mass is
-//! (ẋ, ẏ).
+//! A state is (ρθ, ẋ, ẏ, ρθ̇) just before a contact, followed by x if the table has state feedback, or turns about a fixed place and acts
+//! on the body by that. The state of a point mass is (ẋ, ẏ).
 
 use crate::body::Body;
 use crate::body::general::GeneralBody;
+use crate::body::lifted::strike_moving;
 use crate::body::point::PointMass;
 use crate::bounce::contact_time::first_contact;
 use crate::bounce::flight::Flight;
@@ -14,19 +15,19 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::ContactMode;
 use crate::bounce::strike::Strike;
+use crate::bounce::table_motion::TableMotion;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use crate::run::orbit::{Contact, Orbit};
 use crate::run::rules::Rules;
 use crate::scene::model::Model;
-use crate::table::control_law::Steering;
 use nalgebra::{Complex, DMatrix, Schur};
 
 /// The map linearized about one orbit segment.
 #[derive(Clone, Debug)]
 pub struct Linearization {
-    /// Derivative of the state at the end with respect to the state at the start: 4 × 4, with state feedback 5 × 5, for a point
-    /// mass 2 × 2. Components are in m/s, except ρθ and x in m.
+    /// Derivative of the state at the end with respect to the state at the start: 4 × 4, 5 × 5 where it depends on x, for a
+    /// point mass 2 × 2. Components are in m/s, except ρθ and x in m.
     pub matrix: DMatrix<f64>,
     /// The state at the end.
     pub end: State,
@@ -61,9 +62,7 @@ pub const MOST_SIDES: usize = 16;
 /// Names of the components of a state, in the order of a matrix's rows and columns.
 pub fn state_order(model: &Model) -> &'static [&'static str] {
     match model {
-        Model::General(GeneralBody { steering: Steering::Feedback(_), .. }) => {
-            &["rho_theta", "x_dot", "y_dot", "rho_theta_dot", "x"]
-        }
+        Model::General(general) if general.depends_on_place() => &["rho_theta", "x_dot", "y_dot", "rho_theta_dot", "x"],
         Model::Rod(_) | Model::General(_) => &["rho_theta", "x_dot", "y_dot", "rho_theta_dot"],
         Model::Point(_) => &["x_dot", "y_dot"],
     }
@@ -77,7 +76,7 @@ pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearizati
     jacobian_at(model, 0.0, start, period)
 }
 
-/// [`jacobian`] from a horizontal position x, m. The derivative depends on x only if the table feeds it back.
+/// [`jacobian`] from a horizontal position x, m. The derivative depends on x only if the table feeds it back or turns.
 ///
 /// # Errors
 /// Same as [`jacobian`].
@@ -220,13 +219,17 @@ fn general_jacobians<const K: usize>(
     let place = if K > 4 { Dual::along(x, 4, 1.0) } else { Dual::from_f64(x) };
     let tilt = general.exact_tilt(&lifted, place, &start);
     let plain = general.exact_tilt(rod, x, state);
+    let (surface, surface_by_all) =
+        (general.surface(rod, x, state, &plain), general.surface(&lifted, place, &start, &tilt));
+    let motion = surface.as_ref().map_or(TableMotion::ByLaw, TableMotion::Turning);
+    let moving = surface_by_all.as_ref().map_or(TableMotion::ByLaw, TableMotion::Turning);
     let Some(friction) = &general.friction else {
-        let root = first_contact(&rod.flight(&rod.strike_with(state, &plain, rod.leverage()))).ok()?;
-        let matrix = after_flight(&lifted, place, &lifted.strike_with(&start, &tilt, leverage), root);
+        let root = first_contact(&rod.flight(&strike_moving(None, rod, state, &plain, motion))).ok()?;
+        let matrix = after_flight(&lifted, place, &strike_moving(None, &lifted, &start, &tilt, moving), root);
         return Some(vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }]);
     };
     let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched);
-    let strike = friction.strike(rod, state, &plain, None, rod.leverage(), |decision| {
+    let strike = friction.strike(rod, state, &plain, motion, rod.leverage(), |decision| {
         let is_tied = decision.margin.abs() <= TIED * decision.scale;
         held |= decision.fork == FrictionBranch::Holds && decision.answer && !is_tied;
         if is_tied {
@@ -249,7 +252,7 @@ fn general_jacobians<const K: usize>(
     let mut sides: Vec<OneSidedDerivative> = Vec::new();
     for flipped in 0..1_u32 << tied.len() {
         let mut rests = false;
-        let strike = friction.strike(&lifted, &start, &tilt, None, leverage, |decision| {
+        let strike = friction.strike(&lifted, &start, &tilt, moving, leverage, |decision| {
             let at = tied.iter().position(|fork| *fork == decision.fork);
             let mut answer = decision.answer ^ at.is_some_and(|at| flipped >> at & 1 == 1);
             answer |= decision.fork == FrictionBranch::RestsEarly && ends_early;

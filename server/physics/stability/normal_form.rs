@@ -13,6 +13,7 @@ use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, Slide, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
+use crate::bounce::table_motion::TableMotion;
 use crate::numbers::number::Number;
 use crate::numbers::taylor::Taylor;
 use crate::scene::model::Model;
@@ -80,11 +81,15 @@ impl UprightBounce {
                 rod,
                 steering,
                 constant_tilt: _,
+                turning: None,
                 program: None,
                 friction,
                 noise: None,
                 outline: _,
             }) => (rod, steering, friction),
+            Model::General(GeneralBody { turning: Some(_), .. }) => {
+                return Err("it is not derived for a table that turns as it strikes".to_owned());
+            }
             Model::General(GeneralBody { noise: None, .. }) => {
                 return Err("it is not derived for a program of heights".to_owned());
             }
@@ -122,7 +127,7 @@ impl UprightBounce {
         let tilt = self.steering.tilt(&rod, x, &before);
         let strike = match &self.friction {
             None => rod.strike_with(&before, &tilt, rod.leverage()),
-            Some(friction) => friction.strike(&rod, &before, &tilt, None, rod.leverage(), actual_branch),
+            Some(friction) => friction.strike(&rod, &before, &tilt, TableMotion::ByLaw, rod.leverage(), actual_branch),
         };
         let flight = rod.flight(&strike);
         // Each of Newton's steps doubles the degree up to which the implicit contact time is exact: 1, then 3.

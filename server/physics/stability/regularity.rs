@@ -116,16 +116,18 @@ fn watched_rod(model: &Model) -> Option<(Rod, Option<Friction>)> {
             rod,
             steering: Steering::TiltGain,
             constant_tilt: 0.0,
+            turning,
             program: None,
             friction,
             noise: None,
             outline: _,
-        }) => Some((rod, friction)),
+        }) if turning.is_none_or(|turning| !turning.acts(friction.as_ref())) => Some((rod, friction)),
         Model::General(_) | Model::Point(_) => None,
     }
 }
 
-/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback, noise or a program of heights.
+/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback, noise, a turning
+/// table or a program of heights.
 pub fn measure_regularity(
     mut orbit: Orbit<Model>,
     fixed_point: &FixedPoint,

@@ -42,6 +42,12 @@ impl<N: Number> Gains<N> {
     pub fn tilt(&self, x: N, state: &State<N>) -> N {
         -(self.x * x + self.theta * state.theta + self.x_dot * state.x_dot + self.theta_dot * state.theta_dot)
     }
+
+    /// α̇, rad/s, in a flight: ẍ and θ̈ are 0 there.
+    #[inline(always)]
+    fn tilt_rate(&self, state: &State<N>) -> N {
+        -(self.x * state.x_dot + self.theta * state.theta_dot)
+    }
 }
 
 impl Steering {
@@ -50,6 +56,15 @@ impl Steering {
         let Self::Feedback(gains) = self else { return rod.tilt(state.theta) };
         let alpha = gains.lift().tilt(x, state);
         Tilt::new(state.theta, alpha, state.theta - alpha)
+    }
+
+    /// Tilt rate of a table that follows its law in a flight, rad/s.
+    #[inline(always)]
+    pub(crate) fn tilt_rate<N: Number>(&self, rod: &Rod<N>, state: &State<N>) -> N {
+        match self {
+            Self::TiltGain => rod.tilt_gain * state.theta_dot,
+            Self::Feedback(gains) => gains.lift().tilt_rate(state),
+        }
     }
 
     /// [`Steering::tilt`] with an error of the sensed angle and a constant tilt beside the law, both in rad.

@@ -62,6 +62,7 @@ fn struck_body(body: &BouncingRod, law: RestitutionLaw) -> GeneralBody {
         rod: body.rod,
         steering: Steering::TiltGain,
         constant_tilt: 0.0,
+        turning: None,
         program: None,
         friction,
         noise: None,

@@ -37,6 +37,7 @@ fn distance_to_bounces(friction: Option<Friction>, theta: f64, x_dot: f64, drop:
         rod: ROD,
         steering: Steering::TiltGain,
         constant_tilt: 0.0,
+        turning: None,
         friction,
         noise: None,
         outline: None,

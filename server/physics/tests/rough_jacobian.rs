@@ -33,6 +33,7 @@ impl RoughRod {
             rod: self.rod,
             steering: Steering::TiltGain,
             constant_tilt: 0.0,
+            turning: None,
             program: None,
             friction: Some(self.friction),
             noise: None,

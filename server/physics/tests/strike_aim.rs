@@ -39,6 +39,7 @@ fn a_strike_reaches_the_ratio_that_was_aimed_for() {
                 rod,
                 steering: Steering::TiltGain,
                 constant_tilt: 0.0,
+                turning: None,
                 program: None,
                 friction,
                 noise: None,

@@ -10,6 +10,7 @@ use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::strike::Strike;
+use crate::bounce::table_motion::TableMotion;
 
 /// A contact point that rises faster does so by more than rounding ([`crate::bounce::strike::Strike::rises`]), at any speed up to the limit, m/s.
 const SURE_RISE: f64 = 1e-8;
@@ -124,7 +125,8 @@ impl Rough {
             let tilt = scratch.tilt::<L>(lane);
             let friction = Friction { coefficient: self.coefficient[lane], law, slide };
             let before = moving.state(lane).map(number);
-            let strike = friction.strike(&rod, &before, &tilt, None, number(rods.leverage(lane)), actual_branch);
+            let strike =
+                friction.strike(&rod, &before, &tilt, TableMotion::ByLaw, number(rods.leverage(lane)), actual_branch);
             let lever_squared = rods.lever_squared(lane);
             next.struck(lane, &strike, moving.energy[lane], ROUGH_SURE_RISE * (1.0 + lever_squared), scratch);
         }

@@ -9,7 +9,7 @@ use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::table_motion::{PlannedTableMotion, TableMotion};
 use crate::bounce::tilt::Tilt;
 use crate::catching::aim::Aim;
 use crate::numbers::number::Number;
@@ -83,7 +83,8 @@ impl BouncingRod {
         // All laws agree on a contact point that is at rest on the table.
         let friction = Friction { coefficient: self.friction, law: RestitutionLaw::Poisson, slide: Slide::Matched };
         let tilt = Tilt::new(node.state.theta, alpha, node.state.theta - alpha);
-        let strike = friction.strike(&rod, &node.state, &tilt, Some(&motion), rod.leverage(), actual_branch);
+        let strike =
+            friction.strike(&rod, &node.state, &tilt, TableMotion::Planned(&motion), rod.leverage(), actual_branch);
         (motion, strike, impulse.to_f64())
     }
 

@@ -159,6 +159,7 @@ fn thrown_body(scene: &Scene) -> GeneralBody {
         rod: scene.parameters(),
         steering: scene.steering,
         constant_tilt: 0.0,
+        turning: None,
         program: None,
         friction: scene.contact_friction(),
         noise: None,

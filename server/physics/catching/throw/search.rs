@@ -7,7 +7,7 @@
 use crate::bounce::friction::{Friction, Slide, actual_branch, tangential_velocity};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::table_motion::{PlannedTableMotion, TableMotion};
 use crate::bounce::tilt::Tilt;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
@@ -98,7 +98,8 @@ impl Search<'_> {
         let (rod, state) = (self.rod.lift::<Dual<2>>(), self.state.map(Dual::<2>::from_f64));
         let plan = guided(&rod, self.friction.slide, &state, Dual::along(alpha, 0, 1.0), Dual::along(approach, 1, 1.0));
         let tilt = Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha);
-        let strike = self.friction.strike(&rod, &state, &tilt, Some(&plan), rod.leverage(), actual_branch);
+        let strike =
+            self.friction.strike(&rod, &state, &tilt, TableMotion::Planned(&plan), rod.leverage(), actual_branch);
         (strike.after.y_dot, strike.after.theta_dot)
     }
 

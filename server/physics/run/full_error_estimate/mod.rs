@@ -1,4 +1,4 @@
-//! Error bound of runs with state feedback or noise: that of [`crate::run::error_estimate`] with more states.
+//! Error bound of runs with state feedback, noise or a turning table: that of [`crate::run::error_estimate`] with more states.
 //!
 //! The table then sees x too, a strike early or late has a height of its own, and a planned motion of the table is off by what the plan
 //! was made from. The errors of the table are drawn as doubles, so a run with 31 digits has the same, and they are not rounded.
@@ -215,7 +215,7 @@ impl FullErrorEstimate {
         ]);
         let turned = self.rounding * (self.rounded_tilt(coming, strike.alpha) + state.theta.abs());
         self.carry(&derivative, turned);
-        self.round_strike(&state, strike);
+        self.round_strike(&state, x, strike);
         self.is_first = false;
         let flight = Flight {
             start: strike.after,
@@ -266,18 +266,23 @@ impl FullErrorEstimate {
     }
 
     /// Adds what a strike rounds beside its tilt: the impulses along their own directions, the energy along the velocity, and each sum.
-    fn round_strike(&mut self, before: &State, strike: &Strike) {
+    fn round_strike(&mut self, before: &State, x: f64, strike: &Strike) {
         let rod = self.body.rod.map(|number| number.value);
         let (l, rho, rounding) = (rod.contact_distance, rod.radius_of_gyration, self.rounding);
         let tilt = Tilt::new(before.theta, strike.alpha, before.theta - strike.alpha);
         let (sin, cos, across, reach) = (tilt.sin_alpha, tilt.cos_alpha, l * tilt.sin_beta, l * tilt.cos_beta());
+        let [struck, dragged] = self
+            .body
+            .turning
+            .map_or([0.0; 2], |turning| turning.rounded_terms(&rod, &self.body.steering, x, before, &tilt));
         let leverage = 1.0 / (rho * rho);
         let (impulse, tangential) = (strike.impulse_normal, strike.impulse_tangential);
         let State { x_dot, y_dot, theta_dot, .. } = strike.after;
         let terms = (cos * before.y_dot).abs()
             + (sin * before.x_dot).abs()
             + (across * before.theta_dot).abs()
-            + self.plan.map_or(0.0, |plan| plan.normal_velocity.abs());
+            + self.plan.map_or(0.0, |plan| plan.normal_velocity.abs())
+            + struck;
         let gain = (impulse / strike.approach).abs();
         let along = rounding * (2.0 * gain * terms + 3.0 * impulse.abs());
         self.add_along(&[(X_DOT, -sin * along), (Y_DOT, cos * along), (THETA_DOT, across * leverage * along)]);
@@ -288,8 +293,9 @@ impl FullErrorEstimate {
                     + (sin * before.y_dot).abs()
                     + (reach * before.theta_dot).abs()
                     + tangential_velocity(&rod, before, &tilt).abs()
+                    + dragged
             } else {
-                0.0
+                dragged
             };
             let aside = rounding * (2.0 * terms + 3.0 * tangential.abs()) + along * (tangential / impulse).abs();
             self.add_along(&[(X_DOT, cos * aside), (Y_DOT, sin * aside), (THETA_DOT, reach * leverage * aside)]);

@@ -1,7 +1,7 @@
 //! A rig simulated from Newton's and Euler's equations, with the axis of its rod for the angle: the table's errors as they stand in the
 //! contract, not as they are reduced.
 
-use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::scene::{Name, Scene, Value};
 
 /// A rod on a table with constant errors, without friction.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +21,8 @@ pub(crate) struct Rig {
     offset: f64,
     gain_error: f64,
     speed_error: f64,
+    /// Place of the pivot and its depth, m, of a table whose turning its law does not know.
+    pivot: Option<[f64; 2]>,
     /// Place and height of the centre of gravity, angle of the axis, and their velocities.
     at: [f64; 6],
 }
@@ -47,6 +49,10 @@ impl Rig {
             offset: number(Name::TiltOffset),
             gain_error: number(Name::TiltGainError),
             speed_error: number(Name::SpeedError),
+            pivot: (scene.value(Name::TiltRate) == Some(Value::Choice("follows")))
+                .then(|| scene.number(Name::PivotX))
+                .flatten()
+                .map(|place| [place, number(Name::PivotDepth)]),
             at: [
                 number(Name::X),
                 number(Name::Height),
@@ -95,19 +101,33 @@ impl Rig {
         Some(low)
     }
 
-    /// Velocities after a strike.
-    fn strike(&mut self) {
-        let [x, _, angle, x_dot, y_dot, spin] = self.at;
+    /// Tilt of the table for a state.
+    fn tilt(&self, [x, _, angle, x_dot, _, spin]: [f64; 6]) -> f64 {
         let sensed = [x, angle + self.bias, x_dot, spin];
         let law: f64 = -self.gains.iter().zip(sensed).map(|(gain, value)| gain * value).sum::<f64>();
-        let alpha = (1.0 + self.gain_error) * law + self.offset;
+        (1.0 + self.gain_error) * law + self.offset
+    }
+
+    /// Velocities after a strike.
+    fn strike(&mut self) {
+        let [x, y, angle, x_dot, y_dot, spin] = self.at;
+        let alpha = self.tilt(self.at);
         let normal = [-alpha.sin(), alpha.cos()];
         let foot = self.foot(angle);
         let arm = foot[0] * normal[1] - foot[1] * normal[0];
         let speed = normal[0] * x_dot + normal[1] * y_dot + arm * spin;
         let energy = 0.5 * y_dot * y_dot - self.gravity * foot[1];
         let wanted = (1.0 - self.assumed) / (1.0 + self.assumed) + self.energy_gain * (self.target - energy);
-        let table = -(1.0 + self.speed_error) * wanted * speed;
+        let mut table = -(1.0 + self.speed_error) * wanted * speed;
+        if let Some([place, depth]) = self.pivot {
+            // The law is linear in time, so a wide difference is exact but for rounding.
+            let rate = (self.tilt(self.flown(0.1)) - self.tilt(self.flown(-0.1))) / 0.2;
+            let contact = [x + foot[0], y + foot[1]];
+            // The hinge is as high as puts the contact `depth` above it along the normal.
+            let hinge = contact[1] - (depth - (contact[0] - place) * normal[0]) / normal[1];
+            let from_hinge = [contact[0] - place, contact[1] - hinge];
+            table += rate * (from_hinge[0] * normal[1] - from_hinge[1] * normal[0]);
+        }
         let impulse = -(1.0 + self.restitution) * (speed - table) / (1.0 + arm * arm / (self.rho * self.rho));
         self.at[3] += impulse * normal[0];
         self.at[4] += impulse * normal[1];
