@@ -6,6 +6,8 @@ import { marked } from '../dom/typeset.js';
 import { lines } from '../api/ndjson.js';
 import { number } from '../dom/numbers.js';
 
+const SECOND_MS = 1000;
+
 export class LongRequest {
   /** The button that asks, and the one that stops. */
   buttons;
@@ -29,7 +31,7 @@ export class LongRequest {
    * @param {string} name what the ids of all of it begin with
    * @param {HTMLButtonElement} start the button that asks
    * @param {string} doing while it is under way
-   * @param {string} units what its work is counted in
+   * @param {string} units what its work is counted in; '' where the server does not tell how far it is: seconds are counted then
    */
   constructor(name, start, doing, units) {
     this.#doing = doing;
@@ -67,15 +69,9 @@ export class LongRequest {
    * @param {string} path with a query, and no format
    * @returns {Promise<{end: any, pictures: Record<string, string>} | null>}
    */
-  async ask(path) {
-    const under = new AbortController();
-    const { signal } = under;
-    this.#under?.abort();
-    this.#busy(under);
-    this.say(`${this.#doing}…`);
-    const begun_ms = performance.now();
-    let answer = null;
-    try {
+  ask(path) {
+    return this.during(async (signal) => {
+      let answer = null;
       const response = await fetch(`${path}&format=progress`, { signal });
       if (!response.ok || !response.body) throw await problemOf(response);
       for await (const line of lines(response.body)) {
@@ -84,16 +80,39 @@ export class LongRequest {
         else answer = line;
       }
       if (!answer) throw new TypeError('no end');
+      return answer;
+    });
+  }
+
+  /**
+   * The answer of a request that does not tell its progress; null where there is none, which is told. One question at a time.
+   * @template T
+   * @param {(signal: AbortSignal) => Promise<T>} request
+   * @param {(error: Problem) => string} [refused] a refusal by the server in words
+   * @returns {Promise<T | null>}
+   */
+  async during(request, refused = wordsOf) {
+    const under = new AbortController();
+    const { signal } = under;
+    this.#under?.abort();
+    this.#busy(under);
+    this.say(`${this.#doing}…`);
+    const begun_ms = performance.now();
+    const clock = this.#units ? 0 : setInterval(() => this.#tick(begun_ms), SECOND_MS);
+    try {
+      const answer = await request(signal);
+      if (signal.aborted) return null;
       this.#answered = true;
       this.took = (performance.now() - begun_ms) / 1000;
       return answer;
     } catch (error) {
       if (signal.aborted) return null;
-      const far = this.#count.textContent;
-      const brokeOff = far && !(error instanceof Problem);
-      this.#fail(brokeOff ? `The answer broke off at ${far}.` : wordsOf(error));
+      const far = this.#units && this.#count.textContent;
+      if (error instanceof Problem) this.#fail(refused(error));
+      else this.#fail(far ? `The answer broke off at ${far}.` : wordsOf(error));
       return null;
     } finally {
+      clearInterval(clock);
       if (this.#under === under) this.#busy(null);
     }
   }
@@ -108,6 +127,11 @@ export class LongRequest {
     this.#bar.max = of;
     this.#bar.value = done;
     this.#count.textContent = `${number(done, 7)} of ${number(of, 7)} ${this.#units}`;
+  }
+
+  /** @param {number} begun_ms */
+  #tick(begun_ms) {
+    this.#count.textContent = `${number(Math.floor((performance.now() - begun_ms) / SECOND_MS), 7)} s`;
   }
 
   /** @param {AbortController | null} under */

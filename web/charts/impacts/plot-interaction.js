@@ -26,7 +26,7 @@ import { styles } from '../../dom/styles.js';
 
 const BY_POINTER = 'Drag over a plot to select impacts; click in a plane to place a release there.';
 const MEASURED =
-  'Impacts that were measured, as CSV or TSV: they are drawn over the run, with the residual of each. The file stays in this browser. It may also be dropped anywhere on the page.';
+  'Impacts that were measured, as CSV or TSV: they are drawn over the run, with the residual of each. The file stays in this browser, unless you press Fit in the tab Fit. It may also be dropped anywhere on the page.';
 const BY_KEYS =
   'Left and right go from impact to impact, with Shift they select; Enter offers a release whose first impact is that one, a second Enter releases it; Escape drops it and clears the selection.';
 
@@ -51,7 +51,7 @@ export class PlotInteraction {
     accept: '.csv,.tsv,.txt,text/csv,text/tab-separated-values',
     hidden: true,
     change: () => {
-      void this.#take(this.#file.files?.[0]);
+      void this.take(this.#file.files?.[0]);
       this.#file.value = '';
     },
   });
@@ -62,7 +62,7 @@ export class PlotInteraction {
       id: 'measured-example',
       click: async () => {
         const { EXAMPLE } = await import('../../panels/measured/example.js');
-        void this.#take(new File([EXAMPLE], 'an example of case 1'));
+        void this.take(new File([EXAMPLE], 'an example of case 1'));
       },
     },
     'Show an example',
@@ -134,7 +134,7 @@ export class PlotInteraction {
       root.classList.remove('awaited');
       if (!over(event)) return;
       event.preventDefault();
-      void this.#take(event.dataTransfer?.files[0]);
+      void this.take(event.dataTransfer?.files[0]);
     });
   }
 
@@ -175,20 +175,23 @@ export class PlotInteraction {
     this.#measured?.struck();
   }
 
-  /** Reads measured impacts. @param {File | undefined} file */
-  async #take(file) {
+  /** Reads measured impacts. @param {File | undefined} file @param {string} [about] where it comes from */
+  async take(file, about) {
     if (!file) return;
+    let parts;
     try {
-      const [{ MeasuredPanel }] = await Promise.all([
+      parts = await Promise.all([
         import('../../panels/measured/panel.js'),
+        import('../../panels/measured/file.js'),
         this.#measured ?? styles('panels/measured/measured.css'),
       ]);
-      this.#measured ??= new MeasuredPanel(this.#page.measured.bar, this.#page);
     } catch {
       return notice('measured', ['What reads measured impacts did not load.'], { caution: true });
     }
+    const [{ MeasuredPanel }, { measured }] = parts;
+    this.#measured ??= new MeasuredPanel(this.#page.measured.bar, this.#page);
     this.#page.measured.show();
-    await this.#measured.take(file);
+    await measured.take(file, about);
   }
 
   draw() {

@@ -16,6 +16,7 @@ const NAMES = {
   x_dot: 'ẋ, velocity across',
   y_dot: 'ẏ, velocity upwards',
   theta_dot: 'θ̇, angular velocity',
+  x: 'x, place across',
 };
 /** Columns beyond these are no table of impacts. */
 const MOST = 40;
@@ -23,19 +24,21 @@ const MOST = 40;
 export class ColumnPicker {
   #body = h('tbody');
   #summary = h('summary');
-  #unused = h('p', { class: 'muted', id: 'measured-unused' });
-  element = h(
-    'details',
-    { class: 'measured-columns', id: 'measured-columns', hidden: true },
-    this.#summary,
-    table('Columns of the file', ['Column', 'is', 'in'], this.#body),
-    this.#unused,
-  );
+  #unused;
+  element;
   #picked;
 
-  /** @param {(picks: Picks) => void} picked the reader says what the columns are */
-  constructor(picked) {
+  /** @param {string} name the beginning of its ids @param {(picks: Picks) => void} picked the reader says what the columns are */
+  constructor(name, picked) {
     this.#picked = picked;
+    this.#unused = h('p', { class: 'muted', id: `${name}-unused` });
+    this.element = h(
+      'details',
+      { class: 'measured-columns', id: `${name}-columns`, hidden: true },
+      this.#summary,
+      table('Columns of the file', ['Column', 'is', 'in'], this.#body),
+      this.#unused,
+    );
   }
 
   /** @param {Head[]} heads @param {string} unused in words */

@@ -5,6 +5,15 @@
 
 export const COMPARED = /** @type {const} */ (['t', 'theta', 'x_dot', 'y_dot', 'theta_dot']);
 /** @typedef {(typeof COMPARED)[number]} Compared */
+/** Symbols and units. @type {Record<Compared | 'x', [string, string]>} */
+export const SYMBOLS = {
+  t: ['t', 's'],
+  theta: ['θ', 'rad'],
+  x_dot: ['ẋ', 'm/s'],
+  y_dot: ['ẏ', 'm/s'],
+  theta_dot: ['θ̇', 'rad/s'],
+  x: ['x', 'm'],
+};
 /** @typedef {Record<'n' | Compared, number>} Residual in SI units; NaN where one of the two is not there */
 /** @typedef {{quantity: Compared, count: number, rms: number, largest: number, at: number}} Sum the largest with its sign, at the impact of that number */
 

@@ -2,8 +2,8 @@
 
 import { row, table } from '../../dom/tables.js';
 import { ColumnPicker } from './columns.js';
-import { COMPARED, residuals, sums } from './compare.js';
-import { LIMIT_BYTES, Unreadable, read } from './read.js';
+import { COMPARED, SYMBOLS, residuals, sums } from './compare.js';
+import { measured } from './file.js';
 import { derivedOf } from '../../physics/body.js';
 import { drawResiduals } from './residual-chart.js';
 import { h } from '../../dom/elements.js';
@@ -19,16 +19,8 @@ import { svg } from '../../charts/svg.js';
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
 /** @typedef {{run: import('../../run/run.js').Run, plots: import('../../charts/impacts/impact-plot.js').ImpactPlot[], drawn: () => Scene}} MeasuredParts */
 
-/** @type {Record<Compared, [string, string]>} */
-const NAMES = {
-  t: ['t', 's'],
-  theta: ['θ', 'rad'],
-  x_dot: ['ẋ', 'm/s'],
-  y_dot: ['ẏ', 'm/s'],
-  theta_dot: ['θ̇', 'rad/s'],
-};
 /** Name and shown unit of a quantity. @param {Compared} quantity */
-const nameOf = (quantity) => NAMES[quantity].map(shownUnit).join(' / ');
+const nameOf = (quantity) => SYMBOLS[quantity].map(shownUnit).join(' / ');
 
 /** Residuals in the units that are shown. @param {Residual} one @returns {Residual} */
 const asShown = (one) => ({
@@ -54,9 +46,7 @@ export class MeasuredPanel {
   #chip = h('span', { class: 'chip measured-chip', id: 'measured-chip', hidden: true });
   #name = h('h3', { id: 'measured-title' }, 'Measured impacts');
   #told = h('p', { id: 'measured-told', role: 'status' });
-  /** The file as text, to read it again with other columns. */
-  #file = { name: '', text: '' };
-  #columns = new ColumnPicker((picks) => this.#take(picks));
+  #columns = new ColumnPicker('measured', (picks) => measured.pick(picks));
   #remarks = h('ul', { class: 'measured-remarks', id: 'measured-remarks' });
   #first = h('input', {
     type: 'text',
@@ -91,7 +81,7 @@ export class MeasuredPanel {
       'details',
       { toggle: () => this.#compare() },
       h('summary', {}, 'Numbers'),
-      table('Numbers: residuals', ['impact', ...COMPARED.map((quantity) => NAMES[quantity].join(' / '))], this.#rows),
+      table('Numbers: residuals', ['impact', ...COMPARED.map((quantity) => SYMBOLS[quantity].join(' / '))], this.#rows),
     );
     this.#sheet = h(
       'div',
@@ -106,12 +96,12 @@ export class MeasuredPanel {
         'div',
         { class: 'card-head' },
         this.#name,
-        h('button', { type: 'button', id: 'measured-remove', click: () => this.#remove() }, 'Remove'),
+        h('button', { type: 'button', id: 'measured-remove', click: () => measured.remove() }, 'Remove'),
       ),
       h(
         'p',
         { class: 'muted' },
-        'Measured less simulated at the same impact; t counts from the first that both have. The file stays in this browser.',
+        'Measured less simulated at the same impact; t counts from the first that both have. The file stays in this browser, unless you press Fit in the tab Fit.',
       ),
       this.#told,
       this.#remarks,
@@ -124,47 +114,32 @@ export class MeasuredPanel {
     bar.querySelector('#measured-load')?.before(this.#chip);
     new ResizeObserver(() => this.struck()).observe(this.#box);
     onThemeChange(() => this.struck());
+    measured.watch((fresh) => this.#take(fresh));
+    if (measured.name) this.#take(true);
   }
 
-  /** Shows what is in a file, or says why not. @param {File} file */
-  async take(file) {
+  /** Shows what is in the file, or says why not. @param {boolean} fresh another file, not the same with other columns */
+  #take(fresh) {
+    const { name, reading, refusal, heads } = measured;
+    if (!reading) {
+      this.#clear();
+      this.#remarks.replaceChildren();
+      this.#columns.show(heads, '');
+      this.#columns.element.open = heads.length > 0;
+      this.#told.textContent = `${name}: ${refusal}`;
+      this.#panel.hidden = refusal === '';
+      // The button that removed it is gone.
+      if (refusal === '' && !document.activeElement?.checkVisibility())
+        document.getElementById('measured-load')?.focus();
+      return;
+    }
     this.#panel.hidden = false;
-    const large = file.size > LIMIT_BYTES;
-    const text = large ? null : await file.text().catch(() => null);
-    if (text !== null) {
-      this.#file = { name: file.name, text };
-      return this.#take(new Map());
-    }
-    const size = `The file has ${number(file.size / 1e6, 3)} MB; at most ${LIMIT_BYTES / 1e6} MB are read.`;
-    this.#refuse(file.name, large ? size : 'The file could not be read.', []);
-  }
-
-  /** Nothing of a file can be shown. @param {string} name @param {string} why @param {import('./read.js').Head[]} heads */
-  #refuse(name, why, heads) {
-    this.#clear();
-    this.#remarks.replaceChildren();
-    this.#columns.show(heads, '');
-    this.#columns.element.open = heads.length > 0;
-    this.#told.textContent = `${name}: ${why}`;
-  }
-
-  /** Reads the file. @param {import('./read.js').Picks} picks what its columns are */
-  #take(picks) {
-    const { name, text } = this.#file;
-    /** @type {import('./read.js').Reading} */
-    let reading;
-    try {
-      reading = read(text, picks);
-    } catch (error) {
-      const known = error instanceof Unreadable;
-      return this.#refuse(name, known ? error.message : 'The file could not be read.', known ? error.heads : []);
-    }
     this.#name.textContent = `Measured impacts: ${name}`;
     const unused = reading.remarks.filter((words) => words.startsWith('Not used:'));
     this.#remarks.replaceChildren(
       ...reading.remarks.filter((words) => !unused.includes(words)).map((words) => h('li', {}, words)),
     );
-    this.#columns.show(reading.heads, unused.join(' '));
+    this.#columns.show(heads, unused.join(' '));
     this.#read = reading.impacts;
     this.#first.value = String(reading.impacts[0].n);
     this.#chip.replaceChildren(
@@ -177,7 +152,7 @@ export class MeasuredPanel {
     );
     this.#chip.hidden = this.#offset.hidden = false;
     this.#number();
-    if (picks.size === 0) this.#panel.scrollIntoView({ block: 'nearest' });
+    if (fresh) this.#panel.scrollIntoView({ block: 'nearest' });
   }
 
   #clear() {
@@ -186,12 +161,6 @@ export class MeasuredPanel {
     this.#laid = '';
     for (const plot of this.#page.plots) plot.lay([]);
     this.#chip.hidden = this.#offset.hidden = this.#sheet.hidden = true;
-  }
-
-  #remove() {
-    this.#clear();
-    this.#panel.hidden = true;
-    document.getElementById('measured-load')?.focus();
   }
 
   /** Numbers the measured impacts from the typed number of the first one. */
@@ -268,7 +237,7 @@ export class MeasuredPanel {
     );
     this.#box.setAttribute(
       'aria-label',
-      `Residuals of ${both} impacts. ${found.map(({ quantity, rms }) => `${NAMES[quantity][0]}: RMS ${number(rms)} ${shownUnit(NAMES[quantity][1])}`).join('; ')}`,
+      `Residuals of ${both} impacts. ${found.map(({ quantity, rms }) => `${SYMBOLS[quantity][0]}: RMS ${number(rms)} ${shownUnit(SYMBOLS[quantity][1])}`).join('; ')}`,
     );
     this.#sums.replaceChildren(
       ...found.map(({ quantity, rms, largest, at }) =>

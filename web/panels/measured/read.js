@@ -2,7 +2,7 @@
 
 import { parse } from '../../dom/numbers.js';
 
-export const QUANTITIES = /** @type {const} */ (['n', 't', 'theta', 'x_dot', 'y_dot', 'theta_dot']);
+export const QUANTITIES = /** @type {const} */ (['n', 't', 'theta', 'x_dot', 'y_dot', 'theta_dot', 'x']);
 /** @typedef {(typeof QUANTITIES)[number]} Quantity */
 /** @typedef {Record<Quantity, number>} Measured in SI units; what is not there is NaN */
 
@@ -11,6 +11,8 @@ export const QUANTITIES = /** @type {const} */ (['n', 't', 'theta', 'x_dot', 'y_
  * @property {Measured[]} impacts
  * @property {Quantity[]} columns that there are
  * @property {Head[]} heads all columns of the file
+ * @property {boolean} numbered the numbers of the impacts are those of the file
+ * @property {number[]} lines of the file, one for each impact
  * @property {string[]} remarks what was left out, in words
  */
 
@@ -51,21 +53,25 @@ const NAMES = {
   omega: 'theta_dot',
   angularvelocity: 'theta_dot',
   spin: 'theta_dot',
+  x: 'x',
+  place: 'x',
+  position: 'x',
 };
 
 const TURN = Math.PI / 180;
-/** Units by what they measure, with what makes SI of them. @type {Record<'1' | 's' | 'rad' | 'm/s' | 'rad/s', Record<string, number>>} */
+/** Units by what they measure, with what makes SI of them. @type {Record<'1' | 's' | 'rad' | 'm' | 'm/s' | 'rad/s', Record<string, number>>} */
 const UNITS = {
   1: { 1: 1 },
   s: { s: 1, sec: 1, ms: 1e-3, us: 1e-6, µs: 1e-6, μs: 1e-6 },
   rad: { rad: 1, mrad: 1e-3, deg: TURN, degree: TURN, degrees: TURN, '°': TURN },
+  m: { m: 1, cm: 1e-2, mm: 1e-3 },
   'm/s': { 'm/s': 1, 'cm/s': 1e-2, 'mm/s': 1e-3 },
   'rad/s': { 'rad/s': 1, 'mrad/s': 1e-3, 'deg/s': TURN, '°/s': TURN, rpm: Math.PI / 30 },
 };
 /** Units that a quantity may have. @param {Quantity} quantity */
 export const unitsOf = (quantity) => Object.keys(UNITS[MEASURE[quantity]]);
 /** @type {Record<Quantity, keyof typeof UNITS>} */
-const MEASURE = { n: '1', t: 's', theta: 'rad', x_dot: 'm/s', y_dot: 'm/s', theta_dot: 'rad/s' };
+const MEASURE = { n: '1', t: 's', theta: 'rad', x_dot: 'm/s', y_dot: 'm/s', theta_dot: 'rad/s', x: 'm' };
 
 /** @param {string} text short enough to print */
 const shown = (text) => (text.length > 30 ? `${text.slice(0, 30)}…` : text);
@@ -95,7 +101,7 @@ const plainUnit = (unit) =>
 function columnOf(head) {
   const told =
     /^(.+?)\s*(?:[([]([^)\]]*)[)\]]|\/(.+))$/.exec(head.trim()) ??
-    /^(.+?)_((?:k|c|m)?(?:s|rad|deg|m_per_s|rad_per_s|deg_per_s))$/.exec(head.trim());
+    /^(.+?)_((?:k|c|m)?(?:s|rad|deg|m|m_per_s|rad_per_s|deg_per_s))$/.exec(head.trim());
   const whole = NAMES[plain(head)];
   if (!told || whole) return { quantity: whole, unit: '' };
   return { quantity: NAMES[plain(told[1])], unit: plainUnit(told[2] ?? told[3]) };
@@ -155,6 +161,8 @@ export function read(text, picks = new Map()) {
   const impacts = [];
   /** @type {Head[]} */
   let heads = [];
+  /** @type {number[]} */
+  const lineNumbers = [];
   let bad = 0;
   for (const { line, cells } of records(lines, between)) {
     const comment = cells[0].startsWith('#');
@@ -165,7 +173,7 @@ export function read(text, picks = new Map()) {
       if (found.length > 0) columns = found;
       else if (!comment)
         throw unreadable(
-          `The first line names none of the columns n, t, theta, x_dot, y_dot and theta_dot. It is “${shown(cells.join(' '))}”.`,
+          `The first line names none of the columns n, t, theta, x_dot, y_dot, theta_dot and x. It is “${shown(cells.join(' '))}”.`,
           heads,
         );
       else remarks.length = 0;
@@ -173,7 +181,7 @@ export function read(text, picks = new Map()) {
     }
     if (comment) continue;
     /** @type {Measured} */
-    const impact = { n: NaN, t: NaN, theta: NaN, x_dot: NaN, y_dot: NaN, theta_dot: NaN };
+    const impact = { n: NaN, t: NaN, theta: NaN, x_dot: NaN, y_dot: NaN, theta_dot: NaN, x: NaN };
     let wrong = '';
     for (const { quantity, place, factor, head } of columns) {
       const cell = cells[place] ?? '';
@@ -190,8 +198,10 @@ export function read(text, picks = new Map()) {
       remarks.push(`Impacts from line ${line} on are left out: at most ${LIMIT_IMPACTS} are shown.`);
       break;
     }
-    if (!wrong) impacts.push(impact);
-    else {
+    if (!wrong) {
+      impacts.push(impact);
+      lineNumbers.push(line);
+    } else {
       bad += 1;
       if (bad <= REMARKS) remarks.push(`Line ${line} is left out: ${wrong}.`);
     }
@@ -208,7 +218,7 @@ export function read(text, picks = new Map()) {
       remarks.push('The impacts are numbered by their lines: the numbers in the file do not rise from line to line.');
     for (const [index, impact] of impacts.entries()) impact.n = index + 1;
   }
-  return { impacts, columns: columns.map(({ quantity }) => quantity), heads, remarks };
+  return { impacts, columns: columns.map(({ quantity }) => quantity), heads, numbered, lines: lineNumbers, remarks };
 }
 
 /** @param {string} words @param {Head[]} heads */

@@ -4,23 +4,30 @@ import { number } from '../../dom/numbers.js';
 import { roundRange, ticks } from '../../charts/axes.js';
 import { svg } from '../../charts/svg.js';
 
-/** @typedef {import('./compare.js').Residual} Residual */
-/** @typedef {import('./compare.js').Compared} Compared */
+/** Residuals of an impact by name; NaN where one is not there. @typedef {{n: number} & Record<string, number>} Row */
+/** Half the width of a band around 0 by name, and numbers of the impacts with a value that was left out. @typedef {{bands: Record<string, number>, outliers: Set<number>}} Expected */
 
 const MARGIN = { left: 58, right: 12, top: 18, bottom: 34 };
 /** A strip and the room over it for its name, px. */
 const STRIP = 62;
 const BETWEEN = 20;
+/** Half bands beyond which a value of an impact with an outlier is that outlier. */
+const FAR = 1.5;
 
 /**
  * @param {HTMLElement} box
- * @param {Residual[]} residuals
- * @param {[Compared, string][]} strips quantities that there are, with names
+ * @param {Row[]} residuals
+ * @param {[string, string][]} strips quantities that there are, with names
+ * @param {Expected} [expected]
+ * @returns {{x: (n: number) => number, top: number, bottom: number} | null} the scale along
  */
-export function drawResiduals(box, residuals, strips) {
+export function drawResiduals(box, residuals, strips, { bands, outliers } = { bands: {}, outliers: new Set() }) {
   const { width } = box.getBoundingClientRect();
   const height = MARGIN.top + strips.length * (STRIP + BETWEEN) - BETWEEN + MARGIN.bottom;
-  if (width < 120 || strips.length === 0) return box.replaceChildren();
+  if (width < 120 || strips.length === 0) {
+    box.replaceChildren();
+    return null;
+  }
   const [left, right] = [MARGIN.left, width - MARGIN.right];
   const first = residuals[0].n;
   const last = Math.max(first + 1, residuals[residuals.length - 1].n);
@@ -32,10 +39,15 @@ export function drawResiduals(box, residuals, strips) {
   const parts = [];
   for (const [index, [quantity, name]] of strips.entries()) {
     const top = MARGIN.top + index * (STRIP + BETWEEN);
-    const told = residuals.filter((one) => Number.isFinite(one[quantity]));
-    const most = Math.max(...told.map((one) => Math.abs(one[quantity])));
+    const known = residuals.filter((one) => Number.isFinite(one[quantity]));
+    const band = bands[quantity] ?? 0;
+    const isFar = (/** @type {Row} */ one) => outliers.has(one.n) && Math.abs(one[quantity]) > FAR * band;
+    const told = known.filter((one) => !isFar(one));
+    const most = Math.max(band, ...told.map((one) => Math.abs(one[quantity])));
     const range = roundRange({ low: -most, high: most }, { symmetric: true, span: most === 0 ? 2 : 0 });
     const y = (/** @type {number} */ value) => top + ((range.high - value) / (range.high - range.low)) * STRIP;
+    if (band > 0)
+      parts.push(svg('rect', { class: 'band', x: left, y: y(band), width: right - left, height: y(-band) - y(band) }));
     for (const n of along) parts.push(svg('path', { class: 'grid', d: `M${x(n).toFixed(1)} ${top}V${top + STRIP}` }));
     for (const value of ticks(range, 2)) {
       parts.push(
@@ -47,8 +59,13 @@ export function drawResiduals(box, residuals, strips) {
     parts.push(
       svg('rect', { class: 'edge', x: left, y: top, width: right - left, height: STRIP }),
       svg('text', { class: 'name', x: 2, y: top - 5 }, name),
-      svg('path', { class: 'way', d: `M${at.join('L')}` }),
+      svg('path', { class: 'way', d: at.length > 0 ? `M${at.join('L')}` : '' }),
       svg('path', { class: 'dots', d: at.map((place) => `M${place}h0`).join('') }),
+      // They would leave no room for the others, so that they stand at the edge.
+      ...known.filter(isFar).map((one) => {
+        const value = Math.max(range.low, Math.min(range.high, one[quantity]));
+        return svg('circle', { class: 'far', cx: x(one.n), cy: y(value), r: 4 });
+      }),
     );
   }
   for (const n of along)
@@ -57,4 +74,5 @@ export function drawResiduals(box, residuals, strips) {
   box.replaceChildren(
     svg('svg', { viewBox: `0 0 ${width} ${height}`, width, height, 'aria-hidden': 'true' }, ...parts),
   );
+  return { x, top: MARGIN.top, bottom: height - MARGIN.bottom };
 }
