@@ -331,6 +331,14 @@ export async function openPanel(page, id) {
   await body.scrollIntoViewIfNeeded();
 }
 
+/** Fits the scene to an example of measured impacts, where its part of the page is loaded. */
+export async function fitExample(page) {
+  await page.click('#fit-example');
+  await page.locator('#fit-data', { hasText: 'Computed' }).waitFor();
+  await page.click('#fit-start');
+  await page.locator('#fit-told', { hasText: 'Fitted in' }).waitFor();
+}
+
 /** Brings each panel of the studies to its full content, answers on request included. */
 const PANELS = {
   map: (page) => page.locator('#map-links a').first().waitFor(),
@@ -353,6 +361,7 @@ const PANELS = {
   paper: (page) => page.locator('#paper-body td').first().waitFor(),
   calls: (page) => page.locator('#calls-body code').first().waitFor(),
   gallery: (page) => page.locator('#gallery-body article').first().waitFor(),
+  fit: fitExample,
 };
 
 /**

@@ -9,9 +9,9 @@ import { FASTEST, SLOWEST } from '../run/speed.js';
 /** @typedef {import('contract').Preset} Case */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
-/** Parts of the address that belong to a panel. */
+/** Keys of panels. */
 const PANEL_KEYS =
-  /^(tab|chart|map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|gallery\.case|(map\.)?catch\.(strategy|ratio|strikes|brake|hold|height|theta|low|high)|calls\.language|design\.(contact|weights\.(x|theta|x_dot|theta_dot|input))|reading\.item|brush\.\w+\.(from|to)|pin\.[0-2]\.(preset|(scene|interventions)\.[\w.]+))$/;
+  /^(tab|chart|map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|gallery\.case|(map\.)?catch\.(strategy|ratio|strikes|brake|hold|height|theta|low|high)|calls\.language|design\.(contact|weights\.((x|theta)(_dot)?|input))|fit\.[\w.]+|reading\.item|brush\.\w+\.(from|to)|pin\.[0-2]\.(preset|(scene|interventions)\.[\w.]+))$/;
 
 /**
  * @typedef {object} Link

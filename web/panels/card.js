@@ -22,6 +22,7 @@ export { styles };
  * @property {(scene: Scene) => void} play shows another scene and runs it
  * @property {() => void} changed the panel’s part of the address is another one
  * @property {(id: string, link: URLSearchParams) => void} [open] another panel, with this as its part of the address
+ * @property {(file: File, about: string) => void} [take] measured impacts, for all panels that show them
  * @property {Guide} [guide]
  */
 

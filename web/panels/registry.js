@@ -14,6 +14,7 @@ export const TABS = [
   { id: 'catch', name: 'Catch' },
   { id: 'accuracy', name: 'Speed and accuracy' },
   { id: 'measured', name: 'Measured' },
+  { id: 'fit', name: 'Fit' },
   { id: 'paper', name: 'Paper' },
   { id: 'limits', name: 'Where methods fail' },
   { id: 'api', name: 'API' },
@@ -74,6 +75,14 @@ export const PANELS = [
     about: 'What this scene costs by each method, and how far it ends from the truth.',
     shared: FIGURE_STYLES,
     load: () => import('./precision/panel.js'),
+  },
+  {
+    id: 'fit',
+    tab: 'fit',
+    title: 'Fit this scene to measured impacts',
+    about: 'Which values your rig has, how well the data tell them, and which margins follow.',
+    shared: [...FIGURE_STYLES, 'panels/measured/measured.css'],
+    load: () => import('./fit/panel.js'),
   },
   {
     id: 'paper',

@@ -76,6 +76,7 @@ export async function bringLateParts(page) {
         play(page, scene);
       },
       open: (id, link) => page.panels?.open(id, link),
+      take: (file, about) => page.interaction?.take(file, about),
       guide: guideOf(page),
     },
     (id, dropped) => {
@@ -91,7 +92,11 @@ export async function bringLateParts(page) {
     typed: () => page.complete && { ...page.complete, derived: view.drawn.derived },
     drawn: () => view.drawn,
     query: () => typedQuery(page),
-    measured: { bar: byId('measured-bar'), show: () => page.panels?.show('measured') },
+    measured: {
+      bar: byId('measured-bar'),
+      // The tab Fit shows them too.
+      show: () => page.panels?.query().get('tab') === 'fit' || page.panels?.show('measured'),
+    },
     follow: () => page.follow(false),
   });
   panels.join('brush', page.interaction);

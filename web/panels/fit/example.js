@@ -1,0 +1,77 @@
+// An example of measured impacts: a run of the page's scene with other values of the unknown fields, as a camera would see it.
+
+import { get } from '../../api/client.js';
+import { number, quantity } from '../../dom/numbers.js';
+
+/** @typedef {import('../../api/scene-fields.js').Field} Field */
+
+/** Impacts of the run; the camera begins at the third. */
+const [IMPACTS, BEFORE] = [63, 2];
+/** Fewer show nothing. */
+const LEAST = 12;
+/** Noise of the camera, in s and rad. */
+const SD = { t: 1e-3, theta: 2e-3 };
+/** Share by which the unknown fields differ from those of the page. */
+const HIDDEN = 0.02;
+/** An impact that the camera misses, and one whose angle is read wrongly, by so many rad. */
+const [MISSED, WRONG, OFF] = [20, 37, 0.1];
+/** Time on the clock of the camera at the release, s. */
+const CLOCK = 2.4;
+
+/** Normal deviates, the same each time: by mulberry32, and by Box and Muller. @param {number} seed */
+function* normal(seed) {
+  let state = seed;
+  const uniform = () => {
+    state = (state + 0x6d2b79f5) | 0;
+    let mixed = Math.imul(state ^ (state >>> 15), 1 | state);
+    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), 61 | mixed);
+    return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
+  };
+  for (;;) yield Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math.PI * uniform());
+}
+
+/**
+ * A table of impacts, and words on what is hidden in it; null where the run of the scene ends too soon.
+ * @param {URLSearchParams} scene
+ * @param {{field: Field, value: number | null}[]} unknown
+ * @param {AbortSignal} signal
+ * @returns {Promise<{file: File, about: string} | null>}
+ */
+export async function exampleOf(scene, unknown, signal) {
+  const hidden = unknown.flatMap(({ field, value }) => {
+    const other = value && Number((value * (1 + HIDDEN)).toPrecision(4));
+    const isWithin = other && other <= (field.maximum ?? Infinity) && other >= (field.minimum ?? -Infinity);
+    return isWithin ? [{ field, value: other }] : [];
+  });
+  // Values beside those of the page may fall where it does not.
+  for (const values of [hidden, []]) {
+    const query = new URLSearchParams(scene);
+    for (const { field, value } of values) query.set(`scene.${field.path}`, String(value));
+    const { impacts } = await get(`v1/trajectories?${query}&impacts=${IMPACTS}`, signal);
+    if (impacts.t.length >= (values.length > 0 ? IMPACTS : LEAST))
+      return { file: tableOf(impacts), about: words(values, impacts.t.length) };
+  }
+  return null;
+}
+
+/** @param {Record<'t' | 'theta', number[]>} impacts */
+function tableOf({ t, theta }) {
+  const noise = normal(18);
+  const next = () => /** @type {number} */ (noise.next().value);
+  const rows = t.map((time, index) =>
+    [time + CLOCK + SD.t * next(), theta[index] + SD.theta * next() + (index === WRONG ? OFF : 0)]
+      .map((value) => value.toFixed(5))
+      .join(','),
+  );
+  const seen = rows.filter((_, index) => index >= BEFORE && index !== MISSED);
+  return new File([`t (s),theta (rad)\n${seen.join('\n')}\n`], 'Example');
+}
+
+/** @param {{field: Field, value: number}[]} values @param {number} impacts */
+function words(values, impacts) {
+  const told = values.map(({ field, value }) => `${field.title.toLowerCase()} ${quantity(value, field.unit, 5)}`);
+  const rig =
+    told.length > 0 ? `the run of a rig with ${told.join(' and ')}, else as this scene` : 'the run of this scene';
+  const faults = impacts > WRONG ? ' One impact is missed, one angle wrong.' : '';
+  return `Computed: ${rig}, with noise of ${number(SD.t * 1e3)} ms and ${quantity(SD.theta, 'rad')}.${faults}`;
+}
