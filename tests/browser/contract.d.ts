@@ -115,6 +115,8 @@ export interface components {
         /** @default false */
         "stability.basin": boolean;
         /** @default false */
+        "stability.budget": boolean;
+        /** @default false */
         "stability.dial": boolean;
         "stability.tolerances.contact_distance": number;
         "stability.tolerances.radius_of_gyration": number;
@@ -834,6 +836,7 @@ export interface components {
             scene?: components["schemas"]["ScenePatch"] | null;
             impacts?: components["schemas"]["stability.impacts"] | null;
             basin?: components["schemas"]["stability.basin"] | null;
+            budget?: components["schemas"]["stability.budget"] | null;
             dial?: components["schemas"]["stability.dial"] | null;
             tolerances?: components["schemas"]["Tolerances"] | null;
         };
@@ -1389,6 +1392,40 @@ export interface components {
             radius_of_gyration: number;
             restitution: number;
         };
+        Budget: {
+            /** @enum {unknown} */
+            verdict: "stable in place" | "stable, drifting" | "elliptic" | "weakly attracting" | "weakly unstable" | "bounded beyond the boundary" | null;
+            impacts: number;
+            errors: null | {
+                path: string;
+                unit: string;
+                value: number;
+                below: components["schemas"]["BudgetLimit"] | null;
+                above: components["schemas"]["BudgetLimit"] | null;
+                reason: string | null;
+            }[];
+            together: components["schemas"]["CommonBudget"] | null;
+            present: components["schemas"]["CommonBudget"] | null;
+            reason: string;
+        };
+        CommonBudget: {
+            sizes: {
+                path: string;
+                unit: string;
+                value: number;
+            }[];
+            factor: components["schemas"]["BudgetLimit"];
+        };
+        BudgetLimit: {
+            value: number;
+            accuracy: number;
+            spacing: number;
+            /** @enum {string} */
+            decided_by: "linear" | "nonlinear" | "boundary" | "lyapunov" | "fixed_point" | "refused" | "range";
+            outcome: components["schemas"]["OutcomeKind"] | null;
+            linear: number | null;
+            detail: string;
+        };
         Span: {
             least: number;
             most: number;
@@ -1737,6 +1774,7 @@ export interface components {
             scene: components["schemas"]["Scene"];
             derived: components["schemas"]["Derived"];
             margins?: components["schemas"]["Margins"];
+            budget?: components["schemas"]["Budget"];
             dial?: string;
             model: components["schemas"]["Model"];
             verdict: null | ("stable in place" | "stable, drifting" | "unstable") | string;
@@ -2291,6 +2329,7 @@ export type PrecisionImpacts = components['schemas']['precision.impacts'];
 export type PrecisionAxis = components['schemas']['precision.axis'];
 export type StabilityImpacts = components['schemas']['stability.impacts'];
 export type StabilityBasin = components['schemas']['stability.basin'];
+export type StabilityBudget = components['schemas']['stability.budget'];
 export type StabilityDial = components['schemas']['stability.dial'];
 export type StabilityTolerancesContactDistance = components['schemas']['stability.tolerances.contact_distance'];
 export type StabilityTolerancesRadiusOfGyration = components['schemas']['stability.tolerances.radius_of_gyration'];
@@ -2402,6 +2441,9 @@ export type PeriodicOrbitsLine = components['schemas']['PeriodicOrbitsLine'];
 export type Jacobian = components['schemas']['Jacobian'];
 export type Margins = components['schemas']['Margins'];
 export type MarginsBody = components['schemas']['MarginsBody'];
+export type Budget = components['schemas']['Budget'];
+export type CommonBudget = components['schemas']['CommonBudget'];
+export type BudgetLimit = components['schemas']['BudgetLimit'];
 export type Span = components['schemas']['Span'];
 export type StateGain = components['schemas']['StateGain'];
 export type JudgedLaw = components['schemas']['JudgedLaw'];

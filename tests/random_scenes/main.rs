@@ -197,9 +197,10 @@ fn verdicts_on_random_scenes() {
     let off = (0.0..0.01, 0.0..0.01, 0.0..0.1).prop_map(|(contact_distance, radius_of_gyration, restitution)| {
         json!({"contact_distance": contact_distance, "radius_of_gyration": radius_of_gyration, "restitution": restitution})
     });
-    let parameters =
-        (1..200_u64, maybe(any::<bool>()), prop::option::weighted(0.2, off)).prop_map(|(impacts, basin, off)| {
-            object(vec![("impacts", Some(json!(impacts))), ("basin", basin), ("tolerances", off)])
+    let parameters = (1..200_u64, maybe(any::<bool>()), prop::bool::weighted(0.2), prop::option::weighted(0.2, off))
+        .prop_map(|(impacts, basin, budget, off)| {
+            let budget = budget.then_some(json!(true));
+            object(vec![("impacts", Some(json!(impacts))), ("basin", basin), ("budget", budget), ("tolerances", off)])
         });
     hold(&resource("/v1/stability", |_| 1), parameters, 30);
 }

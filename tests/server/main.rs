@@ -9,6 +9,7 @@ mod support;
 mod access;
 mod availability;
 mod batches;
+mod budget;
 mod caching;
 mod cases;
 mod catch_failures;

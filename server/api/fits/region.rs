@@ -94,6 +94,7 @@ impl RegionAnswer {
             scene: fit.scene,
             impacts: DEFAULT_IMPACTS,
             basin: false,
+            budget: false,
             dial: false,
             tolerances: None,
         };

@@ -23,6 +23,7 @@ use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::stability::budget::BudgetAnswer;
 use crate::api::stability::cycle::cycle_sentence;
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
 use crate::api::stability::margins::MarginsAnswer;
@@ -101,6 +102,8 @@ pub struct StabilityAnswer<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     margins: Option<MarginsAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    budget: Option<BudgetAnswer>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     dial: Option<String>,
     notes: Vec<String>,
     #[serde(skip)]
@@ -110,17 +113,13 @@ pub struct StabilityAnswer<'a> {
 /// The verdict in words, with the length of the run that it rests on.
 fn words(verdict: Verdict, run: &NonlinearRun) -> String {
     let NonlinearRun { impacts, ending, .. } = run;
-    let survived = format!("{impacts} bounces survived");
+    let name = verdict.name();
     match (verdict, *ending == Ending::Completed) {
-        (Verdict::StableInPlace, _) => "stable in place".to_owned(),
-        (Verdict::StableDrifting, _) => "stable, drifting".to_owned(),
-        (Verdict::Elliptic, _) => format!("elliptic, {survived}"),
-        (Verdict::WeaklyAttracting, true) => format!("weakly attracting, {survived}"),
-        (Verdict::WeaklyAttracting, false) => format!("weakly attracting, but this run ended at bounce {impacts}"),
-        (Verdict::WeaklyUnstable, true) => format!("weakly unstable, {survived}"),
-        (Verdict::WeaklyUnstable, false) => format!("weakly unstable, this run ended at bounce {impacts}"),
-        (Verdict::BoundedBeyondBoundary, _) => format!("bounded beyond the boundary, {survived}"),
-        (Verdict::Unstable, _) => "unstable".to_owned(),
+        (Verdict::StableInPlace | Verdict::StableDrifting | Verdict::Unstable, _) => name.to_owned(),
+        (Verdict::WeaklyAttracting, false) => format!("{name}, but this run ended at bounce {impacts}"),
+        (Verdict::WeaklyUnstable, false) => format!("{name}, this run ended at bounce {impacts}"),
+        (Verdict::WeaklyAttracting | Verdict::WeaklyUnstable, true)
+        | (Verdict::Elliptic | Verdict::BoundedBeyondBoundary, _) => format!("{name}, {impacts} bounces survived"),
     }
 }
 
@@ -166,9 +165,9 @@ impl LinearPart {
 }
 
 impl<'a> StabilityAnswer<'a> {
-    /// Judges a scene by its linear verdict and a run, and looks for its basin on request. None if `go_on` returned false.
+    /// Judges a scene by its linear verdict and a run, and looks for its basin and its budget on request. None if `go_on` returned false.
     pub fn compute(request: &'a StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
-        let StabilityRequest { ref scene, impacts, basin, dial, tolerances } = *request;
+        let StabilityRequest { ref scene, impacts, basin, budget, dial, tolerances } = *request;
         let watched = run_watched(scene, impacts, &mut go_on)?;
         let run = watched.summary;
         let mut notes = Vec::new();
@@ -209,6 +208,7 @@ impl<'a> StabilityAnswer<'a> {
             margins: tolerances.map(|tolerances| {
                 MarginsAnswer::compute(judged, &tolerances, judged.number(Name::TiltGain).unwrap_or_default())
             }),
+            budget: None,
             dial: None,
             notes: Vec::new(),
             bounces: run.impacts,
@@ -324,6 +324,11 @@ impl<'a> StabilityAnswer<'a> {
                 Err(NoBasin::Because(why)) => notes.push(format!("basin is null: {why}")),
             }
         }
+        if budget {
+            let found = BudgetAnswer::compute(scene, impacts, &mut go_on)?;
+            answer.bounces += found.bounces;
+            answer.budget = Some(found);
+        }
         answer.notes = notes;
         answer.dial = dial.then(|| answer.draw_dial()).flatten();
         Some(answer)
@@ -334,7 +339,7 @@ impl<'a> StabilityAnswer<'a> {
         (self.verdict, self.decided_by, self.reason)
     }
 
-    /// Number of bounces computed: those of the run, of the watch over it and of the basin.
+    /// Number of bounces computed: those of the run, of the watch over it, of the basin and of the budget.
     pub fn bounces(&self) -> u64 {
         self.bounces
     }

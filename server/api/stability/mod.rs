@@ -1,6 +1,7 @@
 //! `/v1/stability`: the verdict on a scene.
 
 pub mod answer;
+pub mod budget;
 pub mod cycle;
 pub mod evidence;
 pub mod margins;

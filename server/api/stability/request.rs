@@ -8,6 +8,7 @@ use equipoise_physics::stability::regularity::WATCHED;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{bounce_price, read_scene};
 use crate::api::shared::write;
+use crate::api::stability::budget::budget_price;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits;
@@ -22,6 +23,8 @@ pub struct StabilityRequest {
     pub impacts: u64,
     /// True if the basin is asked for.
     pub basin: bool,
+    /// True if the budget of the errors is asked for.
+    pub budget: bool,
     /// True if the dial is asked for.
     pub dial: bool,
     /// Tolerances of the body, if the margins are asked for.
@@ -42,9 +45,10 @@ impl ResourceRequest for StabilityRequest {
         let scene = read_scene(reader);
         let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(DEFAULT_IMPACTS);
         let basin = reader.boolean("basin").unwrap_or(false);
+        let budget = reader.boolean("budget").unwrap_or(false);
         let dial = reader.boolean("dial").unwrap_or(false);
         let tolerances = read_tolerances(reader);
-        Some(Self { scene: scene?, impacts, basin, dial, tolerances })
+        Some(Self { scene: scene?, impacts, basin, budget, dial, tolerances })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -55,15 +59,15 @@ impl ResourceRequest for StabilityRequest {
 impl CanonicalRequest for StabilityRequest {
     fn canonical(&self) -> Vec<u8> {
         let off = self.tolerances.map(|off| (off.contact_distance, off.radius_of_gyration, off.restitution));
-        write::canonical(&self.scene, &(self.impacts, self.basin, self.dial, off))
+        write::canonical(&self.scene, &(self.impacts, self.basin, self.budget, self.dial, off))
     }
 }
 
 impl StabilityRequest {
-    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, and the basin, whose runs
-    /// cost a quarter in lanes, and those of a polygon twice, once for each side.
+    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the budget, and the basin, whose
+    /// runs cost a quarter in lanes, and those of a polygon twice, once for each side.
     fn work(&self) -> u64 {
-        let Self { ref scene, impacts, basin, tolerances, .. } = *self;
+        let Self { ref scene, impacts, basin, budget, tolerances, dial: _ } = *self;
         let basin_run = if basin::runs_in_lanes(&scene.with_tilt_law()) {
             impacts / 4
         } else {
@@ -71,7 +75,8 @@ impl StabilityRequest {
         };
         let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + basin_run) } else { 0 };
         let run = impacts * bounce_price(scene) + 4 * impacts.min(WATCHED);
-        limits::ANSWER_PRICE + run + basin + if tolerances.is_some() { MARGINS_PRICE } else { 0 }
+        let budget = if budget { budget_price(scene, impacts) } else { 0 };
+        limits::ANSWER_PRICE + run + basin + budget + if tolerances.is_some() { MARGINS_PRICE } else { 0 }
     }
 }
 

@@ -34,6 +34,21 @@ pub enum Verdict {
     Unstable,
 }
 
+impl Verdict {
+    /// Name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StableInPlace => "stable in place",
+            Self::StableDrifting => "stable, drifting",
+            Self::Elliptic => "elliptic",
+            Self::WeaklyAttracting => "weakly attracting",
+            Self::WeaklyUnstable => "weakly unstable",
+            Self::BoundedBeyondBoundary => "bounded beyond the boundary",
+            Self::Unstable => "unstable",
+        }
+    }
+}
+
 /// Evidence that decided a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DecidedBy {

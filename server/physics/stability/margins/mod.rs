@@ -1,7 +1,11 @@
 //! Distance of a scene from the edge of stability when its body deviates from the given one: the linear verdict over a box
 //! of contact distances, radii of gyration and restitutions.
 //!
-//! The table keeps its gains and its assumed restitution.
+//! The table keeps its gains and its assumed restitution. The errors of the rig have a budget of their own ([`budget`]).
+
+pub mod budget;
+pub mod judgement;
+pub mod limit_search;
 
 use crate::scene::{Name, Scene, Value};
 use crate::stability::fixed_point::find_fixed_point;

@@ -1,0 +1,131 @@
+//! The budget of the errors of a rig, as part of the answer.
+
+use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::stability::margins::budget::{
+    self, CommonBudget, ErrorBudget, find_budget, most_runs, with_every_error,
+};
+use equipoise_physics::stability::margins::judgement::NoBudget;
+use equipoise_physics::stability::margins::limit_search;
+use equipoise_physics::stability::verdict::Verdict;
+use serde::Serialize;
+
+use crate::api::scene::bounce_price;
+
+/// Price of a run of the budget without its bounces, in bounces: the scene, its linear verdict and normal forms, and the share of searches
+/// of linear limits.
+const RUN_PRICE: u64 = 400;
+
+/// Highest price of a budget, in bounces.
+pub(super) fn budget_price(scene: &Scene, impacts: u64) -> u64 {
+    most_runs() * (RUN_PRICE + impacts * bounce_price(&with_every_error(scene)))
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct LimitAnswer {
+    value: f64,
+    accuracy: f64,
+    spacing: f64,
+    decided_by: &'static str,
+    outcome: Option<&'static str>,
+    linear: Option<f64>,
+    detail: String,
+}
+
+impl From<limit_search::Limit> for LimitAnswer {
+    fn from(limit: limit_search::Limit) -> Self {
+        let limit_search::Limit { value, accuracy, spacing, by, ending, detail, linear } = limit;
+        Self { value, accuracy, spacing, decided_by: by.name(), outcome: ending, linear, detail }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct ErrorAnswer {
+    path: &'static str,
+    unit: &'static str,
+    value: f64,
+    below: Option<LimitAnswer>,
+    above: Option<LimitAnswer>,
+    reason: Option<String>,
+}
+
+impl From<ErrorBudget> for ErrorAnswer {
+    fn from(ErrorBudget { name, value, below, above, reason }: ErrorBudget) -> Self {
+        let row = name.row();
+        Self {
+            path: row.path,
+            unit: row.unit,
+            value,
+            below: below.map(Into::into),
+            above: above.map(Into::into),
+            reason,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct SizeAnswer {
+    path: &'static str,
+    unit: &'static str,
+    value: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct CommonAnswer {
+    sizes: Vec<SizeAnswer>,
+    factor: LimitAnswer,
+}
+
+impl From<CommonBudget> for CommonAnswer {
+    fn from(CommonBudget { sizes, factor }: CommonBudget) -> Self {
+        let size = |(name, value): (Name, f64)| SizeAnswer { path: name.row().path, unit: name.row().unit, value };
+        Self { sizes: sizes.into_iter().map(size).collect(), factor: factor.into() }
+    }
+}
+
+/// The budget of a scene.
+#[derive(Debug, Clone, Serialize)]
+pub struct BudgetAnswer {
+    verdict: Option<&'static str>,
+    impacts: u64,
+    errors: Option<Vec<ErrorAnswer>>,
+    together: Option<CommonAnswer>,
+    present: Option<CommonAnswer>,
+    reason: String,
+    #[serde(skip)]
+    pub(super) bounces: u64,
+}
+
+impl BudgetAnswer {
+    /// The budget of a scene by runs of so many contacts. None if `go_on` returned false.
+    pub(super) fn compute(scene: &Scene, impacts: u64, go_on: &mut impl FnMut() -> bool) -> Option<Self> {
+        match find_budget(scene, impacts, go_on) {
+            Err(NoBudget::Stopped) => None,
+            Err(NoBudget::Because(reason)) => {
+                Some(Self { verdict: None, impacts, errors: None, together: None, present: None, reason, bounces: 0 })
+            }
+            Ok(budget::Budget { verdict, errors, together, present, bounces }) => {
+                let survives = format!("its run survives {impacts} contacts");
+                let kept = match verdict.map(Verdict::name) {
+                    Some(verdict) => format!(
+                        "a value is kept if the scene with it has a verdict no worse than `{verdict}` and {survives}"
+                    ),
+                    None => format!("the rig without errors has no linear verdict: a value is kept if {survives}"),
+                };
+                let ends = if scene.rules().half_length.is_finite() {
+                    ""
+                } else {
+                    "; the table has no ends here (table.length), so a drift aside ends no run by itself"
+                };
+                Some(Self {
+                    verdict: verdict.map(Verdict::name),
+                    impacts,
+                    errors: Some(errors.into_iter().map(Into::into).collect()),
+                    together: together.map(Into::into),
+                    present: present.map(Into::into),
+                    reason: format!("{kept}{ends}"),
+                    bounces,
+                })
+            }
+        }
+    }
+}

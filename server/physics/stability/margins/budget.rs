@@ -1,0 +1,213 @@
+//! Budget of the errors of a rig: for each the largest value that keeps the verdict of the rig without errors, alone and together.
+//!
+//! A value keeps the verdict if the scene with it has a verdict no worse, and its run survives. Where an error leaves no linear verdict (a
+//! constant tilt without feedback of x, noise, a speed that no energy feedback corrects), the run alone decides.
+
+use super::judgement::{Judge, Judgement, LimitedBy, NoBudget};
+use super::limit_search::{Limit, MOST_TRIED, search};
+use crate::scene::{FIELDS, Field, FieldKind, Name, Scene, Value};
+use crate::stability::verdict::Verdict;
+
+/// Errors besides all of `table.errors` and all standard deviations of `noise`. An error that is declared elsewhere has a line here.
+const OTHER_ERRORS: [Name; 1] = [Name::Offset];
+
+/// Share of its range of the value by which an error asks for a model, where its price is looked up.
+const TINY: f64 = 1e-6;
+
+/// Rounds over the signs of all errors together, and most signs that are turned.
+const SIGN_ROUNDS: usize = 2;
+const MOST_TURNED: u64 = 8;
+
+/// The errors that a budget is for, in the order of the fields.
+pub fn budgeted() -> impl Iterator<Item = &'static Field> {
+    FIELDS.iter().filter(|row| {
+        let is_listed =
+            row.group() == "noise" || row.path.starts_with("table.errors.") || OTHER_ERRORS.contains(&row.name);
+        is_listed && matches!(row.kind, FieldKind::Number { .. })
+    })
+}
+
+/// Range of an error.
+fn range(row: &Field) -> (f64, f64) {
+    match row.kind {
+        FieldKind::Number { minimum, maximum } => (minimum, maximum),
+        FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag | FieldKind::Numbers { .. } => (0.0, 0.0),
+    }
+}
+
+/// Most runs of one budget.
+pub fn most_runs() -> u64 {
+    let errors = budgeted().count() as u64;
+    let sides = 2 * errors;
+    (sides + 2 + MOST_TURNED) * MOST_TRIED + SIGN_ROUNDS as u64 * errors + 1
+}
+
+/// The budget of one error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ErrorBudget {
+    /// The error.
+    pub name: Name,
+    /// Value in the scene.
+    pub value: f64,
+    /// Limit below 0, as a positive distance from it; `None` if the error has no negative values.
+    pub below: Option<Limit>,
+    /// Limit above 0; `None` if the scene cannot have this error.
+    pub above: Option<Limit>,
+    /// Reason for which a limit that the range allows is missing.
+    pub reason: Option<String>,
+}
+
+impl ErrorBudget {
+    /// The nearer limit, with its sign.
+    fn nearest(&self) -> Option<f64> {
+        let below = self.below.as_ref().map(|limit| -limit.value);
+        let above = self.above.as_ref().map(|limit| limit.value);
+        match (below, above) {
+            (Some(below), Some(above)) if -below < above => Some(below),
+            (below, above) => above.or(below),
+        }
+    }
+}
+
+/// The budget of errors in proportion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CommonBudget {
+    /// Value of each error at the factor 1, in its unit.
+    pub sizes: Vec<(Name, f64)>,
+    /// Limit of the factor.
+    pub factor: Limit,
+}
+
+/// The budget of a rig.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Budget {
+    /// Verdict that is kept, of the rig without errors; `None` where the run alone decides.
+    pub verdict: Option<Verdict>,
+    /// Each error alone.
+    pub errors: Vec<ErrorBudget>,
+    /// All errors at once, each at the same share of the nearer of its limits, with the signs that were found to be worst.
+    pub together: Option<CommonBudget>,
+    /// The errors of the scene, all in proportion.
+    pub present: Option<CommonBudget>,
+    /// Contacts of all runs that were made for it.
+    pub bounces: u64,
+}
+
+/// The scene without errors but those of a direction, at a distance.
+fn with_errors(scene: &Scene, direction: &[(Name, f64)], distance: f64) -> Result<Scene, String> {
+    let mut draft = scene.draft();
+    for row in budgeted() {
+        let size = direction.iter().find(|(name, _)| *name == row.name).map_or(0.0, |(_, size)| *size);
+        let value = (size != 0.0).then_some(Value::Number(size * distance));
+        draft.set(row.name, value).map_err(|error| error.detail)?;
+    }
+    draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))
+}
+
+/// The scene with every error that it can have, each too small to matter: the dearest one of a budget.
+pub fn with_every_error(scene: &Scene) -> Scene {
+    budgeted().fold(*scene, |kept, row| {
+        let mut draft = kept.draft();
+        match draft.set(row.name, Some(Value::Number(TINY * range(row).1))) {
+            Ok(()) => draft.build().unwrap_or(kept),
+            Err(_) => kept,
+        }
+    })
+}
+
+/// The budget of a scene, by runs of up to `impacts` contacts. `go_on` is asked every few hundred bounces.
+///
+/// # Errors
+/// [`NoBudget`].
+pub fn find_budget(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<Budget, NoBudget> {
+    let ideal = with_errors(scene, &[], 0.0).map_err(NoBudget::Because)?;
+    let mut judge = Judge::of(&ideal, impacts, &mut go_on)?;
+    let mut errors = Vec::new();
+    for row in budgeted() {
+        errors.push(alone(scene, row, &mut judge)?);
+    }
+    let together = together(scene, &errors, &mut judge)?;
+    let present = present(scene, &mut judge)?;
+    Ok(Budget { verdict: judge.verdict(), errors, together, present, bounces: judge.bounces })
+}
+
+/// The limits of one error, all others being 0.
+fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudget, NoBudget> {
+    let mut reason = None;
+    let mut side = |end: f64| {
+        if end == 0.0 {
+            return Ok(None);
+        }
+        match with_errors(scene, &[(row.name, end.signum())], TINY * end.abs()) {
+            Err(why) => {
+                reason = Some(why);
+                Ok(None)
+            }
+            Ok(_) => along(scene, &[(row.name, end.signum())], end.abs(), judge).map(Some),
+        }
+    };
+    let (minimum, maximum) = range(row);
+    let (below, above) = (side(minimum)?, side(maximum)?);
+    Ok(ErrorBudget { name: row.name, value: scene.number(row.name).unwrap_or(0.0), below, above, reason })
+}
+
+/// The limit of the distance in a direction, up to `end`.
+fn along(scene: &Scene, direction: &[(Name, f64)], end: f64, judge: &mut Judge<'_>) -> Result<Limit, NoBudget> {
+    search(end, |distance, linear_only| match with_errors(scene, direction, distance) {
+        Err(why) => Ok(Judgement::Lost { by: LimitedBy::Refused, ending: None, detail: why }),
+        Ok(scene) if linear_only => Ok(judge.linearly(&scene)),
+        Ok(scene) => judge.judge(&scene),
+    })
+}
+
+/// All errors that have a limit, at the same share of the nearer of both. Signs are turned one by one where that is worse.
+fn together(scene: &Scene, errors: &[ErrorBudget], judge: &mut Judge<'_>) -> Result<Option<CommonBudget>, NoBudget> {
+    let mut sizes: Vec<(Name, f64)> = errors.iter().filter_map(|error| Some((error.name, error.nearest()?))).collect();
+    sizes.retain(|(_, size)| *size != 0.0);
+    if sizes.len() < 2 {
+        return Ok(None);
+    }
+    let mut factor = along(scene, &sizes, 1.0, judge)?;
+    let mut turned = 0;
+    for _ in 0..SIGN_ROUNDS {
+        for place in 0..sizes.len() {
+            let (name, size) = sizes[place];
+            let is_signed = range(name.row()).0 < 0.0;
+            if !is_signed || factor.value == 0.0 || turned == MOST_TURNED {
+                continue;
+            }
+            sizes[place].1 = -size;
+            let kept = match with_errors(scene, &sizes, factor.value) {
+                Ok(scene) => judge.judge(&scene)? == Judgement::Kept,
+                Err(_) => true,
+            };
+            if kept {
+                sizes[place].1 = size;
+            } else {
+                factor = along(scene, &sizes, factor.value, judge)?;
+                turned += 1;
+            }
+        }
+    }
+    Ok(Some(CommonBudget { sizes, factor }))
+}
+
+/// The errors of the scene in proportion, up to the range of the first.
+fn present(scene: &Scene, judge: &mut Judge<'_>) -> Result<Option<CommonBudget>, NoBudget> {
+    let mut end = f64::INFINITY;
+    let mut sizes = Vec::new();
+    for row in budgeted() {
+        let (Some(value), FieldKind::Number { minimum, maximum }) = (scene.number(row.name), row.kind) else {
+            continue;
+        };
+        if value != 0.0 {
+            sizes.push((row.name, value));
+            end = end.min(if value < 0.0 { minimum / value } else { maximum / value });
+        }
+    }
+    if sizes.is_empty() {
+        return Ok(None);
+    }
+    let factor = along(scene, &sizes, end, judge)?;
+    Ok(Some(CommonBudget { sizes, factor }))
+}

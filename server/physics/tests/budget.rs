@@ -1,0 +1,312 @@
+//! Budgets of errors: closed forms of the linear limits, derivatives and runs on both sides of each limit, symmetry, an independent simulation.
+
+use equipoise_physics::control::bounce_model::BounceModel;
+use equipoise_physics::control::lqr::design_lqr;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::run;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::contact_regime::ContactRegime;
+use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at};
+use equipoise_physics::stability::margins::budget::{Budget, ErrorBudget, budgeted, find_budget, most_runs};
+use equipoise_physics::stability::margins::judgement::{LimitedBy, NoBudget};
+use equipoise_physics::stability::margins::limit_search::Limit;
+use equipoise_physics::stability::verdict::{DecidedBy, Verdict};
+use random::Random;
+use rig::Rig;
+
+mod paper;
+#[path = "support/random.rs"]
+mod random;
+#[path = "support/rig.rs"]
+mod rig;
+
+const LINEAR: LimitedBy = LimitedBy::Verdict(DecidedBy::Linear);
+const BY_RUN: LimitedBy = LimitedBy::Verdict(DecidedBy::Nonlinear);
+
+fn with(draft: Draft, values: &[(Name, f64)]) -> Scene {
+    let mut draft = draft;
+    for &(name, number) in values {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft.build().unwrap()
+}
+
+fn scene(values: &[(Name, f64)]) -> Scene {
+    with(paper::scene(1.1, 0.1).draft(), values)
+}
+
+/// State feedback of the paper's rod that brings it to rest.
+fn fed_back(values: &[(Name, f64)]) -> Scene {
+    let mut draft = paper::scene(1.1, 0.05).draft();
+    draft.set(Name::TiltGain, None).unwrap();
+    let place = find_fixed_point(&paper::scene(1.1, 0.05)).unwrap();
+    let model = BounceModel::new(&paper::scene(1.1, 0.05).parameters(), place.speed, ContactRegime::Frictionless);
+    let gain = design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain;
+    let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+    let gains: Vec<_> = names.into_iter().zip(gain).collect();
+    with(draft, &[&gains[..], values].concat())
+}
+
+fn budget(scene: &Scene, impacts: u64) -> Budget {
+    find_budget(scene, impacts, || true).unwrap()
+}
+
+fn of(budget: &Budget, name: Name) -> &ErrorBudget {
+    budget.errors.iter().find(|error| error.name == name).unwrap()
+}
+
+fn above(budget: &Budget, name: Name) -> &Limit {
+    of(budget, name).above.as_ref().unwrap()
+}
+
+fn survives(scene: &Scene, impacts: u64) -> bool {
+    run(&mut scene.orbit().unwrap(), impacts, |_| true) == Some(Ending::Completed)
+}
+
+/// Largest modulus of the derivative of the map at the fixed point, but for the one of `x` and, if left alone, of drift and energy.
+fn largest_modulus(scene: &Scene) -> f64 {
+    let place = find_fixed_point(scene).unwrap();
+    let map = finite_difference_at(&scene.model(), place.x, &place.state(), 1, 1e-6).unwrap();
+    eigenvalues(&map.matrix).unwrap().iter().map(|value| value.norm()).fold(0.0, f64::max)
+}
+
+/// The two sides of an error, with the sign of each.
+fn sides(error: &ErrorBudget) -> Vec<(f64, &Limit)> {
+    let side = |sign: f64, limit: &'_ Option<Limit>| limit.as_ref().map(|_| sign);
+    let below = side(-1.0, &error.below).zip(error.below.as_ref());
+    let above = side(1.0, &error.above).zip(error.above.as_ref());
+    below.into_iter().chain(above).collect()
+}
+
+/// Asserts that a run decides as the limits of a budget say, just inside and just outside.
+fn assert_edges(scene: &Scene, budget: &Budget, impacts: u64) -> usize {
+    let mut checked = 0;
+    for error in &budget.errors {
+        let at = |value: f64| with(scene.draft(), &[(error.name, value)]);
+        for (sign, limit) in sides(error) {
+            let path = error.name.row().path;
+            assert!(limit.value >= 0.0 && limit.accuracy >= 0.0, "{path}");
+            assert!(limit.accuracy <= 5e-4 * limit.value.max(1e-6) || limit.value == 0.0, "{path}: {limit:?}");
+            if limit.value > 0.0 {
+                assert!(survives(&at(sign * limit.value), impacts), "{path} {sign} {limit:?}");
+            }
+            if limit.by == BY_RUN {
+                assert!(!survives(&at(sign * (limit.value + limit.accuracy)), impacts), "{path} {sign} {limit:?}");
+                assert!(limit.ending.is_some() && limit.linear.is_none_or(|linear| linear > limit.value));
+                checked += 1;
+            }
+        }
+    }
+    checked
+}
+
+#[test]
+fn limits_of_gain_errors_are_those_of_the_closed_form() {
+    let mut random = Random::new(25);
+    for _ in 0..40 {
+        let length = random.between(0.05, 0.3);
+        let rho = length * random.between(0.4, 1.0);
+        let above_rod = length * random.between(0.3, 1.5);
+        let width = rho * rho / (2.0 * above_rod * length);
+        let kappa = 1.0 + random.between(0.2, 0.8) * width;
+        let values = [
+            (Name::ContactDistance, length),
+            (Name::RadiusOfGyration, rho),
+            (Name::Height, length + above_rod),
+            (Name::Theta, 0.0),
+            (Name::TiltGain, kappa),
+        ];
+        let found = budget(&scene(&values), 60);
+        let gain = of(&found, Name::TiltGainError);
+        // κ(1 + ε) is between 1 and κ_c = 1 + Gρ²/(V²l), V² = 2G(h − l).
+        let expected = [1.0 - 1.0 / kappa, (1.0 + width) / kappa - 1.0];
+        for ((_, limit), expected) in sides(gain).into_iter().zip(expected) {
+            let expected_within = expected.min(if expected == 1.0 - 1.0 / kappa { 0.9 } else { 1.0 });
+            assert!((limit.value - expected_within).abs() < 1e-8 * kappa, "{limit:?} {expected_within}");
+            if expected < 0.9 {
+                assert_eq!((limit.by, limit.linear), (LINEAR, Some(limit.value)));
+                let accuracy = limit.accuracy;
+                assert!(accuracy < 1e-14, "{accuracy}");
+            } else {
+                assert_eq!((limit.by, limit.linear, limit.accuracy), (LimitedBy::Range, None, 0.0));
+            }
+        }
+        // Where nothing is lost the table stands still, and its speed has no error.
+        assert_eq!(above(&found, Name::SpeedError).by, LimitedBy::Range);
+    }
+}
+
+#[test]
+fn eigenvalues_cross_the_unit_circle_at_linear_limits() {
+    // With energy feedback an error of the speed moves the height, and with it the energy's eigenvalue.
+    let energy =
+        scene(&[(Name::Theta, 0.0), (Name::Restitution, 0.5), (Name::EnergyGain, 0.4), (Name::TargetHeight, 0.25)]);
+    for (ideal, names) in [
+        (energy, vec![Name::SpeedError, Name::TiltGainError]),
+        (fed_back(&[(Name::Theta, 0.0)]), vec![Name::TiltGainError]),
+    ] {
+        let found = budget(&ideal, 200);
+        let mut crossed = 0;
+        for name in names {
+            for (sign, limit) in sides(of(&found, name)) {
+                let Some(linear) = limit.linear else { continue };
+                let at = |value: f64| with(ideal.draft(), &[(name, sign * value)]);
+                let inside = largest_modulus(&at(linear * (1.0 - 1e-3)));
+                assert!(inside < 1.0 + 1e-6, "{name:?} {sign}: {inside}");
+                let outside = at(linear * (1.0 + 1e-3));
+                if find_fixed_point(&outside).is_err() {
+                    assert!(find_fixed_point(&at(linear)).is_ok());
+                    continue;
+                }
+                let outside = largest_modulus(&outside);
+                assert!(outside > 1.0 + 1e-5, "{name:?} {sign}: {outside}");
+                crossed += 1;
+            }
+        }
+        assert!(crossed > 1, "{found:?}");
+    }
+}
+
+#[test]
+fn runs_survive_just_inside_and_not_just_outside() {
+    let energy = [(Name::Restitution, 0.5), (Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25)];
+    let mut checked = 0;
+    for (scene, impacts) in [
+        (scene(&[]), 150),
+        (scene(&[(Name::TableLength, 0.5)]), 80),
+        (scene(&energy), 150),
+        (scene(&[(Name::Restitution, 0.7)]), 100),
+        (fed_back(&[]), 200),
+        (fed_back(&[(Name::TableLength, 0.6)]), 120),
+    ] {
+        let found = budget(&scene, impacts);
+        checked += assert_edges(&scene, &found, impacts);
+        assert!(found.bounces <= most_runs() * impacts);
+        let together = found.together.as_ref().unwrap();
+        assert!(together.factor.value > 0.0 && together.factor.value <= 1.0, "{together:?}");
+        let at = |factor: f64| {
+            let values: Vec<_> = together.sizes.iter().map(|(name, size)| (*name, size * factor)).collect();
+            survives(&with(scene.draft(), &values), impacts)
+        };
+        assert!(at(together.factor.value) && !at(together.factor.value + together.factor.accuracy), "{together:?}");
+        // Each of them is at the nearer of its limits at the factor 1.
+        for (name, size) in &together.sizes {
+            let nearest =
+                sides(of(&found, *name)).into_iter().map(|(_, limit)| limit.value).fold(f64::INFINITY, f64::min);
+            assert_eq!(size.abs(), nearest);
+        }
+    }
+    assert!(checked > 40, "{checked}");
+}
+
+#[test]
+fn the_independent_simulation_leaves_the_table_at_the_limit() {
+    let (half, impacts) = (0.1, 12);
+    let names = [Name::AngleBias, Name::TiltOffset, Name::Offset];
+    let rig = scene(&[(Name::TableLength, 2.0 * half), (Name::Theta, 0.02), (Name::X, 0.03)]);
+    let found = budget(&rig, impacts);
+    for name in names {
+        for (sign, limit) in sides(of(&found, name)) {
+            assert_eq!((limit.by, limit.ending), (BY_RUN, Some("off_table")), "{name:?}");
+            let stays = |value: f64| {
+                let scene = with(rig.draft(), &[(name, sign * value)]);
+                let length =
+                    scene.number(Name::ContactDistance).unwrap().hypot(scene.number(Name::Offset).unwrap_or(0.0));
+                let course = Rig::of(&scene).course(impacts as usize);
+                course.iter().all(|[_, x, theta, ..]| (x + length * theta.sin()).abs() <= half)
+            };
+            assert!(stays(limit.value * 0.999) && !stays((limit.value + limit.accuracy) * 1.001), "{name:?} {sign}");
+        }
+    }
+}
+
+#[test]
+fn a_release_seen_in_a_mirror_has_mirrored_limits() {
+    let impacts = 60;
+    let odd = [Name::AngleBias, Name::TiltOffset, Name::Offset];
+    let straight = budget(&scene(&[(Name::Theta, 0.0)]), impacts);
+    for error in &straight.errors {
+        if odd.contains(&error.name) {
+            assert_eq!(error.below, error.above, "{:?}", error.name);
+        }
+    }
+    let release = [(Name::Theta, 0.04), (Name::ThetaDot, 0.1), (Name::XDot, -0.05), (Name::TableLength, 20.0)];
+    let mirrored = [(Name::Theta, -0.04), (Name::ThetaDot, -0.1), (Name::XDot, 0.05), (Name::TableLength, 20.0)];
+    let (one, other) = (budget(&scene(&release), impacts), budget(&scene(&mirrored), impacts));
+    for (one, other) in one.errors.iter().zip(&other.errors) {
+        if odd.contains(&one.name) {
+            assert_eq!((&one.below, &one.above), (&other.above, &other.below), "{:?}", one.name);
+        } else if [Name::TiltGainError, Name::SpeedError].contains(&one.name) {
+            assert_eq!(one, other);
+        }
+    }
+}
+
+#[test]
+fn with_feedback_of_the_place_a_constant_tilt_may_reach_the_end_of_the_table() {
+    let half = 0.15;
+    let scene = fed_back(&[(Name::Theta, 0.0), (Name::TableLength, 2.0 * half)]);
+    let [x, theta] = [Name::FeedbackX, Name::FeedbackTheta].map(|name| scene.number(name).unwrap().abs());
+    let found = budget(&scene, 400);
+    let limit = above(&found, Name::TiltOffset);
+    // x* = c/K_x.
+    assert!((limit.linear.unwrap() - x * half).abs() < 1e-12, "{limit:?}");
+    assert!(limit.value <= limit.linear.unwrap());
+    let bias = above(&found, Name::AngleBias).linear.unwrap();
+    assert!((theta * bias - x * half).abs() < 1e-12, "c = −K_θ b");
+    // Without ends any tilt that the run survives is kept.
+    assert_eq!(above(&budget(&fed_back(&[(Name::Theta, 0.0)]), 400), Name::TiltOffset).linear, None);
+}
+
+#[test]
+fn the_errors_of_a_scene_have_a_common_factor() {
+    let values = [(Name::AngleBias, 2e-5), (Name::TiltGainError, -0.01), (Name::AngleSd, 1e-4)];
+    let (rig, impacts) = (scene(&values), 100);
+    let found = budget(&rig, impacts);
+    let present = found.present.as_ref().unwrap();
+    assert_eq!(present.sizes, values);
+    let at = |factor: f64| {
+        let values: Vec<_> = values.iter().map(|(name, value)| (*name, value * factor)).collect();
+        survives(&with(rig.draft(), &values), impacts)
+    };
+    assert!(at(present.factor.value) && !at(present.factor.value + present.factor.accuracy), "{present:?}");
+    // The limits of each alone are of the rig without the others, and its verdict is the one to keep.
+    let ideal = budget(&scene(&[]), impacts);
+    for (one, other) in found.errors.iter().zip(&ideal.errors) {
+        assert_eq!((&one.below, &one.above), (&other.below, &other.above));
+    }
+    assert_eq!((found.verdict, ideal.present), (Some(Verdict::Elliptic), None));
+}
+
+#[test]
+fn what_is_lost_without_errors_has_no_budget_and_a_search_can_be_stopped() {
+    let because = |scene: &Scene| match find_budget(scene, 100, || true) {
+        Err(NoBudget::Because(why)) => why,
+        other => panic!("{other:?}"),
+    };
+    assert!(because(&scene(&[(Name::TiltGain, 1.6)])).contains("without errors"));
+    assert!(because(&scene(&[(Name::TiltGain, 0.9), (Name::Theta, 0.0)])).contains("unstable without errors"));
+    assert_eq!(find_budget(&scene(&[]), 1000, || false), Err(NoBudget::Stopped));
+}
+
+#[test]
+fn errors_that_a_body_cannot_have_are_left_out_with_the_reason() {
+    let mut point = Draft::default();
+    point.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
+    let found = budget(&with(point, &[(Name::TiltGain, 0.4), (Name::Height, 0.2)]), 100);
+    for name in [Name::AngleBias, Name::TiltOffset, Name::Offset, Name::TimingSd] {
+        let error = of(&found, name);
+        assert!(error.above.is_none() && error.reason.as_ref().unwrap().contains("point mass"), "{error:?}");
+    }
+    assert!(above(&found, Name::TiltGainError).value > 0.5, "κ between 0 and 1");
+}
+
+#[test]
+fn every_error_of_the_table_and_every_noise_has_a_budget() {
+    let paths: Vec<_> = budgeted().map(|row| row.path).collect();
+    for path in ["body.offset", "table.errors.angle_bias", "table.errors.speed", "noise.timing_sd", "noise.angle_sd"] {
+        assert!(paths.contains(&path), "{path}");
+    }
+    assert!(!paths.iter().any(|path| path.contains("seed") || path.contains("run")));
+}

@@ -1,0 +1,98 @@
+//! The budget of the errors of a rig: its limits are those that verdicts on both sides of them confirm.
+
+use crate::failures::number;
+use crate::support::Server;
+use serde_json::{Value, json};
+
+async fn ask(query: &str) -> Value {
+    Server::start().get(&format!("/v1/stability?{query}")).await.expect(200).json()
+}
+
+/// The limit of an error of a budget.
+fn limit<'a>(budget: &'a Value, path: &str, side: &str) -> &'a Value {
+    let errors = budget["errors"].as_array().unwrap();
+    &errors.iter().find(|error| error["path"] == path).unwrap_or_else(|| panic!("{path}: {budget}"))[side]
+}
+
+#[tokio::test]
+async fn verdicts_and_runs_on_both_sides_of_each_limit_are_as_it_says() {
+    let scene = "preset=case-1&scene.release.theta=0.05&scene.table.length=1&impacts=60";
+    let answer = ask(&format!("{scene}&budget=true")).await;
+    let budget = &answer["budget"];
+    assert_eq!((&budget["verdict"], &budget["impacts"]), (&json!("elliptic"), &json!(60)));
+    let mut compared = 0;
+    for error in budget["errors"].as_array().unwrap() {
+        let path = error["path"].as_str().unwrap();
+        for (side, sign) in [("below", -1.0), ("above", 1.0)] {
+            let limit = &error[side];
+            let is_noise = path.starts_with("noise.");
+            assert_eq!(limit.is_null(), is_noise && side == "below", "{path}");
+            if limit.is_null() || limit["decided_by"] == "range" {
+                continue;
+            }
+            let (value, accuracy) = (number(&limit["value"]), number(&limit["accuracy"]));
+            let at = async |value: f64| ask(&format!("{scene}&scene.{path}={}", sign * value)).await;
+            let (inside, outside) = (at(value).await, at(value + accuracy).await);
+            assert_eq!(inside["nonlinear"]["outcome"], "completed", "{path} {side}");
+            if limit["decided_by"] == "nonlinear" {
+                assert_eq!(outside["nonlinear"]["outcome"], limit["outcome"], "{path} {side}");
+            } else {
+                assert_eq!((&limit["decided_by"], &limit["outcome"]), (&json!("linear"), &Value::Null), "{path}");
+                assert_eq!(limit["linear"], limit["value"]);
+                assert_eq!(inside["linear"]["class"], "elliptic");
+                assert_ne!(outside["linear"]["class"], "elliptic");
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared >= 10, "{budget}");
+    assert_eq!(limit(budget, "table.errors.angle_bias", "above")["outcome"], "off_table");
+    // All at once.
+    let together = &budget["together"];
+    let factor = number(&together["factor"]["value"]);
+    let all = |factor: f64| {
+        let sizes = together["sizes"].as_array().unwrap().iter();
+        sizes.fold(scene.to_owned(), |query, size| {
+            format!("{query}&scene.{}={}", size["path"].as_str().unwrap(), number(&size["value"]) * factor)
+        })
+    };
+    assert!(factor > 0.0 && factor < 1.0, "{together}");
+    assert_eq!(ask(&all(factor)).await["nonlinear"]["outcome"], "completed");
+    let beyond = factor + number(&together["factor"]["accuracy"]);
+    assert_ne!(ask(&all(beyond)).await["nonlinear"]["outcome"], "completed");
+}
+
+#[tokio::test]
+async fn the_gain_of_the_tilt_may_err_up_to_its_margins() {
+    let answer = ask("preset=case-1&scene.release.theta=0&impacts=50&budget=true").await;
+    let gain = &answer["linear"]["tilt_gain"];
+    for (side, margin) in [("below", "margin_below"), ("above", "margin_above")] {
+        let limit = limit(&answer["budget"], "table.errors.tilt_gain", side);
+        assert!((number(&limit["value"]) - number(&gain[margin]) / number(&gain["value"])).abs() < 1e-8, "{limit}");
+    }
+    assert!(answer["budget"]["reason"].as_str().unwrap().contains("table.length"), "a table without ends");
+}
+
+#[tokio::test]
+async fn the_errors_of_the_scene_have_a_factor_and_the_budget_is_absent_unless_asked_for() {
+    let ideal = "preset=case-1&scene.release.theta=0.05&scene.table.length=1&impacts=60";
+    let scene = format!("{ideal}&scene.table.errors.angle_bias=0.002");
+    let present = ask(&format!("{scene}&budget=true")).await["budget"]["present"].clone();
+    assert_eq!(present["sizes"], json!([{"path": "table.errors.angle_bias", "unit": "rad", "value": 0.002}]));
+    assert!(number(&present["factor"]["value"]) < 1.0, "this rig leaves its table: {present}");
+    let ideal = ask(&format!("{ideal}&budget=true")).await;
+    let alone = limit(&ideal["budget"], "table.errors.angle_bias", "above");
+    let factor = number(&present["factor"]["value"]);
+    assert!((factor * 0.002 - number(&alone["value"])).abs() <= 2.0 * number(&alone["accuracy"]), "{present} {alone}");
+    assert!(ideal["budget"]["present"].is_null());
+    assert!(ask(&scene).await.get("budget").is_none());
+}
+
+#[tokio::test]
+async fn what_falls_without_errors_has_no_budget_and_a_dear_one_is_refused() {
+    let lost = ask("preset=case-1&scene.table.tilt_gain=1.6&impacts=200&budget=true").await["budget"].clone();
+    assert!(lost["errors"].is_null() && lost["together"].is_null(), "{lost}");
+    assert!(lost["reason"].as_str().unwrap().contains("without errors"), "{lost}");
+    let refused = Server::start().get("/v1/stability?preset=case-1&impacts=100000&budget=true").await.expect(422);
+    assert!(refused.text().contains("work of this request"), "{}", refused.text());
+}
