@@ -138,3 +138,31 @@ test('a point mass has none of it', async () => {
   assert.equal(await page.locator('.evidence').count(), 0);
   clean();
 });
+
+test('the budget of errors is computed when somebody asks', async () => {
+  const query = 'preset=case-1&scene.table.length=1&scene.release.theta=0.05&scene.table.errors.tilt_gain=0.02';
+  const { page, clean } = await stage.page(`?${query}`);
+  const asked = [];
+  page.on('request', (request) => {
+    if (request.url().includes('budget=true')) asked.push(request.url());
+  });
+  await verdict(page);
+  await page.locator('.budget summary').click();
+  assert.equal(asked.length, 0);
+  await page.click('#budget');
+  await page.locator('.budget table').waitFor();
+  const { budget } = await ask(`${query}&budget=true&impacts=500`);
+  const told = plain(await page.locator('.budget').innerText());
+  for (const { path, above } of budget.errors) {
+    assert.ok(told.includes(path), `${path}: ${told}`);
+    if (above.decided_by !== 'range' && above.value >= 1e-4)
+      assert.ok(told.includes(`+${short(above.value, 3)}`), `${path} ${above.value}: ${told}`);
+  }
+  const { together, present } = budget;
+  assert.ok(told.includes(`each up to ${short(100 * together.factor.value, 3)} %`), told);
+  assert.ok(told.includes(`${short(100 * present.factor.value, 3)} %`), told);
+  assert.equal(asked.length, 1);
+  await page.locator('#field-table-tilt_gain').fill('1.2');
+  await page.locator('#budget').waitFor();
+  clean();
+});

@@ -78,7 +78,7 @@ const verdicts = new Follower(async (page, signal, newest) => {
     circle.figure.element.classList.remove('stale');
     const judged = { answer, scene };
     page.judged = judged;
-    await page.verdict?.show(answer, () => get(`v1/stability?${scene}&basin=true`), newest());
+    await page.verdict?.show(answer, (more) => get(`v1/stability?${scene}&${more}`), newest());
     if (newest()) tellPanels(page);
     byId('build').textContent = server.build;
   } catch (error) {

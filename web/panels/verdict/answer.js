@@ -4,6 +4,7 @@ import { h } from '../../dom/elements.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { entries } from '../../dom/tables.js';
 import { capitalized, prose } from '../../dom/typeset.js';
+import { budget } from './budget.js';
 import { evidence } from './evidence.js';
 import { marginBar } from './margin-bar.js';
 import { numbersOf } from './numbers.js';
@@ -47,9 +48,9 @@ function termOf({ verdict, nonlinear }) {
 
 /**
  * @param {Stability} answer
- * @param {() => Promise<Stability>} measureBasin
+ * @param {(query: string) => Promise<Stability>} ask asks for the verdict with more, which is dearer
  */
-export function answerParts(answer, measureBasin) {
+export function answerParts(answer, ask) {
   const { decided_by: decider, reason, agree, model, notes, nonlinear } = answer;
   const kind = kindOf(answer);
   const [sign, headline] = KINDS[kind];
@@ -84,7 +85,8 @@ export function answerParts(answer, measureBasin) {
       h('summary', {}, 'Numbers of the verdict'),
       h('dl', { class: 'numbers' }, ...entries(numbersOf(answer))),
     ),
-    evidence(answer, measureBasin),
+    evidence(answer, () => ask('basin=true')),
+    budget(ask),
     h(
       'details',
       { class: 'model' },

@@ -3,7 +3,7 @@
 import { h } from '../../dom/elements.js';
 
 /** @typedef {import('contract').Stability} Stability */
-/** @typedef {() => Promise<Stability>} Measure asks for the basin as well, which is dearer */
+/** @typedef {(query: string) => Promise<Stability>} Measure asks for more as well, such as the basin, which is dearer */
 
 const LABEL = () => h('p', { class: 'line-label' }, 'This setting');
 
@@ -13,7 +13,7 @@ export class Verdict {
   #more = h('div', { id: 'verdict-more' });
   /** The answer to show, once its code is loaded. @type {Stability | null} */
   #newest = null;
-  /** The answer on the page, with the way to measure its basin. @type {[Stability, Measure] | null} */
+  /** The answer on the page, with the way to ask for more. @type {[Stability, Measure] | null} */
   #shown = null;
   #busy = false;
   // Only the words are spoken, not the table of numbers at every turn of a knob.
