@@ -1,82 +1,188 @@
-"""Which tilt gain does my rig have, as measured, and which margins follow?
+"""Which errors and parameters has my rig, as measured, which margins follow, and what is to be mended first?
 
-The file is a CSV of measured impacts with a header: t in s, and any of theta (rad), x_dot, y_dot, theta_dot and x, just before each impact; other columns
-are left out. Known fields and first values of the unknown ones come with --scene. Example, with the data beside this script:
-    fit_my_rig.py measured.csv --unknown table.tilt_gain body.radius_of_gyration --sd t=0.001 theta=0.002
+FILE is a CSV of impacts with a header: t in s, and any of theta (rad), x_dot, y_dot, theta_dot and x, just before each impact. Other columns are left
+out. --scene has the known fields and first values of the unknown ones; unknown errors begin at 0. ../fitting.md is a worked example:
+    fit_my_rig.py my_rig.csv --scene my_rig.json --sd t=0.001 theta=0.002 \\
+        --unknown table.errors.tilt_gain table.errors.angle_bias contact.restitution
 """
 
 import csv
 import json
+import math
 import re
 import sys
+import textwrap
+import urllib.parse
+import webbrowser
 from pathlib import Path
 
 from ask import arguments, ask, parse
 
-COLUMNS = ("n", "t", "theta", "x_dot", "y_dot", "theta_dot", "x")
+# Correlation of two estimates that is worth a note.
+CORRELATED = 0.95
+UNITS = {"n": "", "t": "s", "theta": "rad", "x_dot": "m/s", "y_dot": "m/s", "theta_dot": "rad/s", "x": "m"}
+
+
+def opened(path):
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        sys.exit(f"cannot read {path}: {getattr(error, 'strerror', None) or 'it is not text in UTF-8'}")
 
 
 def columns(path):
-    """The known columns of a CSV; empty cells are null. A unit after the name is cut off: `t [s]`, `theta (rad)`."""
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        rows = list(csv.reader(file))
-    if not rows:
-        sys.exit(f"{path} is empty")
-    names = [re.sub(r"\s*[\[(].*", "", name).strip() for name in rows[0]]
-    found = {name: [] for name in names if name in COLUMNS}
-    if "t" not in found:
-        sys.exit(f"{path} has the columns {', '.join(names)}; it needs t, the times of the impacts in s")
+    """The known columns of a CSV with their numbers; empty cells are null. A name may have its unit: `t [s]`, `theta (rad)`."""
+    rows = list(csv.reader(opened(path).splitlines()))
+    header = [re.fullmatch(r"\s*([^\[(]*?)\s*(?:[\[(](.*)[\])])?\s*", cell) for cell in rows[0]] if rows else []
+    names = [found[1] if found else "" for found in header]
+    known = {name: [] for name in names if name in UNITS}
+    if "t" not in known or len(known) < sum(name in UNITS for name in names):
+        sys.exit(f"{path} has the columns {', '.join(names) or 'of an empty file'}; it needs t, the times of the impacts in s, and each name once, "
+                 f"with commas between them. Known are {', '.join(UNITS)}")
+    for name, found in zip(names, header):
+        if name in UNITS and found[2] and found[2].strip() != UNITS[name]:
+            sys.exit(f"{path}: {name} is in {found[2]}; convert it to {UNITS[name] or 'a number without unit'}")
     for line, row in enumerate(rows[1:], 2):
-        for name, cell in zip(names, row + [""] * (len(names) - len(row))):
-            if name in found:
+        # An empty line is no impact.
+        for name, cell in zip(names, row and row + [""] * (len(names) - len(row))):
+            if name in known:
                 try:
-                    number = int if name == "n" else float
-                    found[name].append(number(cell) if cell.strip() else None)
+                    number = (int if name == "n" else float)(cell) if cell.strip() else None
                 except ValueError:
+                    number = math.nan
+                if number is not None and not math.isfinite(number):
                     sys.exit(f"{path}, line {line}: {name} is {cell!r}, not a number")
-    return found
+                known[name].append(number)
+    return known
+
+
+def changed(scene, path, value):
+    """A scene with another value of a field, such as `table.tilt_gain`."""
+    first, _, rest = path.partition(".")
+    return {**scene, first: changed(scene.get(first) or {}, rest, value) if rest else value}
+
+
+def held(scene, path):
+    """The value of a field, None if the scene does not have it."""
+    for part in path.split("."):
+        scene = (scene or {}).get(part)
+    return scene
+
+
+def said(heading, text):
+    """Prints a heading and wrapped text, its long numbers rounded."""
+    short = re.sub(r"\d+\.\d{6,}(?:e-?\d+)?", lambda number: f"{float(number[0]):.5g}", text)
+    print(textwrap.fill(short, 120, initial_indent=f"{heading:<14}", subsequent_indent=" " * 14))
+
+
+def digits(value, sd):
+    """A value with as many digits as its standard deviation lets it have."""
+    return f"{value:.{max(0, 1 - math.floor(math.log10(sd)))}f}" if sd else f"{value:g}"
+
+
+def judged(scene):
+    """The verdict on a scene in a few words: linear margins of the tilt gain as it is set, or the reason why there is none."""
+    answer = ask("stability", {"scene": scene})
+    gain = (answer["linear"] or {}).get("tilt_gain")
+    if answer["verdict"] and gain:
+        return f"{answer['verdict']}; tilt gain {gain['value']:.4g} of {gain['lower']:.4f} to {gain['critical']:.4f}"
+    drift = answer.get("steady_drift") or {}
+    if drift.get("acceleration"):
+        seconds = drift["time_on_table"]
+        return f"no verdict: driven aside at {drift['acceleration']:.3g} m/s²" + (f", {seconds:.1f} s on the table" if seconds else "")
+    return f"{answer['verdict'] or 'no verdict'}: {answer['reason']}"
 
 
 parser = arguments(__doc__)
 parser.add_argument("file", type=Path, help="CSV of measured impacts")
+parser.add_argument("--scene", required=True, help="scene as JSON, or a file of it")
+parser.add_argument("--preset", help="preset onto which the scene is merged")
 parser.add_argument("--unknown", nargs="+", default=["table.tilt_gain"], metavar="PATH", help="fields of the scene to fit")
-parser.add_argument("--preset", default="case-1", help="the scene to begin with")
-parser.add_argument("--scene", type=json.loads, default={}, help="changes of it, as JSON")
 parser.add_argument("--sd", nargs="*", default=[], metavar="COLUMN=SD", help="known standard deviations; others are estimated")
+parser.add_argument("--fitted", type=Path, help="file for the fitted scene, as JSON")
 parser.add_argument("--picture", type=Path, help="file for the picture of the residuals, .svg or .png")
+parser.add_argument("--request", type=Path, help="file for the request, as JSON; nothing is sent then")
+parser.add_argument("--page", action="store_true", help="print the address of the page with the fitted scene")
+parser.add_argument("--open", action="store_true", help="open it")
 options = parse(parser)
 
-deviations = {}
-for each in options.sd:
-    name, _, value = each.partition("=")
-    try:
-        deviations[name] = float(value)
-    except ValueError:
-        sys.exit(f"--sd {each}: it must be a column and a number, such as t=0.001")
-request = {
-    "preset": options.preset, "scene": options.scene, "measured": columns(options.file),
-    "unknown": options.unknown, "sd": deviations,
-}
+scene = options.scene if options.scene.lstrip().startswith("{") else opened(Path(options.scene))
+try:
+    scene = json.loads(scene)
+    deviations = {name: float(value) for name, value in (each.split("=") for each in options.sd)}
+except json.JSONDecodeError as error:
+    sys.exit(f"--scene is not JSON: {error}")
+except ValueError:
+    sys.exit(f"--sd {' '.join(options.sd)}: each must be a column and a number, such as t=0.001")
+for path in options.unknown:
+    if (path.startswith("table.errors.") or path == "body.offset") and held(scene, path) is None:
+        scene = changed(scene, path, 0)
+request = {"scene": scene, "measured": columns(options.file), "unknown": options.unknown, "sd": deviations}
+request |= {"preset": options.preset} if options.preset else {}
+if options.request:
+    options.request.write_text(json.dumps(request))
+    sys.exit()
 fit = ask("fits", request)
 
-print(f"quality      {fit['quality']['kind']}: {fit['quality']['detail']}")
+said(fit["quality"]["kind"], fit["quality"]["detail"])
 for estimate in fit["estimates"]:
-    unit = "" if estimate["unit"] == "1" else f" {estimate['unit']}"
+    path, unit = estimate["path"], "" if estimate["unit"] == "1" else f" {estimate['unit']}"
     if estimate["identifiable"]:
-        low, high = estimate["interval"]
-        print(f"{estimate['path']} = {estimate['value']:.6g} +- {estimate['sd']:.2g}{unit}, 95 % from {low:.6g} to {high:.6g}")
-    if estimate["detail"]:
-        print(f"{estimate['path']}: {estimate['detail']}")
+        value, low, high = (digits(number, estimate["sd"]) for number in (estimate["value"], *estimate["interval"]))
+        print(f"{'estimate':<14}{path} = {value} +- {estimate['sd']:.2g}{unit}, 95 % from {low} to {high}")
+    else:
+        said("not told", f"{path}: {estimate['detail']}")
+for one, row in enumerate(fit["correlation"]):
+    for other, correlation in enumerate(row[:one]):
+        if abs(correlation or 0) > CORRELATED:
+            said("note", f"{options.unknown[other]} and {options.unknown[one]} have correlation {correlation:.4f}: a known one would sharpen the other")
 for note in fit["notes"]:
-    print(f"note         {note}")
-stability = fit["stability"]
-print(f"verdict      {stability['verdict']}: {stability['reason']}")
+    said("note", note)
+if not all(estimate["identifiable"] for estimate in fit["estimates"]):
+    said("note", "the fitted scene has first values of the fields that are not told; fit again without them before you use it")
+stability, fitted = fit["stability"], fit["scene"]
+said("verdict", f"{stability['verdict'] or 'none'}: {stability['reason']}")
 for margin in stability["margins"]:
-    print(f"margin       {margin['name']} {margin['value']:+.5f} +- {margin['sd']:.2g}, in the 95 % region from {margin['least']:+.5f} to {margin['most']:+.5f}")
-holds = {True: "every scene at its ends is stable", False: "NOT every scene at its ends is stable", None: "no statement; see quality and estimates"}
-print(f"region       {holds[stability['holds']]}")
-print(f"scene        {json.dumps(fit['scene'])}")
+    said("margin", f"{margin['name']} {margin['value']:+.4f}, in the 95 % region from {margin['least']:+.4f} to {margin['most']:+.4f}")
+if stability["margins"]:
+    words = {True: "all linear margins are above 0 at its ends", False: "NOT all linear margins are above 0 at its ends", None: "no statement, see above"}
+    said("region", words[stability["holds"]])
 
+# Each fitted error mended alone, then all of them.
+mended, repairs = fitted, {}
+for estimate in fit["estimates"]:
+    path = estimate["path"]
+    repair = (path, 0) if path.startswith("table.errors.") or path == "body.offset" else None
+    if path == "contact.restitution" and held(fitted, "table.assumed_restitution") is not None:
+        repair = ("table.assumed_restitution", estimate["value"])
+    if repair and estimate["identifiable"]:
+        repairs[repair[0]] = changed(fitted, *repair)
+        mended = changed(mended, *repair)
+if fit["quality"]["kind"] == "good" and repairs and all(estimate["identifiable"] for estimate in fit["estimates"]):
+    said("as it is", judged(fitted))
+    for path, repaired in repairs.items():
+        said("mended", f"{path} = {held(repaired, path):.4g}: {judged(repaired)}")
+    if len(repairs) > 1:
+        said("all mended", judged(mended))
+
+if options.fitted:
+    options.fitted.write_text(json.dumps(fitted, indent=2) + "\n")
+    said("scene", str(options.fitted))
 if options.picture:
     options.picture.write_bytes(ask("fits", request, options.picture.suffix[1:]))
-    print(f"residuals    {options.picture}")
+    said("residuals", str(options.picture))
+
+
+def query(value, path):
+    """A part of a scene as a query."""
+    if isinstance(value, (dict, list)):
+        parts = value.items() if isinstance(value, dict) else enumerate(value)
+        return [pair for name, part in parts for pair in query(part, f"{path}.{name}")]
+    return [] if value is None else [(path, json.dumps(value).strip('"'))]
+
+
+page = f"{options.server.rstrip('/')}/?{urllib.parse.urlencode(query(fitted, 'scene'))}"
+if options.page or options.open:
+    print(f"{'page':<14}{page}")
+if options.open:
+    webbrowser.open(page)
