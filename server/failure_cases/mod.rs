@@ -20,7 +20,7 @@ mod swing;
 pub use case::{FailureCase, Findings, MethodClaim};
 
 /// All cases, in the order in which they are shown.
-pub const CASES: [FailureCase; 19] = [
+pub const CASES: [FailureCase; 20] = [
     boundary::SOFT,
     boundary::HARD,
     boundary::HARD_WITH_FEEDBACK,
@@ -40,6 +40,7 @@ pub const CASES: [FailureCase; 19] = [
     swing::SETTLED,
     catching::CONTACT_GAIN,
     rig::BIAS,
+    rig::TURNING,
 ];
 
 /// The case of this name.

@@ -1,4 +1,5 @@
-//! A rig that is not the ideal one: a bias of the sensed angle, which the linear analysis of the ideal rig does not see.
+//! Rigs that are not the ideal one: a bias of the sensed angle, and a table that turns as it strikes. The linear analysis of the ideal rig
+//! does not see them.
 
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::angle_history::AngleHistory;
@@ -6,8 +7,12 @@ use crate::failure_cases::basin::residue;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
 use equipoise_physics::control::steady_drift::SteadyDrift;
+use equipoise_physics::control::swing_pump::swing_pump;
+use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::orbit::run;
-use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::linear_verdict::linear_verdict;
 
 /// 2 mrad of bias on a table of 1 m.
 pub(crate) const BIAS: FailureCase = FailureCase {
@@ -61,6 +66,85 @@ pub(crate) const BIAS: FailureCase = FailureCase {
     },
 };
 
+/// A pivot in the middle of the table, 5 cm below its surface.
+pub(crate) const TURNING: FailureCase = FailureCase {
+    name: "turning-table",
+    title: "Elliptic on paper, pumped up by a table that turns as it strikes",
+    method: "residue and margins of a table that does not turn",
+    why: "The tilt gain is well inside the stable interval. The analysis takes the table as tilted but at rest in its turning, and a table that follows \
+          α = κθ is not: it turns at κθ̇ when it strikes. Its surface then moves by that times the distance from the pivot, here a few cm/s. In first \
+          order that changes the height of the next bounces by as much upwards as downwards, and the eigenvalues stay what they are. In second order \
+          the surface moves up where the rod comes down while it swings out, on both sides. So every swing makes the bounce a little higher, until \
+          the tilt gain is critical for its height.",
+    impacts: 2_000,
+    ask: ("stability", "impacts=500"),
+    price: 8_000,
+    scene: || built(about(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.05)]), "follows")),
+    find: |scene, impacts| {
+        let ideal = built(about(scene.draft(), "none"));
+        let known = built(about(scene.draft(), "corrected"));
+        let mut says =
+            vec![residue(&ideal), AngleHistory::of(&ideal, impacts).says("run on a table that does not turn")];
+        says.extend(pump(scene));
+        let course = AngleHistory::of(scene, impacts);
+        says.push(course.says("run of the scene"));
+        let detail = format!(
+            "the run ends as `{}` at contact {}; with a law that corrects for the turning it has {} contacts",
+            course.ending.name(),
+            course.angles.len(),
+            AngleHistory::of(&known, impacts).angles.len()
+        );
+        Findings { truth: "falls", detail, says }
+    },
+    picture: |scene, impacts| {
+        let curve = |label, style, points| Curve { label, style, points };
+        let ideal = built(about(scene.draft(), "none"));
+        Chart {
+            title: TURNING.title,
+            subtitle: "the speed of the body just before its contacts, against time".to_owned(),
+            caption: pump(scene).map_or_else(String::new, |claim| format!("The pump: {}.", claim.detail)),
+            plots: vec![Plot {
+                x: ChartAxis::new("time", "t", "s"),
+                y: ChartAxis::new("vertical speed", "−ẏ", "m/s"),
+                curves: vec![
+                    curve("does not turn", CurveStyle::Beside, speeds(&ideal, 200)),
+                    curve("turns", CurveStyle::Truth, speeds(scene, impacts)),
+                    curve("", CurveStyle::TruthDots, speeds(scene, impacts)),
+                ],
+            }],
+        }
+    },
+};
+
+/// A draft with a pivot, and a tilt rate at strikes by this word.
+fn about(draft: Draft, word: &'static str) -> Draft {
+    let mut draft = with(draft, &[(Name::PivotX, 0.0), (Name::PivotDepth, 0.05)]);
+    draft.set(Name::TiltRate, Some(Value::Choice(word))).expect("a test builds every case");
+    draft
+}
+
+/// Time and downward speed at the contacts of a run.
+fn speeds(scene: &Scene, impacts: u64) -> Vec<(f64, f64)> {
+    course(scene, impacts, |contact| -contact.state.y_dot)
+}
+
+/// The claim of the energy that the table gives to the swing.
+fn pump(scene: &Scene) -> Option<MethodClaim> {
+    let fixed_point = find_fixed_point(scene).ok()?;
+    let found = swing_pump(scene, &fixed_point, &linear_verdict(scene, &fixed_point))?;
+    let impacts = found.impacts?;
+    Some(MethodClaim {
+        method: "energy of the swing in second order",
+        verdict: "falls",
+        value: Some(found.energy),
+        unit: Some("m²/s²"),
+        detail: format!(
+            "a swing of {:.4} rad gains {:.2e} m²/s² a bounce, so that the tilt gain is critical after about {impacts} bounces",
+            found.swing, found.energy
+        ),
+    })
+}
+
 /// The scene with another bias.
 fn biased(scene: &Scene, bias: f64) -> Scene {
     built(with(scene.draft(), &[(Name::AngleBias, bias)]))
@@ -68,14 +152,19 @@ fn biased(scene: &Scene, bias: f64) -> Scene {
 
 /// Time and place at the contacts of a run.
 fn places(scene: &Scene, impacts: u64) -> Vec<(f64, f64)> {
-    let mut places = Vec::new();
+    course(scene, impacts, |contact| contact.x)
+}
+
+/// Time and a value at the contacts of a run.
+fn course(scene: &Scene, impacts: u64, value: fn(&Contact) -> f64) -> Vec<(f64, f64)> {
+    let mut points = Vec::new();
     if let Ok(mut orbit) = scene.orbit() {
         run(&mut orbit, impacts, |contact| {
-            places.push((contact.t, contact.x));
+            points.push((contact.t, value(contact)));
             true
         });
     }
-    places
+    points
 }
 
 /// The claim of the lean at which the table is square to the rod.

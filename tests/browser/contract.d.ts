@@ -899,7 +899,7 @@ export interface components {
             failures: components["schemas"]["Failure"][];
         };
         /** @enum {string} */
-        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain" | "biased-angle";
+        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain" | "biased-angle" | "turning-table";
         Failure: {
             name: components["schemas"]["FailureName"];
             title: string;
@@ -1828,6 +1828,12 @@ export interface components {
                 acceleration: number | null;
                 speed: number | null;
                 time_on_table: number | null;
+            };
+            swing_pump?: {
+                swing: number;
+                distance: number;
+                energy: number;
+                critical_impacts: number | null;
             };
             drift_speed: number | null;
             agree: boolean | null;

@@ -106,6 +106,8 @@ async fn tables_that_turn_do_so_in_every_run_and_are_refused_elsewhere() {
     let map = "x.parameter=table.pivot.x&x.from=0&x.to=0.2&x.count=3&y.parameter=table.pivot.depth&y.from=0&y.to=0.1&y.count=2";
     let cells = get(&format!("/v1/regions?{TURNING}&impacts=200&{map}")).await;
     assert_eq!(cells["counts"]["completed"], 0, "{cells}");
+    let jacobian = get(&format!("/v1/jacobians?{TURNING}&at.impact=2")).await;
+    assert_eq!(jacobian["state_order"].as_array().unwrap().len(), 5);
     let noisy = format!("/v1/ensembles?{TURNING}&runs=4&impacts=100&scene.noise.timing_sd=1e-4");
     assert_eq!(get(&noisy).await["counts"]["completed"], 4);
     for resource in ["catches", "controllers", "periodic-orbits", "precision", "throws"] {
@@ -133,6 +135,31 @@ async fn a_live_run_ends_where_its_table_does() {
 }
 
 #[tokio::test]
+async fn the_verdict_on_a_turning_table_is_not_that_of_the_linear_analysis() {
+    let scene = format!("{TURNING}&scene.table.pivot.depth=0.05");
+    let answer = ask(&format!("/v1/stability?{scene}&impacts=1000&basin=true&tolerances.contact_distance=0.001")).await;
+    let impacts = number(&answer["nonlinear"]["impacts"]);
+    assert_eq!(answer["verdict"], format!("weakly unstable, this run ended at bounce {impacts}"), "{answer}");
+    assert!((number(&answer["swing_pump"]["critical_impacts"]) / impacts - 1.0).abs() < 0.3, "{answer}");
+    let ideal = ask("/v1/stability?preset=case-1&scene.release.theta=0.05").await;
+    assert_eq!(answer["linear"]["tilt_gain"], ideal["linear"]["tilt_gain"]);
+    assert!(answer["boundary"].is_null() && answer["lyapunov"].is_null() && answer["basin"].is_null());
+    assert_eq!((&answer["margins"]["holds"], &answer["loss_of_stability"]), (&Value::Null, &json!([])));
+    // Nothing is said where it is not derived.
+    let fed = ask(&format!("/v1/stability?{scene}&scene.table.energy_gain=0.2&scene.table.target_height=0.2")).await;
+    assert!(fed["verdict"].is_null() && fed["reason"].as_str().unwrap().contains("third order"), "{fed}");
+    let matched = "scene.contact.friction=0.5&scene.table.slide=matched&scene.table.tilt_rate=follows";
+    let damped =
+        ask(&format!("/v1/stability?preset=case-1&{matched}&scene.table.pivot.depth=0.05&scene.release.theta=0.03"))
+            .await;
+    assert_eq!(damped["verdict"], "stable, drifting", "{damped}");
+    let picture = Server::start().get(&format!("/v1/stability?{scene}&format=svg")).await;
+    picture.expect(200);
+    let refused = Server::start().get(&format!("/v1/regions?{TURNING}&quantity=residue&x.parameter=table.tilt_gain&x.from=1&x.to=1.4&x.count=3&y.parameter=release.theta&y.from=0&y.to=0.1&y.count=2")).await;
+    assert!(refused.expect(422).text().contains("table.tilt_rate"));
+}
+
+#[tokio::test]
 async fn a_point_mass_has_no_angle_to_sense_wrong() {
     let refused = Server::start().get("/v1/trajectories?preset=point-mass&scene.table.errors.angle_bias=0.01").await;
     assert!(refused.expect(422).text().contains("a body with an angle"));
@@ -152,4 +179,13 @@ async fn the_gallery_has_a_rig_that_the_ideal_analysis_calls_stable() {
     let end = number(&run.await["outcome"]["t"]);
     let lean = -0.022_f64;
     assert!((end / (1.0 / (9.81 * -lean.tan())).sqrt() - 1.0).abs() < 0.3, "{end}");
+}
+
+#[tokio::test]
+async fn the_gallery_has_a_turning_table_that_the_analysis_of_a_still_one_calls_stable() {
+    let case = case("turning-table").await;
+    assert_eq!(says(&case, "residue")["right"], false);
+    assert_eq!(says(&case, "energy of the swing")["right"], true);
+    let detail = case["truth"]["detail"].as_str().unwrap();
+    assert!(detail.contains("it has 2000 contacts"), "{detail}");
 }

@@ -45,6 +45,10 @@ const UPPER: f64 = 1.644_853_627;
 /// Margins of a scene by its linear verdict; `None` without a bounce in place.
 fn margins(scene: &Scene) -> Option<Vec<(&'static str, f64)>> {
     let judged = scene.with_tilt_law();
+    // The linear verdict does not see what a turning table does to a swing.
+    if judged.acting_turn().is_some() {
+        return None;
+    }
     let linear = LinearPart::new(&judged, &linear_verdict(&judged, &find_fixed_point(&judged).ok()?));
     let steers = judged.steers_energy();
     Some(linear.margins().into_iter().filter(|(name, _)| steers || *name != "energy_gain").collect())

@@ -110,8 +110,9 @@ impl<'a> JacobianAnswer<'a> {
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
         )];
         let fed_back = scene.model().feedback().is_some();
+        let turns = scene.acting_turn().is_some();
         let linear = match at {
-            At::FixedPoint if !fed_back => {
+            At::FixedPoint if !fed_back && !turns => {
                 find_fixed_point(scene).ok().map(|fixed_point| linear_verdict(scene, &fixed_point))
             }
             _ => None,
@@ -122,7 +123,11 @@ impl<'a> JacobianAnswer<'a> {
             let residue = linear.residue.and_then(|one| if period == 1 { Some(one) } else { block_residue(&matrix) });
             (values, residue, Some(linear.class == AngleClass::Parabolic))
         } else {
-            let whose = if fed_back { "a table without state feedback" } else { "a fixed point" };
+            let whose = match (fed_back, turns) {
+                (true, _) => "a table without state feedback",
+                (false, true) => "a table that does not turn as it strikes",
+                (false, false) => "a fixed point",
+            };
             notes.push(format!("residue and defective are null: they belong to {whose}"));
             (eigenvalues_of(&matrix, pointer)?, None, None)
         };
@@ -216,7 +221,7 @@ fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, Sta
         At::FixedPoint => {
             let fixed_point =
                 find_fixed_point(scene).map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
-            Ok((0.0, fixed_point.state()))
+            Ok((fixed_point.x, fixed_point.state()))
         }
         At::State(x, state) if has_angle(scene) => Ok((x, state)),
         At::State(x, State { theta, x_dot, y_dot, theta_dot }) => {

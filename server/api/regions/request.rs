@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{FieldKind, Name, Scene, field};
-use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
 use crate::api::catches::request::{canonical_settings, catch_price, never_caught, read_settings};
@@ -16,6 +16,10 @@ use crate::http::problem::shortened;
 use crate::http::{Errors, Reader};
 use crate::limits;
 use crate::limits::Limits;
+
+/// Levels whose linear maps are drawn. With a turning table they do not say what becomes of a swing.
+const LINEARLY_MAPPED: [ModelLevel; 4] =
+    [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::RigErrors, ModelLevel::Friction];
 
 /// A request for a stability map.
 #[derive(Debug, Clone, Copy)]
@@ -89,7 +93,7 @@ impl ResourceRequest for RegionRequest {
             return None;
         };
         let linear = matches!(map.quantity, MapQuantity::Residue | MapQuantity::SpectralRadius);
-        if let Some(error) = scene.beyond(&LINEARLY_JUDGED).filter(|_| linear) {
+        if let Some(error) = scene.beyond(&LINEARLY_MAPPED).filter(|_| linear) {
             let pointer = reader.pointer_to("scene");
             reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
             return None;

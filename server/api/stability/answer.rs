@@ -28,7 +28,9 @@ use crate::api::stability::cycle::cycle_sentence;
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
-use crate::api::stability::rig::{SteadyDriftAnswer, gain_notes};
+use crate::api::stability::rig::{
+    SteadyDriftAnswer, SwingPumpAnswer, TURNING_EVIDENCE, gain_notes, turning_drift_note, turning_notes,
+};
 
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct TiltGainAnswer {
@@ -94,6 +96,8 @@ pub struct StabilityAnswer<'a> {
     drift_speed: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     steady_drift: Option<SteadyDriftAnswer>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    swing_pump: Option<SwingPumpAnswer>,
     agree: Option<bool>,
     rotation_number: Option<RotationNumber>,
     chaos: Option<Chaos>,
@@ -200,6 +204,7 @@ impl<'a> StabilityAnswer<'a> {
             },
             drift_speed: drift_speed(scene),
             steady_drift: SteadyDriftAnswer::of(scene),
+            swing_pump: None,
             agree: None,
             rotation_number: None,
             chaos: None,
@@ -239,6 +244,8 @@ impl<'a> StabilityAnswer<'a> {
                  tilts, so nothing drifts, the angle has no block of its own, and no tilt_gain balances"
                     .to_owned(),
             );
+        } else if let Some(note) = turning_drift_note(judged).filter(|_| answer.drift_speed.is_none()) {
+            notes.push(note);
         } else if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
             notes.push(format!("drift_speed is null: {}", error.detail));
         } else if answer.drift_speed.is_none() {
@@ -283,9 +290,12 @@ impl<'a> StabilityAnswer<'a> {
                     notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
                 }
                 answer.bounces += evidence.bounces();
-                if linear.closed_loop.is_none() {
+                if judged.acting_turn().is_some() {
+                    notes.push(TURNING_EVIDENCE.to_owned());
+                } else if linear.closed_loop.is_none() {
                     evidence.explain(&linear, &mut notes);
                 }
+                answer.swing_pump = SwingPumpAnswer::of(judged, &fixed_point, &linear);
                 answer.predictable_impacts = evidence.predictable_impacts();
                 answer.chaos = evidence.chaos().map(Chaos::from);
                 answer.rotation_number = evidence.rotation().map(RotationNumber::from);
@@ -306,6 +316,7 @@ impl<'a> StabilityAnswer<'a> {
                     ));
                 }
                 notes.extend(gain_notes(judged));
+                notes.extend(turning_notes(judged));
                 answer.linear = Some(LinearPart::new(judged, &linear));
                 answer.fixed_point = Some(fixed_point.into());
             }

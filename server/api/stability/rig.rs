@@ -1,7 +1,11 @@
-//! Effects of the constant errors of a rig on a verdict, as part of the answer.
+//! Effects of the constant errors of a rig, and of a turning table, on a verdict, as part of the answer.
 
 use equipoise_physics::control::steady_drift::SteadyDrift;
+use equipoise_physics::control::swing_pump::{SwingPump, swing_pump};
 use equipoise_physics::scene::Scene;
+use equipoise_physics::stability::contact_regime::dragging_turn;
+use equipoise_physics::stability::fixed_point::FixedPoint;
+use equipoise_physics::stability::linear_verdict::LinearVerdict;
 use serde::Serialize;
 
 /// The motion to which a constant tilt of the table drives a balanced body.
@@ -29,6 +33,50 @@ impl SteadyDriftAnswer {
         let time_on_table = drift.time_on_table(scene.rules().half_length);
         Some(Self { theta, acceleration, speed, time_on_table })
     }
+}
+
+/// Energy that a turning table gives to a swing.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(super) struct SwingPumpAnswer {
+    /// Largest angle of the swing, rad.
+    swing: f64,
+    /// Distance of the body from the pivot, m.
+    distance: f64,
+    /// Mean energy per bounce, m²/s².
+    energy: f64,
+    /// Bounces until the height is critical.
+    critical_impacts: Option<u64>,
+}
+
+impl SwingPumpAnswer {
+    /// The pump of a scene whose table has one.
+    pub(super) fn of(scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Option<Self> {
+        let SwingPump { swing, distance, energy, impacts } = swing_pump(scene, fixed_point, linear)?;
+        Some(Self { swing, distance, energy, critical_impacts: impacts })
+    }
+}
+
+/// Note on evidence that is not derived for a turning table.
+pub(super) const TURNING_EVIDENCE: &str = "rotation_number, chaos and predictable_impacts are null: they are not derived for a table that turns as it strikes";
+
+/// Reason for which a turning table has no drift speed; `None` if it has one.
+pub(super) fn turning_drift_note(scene: &Scene) -> Option<String> {
+    dragging_turn(&scene.model())
+        .map(|_| "drift_speed is null: it is not derived where a turning table drags the contact along".to_owned())
+}
+
+/// Sentences on the height of a bounce whose table turns as it strikes.
+pub(super) fn turning_notes(scene: &Scene) -> Option<String> {
+    let decays = scene.model().feedback().is_some() || dragging_turn(&scene.model()).is_some();
+    (scene.acting_turn().is_some() && !scene.steers_energy()).then(|| {
+        if decays {
+            "fixed_point has the height at which the run settles, since strikes of a turning table change the energy as long as the angle \
+             moves; if the run does not settle, it has that of the release"
+        } else {
+            "fixed_point has the height of the release, which strikes of a turning table change as long as the angle moves"
+        }
+        .to_owned()
+    })
 }
 
 /// Sentences on gains that the table has by its errors, which are not those that it was given.

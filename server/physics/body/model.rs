@@ -12,6 +12,7 @@ use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::Noise;
+use crate::table::pivot::TurningTable;
 use crate::table::program::HeightProgram;
 
 /// The model that runs a scene.
@@ -62,6 +63,14 @@ impl Model {
         match self {
             Self::Rod(_) | Self::Point(_) => None,
             Self::General(general) => general.friction,
+        }
+    }
+
+    /// Turning of its table as it strikes, if it turns.
+    pub fn turning(&self) -> Option<TurningTable> {
+        match self {
+            Self::Rod(_) | Self::Point(_) => None,
+            Self::General(general) => general.turning,
         }
     }
 

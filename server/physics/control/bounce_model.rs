@@ -25,6 +25,10 @@ pub struct BounceModel {
     pub a: Matrix4<f64>,
     /// B, units of [`STATE`] per rad.
     pub b: Vector4<f64>,
+    /// Change per speed of the table along itself, units of [`STATE`] per m/s; 0 without friction.
+    by_table: Vector4<f64>,
+    /// Change per −α̇ of a table that turns as it strikes, units of [`STATE`] per rad/s.
+    dragged: Vector4<f64>,
 }
 
 /// The closed loop of a gain on a model.
@@ -35,7 +39,7 @@ pub struct ClosedLoop {
     pub eigenvalues: Vec<Complex<f64>>,
     /// The largest modulus.
     pub spectral_radius: f64,
-    /// Range of factors on K that keep the loop stable; `None` if it is unstable.
+    /// Range of factors on K that keep the loop stable; `None` if it is unstable, and where the table drags the contact as it turns.
     pub margin: Option<StableGainRange>,
 }
 
@@ -97,7 +101,19 @@ impl BounceModel {
             theta_row,
         ]);
         let b = Vector4::new(flight_time * x_dot.1, flight_time * theta_dot.1, x_dot.1, theta_dot.1);
-        Self { a, b }
+        let by_drag = match regime {
+            ContactRegime::Frictionless => [0.0, 0.0],
+            ContactRegime::VelocityMatched | ContactRegime::Sticking => [light, l / about_contact],
+        };
+        let by_table = Vector4::new(flight_time * by_drag[0], flight_time * by_drag[1], by_drag[0], by_drag[1]);
+        Self { a, b, by_table, dragged: Vector4::zeros() }
+    }
+
+    /// The same bounce on a table that turns about a pivot at a depth p (m) as it strikes, and drags a contact with friction along: a surface
+    /// that moves at −α̇p along itself gives the contact −pρ²α̇/(ρ² + l²) more of P_t, with α̇ = −(K_xẋ + K_θθ̇).
+    #[must_use]
+    pub fn turning(self, depth: f64) -> Self {
+        Self { dragged: self.by_table * depth, ..self }
     }
 
     /// The closed loop of a gain, with or without x among the states. `None` if the eigenvalues do not converge.
@@ -118,7 +134,10 @@ impl BounceModel {
 
     /// A, or A − BK with a gain, for some of the states.
     pub fn part(&self, gain: [f64; 4], states: &[usize]) -> DMatrix<f64> {
-        let matrix = self.a - self.b * RowVector4::from(gain);
+        let mut matrix = self.a - self.b * RowVector4::from(gain);
+        if self.dragged != Vector4::zeros() {
+            matrix += self.dragged * RowVector4::new(0.0, 0.0, gain[0], gain[1]);
+        }
         DMatrix::from_fn(states.len(), states.len(), |row, column| matrix[(states[row], states[column])])
     }
 
@@ -127,7 +146,9 @@ impl BounceModel {
         let (open, closed) = (self.part([0.0; 4], states), self.part(gain, states));
         let eigenvalues = eigenvalues(&closed)?;
         let spectral_radius = eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max);
-        let margin = (spectral_radius <= STABLE).then(|| stable_gain_range(&open, &closed));
+        // The range is derived for one input, and a turning table is a second one.
+        let margin =
+            (spectral_radius <= STABLE && self.dragged == Vector4::zeros()).then(|| stable_gain_range(&open, &closed));
         Some(ClosedLoop { eigenvalues, spectral_radius, margin })
     }
 }

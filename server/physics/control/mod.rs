@@ -11,3 +11,4 @@ pub mod lqr;
 pub mod margin;
 pub mod riccati;
 pub mod steady_drift;
+pub mod swing_pump;

@@ -1,5 +1,6 @@
 //! The contact at the upright bounce: without friction, sticking to a table that moves along with it, or sticking to a table that
-//! only tilts. Computes the inertia that a strike turns, the stick cone, and the eigenvalues for a table that only tilts.
+//! only tilts. Computes the inertia that a strike turns, the stick cone, and the eigenvalues for a table that only tilts, and of the angle
+//! where a matched table turns as it strikes.
 //!
 //! Not here: the impulse itself ([`crate::bounce::friction`]), and the conclusions ([`crate::stability::linear_verdict`],
 //! [`crate::stability::verdict`]).
@@ -8,6 +9,7 @@ use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::scene::model::Model;
+use crate::table::pivot::TurningTable;
 use nalgebra::Complex;
 
 /// Behaviour of the contact at the fixed point.
@@ -41,9 +43,14 @@ pub(crate) fn turning_radius_squared(rod: &Rod, regime: ContactRegime) -> f64 {
     }
 }
 
+/// The turning of a model's table, if it drags the contact point along.
+pub fn dragging_turn(model: &Model) -> Option<TurningTable> {
+    model.turning().filter(|turning| turning.drags(model.friction().as_ref()))
+}
+
 /// Rod and coefficient of friction of a model with a velocity-matched contact; `None` for other models.
 fn velocity_matched(model: &Model) -> Option<(&Rod, f64)> {
-    let matched = contact_regime(model) == ContactRegime::VelocityMatched;
+    let matched = contact_regime(model) == ContactRegime::VelocityMatched && dragging_turn(model).is_none();
     matched.then(|| (model.rod(), model.friction().map_or(0.0, |friction| friction.coefficient)))
 }
 
@@ -88,4 +95,47 @@ pub(crate) fn sticking_eigenvalues(rod: &Rod, speed: f64) -> [Complex<f64>; 3] {
     // The two values of λ − 1 have the product −2ν, which gives the smaller one without cancellation.
     let large = if mean < 0.0 { mean - root } else { mean + root };
     [1.0 + large, 1.0 - 2.0 * nu / large, 0.0].map(|value| Complex::new(value, 0.0))
+}
+
+/// The angle on a matched table whose turning drags the contact point along: θ̇⁺ = Dθ̇ − sθ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DraggedAngle {
+    /// D = 1 − lκp/(ρ² + l²), the determinant of the angle.
+    pub determinant: f64,
+    /// 1 + D − sτ, its trace.
+    pub trace: f64,
+    /// Greatest κ that balances, (1 + q)/(q + lp/(2(ρ² + l²))) with q = V²l/(G(ρ² + l²)); −∞ where none does.
+    pub critical_tilt_gain: f64,
+}
+
+impl DraggedAngle {
+    /// The angle of a rod over a pivot at a depth (m) that bounces at `speed` V (m/s).
+    ///
+    /// Its eigenvalues are inside the unit circle for |D| < 1 and |trace| < 1 + D. With s = 2Vl(κ − 1)/(ρ² + l²) that is κ > 1, p > 0 and
+    /// κ below the critical value, which is above 1 for p < 2(ρ² + l²)/l; D > −1 follows.
+    pub fn new(rod: &Rod, speed: f64, depth: f64) -> Self {
+        let (l, kappa) = (rod.contact_distance, rod.tilt_gain);
+        let turning = turning_radius_squared(rod, ContactRegime::VelocityMatched);
+        let (q, drag) = (speed * speed * l / (rod.gravity * turning), l * depth / turning);
+        let determinant = 1.0 - kappa * drag;
+        let balances = 0.0 < drag && drag < 2.0;
+        Self {
+            determinant,
+            trace: 1.0 + determinant - 4.0 * q * (kappa - 1.0),
+            critical_tilt_gain: if balances { (1.0 + q) / (q + 0.5 * drag) } else { f64::NEG_INFINITY },
+        }
+    }
+
+    /// Both eigenvalues.
+    pub fn eigenvalues(&self) -> [Complex<f64>; 2] {
+        let half = 0.5 * self.trace;
+        let square = half * half - self.determinant;
+        if square < 0.0 {
+            let imaginary = (-square).sqrt();
+            return [Complex::new(half, imaginary), Complex::new(half, -imaginary)];
+        }
+        let large = if half < 0.0 { half - square.sqrt() } else { half + square.sqrt() };
+        let small = if large == 0.0 { 0.0 } else { self.determinant / large };
+        [large, small].map(|value| Complex::new(value, 0.0))
+    }
 }

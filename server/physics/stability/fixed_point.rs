@@ -9,12 +9,12 @@ use crate::control::angle_feedback::AngleFeedback;
 use crate::control::steady_drift::SteadyDrift;
 use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Scene, Striking};
-use crate::stability::contact_regime::{ContactRegime, contact_regime, lent_by_table};
+use crate::stability::contact_regime::{ContactRegime, contact_regime, dragging_turn, lent_by_table};
 use crate::table::program::HeightProgram;
 
 /// The levels above the plain rod that can be judged linearly.
-pub const LINEARLY_JUDGED: [ModelLevel; 4] =
-    [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::RigErrors, ModelLevel::Friction];
+pub const LINEARLY_JUDGED: [ModelLevel; 5] =
+    [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::RigErrors, ModelLevel::Turning, ModelLevel::Friction];
 
 /// Most rounds in which the speed of a bounce and the drift beside it are brought together; each gains some digits.
 const MOST_ROUNDS: u32 = 32;
@@ -60,17 +60,21 @@ impl FixedPoint {
 /// run, m/s. `None` if κ = 1, which drifts off in angle instead, where friction holds the contact, and for a point mass, whose
 /// drift dies out.
 ///
-/// With state feedback of θ and θ̇ alone it is [`AngleFeedback::drift`]; feedback of x or ẋ leaves none.
+/// With state feedback of θ and θ̇ alone it is [`AngleFeedback::drift`]; feedback of x or ẋ leaves none. It is not derived where a turning
+/// table drags the contact along, nor for such feedback with a turning table.
 pub fn drift_speed(scene: &Scene) -> Option<f64> {
     let scene = &scene.with_tilt_law();
     if SteadyDrift::of(scene).is_some() {
         return None;
     }
-    if scene.model().feedback().is_some() {
-        return place_and_drift(scene, AngleFeedback::of(scene)?).ok().map(|(_, drift)| drift);
+    let model = scene.model();
+    if model.feedback().is_some() {
+        let feedback = AngleFeedback::of(scene).filter(|_| scene.acting_turn().is_none())?;
+        return place_and_drift(scene, feedback).ok().map(|(_, drift)| drift);
     }
-    let regime = contact_regime(&scene.model());
-    if scene.beyond(&[ModelLevel::Friction]).is_some() || regime == ContactRegime::Sticking {
+    let regime = contact_regime(&model);
+    let is_held = regime == ContactRegime::Sticking || dragging_turn(&model).is_some();
+    if is_held || scene.beyond(&[ModelLevel::Turning, ModelLevel::Friction]).is_some() {
         return None;
     }
     let BodyShape::Rod { contact_distance, radius_of_gyration } = scene.body else { return None };
@@ -81,6 +85,50 @@ pub fn drift_speed(scene: &Scene) -> Option<f64> {
         let stuck = if regime == ContactRegime::VelocityMatched { contact_distance } else { 0.0 };
         start.x_dot - (scene.tilt_gain * lever + stuck) * start.theta_dot / excess
     })
+}
+
+/// Reason for which a scene with a turning table has no verdict, if it has none.
+fn undecided_turn(scene: &Scene) -> Option<String> {
+    scene.acting_turn()?;
+    let model = scene.model();
+    let (regime, fed_back) = (contact_regime(&model), model.feedback().is_some());
+    let drags = dragging_turn(&model).is_some();
+    let decays = fed_back || drags;
+    if regime == ContactRegime::Sticking {
+        return None;
+    }
+    if !decays && (regime == ContactRegime::VelocityMatched || scene.steers_energy()) {
+        let beside =
+            if scene.steers_energy() { "table.energy_gain holds the height" } else { "the table moves along itself" };
+        return Some(format!(
+            "table.tilt_rate is `follows` with table.pivot.x, and {beside}: in first order the angle circles as on a table that does not turn, \
+             and whether a swing then grows or dies out is decided in third order, which is not derived"
+        ));
+    }
+    (drags && regime == ContactRegime::VelocityMatched && holds_total(scene)).then(|| {
+        "table.tilt_rate turns a matched table, and the drift beside it, which the total energy has in it, is not derived".to_owned()
+    })
+}
+
+/// Most contacts of a run in which a scene settles.
+const MOST_CONTACTS: u32 = 10_000;
+
+/// Swing of a settled run: θ and τθ̇, rad.
+const SETTLED_SWING: f64 = 1e-10;
+
+/// V, m/s, at which the run of a scene settles whose table turns as it strikes: its turning changes the energy as long as the angle
+/// moves. `None` if the run does not settle.
+fn settled_speed(scene: &Scene) -> Option<f64> {
+    let mut orbit = scene.orbit().ok()?;
+    for _ in 0..MOST_CONTACTS {
+        let State { theta, y_dot, theta_dot, .. } = *orbit.state();
+        let turned = 2.0 * y_dot / scene.gravity * theta_dot;
+        if theta.abs() <= SETTLED_SWING && turned.abs() <= SETTLED_SWING {
+            return Some(-y_dot);
+        }
+        orbit.advance().flight_time?;
+    }
+    None
 }
 
 /// The fixed point on the energy surface of the release, or that of the target height with energy feedback.
@@ -98,10 +146,19 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
         return Err(error.detail);
     }
     let x = place_of_rest(scene)?;
-    let found = match AngleFeedback::of(scene) {
+    if let Some(why) = undecided_turn(scene) {
+        return Err(why);
+    }
+    let found = match AngleFeedback::of(scene).filter(|_| scene.acting_turn().is_none()) {
         Some(feedback) => place_and_drift(scene, feedback)?.0,
         None => upright_bounce(scene, held_drift(scene))?,
     };
+    let decays = scene.model().feedback().is_some() || dragging_turn(&scene.model()).is_some();
+    if scene.acting_turn().is_some() && decays && !scene.steers_energy() {
+        let Some(speed) = settled_speed(scene) else { return Ok(FixedPoint { x, ..found }) };
+        let contact_distance = scene.parameters::<f64>().contact_distance;
+        return Ok(FixedPoint { x, ..FixedPoint::new(0.0, speed * speed, scene.gravity, contact_distance) });
+    }
     Ok(FixedPoint { x, ..found })
 }
 

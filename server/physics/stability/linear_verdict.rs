@@ -9,7 +9,9 @@ use crate::control::bounce_model::{BounceModel, ClosedLoop};
 use crate::numbers::trig;
 use crate::scene::model::Model;
 use crate::scene::{BodyShape, Scene};
-use crate::stability::contact_regime::{ContactRegime, contact_regime, sticking_eigenvalues, turning_radius_squared};
+use crate::stability::contact_regime::{
+    ContactRegime, DraggedAngle, contact_regime, dragging_turn, sticking_eigenvalues, turning_radius_squared,
+};
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::jacobian::{modulus, sort_eigenvalues};
 use nalgebra::Complex;
@@ -47,8 +49,8 @@ impl AngleClass {
 pub struct LinearVerdict {
     /// Motion of the angle.
     pub class: AngleClass,
-    /// R = (κ − 1)V²l/(Gρ²), with ρ² + l² for ρ² where a matched contact sticks; `None` for a point mass, and where the contact sticks to
-    /// a table that only tilts.
+    /// R = (κ − 1)V²l/(Gρ²), with ρ² + l² for ρ² where a matched contact sticks; `None` for a point mass, where the contact sticks to
+    /// a table that only tilts, and where a turning table drags it.
     pub residue: Option<f64>,
     /// σ, rad per bounce, cos σ = 1 − 2R; where it is elliptic or parabolic.
     pub rotation: Option<f64>,
@@ -136,7 +138,14 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
     };
     let (rod, regime) = (model.rod(), contact_regime(&model));
     if regime == ContactRegime::Sticking {
-        let mut eigenvalues = sticking_eigenvalues(rod, fixed_point.speed).to_vec();
+        let turned = dragging_turn(&model).and_then(|turning| {
+            let gain = [0.0, -rod.tilt_gain, 0.0, 0.0];
+            BounceModel::new(rod, fixed_point.speed, regime).turning(turning.depth).closed_loop(gain, false)
+        });
+        let mut eigenvalues = match turned {
+            None => sticking_eigenvalues(rod, fixed_point.speed).to_vec(),
+            Some(turned) => turned.eigenvalues,
+        };
         eigenvalues.push(real(energy_eigenvalue));
         sort_eigenvalues(&mut eigenvalues);
         return LinearVerdict {
@@ -146,6 +155,25 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
             eigenvalues,
             lower_tilt_gain: f64::INFINITY,
             critical_tilt_gain: f64::NEG_INFINITY,
+            upper_energy_gain,
+            energy_eigenvalue,
+            closed_loop: None,
+        };
+    }
+    if let Some(turning) = dragging_turn(&model) {
+        let angle = DraggedAngle::new(rod, fixed_point.speed, turning.depth);
+        let pair = angle.eigenvalues();
+        let mut eigenvalues = vec![pair[0], pair[1], real(1.0), real(energy_eigenvalue)];
+        sort_eigenvalues(&mut eigenvalues);
+        let decays = pair.into_iter().all(|value| modulus(value) <= 1.0 - PARABOLIC);
+        let critical_tilt_gain = angle.critical_tilt_gain;
+        return LinearVerdict {
+            class: if decays { AngleClass::Attracting } else { AngleClass::Hyperbolic },
+            residue: None,
+            rotation: None,
+            eigenvalues,
+            lower_tilt_gain: if critical_tilt_gain > 1.0 { 1.0 } else { f64::INFINITY },
+            critical_tilt_gain,
             upper_energy_gain,
             energy_eigenvalue,
             closed_loop: None,
@@ -195,6 +223,7 @@ pub fn one_strike_eigenvalue(scene: &Scene) -> f64 {
 fn closed_loop(model: &Model, fixed_point: &FixedPoint) -> Option<ClosedLoop> {
     let gain = model.feedback()?;
     let bounce = BounceModel::new(model.rod(), fixed_point.speed, contact_regime(model));
+    let bounce = dragging_turn(model).map_or(bounce, |turning| bounce.turning(turning.depth));
     bounce.closed_loop_of(gain, bounce.fed_back(gain))
 }
 

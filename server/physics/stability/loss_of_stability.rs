@@ -94,6 +94,10 @@ pub fn losses(
     boundary: Option<BoundaryCoefficient>,
 ) -> (Vec<StabilityLoss>, Vec<String>) {
     let (mut found, mut notes) = (Vec::new(), Vec::new());
+    if scene.acting_turn().is_some() {
+        notes.push("loss_of_stability is empty: it is not derived for a table that turns as it strikes".to_owned());
+        return (found, notes);
+    }
     if let Some(BoundaryCoefficient { coefficient }) = boundary {
         found.push(StabilityLoss {
             end: CriticalParameter::TiltGain,

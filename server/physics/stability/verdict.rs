@@ -4,11 +4,14 @@
 
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::control::bounce_model::{ANGLE, ClosedLoop, STATE};
+use crate::control::swing_pump::{SwingPump, swing_pump};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
 use crate::stability::boundary::{BoundaryCoefficient, boundary_coefficient, period_two_angle, underived};
-use crate::stability::contact_regime::{ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one};
-use crate::stability::fixed_point::FixedPoint;
+use crate::stability::contact_regime::{
+    ContactRegime, DraggedAngle, contact_regime, dragging_turn, stick_cone, sticking_polynomial_at_one,
+};
+use crate::stability::fixed_point::{FixedPoint, drift_speed};
 use crate::stability::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC};
 use crate::stability::loss_of_stability::{CriticalParameter, SettledMotion, StabilityLoss, losses};
 use crate::stability::lyapunov::{LyapunovCoefficient, SwingFate, lyapunov_coefficient};
@@ -162,6 +165,9 @@ pub fn assess(
     if let Some(closed) = &linear.closed_loop {
         return assess_feedback(closed, higher, run);
     }
+    if let Some(found) = assess_turning(scene, fixed_point, linear, run) {
+        return found;
+    }
     if let Ok(found) = &higher.lyapunov
         && found.kind != SwingFate::Neutral
     {
@@ -268,6 +274,83 @@ pub fn assess(
             assessment(Verdict::Unstable, DecidedBy::Linear, reason)
         }
     }
+}
+
+/// The verdict on a tilt gain with a turning table, where the contact does not stick to a table that only tilts; `None` for other
+/// scenes.
+fn assess_turning(
+    scene: &Scene,
+    fixed_point: &FixedPoint,
+    linear: &LinearVerdict,
+    run: &NonlinearRun,
+) -> Option<Assessment> {
+    let turning = scene.acting_turn()?;
+    let model = scene.model();
+    if model.feedback().is_some() || contact_regime(&model) == ContactRegime::Sticking {
+        return None;
+    }
+    let survived = run.ending == Ending::Completed;
+    let agree = linear.says_bounded() == survived;
+    let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
+    let outcome = if survived { format!("this run of {} bounces has not left yet", run.impacts) } else { fell.clone() };
+    let (kappa, critical) = (scene.tilt_gain, linear.critical_tilt_gain);
+    let assessment = |verdict, decided_by, reason| Some(Assessment { verdict, decided_by, agree, reason });
+    if dragging_turn(&model).is_some() {
+        let depth = turning.depth;
+        let DraggedAngle { determinant, .. } = DraggedAngle::new(model.rod(), fixed_point.speed, depth);
+        let about = format!(
+            "the table turns about a pivot {depth} m below its surface and drags the contact along: the angle has determinant {determinant}"
+        );
+        return match (linear.class, survived) {
+            (AngleClass::Attracting, true) => assessment(
+                Verdict::StableDrifting,
+                DecidedBy::Linear,
+                format!(
+                    "{about}, and tilt_gain {kappa} is between 1 and {critical}, so small deviations of the angle die out beside a drift"
+                ),
+            ),
+            (AngleClass::Attracting, false) => assessment(
+                Verdict::Unstable,
+                DecidedBy::Nonlinear,
+                format!(
+                    "{fell}, although small deviations of the angle die out ({about}): the start is outside the basin, or the table has ends"
+                ),
+            ),
+            (AngleClass::Elliptic | AngleClass::Parabolic | AngleClass::Hyperbolic, _) => {
+                let range = if critical > 1.0 {
+                    format!("balance takes a tilt_gain between 1 and {critical}, and it is {kappa}")
+                } else {
+                    "no tilt_gain balances".to_owned()
+                };
+                assessment(Verdict::Unstable, DecidedBy::Linear, format!("{about}; {range}; {outcome}"))
+            }
+        };
+    }
+    let Some(SwingPump { swing, distance, energy, impacts }) = swing_pump(scene, fixed_point, linear) else {
+        let reason = format!(
+            "tilt_gain {kappa} is not between {} and {critical}, so small deviations do not circle, and the table strikes harder or softer as it \
+             turns; {outcome}",
+            linear.lower_tilt_gain
+        );
+        return assessment(Verdict::Unstable, DecidedBy::Linear, reason);
+    };
+    let course = impacts.map_or_else(
+        || if energy < 0.0 { "the bounce loses its height" } else { "any swing would change its height" }.to_owned(),
+        |impacts| format!("the bounce grows to the height at which tilt_gain is critical, after about {impacts} bounces at this rate"),
+    );
+    let drift = drift_speed(scene).unwrap_or(0.0);
+    let beside = if drift.abs() > PARABOLIC * fixed_point.speed {
+        format!("; a drift of {drift} m/s takes the body farther from the pivot")
+    } else {
+        String::new()
+    };
+    let reason = format!(
+        "in first order the angle circles, since tilt_gain {kappa} is between {} and {critical}; but the surface of the turning table strikes in step \
+         with the swing: in second order a swing of {swing} rad, as here, at {distance} m from the pivot, changes the energy by {energy} m²/s² a bounce, and \
+         {course}{beside}; {outcome}",
+        linear.lower_tilt_gain
+    );
+    assessment(Verdict::WeaklyUnstable, DecidedBy::Lyapunov, reason)
 }
 
 /// Reason for which a run left its table although the linear analysis is stable.

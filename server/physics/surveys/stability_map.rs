@@ -275,6 +275,10 @@ impl StabilityMap {
 }
 
 fn linear(scene: &Scene) -> Option<LinearVerdict> {
+    // The linear analysis does not see what a turning table does to a swing.
+    if scene.acting_turn().is_some() {
+        return None;
+    }
     Some(linear_verdict(scene, &find_fixed_point(scene).ok()?))
 }
 

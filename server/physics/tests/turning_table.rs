@@ -5,16 +5,16 @@ use equipoise_physics::body::model::Model;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::{ContactMode, Strike};
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::method::{RunMethod, run_by};
-use equipoise_physics::run::orbit::{Contact, run};
+use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::jacobian::{finite_difference_at, jacobian_at, state_order};
-use mixes::{MIXES, Parts, number, scene as mixed};
+use mixes::{MIXES, Parts, scene as mixed};
 use random::Random;
 use rig::Rig;
+use turning_scenes::{contacts, number, turning, with};
 
 #[path = "support/mixes.rs"]
 mod mixes;
@@ -25,33 +25,8 @@ mod random;
 mod rig;
 #[path = "support/scenes.rs"]
 mod scenes;
-
-/// The scene with a table that turns about a pivot at a place, or under the contact.
-fn turning(scene: &Scene, word: &'static str, place: Option<f64>, depth: f64) -> Draft {
-    let mut draft = scene.draft();
-    draft.set(Name::TiltRate, Some(Value::Choice(word))).unwrap();
-    draft.set(Name::PivotX, place.map(Value::Number)).unwrap();
-    number(&mut draft, Name::PivotDepth, depth);
-    draft
-}
-
-fn with(scene: &Scene, values: &[(Name, f64)]) -> Scene {
-    let mut draft = scene.draft();
-    for &(name, value) in values {
-        number(&mut draft, name, value);
-    }
-    draft.build().unwrap()
-}
-
-/// Contacts of a run, and its ending.
-fn contacts(scene: &Scene, impacts: u64) -> (Vec<Contact>, Ending) {
-    let mut contacts = Vec::new();
-    let ending = run(&mut scene.orbit().unwrap(), impacts, |contact| {
-        contacts.push(*contact);
-        true
-    });
-    (contacts, ending.unwrap())
-}
+#[path = "support/turning.rs"]
+mod turning_scenes;
 
 /// t, x, θ, ẋ, ẏ, θ̇ at a contact.
 fn numbers(contact: &Contact) -> [f64; 6] {

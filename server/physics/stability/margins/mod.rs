@@ -87,6 +87,9 @@ pub fn margins_over_tolerances(scene: &Scene, tolerances: &Tolerances) -> Result
     if scene.model().feedback().is_some() {
         return Err("margins over tolerances are of a tilt gain; the table has state feedback".to_owned());
     }
+    if scene.acting_turn().is_some() {
+        return Err("margins over tolerances are not derived for a table that turns as it strikes".to_owned());
+    }
     let lower = linear_verdict(scene, &find_fixed_point(scene)?).lower_tilt_gain;
     let extreme = |of: fn(&BounceProperties) -> f64| search(low, high, |at| Ok(of(&bounce_properties(scene, at)?)));
     let (critical, worst) = extreme(|found| found.critical)?;

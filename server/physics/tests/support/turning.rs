@@ -1,0 +1,38 @@
+//! Scenes with tables that turn as they strike, and their runs.
+
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::{Contact, run};
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+/// Sets a number of a draft.
+pub(crate) fn number(draft: &mut Draft, name: Name, number: f64) {
+    draft.set(name, Some(Value::Number(number))).unwrap();
+}
+
+/// The scene with a table that turns about a pivot at a place, or under the contact.
+pub(crate) fn turning(scene: &Scene, word: &'static str, place: Option<f64>, depth: f64) -> Draft {
+    let mut draft = scene.draft();
+    draft.set(Name::TiltRate, Some(Value::Choice(word))).unwrap();
+    draft.set(Name::PivotX, place.map(Value::Number)).unwrap();
+    number(&mut draft, Name::PivotDepth, depth);
+    draft
+}
+
+/// The scene with other numbers.
+pub(crate) fn with(scene: &Scene, values: &[(Name, f64)]) -> Scene {
+    let mut draft = scene.draft();
+    for &(name, value) in values {
+        number(&mut draft, name, value);
+    }
+    draft.build().unwrap()
+}
+
+/// Contacts of a run, and its ending.
+pub(crate) fn contacts(scene: &Scene, impacts: u64) -> (Vec<Contact>, Ending) {
+    let mut contacts = Vec::new();
+    let ending = run(&mut scene.orbit().unwrap(), impacts, |contact| {
+        contacts.push(*contact);
+        true
+    });
+    (contacts, ending.unwrap())
+}

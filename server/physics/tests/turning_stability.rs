@@ -1,0 +1,196 @@
+//! Stability on tables that turn as they strike: closed forms against derivatives of the map and against runs.
+
+use equipoise_physics::control::bounce_model::BounceModel;
+use equipoise_physics::control::lqr::design_lqr;
+use equipoise_physics::control::swing_pump::swing_pump;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::contact_regime::ContactRegime;
+use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::jacobian::{eigenvalues, jacobian_at};
+use equipoise_physics::stability::linear_verdict::{AngleClass, linear_verdict};
+use equipoise_physics::stability::nonlinear_run::run_nonlinear;
+use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
+use nalgebra::Complex;
+use random::Random;
+use turning_scenes::{contacts, number, turning, with};
+
+mod paper;
+#[path = "support/random.rs"]
+mod random;
+#[path = "support/turning.rs"]
+mod turning_scenes;
+
+/// Eigenvalues of one list that are not near one of another.
+fn unmatched(ours: &[Complex<f64>], others: &[Complex<f64>]) -> f64 {
+    let distance =
+        |value: &Complex<f64>| others.iter().map(|other| (other - value).norm()).fold(f64::INFINITY, f64::min);
+    ours.iter().map(distance).fold(0.0, f64::max)
+}
+
+#[test]
+fn linear_verdicts_have_the_eigenvalues_of_the_map() {
+    let mut random = Random::new(41);
+    let mut classes = [0; 3];
+    for _ in 0..200 {
+        let (length, rho) = (random.between(0.05, 0.3), random.between(0.03, 0.2));
+        let above = length * random.between(0.3, 1.5);
+        let mut draft = Draft::default();
+        for (name, value) in [
+            (Name::ContactDistance, length),
+            (Name::RadiusOfGyration, rho),
+            (Name::Height, length + above),
+            (Name::Theta, 1e-3),
+            (Name::Friction, random.between(0.1, 0.8)),
+            (Name::Restitution, random.between(0.3, 1.0)),
+            (Name::EnergyGain, random.between(0.05, 0.6) / (2.0 * 9.81 * above)),
+            (Name::TargetHeight, length + above),
+        ] {
+            number(&mut draft, name, value);
+        }
+        let matched = random.between(0.0, 1.0) < 0.7;
+        draft.set(Name::Slide, Some(Value::Choice(if matched { "matched" } else { "none" }))).unwrap();
+        let about = rho * rho + length * length;
+        if random.between(0.0, 1.0) < 0.6 {
+            number(&mut draft, Name::TiltGain, 1.0 + random.between(-0.2, 1.5) * about / (2.0 * above * length));
+        } else {
+            for (name, size) in [
+                (Name::FeedbackX, 0.3),
+                (Name::FeedbackTheta, 3.0),
+                (Name::FeedbackXDot, 0.3),
+                (Name::FeedbackThetaDot, 0.1),
+            ] {
+                number(&mut draft, name, random.size(0.1 * size, size));
+            }
+        }
+        let place = (random.between(0.0, 1.0) < 0.5).then(|| random.size(0.01, 0.3));
+        let depth = random.between(-0.1, 0.3);
+        let scene = turning(&draft.build().unwrap(), "follows", place, depth).build().unwrap();
+        let fixed_point = find_fixed_point(&scene).unwrap();
+        let linear = linear_verdict(&scene, &fixed_point);
+        let exact = jacobian_at(&scene.model(), 0.0, &fixed_point.state(), 1).unwrap();
+        let values = eigenvalues(&exact.matrix).unwrap();
+        // A double eigenvalue is known to the root of rounding.
+        assert!(unmatched(&linear.eigenvalues, &values) < 1e-6, "{linear:?}\n{values:?}\n{scene:?}");
+        if scene.model().feedback().is_none() {
+            let beyond = values.iter().any(|value| value.norm() > 1.0 + 1e-6);
+            assert_eq!(linear.class == AngleClass::Hyperbolic, beyond, "{linear:?}\n{values:?}\n{scene:?}");
+            classes[usize::from(beyond)] += 1;
+            let kappa = scene.number(Name::TiltGain).unwrap();
+            let balances = linear.lower_tilt_gain < kappa && kappa < linear.critical_tilt_gain;
+            assert_eq!(balances, !beyond, "{linear:?} {kappa}");
+        } else {
+            classes[2] += 1;
+        }
+    }
+    assert!(classes.iter().all(|count| *count > 10), "{classes:?}");
+}
+
+#[test]
+fn a_pivot_below_a_matched_table_damps_the_angle_and_one_above_drives_it() {
+    let mut draft = with(&paper::scene(1.4, 0.03), &[(Name::Friction, 0.5)]).draft();
+    draft.set(Name::Slide, Some(Value::Choice("matched"))).unwrap();
+    number(&mut draft, Name::EnergyGain, 0.2);
+    number(&mut draft, Name::TargetHeight, 0.2);
+    let still = draft.build().unwrap();
+    let largest = |scene: &Scene| {
+        let contacts = contacts(scene, 400).0;
+        contacts[contacts.len().saturating_sub(50)..].iter().map(|it| it.state.theta.abs()).fold(0.0, f64::max)
+    };
+    for (depth, settles) in [(0.05, true), (-0.05, false)] {
+        let scene = turning(&still, "follows", None, depth).build().unwrap();
+        let fixed_point = find_fixed_point(&scene).unwrap();
+        let linear = linear_verdict(&scene, &fixed_point);
+        let swing = largest(&scene);
+        assert!(if settles { swing < 1e-4 } else { swing > 0.1 }, "{depth}: {swing}");
+        assert_eq!(linear.class, if settles { AngleClass::Attracting } else { AngleClass::Hyperbolic });
+        let run = run_nonlinear(&scene, 1000, || true).unwrap();
+        let higher = HigherOrder::of(&scene, &fixed_point, &linear);
+        assert!(higher.losses.is_empty() && higher.boundary.is_none() && higher.lyapunov.is_err());
+        let found = assess(&scene, &fixed_point, &linear, &higher, &run, None);
+        assert_eq!(found.verdict, if settles { Verdict::StableDrifting } else { Verdict::Unstable }, "{found:?}");
+    }
+}
+
+#[test]
+fn a_swing_takes_energy_from_a_turning_table_at_the_rate_of_second_order() {
+    let mut random = Random::new(77);
+    for case in 0..40 {
+        let (length, rho) = (random.between(0.05, 0.3), random.between(0.03, 0.2));
+        let above = length * random.between(0.3, 1.5);
+        let width = rho * rho / (2.0 * above * length);
+        let kappa = 1.0 + random.between(0.15, 0.6) * width;
+        let swing = 1e-4;
+        let scene = with(
+            &paper::scene(kappa, 0.0),
+            &[
+                (Name::ContactDistance, length),
+                (Name::RadiusOfGyration, rho),
+                (Name::Height, length + above),
+                (Name::Theta, swing),
+                (Name::Restitution, random.between(0.4, 1.0)),
+            ],
+        );
+        let place = if case % 2 == 0 { 0.0 } else { random.size(0.01, 0.2) };
+        let scene = turning(&scene, "follows", Some(place), random.between(-0.5, 0.2)).build().unwrap();
+        let fixed_point = find_fixed_point(&scene).unwrap();
+        let linear = linear_verdict(&scene, &fixed_point);
+        let pump = swing_pump(&scene, &fixed_point, &linear).unwrap();
+        // Released at rest, the body comes to its first contact with θ₀ and without spin.
+        let residue = linear.residue.unwrap();
+        assert!((pump.swing * (1.0 - residue).sqrt() / swing - 1.0).abs() < 1e-3, "{pump:?}");
+        // Mean over runs of both ends by a smooth window, which leaves the slow growth alone.
+        let rod = scene.parameters::<f64>();
+        let energies: Vec<_> = contacts(&scene, 4000).0.iter().map(|contact| rod.energy(&contact.state)).collect();
+        let window: Vec<f64> =
+            (1..2000).map(|k| (std::f64::consts::PI * f64::from(k) / 2000.0).sin().powi(4)).collect();
+        let weight: f64 = window.iter().sum();
+        let mean = |from: usize| window.iter().zip(&energies[from..]).map(|(w, e)| w * e).sum::<f64>() / weight;
+        let rate = (mean(2000) - mean(0)) / 2000.0;
+        let scale = pump.energy.abs() + 2.0 * kappa * swing * swing * residue * length;
+        assert!((rate - pump.energy).abs() < 0.03 * scale, "{rate} {pump:?} {scene:?}");
+    }
+}
+
+#[test]
+fn verdicts_on_turning_tables_say_what_the_run_shows() {
+    // The ideal rod bounces on; on this table it falls, about when the growth of its height says.
+    for (theta, place) in [(0.02, 0.0), (0.05, 0.0), (0.05, 0.1)] {
+        let scene = turning(&paper::scene(1.1, theta), "follows", Some(place), 0.05).build().unwrap();
+        let run = run_nonlinear(&scene, 20_000, || true).unwrap();
+        let fixed_point = find_fixed_point(&scene).unwrap();
+        let linear = linear_verdict(&scene, &fixed_point);
+        assert_eq!(linear.class, AngleClass::Elliptic);
+        let higher = HigherOrder::of(&scene, &fixed_point, &linear);
+        let found = assess(&scene, &fixed_point, &linear, &higher, &run, None);
+        assert_eq!((found.verdict, run.ending == Ending::Completed), (Verdict::WeaklyUnstable, false), "{found:?}");
+        let expected = swing_pump(&scene, &fixed_point, &linear).unwrap().impacts.unwrap() as f64;
+        let ratio = run.impacts as f64 / expected;
+        assert!((0.7..1.3).contains(&ratio), "{} {expected}", run.impacts);
+    }
+    // State feedback takes the swing away, whatever the table does to the height.
+    let ideal = paper::scene(1.1, 0.05);
+    let model =
+        BounceModel::new(&ideal.parameters(), find_fixed_point(&ideal).unwrap().speed, ContactRegime::Frictionless);
+    let gain = design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain;
+    let mut draft = ideal.draft();
+    draft.set(Name::TiltGain, None).unwrap();
+    let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+    for (name, gain) in names.into_iter().zip(gain) {
+        number(&mut draft, name, gain);
+    }
+    let scene = turning(&draft.build().unwrap(), "follows", Some(0.1), 0.05).build().unwrap();
+    let fixed_point = find_fixed_point(&scene).unwrap();
+    let last = contacts(&scene, 3000).0.last().copied().unwrap();
+    assert!((last.state.y_dot + fixed_point.speed).abs() < 1e-9, "{last:?} {fixed_point:?}");
+    assert!((fixed_point.speed - find_fixed_point(&draft.build().unwrap()).unwrap().speed).abs() > 1e-3);
+    let linear = linear_verdict(&scene, &fixed_point);
+    let run = run_nonlinear(&scene, 3000, || true).unwrap();
+    let higher = HigherOrder::of(&scene, &fixed_point, &linear);
+    let found = assess(&scene, &fixed_point, &linear, &higher, &run, None);
+    assert_eq!(found.verdict, Verdict::StableInPlace, "{found:?}");
+    // With energy feedback a swing is decided in third order.
+    let fed = with(&paper::scene(1.1, 0.05), &[(Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2)]);
+    let fed = turning(&fed, "follows", Some(0.0), 0.0).build().unwrap();
+    assert!(find_fixed_point(&fed).unwrap_err().contains("table.tilt_rate"));
+}
