@@ -31,6 +31,24 @@ pub(super) struct Step {
     pub(super) left: f64,
 }
 
+impl Step {
+    /// This step and a share of another one.
+    pub(super) fn plus(&self, share: f64, other: &Self) -> Self {
+        let sum = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(one, other)| one + share * other).collect();
+        let own = self.own.iter().zip(&other.own).map(|(one, other)| sum(one, other)).collect();
+        Self { own, fields: sum(&self.fields, &other.fields), left: self.left }
+    }
+
+    /// Size of a step, each unknown by its effect on the data.
+    pub(super) fn size(&self, blocks: &[Block]) -> f64 {
+        let squares = |block: &Block, own: &[f64]| {
+            let changes = own.iter().chain(&self.fields).zip(&block.norms);
+            changes.map(|(change, norm)| change * norm * change * norm).sum::<f64>()
+        };
+        blocks.iter().zip(&self.own).map(|(block, own)| squares(block, own)).sum::<f64>().sqrt()
+    }
+}
+
 /// The triangular factor of a matrix with at least as many rows as columns.
 fn triangular(matrix: DMatrix<f64>) -> DMatrix<f64> {
     matrix.qr().r()

@@ -14,7 +14,7 @@ use crate::scene::{Draft, FieldError, Name, Scene, Value};
 /// The same at the minimum: estimates move by a hundredth of their standard deviation.
 const FINE: (usize, f64) = (60, 1e-4);
 /// The same beside the minimum, where the size of the rise counts.
-const BESIDE: (usize, f64) = (5, 1.0);
+const BESIDE: (usize, f64) = (20, 1.0);
 /// Most rounds of leaving out outliers.
 const OUTLIER_ROUNDS: usize = 5;
 /// Share of the values up to which outliers are single. Beyond it the model is wrong, not the data.
@@ -29,7 +29,7 @@ const SHARP: f64 = 0.2;
 /// Effort there.
 const FAR_OFF: (usize, f64) = (9, 0.9);
 /// Effort from the first values and from where other starts ended, with one field held there.
-const FROM_START: (usize, f64) = (12, 0.9);
+const FROM_START: (usize, f64) = (20, 0.9);
 /// Rise of χ² of which a share is enough, however far off.
 const MOST_RISE: f64 = 100.0;
 /// Angle and angular velocity in a state.

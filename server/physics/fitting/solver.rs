@@ -5,7 +5,7 @@
 
 use super::confidence::scale;
 use super::elimination;
-use super::elimination::Block;
+use super::elimination::{Block, Step};
 use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, range};
 use super::measured::MeasuredRow;
 use super::statistics::{loss, weight};
@@ -249,6 +249,41 @@ impl Problem {
         moved
     }
 
+    /// A step with half the acceleration along it (Transtrum and Sethna 2012), which follows a bent valley; `None` if the acceleration is not
+    /// small beside the step, and while residuals are weighted.
+    fn bent(
+        &self,
+        point: &Point,
+        blocks: &[Block],
+        step: &Step,
+        (bounds, ridges, damping): (&[(f64, f64)], &[f64], f64),
+    ) -> Option<Step> {
+        if self.robust {
+            return None;
+        }
+        let ahead = |values: &[f64]| values.iter().map(|value| AHEAD * value).collect::<Vec<f64>>();
+        let own: Vec<Vec<f64>> = step.own.iter().map(|own| ahead(own)).collect();
+        let residuals = self.residuals(&self.predict(&self.moved(point, &own, &ahead(&step.fields)))?);
+        let mut curved = Vec::with_capacity(blocks.len());
+        for ((block, range), own) in blocks.iter().zip(&self.windows).zip(&step.own) {
+            let (mut rows, last) = (block.rows.clone(), block.rows.ncols() - 1);
+            let values = range.clone().flat_map(|row| {
+                let counts = (0..STATES).filter(move |&column| self.rows[row].counts(column));
+                counts.map(move |column| (row, column))
+            });
+            for (line, (row, column)) in values.enumerate() {
+                let by = |(place, change): (usize, &f64)| block.rows[(line, place)] * change;
+                let slope: f64 = own.iter().chain(&step.fields).enumerate().map(by).sum();
+                let change = residuals[row][column] - block.rows[(line, last)];
+                rows[(line, last)] = 2.0 / AHEAD * (change / AHEAD - slope);
+            }
+            curved.push(Block::new(block.own, rows));
+        }
+        let acceleration = elimination::step(&curved, bounds, ridges, damping);
+        let is_small = acceleration.size(blocks) <= MOST_BENT * step.size(blocks);
+        is_small.then(|| step.plus(0.5, &acceleration))
+    }
+
     /// Minimizes the squares from a point, until a step promises a fall of less than `negligible`; `Ok(None)` if a run ends there already.
     pub(super) fn minimize(
         &self,
@@ -272,9 +307,15 @@ impl Problem {
             loop {
                 let step = elimination::step(&blocks, &bounds, &ridges, damping);
                 let tiny = squares - step.left <= negligible;
+                let bent = self.bent(&point, &blocks, &step, (&bounds, &ridges, damping));
+                let mut found = bent.and_then(|bent| {
+                    let moved = self.moved(&point, &bent.own, &bent.fields);
+                    let there = self.cost(&moved).filter(|there| *there <= cost)?;
+                    Some((moved, there))
+                });
                 let moved = self.moved(&point, &step.own, &step.fields);
-                let there = self.cost(&moved);
-                let mut found = there.filter(|found| *found <= cost).map(|found| (moved.clone(), found));
+                let there = if found.is_none() { self.cost(&moved) } else { None };
+                found = found.or_else(|| there.filter(|there| *there <= cost).map(|there| (moved.clone(), there)));
                 if found.is_none() && !looked_ahead && there.is_some_and(|there| there < UPHILL * (cost + UPHILL)) {
                     // In a bent valley the step leaves its floor, and the next one comes back to it, farther on.
                     looked_ahead = true;
@@ -304,6 +345,12 @@ impl Problem {
         Ok(Some(Minimum { point, cost, converged: false, iterations: most_iterations }))
     }
 }
+
+/// Share of a step at which the acceleration along it is measured.
+const AHEAD: f64 = 0.1;
+
+/// Largest acceleration beside a step.
+const MOST_BENT: f64 = 0.75;
 
 /// Rise of the sum of squares, as a factor and in itself, up to which a step is followed by another before both are judged.
 const UPHILL: f64 = 10.0;
