@@ -221,8 +221,11 @@ pub const CONTROLLER_PRICE: u64 = 20_000;
 /// Measured impacts of one fit. A lab measures some hundred of a run.
 pub const FIT_IMPACTS: usize = 1000;
 
-/// Iterations of a fit by which it is priced: all stages of a slow one together.
-pub const FIT_ITERATIONS: u64 = 200;
+/// Iterations of a fit by which it is priced: all stages of a slow one together, with their linear algebra and the looks beside the minimum.
+pub const FIT_ITERATIONS: u64 = 400;
+
+/// Impacts that are added to those of a fit, for the work that does not grow with them.
+pub const FIT_OVERHEAD: u64 = 16;
 
 /// Longest time in contact after a catch, s: ten times the time in which the default weights bring a body to rest.
 pub const HOLD_TIME: f64 = 60.0;

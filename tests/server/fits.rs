@@ -103,6 +103,26 @@ async fn fields_come_from_measured_impacts_with_intervals_and_a_verdict() {
 }
 
 #[tokio::test]
+async fn margins_over_the_region_do_not_depend_on_the_order_of_the_fields() {
+    let server = Server::start();
+    let data = measured(&server, &json!({"release": {"theta": 0.2}}), 60, 1.0, 3).await;
+    let mut found = Vec::new();
+    for unknown in [["table.tilt_gain", "body.radius_of_gyration"], ["body.radius_of_gyration", "table.tilt_gain"]] {
+        let mut body = request(data.clone(), json!({}), &unknown);
+        body["sd"] = json!({"theta": SD[0].1, "t": SD[1].1});
+        found.push(server.post(FITS, &body).await.expect(200).json()["stability"]["margins"].clone());
+    }
+    for place in 0..2 {
+        let [one, other] = [&found[0][place], &found[1][place]];
+        let sd = number(one, "/sd");
+        for name in ["/value", "/sd", "/least", "/most"] {
+            assert!((number(one, name) - number(other, name)).abs() < 0.1 * sd, "{name}: {one} {other}");
+        }
+        assert!(number(one, "/value") - number(one, "/least") > 2.2 * sd, "{one}");
+    }
+}
+
+#[tokio::test]
 async fn exact_data_give_the_exact_fields() {
     let server = Server::start();
     let truth = json!({"release": {"theta": 0.2}, "table": {"tilt_gain": 1.234}});

@@ -19,7 +19,7 @@ pub struct RegionAnswer {
     reason: String,
     /// Distances from the ends of the linear verdict; stable where all are above 0.
     margins: Vec<Margin>,
-    /// True if the linear verdict is stable at the ends of all axes of the 95 % region; `None` without margins, and without a region: of a fit that
+    /// True if the linear verdict is stable at the ends of all axes of the 95 % region, and where a margin is least; `None` without margins, and without a region: of a fit that
     /// does not explain the data, or that leaves a field open.
     holds: Option<bool>,
 }
@@ -31,7 +31,7 @@ struct Margin {
     value: f64,
     /// By propagation of the covariance.
     sd: f64,
-    /// Least and greatest at the ends of the axes of the region.
+    /// Least and greatest at the ends of the axes of the region, and at its extremes.
     least: f64,
     most: f64,
 }
@@ -65,11 +65,24 @@ fn moved(fit: &Fit, by: &[f64]) -> Option<Scene> {
     draft.build().ok()
 }
 
+/// Radius of the 95 % region, in standard deviations.
+fn radius(fit: &Fit) -> f64 {
+    let told = fit.estimates.iter().filter(|estimate| estimate.is_identifiable()).count();
+    chi_squared_quantile(told.max(1) as f64, UPPER).sqrt()
+}
+
+/// Changes of the fields at which a margin with these slopes is least and greatest over the 95 % region, to first order.
+fn extremes(fit: &Fit, slopes: &[f64]) -> Option<[Vec<f64>; 2]> {
+    let product = |row: &Vec<f64>| row.iter().zip(slopes).map(|(covariance, slope)| covariance * slope).sum::<f64>();
+    let along: Vec<f64> = fit.covariance.iter().map(product).collect();
+    let variance: f64 = along.iter().zip(slopes).map(|(along, slope)| along * slope).sum();
+    let scale = Some(radius(fit) / variance.sqrt()).filter(|scale| scale.is_finite())?;
+    Some([scale, -scale].map(|scale| along.iter().map(|along| scale * along).collect()))
+}
+
 /// Ends of the axes of the 95 % region, as changes of the fields: those of the columns of a Cholesky factor of the covariance, which lie on its edge.
 fn ends(fit: &Fit) -> Vec<Vec<f64>> {
-    let told = fit.estimates.iter().filter(|estimate| estimate.is_identifiable()).count();
-    let radius = chi_squared_quantile(told.max(1) as f64, UPPER).sqrt();
-    let count = fit.covariance.len();
+    let (radius, count) = (radius(fit), fit.covariance.len());
     let mut factor = vec![vec![0.0; count]; count];
     for row in 0..count {
         for column in 0..=row {
@@ -126,7 +139,8 @@ impl RegionAnswer {
                 slopes[field] = (high.1 - low.1) / (2.0 * STEP * sd);
             }
         }
-        let judged: Vec<_> = ends(fit).iter().map(|by| margins(&moved(fit, by)?)).collect();
+        let extremes = slopes.iter().filter_map(|slopes| extremes(fit, slopes)).flatten();
+        let judged: Vec<_> = ends(fit).into_iter().chain(extremes).map(|by| margins(&moved(fit, &by)?)).collect();
         // An end without a bounce in place has no margins, so nothing holds there.
         let all_judged = judged.iter().all(|found| found.as_ref().is_some_and(|found| found.len() == here.len()));
         let ends: Vec<_> = judged.into_iter().flatten().collect();

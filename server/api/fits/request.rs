@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use equipoise_physics::fitting::{COLUMNS, FitRequest, MOST_UNKNOWNS, Measured, check};
 use equipoise_physics::scene::{Name, field};
+use equipoise_physics::stability::regularity::WATCHED;
 use serde_json::Value;
 
 use crate::api::fits::fault::place;
@@ -57,11 +58,15 @@ impl ResourceRequest for FitsRequest {
         let first = measured.n.first().copied().unwrap_or(1);
         let last = measured.n.last().copied().unwrap_or(measured.rows() as u64);
         let impacts = last.saturating_sub(first).max(measured.rows() as u64);
+        // Friction, and an error of the rig that the scene leaves out, take a dearer model than the scene has by itself.
+        let is_dearer = unknown.iter().any(|&name| name == Name::Friction || scene.number(name).is_none());
+        let bounce = bounce_price(scene) + u64::from(is_dearer);
         // A derivative steps each component of a state and each field to both sides.
-        let derivative = 2 * (COLUMNS.len() + unknown.len()) as u64 * bounce_price(scene);
-        let stability = (2 + 2 * unknown.len() as u64) * limits::ANSWER_PRICE + DEFAULT_IMPACTS * bounce_price(scene);
-        Price::bounces(limits::ANSWER_PRICE + stability + limits::FIT_ITERATIONS * impacts * derivative)
-            .within(&limits.of_work())
+        let derivative = 2 * (COLUMNS.len() + unknown.len()) as u64 * bounce;
+        let margins = (8 + 4 * unknown.len() as u64) * limits::ANSWER_PRICE;
+        let stability = margins + (DEFAULT_IMPACTS + 4 * WATCHED) * bounce;
+        let iterations = limits::FIT_ITERATIONS * (impacts + limits::FIT_OVERHEAD);
+        Price::bounces(stability + iterations * derivative).within(&limits.of_work())
     }
 }
 
