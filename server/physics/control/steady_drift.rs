@@ -2,6 +2,7 @@
 //!
 //! Not here: state feedback of x, which has one, farther on ([`crate::stability::fixed_point`]).
 
+use crate::numbers::rounded::rounded;
 use crate::numbers::trig;
 use crate::scene::Scene;
 use crate::stability::contact_regime::{ContactRegime, contact_regime};
@@ -68,17 +69,24 @@ impl SteadyDrift {
 
 impl fmt::Display for SteadyDrift {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
+        match *self {
             Self::Accelerates { theta, acceleration: None } => {
+                let theta = rounded(theta);
                 write!(formatter, "the table is square to the body at {theta} rad and not upright")
             }
             Self::Accelerates { theta, acceleration: Some(acceleration) } => write!(
                 formatter,
-                "the table is square to the body at {theta} rad and not upright, and there every strike drives it aside, at \
-                 {acceleration} m/s² while the drift is slow"
+                "the table is square to the body at {} rad and not upright, and there every strike drives it aside, at \
+                 {} m/s² while the drift is slow",
+                rounded(theta),
+                rounded(acceleration)
             ),
             Self::Moves { speed } => {
-                write!(formatter, "x is not fed back, and the body is balanced at {speed} m/s and not in place")
+                write!(
+                    formatter,
+                    "x is not fed back, and the body is balanced at {} m/s and not in place",
+                    rounded(speed)
+                )
             }
             Self::Turns => write!(formatter, "the table is square to the body at no angle below π/2"),
         }

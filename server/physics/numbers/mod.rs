@@ -8,6 +8,7 @@ pub mod double_double;
 pub mod dual;
 pub(crate) mod logarithm;
 pub mod number;
+pub mod rounded;
 pub mod second_order;
 pub(crate) mod symmetric;
 pub mod taylor;

@@ -7,6 +7,7 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::control::angle_feedback::AngleFeedback;
 use crate::control::steady_drift::SteadyDrift;
+use crate::numbers::rounded::rounded;
 use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, dragging_turn, lent_by_table};
@@ -181,10 +182,14 @@ fn place_of_rest(scene: &Scene) -> Result<f64, String> {
     if tilt == 0.0 {
         return Ok(0.0);
     }
-    let beside = format!("the table tilts by {tilt} rad beside its law (table.errors, body.offset)");
+    let beside = format!("the table tilts by {} rad beside its law (table.errors, body.offset)", rounded(tilt));
     if let Some(drift) = SteadyDrift::of(scene) {
         let ends = drift.time_on_table(scene.half_length).map_or_else(String::new, |time| {
-            format!("; from rest in the middle it leaves a table of {} m after about {time} s", 2.0 * scene.half_length)
+            format!(
+                "; from rest in the middle it leaves a table of {} m after about {} s",
+                2.0 * scene.half_length,
+                rounded(time)
+            )
         });
         return Err(format!("{beside}, so no bounce repeats in place: {drift}{ends}"));
     }
@@ -192,7 +197,8 @@ fn place_of_rest(scene: &Scene) -> Result<f64, String> {
     let x = tilt / gain;
     if x.abs() > scene.half_length {
         return Err(format!(
-            "{beside}, and the feedback of x takes that back at x = {x} m, beyond the end of the table at {} m",
+            "{beside}, and the feedback of x takes that back at x = {} m, beyond the end of the table at {} m",
+            rounded(x),
             scene.half_length
         ));
     }
