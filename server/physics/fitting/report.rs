@@ -163,13 +163,16 @@ impl Search<'_> {
             let far = FAR.iter().filter(|_| !is_sharp).map(|off| (off * information.scales[field], FAR_OFF));
             // Along a bent valley, such as κ − 1 ∝ ρ² of a small swing, a fit may slide far from first values that fit as well, or from where
             // another start led.
-            let starts: Vec<Vec<f64>> = std::iter::once(&self.typed).chain(&self.ends).cloned().collect();
+            let mirrored = self.mirrored(&minimum.point.fields);
+            let starts: Vec<Vec<f64>> =
+                std::iter::once(&self.typed).chain(&self.ends).cloned().chain(mirrored.clone()).collect();
             let from_starts = starts.iter().map(|start| (start[field] - value, FROM_START, Some(start)));
             let beside = near.into_iter().chain(far).map(|(off, effort)| (off, effort, None));
             for (off, effort, from) in beside.chain(from_starts) {
                 let aside = (value + off).clamp(low, high);
                 let distance = (aside - value) / sd;
-                if distance.abs() < 0.5 * PROFILE || (effort != BESIDE && distance.abs() < 2.0 * PROFILE) {
+                let is_beside = effort == BESIDE || (from.is_some() && from == mirrored.as_ref());
+                if distance.abs() < if is_beside { 0.5 * PROFILE } else { 2.0 * PROFILE } {
                     continue;
                 }
                 let promised = (distance * distance).min(MOST_RISE);
@@ -207,16 +210,39 @@ impl Search<'_> {
                 }
                 if rise < LEAST_RISE * promised {
                     let row = self.problem.names[field].row();
-                    information.untold[field] = Some(format!(
-                        "values far from the best fit the data nearly as well: at {aside} {} chi_squared is {rise} larger, where its \
+                    let reason = format!(
+                        "values far from the best fit the data nearly as well: at {} = {aside} {} chi_squared is {rise} larger, where its \
                          curvature promises {promised} or more",
+                        row.path,
                         if row.unit == "1" { "" } else { row.unit }
-                    ));
+                    );
+                    // Fields that moved along are told no better.
+                    for (other, moved) in found.point.fields.iter().enumerate() {
+                        let distance = (moved - minimum.point.fields[other]) / information.sd(other);
+                        if other == field || distance.abs() > PROFILE {
+                            information.untold[other].get_or_insert_with(|| reason.clone());
+                        }
+                    }
                     break;
                 }
             }
         }
         Ok(None)
+    }
+
+    /// The fields with the other contact distance of the same swing: where the contact sticks, l acts on the angle through l/(l² + ρ²), which is
+    /// the same at ρ²/l.
+    fn mirrored(&self, fields: &[f64]) -> Option<Vec<f64>> {
+        let place = self.problem.names.iter().position(|name| *name == Name::ContactDistance)?;
+        let draft = self.problem.draft_at(fields)?;
+        let number = |name| match draft.get(name) {
+            Some(Value::Number(number)) => Some(number),
+            _ => None,
+        };
+        number(Name::Friction).filter(|friction| *friction > 0.0)?;
+        let mut mirrored = fields.to_vec();
+        mirrored[place] = number(Name::RadiusOfGyration)?.powi(2) / fields[place];
+        Some(mirrored)
     }
 
     pub(super) fn finish(

@@ -433,3 +433,30 @@ fn fields_that_cannot_be_unknown_are_refused() {
     let few = fit(&request(&scene, few, &[Name::TiltGain]), &mut || true);
     assert!(matches!(few, Err(FitFailure::TooFew { .. })), "{few:?}");
 }
+
+#[test]
+fn a_contact_distance_with_a_mirror_is_not_told() {
+    // Where the contact sticks, l acts on the angle through l/(l² + ρ²), which is the same at ρ²/l.
+    let numbers = [
+        (Name::ContactDistance, 0.0894),
+        (Name::RadiusOfGyration, 0.0631),
+        (Name::Gravity, 3.362),
+        (Name::TiltGain, 1.115),
+        (Name::Friction, 0.6),
+        (Name::Restitution, 0.75),
+        (Name::AssumedRestitution, 0.751),
+        (Name::Height, 0.22),
+        (Name::Theta, 0.1),
+    ];
+    let scene = scene(&numbers, &[(Name::Slide, "matched")]);
+    for (seed, first) in (0..10).flat_map(|seed| [0.06, 0.0894, 0.11].map(|first| (seed, first))) {
+        let measured = measure(&scene, 20, &[THETA, T], 1.0, &mut Random::new(seed));
+        let mut asked =
+            request(&with(&scene, Name::ContactDistance, first), measured, &[Name::ContactDistance, Name::TiltGain]);
+        asked.sd = std::array::from_fn(|column| [THETA, T].contains(&column).then_some(NOISE[column]));
+        let found = fitted(&asked);
+        let estimate = &found.estimates[0];
+        let is_near = (estimate.value - 0.0894).abs() < 6.0 * estimate.sd.unwrap_or(f64::INFINITY);
+        assert!(is_near, "{seed}, from {first}: {estimate:?} {:?}", found.quality);
+    }
+}
