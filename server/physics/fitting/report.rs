@@ -30,6 +30,9 @@ const SHARP: f64 = 0.2;
 const FAR_OFF: (usize, f64) = (9, 0.9);
 /// Effort from the first values and from where other starts ended, with one field held there.
 const FROM_START: (usize, f64) = (20, 0.9);
+/// Distance from the first value, in scales of the field, beyond which a better minimum is looked for from there, whatever the standard
+/// deviation says.
+const WENT_FAR: f64 = 0.25;
 /// Rise of χ² of which a share is enough, however far off.
 const MOST_RISE: f64 = 100.0;
 /// Angle and angular velocity in a state.
@@ -172,7 +175,13 @@ impl Search<'_> {
                 let aside = (value + off).clamp(low, high);
                 let distance = (aside - value) / sd;
                 let is_beside = effort == BESIDE || (from.is_some() && from == mirrored.as_ref());
-                if distance.abs() < if is_beside { 0.5 * PROFILE } else { 2.0 * PROFILE } {
+                // At the end of a bent valley the standard deviation is no measure of the way there.
+                let went_far = from.is_some_and(|from| {
+                    let ways = from.iter().zip(&minimum.point.fields).map(|(start, end)| (start - end).abs());
+                    ways.zip(&information.scales).any(|(way, scale)| way > WENT_FAR * scale)
+                });
+                let is_near = distance.abs() < if is_beside || went_far { 0.5 * PROFILE } else { PROFILE };
+                if is_near && !went_far {
                     continue;
                 }
                 let promised = (distance * distance).min(MOST_RISE);
@@ -208,7 +217,7 @@ impl Search<'_> {
                     let problem = self.problem.clone();
                     return self.minimize(&problem, found.point, FINE, go_on);
                 }
-                if rise < LEAST_RISE * promised {
+                if !is_near && rise < LEAST_RISE * promised {
                     let row = self.problem.names[field].row();
                     let reason = format!(
                         "values far from the best fit the data nearly as well: at {} = {aside} {} chi_squared is {rise} larger, where its \

@@ -1,7 +1,9 @@
-//! Fits of scenes to runs with noise added: estimates, intervals, outliers, missed and doubled impacts, faults of the data.
+//! Fits of scenes to runs with noise added: estimates, intervals, outliers, missed and doubled impacts.
 
-#[path = "support/random.rs"]
+mod faults;
+#[path = "../support/random.rs"]
 mod random;
+mod untold;
 
 use equipoise_physics::fitting::{DataError, Fit, FitFailure, FitRequest, Measured, QualityKind, fit};
 use equipoise_physics::run::orbit::run;
@@ -275,46 +277,6 @@ fn numbers_with_gaps_are_honoured() {
 }
 
 #[test]
-fn a_field_without_effect_is_not_told() {
-    // Restitution drops out where the table makes up the loss, by the strike gain 2.
-    let scene = scene(&[(Name::TiltGain, 1.1), (Name::Height, 0.2), (Name::Theta, 0.2), (Name::Restitution, 0.6)], &[]);
-    let measured = measure(&scene, 50, &[THETA, T], 1.0, &mut Random::new(6));
-    let found = fitted(&request(&scene, measured, &[Name::Restitution, Name::TiltGain]));
-    assert!(!found.estimates[0].is_identifiable() && found.estimates[1].is_identifiable());
-    assert!(found.estimates[0].detail.as_ref().unwrap().contains("makes up"), "{:?}", found.estimates[0]);
-    assert_eq!(found.scene.number(Name::Restitution), Some(0.6));
-}
-
-#[test]
-fn a_tilt_gain_without_any_tilt_is_not_told() {
-    let scene = with(&case_1(), Name::Theta, 0.0);
-    for seed in 0..100 {
-        let measured = measure(&scene, 60, &[THETA, T], 1.0, &mut Random::new(seed));
-        let found = fitted(&request(&scene, measured, &[Name::TiltGain]));
-        let is_good = found.quality.kind == QualityKind::Good;
-        assert!(!(is_good && found.estimates[0].is_identifiable()), "{seed}: {:?}", found.estimates[0]);
-    }
-}
-
-#[test]
-fn a_field_without_effect_may_be_the_only_one() {
-    let scene = scene(&[(Name::TiltGain, 1.1), (Name::Height, 0.2), (Name::Theta, 0.2), (Name::Restitution, 0.6)], &[]);
-    let measured = measure(&scene, 30, &[THETA, T], 1.0, &mut Random::new(6));
-    let found = fitted(&request(&scene, measured, &[Name::Restitution]));
-    assert!(!found.estimates[0].is_identifiable() && found.covariance == [[0.0]], "{found:?}");
-}
-
-#[test]
-fn fields_of_which_only_a_combination_acts_are_not_told() {
-    // The motion of a lossless rod depends on its lengths through l/ρ² and l alone, and times and angles have no length in them but by gravity.
-    let scene = case_1();
-    let measured = measure(&scene, 50, &[THETA, T], 1.0, &mut Random::new(8));
-    let unknown = [Name::ContactDistance, Name::RadiusOfGyration, Name::Gravity];
-    let found = fitted(&request(&scene, measured, &unknown));
-    assert!(found.estimates.iter().all(|estimate| !estimate.is_identifiable()), "{:?}", found.estimates);
-}
-
-#[test]
 fn a_wrong_model_is_said_to_be_wrong() {
     let scene = scene(
         &[
@@ -337,55 +299,6 @@ fn a_wrong_model_is_said_to_be_wrong() {
 }
 
 #[test]
-fn faults_of_the_data_are_named() {
-    let scene = case_1();
-    let clean = measure(&scene, 20, &[THETA, T], 1.0, &mut Random::new(2));
-    let fault = |change: &dyn Fn(&mut Measured)| {
-        let mut measured = clean.clone();
-        change(&mut measured);
-        match fit(&request(&scene, measured, &[Name::TiltGain]), &mut || true) {
-            Err(FitFailure::Data(DataError { column, row, detail })) => (column, row, detail),
-            other => panic!("{other:?}"),
-        }
-    };
-    let (column, row, _) = fault(&|measured| measured.columns[T].swap(4, 5));
-    assert_eq!((column, row), ("t", Some(5)));
-    let (column, _, detail) =
-        fault(&|measured| measured.columns[T].iter_mut().for_each(|t| *t = t.map(|t| t * 1000.0)));
-    assert!(column == "t" && detail.contains("ms"), "{detail}");
-    let (column, _, detail) =
-        fault(&|measured| measured.columns[THETA].iter_mut().for_each(|theta| *theta = theta.map(f64::to_degrees)));
-    assert!(column == "theta" && detail.contains("degrees"), "{detail}");
-    let (_, _, detail) = fault(&|measured| measured.columns.iter_mut().for_each(|column| column.truncate(1)));
-    assert!(detail.contains("at least 2"), "{detail}");
-    let (column, _, _) = fault(&|measured| measured.columns[T].clear());
-    assert_eq!(column, "t");
-    let (column, row, _) = fault(&|measured| measured.n = vec![3; 20]);
-    assert_eq!((column, row), ("n", Some(1)));
-}
-
-#[test]
-fn other_units_and_signs_are_named() {
-    let clean = measure(&case_1(), 20, &[THETA, X_DOT, Y_DOT, THETA_DOT, X, T], 1.0, &mut Random::new(2));
-    fitted(&request(&case_1(), clean.clone(), &[Name::TiltGain]));
-    for (column, factor, name, word) in [
-        (THETA_DOT, 57.3, "theta_dot", "degrees"),
-        (THETA_DOT, -1.0, "theta_dot", "sign"),
-        (X_DOT, 1e3, "x_dot", "mm or cm"),
-        (X, 100.0, "x_dot", "mm or cm"),
-        (Y_DOT, 100.0, "y_dot", "cm/s"),
-        (Y_DOT, -1.0, "y_dot", "less than 0"),
-        (T, 100.0, "t", "ms"),
-    ] {
-        let mut measured = clean.clone();
-        measured.columns[column].iter_mut().for_each(|value| *value = value.map(|value| value * factor));
-        let refused = fit(&request(&case_1(), measured, &[Name::TiltGain]), &mut || true);
-        let Err(FitFailure::Data(DataError { column, detail, .. })) = refused else { panic!("{name}: {refused:?}") };
-        assert!(column == name && detail.contains(word), "{name}: {column}: {detail}");
-    }
-}
-
-#[test]
 fn errors_of_the_rig_are_0_where_the_scene_leaves_them_out() {
     let rig = with(&case_1(), Name::TiltOffset, 0.004);
     let measured = measure(&rig, 60, &[THETA, X, T], 1.0, &mut Random::new(12));
@@ -396,67 +309,5 @@ fn errors_of_the_rig_are_0_where_the_scene_leaves_them_out() {
     let both = fitted(&request(&case_1(), measured, &[Name::TiltOffset, Name::AngleBias]));
     for estimate in both.estimates {
         assert!(estimate.detail.unwrap().contains("only a combination"), "{:?}", estimate.name);
-    }
-}
-
-#[test]
-fn fields_that_cannot_be_unknown_are_refused() {
-    let scene = case_1();
-    let measured = measure(&scene, 20, &[THETA, T], 1.0, &mut Random::new(2));
-    for unknown in
-        // A gain of the energy needs a target, and a state feedback takes the place of the tilt gain.
-        [
-            &[Name::TiltGain, Name::TiltGain] as &[Name],
-            &[Name::Law],
-            &[Name::AssumedRestitution],
-            &[Name::TimingSd],
-            &[Name::EnergyGain],
-            &[Name::FeedbackX],
-        ]
-    {
-        let refused = fit(&request(&scene, measured.clone(), unknown), &mut || true);
-        assert!(matches!(refused, Err(FitFailure::Unknown(_, _))), "{unknown:?}: {refused:?}");
-    }
-    let lengths = [Name::ContactDistance, Name::RadiusOfGyration, Name::Height];
-    let others = [Name::TiltGain, Name::Gravity, Name::Restitution, Name::Theta, Name::ThetaDot, Name::XDot];
-    let nine = [&lengths[..], &others].concat();
-    let refused = fit(&request(&scene, measured.clone(), &nine), &mut || true);
-    assert!(matches!(refused, Err(FitFailure::Unknown(8, _))), "{refused:?}");
-    let refused = fit(&request(&scene, measured.clone(), &[]), &mut || true);
-    assert!(matches!(refused, Err(FitFailure::Unknown(0, _))), "{refused:?}");
-    let cancelled = fit(&request(&scene, measured.clone(), &[Name::TiltGain]), &mut || false);
-    assert_eq!(cancelled.unwrap_err(), FitFailure::Cancelled);
-    let few = Measured {
-        columns: measured.columns.map(|column| column.into_iter().take(3).collect()),
-        ..Measured::default()
-    };
-    let few = fit(&request(&scene, few, &[Name::TiltGain]), &mut || true);
-    assert!(matches!(few, Err(FitFailure::TooFew { .. })), "{few:?}");
-}
-
-#[test]
-fn a_contact_distance_with_a_mirror_is_not_told() {
-    // Where the contact sticks, l acts on the angle through l/(l² + ρ²), which is the same at ρ²/l.
-    let numbers = [
-        (Name::ContactDistance, 0.0894),
-        (Name::RadiusOfGyration, 0.0631),
-        (Name::Gravity, 3.362),
-        (Name::TiltGain, 1.115),
-        (Name::Friction, 0.6),
-        (Name::Restitution, 0.75),
-        (Name::AssumedRestitution, 0.751),
-        (Name::Height, 0.22),
-        (Name::Theta, 0.1),
-    ];
-    let scene = scene(&numbers, &[(Name::Slide, "matched")]);
-    for (seed, first) in (0..10).flat_map(|seed| [0.06, 0.0894, 0.11].map(|first| (seed, first))) {
-        let measured = measure(&scene, 20, &[THETA, T], 1.0, &mut Random::new(seed));
-        let mut asked =
-            request(&with(&scene, Name::ContactDistance, first), measured, &[Name::ContactDistance, Name::TiltGain]);
-        asked.sd = std::array::from_fn(|column| [THETA, T].contains(&column).then_some(NOISE[column]));
-        let found = fitted(&asked);
-        let estimate = &found.estimates[0];
-        let is_near = (estimate.value - 0.0894).abs() < 6.0 * estimate.sd.unwrap_or(f64::INFINITY);
-        assert!(is_near, "{seed}, from {first}: {estimate:?} {:?}", found.quality);
     }
 }

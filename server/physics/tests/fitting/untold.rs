@@ -1,0 +1,70 @@
+//! Fields that the data do not tell.
+
+use super::*;
+
+#[test]
+fn a_field_without_effect_is_not_told() {
+    // Restitution drops out where the table makes up the loss, by the strike gain 2.
+    let scene = scene(&[(Name::TiltGain, 1.1), (Name::Height, 0.2), (Name::Theta, 0.2), (Name::Restitution, 0.6)], &[]);
+    let measured = measure(&scene, 50, &[THETA, T], 1.0, &mut Random::new(6));
+    let found = fitted(&request(&scene, measured, &[Name::Restitution, Name::TiltGain]));
+    assert!(!found.estimates[0].is_identifiable() && found.estimates[1].is_identifiable());
+    assert!(found.estimates[0].detail.as_ref().unwrap().contains("makes up"), "{:?}", found.estimates[0]);
+    assert_eq!(found.scene.number(Name::Restitution), Some(0.6));
+}
+
+#[test]
+fn a_tilt_gain_without_any_tilt_is_not_told() {
+    let scene = with(&case_1(), Name::Theta, 0.0);
+    for seed in 0..100 {
+        let measured = measure(&scene, 60, &[THETA, T], 1.0, &mut Random::new(seed));
+        let found = fitted(&request(&scene, measured, &[Name::TiltGain]));
+        let is_good = found.quality.kind == QualityKind::Good;
+        assert!(!(is_good && found.estimates[0].is_identifiable()), "{seed}: {:?}", found.estimates[0]);
+    }
+}
+
+#[test]
+fn a_field_without_effect_may_be_the_only_one() {
+    let scene = scene(&[(Name::TiltGain, 1.1), (Name::Height, 0.2), (Name::Theta, 0.2), (Name::Restitution, 0.6)], &[]);
+    let measured = measure(&scene, 30, &[THETA, T], 1.0, &mut Random::new(6));
+    let found = fitted(&request(&scene, measured, &[Name::Restitution]));
+    assert!(!found.estimates[0].is_identifiable() && found.covariance == [[0.0]], "{found:?}");
+}
+
+#[test]
+fn fields_of_which_only_a_combination_acts_are_not_told() {
+    // The motion of a lossless rod depends on its lengths through l/ρ² and l alone, and times and angles have no length in them but by gravity.
+    let scene = case_1();
+    let measured = measure(&scene, 50, &[THETA, T], 1.0, &mut Random::new(8));
+    let unknown = [Name::ContactDistance, Name::RadiusOfGyration, Name::Gravity];
+    let found = fitted(&request(&scene, measured, &unknown));
+    assert!(found.estimates.iter().all(|estimate| !estimate.is_identifiable()), "{:?}", found.estimates);
+}
+
+#[test]
+fn a_contact_distance_with_a_mirror_is_not_told() {
+    // Where the contact sticks, l acts on the angle through l/(l² + ρ²), which is the same at ρ²/l.
+    let numbers = [
+        (Name::ContactDistance, 0.0894),
+        (Name::RadiusOfGyration, 0.0631),
+        (Name::Gravity, 3.362),
+        (Name::TiltGain, 1.115),
+        (Name::Friction, 0.6),
+        (Name::Restitution, 0.75),
+        (Name::AssumedRestitution, 0.751),
+        (Name::Height, 0.22),
+        (Name::Theta, 0.1),
+    ];
+    let scene = scene(&numbers, &[(Name::Slide, "matched")]);
+    for (seed, first) in (0..10).flat_map(|seed| [0.06, 0.0894, 0.11].map(|first| (seed, first))) {
+        let measured = measure(&scene, 20, &[THETA, T], 1.0, &mut Random::new(seed));
+        let mut asked =
+            request(&with(&scene, Name::ContactDistance, first), measured, &[Name::ContactDistance, Name::TiltGain]);
+        asked.sd = std::array::from_fn(|column| [THETA, T].contains(&column).then_some(NOISE[column]));
+        let found = fitted(&asked);
+        let estimate = &found.estimates[0];
+        let is_near = (estimate.value - 0.0894).abs() < 6.0 * estimate.sd.unwrap_or(f64::INFINITY);
+        assert!(is_near, "{seed}, from {first}: {estimate:?} {:?}", found.quality);
+    }
+}
