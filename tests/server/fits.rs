@@ -112,8 +112,9 @@ async fn margins_over_the_region_do_not_depend_on_the_order_of_the_fields() {
         body["sd"] = json!({"theta": SD[0].1, "t": SD[1].1});
         found.push(server.post(FITS, &body).await.expect(200).json()["stability"]["margins"].clone());
     }
-    for place in 0..2 {
-        let [one, other] = [&found[0][place], &found[1][place]];
+    let [first, second] = [0, 1].map(|order| found[order].as_array().unwrap());
+    assert_eq!((first.len(), second.len()), (2, 2));
+    for (one, other) in first.iter().zip(second) {
         let sd = number(one, "/sd");
         for name in ["/value", "/sd", "/least", "/most"] {
             assert!((number(one, name) - number(other, name)).abs() < 0.1 * sd, "{name}: {one} {other}");
